@@ -1,0 +1,33 @@
+// Vectors, rotations and poses shared by every part. SI units, world z up, quaternions (w, x, y, z).
+#pragma once
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+
+namespace probe {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;
+
+// A rigid transform: x_parent = rotation * x_child + position. `rotation` is unit.
+struct Pose {
+  Vec3 position = Vec3::Zero();
+  Quat rotation = Quat::Identity();
+
+  Vec3 apply(const Vec3& point) const { return rotation * point + position; }
+  Pose inverse() const {
+    const Quat inv = rotation.conjugate();
+    return {inv * -position, inv};
+  }
+};
+
+inline Pose operator*(const Pose& a, const Pose& b) {
+  return {a.rotation * b.position + a.position, a.rotation * b.rotation};
+}
+
+inline bool is_finite(const Pose& pose) {
+  return pose.position.allFinite() && pose.rotation.coeffs().allFinite();
+}
+
+}  // namespace probe

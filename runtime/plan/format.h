@@ -1,0 +1,319 @@
+// The records of a plan file, exactly as they lie in the mapped bytes: little endian, fixed strides, no pointers.
+// `file` -> header -> directory -> sections, each 64-byte aligned. Lengths in metres, angles in radians, times in
+// seconds, quaternions (w, x, y, z). Every index points into the section its comment names; kNone means "absent".
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace probe::plan {
+
+inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'P', 'L', 'A', 'N', '\r', '\n', 0x1a};
+inline constexpr std::uint16_t kMajor = 1;
+inline constexpr std::uint16_t kMinor = 0;
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+inline constexpr std::size_t kAlignment = 64;
+
+// Sections ascend by kind in the file, none repeats. STRS must be first: all others refer to it.
+enum class Section : std::uint32_t {
+  kStrings = 1,     // UTF-8 bytes, stride 1
+  kList = 2,        // u32: suite members, seeds, set members
+  kReals = 3,       // f64: initial joint positions
+  kAssets = 4,      // AssetRecord
+  kObjects = 5,     // ObjectRecord
+  kRobots = 6,      // RobotRecord
+  kDrives = 7,      // DriveRecord
+  kCameras = 8,     // CameraRecord
+  kLights = 9,      // LightRecord
+  kSuns = 10,       // SunRecord
+  kScenes = 11,     // SceneRecord
+  kConstants = 12,  // f64, finite
+  kStates = 13,     // StateRecord
+  kCode = 14,       // Instruction
+  kPrograms = 15,   // ProgramRecord
+  kMetrics = 16,    // MetricRecord
+  kBodies = 17,     // BodyRecord, task-local bodies in order
+  kPlacements = 18, // PlacementRecord
+  kTasks = 19,      // TaskRecord
+  kEpisodes = 20,   // EpisodeRecord
+  kSets = 21,       // SetRecord: named categories of tasks
+  kSuites = 22,     // SuiteRecord
+  kSpans = 100,     // SpanRecord, ignorable
+  kTexts = 101,     // TextRecord, ignorable; the bytes of texts stand in kTextBytes
+  kTextBytes = 102, // source text, ignorable
+};
+
+inline constexpr std::uint16_t kIgnorable = 1;
+
+struct StringRef {
+  std::uint32_t offset = 0;  // into kStrings
+  std::uint32_t length = 0;  // bytes
+};
+// [first, first + count) of the section named at the field.
+struct Slice {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+struct Header {
+  std::array<std::uint8_t, 8> magic = kMagic;
+  std::uint16_t major = kMajor;
+  std::uint16_t minor = kMinor;
+  std::uint32_t sections = 0;
+  std::uint64_t file_size = 0;
+  std::uint64_t zero = 0;
+  std::array<std::uint8_t, 32> root{};  // SHA-256 of the directory bytes of all sections that are not ignorable
+};
+static_assert(sizeof(Header) == 64);
+
+struct DirectoryEntry {
+  std::uint32_t kind = 0;
+  std::uint16_t version = 1;
+  std::uint16_t flags = 0;  // kIgnorable
+  std::uint64_t offset = 0;
+  std::uint64_t size = 0;  // bytes, without padding
+  std::uint32_t count = 0;
+  std::uint32_t stride = 0;
+  std::array<std::uint8_t, 32> sha256{};
+};
+static_assert(sizeof(DirectoryEntry) == 64);
+
+enum class AssetKind : std::uint32_t { kVisualMesh = 1, kCollisionMesh = 2, kUrdf = 3, kPhoto = 4 };
+
+// A file under the asset root, found by path and accepted only with these bytes.
+struct AssetRecord {
+  StringRef path;
+  std::uint32_t kind = 0;  // AssetKind
+  std::uint32_t zero = 0;
+  std::uint64_t byte_size = 0;
+  std::array<std::uint8_t, 32> sha256{};
+  std::uint64_t zero2 = 0;
+};
+static_assert(sizeof(AssetRecord) == 64);
+
+struct ObjectRecord {
+  StringRef name;      // the identifier: "carrot"
+  StringRef text;      // the name in instructions: "carrot"
+  std::uint32_t visual = kNone;     // kAssets
+  std::uint32_t collision = kNone;  // kAssets
+  std::array<double, 3> box_min{};  // metres, model frame
+  std::array<double, 3> box_max{};
+  double density = 0;   // kg/m3
+  double friction = 0;  // of the object's own material
+  std::uint64_t zero[5] = {};
+};
+static_assert(sizeof(ObjectRecord) == 128);
+
+enum class Control : std::uint32_t { kEeDeltaPose = 1 };
+
+struct FingerRecord {
+  StringRef link;
+  std::array<double, 3> opens{};  // unit axis in the link frame along which the finger opens
+};
+struct RobotRecord {
+  StringRef name;
+  StringRef tcp;                   // link
+  std::uint32_t urdf = kNone;      // kAssets
+  std::uint32_t control = 0;       // Control
+  double control_hz = 0;
+  std::array<FingerRecord, 2> fingers{};
+  double grip_closed = 0;          // finger target for gripper command -1
+  double grip_open = 0;            // finger target for gripper command +1
+  double finger_friction = 0;
+  double finger_patch = 0;         // torsional patch radius, m
+  double link_friction = 0;        // of all other links
+  double reach_min = 0, reach_max = 0;
+  Slice drives;                    // kDrives, one per actuated joint
+  std::uint64_t zero[4] = {};
+};
+static_assert(sizeof(RobotRecord) == 192);
+
+// tau = stiffness (target - q) - damping u, clamped to +-limit. SI per radian or per metre by the joint's kind.
+struct DriveRecord {
+  StringRef joint;
+  double stiffness = 0, damping = 0, limit = 0;
+};
+static_assert(sizeof(DriveRecord) == 32);
+
+enum class CameraAim : std::uint32_t { kLook = 1, kQuat = 2 };
+
+struct CameraRecord {
+  StringRef name;
+  StringRef mount_link;
+  std::uint32_t aim = 0;            // CameraAim
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t zero = 0;
+  std::array<double, 3> position{};  // in the mount link's frame
+  std::array<double, 4> aim_values{};  // look: direction xyz and 0; quat: w x y z, columns forward left up
+  double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels, at width x height
+  std::uint64_t zero2[1] = {};
+};
+static_assert(sizeof(CameraRecord) == 128);
+
+struct LightRecord {
+  StringRef name;
+  double ambient = 0;
+  Slice suns;  // kSuns
+  std::uint64_t zero[5] = {};
+};
+static_assert(sizeof(LightRecord) == 64);
+
+struct SunRecord {
+  std::array<double, 3> direction{};  // the way light travels; not normalised
+  double power = 0;
+  std::uint32_t shadow = 0;  // 0 or 1
+  std::uint32_t zero = 0;
+};
+static_assert(sizeof(SunRecord) == 40);
+
+struct SceneRecord {
+  StringRef name;
+  std::uint32_t robot = kNone;     // kRobots
+  std::uint32_t photo = kNone;     // kAssets; shown wherever no link or movable object is nearest
+  std::uint32_t backdrop = kNone;  // kAssets: static visual mesh in world coordinates, without collision
+  std::uint32_t fixture_visual = kNone;     // kAssets
+  std::uint32_t fixture_collision = kNone;  // kAssets; a static body
+  std::uint32_t zero = 0;
+  std::array<double, 3> fixture_position{};
+  std::array<double, 3> base_position{};
+  std::array<double, 4> base_rotation{};
+  Slice joints;                    // kReals: initial position of every actuated joint, in the order of kDrives
+  double surface_z = 0;
+  std::array<double, 4> area{};    // x min, y min, x max, y max of the surface
+  double physics_hz = 0;
+  double friction = 0;             // of the surface's own material
+  std::uint64_t zero2[10] = {};
+};
+static_assert(sizeof(SceneRecord) == 256);
+
+// Metric code, see isa.def.
+struct Instruction {
+  std::uint8_t op = 0;
+  std::uint8_t zero = 0;
+  std::uint16_t dst = 0;
+  std::uint16_t a = 0;
+  std::uint16_t b = 0;
+};
+static_assert(sizeof(Instruction) == 8);
+
+struct StateRecord {
+  std::uint16_t kind = 0;  // the opcode of the one monitor that uses it
+  std::uint16_t n = 0;     // HOLD: steps
+};
+static_assert(sizeof(StateRecord) == 4);
+
+struct ProgramRecord {
+  Slice constants;  // kConstants
+  Slice states;     // kStates
+  Slice code;       // kCode
+  Slice metrics;    // kMetrics
+  std::array<std::uint8_t, 32> hash{};  // of constants, states, code, metric types and names: what is judged
+};
+static_assert(sizeof(ProgramRecord) == 64);
+
+enum class MetricType : std::uint32_t { kBool = 1, kReal = 2 };
+
+struct MetricRecord {
+  StringRef name;
+  std::uint32_t type = 0;     // MetricType
+  std::uint32_t readout = 0;  // Readout, for people; the code does the work
+};
+static_assert(sizeof(MetricRecord) == 16);
+
+enum class Readout : std::uint32_t {
+  kAtEnd = 1, kOnce = 2, kAlways = 3, kCount = 4, kFirst = 5, kFinal = 6, kMax = 7, kMin = 8
+};
+
+// Task-local bodies, in this order: source, target, distractors, surface, fixture (if any), then links: fingers in
+// the robot's order, then every other link with collision in URDF order.
+enum class BodyKind : std::uint32_t { kObject = 1, kSurface = 2, kFixture = 3, kLink = 4 };
+
+struct BodyRecord {
+  std::uint32_t kind = 0;   // BodyKind
+  std::uint32_t index = 0;  // kObject: kObjects; kLink: 0, 1 fingers, then on; else 0
+  StringRef name;
+};
+static_assert(sizeof(BodyRecord) == 16);
+
+struct PlacementRecord {
+  std::uint32_t object = kNone;  // kObjects
+  std::uint32_t zero = 0;
+  std::array<double, 3> position{};  // model origin, world, before the drop
+  std::array<double, 4> rotation{};  // w x y z
+};
+static_assert(sizeof(PlacementRecord) == 64);
+
+struct TaskRecord {
+  StringRef name;
+  StringRef prompt;
+  std::uint32_t scene = kNone;
+  std::uint32_t camera = kNone;
+  std::uint32_t light = kNone;
+  std::uint32_t program = kNone;
+  std::uint32_t source = 0;   // kObjects
+  std::uint32_t target = 0;   // kObjects
+  Slice bodies;               // kBodies; source and target are the first two, then the distractors
+  std::uint32_t distractors = 0;
+  std::uint32_t horizon = 0;  // control steps
+  std::uint32_t baseline = kNone;  // kTasks
+  std::uint32_t axes = 0;     // bit mask of Axis: what differs from the baseline
+  std::uint32_t ood = 0;      // bit mask: 1 source, 2 target, 4 relation
+  std::uint32_t zero = 0;
+  StringRef allow;            // reason of an allowed confounded comparison, or empty
+  Slice episodes;             // kEpisodes
+  double drop = 0;            // m above the surface; placements contain it
+  double settle = 0;          // s, per phase of the drop
+  std::array<std::uint8_t, 32> judge_id{};
+  std::uint64_t zero2[7] = {};
+};
+static_assert(sizeof(TaskRecord) == 192);
+
+enum class Axis : std::uint32_t {
+  kObjectSource = 1u << 0, kObjectTarget = 1u << 1, kDistractors = 1u << 2, kLanguageAction = 1u << 3,
+  kLanguageNegation = 1u << 4, kLanguageAppearance = 1u << 5, kLanguageCommonsense = 1u << 6, kLayout = 1u << 7,
+  kScene = 1u << 8, kLight = 1u << 9, kCamera = 1u << 10, kGoal = 1u << 11
+};
+
+struct EpisodeRecord {
+  std::uint32_t task = 0;   // kTasks
+  std::uint32_t index = 0;  // 0 .. n-1 within the task
+  Slice placements;         // kPlacements, source, target, distractors
+  std::array<std::uint8_t, 32> start_id{};
+  std::array<std::uint8_t, 32> episode_id{};
+  std::uint64_t zero[6] = {};
+};
+static_assert(sizeof(EpisodeRecord) == 128);
+
+struct SetRecord {
+  StringRef name;
+  Slice members;  // kList of kTasks
+};
+static_assert(sizeof(SetRecord) == 16);
+
+struct SuiteRecord {
+  StringRef name;
+  StringRef prefix;
+  StringRef trained_on;
+  Slice members;  // kList of kTasks
+  Slice seeds;    // kList
+  std::uint64_t zero[3] = {};
+};
+static_assert(sizeof(SuiteRecord) == 64);
+
+// Where an instruction or a record came from. `what` 1: kCode instruction, 2: kTasks, 3: kObjects, 4: kMetrics.
+struct SpanRecord {
+  std::uint32_t what = 0;
+  std::uint32_t index = 0;
+  std::uint32_t text = 0;  // kTexts
+  std::uint32_t begin = 0, end = 0;  // bytes
+};
+static_assert(sizeof(SpanRecord) == 20);
+
+struct TextRecord {
+  StringRef path;
+  Slice bytes;  // kTextBytes
+};
+static_assert(sizeof(TextRecord) == 16);
+
+}  // namespace probe::plan

@@ -1,0 +1,78 @@
+// Pictures of a scene: RGB, depth and segmentation, every visibility question an Embree ray. One Renderer per world
+// and thread; meshes and their ray structures (SharedScene) are read-only and shared. Contracts and the shading law are
+// in README.md of this folder.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+#include "runtime/base/result.h"
+#include "runtime/scene/mesh.h"
+
+namespace probe::render {
+
+// Pinhole camera in the world: forward, left and up are the rotation's columns.
+struct Camera {
+  Vec3 position = Vec3::Zero();
+  Mat3 forward_left_up = Mat3::Identity();
+  int width = 640, height = 480;
+  double fx = 1, fy = 1, cx = 0, cy = 0;  // pixels at width x height; pixel centres at +0.5
+};
+
+// forward = normalize(direction), left = normalize(z x forward), up = forward x left; fails for a vertical direction.
+Result<Mat3> look_along(const Vec3& direction);
+
+struct Sun {
+  Vec3 direction{0, 0, -1};  // the way light travels
+  double power = 1;          // irradiance on a surface that faces it
+  bool shadow = false;
+};
+
+struct Lights {
+  double ambient = 0.3;
+  std::vector<Sun> suns;
+};
+
+// A rigid visual. `body` is what segmentation shows + 1; kBackdrop for geometry without a body.
+inline constexpr std::uint16_t kBackdrop = 65534;
+struct Visual {
+  std::shared_ptr<const scene::Mesh> mesh;
+  Pose origin;              // mesh frame in the frame of its pose (static: in world)
+  std::uint16_t body = 0;   // task-local body index
+  std::string name;         // for messages
+  bool robot = false;       // robot links use the robot material (README)
+};
+
+struct SceneSpec {
+  std::vector<Visual> statics;   // fixed in an episode
+  std::vector<Visual> dynamics;  // one pose each per frame
+  Camera camera;
+  Lights lights;
+  std::shared_ptr<const scene::Texture> photo;  // shown wherever no dynamic visual is nearest; may be null
+  bool shadows = false;          // suns marked `shadow` cast; off in the reference
+};
+
+// Views into the renderer, valid until the next render().
+struct FrameView {
+  int width = 0, height = 0;
+  std::span<const std::uint8_t> rgb;           // h x w x 3, row 0 on top
+  std::span<const float> depth;                // m along the camera's forward axis; 0 beyond 10 m
+  std::span<const std::uint16_t> segmentation; // 0 nothing, 1 + body, 65535 backdrop
+};
+
+class Renderer {
+ public:
+  static Result<std::unique_ptr<Renderer>> create(SceneSpec spec);
+  virtual ~Renderer() = default;
+  // `poses`: one per dynamic visual, world. Fails (code "render") on a non-finite pose, naming the visual.
+  virtual Result<FrameView> render(std::span<const Pose> poses) = 0;
+  // Traces every pixel again, without the block cache: the picture must be the same. For tests and golden frames.
+  virtual Result<FrameView> render_full(std::span<const Pose> poses) = 0;
+};
+
+}  // namespace probe::render

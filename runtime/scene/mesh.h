@@ -1,0 +1,46 @@
+// Meshes as pictures and physics need them: plain arrays, already scaled to metres, node transforms baked in.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+
+namespace probe::scene {
+
+struct Texture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgba;  // sRGB bytes, row 0 on top (v = 0)
+};
+
+// Linear factors; a texture replaces its factor.
+struct Material {
+  std::array<float, 3> base_color{1, 1, 1};
+  std::array<float, 3> emission{0, 0, 0};
+  int base_color_texture = -1;  // index into Mesh::textures
+  int emission_texture = -1;
+  float roughness = 1;
+  float metallic = 0;
+  float f0 = 0.04f;
+};
+
+// Triangles of one material. Float arrays, 3 (positions, normals) or 2 (uv) a vertex; uv may be empty.
+struct MeshPart {
+  int material = 0;
+  std::vector<float> positions;
+  std::vector<float> normals;
+  std::vector<float> uv;
+  std::vector<std::uint32_t> indices;  // 3 a triangle
+};
+
+struct Mesh {
+  std::string name;  // path, for messages
+  std::vector<MeshPart> parts;
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+};
+
+}  // namespace probe::scene
