@@ -1,0 +1,36 @@
+// From what stands after --policy to a Policy. The list of known policies is here and nowhere else.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/policy/policy.h"
+
+namespace probe::policy {
+
+struct PolicyTraits {
+  bool draws = false;     // whether two seeds can give two different episodes
+  bool recorded = false;  // wants PolicyContext::recorded_actions
+};
+
+// What a policy may need from outside. `recorded_actions` gives the actions of a stored episode
+// (for replay:DIR).
+struct PolicyContext {
+  std::function<Result<std::vector<Action>>(const std::string& dir, std::string_view task,
+                                            int episode, int seed)>
+      recorded_actions;
+};
+
+// Fail (code "usage") on an unknown policy, with the known ones and the nearest spelling, and on a
+// bad argument.
+Result<PolicyTraits> policy_traits(std::string_view text);
+Result<std::unique_ptr<Policy>> make_policy(std::string_view text,
+                                            const PolicyContext& context = {});
+
+// One line each, for --help: "noisy:SIGMA   the expert with ...".
+std::string policy_help();
+
+}  // namespace probe::policy
