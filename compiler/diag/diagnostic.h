@@ -1,0 +1,113 @@
+// What is said to the author of a .probe text, as data: collected by every pass, rendered by text.h
+// and json.h. Wording: lower case, no full stop, backticks round source, what was seen before what
+// was wanted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <initializer_list>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/source/source.h"
+
+namespace probe {
+
+enum class Severity : std::uint8_t { kError, kWarning };
+
+enum class Code : std::uint16_t {
+#define PROBE_CODE(code, severity, slug, title) code,
+#include "compiler/diag/codes.def"
+};
+
+struct CodeInfo {
+  Code code;
+  std::string_view text;  // "P0402"
+  Severity severity;
+  std::string_view slug;  // for @allow; empty when it cannot be allowed
+  std::string_view title;
+};
+
+const CodeInfo& info(Code code);
+std::string_view to_text(Severity severity);  // "error", "warning"
+std::optional<Code> code_from_text(std::string_view text);
+// The code that @allow(slug, ...) silences.
+std::optional<Code> code_from_slug(std::string_view slug);
+// Every code in the order of codes.def.
+std::vector<Code> all_codes();
+
+// Why another place matters. Drawn with dashes; the primary place has carets.
+struct Label {
+  Span span;
+  std::string text;
+};
+
+struct Replacement {
+  Span span;  // empty: an insertion
+  std::string text;
+};
+
+// Offered only when applying it compiles.
+struct Fix {
+  std::string message;  // "write `2 x 2`"
+  std::vector<Replacement> replacements;
+};
+
+struct Diagnostic {
+  Code code = Code::P0101;
+  Severity severity = Severity::kError;
+  std::string message;
+  Span primary;
+  std::string primary_label;  // behind the carets; may be empty
+  std::vector<Label> labels;
+  std::optional<Fix> fix;
+  std::vector<std::string> helps;  // a line break continues under the same `= help:`
+  std::vector<std::string> notes;
+
+  // For building one in place: diagnostics.report(...).point("...").label(other,
+  // "...").help("...").
+  Diagnostic& point(std::string text) { return primary_label = std::move(text), *this; }
+  Diagnostic& label(const Span& span, std::string text) {
+    return labels.push_back({span, std::move(text)}), *this;
+  }
+  Diagnostic& help(std::string text) { return helps.push_back(std::move(text)), *this; }
+  Diagnostic& note(std::string text) { return notes.push_back(std::move(text)), *this; }
+  // Replaces the bytes of `span` by `replacement`.
+  Diagnostic& fix_by(std::string text, const Span& span, std::string replacement) {
+    fix = Fix{std::move(text), {{span, std::move(replacement)}}};
+    return *this;
+  }
+};
+
+class Diagnostics {
+ public:
+  // With the severity of the code's table line. The reference stays valid while the collector
+  // lives.
+  Diagnostic& report(Code code, const Span& primary, std::string message);
+  Diagnostic& add(Diagnostic diagnostic);
+
+  std::size_t error_count() const;
+  bool has_errors() const { return error_count() != 0; }
+  bool empty() const { return items_.empty(); }
+  std::size_t size() const { return items_.size(); }
+  const std::deque<Diagnostic>& items() const { return items_; }
+
+  // Files in the order they were loaded, then by place; errors and warnings mixed. For printing.
+  std::vector<const Diagnostic*> in_source_order() const;
+
+ private:
+  std::deque<Diagnostic> items_;
+};
+
+// The candidate that `name` was probably meant to be, or none: Damerau-Levenshtein distance at most
+// a third of the name's length (at least 1), the earlier candidate on a tie.
+std::optional<std::string_view> nearest(std::string_view name,
+                                        std::span<const std::string_view> candidates);
+// Edits (insert, delete, replace, swap of neighbours) that turn one into the other.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+}  // namespace probe

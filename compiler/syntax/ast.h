@@ -1,0 +1,756 @@
+// The typed tree of one .probe file: one struct per declaration kind and statement kind of
+// dsl/grammar.ebnf, in the order of the text. Says what was written, never what it means: names are
+// not resolved, units not converted. Every view (Name::text, Quantity::digits ...) points into the
+// SourceFile and lives as long as its SourceSet. Expressions, queries, conditions and sets are
+// nodes in arrays of File, referred to by index, children first.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "compiler/source/source.h"
+
+namespace probe::syntax {
+
+// ---- leaves
+// ---------------------------------------------------------------------------------------------------------
+
+struct Name {
+  Span span;
+  std::string_view text;
+};
+
+// `widowx.base_link`, `language.action`
+struct Path {
+  Span span;
+  std::vector<Name> parts;  // at least one
+};
+
+enum class Unit : std::uint8_t {
+  kNone,
+#define PROBE_UNIT(id, text) id,
+#include "compiler/syntax/units.def"
+  kUnknown,  // P0301 has been reported; say nothing more
+};
+
+std::string_view to_text(Unit unit);  // "" for kNone and kUnknown
+
+// An exact decimal: sign, digits as written ("20.6", "1e-6"), unit. Conversion happens once, later.
+struct Quantity {
+  Span span;  // sign to unit
+  std::string_view digits;
+  Unit unit = Unit::kNone;
+  bool negative = false;
+};
+
+struct Int {
+  Span span;
+  std::uint64_t value = 0;
+};
+
+// `value` is what the escapes mean; `raw` stands between the quotes.
+struct Text {
+  Span span;  // with the quotes
+  std::string_view raw;
+  std::string value;
+};
+
+// One piece of a text with slots: literal bytes, or "{" [avoid] [the] name [":" category] "}".
+struct Slot {
+  Span span;  // with the braces
+  bool avoid = false;
+  bool the = false;
+  Name name;                     // source, target, an object, or a binder of `derive`
+  std::optional<Name> category;  // accepts only this value of attribute `category`
+};
+using TemplatePart = std::variant<std::string, Slot>;
+struct TemplateText {
+  Text text;
+  std::vector<TemplatePart> parts;  // in order; literal parts are not empty
+};
+
+struct Point {
+  Span span;  // with the parentheses
+  std::vector<Quantity> coordinates;
+};
+
+enum class Turn : std::uint8_t { kRoll, kPitch, kYaw };
+struct Angle {
+  Span span;
+  Turn turn = Turn::kYaw;
+  Quantity value;
+};
+// `roll 90deg yaw 15deg`: extrinsic turns about x, y, z.
+struct Pose {
+  Span span;
+  std::vector<Angle> angles;  // at least one
+};
+
+enum class Role : std::uint8_t { kSource, kTarget };
+
+// Indices into the arrays of File.
+struct ExprId {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t value = kNone;
+};
+struct SetExprId {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t value = kNone;
+};
+struct QueryId {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t value = kNone;
+};
+struct TaskSetId {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t value = kNone;
+};
+struct CondId {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t value = kNone;
+};
+
+// ---- queries over attributes
+// ----------------------------------------------------------------------------------------
+
+struct QueryFact {  // `rabbit_favorite`
+  Name fact;
+};
+struct QueryValue {  // `color orange`
+  Name attribute;
+  Name value;
+};
+struct QueryNot {
+  QueryId operand;
+};
+struct QueryAnd {
+  QueryId left, right;
+};
+struct QueryOr {
+  QueryId left, right;
+};
+struct Query {
+  Span span;
+  std::variant<QueryFact, QueryValue, QueryNot, QueryAnd, QueryOr> node;
+};
+
+// ---- expressions of predicates and metrics
+// --------------------------------------------------------------------------
+
+enum class Quantifier : std::uint8_t { kAny, kAll, kNo };
+enum class UnaryOp : std::uint8_t { kNot, kOnce, kAlways, kNegate };
+enum class BinaryOp : std::uint8_t {
+  kOr,
+  kAnd,
+  kLess,
+  kLessEqual,
+  kGreater,
+  kGreaterEqual,
+  kEqual,
+  kNotEqual,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+};
+
+struct ExprNumber {
+  Quantity value;  // never signed; a minus is UnaryOp::kNegate
+};
+struct ExprName {
+  Name name;
+};
+struct Argument {
+  Span span;
+  std::optional<Name> name;  // `clearance: 6cm`
+  ExprId value;
+};
+struct ExprCall {
+  Name callee;
+  std::vector<Argument> arguments;
+};
+struct ExprUnary {
+  UnaryOp op;
+  Span op_span;
+  ExprId operand;
+};
+struct ExprBinary {
+  BinaryOp op;
+  Span op_span;
+  ExprId left, right;
+};
+struct ExprHold {  // `operand for 5 steps`
+  ExprId operand;
+  Int steps;
+  Span for_span;  // `for 5 steps`
+};
+struct ExprBlock {  // `any { ... }`, `all { ... }`: one condition per line
+  Quantifier quantifier;
+  std::vector<ExprId> conditions;
+};
+struct ExprQuantified {  // `no x in bodies - {a, b}: body`
+  Quantifier quantifier;
+  Name variable;
+  SetExprId set;
+  ExprId body;
+};
+struct Expr {
+  Span span;
+  std::variant<ExprNumber, ExprName, ExprCall, ExprUnary, ExprBinary, ExprHold, ExprBlock,
+               ExprQuantified>
+      node;
+};
+
+// ---- sets of bodies (in quantifiers) and of tasks
+// -------------------------------------------------------------------
+
+enum class SetOp : std::uint8_t { kUnion, kIntersection, kDifference };  // | & -
+
+struct SetNames {  // `{a, b}`
+  std::vector<Name> names;
+};
+struct SetName {  // `fingers`
+  Name name;
+};
+struct SetBinary {
+  SetOp op;
+  SetExprId left, right;
+};
+struct SetExpr {
+  Span span;
+  std::variant<SetNames, SetName, SetBinary> node;
+};
+
+struct TaskSetNames {
+  std::vector<Name> names;
+};
+struct TaskSetName {
+  Name name;
+};
+struct TaskSetVariants {  // `variants of core`
+  TaskSetId of;
+};
+struct TaskSetSample {  // `sample 12 of x seed 7`
+  Int count;
+  TaskSetId of;
+  Int seed;
+};
+struct TaskSetBinary {
+  SetOp op;
+  TaskSetId left, right;
+};
+struct TaskSetWhere {
+  TaskSetId set;
+  CondId condition;
+};
+struct TaskSet {
+  Span span;
+  std::variant<TaskSetNames, TaskSetName, TaskSetVariants, TaskSetSample, TaskSetBinary,
+               TaskSetWhere>
+      node;
+};
+
+enum class CondKind : std::uint8_t { kAxis, kUses, kOod, kHas, kScene };
+struct CondTest {  // `axis language.action`, `ood source`
+  CondKind kind;
+  Path path;
+};
+struct CondNot {
+  CondId operand;
+};
+struct CondAnd {
+  CondId left, right;
+};
+struct CondOr {
+  CondId left, right;
+};
+struct Cond {
+  Span span;
+  std::variant<CondTest, CondNot, CondAnd, CondOr> node;
+};
+
+enum class ReadoutKind : std::uint8_t {
+  kAtEnd,
+  kOnce,
+  kAlways,
+  kCount,
+  kFirst,
+  kFinal,
+  kMax,
+  kMin
+};
+struct Readout {
+  Span span;  // read-out word to the end of the expression
+  ReadoutKind kind = ReadoutKind::kAtEnd;
+  Span kind_span;
+  ExprId expr;
+};
+
+// ---- the world
+// ------------------------------------------------------------------------------------------------------
+// Every statement starts with `span`, the whole statement.
+
+struct UseDecl {
+  Text path;
+};
+
+struct Relation {  // `carrot on plate`
+  Span span;
+  Name subject, preposition, object;
+};
+struct RelationsStmt {
+  Span span;
+  std::vector<Relation> relations;
+};
+struct DatasetDecl {
+  Name name;
+  Text title;
+  std::vector<RelationsStmt> body;
+};
+
+struct AttributeDecl {
+  Name name;
+  std::vector<Name> values;
+};
+
+struct FactsDecl {
+  std::vector<Name> names;
+};
+
+struct MeshStmt {
+  Span span;
+  Text path;
+};
+struct BoxSizeStmt {  // `box 3cm x 3cm x 3cm`
+  Span span;
+  Quantity x, y, z;
+};
+struct BoxCornersStmt {  // `box (..) .. (..)`
+  Span span;
+  Point low, high;
+};
+struct DensityStmt {
+  Span span;
+  Quantity value;
+};
+struct FrictionStmt {
+  Span span;
+  Quantity value;
+};
+struct IsStmt {
+  Span span;
+  std::vector<Name> facts;
+};
+struct MaybeStmt {
+  Span span;
+  std::vector<Name> facts;
+};
+struct SeenInStmt {
+  Span span;
+  std::vector<Name> datasets;
+};
+struct UnseenStmt {
+  Span span;
+};
+struct RestStmt {
+  Span span;
+  std::vector<Pose> poses;
+};
+struct NameStmt {
+  Span span;
+  Text text;
+  bool bare = false;
+};
+struct PhraseStmt {
+  Span span;
+  Name name;
+  Name axis;  // appearance, commonsense or another
+  Text text;
+  bool bare = false;
+  QueryId means;
+};
+struct AttributeStmt {  // `color silver, green`
+  Span span;
+  Name attribute;
+  std::vector<Name> values;
+};
+using ObjectStmt =
+    std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, FrictionStmt, IsStmt,
+                 MaybeStmt, SeenInStmt, UnseenStmt, RestStmt, NameStmt, PhraseStmt, AttributeStmt>;
+struct ObjectDecl {
+  Name name;
+  std::optional<Name> like;
+  std::vector<ObjectStmt> body;
+};
+
+struct UrdfStmt {
+  Span span;
+  Text path;
+};
+struct TcpStmt {
+  Span span;
+  Name link;
+};
+struct Finger {  // `left_finger_link opens +y`
+  Span span;
+  Name link;
+  bool negative = false;
+  Name axis;
+};
+struct FingersStmt {
+  Span span;
+  std::vector<Finger> fingers;
+};
+struct ControlStmt {
+  Span span;
+  Name law;
+  Quantity rate;
+};
+struct ReachStmt {
+  Span span;
+  Quantity least, most;
+};
+struct DriveStmt {  // `drive waist, shoulder stiffness 1200Nm/rad damping 40Nms/rad limit 30Nm`
+  Span span;
+  std::vector<Name> joints;
+  Quantity stiffness, damping, limit;
+};
+struct GripStmt {  // `grip 1.5cm .. 3.7cm friction 1 patch 4mm`
+  Span span;
+  Quantity closed, open;             // finger joint targets
+  std::optional<Quantity> friction;  // of the fingers
+  std::optional<Quantity> patch;     // radius of the torsional contact patch
+};
+using RobotStmt =
+    std::variant<UrdfStmt, TcpStmt, FingersStmt, ControlStmt, ReachStmt, DriveStmt, GripStmt>;
+struct RobotDecl {
+  Name name;
+  std::vector<RobotStmt> body;
+};
+
+enum class MountKind : std::uint8_t { kLook, kQuat };
+struct MountStmt {
+  Span span;
+  Path frame;
+  Point at;
+  MountKind kind = MountKind::kLook;
+  Point direction;  // `look`: three plain numbers; `quat`: four
+};
+struct ImageStmt {
+  Span span;
+  Int width, height;
+};
+struct LensStmt {
+  Span span;
+  std::vector<Quantity> values;
+};
+using CameraStmt = std::variant<MountStmt, ImageStmt, LensStmt>;
+struct CameraDecl {
+  Name name;
+  std::optional<Name> like;
+  std::vector<CameraStmt> body;
+};
+
+struct AmbientStmt {
+  Span span;
+  Quantity value;
+};
+struct SunStmt {
+  Span span;
+  Point direction;
+  Quantity power;
+  bool shadow = false;
+};
+using LightStmt = std::variant<AmbientStmt, SunStmt>;
+struct LightDecl {
+  Name name;
+  std::vector<LightStmt> body;
+};
+
+struct SceneRobotStmt {
+  Span span;
+  Name robot;
+  Point at;  // two or three coordinates
+  Quantity yaw;
+};
+struct JointsStmt {  // `joints (-0.018rad, 0.04rad, 3.7cm)`: initial positions, in the URDF's order
+  Span span;
+  Point positions;
+};
+struct SurfaceStmt {
+  Span span;
+  Quantity height;
+  Point low, high;
+};
+struct FixtureStmt {
+  Span span;
+  Text mesh;
+  Point at;
+};
+struct BackdropStmt {  // a mesh that is seen and not touched
+  Span span;
+  Text mesh;
+};
+struct SceneCameraStmt {
+  Span span;
+  Name camera;
+  std::optional<Text> overlay;
+};
+struct UseLightStmt {
+  Span span;
+  Name light;
+};
+struct PhysicsStmt {
+  Span span;
+  Quantity rate;
+  Quantity friction;
+  bool window_step = false;
+};
+using SceneStmt = std::variant<SceneRobotStmt, JointsStmt, SurfaceStmt, FixtureStmt, BackdropStmt,
+                               SceneCameraStmt, UseLightStmt, PhysicsStmt>;
+struct SceneDecl {
+  Name name;
+  std::optional<Name> like;
+  std::vector<SceneStmt> body;
+};
+
+struct CellsStmt {  // `cells corners = grid 2 x 2 at (..) spread (..), (..)`
+  Span span;
+  Name name;
+  Int columns, rows;
+  Point at;
+  std::vector<Point> spreads;
+};
+struct PlaceAtStmt {
+  Span span;
+  std::vector<Name> names;
+  Point at;
+};
+enum class PlaceHow : std::uint8_t { kDistinct, kRemaining };
+struct PlaceInStmt {
+  Span span;
+  std::vector<Name> names;
+  PlaceHow how = PlaceHow::kDistinct;
+  Name cells;
+};
+struct OrientByRestStmt {
+  Span span;
+};
+struct OrientStmt {
+  Span span;
+  Name what;
+  std::vector<Pose> poses;
+};
+struct JitterStmt {
+  Span span;
+  Quantity value;
+};
+struct DropStmt {
+  Span span;
+  Quantity height;
+  std::optional<Quantity> settle;
+};
+struct ExpectEpisodesStmt {
+  Span span;
+  Int episodes;
+};
+using LayoutStmt = std::variant<CellsStmt, PlaceAtStmt, PlaceInStmt, OrientByRestStmt, OrientStmt,
+                                JitterStmt, DropStmt, ExpectEpisodesStmt>;
+struct LayoutDecl {
+  Name name;
+  std::optional<Name> like;
+  std::vector<LayoutStmt> body;
+};
+
+// ---- language and judgement
+// -----------------------------------------------------------------------------------------
+
+struct TemplateDecl {
+  Name name;
+  std::optional<Name> frame;
+  TemplateText text;
+};
+
+enum class ParamType : std::uint8_t { kObject, kBody, kLength, kAngle, kTime, kImpulse, kNumber };
+struct Param {
+  Span span;
+  Name name;
+  ParamType type = ParamType::kObject;
+  Span type_span;
+  std::optional<ExprId> default_value;
+};
+struct PredicateDecl {
+  Name name;
+  std::vector<Param> params;
+  ExprId body;
+};
+
+struct MetricStmt {
+  Span span;
+  Name name;
+  Readout readout;
+};
+struct MetricsDecl {
+  Name name;
+  std::optional<Name> like;
+  std::vector<MetricStmt> body;
+};
+
+// ---- tasks, variants, suites
+// ----------------------------------------------------------------------------------------
+
+enum class TaskField : std::uint8_t {
+  kScene,
+  kLayout,
+  kSource,
+  kTarget,
+  kMetrics,
+  kLight,
+  kCamera
+};
+struct FieldStmt {  // `scene table`
+  Span span;
+  TaskField field = TaskField::kScene;
+  Name value;
+};
+struct DistractorsStmt {  // `none` is the empty list
+  Span span;
+  std::vector<Name> objects;
+};
+struct SayStmt {
+  Span span;
+  std::variant<Name, TemplateText> what;  // a template by name, or words on the spot
+};
+struct ReferStmt {
+  Span span;
+  Role role = Role::kSource;
+  Name phrase;
+};
+struct PoseStmt {
+  Span span;
+  Name object;
+  std::vector<Pose> poses;
+};
+struct HorizonStmt {
+  Span span;
+  Int steps;
+};
+using TaskStmt =
+    std::variant<FieldStmt, DistractorsStmt, SayStmt, ReferStmt, PoseStmt, HorizonStmt, MetricStmt>;
+
+struct TaskDecl {
+  bool abstract = false;
+  Name name;
+  std::optional<Name> like;
+  std::optional<Name> against;
+  std::vector<TaskStmt> body;
+};
+struct VariantDecl {
+  Name name;
+  Name of;
+  std::optional<Name> against;
+  std::vector<TaskStmt> body;
+};
+struct VariantsMember {
+  Span span;
+  Name name;
+  std::vector<TaskStmt> body;
+};
+struct VariantsDecl {
+  Name of;
+  std::vector<VariantsMember> members;
+};
+
+struct BinderPhrases {  // `p in phrases appearance of source`
+  Name axis;
+  Role role = Role::kSource;
+};
+struct BinderTasks {  // `t in core`; a `where` belongs to the derive
+  TaskSetId tasks;
+};
+struct Binder {
+  Span span;
+  Name name;
+  std::variant<BinderPhrases, BinderTasks> over;
+};
+struct DeriveDecl {
+  TemplateText name;  // slots are binders
+  std::vector<Binder> binders;
+  std::optional<CondId> where;
+  std::vector<TaskStmt> body;
+};
+
+struct SetDecl {
+  Name name;
+  TaskSetId tasks;
+};
+
+struct SuiteTasksStmt {
+  Span span;
+  TaskSetId tasks;
+};
+struct PrefixStmt {
+  Span span;
+  Text prefix;
+};
+struct SeedsStmt {
+  Span span;
+  std::vector<Int> seeds;
+};
+struct ExpectTasksStmt {
+  Span span;
+  Int tasks, episodes;
+};
+using SuiteStmt = std::variant<SuiteTasksStmt, PrefixStmt, SeedsStmt, ExpectTasksStmt>;
+struct SuiteDecl {
+  Name name;
+  std::optional<Name> trained_on;
+  std::vector<SuiteStmt> body;
+};
+
+// ---- file
+// -----------------------------------------------------------------------------------------------------------
+
+struct Allow {  // @allow(confounded, "why")
+  Span span;
+  Name what;
+  Text reason;
+};
+
+using DeclNode =
+    std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, RobotDecl, CameraDecl,
+                 LightDecl, SceneDecl, LayoutDecl, TemplateDecl, PredicateDecl, MetricsDecl,
+                 TaskDecl, VariantDecl, VariantsDecl, DeriveDecl, SetDecl, SuiteDecl>;
+
+struct Decl {
+  Span span;  // keyword to the last token
+  std::vector<std::string_view>
+      docs;  // text of each `##` line above, without the marks and one blank
+  std::vector<Allow> allows;
+  DeclNode node;
+  bool complete =
+      true;  // false: a syntax error in its head or body was reported; statements may be missing
+};
+
+struct File {
+  FileId id;
+  std::vector<Decl> decls;  // in the order of the text
+
+  std::vector<Expr> exprs;
+  std::vector<SetExpr> set_exprs;
+  std::vector<Query> queries;
+  std::vector<TaskSet> task_sets;
+  std::vector<Cond> conds;
+
+  const Expr& operator[](ExprId id_) const { return exprs[id_.value]; }
+  const SetExpr& operator[](SetExprId id_) const { return set_exprs[id_.value]; }
+  const Query& operator[](QueryId id_) const { return queries[id_.value]; }
+  const TaskSet& operator[](TaskSetId id_) const { return task_sets[id_.value]; }
+  const Cond& operator[](CondId id_) const { return conds[id_.value]; }
+};
+
+}  // namespace probe::syntax
