@@ -1,0 +1,20 @@
+// What the verbs take as F: a .plan file, opened and verified, or .probe text, compiled in memory with its diagnostics
+// printed.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "runtime/cli/verbs.h"
+#include "runtime/plan/plan.h"
+
+namespace probe::cli {
+
+// The plan, or the exit code to leave with after the reason was printed.
+struct LoadedPlan {
+  std::optional<plan::Plan> plan;
+  int exit = kFine;
+};
+LoadedPlan load_plan(const std::string& path, const AssetOptions& assets, const std::string& suite = {});
+
+}  // namespace probe::cli

@@ -1,0 +1,57 @@
+// vlaprobe replay
+#include "runtime/run/replay.h"
+
+#include <fmt/format.h>
+
+#include "runtime/cli/verbs.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::string dir, task;
+  int episode = 0;
+  std::optional<int> seed;
+  run::ReplayOptions options;
+  AssetOptions assets;
+};
+
+int replay_verb(const Arguments& arguments) {
+  run::ReplayOptions options = arguments.options;
+  options.assets = arguments.assets.root;
+  auto report_or = run::replay(arguments.dir, arguments.task, arguments.episode, arguments.seed, options);
+  if (!report_or) return report(report_or.failure());
+  for (const std::string& difference : report_or->fingerprint_differences) {
+    fmt::print(stderr, "not as recorded: {}\n", difference);
+  }
+  if (!options.video.empty()) fmt::print(stderr, "video: {}\n", options.video);
+  if (!options.png.empty()) fmt::print(stderr, "picture: {}\n", options.png);
+  const std::string name = fmt::format("{} episode {} seed {}", arguments.task, arguments.episode, report_or->seed);
+  if (options.verify && !report_or->identical) {
+    fmt::print(stderr, "vlaprobe: {} differs from its trace: {}\n", name, report_or->difference);
+    return kOutside;
+  }
+  fmt::print("{}: {} steps {}\n", name, report_or->steps,
+             options.verify ? "identical, bit for bit" : "repeated");
+  return kFine;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("replay", "a stored episode again, from its recorded actions");
+  verb->footer("example: vlaprobe replay runs/expert carrot_on_plate 3 --verify --video carrot3.mp4");
+  verb->add_option("DIR", arguments->dir, "results folder")->required();
+  verb->add_option("TASK", arguments->task, "task name")->required();
+  verb->add_option("EPISODE", arguments->episode, "start, from 0")->required();
+  verb->add_option("SEED", arguments->seed, "seed (default: the lowest stored)");
+  verb->add_flag("--verify", arguments->options.verify, "compare every measurement and hash");
+  verb->add_option("--video", arguments->options.video, "write an mp4");
+  verb->add_option("--png", arguments->options.png, "write the picture at --step");
+  verb->add_option("--step", arguments->options.png_step, "control step of --png, 0 is the first picture");
+  add_asset_option(*verb, arguments->assets);
+  verb->callback([arguments, &exit] { exit = replay_verb(*arguments); });
+}
+
+}  // namespace probe::cli

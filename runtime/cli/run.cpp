@@ -1,0 +1,157 @@
+// vlaprobe run
+#include "runtime/run/run.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdlib>
+#include <map>
+
+#include "runtime/cli/load.h"
+#include "runtime/policy/factory.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::string file;
+  std::string policy, out, suite, tasks = "*", episodes, seeds, shard = "1/1", video = "none";
+  int jobs = 1;
+  AssetOptions assets;
+};
+
+Failure usage(std::string message) { return Failure{"usage", std::move(message), ""}; }
+
+std::optional<int> to_int(std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+// "A-B" or "A".
+Result<std::pair<int, int>> parse_range(const std::string& text) {
+  const std::size_t dash = text.find('-');
+  const auto first = to_int(std::string_view(text).substr(0, dash));
+  const auto last = dash == std::string::npos ? first : to_int(std::string_view(text).substr(dash + 1));
+  if (!first || !last || *first < 0 || *last < *first) {
+    return usage(fmt::format("--episodes `{}` is not of the form A-B, as in 0-23", text));
+  }
+  return std::pair(*first, *last);
+}
+
+Result<std::vector<int>> parse_seeds(const std::string& text) {
+  std::vector<int> seeds;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const auto seed = to_int(std::string_view(text).substr(begin, comma - begin));
+    if (!seed || *seed < 0) {
+      return usage(fmt::format("--seeds `{}` is not a list of whole numbers, as in 42,7", text));
+    }
+    seeds.push_back(*seed);
+    begin = comma + 1;
+  }
+  return seeds;
+}
+
+Result<std::pair<int, int>> parse_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash != std::string::npos) {
+    const auto part = to_int(std::string_view(text).substr(0, slash));
+    const auto parts = to_int(std::string_view(text).substr(slash + 1));
+    if (part && parts && *part >= 1 && *part <= *parts) return std::pair(*part, *parts);
+  }
+  return usage(fmt::format("--shard `{}` is not of the form I/N with 1 <= I <= N", text));
+}
+
+Result<run::RunOptions> to_options(const Arguments& arguments) {
+  run::RunOptions options;
+  options.policy = arguments.policy;
+  options.out = arguments.out;
+  options.suite = arguments.suite;
+  options.tasks = arguments.tasks;
+  options.assets = arguments.assets.root;
+  options.jobs = arguments.jobs;
+  if (!arguments.episodes.empty()) {
+    PROBE_ASSIGN(options.episodes, parse_range(arguments.episodes));
+  }
+  if (!arguments.seeds.empty()) {
+    PROBE_ASSIGN(options.seeds, parse_seeds(arguments.seeds));
+  }
+  PROBE_ASSIGN(const auto shard, parse_shard(arguments.shard));
+  options.shard = shard.first;
+  options.shards = shard.second;
+  static const std::map<std::string, run::VideoChoice> kVideo = {{"none", run::VideoChoice::kNone},
+                                                                 {"failures", run::VideoChoice::kFailures},
+                                                                 {"all", run::VideoChoice::kAll}};
+  options.video = kVideo.at(arguments.video);
+  return options;
+}
+
+// One line that is rewritten on a terminal; one line an episode that went wrong anywhere.
+class ProgressPrinter {
+ public:
+  void operator()(const run::RunProgress& progress) {
+    if (progress.row && progress.row->invalid) {
+      clear();
+      fmt::print(stderr, "invalid: {} episode {} seed {}: {}\n", progress.row->task, progress.row->episode,
+                 progress.row->seed, *progress.row->invalid);
+    }
+    if (!terminal_) return;
+    fmt::print(stderr, "\r{}/{} episodes{}", progress.done + progress.skipped, progress.total,
+               progress.skipped ? fmt::format(" ({} were there)", progress.skipped) : "");
+    std::fflush(stderr);
+    dirty_ = true;
+  }
+  void clear() {
+    if (dirty_) fmt::print(stderr, "\r\033[K");
+    dirty_ = false;
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  bool dirty_ = false;
+};
+
+int run_verb(const Arguments& arguments) {
+  auto options = to_options(arguments);
+  if (!options) return report(options.failure());
+  if (auto traits = policy::policy_traits(arguments.policy); !traits) return report(traits.failure());
+  LoadedPlan loaded = load_plan(arguments.file, arguments.assets);
+  if (!loaded.plan) return loaded.exit;
+
+  ProgressPrinter printer;
+  options->progress = [&](const run::RunProgress& progress) { printer(progress); };
+  auto summary = run::run(*loaded.plan, *options);
+  printer.clear();
+  if (!summary) return report(summary.failure());
+  for (const std::string& note : summary->notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print(stderr, "{} episodes in {}: {} run now, {} were there, {} invalid\n", summary->total,
+             arguments.out, summary->done, summary->skipped, summary->invalid);
+  return summary->invalid ? kOutside : kFine;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("run", "evaluate a policy; the same command again continues");
+  verb->footer("policies:\n" + policy::policy_help() +
+               "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
+  verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
+  verb->add_option("--policy", arguments->policy, "who acts")->required();
+  verb->add_option("-o,--out", arguments->out, "results folder")->required();
+  verb->add_option("--suite", arguments->suite, "which suite (default: the first of the file)");
+  verb->add_option("--tasks", arguments->tasks, "glob over task names");
+  verb->add_option("--episodes", arguments->episodes, "A-B, first and last start of each task");
+  verb->add_option("--seeds", arguments->seeds, "A,B,... instead of the suite's");
+  verb->add_option("--jobs", arguments->jobs, "worlds in parallel")->check(CLI::Range(1, 1024));
+  verb->add_option("--shard", arguments->shard, "I/N: this call's share");
+  verb->add_option("--video", arguments->video, "none, failures or all")
+      ->check(CLI::IsMember({"none", "failures", "all"}));
+  add_asset_option(*verb, arguments->assets);
+  verb->callback([arguments, &exit] { exit = run_verb(*arguments); });
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,42 @@
+// The verbs of the command line, one file each. A verb parses its own arguments, calls the library that does the work
+// and prints: data on stdout, words on stderr. No logic lives here.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::cli {
+
+// Exit codes of the program: fine, the user's text or arguments, the outside, our mistake (check_failed uses 3 too).
+enum Exit : int { kFine = 0, kUser = 1, kOutside = 2, kOurs = 3 };
+
+// Prints "vlaprobe: ..." and says with which code to leave.
+int report(const Failure& failure);
+
+// Options every verb that opens assets has.
+struct AssetOptions {
+  std::string root;  // empty: found by itself
+};
+void add_asset_option(CLI::App& verb, AssetOptions& options);
+
+// Each adds its verb; the callback stores the exit code.
+void add_check(CLI::App& app, int& exit);
+void add_build(CLI::App& app, int& exit);
+void add_list(CLI::App& app, int& exit);
+void add_show(CLI::App& app, int& exit);
+void add_dis(CLI::App& app, int& exit);
+void add_verify(CLI::App& app, int& exit);
+void add_preview(CLI::App& app, int& exit);
+void add_run(CLI::App& app, int& exit);
+void add_results(CLI::App& app, int& exit);
+void add_replay(CLI::App& app, int& exit);
+
+// The program: parses, runs one verb, returns the exit code.
+int main(int argc, char** argv);
+
+}  // namespace probe::cli

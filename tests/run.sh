@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, runs every test. The last line is "N passed, N failed".
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+"$root/.ci/install"
+"$root/.ci/build"
+
+passed=0 failed=0
+for program in "$root"/build/tests/test_*; do
+  [ -x "$program" ] || continue
+  name=$(basename "$program")
+  log="$root/build/tests/$name.log"
+  status=0
+  (cd "$root/build/tests" && "$program") >"$log" 2>&1 || status=$?
+  # doctest's summary: "[doctest] test cases: 7 | 7 passed | 0 failed | 0 skipped"
+  summary=$(grep -a 'test cases:' "$log" | tail -n 1 | sed 's/\x1b\[[0-9;]*m//g' || true)
+  p=$(sed -n 's/.* \([0-9]*\) passed.*/\1/p' <<<"$summary")
+  f=$(sed -n 's/.* \([0-9]*\) failed.*/\1/p' <<<"$summary")
+  if [ -z "$p" ] || [ -z "$f" ] || { [ "$status" -ne 0 ] && [ "$f" -eq 0 ]; }; then
+    p=${p:-0} f=$(( ${f:-0} + 1 ))
+    echo "$name ended with status $status and without a clean summary" >>"$log"
+  fi
+  passed=$((passed + p)) failed=$((failed + f))
+  printf '%-28s %4d passed %4d failed\n' "$name" "$p" "$f"
+  grep -a 'SKIPPED' "$log" | sed 's/^/    /' | sort -u || true
+  if [ "$f" -ne 0 ]; then cat "$log"; fi
+done
+[ $((passed + failed)) -gt 0 ] || { echo "no test ran" >&2; failed=1; }
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
