@@ -11,15 +11,15 @@
 namespace probe::robot {
 
 struct MeshRef {
-  std::string path;      // as written, relative to the URDF file's folder
+  std::string path;  // as written, relative to the URDF file's folder
   Vec3 scale{1, 1, 1};
-  Pose origin;           // mesh frame in the link frame
+  Pose origin;  // mesh frame in the link frame
 };
 
 struct Link {
   std::string name;
-  int parent_joint = -1;   // index into joints, -1 for the root
-  double mass = 0;         // kg; 0 where the file gives no inertial
+  int parent_joint = -1;               // index into joints, -1 for the root
+  double mass = 0;                     // kg; 0 where the file gives no inertial
   Vec3 center_of_mass = Vec3::Zero();  // link frame
   Mat3 inertia = Mat3::Zero();         // about the centre of mass, link frame axes
   std::vector<MeshRef> visuals;
@@ -32,27 +32,28 @@ struct Joint {
   std::string name;
   JointKind kind = JointKind::kFixed;
   int parent_link = -1, child_link = -1;
-  Pose origin;             // child frame at q = 0, in the parent link's frame
-  Vec3 axis{1, 0, 0};      // unit, child frame
-  double lower = 0, upper = 0;     // rad or m
+  Pose origin;                  // child frame at q = 0, in the parent link's frame
+  Vec3 axis{1, 0, 0};           // unit, child frame
+  double lower = 0, upper = 0;  // rad or m
   double effort = 0, velocity = 0;
-  int mimic = -1;          // joint index, -1 none
+  int mimic = -1;  // joint index, -1 none
   double mimic_scale = 1, mimic_offset = 0;
 };
 
 struct RobotModel {
   std::string name;
-  std::string path;        // of the file
+  std::string path;  // of the file
   std::vector<Link> links;
   std::vector<Joint> joints;
-  int root = 0;            // link index
+  int root = 0;  // link index
 
-  int find_link(std::string_view name) const;    // -1 if absent
-  int find_joint(std::string_view name) const;   // -1 if absent
+  int find_link(std::string_view name) const;   // -1 if absent
+  int find_joint(std::string_view name) const;  // -1 if absent
 };
 
-// Fails (code "urdf", where = path) on a missing file, text that is not URDF, a link named by a joint that is not
-// there, a loop, non-finite numbers, non-positive mass of a moving link, inertia no body can have.
+// Fails (code "urdf", where = path) on a missing file, text that is not URDF, a link named by a
+// joint that is not there, a loop, non-finite numbers, non-positive mass of a moving link, inertia
+// no body can have.
 Result<RobotModel> load_urdf(const std::string& path);
 
 }  // namespace probe::robot

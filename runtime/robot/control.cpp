@@ -1,0 +1,109 @@
+// The law of the reference's controller; numbers of the gripper come from the robot's record in the
+// plan.
+#include "runtime/robot/control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "runtime/base/check.h"
+#include "runtime/robot/rotation.h"
+
+namespace probe::robot {
+namespace {
+
+// Metres and radians: nothing a policy means is as large. Catches pixels, millimetres and broken
+// weights early.
+constexpr double kAbsurd = 1e3;
+
+}  // namespace
+
+Pose moved_target(const Pose& target, const Vec3& measured_position, const Vec3& shift,
+                  const Vec3& rotation_vector) {
+  const Quat turn = from_rotation_vector(rotation_vector);
+  return {measured_position + shift + turn * (target.position - measured_position),
+          (turn * target.rotation).normalized()};
+}
+
+Result<EeDeltaPoseController> EeDeltaPoseController::create(const RobotModel& model,
+                                                            const EeControlSpec& spec) {
+  PROBE_ASSIGN(Chain chain, Chain::create(model, spec.tcp_link, spec.arm_joints));
+  if (spec.arm_joints.empty()) {
+    return Failure{"urdf", fmt::format("no joint moves the link `{}`", spec.tcp_link), model.path};
+  }
+  EeDeltaPoseController controller(std::move(chain));
+  for (std::size_t i = 0; i < spec.finger_joints.size(); ++i) {
+    const std::string& name = spec.finger_joints[i];
+    const int j = model.find_joint(name);
+    if (j < 0) return Failure{"urdf", fmt::format("no joint is named `{}`", name), model.path};
+    const Joint& joint = model.joints[std::size_t(j)];
+    if (joint.kind != JointKind::kPrismatic && joint.kind != JointKind::kRevolute) {
+      return Failure{"urdf",
+                     fmt::format("the finger joint `{}` has no limits to move within", name),
+                     model.path};
+    }
+    if (i > 0) continue;
+    controller.finger_lower_ = joint.lower;
+    controller.finger_upper_ = joint.upper;
+  }
+  if (!std::isfinite(spec.grip_closed) || !std::isfinite(spec.grip_open)) {
+    return Failure{"urdf", "the gripper's targets are not finite", model.path};
+  }
+  controller.grip_closed_ = spec.grip_closed;
+  controller.grip_open_ = spec.grip_open;
+  controller.joint_targets_.assign(spec.arm_joints.size() + spec.finger_joints.size(), 0);
+  controller.target_ = controller.chain_.pose(
+      std::span<const double>(controller.joint_targets_).first(spec.arm_joints.size()));
+  return controller;
+}
+
+void EeDeltaPoseController::reset(std::span<const double> q) {
+  PROBE_CHECK(q.size() == joint_targets_.size(), "one position a drive");
+  std::copy(q.begin(), q.end(), joint_targets_.begin());
+  target_ = tcp_pose(q);
+  reached_ = true;
+}
+
+Pose EeDeltaPoseController::tcp_pose(std::span<const double> q) const {
+  return chain_.pose(q.first(chain_.joint_count()));
+}
+
+double EeDeltaPoseController::openness(std::span<const double> q) const {
+  const std::span<const double> fingers = q.subspan(chain_.joint_count());
+  if (fingers.empty() || !(finger_upper_ > finger_lower_)) return 1;
+  double sum = 0;
+  for (const double finger : fingers) sum += finger;
+  const double mean = sum / static_cast<double>(fingers.size());
+  return std::clamp((mean - finger_lower_) / (finger_upper_ - finger_lower_), 0.0, 1.0);
+}
+
+Result<std::span<const double>> EeDeltaPoseController::targets(const std::array<double, 7>& action,
+                                                               std::span<const double> measured_q) {
+  PROBE_CHECK(measured_q.size() == joint_targets_.size(), "one measured position a drive");
+  for (std::size_t i = 0; i < action.size(); ++i) {
+    if (std::isfinite(action[i]) && std::abs(action[i]) <= kAbsurd) continue;
+    return Failure{"policy",
+                   fmt::format("action[{}] is {}, wanted {}", i, action[i],
+                               i < 3   ? "a shift in metres"
+                               : i < 6 ? "a rotation vector in radians"
+                                       : "the gripper from -1 to 1"),
+                   ""};
+  }
+  const Vec3 shift(action[0], action[1], action[2]);
+  const Vec3 turn(action[3], action[4], action[5]);
+  target_ = moved_target(target_, tcp_pose(measured_q).position, shift, turn);
+
+  const std::size_t arm = chain_.joint_count();
+  std::array<double, kMaxChainJoints> q{};
+  std::copy_n(measured_q.begin(), arm, q.begin());
+  reached_ = solve_ik(chain_, target_, std::span(q).first(arm)).converged;
+  if (reached_) std::copy_n(q.begin(), arm, joint_targets_.begin());
+
+  const double open = 0.5 * (std::clamp(action[6], -1.0, 1.0) + 1.0);
+  const double grip = grip_closed_ + open * (grip_open_ - grip_closed_);
+  std::fill(joint_targets_.begin() + std::ptrdiff_t(arm), joint_targets_.end(), grip);
+  return std::span<const double>(joint_targets_);
+}
+
+}  // namespace probe::robot

@@ -1,0 +1,215 @@
+// The adapter of urdfdom: the only file that includes it. urdfdom checks and reads each element;
+// order, angles and the shape of the tree come from urdf_text.h, the rules for numbers are in
+// model_check.h.
+#include "runtime/robot/urdf.h"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <array>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "runtime/robot/model_check.h"
+#include "runtime/robot/urdf_text.h"
+
+namespace probe::robot {
+namespace {
+
+constexpr std::size_t kLargestFile = std::size_t{16} << 20;
+
+// urdfdom reports through one handler a process. While this lives, what it says goes into `text`
+// instead of the console; the lock keeps two readers apart.
+class Listener : public console_bridge::OutputHandler {
+ public:
+  Listener() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
+  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  void log(const std::string& line, console_bridge::LogLevel level, const char*, int) override {
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
+    if (!text.empty()) text += "; ";
+    text += line;
+  }
+
+  std::string text;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  std::unique_lock<std::mutex> lock_;
+};
+
+Result<std::string> read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Failure{"urdf", "no such file, or not readable", path};
+  std::string text;
+  text.reserve(1 << 16);
+  std::array<char, 1 << 14> block;
+  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
+    text.append(block.data(), std::size_t(file.gcount()));
+    if (text.size() > kLargestFile) return Failure{"urdf", "larger than 16 MB, not a URDF", path};
+  }
+  if (file.bad() || text.empty()) return Failure{"urdf", "the file is empty or a folder", path};
+  // TinyXML reads a C string and would not see what follows a zero byte.
+  if (text.find('\0') != std::string::npos) return Failure{"urdf", "not text", path};
+  return text;
+}
+
+Vec3 to_vec(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+// Box, sphere and cylinder would be dropped silently; better to say so.
+Result<MeshRef> to_mesh(const urdf::Geometry* geometry, const urdf::Pose& origin, const Quat& turn,
+                        const std::string& link, const std::string& path) {
+  const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry);
+  if (mesh == nullptr) {
+    return Failure{"urdf",
+                   fmt::format("link `{}` has a shape that is no mesh; only meshes are read", link),
+                   path};
+  }
+  return MeshRef{mesh->filename, to_vec(mesh->scale), Pose{to_vec(origin.position), turn}};
+}
+
+template <typename Elements>
+Status add_meshes(const Elements& elements, const std::vector<Quat>& turns, const std::string& link,
+                  const std::string& path, std::vector<MeshRef>& out) {
+  if (elements.size() != turns.size()) {
+    return Failure{"urdf", fmt::format("link `{}` has a shape that was not understood", link),
+                   path};
+  }
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    PROBE_ASSIGN(MeshRef mesh,
+                 to_mesh(elements[i]->geometry.get(), elements[i]->origin, turns[i], link, path));
+    out.push_back(std::move(mesh));
+  }
+  return {};
+}
+
+Result<Link> to_link(const urdf::Link& from, const LinkText& text, const std::string& path) {
+  Link link;
+  link.name = from.name;
+  if (from.inertial) {
+    const urdf::Inertial& in = *from.inertial;
+    link.mass = in.mass;
+    link.center_of_mass = to_vec(in.origin.position);
+    Mat3 inertia;
+    inertia << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
+    const Mat3 turn = text.inertial.toRotationMatrix();
+    const Mat3 turned = turn * inertia * turn.transpose();
+    link.inertia = 0.5 * (turned + turned.transpose());
+  }
+  PROBE_TRY(add_meshes(from.visual_array, text.visuals, link.name, path, link.visuals));
+  PROBE_TRY(add_meshes(from.collision_array, text.collisions, link.name, path, link.collisions));
+  return link;
+}
+
+JointKind to_kind(int type) {
+  switch (type) {
+    case urdf::Joint::REVOLUTE:
+      return JointKind::kRevolute;
+    case urdf::Joint::CONTINUOUS:
+      return JointKind::kContinuous;
+    case urdf::Joint::PRISMATIC:
+      return JointKind::kPrismatic;
+    default:
+      return JointKind::kFixed;  // the scan admitted no other
+  }
+}
+
+Result<Joint> to_joint(const urdf::Joint& from, const JointText& text, const RobotModel& model) {
+  Joint joint;
+  joint.name = from.name;
+  joint.kind = to_kind(from.type);
+  joint.parent_link = model.find_link(text.parent);
+  joint.child_link = model.find_link(text.child);
+  joint.origin = {to_vec(from.parent_to_joint_origin_transform.position), text.origin};
+  const Vec3 axis = to_vec(from.axis);
+  const double length = axis.norm();
+  if (joint.kind != JointKind::kFixed) joint.axis = length > 1e-9 ? Vec3(axis / length) : axis;
+  if (from.limits) {
+    joint.lower = from.limits->lower;
+    joint.upper = from.limits->upper;
+    joint.effort = from.limits->effort;
+    joint.velocity = from.limits->velocity;
+  }
+  return joint;
+}
+
+Status add_mimic(const urdf::Joint& from, RobotModel& model, Joint& joint) {
+  if (!from.mimic) return {};
+  joint.mimic = model.find_joint(from.mimic->joint_name);
+  joint.mimic_scale = from.mimic->multiplier;
+  joint.mimic_offset = from.mimic->offset;
+  if (joint.mimic >= 0) return {};
+  return Failure{"urdf",
+                 fmt::format("joint `{}` mimics the joint `{}`, which is not there", joint.name,
+                             from.mimic->joint_name),
+                 model.path};
+}
+
+Result<RobotModel> to_model(const urdf::ModelInterface& from, const UrdfText& text,
+                            const std::string& path) {
+  RobotModel model;
+  model.name = from.getName();
+  model.path = path;
+  for (const LinkText& link : text.links) {
+    PROBE_ASSIGN(Link read, to_link(*from.getLink(link.name), link, path));
+    model.links.push_back(std::move(read));
+  }
+  for (const JointText& joint : text.joints) {
+    PROBE_ASSIGN(Joint read, to_joint(*from.getJoint(joint.name), joint, model));
+    model.links[std::size_t(read.child_link)].parent_joint = int(model.joints.size());
+    model.joints.push_back(std::move(read));
+  }
+  for (Joint& joint : model.joints) {
+    PROBE_TRY(add_mimic(*from.getJoint(joint.name), model, joint));
+  }
+  model.root = text.root;
+  return model;
+}
+
+}  // namespace
+
+int RobotModel::find_link(std::string_view wanted) const {
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i].name == wanted) return int(i);
+  }
+  return -1;
+}
+
+int RobotModel::find_joint(std::string_view wanted) const {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].name == wanted) return int(i);
+  }
+  return -1;
+}
+
+Result<RobotModel> load_urdf(const std::string& path) {
+  PROBE_ASSIGN(const std::string text, read_text(path));
+  PROBE_ASSIGN(const UrdfText scanned, scan_urdf(text, path));
+  urdf::ModelInterfaceSharedPtr parsed;
+  std::string said;
+  try {
+    Listener listener;
+    parsed = urdf::parseURDF(text);
+    said = listener.text;
+  } catch (const std::exception& e) {
+    return Failure{"urdf", fmt::format("urdfdom gave up: {}", e.what()), path};
+  }
+  if (!parsed) {
+    return Failure{"urdf", said.empty() ? "urdfdom could not read it and did not say why" : said,
+                   path};
+  }
+  PROBE_ASSIGN(RobotModel model, to_model(*parsed, scanned, path));
+  PROBE_TRY(check_model(model));
+  return model;
+}
+
+}  // namespace probe::robot

@@ -1,0 +1,272 @@
+#include "runtime/robot/urdf.h"
+
+#include <clocale>
+#include <filesystem>
+#include <locale>
+
+#include "tests/runtime/robot/test_robots.h"
+
+namespace probe::robot {
+namespace {
+
+using test::TextFile;
+
+std::string load_message(const std::string& text) {
+  const TextFile file(text);
+  const auto loaded = load_urdf(file.path());
+  REQUIRE(!loaded.ok());
+  CHECK(loaded.failure().code == "urdf");
+  CHECK(loaded.failure().where.starts_with(file.path()));
+  return loaded.failure().message;
+}
+
+constexpr const char* kBody =
+    "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+    "</inertial>";
+
+std::string two_links(const std::string& joint, const std::string& inertial = kBody) {
+  return "<robot name='r'>\n<link name='a'/>\n<link name='b'>" + inertial + "</link>\n" + joint +
+         "\n</robot>";
+}
+
+std::string revolute(const std::string& inside) {
+  return "<joint name='waist' type='revolute'><parent link='a'/><child link='b'/>" + inside +
+         "</joint>";
+}
+
+constexpr const char* kLimit = "<limit lower='-1' upper='1' effort='1' velocity='1'/>";
+
+TEST_CASE("the WidowX loads with links and joints in the file's order") {
+  const RobotModel robot = test::widowx();
+  CHECK(robot.name == "wx250s");
+  REQUIRE(robot.links.size() == 14);
+  REQUIRE(robot.joints.size() == 13);
+  CHECK(robot.links[0].name == "base_link");
+  CHECK(robot.root == 0);
+  CHECK(robot.links[13].name == "ee_gripper_link");
+  CHECK(robot.joints[0].name == "waist");
+  CHECK(robot.joints[5].name == "wrist_rotate");
+  CHECK(robot.joints[5].upper == 3.141582653589793);
+  const Joint& right = robot.joints[std::size_t(robot.find_joint("right_finger"))];
+  CHECK(right.kind == JointKind::kPrismatic);
+  CHECK(right.axis == Vec3(0, -1, 0));
+  CHECK(right.mimic == robot.find_joint("left_finger"));
+  CHECK(robot.links[0].visuals.at(0).path == "meshes/base_link.glb");
+  CHECK(robot.links[0].collisions.at(0).path == "meshes/base_link_collision.obj");
+  CHECK(robot.find_link("nobody") == -1);
+}
+
+TEST_CASE("our WidowX has the reference's kinematics, masses and inertias") {
+  const std::string path = VLAPROBE_SOURCE_DIR
+      "/../shared/reference/simpler_assets/ManiSkill2_real2sim/mani_skill2_real2sim/assets/"
+      "descriptions/widowx_description/wx250s.urdf";
+  std::string found = std::filesystem::exists(path) ? path : "";
+  const std::string folder = VLAPROBE_SOURCE_DIR "/../shared/reference/simpler_assets";
+  if (found.empty() && std::filesystem::exists(folder)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (entry.path().filename() == "wx250s.urdf") found = entry.path().string();
+    }
+  }
+  if (found.empty()) {
+    MESSAGE("skipped: the reference's URDF is not beside this checkout");
+    return;
+  }
+  const auto loaded = load_urdf(found);
+  REQUIRE_MESSAGE(loaded.ok(), (loaded.ok() ? std::string() : to_text(loaded.failure())));
+  const RobotModel& theirs = loaded.value();
+  const RobotModel ours = test::widowx();
+  REQUIRE(ours.links.size() == theirs.links.size());
+  REQUIRE(ours.joints.size() == theirs.joints.size());
+  for (const Link& link : theirs.links) {
+    CAPTURE(link.name);
+    const int i = ours.find_link(link.name);
+    REQUIRE(i >= 0);
+    const Link& mine = ours.links[std::size_t(i)];
+    CHECK(mine.mass == link.mass);
+    CHECK((mine.center_of_mass - link.center_of_mass).norm() < 1e-15);
+    CHECK((mine.inertia - link.inertia).cwiseAbs().maxCoeff() < 1e-15);
+    CHECK(mine.visuals.size() == link.visuals.size());
+    CHECK(mine.collisions.size() == link.collisions.size());
+  }
+  for (const Joint& joint : theirs.joints) {
+    CAPTURE(joint.name);
+    const int i = ours.find_joint(joint.name);
+    REQUIRE(i >= 0);
+    const Joint& mine = ours.joints[std::size_t(i)];
+    CHECK(mine.kind == joint.kind);
+    CHECK(mine.axis == joint.axis);
+    CHECK(mine.origin.position == joint.origin.position);
+    CHECK(mine.origin.rotation.coeffs() == joint.origin.rotation.coeffs());
+    CHECK(mine.lower == joint.lower);
+    CHECK(mine.upper == joint.upper);
+    CHECK(mine.effort == joint.effort);
+    CHECK(mine.velocity == joint.velocity);
+    CHECK(ours.links[std::size_t(mine.child_link)].name ==
+          theirs.links[std::size_t(joint.child_link)].name);
+    CHECK(ours.links[std::size_t(mine.parent_link)].name ==
+          theirs.links[std::size_t(joint.parent_link)].name);
+  }
+}
+
+TEST_CASE("an inertia written in a turned frame is turned into link axes") {
+  const TextFile file(
+      two_links(revolute(kLimit),
+                "<inertial><origin xyz='.1 0 0' rpy='0 0 1.5707963267948966'/><mass value='2'/>"
+                "<inertia ixx='1' iyy='2' izz='2.5' ixy='.1' ixz='0' iyz='0'/></inertial>"));
+  const auto loaded = load_urdf(file.path());
+  REQUIRE(loaded.ok());
+  const Mat3& inertia = loaded->links[1].inertia;
+  CHECK(inertia(0, 0) == doctest::Approx(2));
+  CHECK(inertia(1, 1) == doctest::Approx(1));
+  CHECK(inertia(0, 1) == doctest::Approx(-0.1));
+  CHECK(loaded->links[1].center_of_mass == Vec3(0.1, 0, 0));
+}
+
+struct DecimalComma : std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+};
+
+TEST_CASE("numbers are read the same under a locale with decimal commas") {
+  const std::locale before = std::locale::global(
+      std::locale(std::locale::classic(), new DecimalComma));  // the locale owns the facet
+  std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed, the C functions' too
+  const RobotModel robot = test::widowx();
+  std::locale::global(before);
+  std::setlocale(LC_ALL, "C");
+  CHECK(robot.joints[0].origin.position.z() == 0.072);
+  CHECK(robot.links[0].mass == 0.538736);
+  CHECK(robot.joints[1].upper == 1.9896753472735358);
+}
+
+TEST_CASE("a Panda-like robot with a continuous and a mimicking joint loads") {
+  const TextFile file(test::panda_like());
+  const auto loaded = load_urdf(file.path());
+  REQUIRE_MESSAGE(loaded.ok(), (loaded.ok() ? std::string() : to_text(loaded.failure())));
+  CHECK(loaded->joints[0].kind == JointKind::kContinuous);
+  CHECK(loaded->joints.back().mimic == int(loaded->joints.size()) - 2);
+}
+
+TEST_CASE("a file that is not there or is no XML is named") {
+  const auto missing = load_urdf("/nowhere/robot.urdf");
+  REQUIRE(!missing.ok());
+  CHECK(to_text(missing.failure()) == "/nowhere/robot.urdf: no such file, or not readable");
+  CHECK(!load_urdf("/tmp").ok());
+  CHECK(load_message("") == "the file is empty or a folder");
+  CHECK(load_message("solid ascii stl").starts_with("not XML"));
+  CHECK(load_message("<robot name='r'><link name='a'></robot>").starts_with("not XML"));
+  CHECK(load_message(std::string("<robot\0name='r'/>", 17)) == "not text");
+  CHECK(load_message("<mujoco/>") == "the outermost element is `mujoco`, not `robot`");
+  CHECK(load_message("<robot name='r'/>") == "a robot without links");
+  std::string deep = "<robot name='r'>";
+  for (int i = 0; i < 100000; ++i) deep += "<a>";
+  CHECK(load_message(deep) == "elements nested deeper than 500");
+}
+
+TEST_CASE("every truncation of a good file fails without a crash") {
+  const std::string text = test::panda_like();
+  for (std::size_t n = 0; n < text.size() - 10; n += 37) {
+    const TextFile file(text.substr(0, n));
+    CHECK(!load_urdf(file.path()).ok());
+  }
+}
+
+TEST_CASE("a joint that names a link which is not there is said with its line") {
+  const TextFile file(
+      two_links("<joint name='waist' type='fixed'><parent link='a'/>"
+                "<child link='x'/></joint>"));
+  const auto loaded = load_urdf(file.path());
+  REQUIRE(!loaded.ok());
+  CHECK(loaded.failure().message == "joint `waist` names the link `x`, which is not there");
+  CHECK(loaded.failure().where == file.path() + ":4");
+}
+
+TEST_CASE("what is no tree is said by its links and joints") {
+  CHECK(load_message(two_links("")) == "several roots: no joint leads to `a` nor to `b`");
+  CHECK(load_message(two_links("<joint name='j' type='fixed'><parent link='a'/><child link='b'/>"
+                               "</joint><joint name='k' type='fixed'><parent link='b'/>"
+                               "<child link='a'/></joint>"))
+            .starts_with("a loop: joint `"));
+  CHECK(load_message(two_links("<joint name='j' type='fixed'><parent link='b'/><child link='b'/>"
+                               "</joint>")) == "a loop: joint `j` leads from `b` back to `b`");
+  CHECK(load_message(two_links("<joint name='j' type='fixed'><parent link='a'/><child link='b'/>"
+                               "</joint><joint name='k' type='fixed'><parent link='a'/>"
+                               "<child link='b'/></joint>")) ==
+        "link `b` hangs on two joints, `j` and `k`");
+  CHECK(load_message("<robot name='r'><link name='a'/><link name='a'/></robot>") ==
+        "two links are named `a`");
+  CHECK(load_message("<robot name='r'><link/></robot>") == "a `link` without its `name`");
+}
+
+TEST_CASE("a joint without limits, with turned limits, or of an unknown type is refused") {
+  CHECK(load_message(two_links(revolute(""))) == "joint `waist` has no `lower` limit");
+  CHECK(load_message(two_links(revolute("<limit lower='0' effort='1' velocity='1'/>"))) ==
+        "joint `waist` has no `upper` limit");
+  CHECK(
+      load_message(two_links(revolute("<limit lower='1' upper='-1' effort='1' velocity='1'/>"))) ==
+      "joint `waist` has limits 1 to -1, lower must be below upper");
+  CHECK(load_message(two_links("<joint name='j' type='floating'><parent link='a'/>"
+                               "<child link='b'/></joint>"))
+            .starts_with("joint `j` is of type `floating`"));
+  CHECK(load_message(two_links(revolute(std::string(kLimit) + "<axis xyz='0 0 0'/>"))) ==
+        "joint `waist` has an axis without direction");
+  CHECK(load_message(two_links(revolute(std::string(kLimit) + "<mimic joint='elbow'/>"))) ==
+        "joint `waist` mimics the joint `elbow`, which is not there");
+  CHECK(load_message(two_links(revolute(std::string(kLimit) + "<mimic joint='waist'/>"))) ==
+        "joint `waist` mimics `waist`, which itself mimics");
+}
+
+TEST_CASE("numbers that are none fail and urdfdom's own words are kept") {
+  for (const char* bad : {"nan", "inf", "1e999", "0.1.2", "one", ""}) {
+    CAPTURE(bad);
+    const std::string number(bad);
+    CHECK(!load_message(two_links(revolute("<limit lower='" + number +
+                                           "' upper='1' effort='1' velocity='1'/>")))
+               .empty());
+    CHECK(!load_message(
+               two_links(revolute(std::string(kLimit) + "<origin xyz='0 " + number + " 0'/>")))
+               .empty());
+    CHECK(!load_message(
+               two_links(revolute(std::string(kLimit) + "<origin rpy='0 " + number + " 0'/>")))
+               .empty());
+    CHECK(
+        !load_message(two_links(revolute(kLimit),
+                                "<inertial><mass value='" + number +
+                                    "'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/>"
+                                    "</inertial>"))
+             .empty());
+  }
+}
+
+TEST_CASE("masses and inertias that no body has are refused by name") {
+  const auto with = [](const std::string& mass, const std::string& moments) {
+    return load_message(
+        two_links(revolute(kLimit),
+                  "<inertial><mass value='" + mass + "'/><inertia " + moments + "/></inertial>"));
+  };
+  const std::string round = "ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'";
+  CHECK(with("-1", round) == "link `b` weighs -1 kg");
+  CHECK(with("0", round) == "link `b` moves, but it and what is fixed to it weigh nothing");
+  CHECK(load_message(two_links(revolute(kLimit), "")) ==
+        "link `b` moves, but it and what is fixed to it weigh nothing");
+  CHECK(with("1", "ixx='1' iyy='1' izz='3' ixy='0' ixz='0' iyz='0'") ==
+        "link `b` has an inertia no body can have: of its principal moments 1, 1, 3 the last "
+        "exceeds the sum of the others");
+  CHECK(with("1", "ixx='1' iyy='1' izz='1' ixy='2' ixz='0' iyz='0'")
+            .starts_with("link `b` has an inertia with the principal moment -1"));
+  CHECK(with("1", "ixx='0' iyy='0' izz='0' ixy='0' ixz='0' iyz='0'")
+            .starts_with("link `b` has an inertia with the principal moment 0"));
+}
+
+TEST_CASE("a shape that is no mesh is refused rather than dropped") {
+  CHECK(load_message(two_links(revolute(kLimit), std::string(kBody) +
+                                                     "<collision><geometry><box size='1 1 1'/>"
+                                                     "</geometry></collision>")) ==
+        "link `b` has a shape that is no mesh; only meshes are read");
+  CHECK(!load_message(two_links(revolute(kLimit), std::string(kBody) +
+                                                      "<visual><geometry><mesh/></geometry>"
+                                                      "</visual>"))
+             .empty());
+}
+
+}  // namespace
+}  // namespace probe::robot
