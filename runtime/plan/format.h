@@ -1,6 +1,7 @@
-// The records of a plan file, exactly as they lie in the mapped bytes: little endian, fixed strides, no pointers.
-// `file` -> header -> directory -> sections, each 64-byte aligned. Lengths in metres, angles in radians, times in
-// seconds, quaternions (w, x, y, z). Every index points into the section its comment names; kNone means "absent".
+// The records of a plan file, exactly as they lie in the mapped bytes: little endian, fixed
+// strides, no pointers. `file` -> header -> directory -> sections, each 64-byte aligned. Lengths in
+// metres, angles in radians, times in seconds, quaternions (w, x, y, z). Every index points into
+// the section its comment names; kNone means "absent".
 #pragma once
 
 #include <array>
@@ -17,31 +18,31 @@ inline constexpr std::size_t kAlignment = 64;
 
 // Sections ascend by kind in the file, none repeats. STRS must be first: all others refer to it.
 enum class Section : std::uint32_t {
-  kStrings = 1,     // UTF-8 bytes, stride 1
-  kList = 2,        // u32: suite members, seeds, set members
-  kReals = 3,       // f64: initial joint positions
-  kAssets = 4,      // AssetRecord
-  kObjects = 5,     // ObjectRecord
-  kRobots = 6,      // RobotRecord
-  kDrives = 7,      // DriveRecord
-  kCameras = 8,     // CameraRecord
-  kLights = 9,      // LightRecord
-  kSuns = 10,       // SunRecord
-  kScenes = 11,     // SceneRecord
-  kConstants = 12,  // f64, finite
-  kStates = 13,     // StateRecord
-  kCode = 14,       // Instruction
-  kPrograms = 15,   // ProgramRecord
-  kMetrics = 16,    // MetricRecord
-  kBodies = 17,     // BodyRecord, task-local bodies in order
-  kPlacements = 18, // PlacementRecord
-  kTasks = 19,      // TaskRecord
-  kEpisodes = 20,   // EpisodeRecord
-  kSets = 21,       // SetRecord: named categories of tasks
-  kSuites = 22,     // SuiteRecord
-  kSpans = 100,     // SpanRecord, ignorable
-  kTexts = 101,     // TextRecord, ignorable; the bytes of texts stand in kTextBytes
-  kTextBytes = 102, // source text, ignorable
+  kStrings = 1,      // UTF-8 bytes, stride 1
+  kList = 2,         // u32: suite members, seeds, set members
+  kReals = 3,        // f64: initial joint positions
+  kAssets = 4,       // AssetRecord
+  kObjects = 5,      // ObjectRecord
+  kRobots = 6,       // RobotRecord
+  kDrives = 7,       // DriveRecord
+  kCameras = 8,      // CameraRecord
+  kLights = 9,       // LightRecord
+  kSuns = 10,        // SunRecord
+  kScenes = 11,      // SceneRecord
+  kConstants = 12,   // f64, finite
+  kStates = 13,      // StateRecord
+  kCode = 14,        // Instruction
+  kPrograms = 15,    // ProgramRecord
+  kMetrics = 16,     // MetricRecord
+  kBodies = 17,      // BodyRecord, task-local bodies in order
+  kPlacements = 18,  // PlacementRecord
+  kTasks = 19,       // TaskRecord
+  kEpisodes = 20,    // EpisodeRecord
+  kSets = 21,        // SetRecord: named categories of tasks
+  kSuites = 22,      // SuiteRecord
+  kSpans = 100,      // SpanRecord, ignorable
+  kTexts = 101,      // TextRecord, ignorable; the bytes of texts stand in kTextBytes
+  kTextBytes = 102,  // source text, ignorable
 };
 
 inline constexpr std::uint16_t kIgnorable = 1;
@@ -63,7 +64,8 @@ struct Header {
   std::uint32_t sections = 0;
   std::uint64_t file_size = 0;
   std::uint64_t zero = 0;
-  std::array<std::uint8_t, 32> root{};  // SHA-256 of the directory bytes of all sections that are not ignorable
+  std::array<std::uint8_t, 32>
+      root{};  // of version and the entries that are not ignorable, see root_hash in ids.h
 };
 static_assert(sizeof(Header) == 64);
 
@@ -93,8 +95,8 @@ struct AssetRecord {
 static_assert(sizeof(AssetRecord) == 64);
 
 struct ObjectRecord {
-  StringRef name;      // the identifier: "carrot"
-  StringRef text;      // the name in instructions: "carrot"
+  StringRef name;                   // the identifier: "carrot"
+  StringRef text;                   // the name in instructions: "carrot"
   std::uint32_t visual = kNone;     // kAssets
   std::uint32_t collision = kNone;  // kAssets
   std::array<double, 3> box_min{};  // metres, model frame
@@ -113,23 +115,26 @@ struct FingerRecord {
 };
 struct RobotRecord {
   StringRef name;
-  StringRef tcp;                   // link
-  std::uint32_t urdf = kNone;      // kAssets
-  std::uint32_t control = 0;       // Control
+  StringRef tcp;               // link
+  std::uint32_t urdf = kNone;  // kAssets
+  std::uint32_t control = 0;   // Control
   double control_hz = 0;
   std::array<FingerRecord, 2> fingers{};
-  double grip_closed = 0;          // finger target for gripper command -1
-  double grip_open = 0;            // finger target for gripper command +1
+  double grip_closed = 0;  // finger target for gripper command -1
+  double grip_open = 0;    // finger target for gripper command +1
   double finger_friction = 0;
-  double finger_patch = 0;         // torsional patch radius, m
-  double link_friction = 0;        // of all other links
+  double finger_patch = 0;   // torsional patch radius, m
+  double link_friction = 0;  // of all other links
   double reach_min = 0, reach_max = 0;
-  Slice drives;                    // kDrives, one per actuated joint
-  std::uint64_t zero[4] = {};
+  Slice drives;  // kDrives, one per actuated joint
+  Slice meshes;  // kList of kAssets: every file the URDF names, in its order; they are part of the
+                 // start
+  std::uint64_t zero[3] = {};
 };
 static_assert(sizeof(RobotRecord) == 192);
 
-// tau = stiffness (target - q) - damping u, clamped to +-limit. SI per radian or per metre by the joint's kind.
+// tau = stiffness (target - q) - damping u, clamped to +-limit. SI per radian or per metre by the
+// joint's kind.
 struct DriveRecord {
   StringRef joint;
   double stiffness = 0, damping = 0, limit = 0;
@@ -141,11 +146,12 @@ enum class CameraAim : std::uint32_t { kLook = 1, kQuat = 2 };
 struct CameraRecord {
   StringRef name;
   StringRef mount_link;
-  std::uint32_t aim = 0;            // CameraAim
+  std::uint32_t aim = 0;  // CameraAim
   std::uint32_t width = 0, height = 0;
   std::uint32_t zero = 0;
   std::array<double, 3> position{};  // in the mount link's frame
-  std::array<double, 4> aim_values{};  // look: direction xyz and 0; quat: w x y z, columns forward left up
+  std::array<double, 4>
+      aim_values{};  // look: direction xyz and 0; quat: w x y z, columns forward left up
   double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels, at width x height
   std::uint64_t zero2[1] = {};
 };
@@ -169,20 +175,21 @@ static_assert(sizeof(SunRecord) == 40);
 
 struct SceneRecord {
   StringRef name;
-  std::uint32_t robot = kNone;     // kRobots
-  std::uint32_t photo = kNone;     // kAssets; shown wherever no link or movable object is nearest
-  std::uint32_t backdrop = kNone;  // kAssets: static visual mesh in world coordinates, without collision
+  std::uint32_t robot = kNone;  // kRobots
+  std::uint32_t photo = kNone;  // kAssets; shown wherever no link or movable object is nearest
+  std::uint32_t backdrop =
+      kNone;  // kAssets: static visual mesh in world coordinates, without collision
   std::uint32_t fixture_visual = kNone;     // kAssets
   std::uint32_t fixture_collision = kNone;  // kAssets; a static body
   std::uint32_t zero = 0;
   std::array<double, 3> fixture_position{};
   std::array<double, 3> base_position{};
   std::array<double, 4> base_rotation{};
-  Slice joints;                    // kReals: initial position of every actuated joint, in the order of kDrives
+  Slice joints;  // kReals: initial position of every actuated joint, in the order of kDrives
   double surface_z = 0;
-  std::array<double, 4> area{};    // x min, y min, x max, y max of the surface
+  std::array<double, 4> area{};  // x min, y min, x max, y max of the surface
   double physics_hz = 0;
-  double friction = 0;             // of the surface's own material
+  double friction = 0;  // of the surface's own material
   std::uint64_t zero2[10] = {};
 };
 static_assert(sizeof(SceneRecord) == 256);
@@ -204,11 +211,11 @@ struct StateRecord {
 static_assert(sizeof(StateRecord) == 4);
 
 struct ProgramRecord {
-  Slice constants;  // kConstants
-  Slice states;     // kStates
-  Slice code;       // kCode
-  Slice metrics;    // kMetrics
-  std::array<std::uint8_t, 32> hash{};  // of constants, states, code, metric types and names: what is judged
+  Slice constants;                      // kConstants
+  Slice states;                         // kStates
+  Slice code;                           // kCode
+  Slice metrics;                        // kMetrics
+  std::array<std::uint8_t, 32> hash{};  // program_hash of ids.h: what is judged
 };
 static_assert(sizeof(ProgramRecord) == 64);
 
@@ -222,11 +229,18 @@ struct MetricRecord {
 static_assert(sizeof(MetricRecord) == 16);
 
 enum class Readout : std::uint32_t {
-  kAtEnd = 1, kOnce = 2, kAlways = 3, kCount = 4, kFirst = 5, kFinal = 6, kMax = 7, kMin = 8
+  kAtEnd = 1,
+  kOnce = 2,
+  kAlways = 3,
+  kCount = 4,
+  kFirst = 5,
+  kFinal = 6,
+  kMax = 7,
+  kMin = 8
 };
 
-// Task-local bodies, in this order: source, target, distractors, surface, fixture (if any), then links: fingers in
-// the robot's order, then every other link with collision in URDF order.
+// Task-local bodies, in this order: source, target, distractors, surface, fixture (if any), then
+// links: fingers in the robot's order, then every other link with collision in URDF order.
 enum class BodyKind : std::uint32_t { kObject = 1, kSurface = 2, kFixture = 3, kLink = 4 };
 
 struct BodyRecord {
@@ -251,28 +265,37 @@ struct TaskRecord {
   std::uint32_t camera = kNone;
   std::uint32_t light = kNone;
   std::uint32_t program = kNone;
-  std::uint32_t source = 0;   // kObjects
-  std::uint32_t target = 0;   // kObjects
-  Slice bodies;               // kBodies; source and target are the first two, then the distractors
+  std::uint32_t source = 0;  // kObjects
+  std::uint32_t target = 0;  // kObjects
+  Slice bodies;              // kBodies; source and target are the first two, then the distractors
   std::uint32_t distractors = 0;
-  std::uint32_t horizon = 0;  // control steps
+  std::uint32_t horizon = 0;       // control steps
   std::uint32_t baseline = kNone;  // kTasks
-  std::uint32_t axes = 0;     // bit mask of Axis: what differs from the baseline
-  std::uint32_t ood = 0;      // bit mask: 1 source, 2 target, 4 relation
+  std::uint32_t axes = 0;          // bit mask of Axis: what differs from the baseline
+  std::uint32_t ood = 0;           // bit mask: 1 source, 2 target, 4 relation
   std::uint32_t zero = 0;
-  StringRef allow;            // reason of an allowed confounded comparison, or empty
-  Slice episodes;             // kEpisodes
-  double drop = 0;            // m above the surface; placements contain it
-  double settle = 0;          // s, per phase of the drop
+  StringRef allow;    // reason of an allowed confounded comparison, or empty
+  Slice episodes;     // kEpisodes
+  double drop = 0;    // m above the surface; placements contain it
+  double settle = 0;  // s, per phase of the drop
   std::array<std::uint8_t, 32> judge_id{};
   std::uint64_t zero2[7] = {};
 };
 static_assert(sizeof(TaskRecord) == 192);
 
 enum class Axis : std::uint32_t {
-  kObjectSource = 1u << 0, kObjectTarget = 1u << 1, kDistractors = 1u << 2, kLanguageAction = 1u << 3,
-  kLanguageNegation = 1u << 4, kLanguageAppearance = 1u << 5, kLanguageCommonsense = 1u << 6, kLayout = 1u << 7,
-  kScene = 1u << 8, kLight = 1u << 9, kCamera = 1u << 10, kGoal = 1u << 11
+  kObjectSource = 1u << 0,
+  kObjectTarget = 1u << 1,
+  kDistractors = 1u << 2,
+  kLanguageAction = 1u << 3,
+  kLanguageNegation = 1u << 4,
+  kLanguageAppearance = 1u << 5,
+  kLanguageCommonsense = 1u << 6,
+  kLayout = 1u << 7,
+  kScene = 1u << 8,
+  kLight = 1u << 9,
+  kCamera = 1u << 10,
+  kGoal = 1u << 11
 };
 
 struct EpisodeRecord {
@@ -301,18 +324,19 @@ struct SuiteRecord {
 };
 static_assert(sizeof(SuiteRecord) == 64);
 
-// Where an instruction or a record came from. `what` 1: kCode instruction, 2: kTasks, 3: kObjects, 4: kMetrics.
+// Where an instruction or a record came from. `what` 1: kCode instruction, 2: kTasks, 3: kObjects,
+// 4: kMetrics.
 struct SpanRecord {
   std::uint32_t what = 0;
   std::uint32_t index = 0;
-  std::uint32_t text = 0;  // kTexts
+  std::uint32_t text = 0;            // kTexts
   std::uint32_t begin = 0, end = 0;  // bytes
 };
 static_assert(sizeof(SpanRecord) == 20);
 
 struct TextRecord {
-  StringRef path;
-  Slice bytes;  // kTextBytes
+  StringRef path;  // into kTextBytes, unlike all others: stripping sources must not change kStrings
+  Slice bytes;     // kTextBytes
 };
 static_assert(sizeof(TextRecord) == 16);
 

@@ -1,0 +1,54 @@
+// The content ids: what makes two starts, prompts, judges and episodes the same. SHA-256 over the
+// canonical encodings of FORMAT.md; names of declarations, their order and source positions are
+// never hashed. The compiler computes them, the verifier recomputes them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/sha256.h"
+#include "runtime/plan/tables.h"
+
+namespace probe::plan {
+
+// The root of a plan: version and the directory entries that are not ignorable, without their
+// offsets.
+Sha256 root_hash(const Header& header, std::span<const DirectoryEntry> directory);
+
+Sha256 prompt_id(std::string_view prompt);
+// Constants, states, code, and each metric's type, readout and name: what is judged and how it is
+// called.
+Sha256 program_hash(const Tables& tables, const ProgramRecord& program);
+Sha256 episode_id(const Sha256& start, const Sha256& prompt, const Sha256& judge);
+
+inline Sha256 to_sha256(const std::array<std::uint8_t, 32>& bytes) { return Sha256{bytes}; }
+
+// Ids of one set of tables. Remembers the hashes of programs, stages and objects, so that a million
+// episodes cost one short hash each. The tables are verified (or written by Writer) and outlive it.
+class IdHasher {
+ public:
+  explicit IdHasher(const Tables& tables);
+
+  // Program hash, horizon, control law and its rate.
+  Sha256 judge(const TaskRecord& task);
+  // Everything physical and visible before the first action: scene, robot, assets by content,
+  // objects, placements in their order (source, target, distractors), drop, settle, camera, light.
+  Sha256 start(const TaskRecord& task, const EpisodeRecord& episode);
+  Sha256 episode(const TaskRecord& task, const EpisodeRecord& episode);
+
+ private:
+  Sha256 program(std::uint32_t index);
+  Sha256 object(std::uint32_t index);
+  Sha256 scene(std::uint32_t index);
+  Sha256 robot(const RobotRecord& robot) const;
+  Sha256 camera(std::uint32_t index);
+  Sha256 light(std::uint32_t index);
+  Sha256 asset(std::uint32_t index) const;
+
+  const Tables& tables_;
+  std::vector<std::optional<Sha256>> programs_, objects_, scenes_, cameras_, lights_;
+};
+
+}  // namespace probe::plan

@@ -1,0 +1,94 @@
+// A verified plan, mapped read-only and used in place. Nothing of a file is believed before
+// verify() has passed, and afterwards no accessor can fail on its content. Views live as long as
+// the Plan, also across a move of it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/base/sha256.h"
+#include "runtime/plan/format.h"
+#include "runtime/plan/tables.h"
+#include "runtime/plan/verify.h"
+
+namespace probe::plan {
+
+class Plan {
+ public:
+  // Fails with code "io" when the file cannot be read, with code "plan" when it breaks a rule of
+  // FORMAT.md; `where` starts with the path. The file must not be changed while the plan lives
+  // (write a new one and rename it).
+  static Result<Plan> open(const std::string& path, const VerifyOptions& options = {});
+  static Result<Plan> from_bytes(std::vector<std::byte> bytes, const VerifyOptions& options = {});
+
+  Plan(Plan&&) noexcept;
+  Plan& operator=(Plan&&) noexcept;
+  Plan(const Plan&) = delete;
+  Plan& operator=(const Plan&) = delete;
+  ~Plan();
+
+  // The content address of the suite: equal with and without sources inside.
+  Sha256 root() const;
+  std::span<const std::byte> bytes() const;
+  bool has_sources() const { return !tables_.texts.empty(); }
+
+  const Tables& tables() const { return tables_; }
+  std::string_view text(StringRef ref) const { return tables_.text(ref); }
+  std::span<const AssetRecord> assets() const { return tables_.assets; }
+  std::span<const ObjectRecord> objects() const { return tables_.objects; }
+  std::span<const RobotRecord> robots() const { return tables_.robots; }
+  std::span<const CameraRecord> cameras() const { return tables_.cameras; }
+  std::span<const LightRecord> lights() const { return tables_.lights; }
+  std::span<const SceneRecord> scenes() const { return tables_.scenes; }
+  std::span<const ProgramRecord> programs() const { return tables_.programs; }
+  std::span<const MetricRecord> metrics() const { return tables_.metrics; }
+  std::span<const TaskRecord> tasks() const { return tables_.tasks; }
+  std::span<const EpisodeRecord> episodes() const { return tables_.episodes; }
+  std::span<const SetRecord> sets() const { return tables_.sets; }
+  std::span<const SuiteRecord> suites() const { return tables_.suites; }
+  std::span<const SpanRecord> spans() const { return tables_.spans; }
+  std::span<const TextRecord> texts() const { return tables_.texts; }
+
+  std::span<const DriveRecord> drives(const RobotRecord& robot) const;
+  std::span<const std::uint32_t> meshes(const RobotRecord& robot) const;  // indices of assets()
+  std::span<const SunRecord> suns(const LightRecord& light) const;
+  std::span<const double> joints(const SceneRecord& scene) const;
+  std::span<const double> constants(const ProgramRecord& program) const;
+  std::span<const StateRecord> states(const ProgramRecord& program) const;
+  std::span<const Instruction> code(const ProgramRecord& program) const;
+  std::span<const MetricRecord> metrics(const ProgramRecord& program) const;
+  std::span<const MetricRecord> metrics(const TaskRecord& task) const;
+  std::span<const BodyRecord> bodies(const TaskRecord& task) const;
+  std::span<const EpisodeRecord> episodes(const TaskRecord& task) const;
+  std::span<const PlacementRecord> placements(const EpisodeRecord& episode) const;
+  std::span<const std::uint32_t> members(const SetRecord& set) const;      // indices of tasks()
+  std::span<const std::uint32_t> members(const SuiteRecord& suite) const;  // indices of tasks()
+  std::span<const std::uint32_t> seeds(const SuiteRecord& suite) const;
+
+  // Index of the task called `name`, or called so after the prefix of some suite
+  // ("widowx_carrot_on_plate").
+  std::optional<std::uint32_t> find_task(std::string_view name) const;
+  std::optional<std::uint32_t> find_suite(std::string_view name) const;
+  std::optional<std::uint32_t> find_set(std::string_view name) const;
+  // Index among metrics(task).
+  std::optional<std::uint32_t> find_metric(const TaskRecord& task, std::string_view name) const;
+
+  // Where something was written; null when unknown or stripped. `what` as in SpanRecord.
+  const SpanRecord* span_of(std::uint32_t what, std::uint32_t index) const;
+
+ private:
+  class Storage;  // a mapping or a vector
+  explicit Plan(std::unique_ptr<Storage> storage);
+  static Result<Plan> adopt(std::unique_ptr<Storage> storage, const VerifyOptions& options);
+
+  std::unique_ptr<Storage> storage_;
+  Tables tables_;
+};
+
+}  // namespace probe::plan

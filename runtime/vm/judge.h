@@ -1,0 +1,90 @@
+// The judge: runs a task's metric program once a control step over measurements. Total,
+// allocation-free after construction and bit-identical wherever the measurements are. Knows nothing
+// of physics, files or meaning.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/isa.h"
+#include "runtime/plan/plan.h"
+#include "runtime/vm/sample.h"
+
+namespace probe::vm {
+
+class Judge {
+ public:
+  // `task` indexes plan.tasks(). Keeps no reference to the plan.
+  Judge(const plan::Plan& plan, std::uint32_t task);
+
+  // Starts an episode: clears all monitors; `starts` holds one entry a body of the task, in the
+  // plan's order. Fails (code "judge") when the number of bodies differs or a number is not finite.
+  Status begin(std::span<const BodyStart> starts);
+
+  // One control step, after physics. Fails (code "judge") when the sample does not fit the task or
+  // holds a number that is not finite: the episode is invalid then, and the values are those of the
+  // step before.
+  Status step(const StepSample& sample);
+
+  // By metric index, as last emitted; truths are 0 or 1. Zero before the first step.
+  std::span<const double> values() const { return values_; }
+  double value(std::uint32_t metric) const { return values_[metric]; }
+  bool truth(std::uint32_t metric) const { return values_[metric] != 0.0; }
+
+  std::size_t metric_count() const { return metrics_.size(); }
+  const std::string& metric_name(std::uint32_t metric) const { return metrics_[metric].name; }
+  plan::MetricType metric_type(std::uint32_t metric) const { return metrics_[metric].type; }
+  std::optional<std::uint32_t> find_metric(std::string_view name) const;
+
+  // What register `index` held after the last step, for explanations: x alone of a number, 0 or 1
+  // of a truth.
+  Vec3 register_value(std::size_t index) const;
+
+ private:
+  // One instruction, resolved: constants and contact pairs by slot.
+  struct Step {
+    plan::Op op = plan::Op::kEND;
+    std::uint16_t dst = 0, a = 0, b = 0;
+  };
+  struct Metric {
+    std::string name;
+    plan::MetricType type = plan::MetricType::kBool;
+  };
+  struct Register {
+    double x = 0, y = 0, z = 0;
+  };
+  struct State {
+    double value = 0;
+    bool started = false;
+  };
+  // A pair of bodies some instruction asks about, a < b, and what a exerts on b at this step.
+  struct Pair {
+    std::uint16_t a = 0, b = 0;
+    Vec3 push = Vec3::Zero();
+  };
+
+  Status check(const StepSample& sample) const;
+  void read_contacts(std::span<const ContactSample> contacts);
+  void run(std::span<const Step> steps, const StepSample& sample);
+
+  std::string task_name_;
+  std::size_t bodies_ = 0;
+  std::vector<double> constants_;
+  std::vector<std::uint16_t> hold_;  // per state, HOLD's n
+  std::vector<Metric> metrics_;
+  std::vector<Step> once_;  // depend on constants and the start alone
+  std::vector<Step> each_;
+  std::vector<Pair> pairs_;  // ascending
+  std::vector<BodyStart> starts_;
+  std::vector<Register> registers_;
+  std::vector<State> states_;
+  std::vector<double> values_, emitted_;
+  bool begun_ = false;
+};
+
+}  // namespace probe::vm
