@@ -40,10 +40,12 @@ std::optional<Code> code_from_slug(std::string_view slug);
 // Every code in the order of codes.def.
 std::vector<Code> all_codes();
 
-// Why another place matters. Drawn with dashes; the primary place has carets.
+// Why another place matters. Drawn with dashes, or with carets like the primary place when it is
+// just as guilty.
 struct Label {
   Span span;
   std::string text;
+  bool carets = false;
 };
 
 struct Replacement {
@@ -72,7 +74,10 @@ struct Diagnostic {
   // "...").help("...").
   Diagnostic& point(std::string text) { return primary_label = std::move(text), *this; }
   Diagnostic& label(const Span& span, std::string text) {
-    return labels.push_back({span, std::move(text)}), *this;
+    return labels.push_back({span, std::move(text), false}), *this;
+  }
+  Diagnostic& also(const Span& span, std::string text) {
+    return labels.push_back({span, std::move(text), true}), *this;
   }
   Diagnostic& help(std::string text) { return helps.push_back(std::move(text)), *this; }
   Diagnostic& note(std::string text) { return notes.push_back(std::move(text)), *this; }

@@ -521,7 +521,7 @@ struct SceneDecl {
 struct CellsStmt {  // `cells corners = grid 2 x 2 at (..) spread (..), (..)`
   Span span;
   Name name;
-  Int columns, rows;
+  Int nx, ny;  // cells along x, along y
   Point at;
   std::vector<Point> spreads;
 };

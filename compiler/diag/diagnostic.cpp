@@ -1,0 +1,112 @@
+// The table of codes, the collector, and the nearest spelling.
+#include "compiler/diag/diagnostic.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace probe {
+namespace {
+
+constexpr auto kCodes = std::to_array<CodeInfo>({
+#define PROBE_CODE(code, severity, slug, title) \
+  {Code::code, #code, Severity::severity, slug, title},
+#include "compiler/diag/codes.def"
+});
+
+}  // namespace
+
+const CodeInfo& info(Code code) { return kCodes[static_cast<std::size_t>(code)]; }
+
+std::string_view to_text(Severity severity) {
+  return severity == Severity::kError ? "error" : "warning";
+}
+
+std::optional<Code> code_from_text(std::string_view text) {
+  for (const CodeInfo& entry : kCodes) {
+    if (entry.text == text) return entry.code;
+  }
+  return std::nullopt;
+}
+
+std::optional<Code> code_from_slug(std::string_view slug) {
+  if (slug.empty()) return std::nullopt;
+  for (const CodeInfo& entry : kCodes) {
+    if (entry.slug == slug) return entry.code;
+  }
+  return std::nullopt;
+}
+
+std::vector<Code> all_codes() {
+  std::vector<Code> codes;
+  for (const CodeInfo& entry : kCodes) codes.push_back(entry.code);
+  return codes;
+}
+
+Diagnostic& Diagnostics::report(Code code, const Span& primary, std::string message) {
+  Diagnostic diagnostic;
+  diagnostic.code = code;
+  diagnostic.severity = info(code).severity;
+  diagnostic.message = std::move(message);
+  diagnostic.primary = primary;
+  return add(std::move(diagnostic));
+}
+
+Diagnostic& Diagnostics::add(Diagnostic diagnostic) {
+  return items_.emplace_back(std::move(diagnostic));
+}
+
+std::size_t Diagnostics::error_count() const {
+  return static_cast<std::size_t>(
+      std::count_if(items_.begin(), items_.end(),
+                    [](const Diagnostic& item) { return item.severity == Severity::kError; }));
+}
+
+std::vector<const Diagnostic*> Diagnostics::in_source_order() const {
+  std::vector<const Diagnostic*> sorted;
+  sorted.reserve(items_.size());
+  for (const Diagnostic& item : items_) sorted.push_back(&item);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Diagnostic* a, const Diagnostic* b) {
+    return a->primary < b->primary;
+  });
+  return sorted;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  // Three rows of the optimal string alignment table: the one being filled and the two above it.
+  std::vector<std::size_t> above2(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::swap(above2, above);
+    std::swap(above, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t cost = a[i - 1] == b[j - 1] ? 0 : 1;
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + cost});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], above2[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+std::optional<std::string_view> nearest(std::string_view name,
+                                        std::span<const std::string_view> candidates) {
+  constexpr std::size_t kLongestName =
+      128;  // a longer "name" is no typo, and the table is quadratic
+  if (name.size() > kLongestName) return std::nullopt;
+  const std::size_t limit = std::max<std::size_t>(1, name.size() / 3);
+  std::optional<std::string_view> best;
+  std::size_t best_distance = limit + 1;
+  for (const std::string_view candidate : candidates) {
+    if (candidate.size() > name.size() + limit || name.size() > candidate.size() + limit) continue;
+    const std::size_t distance = edit_distance(name, candidate);
+    // One letter is no likeness: `y` is not a slip of `x`.
+    if (distance >= best_distance || distance >= std::max(name.size(), candidate.size())) continue;
+    best = candidate;
+    best_distance = distance;
+  }
+  return best;
+}
+
+}  // namespace probe
