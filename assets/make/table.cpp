@@ -1,0 +1,159 @@
+// The table scene's backdrop in world coordinates: a red-brown wooden table with a rounded front
+// edge, grey woven partitions behind and at the left, a dark blue cloth below the front edge.
+// Albedos are chosen for the table's light.
+#include <array>
+#include <cmath>
+
+#include "assets/make/generators.h"
+#include "runtime/base/trig.h"
+
+namespace probe::make {
+namespace {
+
+constexpr double kTop = 0.87;
+constexpr double kBack = -0.345, kFront = 0.03;  // x
+constexpr double kLeft = -0.295, kRight = 0.45;  // y
+constexpr double kThickness = 0.030, kRound = 0.015;
+
+// A flat rectangle, origin + s a + t b, with uv running over `repeat` textures.
+void add_rectangle(Surface& surface, const Vec3& origin, const Vec3& a, const Vec3& b,
+                   const Vec2& repeat) {
+  const Grid grid{.rows = 2,
+                  .columns = 2,
+                  .closed = false,
+                  .points = {origin, origin + b, origin + a, origin + a + b},
+                  .uv = {{0, 0}, {0, repeat.y()}, {repeat.x(), 0}, {repeat.x(), repeat.y()}}};
+  add_grid(surface, grid);
+}
+
+// The board's outline from the back over the top and round the front edge down to the underside,
+// swept along y.
+Surface table_surface() {
+  std::vector<Vec2> outline{{kBack, kTop - kThickness}, {kBack, kTop}};
+  constexpr int kSteps = 8;
+  for (int i = 0; i <= 2 * kSteps; ++i) {
+    const SinCos a = portable_sincos_deg(90 - 90.0 * i / kSteps);
+    outline.emplace_back(kFront - kRound + kRound * a.cos, kTop - kRound + kRound * a.sin);
+  }
+  outline.emplace_back(kBack, kTop - kThickness);
+  Grid grid{.rows = static_cast<int>(outline.size()),
+            .columns = 2,
+            .closed = false,
+            .points = {},
+            .uv = {}};
+  double along = -kThickness;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    if (i > 0) along += (outline[i] - outline[i - 1]).norm();
+    const double u = (along - kThickness + kThickness) / 0.40;
+    for (const double y : {kLeft, kRight}) {
+      grid.points.emplace_back(outline[i].x(), y, outline[i].y());
+      grid.uv.emplace_back(u, (y - kLeft) / (kRight - kLeft));
+    }
+  }
+  Surface surface;
+  add_grid(surface, grid);
+  smooth_normals(surface, 30);
+  // The two ends.
+  for (const double y : {kLeft, kRight}) {
+    for (std::size_t i = 1; i + 2 < outline.size(); ++i) {
+      const auto point = [&](std::size_t k) { return Vec3(outline[k].x(), y, outline[k].y()); };
+      Triangle t{.position = {point(0), point(i), point(i + 1)},
+                 .normal = {},
+                 .uv = {Vec2(0, 0), Vec2(0.1, 0), Vec2(0.1, 0.04)}};
+      if (y == kLeft) std::swap(t.position[1], t.position[2]);
+      t.normal.fill(Vec3(0, y == kLeft ? -1 : 1, 0));
+      surface.push_back(t);
+    }
+  }
+  return surface;
+}
+
+// u is the distance across the grain (0.40 m a texture), v along it (0.745 m).
+Image wood_texture() {
+  constexpr int kWidth = 512, kHeight = 512;
+  constexpr double kShine = 0.010;
+  const Colour middle = texel_for({171, 93, 62}, kGainUp, kShine);
+  const Colour dark = texel_for({136, 62, 38}, kGainUp, kShine);
+  const Colour light = texel_for({194, 120, 86}, kGainUp, kShine);
+  const Colour pore = texel_for({112, 48, 30}, kGainUp, kShine);
+  Image image(kWidth, kHeight);
+  for (int row = 0; row < kHeight; ++row) {
+    for (int column = 0; column < kWidth; ++column) {
+      const double x = (column + 0.5) / kWidth * 400, y = (row + 0.5) / kHeight * 745;  // mm
+      // Growth rings: bands across the grain, bent slowly along it, so that they run together into
+      // flames.
+      const double bend =
+          46 * value_noise(x / 110 + 7, y / 260, {}, 51) + 12 * value_noise(x / 30, y / 90, {}, 52);
+      const double rings = value_noise((x + bend) / 6.5, y / 700, {}, 53);
+      const double fine = value_noise((x + bend * 0.6) / 1.7, y / 55, {}, 54);
+      const double broad = value_noise(x / 70, y / 180, {}, 55);
+      const double fleck = value_noise(x / 0.9, y / 14, {}, 56);
+      Colour c = mix(middle, dark, 0.75 * smooth_step(0.45, 0.85, rings));
+      c = mix(c, light, 0.55 * smooth_step(0.5, 0.95, broad) * (1 - 0.5 * rings));
+      c = mix(c, fine > 0.5 ? light : dark, 0.5 * std::abs(fine - 0.5));
+      c = mix(c, pore, 0.5 * smooth_step(0.80, 0.95, fleck));
+      image.set(column, row, c);
+    }
+  }
+  return image;
+}
+
+// Woven cloth: short threads across and along, one texture is 0.30 m square and repeats.
+Image weave_texture(const Colour& lit, double gain, double contrast) {
+  constexpr int kSize = 256;
+  const auto texel = [&](double shift) {
+    return texel_for({lit[0] + shift, lit[1] + shift, lit[2] + shift}, gain, 0.002);
+  };
+  const Colour dark = texel(-contrast), light = texel(contrast);
+  Image image(kSize, kSize);
+  for (int row = 0; row < kSize; ++row) {
+    for (int column = 0; column < kSize; ++column) {
+      const double x = column, y = row;
+      const double across = value_noise(x / 8, y / 1.0, {.x = kSize / 8, .y = kSize}, 61);
+      const double along = value_noise(x / 1.0, y / 8, {.x = kSize, .y = kSize / 8}, 62);
+      const double broad = value_noise(x / 32, y / 64, {.x = kSize / 32, .y = kSize / 64}, 63);
+      const double grain =
+          hash01(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row), 64);
+      image.set(column, row,
+                mix(dark, light, 0.4 * across + 0.38 * along + 0.1 * broad + 0.12 * grain));
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+std::vector<OutputFile> make_table_scene() {
+  constexpr double kTile = 0.30;
+  Surface behind, left, cloth, seam;
+  // Behind: the plane x = -0.36 turned to +x. Left: the plane y = -0.31 turned to +y. They meet in
+  // a corner.
+  add_rectangle(behind, {-0.36, -0.31, 0.55}, {0, 2.0, 0}, {0, 0, 1.25},
+                {2.0 / kTile, 1.25 / kTile});
+  add_rectangle(left, {1.2, -0.31, 0.55}, {-1.56, 0, 0}, {0, 0, 1.25},
+                {1.56 / kTile, 1.25 / kTile});
+  add_rectangle(seam, {-0.3585, -0.310, 0.55}, {0, 0.006, 0}, {0, 0, 1.25}, {1, 1});
+  add_rectangle(cloth, {-0.36, -0.31, 0.62}, {1.56, 0, 0}, {0, 2.0, 0},
+                {1.56 / kTile, 2.0 / kTile});
+  std::vector<Part> parts;
+  parts.push_back({table_surface(), {.name = "wood", .texture = wood_texture(), .roughness = 0.6}});
+  parts.push_back({behind,
+                   {.name = "partition_behind",
+                    .texture = weave_texture({110, 110, 114}, kGainPlusX, 34),
+                    .roughness = 1}});
+  parts.push_back({left,
+                   {.name = "partition_left",
+                    .texture = weave_texture({122, 126, 132}, kGainPlusY, 24),
+                    .roughness = 1}});
+  parts.push_back({seam,
+                   {.name = "seam",
+                    .base_color = albedo_for({78, 78, 82}, kGainPlusX, 0.002),
+                    .texture = std::nullopt,
+                    .roughness = 1}});
+  parts.push_back(
+      {cloth,
+       {.name = "cloth", .texture = weave_texture({47, 52, 62}, kGainUp, 9), .roughness = 1}});
+  return {{"scenes/table/visual.glb", glb_bytes("table", parts)}};
+}
+
+}  // namespace probe::make
