@@ -1,5 +1,6 @@
-// What an episode asks of a policy: an action for each observation. A policy sees pictures, proprioception and the
-// prompt. Scripted policies (the expert and its kin) may also look at the privileged view; a wire client never does.
+// What an episode asks of a policy: an action for each observation. A policy sees pictures,
+// proprioception and the prompt. Scripted policies (the expert and its kin) may also look at the
+// privileged view; a wire client never does.
 #pragma once
 
 #include <array>
@@ -15,7 +16,8 @@
 
 namespace probe::policy {
 
-// [dx dy dz, rotation vector (3), gripper]: end-effector delta in the robot base frame, m and rad; gripper -1 closed
+// [dx dy dz, rotation vector (3), gripper]: end-effector delta in the robot base frame, m and rad;
+// gripper -1 closed
 // .. +1 open, absolute.
 using Action = std::array<double, 7>;
 
@@ -25,8 +27,8 @@ struct Image {
 };
 
 struct Proprioception {
-  Pose tcp_in_base;      // the tool centre point link in the robot's base frame
-  double openness = 1;   // 0 closed .. 1 open
+  Pose tcp_in_base;            // the tool centre point link in the robot's base frame
+  double openness = 1;         // 0 closed .. 1 open
   std::vector<double> joints;  // rad and m, in the plan's drive order
 };
 
@@ -35,14 +37,14 @@ struct PrivilegedObject {
   std::string name;
   std::vector<std::vector<Vec3>> parts;  // convex parts' vertices, model frame
   Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();
-  Pose pose;                 // model frame in world, now
+  Pose pose;                                // model frame in world, now
   bool finger_contact[2] = {false, false};  // over the last substep
 };
 
 // The privileged view: task roles by index into `objects` (0 source, 1 target, 2.. distractors).
 struct Privileged {
   std::vector<PrivilegedObject> objects;
-  Pose base;              // robot base in world
+  Pose base;  // robot base in world
   double surface_z = 0;
 };
 
@@ -51,7 +53,7 @@ struct Observation {
   std::string_view prompt;
   Proprioception proprioception;
   const Privileged* privileged = nullptr;
-  int step = 0;     // control steps done, 0 at the first observation
+  int step = 0;  // control steps done, 0 at the first observation
   int horizon = 0;
 };
 
@@ -60,7 +62,8 @@ struct EpisodeStart {
   std::string_view prompt;
   int index = 0;
   int seed = 0;
-  std::uint64_t draw_seed = 0;  // first 8 bytes of H(seed, episode): feed everything that draws from this
+  std::uint64_t draw_seed =
+      0;  // first 8 bytes of H(seed, episode): feed everything that draws from this
   int horizon = 0;
   std::string_view robot_urdf;  // path of the robot's URDF file
   std::string_view tcp_link;
@@ -71,12 +74,13 @@ class Policy {
   virtual ~Policy() = default;
   virtual Status begin(const EpisodeStart& start) = 0;
   virtual Result<Action> act(const Observation& observation) = 0;
-  // Whether act() reads Observation::image; a run without video may then skip rendering... never by default.
+  // Whether act() reads Observation::image; a run without video may then skip rendering... never by
+  // default.
   virtual bool wants_image() const { return true; }
 };
 
-// Draws of a policy: a counter-based generator keyed by the episode, so that the order of episodes does not matter.
-// SplitMix64 (Steele, Lea, Flood 2014) of key + counter.
+// Draws of a policy: a counter-based generator keyed by the episode, so that the order of episodes
+// does not matter. SplitMix64 (Steele, Lea, Flood 2014) of key + counter.
 class Draws {
  public:
   explicit Draws(std::uint64_t key) : key_(key) {}

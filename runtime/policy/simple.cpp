@@ -1,0 +1,110 @@
+// Null, random, replayed and noisy policies.
+#include "runtime/policy/simple.h"
+
+#include <utility>
+#include <vector>
+
+namespace probe::policy {
+namespace {
+
+class NullPolicy final : public Policy {
+ public:
+  Status begin(const EpisodeStart&) override { return {}; }
+  Result<Action> act(const Observation&) override { return Action{0, 0, 0, 0, 0, 0, 1}; }
+  bool wants_image() const override { return false; }
+};
+
+class RandomPolicy final : public Policy {
+ public:
+  Status begin(const EpisodeStart& start) override {
+    draws_ = Draws(start.draw_seed);
+    return {};
+  }
+  Result<Action> act(const Observation&) override {
+    Action action{};
+    for (std::size_t i = 0; i < 3; ++i) action[i] = 0.02 * (2 * draws_.uniform() - 1);
+    for (std::size_t i = 3; i < 6; ++i) action[i] = 0.1 * (2 * draws_.uniform() - 1);
+    action[6] = draws_.uniform() < 0.5 ? -1 : 1;
+    return action;
+  }
+  bool wants_image() const override { return false; }
+
+ private:
+  Draws draws_{0};
+};
+
+class RecordedPolicy final : public Policy {
+ public:
+  RecordedPolicy(std::string dir, PolicyContext context)
+      : dir_(std::move(dir)), context_(std::move(context)) {}
+
+  Status begin(const EpisodeStart& start) override {
+    if (!context_.recorded_actions) {
+      return Failure{"policy", "nothing here can read stored episodes", dir_};
+    }
+    PROBE_ASSIGN(actions_, context_.recorded_actions(dir_, start.task, start.index, start.seed));
+    return {};
+  }
+  Result<Action> act(const Observation& observation) override {
+    const auto step = static_cast<std::size_t>(observation.step);
+    if (step >= actions_.size()) {
+      return Failure{"policy",
+                     "the stored episode has " + std::to_string(actions_.size()) +
+                         " actions, this one asks for another",
+                     dir_};
+    }
+    return actions_[step];
+  }
+  bool wants_image() const override { return false; }
+
+ private:
+  std::string dir_;
+  PolicyContext context_;
+  std::vector<Action> actions_;
+};
+
+class NoisyPolicy final : public Policy {
+ public:
+  NoisyPolicy(std::unique_ptr<Policy> inner, double sigma)
+      : inner_(std::move(inner)), sigma_(sigma) {}
+
+  Status begin(const EpisodeStart& start) override {
+    draws_ = Draws(start.draw_seed);
+    return inner_->begin(start);
+  }
+  Result<Action> act(const Observation& observation) override {
+    PROBE_ASSIGN(Action action, inner_->act(observation));
+    for (std::size_t i = 0; i < 6; ++i) action[i] += (i < 3 ? sigma_ : 2 * sigma_) * normal();
+    return action;
+  }
+  bool wants_image() const override { return inner_->wants_image(); }
+
+ private:
+  // Twelve uniforms make a normal to within what a wrist can tell, without the C library's log and
+  // sine, whose last bits depend on the CPU.
+  double normal() {
+    double sum = -6;
+    for (int i = 0; i < 12; ++i) sum += draws_.uniform();
+    return sum;
+  }
+
+  std::unique_ptr<Policy> inner_;
+  double sigma_;
+  Draws draws_{0};
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_null() { return std::make_unique<NullPolicy>(); }
+
+std::unique_ptr<Policy> make_random() { return std::make_unique<RandomPolicy>(); }
+
+std::unique_ptr<Policy> make_recorded(std::string dir, PolicyContext context) {
+  return std::make_unique<RecordedPolicy>(std::move(dir), std::move(context));
+}
+
+std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma) {
+  return std::make_unique<NoisyPolicy>(std::move(inner), sigma);
+}
+
+}  // namespace probe::policy
