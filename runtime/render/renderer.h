@@ -1,6 +1,6 @@
-// Pictures of a scene: RGB, depth and segmentation, every visibility question an Embree ray. One Renderer per world
-// and thread; meshes and their ray structures (SharedScene) are read-only and shared. Contracts and the shading law are
-// in README.md of this folder.
+// Pictures of a scene: RGB, depth and segmentation, every visibility question an Embree ray. One
+// Renderer per world and thread; meshes and their ray structures (SharedScene) are read-only and
+// shared. Contracts and the shading law are in README.md of this folder.
 #pragma once
 
 #include <array>
@@ -24,7 +24,8 @@ struct Camera {
   double fx = 1, fy = 1, cx = 0, cy = 0;  // pixels at width x height; pixel centres at +0.5
 };
 
-// forward = normalize(direction), left = normalize(z x forward), up = forward x left; fails for a vertical direction.
+// forward = normalize(direction), left = normalize(z x forward), up = forward x left; fails for a
+// vertical direction.
 Result<Mat3> look_along(const Vec3& direction);
 
 struct Sun {
@@ -42,10 +43,10 @@ struct Lights {
 inline constexpr std::uint16_t kBackdrop = 65534;
 struct Visual {
   std::shared_ptr<const scene::Mesh> mesh;
-  Pose origin;              // mesh frame in the frame of its pose (static: in world)
-  std::uint16_t body = 0;   // task-local body index
-  std::string name;         // for messages
-  bool robot = false;       // robot links use the robot material (README)
+  Pose origin;             // mesh frame in the frame of its pose (static: in world)
+  std::uint16_t body = 0;  // task-local body index
+  std::string name;        // for messages
+  bool robot = false;      // robot links use the robot material (README)
 };
 
 struct SceneSpec {
@@ -53,25 +54,28 @@ struct SceneSpec {
   std::vector<Visual> dynamics;  // one pose each per frame
   Camera camera;
   Lights lights;
-  std::shared_ptr<const scene::Texture> photo;  // shown wherever no dynamic visual is nearest; may be null
-  bool shadows = false;          // suns marked `shadow` cast; off in the reference
+  std::shared_ptr<const scene::Texture>
+      photo;             // shown wherever no dynamic visual is nearest; may be null
+  bool shadows = false;  // suns marked `shadow` cast; off in the reference
 };
 
 // Views into the renderer, valid until the next render().
 struct FrameView {
   int width = 0, height = 0;
-  std::span<const std::uint8_t> rgb;           // h x w x 3, row 0 on top
-  std::span<const float> depth;                // m along the camera's forward axis; 0 beyond 10 m
-  std::span<const std::uint16_t> segmentation; // 0 nothing, 1 + body, 65535 backdrop
+  std::span<const std::uint8_t> rgb;            // h x w x 3, row 0 on top
+  std::span<const float> depth;                 // m along the camera's forward axis; 0 beyond 10 m
+  std::span<const std::uint16_t> segmentation;  // 0 nothing, 1 + body, 65535 backdrop
 };
 
 class Renderer {
  public:
   static Result<std::unique_ptr<Renderer>> create(SceneSpec spec);
   virtual ~Renderer() = default;
-  // `poses`: one per dynamic visual, world. Fails (code "render") on a non-finite pose, naming the visual.
+  // `poses`: one per dynamic visual, world. Fails (code "render") on a non-finite pose, naming the
+  // visual.
   virtual Result<FrameView> render(std::span<const Pose> poses) = 0;
-  // Traces every pixel again, without the block cache: the picture must be the same. For tests and golden frames.
+  // Traces every pixel again, without the block cache: the picture must be the same. For tests and
+  // golden frames.
   virtual Result<FrameView> render_full(std::span<const Pose> poses) = 0;
 };
 

@@ -1,0 +1,45 @@
+// Which 8 x 8 blocks moving triangles can touch. Conservative, hence exact: a block that is not
+// marked shows no moving surface.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/render/camera_rays.h"
+#include "runtime/render/top_scene.h"
+
+namespace probe::render {
+
+class BlockMarks {
+ public:
+  BlockMarks(const Camera& camera, const CameraRays& rays);
+
+  void clear();
+  void mark_all();
+  // Marks the rectangle of pixels of every triangle of every instance, as placed.
+  void mark(const std::vector<Instance>& instances);
+
+  int blocks_x() const { return blocks_x_; }
+  int blocks_y() const { return blocks_y_; }
+  bool marked(int x, int y) const { return marks_[at(x, y)] != 0; }
+  // Bit b: block b of the tile, in sample order.
+  unsigned tile_blocks(int tile_x, int tile_y) const;
+
+ private:
+  std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocks_x_) +
+           static_cast<std::size_t>(x);
+  }
+  void mark_part(const MeshGeometry::Part& part, const float (&rows)[12]);
+  void mark_rectangle(float min_x, float max_x, float min_y, float max_y);
+  void mark_clipped(const float (&corners)[3][3]);
+
+  Camera camera_;
+  float nearest_;
+  float max_x_, max_y_;  // last pixel
+  int blocks_x_, blocks_y_;
+  std::vector<std::uint8_t> marks_;
+  std::vector<float> x_, y_, z_;  // projected vertices of one part: pixels, pixels, metres
+};
+
+}  // namespace probe::render

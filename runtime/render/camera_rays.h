@@ -1,0 +1,54 @@
+// One ray a pixel, in tile order: 16 x 16 tiles, Morton order within, so that 8 samples are 4 x 2
+// pixels and 64 are an 8 x 8 block.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/render/renderer.h"
+#include "runtime/render/shading.h"
+
+namespace probe::render {
+
+inline constexpr int kTileSide = 16;
+inline constexpr int kBlockSide = 8;
+inline constexpr float kNearest = 0.01f;  // m along the ray
+inline constexpr float kFarthest = 10.0f;
+
+// Pixel of a sample within its tile.
+struct TileOffset {
+  std::uint8_t x, y;
+};
+constexpr std::array<TileOffset, kTileSamples> make_tile_offsets() {
+  std::array<TileOffset, kTileSamples> table{};
+  for (unsigned i = 0; i < kTileSamples; ++i) {
+    unsigned x = 0, y = 0;
+    for (unsigned bit = 0; bit < 4; ++bit) {
+      x |= ((i >> (2 * bit)) & 1u) << bit;
+      y |= ((i >> (2 * bit + 1)) & 1u) << bit;
+    }
+    table[i] = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y)};
+  }
+  return table;
+}
+inline constexpr std::array<TileOffset, kTileSamples> kTileOffsets = make_tile_offsets();
+
+struct CameraRays {
+  int width = 0, height = 0;
+  int tiles_x = 0, tiles_y = 0;
+  std::array<float, 3> origin{};
+  // Per sample, in tile order (tiles row by row); samples beyond the image's edge are ordinary rays
+  // never shown.
+  std::vector<float> dx, dy, dz;
+  std::vector<float> cosine;  // dot(d, forward): depth = t cosine
+  float nearest_depth = 0;    // 0.01 times the least cosine: nothing nearer can be hit
+
+  int tiles() const { return tiles_x * tiles_y; }
+};
+
+// Fails (code "render") on sizes outside 1 .. 8192, focal lengths that are not positive, numbers
+// that are not finite or axes that are not orthonormal.
+Result<CameraRays> make_camera_rays(const Camera& camera);
+
+}  // namespace probe::render

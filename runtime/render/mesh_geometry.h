@@ -1,0 +1,46 @@
+// A mesh ready for rays: its committed Embree scene and, per triangle, what a hit needs. Read-only,
+// shared by worlds.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/render/embree_device.h"
+#include "runtime/scene/mesh.h"
+
+namespace probe::render {
+
+// Two cache lines, read in one go by the gather.
+struct alignas(64) TriangleData {
+  float p0[3], e1[3], e2[3];  // a corner and the edges from it
+  float n0[3], n1[3], n2[3];  // corner normals
+  float g[3];                 // unit face normal, (P1-P0) x (P2-P0)
+  float uv0[2], uv1[2], uv2[2];
+};
+
+struct MeshGeometry {
+  struct Part {
+    scene::Material material;
+    const scene::Texture* base_color = nullptr;  // into mesh->textures
+    const scene::Texture* emission = nullptr;
+    std::vector<TriangleData> triangles;
+    std::vector<float> positions;  // 4 floats longer than its vertices: Embree reads past the last
+    std::vector<float> x, y, z;    // positions again, for projection
+    std::vector<std::uint32_t> indices;
+  };
+
+  std::shared_ptr<EmbreeDevice> device;
+  std::shared_ptr<const scene::Mesh>
+      mesh;                 // keeps textures, and its address names this in the cache
+  std::vector<Part> parts;  // geomID is the index
+  ScenePtr scene;
+
+  // The one for this mesh while anybody holds it; made at the first call. Safe to call from any
+  // thread. Fails (code "render") on a mesh whose arrays do not fit together.
+  static Result<std::shared_ptr<const MeshGeometry>> shared(
+      std::shared_ptr<const scene::Mesh> mesh);
+};
+
+}  // namespace probe::render

@@ -1,0 +1,103 @@
+#include "runtime/render/shading.h"
+
+#include <cmath>
+
+#include "runtime/render/clones.h"
+
+namespace probe::render {
+namespace {
+
+constexpr float kPi = 3.14159265358979323846f;
+constexpr float kTiny = 1e-6f;
+
+inline float clamp(float x, float low, float high) {
+  const float above = x < low ? low : x;
+  return above > high ? high : above;
+}
+
+// E + A (1-m) rho, the part of no light's direction.
+PROBE_CLONES void shade_ambient(const ShadeInput& in, int count, float ambient, ShadeOutput& out) {
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const float diffuse = ambient * (1 - in.metallic[k]);
+    out.r[k] = in.emission_r[k] + diffuse * in.albedo_r[k];
+    out.g[k] = in.emission_g[k] + diffuse * in.albedo_g[k];
+    out.b[k] = in.emission_b[k] + diffuse * in.albedo_b[k];
+  }
+}
+
+// One sun: vis e NoL (rho (1-m)/pi + S F), added.
+PROBE_CLONES void shade_sun(const ShadeInput& in, int count, float lx, float ly, float lz,
+                            float irradiance, const float* visible, ShadeOutput& out) {
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const float nx = in.nx[k], ny = in.ny[k], nz = in.nz[k];
+    const float vx = in.vx[k], vy = in.vy[k], vz = in.vz[k];
+    const float sx = lx + vx, sy = ly + vy, sz = lz + vz;
+    const float length2 = sx * sx + sy * sy + sz * sz;
+    const float scale = 1.0f / std::sqrt(length2 < 1e-20f ? 1e-20f : length2);
+    const float hx = sx * scale, hy = sy * scale, hz = sz * scale;
+
+    const float noh = clamp(nx * hx + ny * hy + nz * hz, kTiny, 1);
+    const float voh = clamp(vx * hx + vy * hy + vz * hz, kTiny, 1);
+    const float nov = clamp(nx * vx + ny * vy + nz * vz, kTiny, 1);
+    const float nol = clamp(nx * lx + ny * ly + nz * lz, 0, 1);
+
+    const float r = in.roughness[k], m = in.metallic[k];
+    const float a = r * r;
+    const float kk = (a + 2 * r + 1) / 8;
+    const float a2 = a * a;
+    const float d = noh * noh * (a2 - 1) + 1;
+    const float denominator = 4 * kPi * (d * d) * (nov * (1 - kk) + kk) * (nol * (1 - kk) + kk);
+    const float s = a2 / clamp(denominator, kTiny, 4 * kPi);
+    const float x = 1 - voh;
+    const float x2 = x * x;
+    const float fresnel = x2 * x2 * x;
+    const float light = visible[k] * irradiance * nol;
+    const float lambert = (1 - m) / kPi;
+    const float dielectric = in.f0[k] * (1 - m);
+
+    const float fr = dielectric + in.albedo_r[k] * m;
+    const float fg = dielectric + in.albedo_g[k] * m;
+    const float fb = dielectric + in.albedo_b[k] * m;
+    out.r[k] += light * (in.albedo_r[k] * lambert + s * (fr + (1 - fr) * fresnel));
+    out.g[k] += light * (in.albedo_g[k] * lambert + s * (fg + (1 - fg) * fresnel));
+    out.b[k] += light * (in.albedo_b[k] * lambert + s * (fb + (1 - fb) * fresnel));
+  }
+}
+
+ShadeInput::Array make_ones() {
+  ShadeInput::Array ones;
+  ones.fill(1);
+  return ones;
+}
+
+}  // namespace
+
+int padded(int count) { return (count + 15) & ~15; }
+
+void pad(ShadeInput& in, int count) {
+  for (auto k = static_cast<std::size_t>(count); k < static_cast<std::size_t>(padded(count)); ++k) {
+    in.nx[k] = in.ny[k] = in.vx[k] = in.vy[k] = 0;
+    in.nz[k] = in.vz[k] = 1;
+    in.albedo_r[k] = in.albedo_g[k] = in.albedo_b[k] = 0;
+    in.emission_r[k] = in.emission_g[k] = in.emission_b[k] = 0;
+    in.roughness[k] = 1;
+    in.f0[k] = 0.04f;
+    in.metallic[k] = 0;
+  }
+}
+
+void shade(const ShadeInput& input, int count, const LightTable& lights,
+           const std::vector<const float*>& visible, ShadeOutput& output) {
+  static const ShadeInput::Array kOnes = make_ones();
+  const int n = padded(count);
+  shade_ambient(input, n, lights.ambient, output);
+  for (std::size_t s = 0; s < lights.suns.size(); ++s) {
+    const LightRay& sun = lights.suns[s];
+    const float* factors = s < visible.size() && visible[s] != nullptr ? visible[s] : kOnes.data();
+    shade_sun(input, n, sun.x, sun.y, sun.z, sun.irradiance, factors, output);
+  }
+}
+
+}  // namespace probe::render

@@ -1,0 +1,50 @@
+// The shading law on arrays: one tile's hits, compacted. Formulas are in README.md; single
+// precision, in the order written there. Knows nothing of rays, meshes or textures.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "runtime/render/renderer.h"
+
+namespace probe::render {
+
+inline constexpr int kTileSamples = 256;
+
+// Hits in sample order, one array a quantity. Counts are rounded up to 16, so the entries behind
+// the last hit must hold harmless values (pad()).
+struct alignas(64) ShadeInput {
+  using Array = std::array<float, kTileSamples>;
+  alignas(64) Array nx, ny, nz;  // unit normal, towards the viewer
+  alignas(64) Array vx, vy, vz;  // unit direction to the viewer
+  alignas(64) Array albedo_r, albedo_g, albedo_b;
+  alignas(64) Array emission_r, emission_g, emission_b;
+  alignas(64) Array roughness, f0, metallic;
+};
+
+struct ShadeOutput {
+  using Array = ShadeInput::Array;
+  alignas(64) Array r, g, b;  // linear, not clamped
+};
+
+// A sun as the law reads it: the unit direction towards it and its irradiance.
+struct LightRay {
+  float x = 0, y = 0, z = 1;
+  float irradiance = 0;
+  bool shadow = false;
+};
+
+struct LightTable {
+  float ambient = 0;
+  std::vector<LightRay> suns;
+};
+
+// Fills entries count .. next multiple of 16.
+void pad(ShadeInput& input, int count);
+int padded(int count);
+
+// `visible[s]` holds for sun s one factor a hit (0 in shadow), or is null: all visible.
+void shade(const ShadeInput& input, int count, const LightTable& lights,
+           const std::vector<const float*>& visible, ShadeOutput& output);
+
+}  // namespace probe::render

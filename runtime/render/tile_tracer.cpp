@@ -1,0 +1,232 @@
+#include "runtime/render/tile_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/scene/color.h"
+
+namespace probe::render {
+namespace {
+
+// The reference shades robot links with this, whatever their files say.
+constexpr float kRobotRoughness = 0.3f;
+constexpr float kRobotF0 = 0.9f * 0.08f;
+
+constexpr float kShadowBias = 0.0002f;  // m along the face normal
+constexpr float kShadowReach = 5.0f;    // m
+
+struct V3 {
+  float x, y, z;
+};
+inline V3 load(const float* p) { return {p[0], p[1], p[2]}; }
+inline V3 cross(V3 a, V3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline float dot(V3 a, V3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline V3 to_mesh(const float* m, V3 d) {
+  return {m[0] * d.x + m[3] * d.y + m[6] * d.z, m[1] * d.x + m[4] * d.y + m[7] * d.z,
+          m[2] * d.x + m[5] * d.y + m[8] * d.z};
+}
+inline V3 to_world(const float* m, V3 d) {
+  return {m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+          m[6] * d.x + m[7] * d.y + m[8] * d.z};
+}
+
+// Moller and Trumbore in the mesh frame. A grazing hit whose numbers cannot be trusted keeps
+// Embree's.
+inline void refine(const TriangleData& triangle, V3 origin, V3 d, float& t, float& u, float& v) {
+  const V3 e1 = load(triangle.e1), e2 = load(triangle.e2), p0 = load(triangle.p0);
+  const V3 p = cross(d, e2);
+  const float determinant = dot(e1, p);
+  const V3 s{origin.x - p0.x, origin.y - p0.y, origin.z - p0.z};
+  const V3 q = cross(s, e1);
+  const float inverse = 1.0f / determinant;
+  const float exact_t = dot(e2, q) * inverse;
+  if (!(std::abs(exact_t - t) < 1e-3f)) return;
+  t = exact_t;
+  u = std::clamp(dot(s, p) * inverse, 0.0f, 1.0f);
+  v = std::clamp(dot(d, q) * inverse, 0.0f, 1.0f - u);
+}
+
+}  // namespace
+
+void TileTracer::trace(const TopScene& scene, const CameraRays& rays, int tile, unsigned blocks,
+                       const float* farthest) {
+  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
+  alignas(32) static constexpr int kAll[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(32) RTCRayHit8 packet;
+  for (std::size_t k = 0; k < 8; ++k) {
+    packet.ray.org_x[k] = rays.origin[0];
+    packet.ray.org_y[k] = rays.origin[1];
+    packet.ray.org_z[k] = rays.origin[2];
+    packet.ray.tnear[k] = kNearest;
+    packet.ray.time[k] = 0;
+    packet.ray.mask[k] = ~0u;
+    packet.ray.id[k] = 0;
+    packet.ray.flags[k] = 0;
+  }
+  std::size_t count = 0;
+  for (unsigned block = 0; block < 4; ++block) {
+    if ((blocks >> block & 1u) == 0) continue;
+    for (std::size_t first = 64 * block; first < 64 * (block + 1); first += 8) {
+      const std::size_t from = base + first;
+      for (std::size_t k = 0; k < 8; ++k) {
+        packet.ray.dir_x[k] = rays.dx[from + k];
+        packet.ray.dir_y[k] = rays.dy[from + k];
+        packet.ray.dir_z[k] = rays.dz[from + k];
+        packet.ray.tfar[k] = farthest[first + k];
+        packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+      }
+      rtcIntersect8(kAll, scene.scene(), &context, &packet);
+      for (std::size_t k = 0; k < 8; ++k) {
+        if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+        hits_.sample[count] = static_cast<std::uint8_t>(first + k);
+        hits_.instance[count] = packet.hit.instID[0][k];
+        hits_.part[count] = packet.hit.geomID[k];
+        hits_.primitive[count] = packet.hit.primID[k];
+        hits_.t[count] = packet.ray.tfar[k];
+        hits_.u[count] = packet.hit.u[k];
+        hits_.v[count] = packet.hit.v[k];
+        ++count;
+      }
+    }
+  }
+  hits_.count = static_cast<int>(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Instance& instance = scene.instances()[hits_.instance[i]];
+    const TriangleData& triangle =
+        instance.geometry->parts[hits_.part[i]].triangles[hits_.primitive[i]];
+    const std::size_t ray = base + hits_.sample[i];
+    const V3 d = to_mesh(instance.rotation, {rays.dx[ray], rays.dy[ray], rays.dz[ray]});
+    refine(triangle, load(instance.camera_in_mesh), d, hits_.t[i], hits_.u[i], hits_.v[i]);
+  }
+}
+
+void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile, bool points) {
+  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
+  const auto count = static_cast<std::size_t>(hits_.count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Instance& instance = scene.instances()[hits_.instance[i]];
+    const MeshGeometry::Part& part = instance.geometry->parts[hits_.part[i]];
+    const TriangleData& tri = part.triangles[hits_.primitive[i]];
+    const std::size_t ray = base + hits_.sample[i];
+    const V3 d{rays.dx[ray], rays.dy[ray], rays.dz[ray]};
+    const float u = hits_.u[i], v = hits_.v[i], w = 1 - u - v;
+    const V3 g = to_world(instance.rotation, load(tri.g));
+    const float side = dot(g, d) > 0 ? -1.0f : 1.0f;
+    const V3 n = to_world(instance.rotation, {w * tri.n0[0] + u * tri.n1[0] + v * tri.n2[0],
+                                              w * tri.n0[1] + u * tri.n1[1] + v * tri.n2[1],
+                                              w * tri.n0[2] + u * tri.n1[2] + v * tri.n2[2]});
+    const float scale = side / std::sqrt(std::max(dot(n, n), 1e-20f));
+    input_.nx[i] = n.x * scale;
+    input_.ny[i] = n.y * scale;
+    input_.nz[i] = n.z * scale;
+    input_.vx[i] = -d.x;
+    input_.vy[i] = -d.y;
+    input_.vz[i] = -d.z;
+
+    const scene::Material& material = part.material;
+    scene::LinearRgb albedo{material.base_color[0], material.base_color[1], material.base_color[2]};
+    scene::LinearRgb emission{material.emission[0], material.emission[1], material.emission[2]};
+    if (part.base_color != nullptr || part.emission != nullptr) {
+      const float tu = w * tri.uv0[0] + u * tri.uv1[0] + v * tri.uv2[0];
+      const float tv = w * tri.uv0[1] + u * tri.uv1[1] + v * tri.uv2[1];
+      if (part.base_color != nullptr) albedo = scene::sample_texture(*part.base_color, tu, tv);
+      if (part.emission != nullptr) emission = scene::sample_texture(*part.emission, tu, tv);
+    }
+    input_.albedo_r[i] = albedo.r;
+    input_.albedo_g[i] = albedo.g;
+    input_.albedo_b[i] = albedo.b;
+    input_.emission_r[i] = emission.r;
+    input_.emission_g[i] = emission.g;
+    input_.emission_b[i] = emission.b;
+    input_.roughness[i] = instance.robot ? kRobotRoughness : material.roughness;
+    input_.f0[i] = instance.robot ? kRobotF0 : material.f0;
+    input_.metallic[i] = instance.robot ? 0.0f : material.metallic;
+
+    if (points) {
+      const V3 p = to_world(instance.rotation, {tri.p0[0] + u * tri.e1[0] + v * tri.e2[0],
+                                                tri.p0[1] + u * tri.e1[1] + v * tri.e2[1],
+                                                tri.p0[2] + u * tri.e1[2] + v * tri.e2[2]});
+      points_.px[i] = p.x + instance.translation[0];
+      points_.py[i] = p.y + instance.translation[1];
+      points_.pz[i] = p.z + instance.translation[2];
+      points_.gx[i] = g.x * side;
+      points_.gy[i] = g.y * side;
+      points_.gz[i] = g.z * side;
+    }
+  }
+  pad(input_, hits_.count);
+}
+
+void TileTracer::test_sun(const TopScene& scene, const LightRay& sun,
+                          std::array<float, kTileSamples>& visible) {
+  visible.fill(1);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  alignas(32) RTCRay8 packet;
+  alignas(32) int valid[8];
+  std::size_t owner[8];
+  std::size_t lanes = 0;
+  const auto flush = [&] {
+    if (lanes == 0) return;
+    for (std::size_t k = 0; k < 8; ++k) {
+      valid[k] = k < lanes ? -1 : 0;
+      if (k >= lanes) {
+        packet.org_x[k] = packet.org_y[k] = packet.org_z[k] = 0;
+        packet.tnear[k] = 1;
+        packet.tfar[k] = 0;
+      } else {
+        packet.tnear[k] = 0;
+        packet.tfar[k] = kShadowReach;
+      }
+      packet.dir_x[k] = sun.x;
+      packet.dir_y[k] = sun.y;
+      packet.dir_z[k] = sun.z;
+      packet.time[k] = 0;
+      packet.mask[k] = ~0u;
+      packet.id[k] = 0;
+      packet.flags[k] = 0;
+    }
+    rtcOccluded8(valid, scene.scene(), &context, &packet);
+    for (std::size_t k = 0; k < lanes; ++k) {
+      if (packet.tfar[k] < 0) visible[owner[k]] = 0;
+    }
+    lanes = 0;
+  };
+  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
+    const float facing = input_.nx[i] * sun.x + input_.ny[i] * sun.y + input_.nz[i] * sun.z;
+    if (!(facing > 0)) continue;
+    if (points_.gx[i] * sun.x + points_.gy[i] * sun.y + points_.gz[i] * sun.z <= 0) {
+      visible[i] = 0;
+      continue;
+    }
+    packet.org_x[lanes] = points_.px[i] + kShadowBias * points_.gx[i];
+    packet.org_y[lanes] = points_.py[i] + kShadowBias * points_.gy[i];
+    packet.org_z[lanes] = points_.pz[i] + kShadowBias * points_.gz[i];
+    owner[lanes++] = i;
+    if (lanes == 8) flush();
+  }
+  flush();
+}
+
+void TileTracer::shade(const TopScene& scene, const CameraRays& rays, int tile,
+                       const LightTable& lights, bool shadows) {
+  gather(scene, rays, tile, shadows);
+  visible_pointers_.clear();
+  if (shadows) {
+    visible_.resize(lights.suns.size());
+    for (std::size_t s = 0; s < lights.suns.size(); ++s) {
+      const bool cast = lights.suns[s].shadow;
+      if (cast) test_sun(scene, lights.suns[s], visible_[s]);
+      visible_pointers_.push_back(cast ? visible_[s].data() : nullptr);
+    }
+  }
+  render::shade(input_, hits_.count, lights, visible_pointers_, output_);
+}
+
+}  // namespace probe::render

@@ -1,0 +1,83 @@
+#include "runtime/render/top_scene.h"
+
+#include <cmath>
+
+namespace probe::render {
+
+Result<TopScene> TopScene::create(const std::vector<Visual>& visuals, Kind kind) {
+  TopScene top;
+  PROBE_ASSIGN(top.device_, EmbreeDevice::shared());
+  RTCDevice device = top.device_->get();
+  top.scene_.reset(rtcNewScene(device));
+  const bool dynamic = kind == Kind::kDynamic;
+  rtcSetSceneFlags(top.scene_.get(), dynamic ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
+                                                                          RTC_SCENE_FLAG_DYNAMIC)
+                                             : RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(top.scene_.get(),
+                          dynamic ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_HIGH);
+  for (const Visual& visual : visuals) {
+    if (!visual.mesh) {
+      return Failure{.code = "render", .message = "the visual has no mesh", .where = visual.name};
+    }
+    if (!is_finite(visual.origin) || std::abs(visual.origin.rotation.norm() - 1) > 1e-6) {
+      return Failure{.code = "render",
+                     .message = "the visual's origin is not finite or not a rotation",
+                     .where = visual.name};
+    }
+    Instance instance;
+    PROBE_ASSIGN(instance.geometry, MeshGeometry::shared(visual.mesh));
+    instance.origin = visual.origin;
+    instance.id = static_cast<std::uint16_t>(visual.body + 1);
+    instance.robot = visual.robot;
+    instance.name = visual.name;
+    GeometryPtr handle(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
+    rtcSetGeometryInstancedScene(handle.get(), instance.geometry->scene.get());
+    rtcAttachGeometryByID(top.scene_.get(), handle.get(),
+                          static_cast<unsigned>(top.handles_.size()));
+    top.instances_.push_back(std::move(instance));
+    top.handles_.push_back(std::move(handle));
+  }
+  PROBE_TRY(top.device_->check("making instances"));
+  return top;
+}
+
+Status TopScene::place(std::span<const Pose> poses, const std::array<float, 3>& camera) {
+  if (poses.size() != instances_.size()) {
+    return Failure{.code = "render",
+                   .message = std::to_string(poses.size()) + " poses for " +
+                              std::to_string(instances_.size()) + " visuals",
+                   .where = ""};
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (is_finite(poses[i]) && std::abs(poses[i].rotation.squaredNorm() - 1) < 1e-3 &&
+        poses[i].position.norm() < 1e6) {
+      continue;
+    }
+    return Failure{.code = "render",
+                   .message = "the pose is not finite, not rigid or farther than 1000 km",
+                   .where = instances_[i].name};
+  }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    Instance& instance = instances_[i];
+    const Pose pose = poses[i] * instance.origin;
+    const Mat3 rotation = pose.rotation.toRotationMatrix();
+    const Vec3 eye = rotation.transpose() * (Vec3(camera[0], camera[1], camera[2]) - pose.position);
+    float columns[12];
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        const float value = static_cast<float>(rotation(r, c));
+        instance.rotation[3 * r + c] = value;
+        columns[3 * c + r] = value;
+      }
+      instance.translation[r] = static_cast<float>(pose.position[r]);
+      instance.camera_in_mesh[r] = static_cast<float>(eye[r]);
+      columns[9 + r] = instance.translation[r];
+    }
+    rtcSetGeometryTransform(handles_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtcCommitGeometry(handles_[i].get());
+  }
+  rtcCommitScene(scene_.get());
+  return device_->check("placing instances");
+}
+
+}  // namespace probe::render

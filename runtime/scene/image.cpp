@@ -1,0 +1,164 @@
+#include "runtime/scene/image.h"
+
+#include <png.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#define STBI_NO_STDIO
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#include <stb/stb_image.h>
+
+namespace probe::scene {
+namespace {
+
+Failure asset_failure(std::string message, const std::string& where) {
+  return {.code = "asset", .message = std::move(message), .where = where};
+}
+
+Failure io_failure(const std::string& what, const std::string& path) {
+  return {.code = "io", .message = what + ": " + std::strerror(errno), .where = path};
+}
+
+struct FileCloser {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+struct PngFormat {
+  int color_type;
+  int bit_depth;
+  std::size_t bytes_per_pixel;
+};
+
+// libpng leaves by longjmp; nothing with a destructor lives in this frame. Returns false on any
+// error.
+bool encode_png(std::FILE* file, int width, int height, const PngFormat& format,
+                const std::uint8_t* pixels) {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  if (png == nullptr) return false;
+  png_infop info = png_create_info_struct(png);
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, &info);
+    return false;
+  }
+  png_init_io(png, file);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
+               format.bit_depth, format.color_type, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_compression_level(png, 4);
+  png_write_info(png, info);
+  if (format.bit_depth == 16) png_set_swap(png);  // our numbers are little endian, PNG's big
+  const std::size_t stride = static_cast<std::size_t>(width) * format.bytes_per_pixel;
+  for (int row = 0; row < height; ++row) {
+    png_write_row(png, pixels + static_cast<std::size_t>(row) * stride);
+  }
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  return true;
+}
+
+Status write_any(const std::string& path, int width, int height, const PngFormat& format,
+                 std::span<const std::uint8_t> pixels) {
+  const std::size_t expected = static_cast<std::size_t>(width > 0 ? width : 0) *
+                               static_cast<std::size_t>(height > 0 ? height : 0) *
+                               format.bytes_per_pixel;
+  if (expected == 0 || pixels.size() != expected) {
+    return Failure{.code = "io",
+                   .message = "a picture of " + std::to_string(width) + " x " +
+                              std::to_string(height) + " needs " + std::to_string(expected) +
+                              " bytes, got " + std::to_string(pixels.size()),
+                   .where = path};
+  }
+  const std::string temporary = path + ".tmp" + std::to_string(::getpid());
+  std::unique_ptr<std::FILE, FileCloser> file(std::fopen(temporary.c_str(), "wb"));
+  if (!file) return io_failure("cannot create the file", path);
+  errno = 0;
+  // libpng hides short writes of stdio's buffer; flush and close tell of a full disk.
+  bool fine = encode_png(file.get(), width, height, format, pixels.data());
+  fine = fine && std::fflush(file.get()) == 0;
+  fine = (std::fclose(file.release()) == 0) && fine;
+  if (!fine) {
+    const Failure failure = io_failure("cannot write the picture", path);
+    std::remove(temporary.c_str());
+    return failure;
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    const Failure failure = io_failure("cannot rename the finished picture", path);
+    std::remove(temporary.c_str());
+    return failure;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Texture> decode_image(std::span<const std::byte> encoded, const std::string& where) {
+  if (encoded.empty()) return asset_failure("the image is empty", where);
+  if (encoded.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    return asset_failure("the image file is larger than 2 GB", where);
+  }
+  const auto* bytes = reinterpret_cast<const stbi_uc*>(encoded.data());
+  const int size = static_cast<int>(encoded.size());
+  int width = 0, height = 0, channels = 0;
+  if (stbi_info_from_memory(bytes, size, &width, &height, &channels) == 0) {
+    return asset_failure(std::string("cannot read the image (") + stbi_failure_reason() + ")",
+                         where);
+  }
+  if (width > kMaxImageSide || height > kMaxImageSide) {
+    return asset_failure("the image has " + std::to_string(width) + " x " + std::to_string(height) +
+                             " pixels, at most 16384 a side are read",
+                         where);
+  }
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(bytes, size, &width, &height, &channels, 4), stbi_image_free);
+  if (!pixels) {
+    return asset_failure(std::string("cannot decode the image (") + stbi_failure_reason() + ")",
+                         where);
+  }
+  Texture texture{.width = width, .height = height, .rgba = {}};
+  texture.rgba.assign(pixels.get(), pixels.get() + 4 * static_cast<std::size_t>(width) *
+                                                       static_cast<std::size_t>(height));
+  return texture;
+}
+
+Result<Texture> load_image(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return asset_failure("there is no such image file", path);
+  }
+  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  if (!stream) return asset_failure("cannot open the image file", path);
+  const std::streamoff size = stream.tellg();
+  if (size < 0) return asset_failure("cannot read the image file", path);
+  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+  stream.seekg(0);
+  stream.read(reinterpret_cast<char*>(bytes.data()), size);
+  if (!stream) return asset_failure("cannot read the image file", path);
+  return decode_image(bytes, path);
+}
+
+Status write_png(const std::string& path, int width, int height,
+                 std::span<const std::uint8_t> rgb) {
+  return write_any(path, width, height, {PNG_COLOR_TYPE_RGB, 8, 3}, rgb);
+}
+
+Status write_png_gray(const std::string& path, int width, int height,
+                      std::span<const std::uint8_t> gray) {
+  return write_any(path, width, height, {PNG_COLOR_TYPE_GRAY, 8, 1}, gray);
+}
+
+Status write_png_gray16(const std::string& path, int width, int height,
+                        std::span<const std::uint16_t> gray) {
+  return write_any(path, width, height, {PNG_COLOR_TYPE_GRAY, 16, 2},
+                   {reinterpret_cast<const std::uint8_t*>(gray.data()), gray.size_bytes()});
+}
+
+}  // namespace probe::scene

@@ -1,0 +1,381 @@
+#include "runtime/scene/mesh_import.h"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/config.h>
+#include <assimp/material.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "runtime/scene/color.h"
+#include "runtime/scene/image.h"
+
+namespace probe::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_GenNormals | aiProcess_FlipUVs |
+                            aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices |
+                            aiProcess_SortByPType | aiProcess_ImproveCacheLocality;
+
+Failure asset_failure(std::string message, const std::string& path) {
+  return {.code = "asset", .message = std::move(message), .where = path};
+}
+
+std::string lower_extension(const fs::path& path) {
+  std::string text = path.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+// One file being read: assimp's scene and the mesh that grows from it.
+class Import {
+ public:
+  Import(const aiScene& scene, const std::string& path, const Vec3& scale, const MeshLimits& limits)
+      : scene_(scene), path_(path), scale_(scale), limits_(limits) {
+    const std::string extension = lower_extension(path);
+    gltf_ = extension == ".glb" || extension == ".gltf";
+  }
+
+  Result<std::shared_ptr<const Mesh>> run() {
+    mesh_.name = path_;
+    PROBE_TRY(read_materials());
+    PROBE_TRY(read_parts());
+    fold_constant_textures();
+    drop_unused_textures();
+    return std::make_shared<const Mesh>(std::move(mesh_));
+  }
+
+ private:
+  Status read_materials() {
+    for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
+      const aiMaterial& source = *scene_.mMaterials[i];
+      Material material;
+      aiColor4D color;
+      if (source.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS ||
+          source.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS) {
+        material.base_color = {color.r, color.g, color.b};
+      }
+      aiColor3D emission;
+      if (source.Get(AI_MATKEY_COLOR_EMISSIVE, emission) == AI_SUCCESS) {
+        material.emission = {emission.r, emission.g, emission.b};
+      }
+      PROBE_ASSIGN(material.base_color_texture,
+                   find_texture(source, {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}));
+      PROBE_ASSIGN(material.emission_texture,
+                   find_texture(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR}));
+      PROBE_TRY(read_surface(source, material));
+      for (const float value : {material.base_color[0], material.base_color[1],
+                                material.base_color[2], material.emission[0], material.emission[1],
+                                material.emission[2], material.roughness, material.metallic}) {
+        if (!std::isfinite(value)) {
+          return asset_failure("material " + std::to_string(i) + " has a factor that is not finite",
+                               path_);
+        }
+      }
+      mesh_.materials.push_back(material);
+    }
+    if (mesh_.materials.empty()) mesh_.materials.emplace_back();
+    return {};
+  }
+
+  // Roughness and metallic. glTF states them; Collada and OBJ say it with a specular colour and a
+  // shininess.
+  Status read_surface(const aiMaterial& source, Material& material) {
+    if (gltf_) {
+      source.Get(AI_MATKEY_ROUGHNESS_FACTOR, material.roughness);
+      source.Get(AI_MATKEY_METALLIC_FACTOR, material.metallic);
+      int index = -1;
+      PROBE_ASSIGN(index, find_texture(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN}));
+      if (index >= 0) {
+        // We shade with constants: the texture counts by its means (G roughness, B metallic).
+        double roughness = 0, metallic = 0;
+        const Texture& texture = mesh_.textures[static_cast<std::size_t>(index)];
+        for (std::size_t t = 0; t < texture.rgba.size(); t += 4) {
+          roughness += texture.rgba[t + 1];
+          metallic += texture.rgba[t + 2];
+        }
+        const double texels = 255.0 * static_cast<double>(texture.rgba.size() / 4);
+        material.roughness *= static_cast<float>(roughness / texels);
+        material.metallic *= static_cast<float>(metallic / texels);
+      }
+      return {};
+    }
+    aiColor3D specular;
+    float shininess = 0;
+    if (source.Get(AI_MATKEY_COLOR_SPECULAR, specular) == AI_SUCCESS &&
+        source.Get(AI_MATKEY_SHININESS, shininess) == AI_SUCCESS) {
+      const float gloss = std::min(1.0f, std::sqrt(std::max(0.0f, shininess) / 1000.0f));
+      const float luma = 0.2125f * specular.r + 0.7154f * specular.g + 0.0721f * specular.b;
+      material.roughness = std::clamp(1.0f - gloss * luma, 0.0f, 1.0f);
+    }
+    return {};
+  }
+
+  // Index into mesh_.textures of the first texture of one of these kinds, -1 if there is none.
+  Result<int> find_texture(const aiMaterial& source, std::initializer_list<aiTextureType> kinds) {
+    for (const aiTextureType kind : kinds) {
+      aiString name;
+      if (source.GetTexture(kind, 0, &name) != AI_SUCCESS || name.length == 0) continue;
+      const auto known = texture_index_.find(name.C_Str());
+      if (known != texture_index_.end()) return known->second;
+      PROBE_ASSIGN(Texture texture, read_texture(name.C_Str()));
+      const int index = static_cast<int>(mesh_.textures.size());
+      mesh_.textures.push_back(std::move(texture));
+      texture_index_.emplace(name.C_Str(), index);
+      return index;
+    }
+    return -1;
+  }
+
+  Result<Texture> read_texture(const std::string& name) {
+    const std::string where = path_ + " (texture " + name + ")";
+    if (const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str())) {
+      if (embedded->mHeight == 0) {  // a compressed file of mWidth bytes
+        return decode_image(
+            {reinterpret_cast<const std::byte*>(embedded->pcData), embedded->mWidth}, where);
+      }
+      if (embedded->mWidth > kMaxImageSide || embedded->mHeight > kMaxImageSide) {
+        return asset_failure("the texture has more than 16384 pixels a side", where);
+      }
+      Texture texture{static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight), {}};
+      const std::size_t count = std::size_t{embedded->mWidth} * embedded->mHeight;
+      texture.rgba.reserve(4 * count);
+      for (std::size_t i = 0; i < count; ++i) {
+        const aiTexel& texel = embedded->pcData[i];
+        texture.rgba.insert(texture.rgba.end(), {texel.r, texel.g, texel.b, texel.a});
+      }
+      return texture;
+    }
+    if (name.starts_with("*")) return asset_failure("the embedded texture is not there", where);
+
+    std::string relative = name;
+    std::replace(relative.begin(), relative.end(), '\\', '/');
+    const bool has_drive = relative.size() > 1 && relative[1] == ':';
+    if (fs::path(relative).is_absolute() || has_drive ||
+        relative.find("://") != std::string::npos) {
+      return asset_failure("texture paths must be relative to the mesh file", where);
+    }
+    const fs::path folder = fs::absolute(path_).lexically_normal().parent_path();
+    const fs::path root = limits_.asset_root.empty()
+                              ? folder.parent_path()
+                              : fs::absolute(limits_.asset_root).lexically_normal();
+    const fs::path file = (folder / relative).lexically_normal();
+    const fs::path inside = file.lexically_relative(root);
+    if (inside.empty() || *inside.begin() == "..") {
+      return asset_failure("the texture lies outside the asset folder " + root.string(), where);
+    }
+    Result<Texture> texture = load_image(file.string());
+    if (!texture) return asset_failure(texture.failure().message, where);
+    return texture;
+  }
+
+  Status read_parts() {
+    std::map<std::pair<unsigned, bool>, std::size_t> part_of;  // (material, has uv) -> part
+    std::size_t triangles = 0;
+    for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
+      const aiMesh& source = *scene_.mMeshes[m];
+      if ((source.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0 || source.mNumFaces == 0)
+        continue;
+      triangles += source.mNumFaces;
+      if (triangles > limits_.triangles) {
+        return asset_failure("more than " + std::to_string(limits_.triangles) + " triangles",
+                             path_);
+      }
+      const bool has_uv = source.HasTextureCoords(0);
+      const auto [place, fresh] =
+          part_of.try_emplace({source.mMaterialIndex, has_uv}, mesh_.parts.size());
+      if (fresh) {
+        MeshPart part;
+        part.material = source.mMaterialIndex < mesh_.materials.size()
+                            ? static_cast<int>(source.mMaterialIndex)
+                            : 0;
+        mesh_.parts.push_back(std::move(part));
+      }
+      PROBE_TRY(append(source, mesh_.parts[place->second]));
+    }
+    if (triangles == 0) return asset_failure("the mesh has no triangles", path_);
+    return {};
+  }
+
+  Status append(const aiMesh& source, MeshPart& part) {
+    const std::size_t base = part.positions.size() / 3;
+    const bool has_uv = source.HasTextureCoords(0);
+    for (unsigned v = 0; v < source.mNumVertices; ++v) {
+      const aiVector3D p = source.mVertices[v];
+      const Vec3 scaled(p.x * scale_.x(), p.y * scale_.y(), p.z * scale_.z());
+      Vec3 normal = Vec3::Zero();
+      if (source.HasNormals()) {
+        const aiVector3D n = source.mNormals[v];
+        normal = Vec3(n.x / scale_.x(), n.y / scale_.y(), n.z / scale_.z());
+        const double length = normal.norm();
+        normal = std::isfinite(length) && length > 1e-12 ? Vec3(normal / length) : Vec3::Zero();
+      }
+      for (int k = 0; k < 3; ++k) {
+        const float position = static_cast<float>(scaled[k]);
+        if (!std::isfinite(position)) {
+          return asset_failure("vertex " + std::to_string(v) + " of part " +
+                                   std::to_string(part.material) + " is not finite",
+                               path_);
+        }
+        part.positions.push_back(position);
+        part.normals.push_back(static_cast<float>(normal[k]));
+      }
+      if (has_uv) {
+        const aiVector3D uv = source.mTextureCoords[0][v];
+        if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
+          return asset_failure("texture coordinate " + std::to_string(v) + " is not finite", path_);
+        }
+        part.uv.push_back(uv.x);
+        part.uv.push_back(uv.y);
+      }
+    }
+    for (unsigned f = 0; f < source.mNumFaces; ++f) {
+      const aiFace& face = source.mFaces[f];
+      if (face.mNumIndices != 3) continue;
+      for (int k = 0; k < 3; ++k) {
+        if (face.mIndices[k] >= source.mNumVertices) {
+          return asset_failure(
+              "triangle " + std::to_string(f) + " names a vertex that is not there", path_);
+        }
+        part.indices.push_back(static_cast<std::uint32_t>(base + face.mIndices[k]));
+      }
+      fill_missing_normals(part, part.indices.size() - 3);
+    }
+    return {};
+  }
+
+  // Vertices whose normal is missing or zero get that of a triangle they belong to.
+  static void fill_missing_normals(MeshPart& part, std::size_t first) {
+    const auto point = [&part](std::uint32_t i) {
+      return Vec3(part.positions[3 * i], part.positions[3 * i + 1], part.positions[3 * i + 2]);
+    };
+    std::optional<Vec3> face;
+    for (std::size_t k = first; k < first + 3; ++k) {
+      float* normal = part.normals.data() + 3 * std::size_t{part.indices[k]};
+      if (normal[0] != 0 || normal[1] != 0 || normal[2] != 0) continue;
+      if (!face) {
+        const Vec3 a = point(part.indices[first]);
+        const Vec3 cross =
+            (point(part.indices[first + 1]) - a).cross(point(part.indices[first + 2]) - a);
+        face = cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(Vec3::UnitZ());
+      }
+      for (int j = 0; j < 3; ++j) normal[j] = static_cast<float>((*face)[j]);
+    }
+  }
+
+  static bool has_varying_uv(const MeshPart& part) {
+    for (std::size_t i = 2; i < part.uv.size(); ++i) {
+      if (part.uv[i] != part.uv[i & 1]) return true;
+    }
+    return false;
+  }
+
+  // A texture without coordinates, or with the same one everywhere, is a colour: the sample at that
+  // point. Materials are shared by parts, so a folded one is a copy.
+  void fold_constant_textures() {
+    for (MeshPart& part : mesh_.parts) {
+      Material folded = mesh_.materials[static_cast<std::size_t>(part.material)];
+      if (folded.base_color_texture < 0 && folded.emission_texture < 0) continue;
+      if (has_varying_uv(part)) continue;
+      const float u = part.uv.empty() ? 0.0f : part.uv[0];
+      const float v = part.uv.empty() ? 0.0f : part.uv[1];
+      const auto fold = [&](int& texture, std::array<float, 3>& factor) {
+        if (texture < 0) return;
+        const LinearRgb c = sample_texture(mesh_.textures[static_cast<std::size_t>(texture)], u, v);
+        factor = {c.r, c.g, c.b};
+        texture = -1;
+      };
+      fold(folded.base_color_texture, folded.base_color);
+      fold(folded.emission_texture, folded.emission);
+      part.material = static_cast<int>(mesh_.materials.size());
+      mesh_.materials.push_back(folded);
+      part.uv.clear();
+    }
+  }
+
+  // Materials that no part uses and textures that no material uses would only cost memory and
+  // change the hash.
+  void drop_unused_textures() {
+    std::vector<Material> materials;
+    std::map<int, int> new_material;
+    for (MeshPart& part : mesh_.parts) {
+      const auto [place, fresh] =
+          new_material.try_emplace(part.material, static_cast<int>(materials.size()));
+      if (fresh) materials.push_back(mesh_.materials[static_cast<std::size_t>(part.material)]);
+      part.material = place->second;
+    }
+    std::vector<Texture> textures;
+    std::map<int, int> new_texture;
+    const auto keep = [&](int& index) {
+      if (index < 0) return;
+      const auto [place, fresh] = new_texture.try_emplace(index, static_cast<int>(textures.size()));
+      if (fresh) textures.push_back(std::move(mesh_.textures[static_cast<std::size_t>(index)]));
+      index = place->second;
+    };
+    for (Material& material : materials) {
+      keep(material.base_color_texture);
+      keep(material.emission_texture);
+    }
+    mesh_.materials = std::move(materials);
+    mesh_.textures = std::move(textures);
+  }
+
+  const aiScene& scene_;
+  const std::string& path_;
+  const Vec3 scale_;
+  const MeshLimits& limits_;
+  bool gltf_ = false;
+  Mesh mesh_;
+  std::map<std::string, int> texture_index_;
+};
+
+Result<std::shared_ptr<const Mesh>> load(const std::string& path, const Vec3& scale,
+                                         const MeshLimits& limits) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(path, kSteps);
+  if (scene == nullptr) {
+    return asset_failure(std::string("cannot read the mesh: ") + importer.GetErrorString(), path);
+  }
+  if ((scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) {
+    return asset_failure("the mesh file is incomplete", path);
+  }
+  return Import(*scene, path, scale, limits).run();
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path, const Vec3& scale,
+                                              const MeshLimits& limits) {
+  if (!scale.allFinite() || (scale.array() == 0).any()) {
+    return asset_failure("the scale of a mesh must be finite and not 0", path);
+  }
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return asset_failure("there is no such mesh file", path);
+  const std::set<std::string> known{".glb", ".gltf", ".obj", ".dae", ".stl"};
+  if (!known.contains(lower_extension(path))) {
+    return asset_failure("meshes are read from glb, obj, dae and stl files", path);
+  }
+  // assimp catches its own exceptions, except that of an exhausted memory.
+  try {
+    return load(path, scale, limits);
+  } catch (const std::exception& exception) {
+    return asset_failure(std::string("cannot read the mesh: ") + exception.what(), path);
+  }
+}
+
+}  // namespace probe::scene
