@@ -17,4 +17,8 @@ struct LoadedPlan {
 };
 LoadedPlan load_plan(const std::string& path, const AssetOptions& assets, const std::string& suite = {});
 
+// Indices by name; on an unknown one prints it with the nearest spelling and sets `exit`.
+std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string& name, int& exit);
+std::optional<std::uint32_t> find_suite(const plan::Plan& plan, const std::string& name, int& exit);
+
 }  // namespace probe::cli

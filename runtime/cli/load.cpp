@@ -1,0 +1,61 @@
+#include "runtime/cli/load.h"
+
+#include <fmt/format.h>
+
+#include "compiler/diag/diagnostic.h"
+#include "runtime/cli/compile.h"
+
+namespace probe::cli {
+namespace {
+
+void report_unknown(const char* kind, const std::string& name, const std::vector<std::string_view>& known,
+                    int& exit) {
+  const auto close = nearest(name, known);
+  exit = report({"usage",
+                 fmt::format("no {} `{}` here{}", kind, name,
+                             close ? fmt::format(", did you mean `{}`?", *close) : ""),
+                 ""});
+}
+
+}  // namespace
+
+LoadedPlan load_plan(const std::string& path, const AssetOptions& assets, const std::string& suite) {
+  LoadedPlan loaded;
+  Result<plan::Plan> plan = Failure{};
+  if (path.ends_with(".probe")) {
+    CompiledText text = compile_text({path}, assets, suite, true);
+    if (text.exit != kFine) {
+      loaded.exit = text.exit;
+      return loaded;
+    }
+    plan = plan::Plan::from_bytes(std::move(text.plan));
+  } else {
+    plan = plan::Plan::open(path);
+  }
+  if (!plan) {
+    loaded.exit = report(plan.failure());
+    return loaded;
+  }
+  loaded.plan = std::move(plan).value();
+  return loaded;
+}
+
+std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string& name, int& exit) {
+  const auto index = plan.find_task(name);
+  if (index) return index;
+  std::vector<std::string_view> known;
+  for (const plan::TaskRecord& task : plan.tasks()) known.push_back(plan.text(task.name));
+  report_unknown("task", name, known, exit);
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> find_suite(const plan::Plan& plan, const std::string& name, int& exit) {
+  const auto index = plan.find_suite(name);
+  if (index) return index;
+  std::vector<std::string_view> known;
+  for (const plan::SuiteRecord& suite : plan.suites()) known.push_back(plan.text(suite.name));
+  report_unknown("suite", name, known, exit);
+  return std::nullopt;
+}
+
+}  // namespace probe::cli
