@@ -19,7 +19,7 @@ struct Section {
 };
 
 // The thin end first. Between -44 and 22 the bottom is level.
-constexpr std::array<Section, 15> kSections{{{-57.5, 1.2, -14.6, -11.6},
+constexpr std::array<Section, 15> kSections{{{-57.5, 0.0, -13.0, -13.0},
                                              {-57.0, 2.4, -15.8, -10.2},
                                              {-55.5, 3.8, -17.1, -8.4},
                                              {-51.0, 5.8, -18.5, -5.4},
@@ -84,15 +84,15 @@ Surface root_surface() {
 // What is left of the leaves: five stalks grown together, wider at the cut.
 Surface stub_surface() {
   constexpr int kColumns = 25;
-  constexpr std::array<std::array<double, 2>, 10> kProfile{{{30.0, 4.6},
-                                                            {35.0, 4.4},
-                                                            {38.0, 4.0},
-                                                            {43.0, 4.5},
-                                                            {48.0, 5.4},
-                                                            {53.0, 6.3},
-                                                            {56.0, 6.5},
-                                                            {57.2, 5.9},
-                                                            {57.5, 4.8},
+  constexpr std::array<std::array<double, 2>, 10> kProfile{{{30.0, 5.2},
+                                                            {35.0, 5.0},
+                                                            {38.0, 4.7},
+                                                            {43.0, 5.2},
+                                                            {48.0, 6.1},
+                                                            {53.0, 7.2},
+                                                            {56.0, 7.5},
+                                                            {57.2, 7.0},
+                                                            {57.5, 5.8},
                                                             {57.0, 0.0}}};
   Grid grid{.rows = static_cast<int>(kProfile.size()),
             .columns = kColumns,
@@ -105,7 +105,7 @@ Surface stub_surface() {
       grid.uv.emplace_back((x - 30) / 27.5, turn);
       if (column == kColumns) continue;
       const SinCos a = portable_sincos(2 * kPi * turn);
-      const double lobes = 1 - 0.09 * (1 + portable_cos(5 * 2 * kPi * turn));
+      const double lobes = 1 - 0.06 * (1 + portable_cos(5 * 2 * kPi * turn));
       grid.points.emplace_back(x / 1000, radius * lobes * a.cos / 1000,
                                (radius * lobes * a.sin + 0.6) / 1000);
     }
@@ -141,17 +141,20 @@ Image root_texture() {
   for (int row = 0; row < kHeight; ++row) {
     for (int column = 0; column < kWidth; ++column) {
       const double u = (column + 0.5) / kWidth, v = (row + 0.5) / kHeight;
-      // Creases that run part of the way round: rows of noise, long around and short along.
-      const double crease = value_noise(u * 58, v * 5, {.x = 58, .y = 5}, 21);
-      const double fine = value_noise(u * 110, v * 9, {.x = 110, .y = 9}, 22);
-      const double cloud = value_noise(u * 7, v * 4, {.x = 7, .y = 4}, 23);
+      // Mottled skin, and creases that run part of the way round: noise that is long around and
+      // short along.
+      const double crease = value_noise(u * 64, v * 6, {.x = 64, .y = 6}, 21);
+      const double fine = value_noise(u * 90, v * 24, {.x = 90, .y = 24}, 22);
+      const double cloud = value_noise(u * 9, v * 6, {.x = 9, .y = 6}, 23);
+      const double spot = value_noise(u * 36, v * 22, {.x = 36, .y = 22}, 25);
       const double grain =
           hash01(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row), 24);
-      Colour c = mix(orange, pale, 0.45 * smooth_step(0.45, 0.95, cloud) + 0.12 * (grain - 0.5));
-      c = mix(c, deep, 0.75 * smooth_step(0.78, 0.92, crease) + 0.25 * smooth_step(0.6, 0.9, fine));
-      c = mix(c, deep, 0.5 * smooth_step(0.07, 0.0, u));  // the root's tip is darker
-      c = mix(c, crown,
-              0.8 * smooth_step(0.785, 0.80, u));  // and so is the crown around the stalks
+      Colour c = mix(orange, pale, 0.5 * smooth_step(0.35, 0.9, cloud) + 0.15 * (grain - 0.5));
+      c = mix(c, pale, 0.55 * smooth_step(0.68, 0.9, spot));
+      c = mix(c, deep, 0.30 * smooth_step(0.6, 0.95, fine));
+      c = mix(c, deep, 0.6 * smooth_step(0.80, 0.93, crease));
+      c = mix(c, deep, 0.6 * smooth_step(0.08, 0.0, u));    // the root's tip is darker
+      c = mix(c, crown, 0.6 * smooth_step(0.79, 0.80, u));  // and so is the crown around the stalks
       image.set(column, row, c);
     }
   }
@@ -161,8 +164,8 @@ Image root_texture() {
 Image stub_texture() {
   constexpr int kWidth = 64, kHeight = 128;
   constexpr double kGain = 1.05, kShine = 0.01;
-  const Colour green = texel_for({52, 98, 50}, kGain, kShine);
-  const Colour light = texel_for({92, 140, 66}, kGain, kShine);
+  const Colour green = texel_for({46, 92, 52}, kGain, kShine);
+  const Colour light = texel_for({72, 120, 62}, kGain, kShine);
   const Colour cut = texel_for({122, 150, 84}, kGain, kShine);
   Image image(kWidth, kHeight);
   for (int row = 0; row < kHeight; ++row) {
@@ -206,7 +209,7 @@ std::vector<Polyhedron> collision_parts() {
   add_box(body, -57.5, 2.2, -16.5, -10.5);
   add_box(body, 34.5, 8.5, -11, 11.5);
   std::vector<Vec3> stub;
-  for (const auto& [x, radius] : {std::pair{34.5, 4.0}, std::pair{57.5, 6.0}}) {
+  for (const auto& [x, radius] : {std::pair{34.5, 4.6}, std::pair{57.5, 7.0}}) {
     for (int i = 0; i < 6; ++i) {
       const SinCos a = portable_sincos_deg(60 * i);
       stub.emplace_back(x / 1000, radius * a.cos / 1000, (radius * a.sin + 0.6) / 1000);

@@ -39,35 +39,48 @@ bool supporting_plane(std::span<const Vec3> points, std::array<std::size_t, 3> a
   return above != below;
 }
 
-// The corners of a facet in order, points between two corners dropped.
+// The corners of a facet in order: the hull in the plane of the points that lie in it, by Andrew's
+// monotone chain.
 std::vector<int> facet_loop(std::span<const Vec3> points, const Plane& plane) {
-  std::vector<int> members;
-  Vec3 centre = Vec3::Zero();
+  struct Member {
+    Vec2 at;
+    int index;
+  };
+  const Vec3 aside = std::abs(plane.normal.x()) < 0.57 ? Vec3::UnitX() : Vec3::UnitY();
+  const Vec3 right = aside.cross(plane.normal).normalized();
+  const Vec3 up = plane.normal.cross(right);
+  std::vector<Member> members;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (plane.normal.dot(points[i]) < plane.offset - kTolerance) continue;
-    members.push_back(static_cast<int>(i));
-    centre += points[i];
+    members.push_back({{points[i].dot(right), points[i].dot(up)}, static_cast<int>(i)});
   }
-  centre /= static_cast<double>(members.size());
-  const auto point = [&](int i) -> const Vec3& { return points[static_cast<std::size_t>(i)]; };
-  const Vec3 right = (point(members[0]) - centre).normalized();
-  const Vec3 up = plane.normal.cross(right);
-  std::vector<std::pair<double, int>> order;
-  for (const int i : members) {
-    const Vec3 d = point(i) - centre;
-    order.emplace_back(portable_atan2(d.dot(up), d.dot(right)), i);
-  }
-  std::sort(order.begin(), order.end());
+  // Left to right; coordinates within the tolerance are equal, or rounding would order a vertical
+  // side.
+  std::sort(members.begin(), members.end(), [](const Member& a, const Member& b) {
+    const auto cell = [](double x) { return std::floor(x / kTolerance + 0.5); };
+    return std::array{cell(a.at.x()), cell(a.at.y())} < std::array{cell(b.at.x()), cell(b.at.y())};
+  });
+  // True if b lies to the right of, or nearly on, the line from a to c: no corner of a chain that
+  // turns left.
+  const auto is_no_corner = [](const Vec2& a, const Vec2& b, const Vec2& c) {
+    const Vec2 along = c - a, to = b - a;
+    return to.x() * along.y() - to.y() * along.x() <= kTolerance * along.norm();
+  };
+  std::vector<Member> chain;
+  const auto extend = [&](const Member& next, std::size_t keep) {
+    while (chain.size() >= keep + 2 &&
+           is_no_corner(chain[chain.size() - 2].at, chain.back().at, next.at)) {
+      chain.pop_back();
+    }
+    chain.push_back(next);
+  };
+  for (const Member& member : members) extend(member, 0);
+  const std::size_t lower = chain.size() - 1;
+  for (auto member = members.rbegin() + 1; member != members.rend(); ++member)
+    extend(*member, lower);
+  chain.pop_back();
   std::vector<int> loop;
-  const std::size_t n = order.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const Vec3& before = point(order[(k + n - 1) % n].second);
-    const Vec3& here = point(order[k].second);
-    const Vec3& after = point(order[(k + 1) % n].second);
-    const Vec3 step = (after - before).normalized();
-    const double away = (here - before).cross(step).norm();
-    if (away > kTolerance) loop.push_back(order[k].second);
-  }
+  for (const Member& member : chain) loop.push_back(member.index);
   return loop;
 }
 

@@ -71,11 +71,12 @@ Surface table_surface() {
 // u is the distance across the grain (0.40 m a texture), v along it (0.745 m).
 Image wood_texture() {
   constexpr int kWidth = 512, kHeight = 512;
-  constexpr double kShine = 0.010;
-  const Colour middle = texel_for({171, 93, 62}, kGainUp, kShine);
-  const Colour dark = texel_for({136, 62, 38}, kGainUp, kShine);
-  const Colour light = texel_for({194, 120, 86}, kGainUp, kShine);
-  const Colour pore = texel_for({112, 48, 30}, kGainUp, kShine);
+  constexpr double kShine = 0.030;
+  const Colour middle = texel_for({170, 94, 63}, kGainUp, kShine);
+  const Colour dark = texel_for({140, 66, 42}, kGainUp, kShine);
+  const Colour light = texel_for({188, 114, 82}, kGainUp, kShine);
+  const Colour pore = texel_for({124, 56, 36}, kGainUp, kShine);
+  const Colour hazy = texel_for({196, 140, 122}, kGainUp, kShine);
   Image image(kWidth, kHeight);
   for (int row = 0; row < kHeight; ++row) {
     for (int column = 0; column < kWidth; ++column) {
@@ -83,15 +84,23 @@ Image wood_texture() {
       // Growth rings: bands across the grain, bent slowly along it, so that they run together into
       // flames.
       const double bend =
-          46 * value_noise(x / 110 + 7, y / 260, {}, 51) + 12 * value_noise(x / 30, y / 90, {}, 52);
-      const double rings = value_noise((x + bend) / 6.5, y / 700, {}, 53);
-      const double fine = value_noise((x + bend * 0.6) / 1.7, y / 55, {}, 54);
-      const double broad = value_noise(x / 70, y / 180, {}, 55);
-      const double fleck = value_noise(x / 0.9, y / 14, {}, 56);
-      Colour c = mix(middle, dark, 0.75 * smooth_step(0.45, 0.85, rings));
-      c = mix(c, light, 0.55 * smooth_step(0.5, 0.95, broad) * (1 - 0.5 * rings));
-      c = mix(c, fine > 0.5 ? light : dark, 0.5 * std::abs(fine - 0.5));
-      c = mix(c, pore, 0.5 * smooth_step(0.80, 0.95, fleck));
+          34 * value_noise(x / 90 + 7, y / 220, {}, 51) + 7 * value_noise(x / 24, y / 70, {}, 52);
+      const double rings = value_noise((x + bend) / 5, y / 500, {}, 53);
+      const double streak = value_noise((x + 0.7 * bend) / 2.2, y / 60, {}, 57);
+      const double fine = value_noise(x / 1.1, y / 34, {}, 54);
+      const double broad = value_noise(x / 80, y / 160, {}, 55);
+      const double fleck = value_noise(x / 0.9, y / 9, {}, 56);
+      Colour c = mix(middle, dark, 0.50 * smooth_step(0.35, 0.9, rings));
+      c = mix(c, light, 0.55 * smooth_step(0.4, 0.95, broad) * (1 - 0.5 * rings));
+      c = mix(c, streak > 0.5 ? light : dark, 0.55 * std::abs(streak - 0.5));
+      c = mix(c, fine > 0.5 ? light : dark, 0.50 * std::abs(fine - 0.5));
+      c = mix(c, pore, 0.38 * smooth_step(0.80, 0.97, fleck));
+      // The room's windows mirrored in the varnish at both ends, and less light close to the
+      // partition.
+      const double window = smooth_step(230, 40, y) * smooth_step(60, 140, x) +
+                            0.8 * smooth_step(470, 640, y) * smooth_step(330, 180, x);
+      c = mix(c, hazy, 0.55 * clamp01(window));
+      c = mix(c, dark, 0.45 * smooth_step(70, 40, x) * smooth_step(120, 250, y));
       image.set(column, row, c);
     }
   }
@@ -133,13 +142,13 @@ std::vector<OutputFile> make_table_scene() {
   add_rectangle(left, {1.2, -0.31, 0.55}, {-1.56, 0, 0}, {0, 0, 1.25},
                 {1.56 / kTile, 1.25 / kTile});
   add_rectangle(seam, {-0.3585, -0.310, 0.55}, {0, 0.006, 0}, {0, 0, 1.25}, {1, 1});
-  add_rectangle(cloth, {-0.36, -0.31, 0.62}, {1.56, 0, 0}, {0, 2.0, 0},
+  add_rectangle(cloth, {-0.36, -0.31, 0.72}, {1.56, 0, 0}, {0, 2.0, 0},
                 {1.56 / kTile, 2.0 / kTile});
   std::vector<Part> parts;
   parts.push_back({table_surface(), {.name = "wood", .texture = wood_texture(), .roughness = 0.6}});
   parts.push_back({behind,
                    {.name = "partition_behind",
-                    .texture = weave_texture({110, 110, 114}, kGainPlusX, 34),
+                    .texture = weave_texture({110, 110, 114}, kGainPlusX, 30),
                     .roughness = 1}});
   parts.push_back({left,
                    {.name = "partition_left",

@@ -230,7 +230,7 @@ LinkShape gripper_bar_link() {
     }
   }
   shape.piece(wide).piece(tall);
-  // Posts, and the rail the fingers run on. Its two flanges stand proud of the web between them.
+  // Posts, their feet, and the rail the fingers run on.
   for (const double side : {-1.0, 1.0}) {
     shape.disc({.axis = 0,
                 .centre = {0, side * 45.2, 0},
@@ -240,8 +240,7 @@ LinkShape gripper_bar_link() {
                 .corners = 16});
     shape.box({17, side * 45.4 - 5.3, -5.8}, {28.4, side * 45.4 + 5.3, 5.8}, 0.8);
   }
-  shape.box({17.4, -45, -5.3}, {21.5, 45, 5.3}, 0.5).box({24, -45, -5.3}, {28, 45, 5.3}, 0.5);
-  shape.box({20, -45, -3.8}, {26, 45, 3.8}, 0);
+  shape.box({17.4, -45, -5.3}, {28, 45, 5.3}, 0.8);
   // The motor's shaft between the body and the horn.
   shape.disc({.axis = 0, .radius = 6, .low = 3.6, .high = 10, .corners = 16});
   return shape;
