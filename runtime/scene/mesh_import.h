@@ -15,7 +15,7 @@ struct MeshLimits {
   std::size_t triangles = 1'000'000;
   // Textures are found relative to the mesh file but never outside this folder; empty: the parent
   // of its folder, so that a mesh can name "../black.png" and no more.
-  std::string asset_root;
+  std::string asset_root{};
 };
 
 // Scale is baked into positions (and normals), so that poses stay rigid. Fails (code "asset", where
