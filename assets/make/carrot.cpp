@@ -67,9 +67,11 @@ Surface root_surface() {
       grid.uv.emplace_back((s.x + 57.5) / 115, turn);
       if (column == kColumns) continue;
       const SinCos a = portable_sincos(2 * kPi * turn);
-      // Between an ellipse and a squarer curve: the sides and the bottom are nearly flat.
+      // An ellipse above; below, part of the way to a squarer curve, so that it visibly lies on its
+      // belly.
       const double fourth = a.cos * a.cos * a.cos * a.cos + a.sin * a.sin * a.sin * a.sin;
-      const double out = 0.6 + 0.4 / std::sqrt(std::sqrt(fourth));
+      const double square = 0.08 + 0.36 * smooth_step(0.3, -0.6, a.sin);
+      const double out = 1 - square + square / std::sqrt(std::sqrt(fourth));
       const double rough = value_noise(s.x / 5, turn * 9, {.x = 64, .y = 9}, 11) - 0.5;
       const double dent = 1 + 0.022 * rough;
       grid.points.emplace_back(s.x / 1000, s.half_width * a.cos * out * dent / 1000,
