@@ -1,0 +1,330 @@
+// The phases of a pick and place. Each control step the expert looks, moves on through phases that
+// are done, and asks the servo for one action. A grasp that is lost, or a source that is not on the
+// target in the end, starts it over.
+#include "runtime/expert/expert.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "runtime/expert/servo.h"
+#include "runtime/expert/waypoints.h"
+#include "runtime/robot/rotation.h"
+
+namespace probe::expert {
+namespace {
+
+enum class Phase {
+  kRaise,    // straight up until the fingers clear everything
+  kAbove,    // over the source, fingers turned
+  kDescend,  // straight down
+  kClose,    // still, fingers closing
+  kLift,     // straight up with the source
+  kCarry,    // over the target
+  kLower,    // until the source rests on it
+  kLoosen,   // fingers just off the source
+  kOpen,     // fingers wide
+  kRetreat,  // straight up
+  kRest,     // still to the end
+};
+
+constexpr double kOpenGripper = 1, kClosedGripper = -1;
+constexpr int kMostTries = 3;
+constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
+
+constexpr Pace kFreePace{.shift = 0.050, .turn = 0.30, .lead = 1.6};
+constexpr Pace kNearPace{.shift = 0.035, .turn = 0.20, .lead = 1.4};
+constexpr Pace kHeldPace{.shift = 0.040, .turn = 0.20, .lead = 1.5};
+constexpr Pace kTouchPace{.shift = 0.020, .turn = 0.10, .lead = 1.0};
+
+class Expert final : public policy::Policy {
+ public:
+  explicit Expert(const ExpertOptions& options) : options_(options) {}
+
+  Status begin(const policy::EpisodeStart& start) override {
+    if (!reach_ || robot_ != start.robot_urdf || tcp_link_ != start.tcp_link) {
+      PROBE_ASSIGN(Reach reach, Reach::create(std::string(start.robot_urdf), start.tcp_link));
+      reach_ = std::move(reach);
+      robot_ = start.robot_urdf;
+      tcp_link_ = start.tcp_link;
+    }
+    horizon_ = start.horizon;
+    started_ = false;
+    tries_ = 0;
+    pick_.reset();
+    enter(Phase::kRaise);
+    return {};
+  }
+
+  bool wants_image() const override { return false; }
+
+  Result<policy::Action> act(const policy::Observation& observation) override {
+    PROBE_TRY(check(observation));
+    const Scene scene = look(observation, {options_.source, options_.close ? options_.target : -1});
+    if (observation.horizon > 0) horizon_ = observation.horizon;
+    steps_left_ = horizon_ - observation.step;
+    if (!started_) servo_.begin(scene.tcp);
+    if (!started_) last_ = scene;
+    started_ = true;
+    // Phases that are done take no time; each leads on, so this ends.
+    for (int i = 0; i < 12; ++i) {
+      const Phase before = phase_;
+      advance(scene);
+      if (phase_ == before) break;
+    }
+    const policy::Action action = command(scene);
+    ++steps_;
+    last_ = scene;
+    return action;
+  }
+
+ private:
+  Status check(const policy::Observation& observation) const {
+    if (!reach_)
+      return Failure{"policy", "the expert was asked to act before an episode began", ""};
+    if (observation.privileged == nullptr) {
+      return Failure{"policy", "the expert needs the privileged view and got none", ""};
+    }
+    const auto count = int(observation.privileged->objects.size());
+    const bool lacks_target = options_.close && (options_.target < 0 || options_.target >= count);
+    if (options_.source < 0 || options_.source >= count || lacks_target) {
+      return Failure{"policy",
+                     fmt::format("the expert works on roles {} and {}, the episode has {} objects",
+                                 options_.source, options_.target, count),
+                     ""};
+    }
+    if (observation.proprioception.joints.size() < reach_->arm_joints()) {
+      return Failure{"policy",
+                     fmt::format("the expert needs {} joint positions and got {}",
+                                 reach_->arm_joints(), observation.proprioception.joints.size()),
+                     ""};
+    }
+    return {};
+  }
+
+  void enter(Phase phase) {
+    phase_ = phase;
+    steps_ = 0;
+  }
+
+  // Opens and begins again, or gives up and keeps still.
+  void start_over() {
+    const bool again = ++tries_ < kMostTries && steps_left_ >= kStepsOfATry;
+    pick_.reset();
+    enter(again ? Phase::kRaise : Phase::kRest);
+  }
+
+  static bool near(const Pose& a, const Pose& b, double shift, double turn) {
+    const robot::PoseError e = robot::pose_error(a, b);
+    return e.position < shift && e.rotation < turn;
+  }
+
+  bool both_fingers(const Scene& s) const {
+    return s.fingers_on_source[0] && s.fingers_on_source[1];
+  }
+
+  // The source still where it was taken, seen from the tool.
+  bool holds(const Scene& s) const {
+    const Vec3 in_hand = s.tcp.inverse().apply(s.source_pose.position);
+    return (in_hand - in_hand_).norm() < 0.025;
+  }
+
+  void advance(const Scene& s) {
+    switch (phase_) {
+      case Phase::kRaise:
+        return advance_raise(s);
+      case Phase::kAbove:
+        return advance_above(s);
+      case Phase::kDescend:
+        return advance_descend(s);
+      case Phase::kClose:
+        return advance_close(s);
+      case Phase::kLift:
+        return advance_lift(s);
+      case Phase::kCarry:
+        return advance_carry(s);
+      case Phase::kLower:
+        return advance_lower(s);
+      case Phase::kLoosen:
+        if (steps_ >= 1) enter(Phase::kOpen);
+        return;
+      case Phase::kOpen:
+        if (steps_ >= 2 && (s.openness > 0.75 || steps_ >= 4)) {
+          release_ = s.tcp;
+          enter(Phase::kRetreat);
+        }
+        return;
+      case Phase::kRetreat:
+        if (s.tcp.position.z() < release_.position.z() + 0.055 && steps_ < 6) return;
+        if (lies_on_target(s)) return enter(Phase::kRest);
+        return start_over();
+      case Phase::kRest:
+        return;
+    }
+  }
+
+  void advance_raise(const Scene& s) {
+    const GripperShape gripper;
+    const bool clear = s.tcp.position.z() > travel_height(s, gripper.tip_below) - 0.01;
+    const bool open = s.openness > 0.8 || steps_ >= 3;
+    const bool still = (s.source_pose.position - last_.source_pose.position).norm() < 0.002;
+    if (!(clear && open && still) && steps_ < 8) return;
+    pick_ = plan_pick(s, *reach_, options_.close);
+    enter(pick_ ? Phase::kAbove : Phase::kRest);
+  }
+
+  // Something pushed the source since the plan was made.
+  bool moved_since_plan(const Scene& s) const {
+    const robot::PoseError e = robot::pose_error(s.source_pose, pick_->source_pose);
+    return e.position > 0.004 || e.rotation > 0.06;
+  }
+
+  void advance_above(const Scene& s) {
+    if (moved_since_plan(s)) {
+      if (auto fresh = plan_pick(s, *reach_, options_.close)) pick_ = fresh;
+    }
+    const Vec3 off = s.tcp.position - pick_->above.position;
+    const bool there = off.head<2>().norm() < 0.008 && std::abs(off.z()) < 0.02 &&
+                       robot::pose_error(s.tcp, pick_->above).rotation < 0.08;
+    if (there || steps_ >= 16) enter(Phase::kDescend);
+  }
+
+  void advance_descend(const Scene& s) {
+    if (near(s.tcp, pick_->grasp.tcp, 0.003, 0.04)) return enter(Phase::kClose);
+    if (steps_ < 9) return;
+    if (near(s.tcp, pick_->grasp.tcp, 0.010, 0.15)) return enter(Phase::kClose);
+    start_over();
+  }
+
+  void advance_close(const Scene& s) {
+    if (!options_.close) return;  // the one that only reaches stays here
+    if (steps_ < 2) return;
+    if (both_fingers(s)) {
+      in_hand_ = s.tcp.inverse().apply(s.source_pose.position);
+      taken_ = s.tcp;
+      taken_bottom_ = s.source.bottom;
+      return enter(Phase::kLift);
+    }
+    if (steps_ >= 4) start_over();
+  }
+
+  void advance_lift(const Scene& s) {
+    const double rise = s.tcp.position.z() - taken_.position.z();
+    if (rise > 0.02 && !lifted_enough(s, rise)) return start_over();
+    if (std::abs(s.tcp.position.z() - pick_->lifted.position.z()) < 0.010) {
+      return enter(Phase::kCarry);
+    }
+    if (steps_ >= 8) start_over();
+  }
+
+  bool lifted_enough(const Scene& s, double rise) const {
+    return holds(s) && s.source.bottom - taken_bottom_ > 0.3 * rise - 0.005;
+  }
+
+  void advance_carry(const Scene& s) {
+    if (!holds(s)) return start_over();
+    const double off = (carry_goal(s) - s.tcp.position).head<2>().norm();
+    if (off < 0.006 || steps_ >= 14) enter(Phase::kLower);
+  }
+
+  void advance_lower(const Scene& s) {
+    if (!holds(s)) return start_over();
+    const bool stopped = steps_ >= 3 && last_.tcp.position.z() - s.tcp.position.z() < 0.0008;
+    if (gap_to_target(s) < 0.0025 || stopped || steps_ >= 9) enter(Phase::kLoosen);
+  }
+
+  policy::Action command(const Scene& s) {
+    switch (phase_) {
+      case Phase::kRaise:
+        return command_raise(s);
+      case Phase::kAbove:
+        return servo_.toward(pick_->above, s.tcp, kOpenGripper, kFreePace);
+      case Phase::kDescend:
+        return servo_.toward(pick_->grasp.tcp, s.tcp, kOpenGripper, kNearPace);
+      case Phase::kClose:
+        return servo_.settle(pick_->grasp.tcp, s.tcp,
+                             options_.close ? kClosedGripper : kOpenGripper);
+      case Phase::kLift:
+        return servo_.toward(pick_->lifted, s.tcp, kClosedGripper, kHeldPace);
+      case Phase::kCarry: {
+        Pose goal = pick_->lifted;
+        goal.position.head<2>() = carry_goal(s).head<2>();
+        return servo_.toward(goal, s.tcp, kClosedGripper, kFreePace);
+      }
+      case Phase::kLower:
+        return command_lower(s);
+      case Phase::kLoosen:
+        return command_loosen(s);
+      case Phase::kOpen:
+        return servo_.hold(kOpenGripper);
+      case Phase::kRetreat: {
+        Pose goal = release_;
+        goal.position.z() += 0.075;
+        return servo_.toward(goal, s.tcp, kOpenGripper, kHeldPace);
+      }
+      case Phase::kRest:
+        return servo_.hold(kOpenGripper);
+    }
+    return servo_.hold(kOpenGripper);
+  }
+
+  // Opens first: a half-held source must not come along.
+  policy::Action command_raise(const Scene& s) {
+    if (s.openness < 0.5 && steps_ < 2) return servo_.hold(kOpenGripper);
+    Pose goal = s.tcp;
+    goal.position.z() = std::max(goal.position.z(), travel_height(s, GripperShape{}.tip_below));
+    return servo_.toward(goal, s.tcp, kOpenGripper, kHeldPace);
+  }
+
+  policy::Action command_lower(const Scene& s) {
+    const double gap = gap_to_target(s);
+    Pose goal = pick_->lifted;
+    goal.position = carry_goal(s);
+    goal.position.z() -= gap;
+    return servo_.toward(goal, s.tcp, kClosedGripper, gap > 0.02 ? kNearPace : kTouchPace);
+  }
+
+  // Takes back what the target leads ahead, and opens by a few millimetres so that nothing is
+  // flung.
+  policy::Action command_loosen(const Scene& s) {
+    Pose goal = s.tcp;
+    goal.rotation = pick_->lifted.rotation;
+    // Openness is over the fingers' travel; the command's range is a little wider.
+    const double gripper = std::clamp(2 * (s.openness + 0.20) - 1, -1.0, 1.0);
+    return servo_.settle(goal, s.tcp, gripper);
+  }
+
+  ExpertOptions options_;
+  std::optional<Reach> reach_;
+  std::string robot_, tcp_link_;
+  int horizon_ = 0, steps_left_ = 0;
+
+  bool started_ = false;
+  Servo servo_;
+  Phase phase_ = Phase::kRaise;
+  int steps_ = 0;  // in this phase
+  int tries_ = 0;
+  Scene last_;
+  std::optional<Pick> pick_;
+  Vec3 in_hand_ = Vec3::Zero();  // the source's origin in the tool's frame when taken
+  Pose taken_;
+  double taken_bottom_ = 0;
+  Pose release_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<policy::Policy>> make_expert(const ExpertOptions& options) {
+  if (options.source < 0 ||
+      (options.close && (options.target < 0 || options.target == options.source))) {
+    return Failure{
+        "policy",
+        fmt::format("the expert cannot take role {} to role {}", options.source, options.target),
+        ""};
+  }
+  return std::unique_ptr<policy::Policy>(std::make_unique<Expert>(options));
+}
+
+}  // namespace probe::expert

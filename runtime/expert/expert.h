@@ -1,0 +1,21 @@
+// The scripted expert: shows that a task can be solved in its time by someone who sees everything.
+// It looks at the privileged view and acts through the seven numbers like any policy.
+#pragma once
+
+#include <memory>
+
+#include "runtime/base/result.h"
+#include "runtime/policy/policy.h"
+
+namespace probe::expert {
+
+struct ExpertOptions {
+  int source = 0;     // index of a role in Privileged::objects: what to take...
+  int target = 1;     // ...and where to put it; not read if close is false
+  bool close = true;  // false: goes to the source and stays there with open fingers
+};
+
+// act() fails (code "policy") without the privileged view or if a role has no object.
+Result<std::unique_ptr<policy::Policy>> make_expert(const ExpertOptions& options);
+
+}  // namespace probe::expert

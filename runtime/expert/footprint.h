@@ -1,0 +1,46 @@
+// An object seen from above: convex outlines of its parts, how low and how high it reaches. The
+// frame is any whose z is up; the expert uses the robot base. Plain geometry, no robot.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+
+namespace probe::expert {
+
+using Vec2 = Eigen::Vector2d;
+using Outline = std::vector<Vec2>;  // convex, counter-clockwise
+
+struct Footprint {
+  std::vector<Outline> parts;
+  Outline whole;               // around all parts
+  Vec2 center = Vec2::Zero();  // of area, parts weighted by theirs
+  double radius = 0;           // about `center`
+  double bottom = 0, top = 0;  // lowest and highest vertex
+};
+
+// `parts` are vertices in the model frame, `pose` places the model. An object without vertices has
+// an empty outline.
+Footprint footprint_of(std::span<const std::vector<Vec3>> parts, const Pose& pose);
+
+// The convex hull of points; collinear ones are dropped.
+Outline convex_outline(std::vector<Vec2> points);
+
+// Of an outline's part with |across . p - at| <= half, the extent along `along`. Empty if lower >
+// upper.
+struct Extent {
+  double lower = 1, upper = -1;
+  bool empty() const { return lower > upper; }
+  double width() const { return upper - lower; }
+};
+struct Slab {
+  Vec2 across;  // unit
+  double at = 0, half = 0;
+};
+Extent extent_in_slab(std::span<const Outline> parts, const Slab& slab, const Vec2& along);
+
+// Distance between two outlines, negative (the depth along the best axis) where they overlap.
+double separation(const Outline& a, const Outline& b);
+
+}  // namespace probe::expert

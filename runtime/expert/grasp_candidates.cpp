@@ -1,0 +1,134 @@
+// Enumerates yaws (a grid, and those square to the outline's edges) and positions along the object,
+// and scores each.
+#include "runtime/expert/grasp_candidates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "runtime/base/trig.h"
+#include "runtime/robot/rotation.h"
+
+namespace probe::expert {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kYaws = 36;  // over half a turn; the other half is the same grasp turned round
+constexpr double kAlongStep = 0.005;  // m, positions along the object
+constexpr double kAlongMost = 0.030;
+constexpr double kSideMargin = 0.003;  // m, between each open finger and the object
+constexpr double kNearest = 0.002;     // m, to another object
+constexpr double kComfortable = 0.02;  // m, farther away earns nothing more
+
+double wrapped(double angle) {
+  while (angle > kPi) angle -= 2 * kPi;
+  while (angle <= -kPi) angle += 2 * kPi;
+  return angle;
+}
+
+struct Directions {
+  Vec2 close;   // tool y: the fingers close along it
+  Vec2 across;  // tool z: along the width of a finger
+};
+
+Directions directions_of(double yaw) {
+  const SinCos t = portable_sincos(yaw);
+  return {{-t.sin, t.cos}, {t.cos, t.sin}};
+}
+
+Outline box(const Vec2& center, const Directions& d, double close_a, double close_b,
+            double across_a, double across_b) {
+  return convex_outline({center + close_a * d.close + across_a * d.across,
+                         center + close_b * d.close + across_a * d.across,
+                         center + close_b * d.close + across_b * d.across,
+                         center + close_a * d.close + across_b * d.across});
+}
+
+std::vector<double> yaws_for(const Footprint& source) {
+  std::vector<double> yaws;
+  for (int i = 0; i < kYaws; ++i) yaws.push_back(kPi * i / kYaws);
+  for (std::size_t i = 0; i < source.whole.size(); ++i) {
+    const Vec2 edge = source.whole[(i + 1) % source.whole.size()] - source.whole[i];
+    // Fingers along the edge: tool z along it.
+    if (edge.norm() > 0.01) yaws.push_back(portable_atan2(edge.y(), edge.x()));
+  }
+  return yaws;
+}
+
+// How far the open gripper, lowered to `z`, stays from everything else. Low things meet only the
+// fingers, those higher than the palm's underside also the palm.
+double clearance_of(const GraspProblem& problem, const Directions& d, const Vec3& at) {
+  const GripperShape& g = problem.gripper;
+  const Vec2 center = at.head<2>();
+  const Outline left =
+      box(center, d, g.opening_half, g.outside_half, -g.finger_half, g.finger_half);
+  const Outline right =
+      box(center, d, -g.outside_half, -g.opening_half, -g.finger_half, g.finger_half);
+  const Outline palm = box(center, d, -g.palm_half, g.palm_half, -g.palm_back, g.palm_front);
+  double least = std::numeric_limits<double>::infinity();
+  const double reach =
+      std::sqrt(g.palm_half * g.palm_half + g.palm_front * g.palm_front) + kComfortable;
+  for (const Footprint* other : problem.others) {
+    if ((other->center - center).norm() > other->radius + reach) continue;
+    for (const Outline& part : other->parts) {
+      if (other->top > at.z() - g.tip_below) {
+        least = std::min({least, separation(left, part), separation(right, part)});
+      }
+      if (other->top > at.z() + g.palm_above) least = std::min(least, separation(palm, part));
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+Pose top_down(const Vec3& position, double yaw) {
+  Mat3 down;
+  down << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  return {position, (robot::from_rotation_vector({0, 0, yaw}) * Quat(down)).normalized()};
+}
+
+double yaw_of(const Quat& rotation) {
+  // Tool z lies along base x at yaw 0; tool y along base y. Their mean survives a small tilt.
+  const Vec3 z = rotation * Vec3::UnitZ(), y = rotation * Vec3::UnitY();
+  return portable_atan2(z.y() - y.x(), z.x() + y.y());
+}
+
+std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
+  const Footprint& source = *problem.source;
+  const GripperShape& g = problem.gripper;
+  // As low as the surface allows, unless the palm would meet the top of the object.
+  const double lowest = problem.surface + g.tip_below + problem.tip_margin;
+  const double z = std::max(lowest, source.top - g.palm_above + 0.004);
+  std::vector<Grasp> out;
+  if (z - g.tip_below > source.top - 0.004) return out;  // the fingers would close above it
+  for (const double half_turn : yaws_for(source)) {
+    const Directions d = directions_of(half_turn);
+    const double middle = d.across.dot(source.center);
+    for (double along = -kAlongMost; along <= kAlongMost + 1e-9; along += kAlongStep) {
+      const Slab slab{d.across, middle + along, g.finger_half};
+      const Extent extent = extent_in_slab(source.parts, slab, d.close);
+      if (extent.empty() || extent.width() > 2 * (g.opening_half - kSideMargin)) continue;
+      const Vec2 xy = 0.5 * (extent.lower + extent.upper) * d.close + slab.at * d.across;
+      for (const double turn : {0.0, kPi}) {
+        Grasp grasp;
+        grasp.yaw = wrapped(half_turn + turn);
+        grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
+        grasp.width = extent.width();
+        grasp.off_center = along;
+        grasp.clearance = clearance_of(problem, directions_of(grasp.yaw), grasp.tcp.position);
+        if (grasp.clearance < kNearest) continue;
+        grasp.cost = 20 * grasp.width + 50 * std::abs(along) +
+                     0.5 * std::max(0.0, 1 - grasp.clearance / kComfortable) +
+                     0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now));
+        out.push_back(grasp);
+      }
+    }
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Grasp& a, const Grasp& b) { return a.cost < b.cost; });
+  return out;
+}
+
+}  // namespace probe::expert

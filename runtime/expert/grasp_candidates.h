@@ -1,0 +1,55 @@
+// Top-down grasps of an object by two parallel fingers, best first. Works in the robot base frame
+// (z up) on footprints and on the gripper's dimensions; whether the arm gets there is another
+// file's question.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+#include "runtime/expert/footprint.h"
+
+namespace probe::expert {
+
+// Metres, in the frame of the tool centre point: x points down in a top-down grasp, the fingers
+// close along y.
+struct GripperShape {
+  double tip_below = 0.0156;     // fingertips past the tool centre point
+  double palm_above = 0.022;     // underside of what holds the fingers
+  double finger_half = 0.0145;   // half the width of a finger, along z
+  double opening_half = 0.026;   // inner faces from the middle, fingers open, mid-height
+  double outside_half = 0.0425;  // outer faces
+  double palm_half = 0.0525;     // along y
+  double palm_back = 0.0145, palm_front = 0.036;  // along -z and +z
+};
+
+struct Grasp {
+  Pose tcp;               // base frame, fingers around the object
+  double yaw = 0;         // turn of the top-down pose about z
+  double width = 0;       // of the object between the fingers
+  double off_center = 0;  // along the fingers' width, from the object's centre
+  double clearance = 0;   // to the nearest other object
+  double cost = 0;
+};
+
+struct GraspProblem {
+  const Footprint* source = nullptr;
+  std::vector<const Footprint*> others;
+  double surface = 0;  // height the fingertips must stay above
+  double tip_margin = 0.004;
+  double yaw_now = 0;  // of the tool, to prefer short turns
+  GripperShape gripper;
+};
+
+// The tool pose at a position with x down, turned by `yaw` about the vertical from
+// [[0,0,1],[0,1,0],[-1,0,0]].
+Pose top_down(const Vec3& position, double yaw);
+
+// The yaw of the top-down pose nearest to a rotation.
+double yaw_of(const Quat& rotation);
+
+// Sorted by cost; empty if nothing fits between the fingers. Several yaws (both ways round) and
+// positions.
+std::vector<Grasp> grasp_candidates(const GraspProblem& problem);
+
+}  // namespace probe::expert

@@ -1,0 +1,56 @@
+// Chained inverse kinematics.
+#include "runtime/expert/reach.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "runtime/expert/servo.h"
+#include "runtime/robot/ik.h"
+#include "runtime/robot/rotation.h"
+#include "runtime/robot/urdf.h"
+
+namespace probe::expert {
+
+Result<Reach> Reach::create(const std::string& urdf_path, std::string_view tcp_link) {
+  PROBE_ASSIGN(const robot::RobotModel model, robot::load_urdf(urdf_path));
+  const int tcp = model.find_link(tcp_link);
+  if (tcp < 0) return Failure{"urdf", fmt::format("no link is named `{}`", tcp_link), urdf_path};
+  std::vector<std::string> joints;
+  for (int l = tcp; model.links[std::size_t(l)].parent_joint >= 0;) {
+    const robot::Joint& joint = model.joints[std::size_t(model.links[std::size_t(l)].parent_joint)];
+    if (joint.kind != robot::JointKind::kFixed && joint.mimic < 0) joints.push_back(joint.name);
+    l = joint.parent_link;
+  }
+  std::reverse(joints.begin(), joints.end());
+  PROBE_ASSIGN(robot::Chain chain, robot::Chain::create(model, tcp_link, joints));
+  if (chain.joint_count() == 0) {
+    return Failure{"urdf", fmt::format("no joint moves the link `{}`", tcp_link), urdf_path};
+  }
+  return Reach(std::move(chain));
+}
+
+bool Reach::follows(std::span<const double> q, std::span<const Pose> way) const {
+  if (q.size() < chain_.joint_count()) return false;
+  std::array<double, robot::kMaxChainJoints> joints{};
+  const std::span<double> now = std::span(joints).first(chain_.joint_count());
+  std::copy_n(q.begin(), now.size(), now.begin());
+  Pose at = chain_.pose(now);
+  constexpr int kMostSteps = 200;
+  for (const Pose& goal : way) {
+    for (int i = 0; i < kMostSteps; ++i) {
+      at = stepped(at, goal, 0.05, 0.3);
+      if (!robot::solve_ik(chain_, at, now,
+                           {.position_tolerance = 1e-5, .rotation_tolerance = 1e-5})
+               .converged) {
+        return false;
+      }
+      const robot::PoseError left = robot::pose_error(at, goal);
+      if (left.position < 1e-9 && left.rotation < 1e-9) break;
+    }
+  }
+  return true;
+}
+
+}  // namespace probe::expert

@@ -1,0 +1,32 @@
+// Whether the arm follows a way of the tool by small steps, as the controller will ask for it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+#include "runtime/base/result.h"
+#include "runtime/robot/kinematics.h"
+
+namespace probe::expert {
+
+class Reach {
+ public:
+  // Reads the robot; the arm's joints are all that move between the root and the link, in that
+  // order.
+  static Result<Reach> create(const std::string& urdf_path, std::string_view tcp_link);
+
+  std::size_t arm_joints() const { return chain_.joint_count(); }
+
+  // Follows straight lines from the tool's pose at `q` through the poses, a solution every 5 cm or
+  // 0.3 rad, each from the one before. False as soon as one fails.
+  bool follows(std::span<const double> q, std::span<const Pose> way) const;
+
+ private:
+  explicit Reach(robot::Chain chain) : chain_(std::move(chain)) {}
+  robot::Chain chain_;
+};
+
+}  // namespace probe::expert

@@ -1,0 +1,140 @@
+// Heights and shifts.
+#include "runtime/expert/waypoints.h"
+
+#include <algorithm>
+#include <array>
+
+#include "runtime/base/check.h"
+#include "runtime/robot/rotation.h"
+
+namespace probe::expert {
+namespace {
+
+constexpr double kAbove = 0.055;      // m, from the grasp up to where the descent starts
+constexpr double kTravelGap = 0.020;  // m, between what moves and what it passes over
+constexpr double kReleaseGap = 0.001;
+constexpr std::size_t kMostTried = 80;  // candidates put to inverse kinematics
+
+// Over the target the held source has its own height; the fingers' tips may be lower or higher than
+// its bottom.
+Pose over_target(const Scene& scene, const Pose& tcp) {
+  Pose out = tcp;
+  out.position.head<2>() += scene.target.center - scene.source.center;
+  return out;
+}
+
+Pose at_height(Pose pose, double z) {
+  pose.position.z() = z;
+  return pose;
+}
+
+GraspProblem problem_of(const Scene& scene, bool place) {
+  GraspProblem problem;
+  problem.source = &scene.source;
+  for (const Footprint& other : scene.others) problem.others.push_back(&other);
+  if (place) problem.others.push_back(&scene.target);
+  problem.surface = scene.surface;
+  problem.yaw_now = yaw_of(scene.tcp.rotation);
+  return problem;
+}
+
+Pick pick_of(const Scene& scene, const Grasp& grasp) {
+  const GripperShape gripper;
+  Pick pick;
+  pick.grasp = grasp;
+  pick.source_pose = scene.source_pose;
+  const double z = grasp.tcp.position.z();
+  // Going there the fingers must also clear the object itself.
+  const double over = std::max({z + kAbove, travel_height(scene, gripper.tip_below),
+                                scene.source.top + gripper.tip_below + 0.01});
+  pick.above = at_height(grasp.tcp, over);
+  const double hang = std::max(gripper.tip_below, z - scene.source.bottom);
+  pick.lifted = at_height(grasp.tcp, std::max(z + 0.05, travel_height(scene, hang)));
+  return pick;
+}
+
+bool reachable(const Scene& scene, const Reach& reach, const Pick& pick, bool place) {
+  std::vector<Pose> way{pick.above, pick.grasp.tcp, pick.lifted};
+  if (place) {
+    const Pose carried = over_target(scene, pick.lifted);
+    way.push_back(carried);
+    way.push_back(at_height(carried, pick.grasp.tcp.position.z() +
+                                         std::max(0.0, scene.target.top - scene.source.bottom)));
+  }
+  return reach.follows(scene.joints, way);
+}
+
+}  // namespace
+
+Scene look(const policy::Observation& observation, const Roles& roles) {
+  PROBE_CHECK(observation.privileged != nullptr, "the expert looks at the privileged view");
+  const policy::Privileged& seen = *observation.privileged;
+  const Pose to_base = seen.base.inverse();
+  Scene scene;
+  for (std::size_t i = 0; i < seen.objects.size(); ++i) {
+    const policy::PrivilegedObject& object = seen.objects[i];
+    const Pose pose = to_base * object.pose;
+    Footprint footprint = footprint_of(object.parts, pose);
+    if (int(i) == roles.source) {
+      scene.source = std::move(footprint);
+      scene.source_pose = pose;
+      std::copy_n(object.finger_contact, 2, scene.fingers_on_source);
+    } else if (int(i) == roles.target) {
+      scene.target = std::move(footprint);
+      scene.target_pose = pose;
+    } else {
+      scene.others.push_back(std::move(footprint));
+    }
+  }
+  scene.tcp = observation.proprioception.tcp_in_base;
+  scene.joints = observation.proprioception.joints;
+  scene.openness = observation.proprioception.openness;
+  // The base stands upright, so one point of the surface tells its height.
+  scene.surface =
+      to_base.apply({seen.base.position.x(), seen.base.position.y(), seen.surface_z}).z();
+  return scene;
+}
+
+double travel_height(const Scene& scene, double hang) {
+  double top =
+      std::max(scene.surface, scene.target.whole.empty() ? scene.surface : scene.target.top);
+  for (const Footprint& other : scene.others) top = std::max(top, other.top);
+  return top + hang + kTravelGap;
+}
+
+std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place) {
+  const std::vector<Grasp> grasps = grasp_candidates(problem_of(scene, place));
+  for (std::size_t i = 0; i < std::min(grasps.size(), kMostTried); ++i) {
+    const Pick pick = pick_of(scene, grasps[i]);
+    if (reachable(scene, reach, pick, place)) return pick;
+  }
+  // Rather a doubtful way than none.
+  GraspProblem crowded = problem_of(scene, place);
+  crowded.others.clear();
+  const std::vector<Grasp> doubtful = grasp_candidates(crowded);
+  for (std::size_t i = 0; i < std::min(doubtful.size(), kMostTried); ++i) {
+    const Pick pick = pick_of(scene, doubtful[i]);
+    if (reachable(scene, reach, pick, false)) return pick;
+  }
+  return std::nullopt;
+}
+
+Vec3 carry_goal(const Scene& scene) { return over_target(scene, scene.tcp).position; }
+
+double gap_to_target(const Scene& scene) {
+  return scene.source.bottom - scene.target.top - kReleaseGap;
+}
+
+bool lies_on_target(const Scene& scene) {
+  Vec2 low = scene.target.center, high = low;
+  for (const Vec2& p : scene.target.whole) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vec3 apart = scene.source_pose.position - scene.target_pose.position;
+  return apart.head<2>().norm() < 0.5 * (high - low).norm() && apart.z() > 0 &&
+         scene.source.bottom < scene.target.top + 0.02 &&
+         scene.source.bottom > scene.surface + 0.0005;
+}
+
+}  // namespace probe::expert

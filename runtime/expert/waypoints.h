@@ -1,0 +1,58 @@
+// The places a pick and a place go through, computed from what is seen and a grasp: where the tool
+// stands above, at, and off the object, and how it must shift so that what it holds lies on the
+// target. Poses in the robot base frame.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "runtime/expert/grasp_candidates.h"
+#include "runtime/expert/reach.h"
+#include "runtime/policy/policy.h"
+
+namespace probe::expert {
+
+// An observation as the planner needs it.
+struct Scene {
+  Footprint source, target;
+  std::vector<Footprint> others;  // neither source nor target
+  Pose source_pose, target_pose;  // model frames
+  bool fingers_on_source[2] = {false, false};
+  Pose tcp;
+  std::vector<double> joints;
+  double openness = 1;
+  double surface = 0;
+};
+
+// The indices must be those of objects in the view; target -1 for none.
+struct Roles {
+  int source = 0, target = 1;
+};
+Scene look(const policy::Observation& observation, const Roles& roles);
+
+struct Pick {
+  Grasp grasp;
+  Pose above;        // straight over the grasp, fingers clear of everything
+  Pose lifted;       // what is held clears the target and the others
+  Pose source_pose;  // when planned
+};
+
+// The best grasp whose whole way the arm can follow, place included. Without any within the
+// margins, the best that fits at all; nullopt if the object cannot be gripped from above.
+std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place);
+
+// The tool's height so that its tips and what hangs below them (`hang` m under the tool centre
+// point) clear all others.
+double travel_height(const Scene& scene, double hang);
+
+// Where the tool must go so that the held source lies over the middle of the target, at the tool's
+// present height...
+Vec3 carry_goal(const Scene& scene);
+// ...and how far above the target the source's lowest point is.
+double gap_to_target(const Scene& scene);
+
+// Whether the source lies on the target, by the suite's distances: xy within the target's half
+// diagonal, above it.
+bool lies_on_target(const Scene& scene);
+
+}  // namespace probe::expert
