@@ -9,7 +9,7 @@
 namespace probe {
 
 // A failure names the thing and the place. `code` is a short stable word for programs ("io", "plan", "asset", "urdf",
-// "world", "render", "policy", "store", "usage"); `message` is lower case, no full stop; `where` is a path, a path with
+// "world", "judge", "render", "policy", "store", "usage"); `message` is lower case, no full stop; `where` is a path, a path with
 // line, or a section with offset; it may be empty when the message already says it.
 struct Failure {
   std::string code;

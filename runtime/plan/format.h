@@ -324,8 +324,8 @@ struct SuiteRecord {
 };
 static_assert(sizeof(SuiteRecord) == 64);
 
-// Where an instruction or a record came from. `what` 1: kCode instruction, 2: kTasks, 3: kObjects,
-// 4: kMetrics.
+// Where an instruction or a record came from, ascending by (what, index). `what` 1: kCode
+// instruction, 2: kTasks, 3: kObjects, 4: kMetrics.
 struct SpanRecord {
   std::uint32_t what = 0;
   std::uint32_t index = 0;

@@ -26,7 +26,8 @@ Sha256 episode_id(const Sha256& start, const Sha256& prompt, const Sha256& judge
 inline Sha256 to_sha256(const std::array<std::uint8_t, 32>& bytes) { return Sha256{bytes}; }
 
 // Ids of one set of tables. Remembers the hashes of programs, stages and objects, so that a million
-// episodes cost one short hash each. The tables are verified (or written by Writer) and outlive it.
+// episodes cost one short hash each. The tables are verified (or written by
+// Writer) and their owner outlives it.
 class IdHasher {
  public:
   explicit IdHasher(const Tables& tables);
@@ -47,7 +48,7 @@ class IdHasher {
   Sha256 light(std::uint32_t index);
   Sha256 asset(std::uint32_t index) const;
 
-  const Tables& tables_;
+  Tables tables_;
   std::vector<std::optional<Sha256>> programs_, objects_, scenes_, cameras_, lights_;
 };
 

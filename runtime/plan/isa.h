@@ -16,7 +16,7 @@ enum class Op : std::uint8_t {
 
 // The columns `result`, `a`, `b` of isa.def, by their letters.
 enum class Kind : char {
-  kNone = '-',
+  kUnused = '-',
   kBool = 'b',
   kReal = 'r',
   kVector = 'v',

@@ -24,6 +24,9 @@ inline constexpr std::size_t kMaxConstants = 65536;
 inline constexpr std::size_t kMaxDrives = 64;
 inline constexpr std::size_t kMaxSuns = 64;
 inline constexpr std::size_t kMaxStringBytes = 4096;
+inline constexpr std::size_t kMaxMeshes = 256;
+inline constexpr std::uint32_t kMaxPixels = 8192;  // a side of an image
+inline constexpr double kMaxSubsteps = 100000;     // physics steps in a control step
 
 // All four stages. A Failure has code "plan", a message that states the rule, and `where` =
 // "SECTION at byte N".

@@ -1,5 +1,6 @@
-// What the judge can measure at one control step, after physics. A trace stores these, so that a rollout can be judged
-// again without physics. World frame, SI units; bodies are task-local indices in the plan's order (BodyRecord).
+// What the judge can measure at one control step, after physics. A trace stores these, so that a
+// rollout can be judged again without physics. World frame, SI units; bodies are task-local indices
+// in the plan's order (BodyRecord).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 namespace probe::vm {
 
 struct BodySample {
-  Vec3 position = Vec3::Zero();  // centre of mass; a link: its frame's origin; the surface: (0, 0, surface_z)
+  Vec3 position =
+      Vec3::Zero();  // centre of mass; a link: its frame's origin; the surface: (0, 0, surface_z)
   Vec3 origin = Vec3::Zero();    // model origin; equal to position where there is no other
   Vec3 velocity = Vec3::Zero();  // of `position`
   Vec3 spin = Vec3::Zero();      // angular velocity
@@ -20,12 +22,13 @@ struct BodySample {
 // Fixed during an episode: taken once after settling.
 struct BodyStart {
   Vec3 position = Vec3::Zero();  // centre of mass after settling
-  Vec3 half = Vec3::Zero();      // half extents, permuted so that z is the axis nearest the vertical after settling
-  Vec3 opening = Vec3::Zero();   // fingers: unit opening axis in the link frame
+  Vec3 half = Vec3::Zero();     // half extents, permuted so that z is the axis nearest the vertical
+                                // after settling
+  Vec3 opening = Vec3::Zero();  // fingers: unit opening axis in the link frame
 };
 
-// Contact impulse between two bodies over the last physics substep, N s; a < b; `push` is exerted by a on b. Pairs
-// without contact are absent, so this list is short.
+// Contact impulse between two bodies over the last physics substep, N s; a < b; `push` is exerted
+// by a on b. Pairs without contact are absent, so this list is short.
 struct ContactSample {
   std::uint16_t a = 0;
   std::uint16_t b = 0;

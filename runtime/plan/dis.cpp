@@ -1,0 +1,151 @@
+#include "runtime/plan/dis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "runtime/plan/isa.h"
+
+namespace probe::plan {
+namespace {
+
+// One-based line of a byte, and that line without indentation.
+struct SourceLine {
+  std::size_t number = 0;
+  std::string_view text;
+};
+
+SourceLine line_at(std::string_view source, std::size_t byte) {
+  const std::string_view before = source.substr(0, byte);
+  const std::size_t begin =
+      before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+  std::string_view line = source.substr(begin, source.find('\n', byte) == std::string_view::npos
+                                                   ? std::string_view::npos
+                                                   : source.find('\n', byte) - begin);
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  const auto newlines = std::ranges::count(before, '\n');
+  return {static_cast<std::size_t>(newlines) + 1, line};
+}
+
+// What programs are listed with: names of bodies come from one task that runs it.
+class Lister {
+ public:
+  Lister(const Plan& plan, const TaskRecord& task)
+      : plan_(plan),
+        program_(plan.programs()[task.program]),
+        bodies_(plan.bodies(task)),
+        constants_(plan.constants(program_)),
+        metrics_(plan.metrics(program_)) {}
+
+  void list(std::string& out) {
+    const auto code = plan_.code(program_);
+    for (std::uint32_t i = 0; i < code.size(); ++i) {
+      source(out, program_.code.first + i);
+      instruction(out, i, code[i]);
+    }
+  }
+
+ private:
+  // The source line once, above the first of the instructions that came from it.
+  void source(std::string& out, std::uint32_t instruction) {
+    const SpanRecord* span = plan_.span_of(1, instruction);
+    if (span == nullptr) return;
+    const TextRecord& text = plan_.texts()[span->text];
+    const SourceLine line = line_at(plan_.tables().source(text), span->begin);
+    if (span->text == last_text_ && line.number == last_line_) return;
+    last_text_ = span->text;
+    last_line_ = line.number;
+    fmt::format_to(std::back_inserter(out), "; {}:{}  {}\n", plan_.tables().path(text), line.number,
+                   line.text);
+  }
+
+  void instruction(std::string& out, std::uint32_t number, const Instruction& in) const {
+    const OpInfo& op = *find_op(in.op);
+    const std::string result = op.result == Kind::kUnused ? "" : fmt::format("r{}", in.dst);
+    const std::string b = operand(op, op.b, in.b);
+    std::string line =
+        fmt::format("{:4}  {:<7} {:<5} {}{}{}", number, op.name, result, operand(op, op.a, in.a),
+                    op.b == Kind::kMetric ? " -> " : " ", b);
+    line.resize(line.find_last_not_of(' ') + 1);
+    line.push_back('\n');
+    out += line;
+  }
+
+  std::string operand(const OpInfo& op, Kind kind, std::uint16_t value) const {
+    switch (kind) {
+      case Kind::kUnused:
+        return {};
+      case Kind::kBool:
+      case Kind::kReal:
+      case Kind::kVector:
+        return fmt::format("r{}", value);
+      case Kind::kConstant:
+        if (op.op != Op::kKV) return fmt::format("{}", constants_[value]);
+        return fmt::format("({}, {}, {})", constants_[value], constants_[value + 1u],
+                           constants_[value + 2u]);
+      case Kind::kImmediate:
+        return fmt::format("{}", value);
+      case Kind::kBody:
+        return std::string(plan_.text(bodies_[value].name));
+      case Kind::kState: {
+        const std::uint16_t n = plan_.states(program_)[value].n;
+        return n == 0 ? fmt::format("s{}", value) : fmt::format("s{} for {} steps", value, n);
+      }
+      case Kind::kMetric:
+        return std::string(plan_.text(metrics_[value].name));
+    }
+    return "?";
+  }
+
+  const Plan& plan_;
+  const ProgramRecord& program_;
+  std::span<const BodyRecord> bodies_;
+  std::span<const double> constants_;
+  std::span<const MetricRecord> metrics_;
+  std::uint32_t last_text_ = kNone;
+  std::size_t last_line_ = 0;
+};
+
+void list_program(std::string& out, const Plan& plan, const TaskRecord& task,
+                  std::string_view users) {
+  const ProgramRecord& program = plan.programs()[task.program];
+  fmt::format_to(std::back_inserter(out), "program {} of {}\n", task.program, users);
+  fmt::format_to(std::back_inserter(out), "  hash {}\n", to_hex(Sha256{program.hash}));
+  fmt::format_to(std::back_inserter(out),
+                 "  {} instructions, {} constants, {} states, {} metrics\n\n", program.code.count,
+                 program.constants.count, program.states.count, program.metrics.count);
+  Lister(plan, task).list(out);
+}
+
+}  // namespace
+
+std::string disassemble(const Plan& plan, std::uint32_t task) {
+  std::string out;
+  const TaskRecord& record = plan.tasks()[task];
+  list_program(out, plan, record, plan.text(record.name));
+  return out;
+}
+
+std::string disassemble(const Plan& plan) {
+  std::string out = fmt::format("plan {}\n", to_hex(plan.root()));
+  fmt::format_to(
+      std::back_inserter(out), "  {} tasks, {} episodes, {} programs, {} objects, {} bytes{}\n",
+      plan.tasks().size(), plan.episodes().size(), plan.programs().size(), plan.objects().size(),
+      plan.bytes().size(), plan.has_sources() ? "" : ", without sources");
+  std::vector<std::vector<std::uint32_t>> users(plan.programs().size());
+  for (std::uint32_t i = 0; i < plan.tasks().size(); ++i)
+    users[plan.tasks()[i].program].push_back(i);
+  for (const auto& tasks : users) {
+    if (tasks.empty()) continue;  // without a task its bodies have no names
+    const TaskRecord& first = plan.tasks()[tasks.front()];
+    std::string names(plan.text(first.name));
+    if (tasks.size() > 1) names += fmt::format(" and {} more", tasks.size() - 1);
+    out += "\n";
+    list_program(out, plan, first, names);
+  }
+  return out;
+}
+
+}  // namespace probe::plan

@@ -1,0 +1,160 @@
+#include "runtime/plan/ids.h"
+
+namespace probe::plan {
+namespace {
+
+// Each kind of id begins with its own word, so that no encoding of one is an encoding of another.
+// The number is the version of the encoding; changing an encoding means raising it.
+Hasher tagged(std::string_view tag) {
+  Hasher hasher;
+  hasher.text(tag);
+  return hasher;
+}
+
+void hash_constants(Hasher& h, std::span<const double> constants) {
+  // By bit pattern, not by value: 0.0 and -0.0 are different constants to MUL.
+  h.u32(static_cast<std::uint32_t>(constants.size())).bytes(std::as_bytes(constants));
+}
+
+}  // namespace
+
+Sha256 root_hash(const Header& header, std::span<const DirectoryEntry> directory) {
+  Hasher h = tagged("vlaprobe.root.1");
+  h.u32(header.major).u32(header.minor);
+  for (const DirectoryEntry& entry : directory) {
+    if ((entry.flags & kIgnorable) != 0) continue;
+    h.u32(entry.kind).u32(entry.version).u32(entry.flags);
+    h.u64(entry.size).u32(entry.count).u32(entry.stride).hash(to_sha256(entry.sha256));
+  }
+  return h.finish();
+}
+
+Sha256 prompt_id(std::string_view prompt) {
+  return tagged("vlaprobe.prompt.1").text(prompt).finish();
+}
+
+Sha256 program_hash(const Tables& tables, const ProgramRecord& program) {
+  Hasher h = tagged("vlaprobe.program.1");
+  hash_constants(h, slice_of(tables.constants, program.constants));
+  h.u32(program.states.count).bytes(std::as_bytes(slice_of(tables.states, program.states)));
+  h.u32(program.code.count).bytes(std::as_bytes(slice_of(tables.code, program.code)));
+  h.u32(program.metrics.count);
+  for (const MetricRecord& metric : slice_of(tables.metrics, program.metrics)) {
+    h.u32(metric.type).u32(metric.readout).text(tables.text(metric.name));
+  }
+  return h.finish();
+}
+
+Sha256 episode_id(const Sha256& start, const Sha256& prompt, const Sha256& judge) {
+  return tagged("vlaprobe.episode.1").hash(start).hash(prompt).hash(judge).finish();
+}
+
+IdHasher::IdHasher(const Tables& tables)
+    : tables_(tables),
+      programs_(tables.programs.size()),
+      objects_(tables.objects.size()),
+      scenes_(tables.scenes.size()),
+      cameras_(tables.cameras.size()),
+      lights_(tables.lights.size()) {}
+
+Sha256 IdHasher::asset(std::uint32_t index) const {
+  // An absent file hashes like no file that exists: its size is given as well.
+  if (index == kNone) return tagged("vlaprobe.asset.none").finish();
+  const AssetRecord& record = tables_.assets[index];
+  return tagged("vlaprobe.asset.1").u64(record.byte_size).hash(to_sha256(record.sha256)).finish();
+}
+
+Sha256 IdHasher::program(std::uint32_t index) {
+  std::optional<Sha256>& known = programs_[index];
+  if (!known) known = program_hash(tables_, tables_.programs[index]);
+  return *known;
+}
+
+Sha256 IdHasher::object(std::uint32_t index) {
+  std::optional<Sha256>& known = objects_[index];
+  if (known) return *known;
+  const ObjectRecord& o = tables_.objects[index];
+  Hasher h = tagged("vlaprobe.object.1");
+  h.hash(asset(o.visual)).hash(asset(o.collision)).f64s(o.box_min).f64s(o.box_max);
+  known = h.f64(o.density).f64(o.friction).finish();
+  return *known;
+}
+
+// Link and joint names are references into the URDF's content and so are part of what is simulated.
+// The rate and the control law stand in the judge id; reach is a static check and stands in none.
+Sha256 IdHasher::robot(const RobotRecord& r) const {
+  Hasher h = tagged("vlaprobe.robot.1");
+  h.hash(asset(r.urdf)).text(tables_.text(r.tcp));
+  h.u32(r.meshes.count);
+  for (std::uint32_t mesh : slice_of(tables_.list, r.meshes)) h.hash(asset(mesh));
+  for (const FingerRecord& finger : r.fingers) h.text(tables_.text(finger.link)).f64s(finger.opens);
+  h.f64(r.grip_closed).f64(r.grip_open);
+  h.f64(r.finger_friction).f64(r.finger_patch).f64(r.link_friction);
+  h.u32(r.drives.count);
+  for (const DriveRecord& drive : slice_of(tables_.drives, r.drives)) {
+    h.text(tables_.text(drive.joint)).f64(drive.stiffness).f64(drive.damping).f64(drive.limit);
+  }
+  return h.finish();
+}
+
+Sha256 IdHasher::scene(std::uint32_t index) {
+  std::optional<Sha256>& known = scenes_[index];
+  if (known) return *known;
+  const SceneRecord& s = tables_.scenes[index];
+  Hasher h = tagged("vlaprobe.scene.1");
+  h.hash(robot(tables_.robots[s.robot]));
+  h.hash(asset(s.photo)).hash(asset(s.backdrop));
+  h.hash(asset(s.fixture_visual)).hash(asset(s.fixture_collision)).f64s(s.fixture_position);
+  h.f64s(s.base_position).f64s(s.base_rotation);
+  h.u32(s.joints.count).f64s(slice_of(tables_.reals, s.joints));
+  h.f64(s.surface_z).f64s(s.area).f64(s.physics_hz).f64(s.friction);
+  known = h.finish();
+  return *known;
+}
+
+Sha256 IdHasher::camera(std::uint32_t index) {
+  std::optional<Sha256>& known = cameras_[index];
+  if (known) return *known;
+  const CameraRecord& c = tables_.cameras[index];
+  Hasher h = tagged("vlaprobe.camera.1");
+  h.text(tables_.text(c.mount_link)).u32(c.aim).u32(c.width).u32(c.height);
+  h.f64s(c.position).f64s(c.aim_values).f64(c.fx).f64(c.fy).f64(c.cx).f64(c.cy);
+  known = h.finish();
+  return *known;
+}
+
+Sha256 IdHasher::light(std::uint32_t index) {
+  std::optional<Sha256>& known = lights_[index];
+  if (known) return *known;
+  const LightRecord& l = tables_.lights[index];
+  Hasher h = tagged("vlaprobe.light.1");
+  h.f64(l.ambient).u32(l.suns.count);
+  for (const SunRecord& sun : slice_of(tables_.suns, l.suns)) {
+    h.f64s(sun.direction).f64(sun.power).u32(sun.shadow);
+  }
+  known = h.finish();
+  return *known;
+}
+
+Sha256 IdHasher::judge(const TaskRecord& task) {
+  const RobotRecord& r = tables_.robots[tables_.scenes[task.scene].robot];
+  Hasher h = tagged("vlaprobe.judge.1");
+  return h.hash(program(task.program)).u32(task.horizon).u32(r.control).f64(r.control_hz).finish();
+}
+
+Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
+  Hasher h = tagged("vlaprobe.start.1");
+  h.hash(scene(task.scene)).hash(camera(task.camera)).hash(light(task.light));
+  h.f64(task.drop).f64(task.settle).u32(episode.placements.count);
+  for (const PlacementRecord& p : slice_of(tables_.placements, episode.placements)) {
+    h.hash(object(p.object)).f64s(p.position).f64s(p.rotation);
+  }
+  return h.finish();
+}
+
+Sha256 IdHasher::episode(const TaskRecord& task, const EpisodeRecord& episode) {
+  return episode_id(to_sha256(episode.start_id), prompt_id(tables_.text(task.prompt)),
+                    to_sha256(task.judge_id));
+}
+
+}  // namespace probe::plan

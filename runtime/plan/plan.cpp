@@ -1,0 +1,180 @@
+#include "runtime/plan/plan.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace probe::plan {
+
+// Owns the bytes: a read-only mapping, or a vector.
+class Plan::Storage {
+ public:
+  explicit Storage(std::vector<std::byte> bytes) : owned_(std::move(bytes)), bytes_(owned_) {}
+  Storage(void* mapping, std::size_t size)
+      : mapping_(mapping), bytes_(static_cast<const std::byte*>(mapping), size) {}
+  Storage(const Storage&) = delete;
+  Storage& operator=(const Storage&) = delete;
+  ~Storage() {
+    if (mapping_ != nullptr) ::munmap(mapping_, bytes_.size());
+  }
+
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  void* mapping_ = nullptr;
+  std::vector<std::byte> owned_;
+  std::span<const std::byte> bytes_;
+};
+
+namespace {
+
+class File {
+ public:
+  explicit File(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+Failure io_failure(const std::string& path) {
+  return {"io", std::string("cannot read the plan: ") + std::strerror(errno), path};
+}
+
+template <typename Record>
+std::optional<std::uint32_t> find_name(const Tables& t, std::span<const Record> table,
+                                       std::string_view name) {
+  const auto it =
+      std::ranges::find_if(table, [&](const Record& r) { return t.text(r.name) == name; });
+  if (it == table.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(it - table.begin());
+}
+
+}  // namespace
+
+Plan::Plan(std::unique_ptr<Storage> storage)
+    : storage_(std::move(storage)), tables_(view_tables(storage_->bytes())) {}
+Plan::Plan(Plan&&) noexcept = default;
+Plan& Plan::operator=(Plan&&) noexcept = default;
+Plan::~Plan() = default;
+
+Result<Plan> Plan::adopt(std::unique_ptr<Storage> storage, const VerifyOptions& options) {
+  PROBE_TRY(verify(storage->bytes(), options));
+  return Plan(std::move(storage));
+}
+
+Result<Plan> Plan::open(const std::string& path, const VerifyOptions& options) {
+  const File file(path);
+  if (file.fd() < 0) return io_failure(path);
+  struct stat info {};
+  if (::fstat(file.fd(), &info) != 0) return io_failure(path);
+  if (!S_ISREG(info.st_mode)) return Failure{"io", "a plan is a regular file", path};
+  const auto size = static_cast<std::size_t>(info.st_size);
+  if (size == 0) return Failure{"plan", "the file is empty", path};
+  void* mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd(), 0);
+  if (mapping == MAP_FAILED) return io_failure(path);
+  Result<Plan> plan = adopt(std::make_unique<Storage>(mapping, size), options);
+  if (plan.ok()) return plan;
+  Failure failure = plan.failure();
+  failure.where = failure.where.empty() ? path : path + ": " + failure.where;
+  return failure;
+}
+
+Result<Plan> Plan::from_bytes(std::vector<std::byte> bytes, const VerifyOptions& options) {
+  return adopt(std::make_unique<Storage>(std::move(bytes)), options);
+}
+
+Sha256 Plan::root() const {
+  Header header;
+  std::memcpy(&header, storage_->bytes().data(), sizeof header);
+  return Sha256{header.root};
+}
+
+std::span<const std::byte> Plan::bytes() const { return storage_->bytes(); }
+
+std::span<const DriveRecord> Plan::drives(const RobotRecord& r) const {
+  return slice_of(tables_.drives, r.drives);
+}
+std::span<const std::uint32_t> Plan::meshes(const RobotRecord& r) const {
+  return slice_of(tables_.list, r.meshes);
+}
+std::span<const SunRecord> Plan::suns(const LightRecord& l) const {
+  return slice_of(tables_.suns, l.suns);
+}
+std::span<const double> Plan::joints(const SceneRecord& s) const {
+  return slice_of(tables_.reals, s.joints);
+}
+std::span<const double> Plan::constants(const ProgramRecord& p) const {
+  return slice_of(tables_.constants, p.constants);
+}
+std::span<const StateRecord> Plan::states(const ProgramRecord& p) const {
+  return slice_of(tables_.states, p.states);
+}
+std::span<const Instruction> Plan::code(const ProgramRecord& p) const {
+  return slice_of(tables_.code, p.code);
+}
+std::span<const MetricRecord> Plan::metrics(const ProgramRecord& p) const {
+  return slice_of(tables_.metrics, p.metrics);
+}
+std::span<const MetricRecord> Plan::metrics(const TaskRecord& k) const {
+  return metrics(programs()[k.program]);
+}
+std::span<const BodyRecord> Plan::bodies(const TaskRecord& k) const {
+  return slice_of(tables_.bodies, k.bodies);
+}
+std::span<const EpisodeRecord> Plan::episodes(const TaskRecord& k) const {
+  return slice_of(tables_.episodes, k.episodes);
+}
+std::span<const PlacementRecord> Plan::placements(const EpisodeRecord& e) const {
+  return slice_of(tables_.placements, e.placements);
+}
+std::span<const std::uint32_t> Plan::members(const SetRecord& s) const {
+  return slice_of(tables_.list, s.members);
+}
+std::span<const std::uint32_t> Plan::members(const SuiteRecord& s) const {
+  return slice_of(tables_.list, s.members);
+}
+std::span<const std::uint32_t> Plan::seeds(const SuiteRecord& s) const {
+  return slice_of(tables_.list, s.seeds);
+}
+
+std::optional<std::uint32_t> Plan::find_task(std::string_view name) const {
+  if (const auto found = find_name(tables_, tables_.tasks, name)) return found;
+  for (const SuiteRecord& suite : suites()) {
+    const std::string_view prefix = text(suite.prefix);
+    if (prefix.empty() || !name.starts_with(prefix)) continue;
+    if (const auto found = find_name(tables_, tables_.tasks, name.substr(prefix.size())))
+      return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint32_t> Plan::find_suite(std::string_view name) const {
+  return find_name(tables_, tables_.suites, name);
+}
+std::optional<std::uint32_t> Plan::find_set(std::string_view name) const {
+  return find_name(tables_, tables_.sets, name);
+}
+std::optional<std::uint32_t> Plan::find_metric(const TaskRecord& task,
+                                               std::string_view name) const {
+  return find_name(tables_, metrics(task), name);
+}
+
+const SpanRecord* Plan::span_of(std::uint32_t what, std::uint32_t index) const {
+  const auto key = [](const SpanRecord& s) { return std::pair(s.what, s.index); };
+  const auto it = std::ranges::lower_bound(spans(), std::pair(what, index), {}, key);
+  return it != spans().end() && key(*it) == std::pair(what, index) ? &*it : nullptr;
+}
+
+}  // namespace probe::plan

@@ -1,0 +1,223 @@
+// Stage 3, the programs: straight-line code over typed single-assignment registers, one pass each,
+// so no fixpoint.
+#include <fmt/format.h>
+
+#include <string_view>
+#include <vector>
+
+#include "runtime/plan/isa.h"
+#include "runtime/plan/verify.h"
+#include "runtime/plan/verify_place.h"
+
+namespace probe::plan {
+namespace {
+
+std::string_view type_name(Kind kind) {
+  switch (kind) {
+    case Kind::kBool:
+      return "a truth";
+    case Kind::kReal:
+      return "a number";
+    case Kind::kVector:
+      return "a vector";
+    default:
+      return "nothing";
+  }
+}
+
+// How many consecutive constants an operand names.
+std::uint32_t constant_width(Op op) { return op == Op::kKV ? 3 : 1; }
+
+std::uint32_t immediate_limit(Op op) { return op == Op::kAXIS ? 2 : 1; }
+
+// What a program asks of the tasks that run it.
+struct Needs {
+  const Instruction* highest = nullptr;     // the one that names the body of highest index
+  std::uint32_t bodies = 0;                 // 1 + that index
+  std::vector<const Instruction*> fingers;  // one OPEN for every body that must be a finger
+};
+
+class ProgramCheck {
+ public:
+  ProgramCheck(const Place& place, const Tables& tables, const ProgramRecord& program)
+      : place_(place), t_(tables), program_(program) {
+    types_.reserve(program.code.count);
+    states_used_.resize(program.states.count);
+    metrics_emitted_.resize(program.metrics.count);
+    finger_seen_.resize(kMaxBodies);
+  }
+
+  Status run(Needs& needs) {
+    const auto code = slice_of(t_.code, program_.code);
+    if (code.empty()) return place_.fail(&program_, "a program has at least its END");
+    if (code.size() > kMaxInstructions) {
+      return place_.fail(&program_, fmt::format("a program has at most {} instructions, not {}",
+                                                kMaxInstructions, code.size()));
+    }
+    for (const Instruction& in : code) PROBE_TRY(instruction(in, &in == &code.back(), needs));
+    for (std::size_t i = 0; i < states_used_.size(); ++i) {
+      if (!states_used_[i]) {
+        return place_.fail(&slice_of(t_.states, program_.states)[i],
+                           "a state slot belongs to one monitor");
+      }
+    }
+    for (std::size_t i = 0; i < metrics_emitted_.size(); ++i) {
+      if (!metrics_emitted_[i]) {
+        return place_.fail(&slice_of(t_.metrics, program_.metrics)[i],
+                           "a metric is emitted exactly once");
+      }
+    }
+    return {};
+  }
+
+ private:
+  Status instruction(const Instruction& in, bool last, Needs& needs) {
+    const OpInfo* info = find_op(in.op);
+    if (info == nullptr)
+      return place_.fail(&in.op, fmt::format("operation {:#04x} is not known", in.op));
+    if (in.zero != 0) return place_.fail(&in.zero, "the second byte of an instruction is zero");
+    if (in.dst != types_.size()) {
+      return place_.fail(&in.dst, fmt::format("{} must say {} results before it, not {}",
+                                              info->name, types_.size(), in.dst));
+    }
+    if ((info->op == Op::kEND) != last) {
+      return place_.fail(
+          &in.op, last ? "a program ends with END" : "END is the last instruction and only there");
+    }
+    PROBE_TRY(operand(*info, info->a, in, in.a, needs));
+    PROBE_TRY(operand(*info, info->b, in, in.b, needs));
+    if (info->result != Kind::kUnused) types_.push_back(info->result);
+    return {};
+  }
+
+  Status operand(const OpInfo& info, Kind kind, const Instruction& in, const std::uint16_t& value,
+                 Needs& needs) {
+    switch (kind) {
+      case Kind::kUnused:
+        if (value != 0)
+          return place_.fail(&value, fmt::format("an unused operand of {} is zero", info.name));
+        return {};
+      case Kind::kBool:
+      case Kind::kReal:
+      case Kind::kVector:
+        return use_register(info, kind, value);
+      case Kind::kConstant:
+        if (value + constant_width(info.op) > program_.constants.count) {
+          return place_.fail(
+              &value, fmt::format("{} reads constant {} of {}", info.name,
+                                  value + constant_width(info.op) - 1, program_.constants.count));
+        }
+        return {};
+      case Kind::kImmediate:
+        if (value > immediate_limit(info.op)) {
+          return place_.fail(&value, fmt::format("{} takes at most {}, not {}", info.name,
+                                                 immediate_limit(info.op), value));
+        }
+        return {};
+      case Kind::kBody:
+        return use_body(info, in, value, needs);
+      case Kind::kState:
+        return use_state(info, in, value);
+      case Kind::kMetric:
+        return emit(info, value);
+    }
+    return place_.fail(&in, "an operand has no rule");
+  }
+
+  Status use_register(const OpInfo& info, Kind kind, const std::uint16_t& value) {
+    if (value >= types_.size()) {
+      return place_.fail(&value,
+                         fmt::format("{} reads r{} before it is written", info.name, value));
+    }
+    if (types_[value] != kind) {
+      return place_.fail(&value, fmt::format("{} wants {} but r{} is {}", info.name,
+                                             type_name(kind), value, type_name(types_[value])));
+    }
+    return {};
+  }
+
+  Status use_body(const OpInfo& info, const Instruction& in, const std::uint16_t& value,
+                  Needs& needs) {
+    if (value >= kMaxBodies) {
+      return place_.fail(&value, fmt::format("{} names body {}, a task has at most {}", info.name,
+                                             value, kMaxBodies));
+    }
+    if (value + 1u > needs.bodies) {
+      needs.bodies = value + 1u;
+      needs.highest = &in;
+    }
+    if (info.op == Op::kOPEN && !finger_seen_[value]) {
+      finger_seen_[value] = true;
+      needs.fingers.push_back(&in);
+    }
+    return {};
+  }
+
+  Status use_state(const OpInfo& info, const Instruction& in, const std::uint16_t& value) {
+    if (value >= program_.states.count) {
+      return place_.fail(
+          &value, fmt::format("{} uses state {} of {}", info.name, value, program_.states.count));
+    }
+    if (states_used_[value])
+      return place_.fail(&value, "a state slot belongs to one monitor, not to two");
+    states_used_[value] = true;
+    if (slice_of(t_.states, program_.states)[value].kind != in.op) {
+      return place_.fail(&value, fmt::format("state {} is not of kind {}", value, info.name));
+    }
+    return {};
+  }
+
+  Status emit(const OpInfo& info, const std::uint16_t& value) {
+    if (value >= program_.metrics.count) {
+      return place_.fail(&value, fmt::format("{} names metric {} of {}", info.name, value,
+                                             program_.metrics.count));
+    }
+    if (metrics_emitted_[value])
+      return place_.fail(&value, "a metric is emitted exactly once, not twice");
+    metrics_emitted_[value] = true;
+    const auto type = static_cast<MetricType>(slice_of(t_.metrics, program_.metrics)[value].type);
+    if ((type == MetricType::kBool) != (info.a == Kind::kBool)) {
+      return place_.fail(&value,
+                         fmt::format("{} does not have the type of metric {}", info.name, value));
+    }
+    return {};
+  }
+
+  const Place& place_;
+  const Tables& t_;
+  const ProgramRecord& program_;
+  std::vector<Kind> types_;  // of the registers written so far
+  std::vector<bool> states_used_, metrics_emitted_, finger_seen_;
+};
+
+Status check_task(const Place& place, const Tables& t, const TaskRecord& task, const Needs& needs) {
+  if (needs.bodies > task.bodies.count) {
+    return place.fail(needs.highest,
+                      fmt::format("names body {}, but task `{}` has {}", needs.bodies - 1,
+                                  t.text(task.name), task.bodies.count));
+  }
+  for (const Instruction* in : needs.fingers) {
+    const BodyRecord& body = slice_of(t.bodies, task.bodies)[in->a];
+    if (body.kind != static_cast<std::uint32_t>(BodyKind::kLink) || body.index >= 2) {
+      return place.fail(&in->a, fmt::format("OPEN names body {}, which is no finger of task `{}`",
+                                            in->a, t.text(task.name)));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Status verify_code(std::span<const std::byte> bytes, const Tables& tables) {
+  const Place place(bytes);
+  std::vector<Needs> needs(tables.programs.size());
+  for (std::size_t i = 0; i < needs.size(); ++i) {
+    PROBE_TRY(ProgramCheck(place, tables, tables.programs[i]).run(needs[i]));
+  }
+  for (const TaskRecord& task : tables.tasks) {
+    PROBE_TRY(check_task(place, tables, task, needs[task.program]));
+  }
+  return {};
+}
+
+}  // namespace probe::plan

@@ -1,0 +1,65 @@
+// Rules that many records share: strings, slices, references, numbers. Of the verifier's second
+// stage only.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/tables.h"
+#include "runtime/plan/verify_place.h"
+
+namespace probe::plan {
+
+// Null when `text` is UTF-8 in normal form C without control characters, else what it is instead.
+const char* find_text_defect(std::string_view text);
+
+class FieldCheck {
+ public:
+  FieldCheck(std::span<const std::byte> bytes, const Tables& tables) : place_(bytes), t(tables) {}
+
+ protected:
+  Failure fail(const void* at, std::string rule) const { return place_.fail(at, std::move(rule)); }
+
+  // In range, of good text; `name` must not be empty either.
+  Status check_text(const StringRef& ref) const;
+  Status check_name(const StringRef& ref, const char* what) const;
+  // [first, first + count) inside a table of `size` records.
+  Status check_slice(const Slice& slice, std::size_t size, const char* table) const;
+  Status check_index(const std::uint32_t& index, std::size_t size, const char* table) const;
+  // An asset of that kind, or kNone when `optional`.
+  Status check_asset(const std::uint32_t& index, AssetKind kind, bool optional) const;
+  Status check_finite(std::span<const double> values) const;
+  Status check_unit(std::span<const double> values, const char* what) const;
+  Status check_zero(std::span<const std::uint64_t> values) const;
+  Status check_zero(const std::uint32_t& value) const;
+  // Finite and at least 0, or greater than 0.
+  Status check_not_negative(const double& value, const char* what) const;
+  Status check_positive(const double& value, const char* what) const;
+
+  // No two records of a table have one name.
+  template <typename Record>
+  Status check_unique_names(std::span<const Record> table, const char* what) const {
+    std::unordered_set<std::string_view> seen;
+    seen.reserve(table.size());
+    for (const Record& record : table) {
+      if (seen.insert(t.text(record.name)).second) continue;
+      return fail(&record, fmt::format("two {} are called `{}`", what, t.text(record.name)));
+    }
+    return {};
+  }
+
+  Place place_;
+  const Tables& t;
+};
+
+// The two halves of the second stage.
+Status verify_catalogue(std::span<const std::byte> bytes, const Tables& tables);
+Status verify_tasks(std::span<const std::byte> bytes, const Tables& tables);
+
+}  // namespace probe::plan

@@ -1,0 +1,201 @@
+#include "runtime/plan/writer.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <tuple>
+
+#include "runtime/base/check.h"
+#include "runtime/plan/ids.h"
+#include "runtime/plan/verify.h"
+
+namespace probe::plan {
+namespace {
+
+constexpr std::uint64_t align_up(std::uint64_t at) {
+  return (at + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+struct Part {
+  DirectoryEntry entry;
+  std::span<const std::byte> bytes;
+};
+
+// The canonical layout: header, directory, sections each at the next multiple of 64, zeros between,
+// none at the end.
+std::vector<std::byte> join(std::span<Part> parts, std::uint16_t minor) {
+  std::uint64_t end = sizeof(Header) + parts.size() * sizeof(DirectoryEntry);
+  for (Part& part : parts) {
+    part.entry.offset = align_up(end);
+    end = part.entry.offset + part.entry.size;
+  }
+  std::vector<DirectoryEntry> directory;
+  for (const Part& part : parts) directory.push_back(part.entry);
+
+  Header header;
+  header.minor = minor;
+  header.sections = static_cast<std::uint32_t>(parts.size());
+  header.file_size = end;
+  header.root = root_hash(header, directory).bytes;
+
+  std::vector<std::byte> out(end);
+  std::memcpy(out.data(), &header, sizeof header);
+  if (!directory.empty()) {
+    std::memcpy(out.data() + sizeof header, directory.data(),
+                directory.size() * sizeof(DirectoryEntry));
+  }
+  for (const Part& part : parts) {
+    std::memcpy(out.data() + part.entry.offset, part.bytes.data(), part.bytes.size());
+  }
+  return out;
+}
+
+std::uint32_t to_u32(std::size_t size) {
+  PROBE_CHECK(size < kNone, "a section has fewer than 2^32 - 1 records");
+  return static_cast<std::uint32_t>(size);
+}
+
+}  // namespace
+
+Tables Records::views() const {
+  Tables out;
+  out.strings = strings;
+  out.list = list;
+  out.reals = reals;
+  out.assets = assets;
+  out.objects = objects;
+  out.robots = robots;
+  out.drives = drives;
+  out.cameras = cameras;
+  out.lights = lights;
+  out.suns = suns;
+  out.scenes = scenes;
+  out.constants = constants;
+  out.states = states;
+  out.code = code;
+  out.programs = programs;
+  out.metrics = metrics;
+  out.bodies = bodies;
+  out.placements = placements;
+  out.tasks = tasks;
+  out.episodes = episodes;
+  out.sets = sets;
+  out.suites = suites;
+  out.spans = spans;
+  out.texts = texts;
+  out.text_bytes = text_bytes;
+  return out;
+}
+
+StringRef Writer::text(std::string_view value) {
+  // The empty string is (0, 0) wherever it is first used, so that default references already are
+  // it.
+  if (value.empty()) return {};
+  const auto [it, is_new] = interned_.try_emplace(std::string(value));
+  if (is_new) {
+    it->second = {to_u32(records.strings.size()), to_u32(value.size())};
+    records.strings.append(value);
+  }
+  return it->second;
+}
+
+Slice Writer::list(std::span<const std::uint32_t> values) { return append(records.list, values); }
+Slice Writer::reals(std::span<const double> values) { return append(records.reals, values); }
+
+std::uint32_t Writer::source(std::string_view path, std::string_view bytes) {
+  TextRecord record;
+  record.path = {to_u32(records.text_bytes.size()), to_u32(path.size())};
+  records.text_bytes.append(path);
+  record.bytes = {to_u32(records.text_bytes.size()), to_u32(bytes.size())};
+  records.text_bytes.append(bytes);
+  records.texts.push_back(record);
+  return to_u32(records.texts.size() - 1);
+}
+
+void Writer::fill_ids() {
+  const Tables tables = records.views();
+  for (ProgramRecord& program : records.programs)
+    program.hash = program_hash(tables, program).bytes;
+  IdHasher ids(tables);
+  for (TaskRecord& task : records.tasks) task.judge_id = ids.judge(task).bytes;
+  for (EpisodeRecord& episode : records.episodes) {
+    const TaskRecord& task = records.tasks[episode.task];
+    episode.start_id = ids.start(task, episode).bytes;
+    episode.episode_id = ids.episode(task, episode).bytes;
+  }
+}
+
+std::vector<std::byte> Writer::lay_out() const {
+  const Tables tables = records.views();
+  std::vector<Part> parts;
+  for_each_table(tables, [&](Section kind, const auto& table) {
+    if (table.empty()) return;  // a section without records is left out
+    const SectionInfo& info = *find_section(static_cast<std::uint32_t>(kind));
+    Part part;
+    part.bytes = std::as_bytes(std::span(table.data(), table.size()));
+    part.entry.kind = static_cast<std::uint32_t>(kind);
+    part.entry.flags = info.ignorable ? kIgnorable : std::uint16_t{0};
+    part.entry.size = part.bytes.size();
+    part.entry.count = to_u32(table.size());
+    part.entry.stride = info.stride;
+    part.entry.sha256 = sha256(part.bytes).bytes;
+    parts.push_back(part);
+  });
+  return join(parts, kMinor);
+}
+
+Result<std::vector<std::byte>> Writer::finish() {
+  std::ranges::sort(records.spans, {}, [](const SpanRecord& s) {
+    return std::tuple(s.what, s.index, s.text, s.begin, s.end);
+  });
+  // Ids follow indices, so tables are looked at before ids are computed, and the bytes once more
+  // afterwards.
+  std::vector<std::byte> bytes = lay_out();
+  PROBE_TRY(verify(bytes, {.identity = false}));
+  fill_ids();
+  bytes = lay_out();
+  PROBE_TRY(verify(bytes));
+  return bytes;
+}
+
+std::vector<std::byte> strip_sources(std::span<const std::byte> bytes) {
+  Header header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  std::vector<Part> parts;
+  for (std::uint32_t i = 0; i < header.sections; ++i) {
+    Part part;
+    std::memcpy(&part.entry, bytes.data() + sizeof header + i * sizeof part.entry,
+                sizeof part.entry);
+    if ((part.entry.flags & kIgnorable) != 0) continue;
+    part.bytes = bytes.subspan(part.entry.offset, part.entry.size);
+    parts.push_back(part);
+  }
+  return join(parts, header.minor);
+}
+
+Status write_file(const std::string& path, std::span<const std::byte> bytes) {
+  const std::string temporary = path + ".part" + std::to_string(::getpid());
+  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  if (file == nullptr)
+    return Failure{"io", std::string("cannot write: ") + std::strerror(errno), path};
+  bool ok = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  ok = std::fflush(file) == 0 && ok;
+  ok = ::fsync(::fileno(file)) == 0 && ok;
+  int error = errno;
+  if (std::fclose(file) != 0 && ok) {
+    ok = false;
+    error = errno;
+  }
+  if (ok && std::rename(temporary.c_str(), path.c_str()) != 0) {
+    ok = false;
+    error = errno;
+  }
+  if (ok) return {};
+  std::remove(temporary.c_str());
+  return Failure{"io", std::string("cannot write: ") + std::strerror(error), path};
+}
+
+}  // namespace probe::plan
