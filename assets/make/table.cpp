@@ -97,9 +97,9 @@ Image wood_texture() {
       c = mix(c, pore, 0.38 * smooth_step(0.80, 0.97, fleck));
       // The room's windows mirrored in the varnish at both ends, and less light close to the
       // partition.
-      const double window = smooth_step(230, 40, y) * smooth_step(60, 140, x) +
-                            0.8 * smooth_step(470, 640, y) * smooth_step(330, 180, x);
-      c = mix(c, hazy, 0.55 * clamp01(window));
+      const double window = smooth_step(300, 90, y) * smooth_step(60, 160, x) +
+                            0.8 * smooth_step(400, 570, y) * smooth_step(330, 180, x);
+      c = mix(c, hazy, 0.75 * clamp01(window));
       c = mix(c, dark, 0.45 * smooth_step(70, 40, x) * smooth_step(120, 250, y));
       image.set(column, row, c);
     }
@@ -118,13 +118,13 @@ Image weave_texture(const Colour& lit, double gain, double contrast) {
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
       const double x = column, y = row;
-      const double across = value_noise(x / 8, y / 1.0, {.x = kSize / 8, .y = kSize}, 61);
-      const double along = value_noise(x / 1.0, y / 8, {.x = kSize, .y = kSize / 8}, 62);
+      const double across = value_noise(x / 4, y / 1.0, {.x = kSize / 4, .y = kSize}, 61);
+      const double along = value_noise(x / 1.0, y / 4, {.x = kSize, .y = kSize / 4}, 62);
       const double broad = value_noise(x / 32, y / 64, {.x = kSize / 32, .y = kSize / 64}, 63);
       const double grain =
           hash01(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row), 64);
       image.set(column, row,
-                mix(dark, light, 0.4 * across + 0.38 * along + 0.1 * broad + 0.12 * grain));
+                mix(dark, light, 0.38 * across + 0.36 * along + 0.08 * broad + 0.18 * grain));
     }
   }
   return image;
@@ -134,7 +134,7 @@ Image weave_texture(const Colour& lit, double gain, double contrast) {
 
 std::vector<OutputFile> make_table_scene() {
   constexpr double kTile = 0.30;
-  Surface behind, left, cloth, seam;
+  Surface behind, left, cloth, seam, stand;
   // Behind: the plane x = -0.36 turned to +x. Left: the plane y = -0.31 turned to +y. They meet in
   // a corner.
   add_rectangle(behind, {-0.36, -0.31, 0.55}, {0, 2.0, 0}, {0, 0, 1.25},
@@ -144,6 +144,9 @@ std::vector<OutputFile> make_table_scene() {
   add_rectangle(seam, {-0.3585, -0.310, 0.55}, {0, 0.006, 0}, {0, 0, 1.25}, {1, 1});
   add_rectangle(cloth, {-0.36, -0.31, 0.72}, {1.56, 0, 0}, {0, 2.0, 0},
                 {1.56 / kTile, 2.0 / kTile});
+  // Under the robot's base, outside the bench camera's picture: without it other views show the arm
+  // in mid-air.
+  add_faces(stand, convex_hull(box_points({0.085, -0.02, 0.72}, {0.295, 0.076, kTop}, 0), "stand"));
   std::vector<Part> parts;
   parts.push_back({table_surface(), {.name = "wood", .texture = wood_texture(), .roughness = 0.6}});
   parts.push_back({behind,
@@ -162,6 +165,11 @@ std::vector<OutputFile> make_table_scene() {
   parts.push_back(
       {cloth,
        {.name = "cloth", .texture = weave_texture({47, 52, 62}, kGainUp, 9), .roughness = 1}});
+  parts.push_back({stand,
+                   {.name = "stand",
+                    .base_color = albedo_for({96, 98, 102}, kGainPlusX, 0.002),
+                    .texture = std::nullopt,
+                    .roughness = 1}});
   return {{"scenes/table/visual.glb", glb_bytes("table", parts)}};
 }
 
