@@ -10,8 +10,9 @@ namespace {
 
 // Pixel coordinates and camera depth of `count` points; rows are those of the 3 x 4 matrix that
 // gives (x z, y z, z).
-PROBE_CLONES void project(const float* px, const float* py, const float* pz, std::size_t count,
-                          const float* rows, float* x, float* y, float* z) {
+PROBE_CLONES void project(const float* __restrict px, const float* __restrict py,
+                          const float* __restrict pz, std::size_t count, const float* rows,
+                          float* __restrict x, float* __restrict y, float* __restrict z) {
   const float a0 = rows[0], a1 = rows[1], a2 = rows[2], a3 = rows[3];
   const float b0 = rows[4], b1 = rows[5], b2 = rows[6], b3 = rows[7];
   const float c0 = rows[8], c1 = rows[9], c2 = rows[10], c3 = rows[11];

@@ -38,11 +38,16 @@ struct PngFormat {
   std::size_t bytes_per_pixel;
 };
 
+// libpng would print; our callers get a Failure instead.
+[[noreturn]] void on_png_error(png_structp png, png_const_charp) { png_longjmp(png, 1); }
+void on_png_warning(png_structp, png_const_charp) {}
+
 // libpng leaves by longjmp; nothing with a destructor lives in this frame. Returns false on any
 // error.
 bool encode_png(std::FILE* file, int width, int height, const PngFormat& format,
                 const std::uint8_t* pixels) {
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_structp png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, on_png_error, on_png_warning);
   if (png == nullptr) return false;
   png_infop info = png_create_info_struct(png);
   if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {

@@ -44,8 +44,7 @@ class Import {
  public:
   Import(const aiScene& scene, const std::string& path, const Vec3& scale, const MeshLimits& limits)
       : scene_(scene), path_(path), scale_(scale), limits_(limits) {
-    const std::string extension = lower_extension(path);
-    gltf_ = extension == ".glb" || extension == ".gltf";
+    gltf_ = lower_extension(path) == ".glb";
   }
 
   Result<std::shared_ptr<const Mesh>> run() {
@@ -366,7 +365,7 @@ Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path, const Vec
   }
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return asset_failure("there is no such mesh file", path);
-  const std::set<std::string> known{".glb", ".gltf", ".obj", ".dae", ".stl"};
+  const std::set<std::string> known{".glb", ".obj", ".dae", ".stl"};
   if (!known.contains(lower_extension(path))) {
     return asset_failure("meshes are read from glb, obj, dae and stl files", path);
   }

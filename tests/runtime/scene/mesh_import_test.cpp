@@ -106,6 +106,66 @@ TEST_CASE("texture paths that are absolute, escape the asset folder or lead nowh
   CHECK(refusal(path, {.asset_root = root}).find("outside") != std::string::npos);
 }
 
+std::string bytes_of(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string chunk(std::string body, const char (&type)[5], char filler) {
+  while (body.size() % 4 != 0) body += filler;
+  const auto size = static_cast<std::uint32_t>(body.size());
+  return std::string(reinterpret_cast<const char*>(&size), 4) + std::string(type, 4) + body;
+}
+
+TEST_CASE(
+    "a glb with embedded textures gives its colours, and roughness and metallic by their means") {
+  const std::string folder = fs::path(write("glb/x.txt", "")).parent_path().string();
+  // Colour: red above, blue below. Surface: G 64 and 192, B 255 and 0.
+  REQUIRE(write_png(folder + "/c.png", 1, 2, std::vector<std::uint8_t>{255, 0, 0, 0, 0, 255}).ok());
+  REQUIRE(
+      write_png(folder + "/s.png", 1, 2, std::vector<std::uint8_t>{0, 64, 255, 0, 192, 0}).ok());
+  const std::string color = bytes_of(folder + "/c.png"), surface = bytes_of(folder + "/s.png");
+  const float vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, /* uv */ 0, 0, 1, 0, 0, 1};
+  std::string data(reinterpret_cast<const char*>(vertices), sizeof vertices);
+  const std::size_t color_at = data.size(), surface_at = color_at + color.size();
+  data += color + surface;
+  const std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0,"scale":[2,2,2]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
+"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicRoughnessTexture":{"index":1},
+"metallicFactor":1,"roughnessFactor":1}}],
+"textures":[{"source":0},{"source":1}],
+"images":[{"bufferView":2,"mimeType":"image/png"},{"bufferView":3,"mimeType":"image/png"}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},
+{"buffer":0,"byteOffset":)" +
+                           std::to_string(color_at) + R"(,"byteLength":)" +
+                           std::to_string(color.size()) + R"(},{"buffer":0,"byteOffset":)" +
+                           std::to_string(surface_at) + R"(,"byteLength":)" +
+                           std::to_string(surface.size()) + R"(}],"buffers":[{"byteLength":)" +
+                           std::to_string(data.size()) + "}]}";
+  const std::string body = chunk(json, "JSON", ' ') + chunk(data, "BIN\0", '\0');
+  const auto total = static_cast<std::uint32_t>(12 + body.size());
+  const std::string file =
+      std::string("glTF\2\0\0\0", 8) + std::string(reinterpret_cast<const char*>(&total), 4) + body;
+  const auto mesh = load(write("glb/t.glb", file));
+  REQUIRE(mesh->parts.size() == 1);
+  float widest = 0;
+  for (const float x : mesh->parts[0].positions) widest = std::max(widest, x);
+  CHECK(widest == 2.0f);  // the node's scale is baked in
+  const Material& material = mesh->materials[static_cast<std::size_t>(mesh->parts[0].material)];
+  CHECK(material.roughness == doctest::Approx(128 / 255.0));
+  CHECK(material.metallic == doctest::Approx(0.5));
+  REQUIRE(mesh->textures.size() == 1);  // the surface texture is not kept
+  CHECK(mesh->textures[0].rgba[0] == 255);
+  CHECK(mesh->textures[0].rgba[4] == 0);
+  // v counts from the top in glTF and here.
+  const MeshPart& part = mesh->parts[0];
+  for (std::size_t v = 0; v < 3; ++v) CHECK(part.uv[2 * v + 1] == part.positions[3 * v + 1] / 2);
+  refusal(write("glb/cut.glb", file.substr(0, file.size() / 2)));
+}
+
 TEST_CASE("Collada files are not turned and their emission colours are read") {
   const std::string path = write("dae/t.dae", R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
