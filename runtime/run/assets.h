@@ -41,11 +41,6 @@ struct RobotParts {
       shapes;  // one per link, null without collision
 };
 
-struct LoadedFile {
-  std::string path;  // relative to the root
-  Sha256 sha256;
-};
-
 class SharedAssets {
  public:
   // Loads what `tasks` (indices of the plan's tasks) need. Fails (code "asset") naming a file that
@@ -61,11 +56,6 @@ class SharedAssets {
   std::shared_ptr<const scene::Texture> photo(std::uint32_t asset) const;
   const RobotParts* robot(std::uint32_t urdf_asset) const;
 
-  // Every file read, the meshes of a URDF among them, ascending by path.
-  std::span<const LoadedFile> files() const { return files_; }
-  // Of all of files(): equal digests, equal inputs.
-  Sha256 digest() const;
-
  private:
   class Loader;
   std::string root_;
@@ -73,7 +63,9 @@ class SharedAssets {
   std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> shapes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::Texture>> photos_;
   std::map<std::uint32_t, std::unique_ptr<const RobotParts>> robots_;
-  std::vector<LoadedFile> files_;
 };
+
+// Of every file the plan names, by path and content: equal digests, equal inputs.
+Sha256 asset_digest(const plan::Plan& plan);
 
 }  // namespace probe::run

@@ -18,7 +18,7 @@ struct Fingerprint {
   bool operator==(const Fingerprint&) const = default;
 };
 
-// Of this process and machine. `assets` is SharedAssets::digest().
+// Of this process and machine. `assets` is asset_digest().
 Fingerprint take_fingerprint(const Sha256& assets);
 
 std::string to_json(const Fingerprint& fingerprint);

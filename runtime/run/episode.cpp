@@ -1,0 +1,241 @@
+// One episode from reset to verdict.
+#include "runtime/run/episode.h"
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+
+namespace probe::run {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point from) {
+  return std::chrono::duration<double>(Clock::now() - from).count();
+}
+
+std::string reason(const char* who, const Failure& failure) {
+  return who + (": " + to_text(failure));
+}
+
+// Why an episode ended early, of two kinds: it is invalid, or the disk failed us.
+struct Outcome {
+  std::optional<std::string> invalid;
+  std::optional<Failure> broken;
+};
+
+class Loop {
+ public:
+  Loop(TaskStage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
+       TraceWriter& trace, FrameSink* frames, ResultRow& row)
+      : stage_(stage),
+        plan_(plan),
+        task_(plan.tasks()[job.task]),
+        episode_(plan.episodes(task_)[job.index]),
+        job_(job),
+        policy_(policy),
+        trace_(trace),
+        frames_(frames),
+        row_(row),
+        prompt_(plan.text(task_.prompt)) {
+    prompt_hash_ = sha256(prompt_);
+    for (std::size_t i = 0; i < stage.judge().metric_count(); ++i) {
+      const auto metric = static_cast<std::uint32_t>(i);
+      row_.metrics.push_back({stage.judge().metric_name(metric),
+                              stage.judge().metric_type(metric) == plan::MetricType::kBool, 0});
+    }
+  }
+
+  Outcome run(int steps) {
+    Outcome outcome = begin();
+    for (int step = 0; step < steps && !outcome.invalid && !outcome.broken; ++step) {
+      outcome = this->step(step);
+    }
+    if (!outcome.invalid && !outcome.broken && frames_ != nullptr) outcome = last_frame(steps);
+    if (row_.steps > 0) row_.frames_sha256 = to_hex(frames_hash_.finish());
+    return outcome;
+  }
+
+ private:
+  Outcome begin() {
+    EpisodeWorld& world = stage_.world();
+    if (auto reset = world.reset(job_.index); !reset) return {reason("world", reset.failure()), {}};
+    if (auto begun = stage_.judge().begin(world.starts()); !begun) {
+      return {reason("judge", begun.failure()), {}};
+    }
+    TraceStart start;
+    start.q.assign(world.q().begin(), world.q().end());
+    start.starts.assign(world.starts().begin(), world.starts().end());
+    start.sample = world.sample();
+    start.state_hash = world.state_hash();
+    if (auto written = trace_.start(start); !written) return {{}, written.failure()};
+
+    policy::EpisodeStart first;
+    first.task = plan_.text(task_.name);
+    first.prompt = prompt_;
+    first.index = static_cast<int>(job_.index);
+    first.seed = job_.seed;
+    first.draw_seed = draw_seed(job_.seed, Sha256{episode_.episode_id});
+    first.horizon = static_cast<int>(task_.horizon);
+    first.robot_urdf = world.urdf_path();
+    first.tcp_link = world.tcp_link();
+    if (auto begun = policy_.begin(first); !begun) return {reason("policy", begun.failure()), {}};
+    return {};
+  }
+
+  Outcome step(int number) {
+    EpisodeWorld& world = stage_.world();
+    TraceStep record;
+    auto clock = Clock::now();
+    const auto frame = stage_.view().render(world.q(), world.objects());
+    if (!frame) return {reason("picture", frame.failure()), {}};
+    record.image_hash = sha256(std::as_bytes(frame->rgb));
+    record.prompt_hash = prompt_hash_;
+    record.render_s = seconds_since(clock);
+    if (number == 0) row_.image_sha256 = to_hex(record.image_hash);
+    if (frames_ != nullptr) {
+      if (auto shown = frames_->frame(*frame, number, row_.metrics); !shown)
+        return {{}, shown.failure()};
+    }
+
+    clock = Clock::now();
+    policy::Observation observation;
+    observation.image = {frame->width, frame->height, frame->rgb};
+    observation.prompt = prompt_;
+    observation.proprioception = world.proprioception();
+    observation.privileged = &world.privileged();
+    observation.step = number;
+    observation.horizon = static_cast<int>(task_.horizon);
+    const auto action = policy_.act(observation);
+    if (!action) return {reason("policy", action.failure()), {}};
+    for (const double value : *action) {
+      if (!std::isfinite(value)) return {"policy: an action with a number that is not finite", {}};
+    }
+    record.action = *action;
+    record.policy_s = seconds_since(clock);
+
+    clock = Clock::now();
+    if (auto acted = world.act(*action); !acted) return {reason("world", acted.failure()), {}};
+    record.physics_s = seconds_since(clock);
+    if (auto judged = stage_.judge().step(world.sample()); !judged) {
+      return {reason("judge", judged.failure()), {}};
+    }
+    const auto values = stage_.judge().values();
+    for (std::size_t i = 0; i < values.size(); ++i) row_.metrics[i].value = values[i];
+    record.metrics.assign(values.begin(), values.end());
+    record.q.assign(world.q().begin(), world.q().end());
+    record.u.assign(world.u().begin(), world.u().end());
+    record.sample = world.sample();
+    record.state_hash = world.state_hash();
+    if (auto written = trace_.step(record); !written) return {{}, written.failure()};
+    frames_hash_.hash(record.image_hash);
+    row_.steps = number + 1;
+    return {};
+  }
+
+  Outcome last_frame(int number) {
+    const auto frame = stage_.view().render(stage_.world().q(), stage_.world().objects());
+    if (!frame) return {reason("picture", frame.failure()), {}};
+    if (auto shown = frames_->frame(*frame, number, row_.metrics); !shown)
+      return {{}, shown.failure()};
+    return {};
+  }
+
+  TaskStage& stage_;
+  const plan::Plan& plan_;
+  const plan::TaskRecord& task_;
+  const plan::EpisodeRecord& episode_;
+  const EpisodeJob& job_;
+  policy::Policy& policy_;
+  TraceWriter& trace_;
+  FrameSink* frames_;
+  ResultRow& row_;
+  std::string_view prompt_;
+  Sha256 prompt_hash_;
+  Hasher frames_hash_;
+};
+
+// Adapters catch what libraries throw; this is for what they missed, so that one episode cannot end
+// a run of thousands.
+Outcome run_guarded(Loop& loop, int steps) {
+  try {
+    return loop.run(steps);
+  } catch (const std::exception& error) {
+    return {std::string("exception: ") + error.what(), {}};
+  } catch (...) {
+    return {"exception of unknown type", {}};
+  }
+}
+
+}  // namespace
+
+std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
+  const Sha256 hash = Hasher()
+                          .u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(seed)))
+                          .hash(episode_id)
+                          .finish();
+  std::uint64_t value = 0;
+  for (std::size_t i = 8; i-- > 0;) value = value << 8 | hash.bytes[i];
+  return value;
+}
+
+Result<std::unique_ptr<TaskStage>> TaskStage::create(const plan::Plan& plan, std::uint32_t task,
+                                                     std::shared_ptr<const SharedAssets> assets) {
+  auto stage = std::unique_ptr<TaskStage>(new TaskStage(plan, task));
+  PROBE_ASSIGN(stage->world_, EpisodeWorld::create(plan, task, assets));
+  PROBE_ASSIGN(stage->view_, SceneView::create(plan, task, std::move(assets)));
+  return stage;
+}
+
+TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
+                              const std::string& policy, const std::string& fingerprint) {
+  const plan::TaskRecord& task = plan.tasks()[job.task];
+  const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
+  const plan::RobotRecord& robot = plan.robots()[plan.scenes()[task.scene].robot];
+  TraceHeader header;
+  header.plan_root = plan.root();
+  header.episode_id = Sha256{episode.episode_id};
+  header.start_id = Sha256{episode.start_id};
+  header.task = std::string(plan.text(task.name));
+  header.episode = static_cast<std::int32_t>(job.index);
+  header.seed = job.seed;
+  header.policy = policy;
+  header.prompt = std::string(plan.text(task.prompt));
+  header.horizon = task.horizon;
+  header.control_hz = robot.control_hz;
+  for (const plan::BodyRecord& body : plan.bodies(task))
+    header.bodies.emplace_back(plan.text(body.name));
+  header.joints = drive_joints(plan, robot);
+  for (const plan::MetricRecord& metric : plan.metrics(task)) {
+    header.metrics.push_back({std::string(plan.text(metric.name)),
+                              metric.type == static_cast<std::uint32_t>(plan::MetricType::kBool)});
+  }
+  header.fingerprint = fingerprint;
+  return header;
+}
+
+Result<ResultRow> run_episode(TaskStage& stage, const plan::Plan& plan, const EpisodeJob& job,
+                              const std::string& policy_name, policy::Policy& policy,
+                              TraceWriter& trace, FrameSink* frames, int steps) {
+  const plan::TaskRecord& task = plan.tasks()[job.task];
+  const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
+  ResultRow row;
+  row.task = std::string(plan.text(task.name));
+  row.episode = static_cast<int>(job.index);
+  row.seed = job.seed;
+  row.policy = policy_name;
+  row.prompt_sha256 = to_hex(sha256(plan.text(task.prompt)));
+  row.episode_id = to_hex(Sha256{episode.episode_id});
+  row.start_id = to_hex(Sha256{episode.start_id});
+
+  Loop loop(stage, plan, job, policy, trace, frames, row);
+  const Outcome outcome = run_guarded(loop, steps < 0 ? static_cast<int>(task.horizon) : steps);
+  if (outcome.broken) return *outcome.broken;
+  row.invalid = outcome.invalid;
+  PROBE_ASSIGN(const Sha256 hash,
+               trace.finish({static_cast<std::uint32_t>(row.steps), row.metrics, row.invalid}));
+  row.trace_sha256 = to_hex(hash);
+  return row;
+}
+
+}  // namespace probe::run

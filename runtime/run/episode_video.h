@@ -1,0 +1,31 @@
+// A video of one episode as it runs, with its words; whole under its final name or absent.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "runtime/run/episode.h"
+#include "runtime/run/overlay.h"
+#include "runtime/run/video.h"
+
+namespace probe::run {
+
+class EpisodeVideo final : public FrameSink {
+ public:
+  // The file is begun with the first frame; `path`'s folder is made if absent.
+  EpisodeVideo(const TraceHeader& header, std::string path);
+  ~EpisodeVideo() override;
+  Status frame(const render::FrameView& frame, int step,
+               std::span<const MetricValue> metrics) override;
+  Status finish();
+  Status discard();
+
+ private:
+  std::string temporary() const { return path_ + ".tmp"; }
+
+  std::string path_, instruction_, caption_;
+  int horizon_ = 0, frames_per_second_ = 5;
+  std::unique_ptr<VideoWriter> writer_;
+};
+
+}  // namespace probe::run

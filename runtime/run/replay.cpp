@@ -1,0 +1,96 @@
+// Plan and trace from the folder, actions from the trace, everything else computed again.
+#include "runtime/run/replay.h"
+
+#include "runtime/run/episode.h"
+#include "runtime/run/episode_video.h"
+#include "runtime/run/fingerprint.h"
+#include "runtime/run/recorded.h"
+#include "runtime/run/store.h"
+#include "runtime/run/trace_compare.h"
+#include "runtime/scene/image.h"
+
+namespace probe::run {
+namespace {
+
+class TraceActions final : public policy::Policy {
+ public:
+  explicit TraceActions(const Trace& trace) : trace_(trace) {}
+  Status begin(const policy::EpisodeStart&) override { return {}; }
+  Result<policy::Action> act(const policy::Observation& observation) override {
+    return trace_.steps[static_cast<std::size_t>(observation.step)].action;
+  }
+
+ private:
+  const Trace& trace_;
+};
+
+// Hands frames to the video and keeps the one that was asked for.
+class ReplayPictures final : public FrameSink {
+ public:
+  ReplayPictures(const TraceHeader& header, const ReplayOptions& options) : options_(options) {
+    if (!options.video.empty()) video_.emplace(header, options.video);
+  }
+  Status frame(const render::FrameView& frame, int step,
+               std::span<const MetricValue> metrics) override {
+    if (!options_.png.empty() && step == options_.png_step) {
+      PROBE_TRY(scene::write_png(options_.png, frame.width, frame.height, frame.rgb));
+    }
+    return video_ ? video_->frame(frame, step, metrics) : Status();
+  }
+  Status finish() { return video_ ? video_->finish() : Status(); }
+
+ private:
+  const ReplayOptions& options_;
+  std::optional<EpisodeVideo> video_;
+};
+
+Result<EpisodeJob> find_job(const plan::Plan& plan, const Trace& trace, const std::string& dir) {
+  const auto task = plan.find_task(trace.header.task);
+  const Failure stranger{"store", "its plan is not the one of its traces", plan_path(dir)};
+  if (!task || trace.header.plan_root != plan.root()) return stranger;
+  const auto index = static_cast<std::uint32_t>(trace.header.episode);
+  if (index >= plan.episodes(plan.tasks()[*task]).size()) return stranger;
+  return EpisodeJob{*task, index, trace.header.seed};
+}
+
+}  // namespace
+
+Result<ReplayReport> replay(const std::string& dir, const std::string& task, int episode,
+                            std::optional<int> seed, const ReplayOptions& options) {
+  PROBE_ASSIGN(const StoredTrace stored, find_trace(dir, task, episode, seed));
+  const Trace& trace = stored.trace;
+  const int steps = static_cast<int>(trace.steps.size());
+  if (!options.png.empty() && (options.png_step < 0 || options.png_step > steps)) {
+    return Failure{"usage",
+                   "the episode has pictures 0 .. " + std::to_string(steps) + ", not " +
+                       std::to_string(options.png_step),
+                   "--step"};
+  }
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(plan_path(dir)));
+  PROBE_ASSIGN(const EpisodeJob job, find_job(plan, trace, dir));
+
+  ReplayReport report;
+  report.seed = job.seed;
+  PROBE_ASSIGN(const Fingerprint recorded, fingerprint_from_json(trace.header.fingerprint));
+  report.fingerprint_differences = differences(recorded, take_fingerprint(asset_digest(plan)));
+
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  const std::uint32_t tasks[] = {job.task};
+  PROBE_ASSIGN(auto assets, SharedAssets::load(plan, root, tasks));
+  PROBE_ASSIGN(auto stage, TaskStage::create(plan, job.task, std::move(assets)));
+
+  TraceActions actions(trace);
+  TraceComparer comparer(trace);
+  ReplayPictures pictures(trace.header, options);
+  PROBE_ASSIGN(const ResultRow row, run_episode(*stage, plan, job, trace.header.policy, actions,
+                                                comparer, &pictures, steps));
+  PROBE_TRY(pictures.finish());
+  report.steps = row.steps;
+  report.difference = comparer.difference();
+  if (report.difference.empty() && row.invalid && steps > row.steps)
+    report.difference = *row.invalid;
+  report.identical = report.difference.empty();
+  return report;
+}
+
+}  // namespace probe::run

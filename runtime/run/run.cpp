@@ -1,0 +1,173 @@
+// Puts the parts together: selection, assets, store, workers.
+#include "runtime/run/run.h"
+
+#include <filesystem>
+#include <mutex>
+#include <set>
+#include <tuple>
+
+#include "runtime/policy/factory.h"
+#include "runtime/run/assets.h"
+#include "runtime/run/episode.h"
+#include "runtime/run/episode_video.h"
+#include "runtime/run/fingerprint.h"
+#include "runtime/run/recorded.h"
+#include "runtime/run/scheduler.h"
+#include "runtime/run/selection.h"
+#include "runtime/run/store.h"
+
+namespace probe::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What all workers read, and what they write one at a time.
+struct Shared {
+  const plan::Plan& plan;
+  const RunOptions& options;
+  std::shared_ptr<const SharedAssets> assets;
+  std::string fingerprint;
+  std::vector<EpisodeJob> jobs;
+  std::mutex mutex;  // store, summary and progress
+  Store& store;
+  RunSummary& summary;
+};
+
+bool has_failed(const ResultRow& row) {
+  if (row.invalid) return true;
+  for (const MetricValue& metric : row.metrics) {
+    if (metric.name == "success") return metric.value == 0;
+  }
+  return false;
+}
+
+class EpisodeWorker {
+ public:
+  explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
+
+  Status begin() {
+    PROBE_ASSIGN(policy_, policy::make_policy(shared_.options.policy, policy_context()));
+    return {};
+  }
+
+  Status run(std::size_t index) {
+    const EpisodeJob& job = shared_.jobs[index];
+    if (!stage_ || stage_->task() != job.task) {
+      stage_.reset();  // frees the old before the new is made
+      PROBE_ASSIGN(stage_, TaskStage::create(shared_.plan, job.task, shared_.assets));
+    }
+    const TraceHeader header =
+        make_trace_header(shared_.plan, job, shared_.options.policy, shared_.fingerprint);
+    const std::string path =
+        shared_.store.temporary_trace(header.task, header.episode, header.seed);
+    auto row = write(job, header, path);
+    if (!row) {
+      std::error_code ignored;
+      fs::remove(path, ignored);
+      return row.failure();
+    }
+    return commit(*row, static_cast<int>(job.task));
+  }
+
+ private:
+  Result<ResultRow> write(const EpisodeJob& job, const TraceHeader& header,
+                          const std::string& path) {
+    PROBE_ASSIGN(auto trace, TraceWriter::create(path, header));
+    std::optional<EpisodeVideo> video;
+    if (shared_.options.video != VideoChoice::kNone) {
+      video.emplace(header, video_path(header));
+    }
+    PROBE_ASSIGN(ResultRow row, run_episode(*stage_, shared_.plan, job, shared_.options.policy,
+                                            *policy_, *trace, video ? &*video : nullptr));
+    if (video) {
+      const bool keep = shared_.options.video == VideoChoice::kAll || has_failed(row);
+      PROBE_TRY(keep ? video->finish() : video->discard());
+    }
+    return row;
+  }
+
+  std::string video_path(const TraceHeader& header) const {
+    return (fs::path(shared_.options.out) / "videos" / header.task /
+            (std::to_string(header.episode) + "-" + std::to_string(header.seed) + ".mp4"))
+        .string();
+  }
+
+  Status commit(const ResultRow& row, int task_order) {
+    const std::lock_guard lock(shared_.mutex);
+    PROBE_TRY(shared_.store.commit(row, task_order));
+    ++shared_.summary.done;
+    if (row.invalid) ++shared_.summary.invalid;
+    if (shared_.options.progress) {
+      shared_.options.progress(
+          {shared_.summary.done, shared_.summary.skipped, shared_.summary.total, &row});
+    }
+    return {};
+  }
+
+  Shared& shared_;
+  std::unique_ptr<policy::Policy> policy_;
+  std::unique_ptr<TaskStage> stage_;
+};
+
+std::vector<std::uint32_t> tasks_of(const std::vector<EpisodeJob>& jobs) {
+  std::set<std::uint32_t> tasks;
+  for (const EpisodeJob& job : jobs) tasks.insert(job.task);
+  return {tasks.begin(), tasks.end()};
+}
+
+// Leaves the jobs that are not stored yet, or only as invalid.
+Result<int> drop_stored(const plan::Plan& plan, Store& store, std::vector<EpisodeJob>& jobs) {
+  PROBE_ASSIGN(const auto stored, store.episodes());
+  std::set<std::tuple<std::string, int, int>> valid;
+  for (const StoredEpisode& episode : stored) {
+    if (episode.valid) valid.emplace(episode.task, episode.episode, episode.seed);
+  }
+  const auto dropped = std::erase_if(jobs, [&](const EpisodeJob& job) {
+    return valid.contains({std::string(plan.text(plan.tasks()[job.task].name)),
+                           static_cast<int>(job.index), job.seed});
+  });
+  return static_cast<int>(dropped);
+}
+
+}  // namespace
+
+Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
+  PROBE_ASSIGN(const auto traits, policy::policy_traits(options.policy));
+  // Made once before anything else, so that a policy that cannot be had is told before the folder
+  // exists.
+  if (auto made = policy::make_policy(options.policy, policy_context()); !made)
+    return made.failure();
+  PROBE_ASSIGN(Selection selection, select_jobs(plan, options, traits.draws));
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+
+  RunSummary summary;
+  summary.notes = selection.notes;
+  summary.total = static_cast<int>(selection.jobs.size());
+  // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
+  PROBE_ASSIGN(auto assets, SharedAssets::load(plan, root, tasks_of(selection.jobs)));
+  const Fingerprint fingerprint = take_fingerprint(asset_digest(plan));
+  PROBE_ASSIGN(
+      auto store,
+      Store::open(
+          options.out,
+          {{to_hex(plan.root()), options.policy}, selection.suite, selection.seeds, fingerprint},
+          plan.bytes()));
+  for (const std::string& line : differences(store->record().fingerprint, fingerprint)) {
+    summary.notes.push_back("this folder was begun by another build or machine: " + line);
+  }
+  PROBE_ASSIGN(summary.skipped, drop_stored(plan, *store, selection.jobs));
+  if (options.progress) options.progress({0, summary.skipped, summary.total, nullptr});
+
+  Shared shared{
+      plan,   options, std::move(assets), to_json(fingerprint), std::move(selection.jobs), {},
+      *store, summary};
+  const auto make_worker = [&shared]() -> Result<Worker> {
+    auto worker = std::make_shared<EpisodeWorker>(shared);
+    PROBE_TRY(worker->begin());
+    return Worker([worker](std::size_t index) { return worker->run(index); });
+  };
+  PROBE_TRY(run_jobs(shared.jobs.size(), options.jobs, make_worker));
+  return summary;
+}
+
+}  // namespace probe::run

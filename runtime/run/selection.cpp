@@ -1,0 +1,100 @@
+// From options to jobs.
+#include "runtime/run/selection.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "runtime/run/glob.h"
+
+namespace probe::run {
+namespace {
+
+Failure usage(const std::string& message, const char* where) { return {"usage", message, where}; }
+
+// The suite to run: the named one, else the only one, else none.
+Result<const plan::SuiteRecord*> choose_suite(const plan::Plan& plan, const std::string& name) {
+  const auto suites = plan.suites();
+  if (!name.empty()) {
+    if (const auto index = plan.find_suite(name)) return &suites[*index];
+  }
+  if (name.empty() && suites.size() <= 1) return suites.empty() ? nullptr : suites.data();
+  std::string known;
+  for (const plan::SuiteRecord& suite : suites) {
+    known += (known.empty() ? "" : ", ") + std::string(plan.text(suite.name));
+  }
+  if (name.empty()) return usage("the plan has several suites, name one of: " + known, "--suite");
+  return usage("no suite `" + name + "`; the plan has " + (known.empty() ? "none" : known),
+               "--suite");
+}
+
+}  // namespace
+
+Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws) {
+  if (options.shards < 1 || options.shard < 1 || options.shard > options.shards) {
+    return usage("shard " + std::to_string(options.shard) + "/" + std::to_string(options.shards) +
+                     " is not one of 1/N .. N/N",
+                 "--shard");
+  }
+  PROBE_ASSIGN(const plan::SuiteRecord* suite, choose_suite(plan, options.suite));
+
+  Selection selection;
+  std::vector<std::uint32_t> tasks;
+  if (suite != nullptr) {
+    selection.suite = std::string(plan.text(suite->name));
+    const auto members = plan.members(*suite);
+    tasks.assign(members.begin(), members.end());
+  } else {
+    tasks.resize(plan.tasks().size());
+    std::iota(tasks.begin(), tasks.end(), 0u);
+  }
+  std::erase_if(tasks, [&](std::uint32_t task) {
+    return !matches_glob(options.tasks, plan.text(plan.tasks()[task].name));
+  });
+  std::sort(tasks.begin(), tasks.end());
+  tasks.erase(std::unique(tasks.begin(), tasks.end()), tasks.end());
+  if (tasks.empty()) return usage("no task is called `" + options.tasks + "`", "--tasks");
+
+  selection.seeds = options.seeds;
+  if (selection.seeds.empty()) {
+    if (suite != nullptr) {
+      for (const std::uint32_t seed : plan.seeds(*suite))
+        selection.seeds.push_back(static_cast<int>(seed));
+    }
+    if (selection.seeds.empty()) selection.seeds = {0};
+    if (!draws && selection.seeds.size() > 1) {
+      selection.seeds.resize(1);
+      selection.notes.push_back("policy `" + options.policy +
+                                "` draws nothing, so every start runs once, with seed " +
+                                std::to_string(selection.seeds[0]) + "; --seeds runs more");
+    }
+  }
+  std::sort(selection.seeds.begin(), selection.seeds.end());
+  selection.seeds.erase(std::unique(selection.seeds.begin(), selection.seeds.end()),
+                        selection.seeds.end());
+
+  std::size_t place = 0;
+  bool any = false;
+  for (const std::uint32_t task : tasks) {
+    const auto count = static_cast<std::uint32_t>(plan.episodes(plan.tasks()[task]).size());
+    for (std::uint32_t index = 0; index < count; ++index) {
+      if (options.episodes && (static_cast<int>(index) < options.episodes->first ||
+                               static_cast<int>(index) > options.episodes->second)) {
+        continue;
+      }
+      any = true;
+      for (const int seed : selection.seeds) {
+        const bool ours = place++ % static_cast<std::size_t>(options.shards) ==
+                          static_cast<std::size_t>(options.shard - 1);
+        if (ours) selection.jobs.push_back({task, index, seed});
+      }
+    }
+  }
+  if (!any) {
+    return usage("no chosen task has an episode from " + std::to_string(options.episodes->first) +
+                     " to " + std::to_string(options.episodes->second),
+                 "--episodes");
+  }
+  return selection;
+}
+
+}  // namespace probe::run

@@ -1,0 +1,27 @@
+// Which episodes a call of `run` means: suite, tasks, episodes, seeds and shard as a list of jobs.
+// Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+#include "runtime/run/episode.h"
+#include "runtime/run/run.h"
+
+namespace probe::run {
+
+struct Selection {
+  std::string suite;  // empty if the plan has none
+  std::vector<int> seeds;
+  std::vector<EpisodeJob> jobs;  // in the plan's order of tasks, then episode, then seed
+  std::vector<std::string> notes;
+};
+
+// `draws`: whether the policy can do two different things with two seeds. Fails (code "usage") on
+// an unknown suite, a glob that no task matches, episodes that no chosen task has, and a shard
+// outside 1/1 .. N/N.
+Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws);
+
+}  // namespace probe::run

@@ -1,0 +1,64 @@
+// A run's folder: results.sqlite, traces/, suite.plan, lock. Rows and traces are committed
+// together: a trace gets its final name before its row is written, and a row without its trace
+// counts as absent. store.cpp is the only file that includes SQLite.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/run/fingerprint.h"
+#include "runtime/run/results.h"
+
+namespace probe::run {
+
+// What must not change between two calls that write into one folder.
+struct RunIdentity {
+  std::string plan_root;  // hex
+  std::string policy;
+  bool operator==(const RunIdentity&) const = default;
+};
+
+struct RunRecord {
+  RunIdentity identity;
+  std::string suite;
+  std::vector<int> seeds;
+  Fingerprint fingerprint;  // of the call that made the folder
+};
+
+// What has been stored of an episode.
+struct StoredEpisode {
+  std::string task;
+  int episode = 0, seed = 0;
+  bool valid = false;  // an invalid one is run again
+};
+
+// One process writes a folder at a time; the methods may be called from any thread, one at a time.
+class Store {
+ public:
+  // Makes the folder or continues it. Fails (code "store") when the folder cannot be written,
+  // another process writes it, or it holds a run of another identity; the message says which part
+  // differs.
+  static Result<std::unique_ptr<Store>> open(const std::string& dir, const RunRecord& record,
+                                             std::span<const std::byte> plan_bytes);
+  virtual ~Store() = default;
+
+  // The record that the folder was made with.
+  virtual const RunRecord& record() const = 0;
+  virtual Result<std::vector<StoredEpisode>> episodes() = 0;
+
+  // Where the trace of this episode is to be written before commit().
+  virtual std::string temporary_trace(const std::string& task, int episode, int seed) const = 0;
+  // Renames the temporary trace and writes the row, replacing an invalid one. `task_order` sorts
+  // rows.
+  virtual Status commit(const ResultRow& row, int task_order) = 0;
+};
+
+// The run in `dir`, for readers; fails (code "store") if there is none.
+Result<RunRecord> read_run_record(const std::string& dir);
+std::string plan_path(const std::string& dir);
+std::string trace_path(const std::string& dir, const std::string& task, int episode, int seed);
+
+}  // namespace probe::run
