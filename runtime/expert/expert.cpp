@@ -36,7 +36,7 @@ constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
 
 constexpr Pace kFreePace{.shift = 0.050, .turn = 0.30, .lead = 1.6};
 constexpr Pace kNearPace{.shift = 0.035, .turn = 0.20, .lead = 1.4};
-constexpr Pace kHeldPace{.shift = 0.040, .turn = 0.20, .lead = 1.5};
+constexpr Pace kHeldPace{.shift = 0.040, .turn = 0.20, .lead = 1.5, .jump = 0.045};
 constexpr Pace kTouchPace{.shift = 0.020, .turn = 0.10, .lead = 1.0};
 
 class Expert final : public policy::Policy {
@@ -251,7 +251,7 @@ class Expert final : public policy::Policy {
       case Phase::kCarry: {
         Pose goal = pick_->lifted;
         goal.position.head<2>() = carry_goal(s).head<2>();
-        return servo_.toward(goal, s.tcp, kClosedGripper, kFreePace);
+        return servo_.toward(goal, s.tcp, kClosedGripper, kHeldPace);
       }
       case Phase::kLower:
         return command_lower(s);

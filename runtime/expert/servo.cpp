@@ -10,9 +10,7 @@
 namespace probe::expert {
 namespace {
 
-// What the target may move in one action, whatever is asked: larger jumps swing the arm.
-constexpr double kLargestShift = 0.08;  // m
-constexpr double kLargestTurn = 0.45;   // rad
+constexpr double kLargestTurn = 0.45;  // rad, of the target in one action
 
 double share(double length, double most) { return length > most ? most / length : 1.0; }
 
@@ -33,17 +31,18 @@ policy::Action Servo::toward(const Pose& goal, const Pose& measured, double grip
   const Pose ahead{
       measured.position + pace.lead * (next.position - measured.position),
       (robot::from_rotation_vector(pace.lead * turn) * measured.rotation).normalized()};
-  return set_target(ahead, measured, gripper);
+  return set_target(ahead, measured, gripper, pace.jump);
 }
 
 policy::Action Servo::settle(const Pose& pose, const Pose& measured, double gripper) {
-  return set_target(pose, measured, gripper);
+  return set_target(pose, measured, gripper, Pace{}.jump);
 }
 
 policy::Action Servo::hold(double gripper) const { return {0, 0, 0, 0, 0, 0, gripper}; }
 
-policy::Action Servo::set_target(const Pose& wanted, const Pose& measured, double gripper) {
-  const Pose next = stepped(target_, wanted, kLargestShift, kLargestTurn);
+policy::Action Servo::set_target(const Pose& wanted, const Pose& measured, double gripper,
+                                 double jump) {
+  const Pose next = stepped(target_, wanted, jump, kLargestTurn);
   const Quat turn = next.rotation * target_.rotation.conjugate();
   const Vec3 rotation = robot::to_rotation_vector(turn);
   // The controller turns the target about the measured position; the shift makes up for what that

@@ -15,6 +15,9 @@ struct Pace {
   // 1 / the share of the way a drive covers in a control step: the WidowX's time constants are
   // 0.16-0.28 s, so 0.5-0.7.
   double lead = 1.6;
+  // What the target may move in one action. The drives are stiff: a jump of the target is a jump of
+  // the speed.
+  double jump = 0.08;
 };
 
 class Servo {
@@ -34,7 +37,7 @@ class Servo {
   const Pose& target() const { return target_; }
 
  private:
-  policy::Action set_target(const Pose& wanted, const Pose& measured, double gripper);
+  policy::Action set_target(const Pose& wanted, const Pose& measured, double gripper, double jump);
   Pose target_;
 };
 

@@ -1,0 +1,177 @@
+#include "runtime/expert/expert.h"
+
+#include <chrono>
+
+#include "tests/runtime/expert/fake_table.h"
+
+namespace probe::expert {
+namespace {
+
+std::unique_ptr<policy::Policy> expert(const ExpertOptions& options = {}) {
+  auto made = make_expert(options);
+  REQUIRE(made.ok());
+  return std::move(made).value();
+}
+
+// The whole episode; returns the step after which the source first lay on the target, -1 never.
+int play(test::FakeTable& table, policy::Policy& policy) {
+  REQUIRE(policy.begin(table.start()).ok());
+  int solved = -1;
+  for (int step = 0; step < 60; ++step) {
+    const auto action = policy.act(table.observe(step));
+    REQUIRE(action.ok());
+    for (const double number : *action) REQUIRE(std::isfinite(number));
+    REQUIRE(table.apply(*action).ok());
+    if (!table.source_on_target()) solved = -1;
+    if (table.source_on_target() && solved < 0) solved = step + 1;
+  }
+  return solved;
+}
+
+const std::vector<Vec2> kCells = {
+    {-0.235, -0.075}, {-0.235, 0.075}, {-0.085, -0.075}, {-0.085, 0.075}};
+
+TEST_CASE("every ordered pair of cells and both orientations is solved with steps to spare") {
+  int latest = 0;
+  for (std::size_t from = 0; from < 4; ++from) {
+    for (std::size_t to = 0; to < 4; ++to) {
+      if (from == to) continue;
+      for (const double yaw : {180.0, -90.0}) {
+        CAPTURE(from);
+        CAPTURE(to);
+        CAPTURE(yaw);
+        test::FakeTable table(test::carrot(kCells[from].x(), kCells[from].y(), yaw),
+                              test::plate(kCells[to].x(), kCells[to].y()));
+        const auto policy = expert();
+        const int solved = play(table, *policy);
+        CHECK(solved > 0);
+        CHECK(table.lowest_tip() > test::kSurface + 0.001);
+        CHECK(table.openness() > 0.95);
+        CHECK(table.tcp_in_world().position.z() > test::kSurface + 0.06);
+        latest = std::max(latest, solved);
+      }
+    }
+  }
+  MESSAGE("the slowest takes ", latest, " steps");
+  CHECK(latest <= 40);
+}
+
+TEST_CASE("a grasp that slips is tried again") {
+  test::FakeTable table(test::carrot(-0.2, 0, 40), test::plate(-0.1, 0.1));
+  table.lose_next_grasp();
+  const auto policy = expert();
+  CHECK(play(table, *policy) > 0);
+}
+
+TEST_CASE("a source that is pushed during the approach is followed") {
+  test::FakeTable table(test::carrot(-0.235, -0.075, 0), test::plate(-0.085, 0.075));
+  const auto policy = expert();
+  REQUIRE(policy->begin(table.start()).ok());
+  bool solved = false;
+  for (int step = 0; step < 60; ++step) {
+    if (step == 3) table.source().pose.position += Vec3(0.02, 0.03, 0);
+    const auto action = policy->act(table.observe(step));
+    REQUIRE(action.ok());
+    REQUIRE(table.apply(*action).ok());
+    solved = table.source_on_target();
+  }
+  CHECK(solved);
+}
+
+TEST_CASE("tall neighbours are passed above") {
+  const auto can = test::object("can", {test::block({-0.03, -0.03, 0}, {0.03, 0.03, 0.12})},
+                                {-0.16, 0, test::kSurface}, 0);
+  test::FakeTable table(test::carrot(-0.235, -0.075, 0), test::plate(-0.085, 0.075), {can});
+  const auto policy = expert();
+  CHECK(play(table, *policy) > 0);
+}
+
+TEST_CASE("the one that only reaches stands at the source with open fingers") {
+  test::FakeTable table(test::carrot(-0.235, -0.075, 180), test::plate(-0.085, 0.075));
+  const auto policy = expert({.source = 0, .target = -1, .close = false});
+  CHECK(play(table, *policy) == -1);
+  CHECK(!table.was_held());
+  CHECK((table.tcp_in_world().position - table.source().pose.position).norm() < 0.05);
+  CHECK(table.openness() > 0.95);
+}
+
+TEST_CASE("the roles can be others, as for taking a distractor") {
+  const auto cube = test::object("cube", {test::block({-0.015, -0.015, 0}, {0.015, 0.015, 0.03})},
+                                 {-0.235, 0.075, test::kSurface}, 0);
+  test::FakeTable table(test::carrot(-0.235, -0.075, 0), test::plate(-0.085, 0.075), {cube});
+  const auto policy = expert({.source = 2, .target = 1});
+  REQUIRE(policy->begin(table.start()).ok());
+  for (int step = 0; step < 18; ++step) {
+    const auto action = policy->act(table.observe(step));
+    REQUIRE(action.ok());
+    REQUIRE(table.apply(*action).ok());
+  }
+  CHECK((table.tcp_in_world().position.head<2>() - Vec2(-0.235, 0.075)).norm() < 0.03);
+}
+
+TEST_CASE("the same episode gets the same actions") {
+  std::vector<policy::Action> runs[2];
+  for (auto& run : runs) {
+    test::FakeTable table(test::carrot(-0.2, 0, 70), test::plate(-0.1, 0.1));
+    const auto policy = expert();
+    REQUIRE(policy->begin(table.start()).ok());
+    for (int step = 0; step < 60; ++step) {
+      const auto action = policy->act(table.observe(step));
+      REQUIRE(action.ok());
+      run.push_back(*action);
+      REQUIRE(table.apply(*action).ok());
+    }
+  }
+  CHECK(runs[0] == runs[1]);
+}
+
+TEST_CASE("an action costs little") {
+  test::FakeTable table(test::carrot(-0.235, -0.075, 180), test::plate(-0.085, 0.075));
+  const auto policy = expert();
+  REQUIRE(policy->begin(table.start()).ok());
+  double longest = 0, total = 0;
+  for (int step = 0; step < 60; ++step) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto action = policy->act(table.observe(step));
+    const double took =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    longest = std::max(longest, took);
+    total += took;
+    REQUIRE(action.ok());
+    REQUIRE(table.apply(*action).ok());
+  }
+  MESSAGE("mean ", 1e6 * total / 60, " us, longest ", 1e6 * longest, " us");
+  CHECK(total / 60 < 0.01);
+}
+
+TEST_CASE("without what it needs the expert says so") {
+  const auto message = [](const Result<policy::Action>& action) {
+    REQUIRE(!action.ok());
+    CHECK(action.failure().code == "policy");
+    return action.failure().message;
+  };
+  test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
+  auto policy = expert();
+  CHECK(message(policy->act(table.observe(0))) ==
+        "the expert was asked to act before an episode began");
+  REQUIRE(policy->begin(table.start()).ok());
+  policy::Observation blind = table.observe(0);
+  blind.privileged = nullptr;
+  CHECK(message(policy->act(blind)) == "the expert needs the privileged view and got none");
+  policy::Observation stiff = table.observe(0);
+  stiff.proprioception.joints.resize(3);
+  CHECK(message(policy->act(stiff)) == "the expert needs 6 joint positions and got 3");
+  policy = expert({.source = 0, .target = 5});
+  REQUIRE(policy->begin(table.start()).ok());
+  CHECK(message(policy->act(table.observe(0))) ==
+        "the expert works on roles 0 and 5, the episode has 2 objects");
+  CHECK(!make_expert({.source = 1, .target = 1}).ok());
+  policy::EpisodeStart start = table.start();
+  start.tcp_link = "tool";
+  CHECK(!policy->begin(start).ok());
+  start.robot_urdf = "/nowhere.urdf";
+  CHECK(!policy->begin(start).ok());
+}
+
+}  // namespace
+}  // namespace probe::expert

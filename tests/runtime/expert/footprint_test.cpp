@@ -1,0 +1,51 @@
+#include "runtime/expert/footprint.h"
+
+#include "tests/runtime/expert/fake_table.h"
+
+namespace probe::expert {
+namespace {
+
+TEST_CASE("the outline of points is convex, without the inner ones") {
+  const Outline o = convex_outline({{0, 0}, {2, 0}, {1, 0}, {2, 1}, {1, 0.5}, {0, 1}, {0, 0}});
+  REQUIRE(o.size() == 4);
+  CHECK(o[0] == Vec2(0, 0));
+  CHECK(o[1] == Vec2(2, 0));  // counter-clockwise
+  CHECK(convex_outline({{1, 1}}).size() == 1);
+  CHECK(convex_outline({}).empty());
+}
+
+TEST_CASE("a footprint knows height, middle and extent of the object where it stands") {
+  const auto object = test::object(
+      "l", {test::block({0, 0, 0}, {2, 1, 1}), test::block({0, 1, 0}, {1, 3, 2})}, {10, 0, 5}, 90);
+  const Footprint print = footprint_of(object.parts, object.pose);
+  CHECK(print.bottom == doctest::Approx(5));
+  CHECK(print.top == doctest::Approx(7));
+  // Both parts have area 2, centres (1, .5) and (.5, 2); a quarter turn takes (x, y) to (-y, x).
+  CHECK((print.center - Vec2(10 - 1.25, 0.75)).norm() < 1e-9);
+  const Extent whole = extent_in_slab(print.parts, {Vec2(0, 1), 0.5, 0.4}, Vec2(1, 0));
+  CHECK(whole.lower == doctest::Approx(7));
+  CHECK(whole.upper == doctest::Approx(10));
+  const Extent end = extent_in_slab(print.parts, {Vec2(0, 1), 1.6, 0.3}, Vec2(1, 0));
+  CHECK(end.width() == doctest::Approx(1));
+  CHECK(extent_in_slab(print.parts, {Vec2(0, 1), 9, 0.3}, Vec2(1, 0)).empty());
+}
+
+TEST_CASE("outlines apart are at their nearest points, overlapping ones have a depth") {
+  const Outline a = convex_outline({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  const Outline right = convex_outline({{3, 0}, {4, 0}, {4, 1}, {3, 1}});
+  const Outline corner = convex_outline({{4, 5}, {6, 5}, {6, 7}, {4, 7}});
+  const Outline over = convex_outline({{0.9, 0}, {2, 0}, {2, 1}, {0.9, 1}});
+  CHECK(separation(a, right) == doctest::Approx(2));
+  CHECK(separation(a, corner) == doctest::Approx(5));
+  CHECK(separation(a, over) == doctest::Approx(-0.1));
+}
+
+TEST_CASE("an object without a hull is a point") {
+  const Footprint print = footprint_of({}, {Vec3(1, 2, 3), Quat::Identity()});
+  CHECK(print.whole.empty());
+  CHECK(print.center == Vec2(1, 2));
+  CHECK(print.top == 3);
+}
+
+}  // namespace
+}  // namespace probe::expert

@@ -1,0 +1,82 @@
+#include "runtime/expert/grasp_candidates.h"
+
+#include <numbers>
+
+#include "tests/runtime/expert/fake_table.h"
+
+namespace probe::expert {
+namespace {
+
+Footprint footprint(const policy::PrivilegedObject& object) {
+  return footprint_of(object.parts, object.pose);
+}
+
+TEST_CASE("the top-down pose at yaw 0 is the benchmark's and yaw is read back") {
+  Mat3 expected;
+  expected << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  CHECK((top_down(Vec3::Zero(), 0).rotation.toRotationMatrix() - expected).norm() < 1e-15);
+  for (const double yaw : {-3.0, -1.0, 0.0, 0.4, 2.9}) {
+    CHECK(yaw_of(top_down({1, 2, 3}, yaw).rotation) == doctest::Approx(yaw));
+  }
+}
+
+TEST_CASE("a long object is taken across, near its middle, with the tips above the surface") {
+  for (const double turn : {0.0, 30.0, 90.0, 117.0}) {
+    CAPTURE(turn);
+    const Footprint source = footprint(test::carrot(-0.2, 0.1, turn));
+    GraspProblem problem;
+    problem.source = &source;
+    problem.surface = test::kSurface;
+    const auto grasps = grasp_candidates(problem);
+    REQUIRE(!grasps.empty());
+    const Grasp& best = grasps.front();
+    // Fingers' width along the carrot: the yaw is the carrot's, or turned round.
+    const double off = std::remainder(best.yaw - turn * std::numbers::pi / 180, std::numbers::pi);
+    CHECK(std::abs(off) < 0.01);
+    CHECK(best.width < 0.0325);
+    CHECK((best.tcp.position.head<2>() - source.center).norm() < 0.012);
+    CHECK(best.tcp.position.z() - problem.gripper.tip_below >= test::kSurface + 0.0039);
+    CHECK(best.tcp.position.z() + problem.gripper.palm_above > source.top);
+    for (std::size_t i = 1; i < grasps.size(); ++i) CHECK(grasps[i - 1].cost <= grasps[i].cost);
+  }
+}
+
+TEST_CASE("of the two ways round the shorter turn comes first") {
+  const Footprint source = footprint(test::carrot(0, 0, 0));
+  GraspProblem problem;
+  problem.source = &source;
+  problem.surface = test::kSurface;
+  problem.yaw_now = 3.0;
+  CHECK(std::abs(grasp_candidates(problem).front().yaw) > 3.0);
+  problem.yaw_now = 0.2;
+  CHECK(std::abs(grasp_candidates(problem).front().yaw) < 0.1);
+}
+
+TEST_CASE("what is wider than the opening is not gripped") {
+  const auto big = test::object("block", {test::block({-0.03, -0.03, 0}, {0.03, 0.03, 0.04})},
+                                {0, 0, test::kSurface}, 0);
+  const Footprint source = footprint(big);
+  GraspProblem problem;
+  problem.source = &source;
+  problem.surface = test::kSurface;
+  CHECK(grasp_candidates(problem).empty());
+}
+
+TEST_CASE("a neighbour on the fingers' way makes the grasp move or turn") {
+  const Footprint source = footprint(test::object(
+      "cube", {test::block({-0.015, -0.015, 0}, {0.015, 0.015, 0.03})}, {0, 0, test::kSurface}, 0));
+  const Footprint wall = footprint(test::object(
+      "wall", {test::block({-0.05, 0.02, 0}, {0.05, 0.04, 0.03})}, {0, 0, test::kSurface}, 0));
+  GraspProblem problem;
+  problem.source = &source;
+  problem.others = {&wall};
+  problem.surface = test::kSurface;
+  const auto grasps = grasp_candidates(problem);
+  REQUIRE(!grasps.empty());
+  CHECK(grasps.front().clearance >= 0.002);
+  CHECK(std::abs(std::remainder(grasps.front().yaw - 0.5 * std::numbers::pi, std::numbers::pi)) <
+        0.3);
+}
+
+}  // namespace
+}  // namespace probe::expert

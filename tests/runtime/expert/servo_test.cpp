@@ -1,0 +1,46 @@
+#include "runtime/expert/servo.h"
+
+#include "runtime/robot/control.h"
+#include "runtime/robot/rotation.h"
+#include "tests/runtime/expert/fake_table.h"
+
+namespace probe::expert {
+namespace {
+
+TEST_CASE("the servo's own target is the controller's, whatever the arm does") {
+  test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
+  const auto model = robot::load_urdf(test::kUrdf);
+  REQUIRE(model.ok());
+  Servo servo;
+  Pose target = table.observe(0).proprioception.tcp_in_base;
+  servo.begin(target);
+  Pose goal = target;
+  goal.position += Vec3(0.08, -0.1, -0.05);
+  goal.rotation = robot::from_rotation_vector({0.1, 0, 1.2}) * goal.rotation;
+  for (int i = 0; i < 15; ++i) {
+    const Pose measured = table.observe(i).proprioception.tcp_in_base;
+    const policy::Action a = servo.toward(goal, measured, 1, {});
+    CHECK(Vec3(a[0], a[1], a[2]).norm() < 0.15);
+    CHECK(Vec3(a[3], a[4], a[5]).norm() < 0.46);
+    target = robot::moved_target(target, measured.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});
+    CHECK(robot::pose_error(target, servo.target()).position < 1e-12);
+    REQUIRE(table.apply(a).ok());
+  }
+  const robot::PoseError left =
+      robot::pose_error(table.observe(15).proprioception.tcp_in_base, goal);
+  CHECK(left.position < 0.001);
+  CHECK(left.rotation < 0.005);
+}
+
+TEST_CASE("a step towards a pose keeps to its limits and ends at the pose") {
+  const Pose from;
+  const Pose to{Vec3(0.1, 0, 0), robot::from_rotation_vector({0, 0, 1})};
+  const robot::PoseError one = robot::pose_error(from, stepped(from, to, 0.03, 0.2));
+  CHECK(one.position == doctest::Approx(0.03));
+  CHECK(one.rotation == doctest::Approx(0.2));
+  CHECK(robot::pose_error(stepped(from, to, 1, 2), to).position < 1e-15);
+  CHECK(robot::pose_error(stepped(from, to, 1, 2), to).rotation < 1e-14);
+}
+
+}  // namespace
+}  // namespace probe::expert
