@@ -239,11 +239,18 @@ void Parser::fail_expected() {
   std::vector<std::string> wanted;
   std::vector<std::string_view> words;
   bool any_operator = false, closes_paren = false;
+  std::optional<TokenKind> first_operator;
+  bool several_operators = false;
+  for (std::size_t i = 0; i < expected_count_; ++i) {
+    if (!is_operator(expected_[i].kind)) continue;
+    several_operators |= first_operator && *first_operator != expected_[i].kind;
+    first_operator = expected_[i].kind;
+  }
   for (std::size_t i = 0; i < expected_count_; ++i) {
     const Expected& item = expected_[i];
     closes_paren |= item.kind == TokenKind::kRightParen;
     std::string text;
-    if (is_operator(item.kind)) {
+    if (is_operator(item.kind) && several_operators) {
       if (std::exchange(any_operator, true)) continue;
       text = "an operator";
     } else if (item.kind == TokenKind::kSemicolon) {
@@ -266,12 +273,15 @@ void Parser::fail_expected() {
   message += is_short ? list : is_name ? "another word here" : "a word that fits here";
   std::optional<std::string_view> meant;
   if (is_name) meant = nearest(text_at(pos_), words);
+  // `and` and `or` are words, so a line ends behind them; operators of punctuation carry it on.
+  const bool after_word = is_new_line() && (text_at(prev_) == "and" || text_at(prev_) == "or");
   const bool in_paren = closes_paren && newline_before_ && !open_parens_.empty();
   const Span paren = in_paren ? span_at(open_parens_.back()) : Span{};
   Diagnostic* error = report(Code::P0101, span, std::move(message));
   if (error == nullptr) return;
   if (meant) error->point("did you mean `" + std::string(*meant) + "`?");
   if (in_paren) error->label(paren, "this `(` is not closed");
+  if (after_word) error->help("an expression goes on over a line end only inside parentheses");
   if (!is_short) error->help("expected one of " + list);
 }
 
