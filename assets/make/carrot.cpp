@@ -1,6 +1,7 @@
 // The carrot: 11.5 x 3.2 x 3.8 cm, thin end at -x, green stub at +x. It lies on a level line along
 // its bottom, so that it neither rolls nor rocks when it is let go; both sides are upright facets
 // for parallel fingers.
+#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csetjmp>
-#include <cstring>
 
 namespace probe::make {
 namespace {

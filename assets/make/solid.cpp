@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"

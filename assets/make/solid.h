@@ -2,6 +2,7 @@
 // the model's or link's own frame. Knows nothing of files.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>

@@ -44,7 +44,7 @@ Surface table_surface() {
   double along = -kThickness;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     if (i > 0) along += (outline[i] - outline[i - 1]).norm();
-    const double u = (along - kThickness + kThickness) / 0.40;
+    const double u = along / 0.40;  // 0 at the back edge of the top
     for (const double y : {kLeft, kRight}) {
       grid.points.emplace_back(outline[i].x(), y, outline[i].y());
       grid.uv.emplace_back(u, (y - kLeft) / (kRight - kLeft));
