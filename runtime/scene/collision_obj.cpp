@@ -1,5 +1,6 @@
-// Triangles of a Wavefront file for collision shapes: positions and faces only. A tiny reader of our own, because a
-// general importer welds, splits or triangulates vertices as it likes, and components are defined by shared indices.
+// Triangles of a Wavefront file for collision shapes: positions and faces only. A tiny reader of
+// our own, because a general importer welds, splits or triangulates vertices as it likes, and
+// components are defined by shared indices.
 #include <charconv>
 #include <fstream>
 #include <numeric>
@@ -72,12 +73,13 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
 }
 
 Result<CollisionShape> make_mesh_shape(const TriangleSoup& mesh, const std::string& name,
-                                            const HullOptions& options) {
+                                       const HullOptions& options) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0U);
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const std::uint32_t i : mesh.indices) {
-    if (i >= mesh.vertices.size()) return Failure{"asset", "a face names a vertex that is not there", name};
+    if (i >= mesh.vertices.size())
+      return Failure{"asset", "a face names a vertex that is not there", name};
     used[i] = true;
   }
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

@@ -34,7 +34,8 @@ bool run_qhull(const std::vector<Vec3>& points, double merge_mm, RawHull* out) {
   for (const Vec3& p : points) {
     for (int k = 0; k < 3; ++k) coordinates.push_back(p[k]);
   }
-  // Qhull writes its complaints into a memory stream: they are for a person at its own command line.
+  // Qhull writes its complaints into a memory stream: they are for a person at its own command
+  // line.
   char* text = nullptr;
   std::size_t length = 0;
   FILE* messages = open_memstream(&text, &length);
@@ -72,7 +73,8 @@ bool run_qhull(const std::vector<Vec3>& points, double merge_mm, RawHull* out) {
   return good;
 }
 
-// Turns loops counter-clockwise about their normals; false unless every edge joins exactly two faces.
+// Turns loops counter-clockwise about their normals; false unless every edge joins exactly two
+// faces.
 bool orient_and_check(const std::vector<Vec3>& points, RawHull* hull) {
   std::map<std::pair<int, int>, int> directed;
   for (RawHull::Face& face : hull->faces) {
@@ -109,7 +111,8 @@ bool closed_hull(const std::vector<Vec3>& points, RawHull* out) {
 
 std::vector<int> used_points(const RawHull& hull) {
   std::vector<int> used;
-  for (const RawHull::Face& face : hull.faces) used.insert(used.end(), face.loop.begin(), face.loop.end());
+  for (const RawHull::Face& face : hull.faces)
+    used.insert(used.end(), face.loop.begin(), face.loop.end());
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   return used;
@@ -138,7 +141,8 @@ std::pair<Vec3, Vec3> fit_plane(const std::vector<Vec3>& points) {
   return {solver.eigenvectors().col(0), mean};
 }
 
-// Chooses at most `limit` of the points: the axis extremes, then always the one farthest outside the hull so far.
+// Chooses at most `limit` of the points: the axis extremes, then always the one farthest outside
+// the hull so far.
 std::vector<Vec3> reduce_points(const std::vector<Vec3>& points, std::size_t limit) {
   constexpr double kGoodEnoughMm = 0.05;
   std::vector<Vec3> chosen;
@@ -242,8 +246,9 @@ void integrate_mass(HullPart* hull) {
       const Vec3 sum = a + b + c;
       hull->volume += volume;
       hull->moment += volume / 4.0 * sum;
-      hull->second += volume / 20.0 *
-                      (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
+      hull->second +=
+          volume / 20.0 *
+          (sum * sum.transpose() + a * a.transpose() + b * b.transpose() + c * c.transpose());
     }
   }
 }
@@ -267,9 +272,12 @@ bool is_flat_or_tiny(const std::vector<Vec3>& points_mm) {
 
 }  // namespace
 
-Result<HullPart> make_hull(std::span<const Vec3> points, const std::string& name, int max_vertices) {
+Result<HullPart> make_hull(std::span<const Vec3> points, const std::string& name,
+                           int max_vertices) {
   if (max_vertices < 4 || max_vertices > static_cast<int>(kMaxVertices)) {
-    return Failure{"asset", "a hull may have 4 to 64 vertices, asked for " + std::to_string(max_vertices), name};
+    return Failure{"asset",
+                   "a hull may have 4 to 64 vertices, asked for " + std::to_string(max_vertices),
+                   name};
   }
   std::vector<Vec3> mm;
   mm.reserve(points.size());
@@ -277,16 +285,19 @@ Result<HullPart> make_hull(std::span<const Vec3> points, const std::string& name
     if (!p.allFinite()) return Failure{"asset", "a vertex is not a finite number", name};
     mm.push_back(p * kMillimetres);
   }
-  if (is_flat_or_tiny(mm)) return Failure{"asset", "points are flat or closer than 0.2 mm, no solid", name};
+  if (is_flat_or_tiny(mm))
+    return Failure{"asset", "points are flat or closer than 0.2 mm, no solid", name};
 
   RawHull full;
-  if (!closed_hull(mm, &full)) return Failure{"asset", "no convex hull can be made of the points", name};
+  if (!closed_hull(mm, &full))
+    return Failure{"asset", "no convex hull can be made of the points", name};
   std::vector<Vec3> corners;
   for (const int i : used_points(full)) corners.push_back(mm[static_cast<std::size_t>(i)]);
 
   HullPart out;
   for (std::size_t limit = static_cast<std::size_t>(max_vertices); limit >= 8; limit -= 4) {
-    const std::vector<Vec3> chosen = corners.size() > limit ? reduce_points(corners, limit) : corners;
+    const std::vector<Vec3> chosen =
+        corners.size() > limit ? reduce_points(corners, limit) : corners;
     RawHull hull;
     if (!closed_hull(chosen, &hull)) continue;
     out = HullPart{};
@@ -351,7 +362,8 @@ Result<CollisionShape> make_collision_shape(const std::vector<std::vector<Vec3>>
     if (part) parts.push_back(std::move(part).value());
   }
   if (parts.empty()) {
-    return Failure{"asset", "no component of the mesh is a solid: all are flat, tiny or empty", name};
+    return Failure{"asset", "no component of the mesh is a solid: all are flat, tiny or empty",
+                   name};
   }
   return assemble_shape(std::move(parts));
 }
@@ -370,7 +382,8 @@ CollisionShape make_box_shape(const Vec3& half) {
     face.normal = Vec3::Zero();
     face.normal[static_cast<Eigen::Index>(f / 2)] = f % 2 == 0 ? -1 : 1;
     face.loop.assign(kLoops[f].begin(), kLoops[f].end());
-    for (std::size_t i = 0; i < 4; ++i) left_normal[{kLoops[f][i], kLoops[f][(i + 1) % 4]}] = face.normal;
+    for (std::size_t i = 0; i < 4; ++i)
+      left_normal[{kLoops[f][i], kLoops[f][(i + 1) % 4]}] = face.normal;
     box.part.faces.push_back(std::move(face));
   }
   for (const auto& [edge, normal] : left_normal) {

@@ -1,5 +1,5 @@
-// Collision shapes from points and meshes: convex hulls with merged polygonal faces, few vertices and mass properties.
-// Made once per asset. Knows nothing of worlds; Qhull stays inside hull.cpp.
+// Collision shapes from points and meshes: convex hulls with merged polygonal faces, few vertices
+// and mass properties. Made once per asset. Knows nothing of worlds; Qhull stays inside hull.cpp.
 #pragma once
 
 #include <span>
@@ -13,12 +13,13 @@
 namespace probe::scene {
 
 struct HullOptions {
-  int max_vertices = 32;      // 64 for round objects; more is refused
-  bool single_hull = false;   // one hull of all components: what links of a robot use
+  int max_vertices = 32;     // 64 for round objects; more is refused
+  bool single_hull = false;  // one hull of all components: what links of a robot use
 };
 
-// One convex part per component (its points, metres, model frame). Components that are flat or smaller than 0.2 mm are
-// dropped. Fails (code "asset", where = name) when a number is not finite or nothing solid is left.
+// One convex part per component (its points, metres, model frame). Components that are flat or
+// smaller than 0.2 mm are dropped. Fails (code "asset", where = name) when a number is not finite
+// or nothing solid is left.
 Result<CollisionShape> make_collision_shape(const std::vector<std::vector<Vec3>>& components,
                                             const std::string& name,
                                             const HullOptions& options = {});
@@ -29,9 +30,10 @@ struct TriangleSoup {
   std::vector<std::uint32_t> indices;  // 3 a triangle
 };
 Result<CollisionShape> make_mesh_shape(const TriangleSoup& mesh, const std::string& name,
-                                            const HullOptions& options = {});
+                                       const HullOptions& options = {});
 
-// Reads positions and faces of a Wavefront file and multiplies them by `scale`. Fails naming file and line.
+// Reads positions and faces of a Wavefront file and multiplies them by `scale`. Fails naming file
+// and line.
 Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& scale);
 Result<CollisionShape> load_collision_obj(const std::string& path, const Vec3& scale,
                                           const HullOptions& options = {});
@@ -39,13 +41,14 @@ Result<CollisionShape> load_collision_obj(const std::string& path, const Vec3& s
 // A box about the origin; half extents in metres, all positive.
 CollisionShape make_box_shape(const Vec3& half);
 
-// One part: closed, convex, at most 64 vertices, volume and moments about the origin of the points' frame.
+// One part: closed, convex, at most 64 vertices, volume and moments about the origin of the points'
+// frame.
 struct HullPart {
-  ConvexPart part;          // not yet moved to a centre of mass
+  ConvexPart part;  // not yet moved to a centre of mass
   double volume = 0;
-  Vec3 moment = Vec3::Zero();      // integral of x
-  Mat3 second = Mat3::Zero();      // integral of x x^T
-  double reduction_error = 0;      // m, farthest given point outside the part
+  Vec3 moment = Vec3::Zero();  // integral of x
+  Mat3 second = Mat3::Zero();  // integral of x x^T
+  double reduction_error = 0;  // m, farthest given point outside the part
 };
 Result<HullPart> make_hull(std::span<const Vec3> points, const std::string& name, int max_vertices);
 

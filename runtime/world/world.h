@@ -1,5 +1,6 @@
-// A world: one robot arm, one horizontal surface, fixtures and free rigid bodies, stepped at a fixed rate by the contact
-// stepper of this folder. Simbody stays behind arm_dynamics.cpp. Same spec and same calls give the same bits.
+// A world: one robot arm, one horizontal surface, fixtures and free rigid bodies, stepped at a
+// fixed rate by the contact stepper of this folder. Simbody stays behind arm_dynamics.cpp. Same
+// spec and same calls give the same bits.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +26,10 @@ struct Drive {
 struct ArmSpec {
   const robot::RobotModel* model = nullptr;  // outlives the world
   Pose base;                                 // of the root link, world
-  std::vector<Drive> drives;                 // one per actuated joint; their order is the order of q everywhere
-  std::vector<double> joints;                // initial q
-  // Collision shapes of links by name, in the link's frame (shape's model frame = link frame). Shared, read-only.
+  std::vector<Drive> drives;   // one per actuated joint; their order is the order of q everywhere
+  std::vector<double> joints;  // initial q
+  // Collision shapes of links by name, in the link's frame (shape's model frame = link frame).
+  // Shared, read-only.
   struct Link {
     std::string name;
     std::shared_ptr<const scene::CollisionShape> shape;
@@ -40,9 +42,9 @@ struct ArmSpec {
 struct BodySpec {
   std::string name;
   std::shared_ptr<const scene::CollisionShape> shape;
-  double density = 1000;   // kg/m3
+  double density = 1000;  // kg/m3
   double friction = 0.5;
-  Pose pose;               // model origin, world
+  Pose pose;  // model origin, world
 };
 
 struct WorldSpec {
@@ -78,31 +80,35 @@ struct ContactImpulse {
 
 class World {
  public:
-  // Fails (code "world") on mass or inertia that no body can have, unknown joints or links, non-finite numbers.
+  // Fails (code "world") on mass or inertia that no body can have, unknown joints or links,
+  // non-finite numbers.
   static Result<std::unique_ptr<World>> create(WorldSpec spec);
   virtual ~World() = default;
 
   virtual const WorldSpec& spec() const = 0;
 
-  virtual std::span<const double> joints() const = 0;         // q, in drive order
-  virtual std::span<const double> joint_speeds() const = 0;   // u
+  virtual std::span<const double> joints() const = 0;        // q, in drive order
+  virtual std::span<const double> joint_speeds() const = 0;  // u
   virtual void set_targets(std::span<const double> targets) = 0;
   virtual BodyState body(std::size_t index) const = 0;
-  virtual Pose link_pose(std::size_t link) const = 0;         // of ArmSpec::links[link], world, at the present q
+  virtual Pose link_pose(
+      std::size_t link) const = 0;  // of ArmSpec::links[link], world, at the present q
   virtual Pose frame_pose(std::string_view link_name) const = 0;  // any URDF link, fixed ones too
 
   // Puts a body anywhere, at rest.
   virtual void set_body(std::size_t index, const Pose& model_pose) = 0;
-  virtual void set_joints(std::span<const double> q) = 0;     // at rest, targets equal
+  virtual void set_joints(std::span<const double> q) = 0;  // at rest, targets equal
   // While locked, rotation about world x and y is blocked for all free bodies (the drop at reset).
   virtual void lock_tilt(bool locked) = 0;
-  virtual void stop_bodies() = 0;                             // zero velocities
+  virtual void stop_bodies() = 0;  // zero velocities
 
-  // Advances n substeps. Fails (code "world") when a number is not finite, or a body is faster than 50 m/s or far below
-  // the floor; the message names the body. The world must not be used after that.
+  // Advances n substeps. Fails (code "world") when a number is not finite, or a body is faster than
+  // 50 m/s or far below the floor; the message names the body. The world must not be used after
+  // that.
   virtual Status step(int substeps) = 0;
 
-  // Contacts of the last substep with a nonzero impulse, in a fixed order; sleeping bodies report frozen impulses.
+  // Contacts of the last substep with a nonzero impulse, in a fixed order; sleeping bodies report
+  // frozen impulses.
   virtual std::span<const ContactImpulse> contacts() const = 0;
 
   // The whole state including solver caches; restoring it continues bit for bit.

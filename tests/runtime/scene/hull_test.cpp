@@ -16,12 +16,14 @@ namespace {
 std::vector<Vec3> box_points(const Vec3& low, const Vec3& high) {
   std::vector<Vec3> points;
   for (int i = 0; i < 8; ++i) {
-    points.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(), i & 4 ? high.z() : low.z());
+    points.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(),
+                        i & 4 ? high.z() : low.z());
   }
   return points;
 }
 
-// Every point lies behind every face, every loop turns about its normal, edges are shared by two faces.
+// Every point lies behind every face, every loop turns about its normal, edges are shared by two
+// faces.
 void check_closed(const ConvexPart& part) {
   CHECK(part.vertices.size() <= 64);
   CHECK(part.vertices.size() + part.faces.size() == part.edges.size() + 2);  // Euler
@@ -127,7 +129,8 @@ TEST_CASE("a mesh file that is missing or broken is refused with file and line")
     REQUIRE(!result.ok());
     return to_text(result.failure());
   };
-  CHECK(to_text(load_collision_obj("/nowhere/x.obj", Vec3(1, 1, 1)).failure()).find("/nowhere/x.obj") == 0);
+  CHECK(to_text(load_collision_obj("/nowhere/x.obj", Vec3(1, 1, 1)).failure())
+            .find("/nowhere/x.obj") == 0);
   CHECK(load("").find("no faces") != std::string::npos);
   CHECK(load("v 0 0 nan\n").find(".obj:1: a vertex is not a finite") != std::string::npos);
   CHECK(load("v 0 0\n").find(".obj:1") != std::string::npos);

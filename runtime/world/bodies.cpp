@@ -1,0 +1,56 @@
+#include "runtime/world/bodies.h"
+
+#include <algorithm>
+
+#include "runtime/base/trig.h"
+
+namespace probe::world {
+
+void predict(Body* body, const Ambient& ambient, double dt) {
+  body->velocity =
+      (body->velocity + dt * ambient.gravity) * std::max(0.0, 1.0 - dt * ambient.linear_damping);
+  body->spin *= std::max(0.0, 1.0 - dt * ambient.angular_damping);
+  if (ambient.tilt_locked) {
+    const Vec3 up = body->axes.transpose().col(2);
+    body->spin = Vec3(0, 0, body->spin.z());
+    body->response.setZero();
+    body->response(2, 2) = 1.0 / up.dot(body->inertia * up);
+  } else {
+    const Mat3 turned = body->axes * body->inertia_inverse;
+    body->response = turned * body->axes.transpose();
+  }
+  body->start_velocity = body->velocity;
+  body->start_spin = body->spin;
+}
+
+void integrate(Body* body, const Ambient& ambient, double dt) {
+  body->position += dt * body->velocity;
+  const Mat3 axes = body->axes;
+  Vec3 middle = body->spin;
+  Vec3 momentum = Vec3::Zero();
+  if (!ambient.tilt_locked) {
+    const Vec3 w = axes.transpose() * body->spin;
+    const Vec3 iw = body->inertia * w;
+    momentum = axes * iw;
+    middle -= axes * (body->inertia_inverse * (0.5 * dt * w.cross(iw)));
+  }
+  const double speed = middle.norm();
+  const double half_angle = 0.5 * dt * speed;
+  Quat turn;
+  if (half_angle < 1e-8) {
+    turn.w() = 1;
+    turn.vec() = 0.5 * dt * middle;
+  } else {
+    const SinCos sc = portable_sincos(half_angle);
+    turn.w() = sc.cos;
+    turn.vec() = sc.sin / speed * middle;
+  }
+  body->rotation = turn * body->rotation;
+  body->rotation.normalize();
+  body->axes = body->rotation.toRotationMatrix();
+  if (!ambient.tilt_locked) {
+    body->spin = body->axes * (body->inertia_inverse * (body->axes.transpose() * momentum));
+  }
+}
+
+}  // namespace probe::world

@@ -1,0 +1,28 @@
+// Joint drives, implicit in the substep: contacts see the arm with its drives already in it. See
+// README for the algebra.
+#pragma once
+
+#include "runtime/world/state.h"
+
+namespace probe::world {
+
+// The arm as the rows see it: u+ = free_speed + response J^T impulse.
+struct ArmResponse {
+  JointMatrix response{};   // W, the inverse of M + dt KD + dt^2 KP
+  JointArray free_speed{};  // u* without contacts
+  std::array<int, kMaxJoints>
+      saturated{};  // -1, 0, +1: sign of the force limit that replaces the drive
+};
+
+// First guess of which drives are at their limit: force now and force at rest both beyond it.
+void guess_saturation(const Drives& drives, const Joints& joints, ArmResponse* arm);
+
+// W and u* for the given saturation. False if the matrix is not positive definite.
+bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass, double dt,
+             ArmResponse* arm);
+
+// Marks drives that exceed their limit at the new speeds `u`; true if there are any.
+bool find_overload(const Drives& drives, const Joints& joints, const JointArray& u, double dt,
+                   ArmResponse* arm);
+
+}  // namespace probe::world

@@ -1,0 +1,205 @@
+#include "runtime/world/snapshot.h"
+
+#include <bit>
+#include <cstring>
+
+namespace probe::world {
+namespace {
+
+using std::size_t;
+
+static_assert(std::endian::native == std::endian::little,
+              "states are written as they lie in memory");
+constexpr std::uint32_t kMagic = 0x31535756;  // VWS1
+
+class Writer {
+ public:
+  template <typename T>
+  void put(const T& value) {
+    static_assert(std::is_arithmetic_v<T>);
+    const size_t at = bytes_.size();
+    bytes_.resize(at + sizeof value);
+    std::memcpy(bytes_.data() + at, &value, sizeof value);
+  }
+  void put(const Vec3& v) {
+    for (int k = 0; k < 3; ++k) put(v[k]);
+  }
+  void put(const Quat& q) {
+    for (int k = 0; k < 4; ++k) put(q.coeffs()[k]);
+  }
+  void put(const Mat3& m) {
+    for (int c = 0; c < 3; ++c) put(Vec3(m.col(c)));
+  }
+  std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  template <typename T>
+  void get(T* value) {
+    static_assert(std::is_arithmetic_v<T>);
+    if (bytes_.size() - at_ < sizeof *value) {
+      good_ = false;
+      *value = T{};
+      return;
+    }
+    std::memcpy(value, bytes_.data() + at_, sizeof *value);
+    at_ += sizeof *value;
+  }
+  void get(bool* value) {
+    std::uint8_t byte = 0;
+    get(&byte);
+    if (byte > 1) good_ = false;
+    *value = byte == 1;
+  }
+  void get(Vec3* v) {
+    for (int k = 0; k < 3; ++k) get(&(*v)[k]);
+  }
+  void get(Quat* q) {
+    for (int k = 0; k < 4; ++k) get(&q->coeffs()[k]);
+  }
+  void get(Mat3* m) {
+    for (int c = 0; c < 3; ++c) {
+      Vec3 column;
+      get(&column);
+      m->col(c) = column;
+    }
+  }
+  bool good() const { return good_; }
+  bool at_end() const { return good_ && at_ == bytes_.size(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  size_t at_ = 0;
+  bool good_ = true;
+};
+
+// One list of fields for both directions.
+template <typename Stream>
+void point_fields(Stream&& s, auto& point) {
+  s(point.anchor_a), s(point.anchor_b), s(point.normal_a), s(point.id);
+  s(point.normal_impulse), s(point.torsion_impulse), s(point.friction_impulse);
+}
+
+template <typename Stream>
+void body_fields(Stream&& s, auto& body) {
+  s(body.position), s(body.rotation), s(body.velocity), s(body.spin), s(body.calm), s(body.asleep);
+}
+
+template <typename Stream>
+void joint_fields(Stream&& s, auto& joints) {
+  for (size_t j = 0; j < kMaxJoints; ++j) {
+    s(joints.q[j]), s(joints.u[j]), s(joints.target[j]);
+    s(joints.limit_impulse[j][0]), s(joints.limit_impulse[j][1]);
+  }
+}
+
+bool is_kept(const PairRecord& record, std::uint64_t next_substep) {
+  return record.valid && (record.frozen || record.last + 1 == next_substep);
+}
+
+}  // namespace
+
+std::vector<std::byte> save_state(const Stepper& stepper) {
+  Writer out;
+  const auto put = [&](const auto& value) { out.put(value); };
+  out.put(kMagic);
+  out.put(static_cast<std::uint32_t>(stepper.drives.count));
+  out.put(static_cast<std::uint32_t>(stepper.bodies.size()));
+  out.put(static_cast<std::uint32_t>(stepper.table.records.size()));
+  out.put(stepper.substep);
+  out.put(stepper.ambient.tilt_locked);
+  joint_fields(put, stepper.joints);
+  for (const Body& body : stepper.bodies) body_fields(put, body);
+  std::uint32_t kept = 0;
+  for (const PairRecord& record : stepper.table.records)
+    kept += is_kept(record, stepper.substep) ? 1 : 0;
+  out.put(kept);
+  for (size_t i = 0; i < stepper.table.records.size(); ++i) {
+    const PairRecord& record = stepper.table.records[i];
+    if (!is_kept(record, stepper.substep)) continue;
+    out.put(static_cast<std::uint32_t>(i));
+    out.put(record.frozen);
+    out.put(record.count);
+    out.put(record.axes);
+    out.put(record.offset);
+    out.put(record.impulse);
+    for (size_t k = 0; k < static_cast<size_t>(record.count); ++k)
+      point_fields(put, record.points[k]);
+  }
+  return out.take();
+}
+
+Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
+  Reader in(bytes);
+  const auto get = [&](auto& value) { in.get(&value); };
+  std::uint32_t magic = 0, joints_count = 0, bodies_count = 0, records_count = 0, kept = 0;
+  std::uint64_t substep = 0;
+  bool tilt_locked = false;
+  get(magic), get(joints_count), get(bodies_count), get(records_count), get(substep),
+      get(tilt_locked);
+  if (!in.good() || magic != kMagic) return Failure{"world", "the bytes are not a saved world", ""};
+  if (joints_count != static_cast<std::uint32_t>(stepper->drives.count) ||
+      bodies_count != stepper->bodies.size() || records_count != stepper->table.records.size()) {
+    return Failure{"world", "the saved state is of a world with other joints, bodies or shapes",
+                   ""};
+  }
+  Joints joints;
+  joint_fields(get, joints);
+  std::vector<Body> bodies = stepper->bodies;
+  for (Body& body : bodies) {
+    body_fields(get, body);
+    body.axes = body.rotation.toRotationMatrix();
+  }
+  get(kept);
+  std::vector<PairRecord> records(stepper->table.records.size());
+  for (std::uint32_t n = 0; n < kept && in.good(); ++n) {
+    std::uint32_t index = 0;
+    get(index);
+    if (index >= records.size())
+      return Failure{"world", "the saved state names a pair that is not there", ""};
+    PairRecord& record = records[index];
+    get(record.frozen), get(record.count);
+    if (record.count < 0 || record.count > kMaxPoints) {
+      return Failure{"world", "the saved state has a pair with too many points", ""};
+    }
+    get(record.axes), get(record.offset), get(record.impulse);
+    for (size_t k = 0; k < static_cast<size_t>(record.count); ++k)
+      point_fields(get, record.points[k]);
+    record.valid = true;
+    record.last = substep - 1;
+  }
+  if (!in.at_end())
+    return Failure{"world", "the saved state is cut short or has bytes left over", ""};
+
+  stepper->substep = substep;
+  stepper->ambient.tilt_locked = tilt_locked;
+  stepper->joints = joints;
+  stepper->bodies = std::move(bodies);
+  stepper->table.records = std::move(records);
+  for (size_t b = 0; b < stepper->bodies.size(); ++b) {
+    place_body(stepper->bodies[b], &stepper->colliders[stepper->links + b]);
+  }
+  return {};
+}
+
+Sha256 hash_state(const Stepper& stepper) {
+  Hasher hasher;
+  const size_t n = static_cast<size_t>(stepper.drives.count);
+  hasher.u32(static_cast<std::uint32_t>(n)).u32(static_cast<std::uint32_t>(stepper.bodies.size()));
+  for (const JointArray* values : {&stepper.joints.q, &stepper.joints.u, &stepper.joints.target}) {
+    hasher.f64s(std::span(values->data(), n));
+  }
+  for (const Body& body : stepper.bodies) {
+    hasher.f64s(std::span(body.position.data(), 3))
+        .f64s(std::span(body.rotation.coeffs().data(), 4));
+    hasher.f64s(std::span(body.velocity.data(), 3)).f64s(std::span(body.spin.data(), 3));
+  }
+  return hasher.finish();
+}
+
+}  // namespace probe::world

@@ -1,0 +1,159 @@
+// The plain data of a world: joints, bodies, what is tested for contact, pair records, contacts of
+// a substep. Only data and one-line helpers; the stages of a substep are functions over it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+#include "runtime/scene/collision_shape.h"
+
+namespace probe::world {
+
+// Rows are this wide whatever the robot, so that sums over joints have fixed lanes. A multiple
+// of 8.
+constexpr int kMaxJoints = 8;
+
+struct Parameters {
+  double dt = 0.002;
+  int max_sweeps = 50;
+  double tolerance = 1e-5;  // m/s, largest velocity change of a sweep at which it ends
+  double beta = 0.2;        // share of the overlap removed in a substep
+  double slop = 5e-5;  // m of overlap left alone, so that resting contacts never switch off and on
+  double push = 0.2;   // m/s, cap of the push-out
+  double margin = 0.002;  // m, least gap from which a contact exists
+  double reuse = 1e-4;    // m of relative motion up to which a manifold is kept
+  double match = 0.004;   // m between old and new points that are the same
+};
+
+using JointArray = std::array<double, kMaxJoints>;
+using JointMatrix = std::array<std::array<double, kMaxJoints>, kMaxJoints>;
+
+// The robot's part of the solver. Unused joints are zero everywhere.
+struct Drives {
+  int count = 0;
+  JointArray stiffness{}, damping{}, limit{};
+  JointArray lower{}, upper{};  // joint limits; infinite for continuous joints
+  std::array<bool, kMaxJoints> prismatic{};
+};
+
+struct Joints {
+  JointArray q{}, u{}, target{};
+  std::array<std::array<double, 2>, kMaxJoints> limit_impulse{};  // lower, upper
+};
+
+struct Body {
+  // Of the asset.
+  double mass = 0;
+  Mat3 inertia = Mat3::Zero(),
+       inertia_inverse = Mat3::Zero();  // body axes, about the centre of mass
+  Vec3 model_to_center = Vec3::Zero();  // centre of mass in the model frame
+  // State.
+  Vec3 position = Vec3::Zero();  // centre of mass, world
+  Quat rotation = Quat::Identity();
+  Vec3 velocity = Vec3::Zero();
+  Vec3 spin = Vec3::Zero();
+  int calm = 0;  // substeps at rest
+  bool asleep = false;
+  // Derived each substep.
+  Mat3 axes = Mat3::Identity();  // the rotation as a matrix
+  Mat3 response = Mat3::Zero();  // world inverse inertia (K); locked axes zero
+  Vec3 start_velocity = Vec3::Zero(), start_spin = Vec3::Zero();  // after gravity, before contacts
+};
+
+struct Box {
+  Vec3 center = Vec3::Zero(), half = Vec3::Zero();
+};
+
+inline bool overlaps(const Box& a, const Box& b, double margin) {
+  return std::abs(a.center.x() - b.center.x()) <= a.half.x() + b.half.x() + margin &&
+         std::abs(a.center.y() - b.center.y()) <= a.half.y() + b.half.y() + margin &&
+         std::abs(a.center.z() - b.center.z()) <= a.half.z() + b.half.z() + margin;
+}
+
+// A shape with a place: links first, then bodies, in the order of the spec.
+struct Collider {
+  std::shared_ptr<const scene::CollisionShape> shape;
+  double friction = 1;
+  double patch = 0;
+  int body = -1;  // index of a free body, -1 for a link
+  int moving_link =
+      -1;  // of the arm: the joint whose body carries the link; -1 for the base and for free bodies
+  std::uint32_t path = 0;  // joints between the base and the link, one bit each
+  Pose in_carrier;  // of a link: frame of its centre of mass in the moving link (or the base)
+  Box local;        // of all parts, shape frame
+  // Derived each substep.
+  Mat3 axes = Mat3::Identity();
+  Vec3 position = Vec3::Zero();
+  double reach_speed = 0;  // m/s, bound on the speed of any of its points
+  Box box;
+  std::vector<Box> part_boxes;
+};
+
+constexpr int kMaxPoints = 6;
+
+// A contact point as it is kept between substeps.
+struct ManifoldPoint {
+  Vec3 anchor_a = Vec3::Zero(),
+       anchor_b = Vec3::Zero();  // witness points in the frames of A and B (plane: world)
+  Vec3 normal_a = Vec3::Zero();  // from B to A, in A's frame (plane: world)
+  int id = -1;                   // plane: vertex + 100 x part
+  double normal_impulse = 0, torsion_impulse = 0;
+  Vec3 friction_impulse = Vec3::Zero();  // world
+};
+
+struct FaceRef {
+  bool of_b = false;
+  std::int16_t face = -1;
+};
+
+// What a pair of parts, or a collider and the plane, remembers.
+struct PairRecord {
+  bool valid = false;
+  bool frozen = false;  // all its free bodies sleep; kept as it is
+  std::int8_t count = 0;
+  std::uint64_t last = 0;        // the substep in which it was live
+  Mat3 axes = Mat3::Identity();  // relative pose when the manifold was made: R_A^T R_B (plane: R_A)
+  Vec3 offset = Vec3::Zero();    // R_A^T (x_B - x_A) (plane: x_A)
+  std::array<ManifoldPoint, kMaxPoints> points;
+  Vec3 impulse = Vec3::Zero();  // on A, last substep, world
+  FaceRef cached;  // last separating or reference face: changes speed only, never results
+};
+
+// A direction of a contact. Impulse l changes u by wj l, v_A by d l / m, omega_A by ka l; B
+// opposite.
+struct Row {
+  alignas(16) JointArray j{};
+  alignas(16) JointArray wj{};
+  Vec3 d, arm_a, arm_b;  // direction, r_A x d, r_B x d
+  Vec3 ka, kb;           // K_A (r_A x d), K_B (r_B x d)
+  double body_k = 0;     // bodies' part of k, with the regularisation
+  double k = 1, inverse_k = 1;
+  double bias = 0;
+  double impulse = 0;
+};
+
+// Row without direction: torsion about the normal.
+struct Contact {
+  std::uint32_t record = 0;
+  std::int8_t point = 0;
+  bool links = false;  // rows have joint columns
+  bool torsion = false;
+  int collider_a = -1, collider_b = -1;  // -1: the plane
+  int body_a = -1, body_b = -1;          // awake free bodies only, else -1
+  Vec3 n, p, t1, t2;
+  double gap = 0, friction = 0, patch = 0;
+  double inverse_mass_a = 0, inverse_mass_b = 0;
+  Row normal, tangent1, tangent2, twist;
+};
+
+struct LimitRow {
+  int joint = 0;
+  double sign = 1;  // +1 lower limit, -1 upper
+  double bias = 0, k = 1, lever = 1;
+  double impulse = 0;
+};
+
+}  // namespace probe::world
