@@ -99,7 +99,7 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
   for (const plan::Instruction& in : code) {
     const auto op = static_cast<Op>(in.op);
     if (op == Op::kPUSH || op == Op::kIMP) {
-      pairs_.push_back({std::min(in.a, in.b), std::max(in.a, in.b), Vec3::Zero()});
+      pairs_.push_back({std::min(in.a, in.b), std::max(in.a, in.b), Vec3::Zero(), Vec3::Zero()});
     }
   }
   const auto key = [](const Pair& p) { return std::pair(p.a, p.b); };
@@ -117,7 +117,7 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
       const auto it = std::ranges::lower_bound(
           pairs_, std::pair(std::min(in.a, in.b), std::max(in.a, in.b)), {}, key);
       step.a = static_cast<std::uint16_t>(it - pairs_.begin());
-      step.b = in.a > in.b ? 1 : 0;  // 1: the wanted impulse is the negated one
+      step.b = in.a > in.b ? 1 : 0;  // 1: what the greater body exerts on the smaller
     }
     bool is_fixed = is_fixed_source(info.op);
     if (is_register(info.a) && !info.is_monitor() && info.result != Kind::kUnused) {
@@ -210,6 +210,7 @@ void Judge::read_contacts(std::span<const ContactSample> contacts) {
       ++contact;
     const bool touches = contact != contacts.end() && contact->a == pair.a && contact->b == pair.b;
     pair.push = touches ? contact->push : Vec3::Zero();
+    pair.push_back = touches ? Vec3(-contact->push) : Vec3::Zero();
   }
 }
 
@@ -261,7 +262,7 @@ void Judge::run(std::span<const Step> steps, const StepSample& sample) {
         put(d, rotated(sample.bodies[s.a].rotation, starts_[s.a].opening));
         break;
       case Op::kPUSH:
-        put(d, s.b == 0 ? pairs_[s.a].push : Vec3(-pairs_[s.a].push));
+        put(d, s.b == 0 ? pairs_[s.a].push : pairs_[s.a].push_back);
         break;
       case Op::kIMP: {
         const Vec3& push = pairs_[s.a].push;

@@ -62,10 +62,11 @@ class Judge {
     double value = 0;
     bool started = false;
   };
-  // A pair of bodies some instruction asks about, a < b, and what a exerts on b at this step.
+  // A pair of bodies some instruction asks about, a < b, and at this step what a exerts on b and b
+  // on a. Both are kept, because without contact both are +0.
   struct Pair {
     std::uint16_t a = 0, b = 0;
-    Vec3 push = Vec3::Zero();
+    Vec3 push = Vec3::Zero(), push_back = Vec3::Zero();
   };
 
   Status check(const StepSample& sample) const;
