@@ -8,13 +8,11 @@
 namespace probe::syntax {
 namespace {
 
-constexpr std::string_view kDeclWords[] = {
-#define PROBE_DECL(word) #word,
-#include "compiler/syntax/keywords.def"
-};
-
-bool is_declaration_word(std::string_view word) {
-  return std::find(std::begin(kDeclWords), std::end(kDeclWords), word) != std::end(kDeclWords);
+// What stands behind `=` in a metric, and seldom in a set of tasks.
+bool is_readout_word(std::string_view word) {
+  constexpr std::string_view kWords[] = {"at",    "once",  "always", "count",
+                                         "first", "final", "max",    "min"};
+  return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
 }
 
 bool can_end_statement(TokenKind kind) {
@@ -45,6 +43,14 @@ std::string listed(const std::vector<std::string>& words) {
 }
 
 }  // namespace
+
+bool is_declaration_word(std::string_view word) {
+  static constexpr std::string_view kWords[] = {
+#define PROBE_DECL(word) #word,
+#include "compiler/syntax/keywords.def"
+  };
+  return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
+}
 
 // ---- tokens
 // ---------------------------------------------------------------------------------------------------------
@@ -102,11 +108,12 @@ void Parser::advance() {
     return;
   }
   prev_ = pos_;
-  newline_before_ = stray_before_ = false;
+  newline_before_ = on_new_line_ = stray_before_ = false;
   for (++pos_; is_trivia(raw_kind()); ++pos_) {
     newline_before_ |= raw_kind() == TokenKind::kNewline;
     stray_before_ |= raw_kind() == TokenKind::kStray;
   }
+  on_new_line_ = newline_before_;
 }
 
 bool Parser::at(TokenKind wanted) {
@@ -216,36 +223,47 @@ void Parser::fail_too_deep(const Span& span) {
   }
 }
 
-void Parser::fail_expected() {
+// A unit apart from its number is the likeliest slip of all.
+bool Parser::fail_blank_before_unit() {
+  const bool after_number = prev_ != kNoToken && tokens_[prev_].kind == TokenKind::kNumber &&
+                            tokens_[prev_].unit == Unit::kNone && !on_new_line_;
+  if (!after_number || raw_kind() != TokenKind::kIdent) return false;
+  std::uint32_t last = pos_;
+  const bool divides =
+      tokens_[pos_ + 1].kind == TokenKind::kSlash && tokens_[pos_ + 2].kind == TokenKind::kIdent;
+  if (divides &&
+      unit_from_text(source_.text(join(span_at(pos_), span_at(pos_ + 2)))) != Unit::kNone)
+    last = pos_ + 2;
+  const Span unit_span = join(span_at(pos_), span_at(last));
+  const std::string unit(source_.text(unit_span));
+  if (unit_from_text(unit) == Unit::kNone) return false;
+  const Span gap{file_.id, tokens_[prev_].end, tokens_[pos_].begin};
+  const std::string whole = std::string(text_at(prev_)) + unit;
+  Diagnostic* error = report(Code::P0301, unit_span, "found a blank before unit `" + unit + "`");
+  if (error != nullptr)
+    error->point("a unit touches its number").fix_by("write `" + whole + "`", gap, "");
+  return true;
+}
+
+void Parser::fail_expected(std::string_view noun) {
   if (failed_) return;
   if (stray_before_) {  // the stray bytes have been reported and are why the grammar stumbles
     failed_ = true;
     complete_ = false;
     return;
   }
-  // A unit apart from its number is the likeliest slip of all.
-  const bool after_number = prev_ != kNoToken && tokens_[prev_].kind == TokenKind::kNumber &&
-                            tokens_[prev_].unit == Unit::kNone && !newline_before_;
-  if (after_number && raw_kind() == TokenKind::kIdent &&
-      unit_from_text(text_at(pos_)) != Unit::kNone) {
-    const std::string whole = std::string(text_at(prev_)) + std::string(text_at(pos_));
-    const Span gap{file_.id, tokens_[prev_].end, tokens_[pos_].begin};
-    Diagnostic* error = report(Code::P0301, span_at(pos_),
-                               "found a blank before unit `" + std::string(text_at(pos_)) + "`");
-    if (error != nullptr)
-      error->point("a unit touches its number").fix_by("write `" + whole + "`", gap, "");
-    return;
-  }
+  if (fail_blank_before_unit()) return;
   std::vector<std::string> wanted;
   std::vector<std::string_view> words;
   bool any_operator = false, closes_paren = false;
-  std::optional<TokenKind> first_operator;
-  bool several_operators = false;
+  std::vector<TokenKind> operators;
   for (std::size_t i = 0; i < expected_count_; ++i) {
-    if (!is_operator(expected_[i].kind)) continue;
-    several_operators |= first_operator && *first_operator != expected_[i].kind;
-    first_operator = expected_[i].kind;
+    const TokenKind wanted_kind = expected_[i].kind;
+    const bool known =
+        std::find(operators.begin(), operators.end(), wanted_kind) != operators.end();
+    if (is_operator(wanted_kind) && !known) operators.push_back(wanted_kind);
   }
+  const bool several_operators = operators.size() > 2;
   for (std::size_t i = 0; i < expected_count_; ++i) {
     const Expected& item = expected_[i];
     closes_paren |= item.kind == TokenKind::kRightParen;
@@ -270,12 +288,18 @@ void Parser::fail_expected() {
   const bool is_name = kind() == TokenKind::kIdent;
   const Span span = here();
   std::string message = "found " + found_text() + ", expected ";
-  message += is_short ? list : is_name ? "another word here" : "a word that fits here";
+  if (is_short) {
+    message += list;
+  } else {
+    message += noun;
+  }
   std::optional<std::string_view> meant;
   if (is_name) meant = nearest(text_at(pos_), words);
   // `and` and `or` are words, so a line ends behind them; operators of punctuation carry it on.
   const bool after_word = is_new_line() && (text_at(prev_) == "and" || text_at(prev_) == "or");
-  const bool in_paren = closes_paren && newline_before_ && !open_parens_.empty();
+  const bool in_paren =
+      closes_paren && !open_parens_.empty() &&
+      (on_new_line_ || raw_kind() == TokenKind::kRightBrace || raw_kind() == TokenKind::kEnd);
   const Span paren = in_paren ? span_at(open_parens_.back()) : Span{};
   Diagnostic* error = report(Code::P0101, span, std::move(message));
   if (error == nullptr) return;
@@ -310,7 +334,7 @@ void Parser::recover(std::uint32_t start) {
 
 bool Parser::starts_declaration() const {
   if (raw_kind() != TokenKind::kIdent && raw_kind() != TokenKind::kAt) return false;
-  if (prev_ != kNoToken && !newline_before_) return false;
+  if (prev_ != kNoToken && !on_new_line_) return false;
   const std::uint32_t begin = tokens_[pos_].begin;
   const std::uint32_t column = begin - source_.line_start(source_.line_of(begin));
   if (column > decl_column_) return false;
@@ -326,6 +350,7 @@ bool Parser::looks_like_unclosed_block(std::initializer_list<std::string_view> s
                                                              text_at(pos_)) != statements.end();
   if (!ambiguous) return true;
   const std::string_view after = text_ahead(2);
+  if (text_at(pos_) == "set" && after == "=") return !is_readout_word(text_ahead(3));
   return kind_ahead(2) == TokenKind::kLeftBrace || after == "like" || after == "of" ||
          after == "against";
 }
@@ -342,7 +367,7 @@ bool Parser::begin_block() {
         passed == TokenKind::kEnd)
       return false;
   }
-  if (newline_before_ || errors_.is_spent()) return false;
+  if (on_new_line_ || errors_.is_spent()) return false;
   failed_ = false;
   open_parens_.clear();
   while (pos_ != token) advance();

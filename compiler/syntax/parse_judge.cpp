@@ -74,7 +74,7 @@ Param Parser::param() {
   if (!known) {
     expected_count_ = 0;
     for (const TypeWord& type : kTypes) at_word(type.word);
-    fail_expected();
+    fail_expected("a type");
   }
   if (accept(TokenKind::kAssign)) out.default_value = expr();
   out.span = since(begin);
@@ -116,7 +116,7 @@ Readout Parser::readout() {
     known = accept_word(entry.word);
     if (known) out.kind = entry.kind;
   }
-  if (!known) fail_expected();
+  if (!known) fail_expected("a read-out");
   out.kind_span = since(begin);
   out.expr = expr();
   out.span = since(begin);

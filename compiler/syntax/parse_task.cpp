@@ -116,7 +116,7 @@ void Parser::task_statement(std::vector<TaskStmt>& body) {
   } else if (accept_word("set")) {
     stmt = metric();
   } else {
-    fail_expected();
+    fail_expected("a statement of a task");
   }
   if (failed_) return;
   std::visit([&](auto& node) { node.span = since(begin); }, stmt);
@@ -307,7 +307,7 @@ void Parser::suite_statement(std::vector<SuiteStmt>& body) {
     expect_word("episodes");
     stmt = expected;
   } else {
-    fail_expected();
+    fail_expected("a statement of `suite`");
   }
   if (failed_) return;
   std::visit([&](auto& node) { node.span = since(begin); }, stmt);

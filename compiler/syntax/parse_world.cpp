@@ -233,7 +233,7 @@ void Parser::robot_statement(std::vector<RobotStmt>& body) {
     if (accept_word("patch")) grip.patch = quantity();
     stmt = std::move(grip);
   } else {
-    fail_expected();
+    fail_expected("a statement of `robot`");
   }
   if (failed_) return;
   std::visit([&](auto& node) { node.span = since(begin); }, stmt);
@@ -270,7 +270,7 @@ void Parser::camera_statement(std::vector<CameraStmt>& body) {
   } else if (accept_word("lens")) {
     stmt = LensStmt{{}, comma_list([this] { return quantity(); })};
   } else {
-    fail_expected();
+    fail_expected("a statement of `camera`");
   }
   if (failed_) return;
   std::visit([&](auto& node) { node.span = since(begin); }, stmt);
@@ -298,7 +298,7 @@ void Parser::light_statement(std::vector<LightStmt>& body) {
     sun.shadow = accept_word("shadow");
     stmt = std::move(sun);
   } else {
-    fail_expected();
+    fail_expected("a statement of `light`");
   }
   if (failed_) return;
   std::visit([&](auto& node) { node.span = since(begin); }, stmt);
@@ -363,7 +363,7 @@ void Parser::scene_statement(std::vector<SceneStmt>& body) {
     if (physics.window_step) expect_word("step");
     stmt = std::move(physics);
   } else {
-    fail_expected();
+    fail_expected("a statement of `scene`");
   }
   if (failed_) return;
   std::visit([&](auto& node) { node.span = since(begin); }, stmt);
@@ -411,7 +411,7 @@ void Parser::layout_statement(std::vector<LayoutStmt>& body) {
     expect_word("episodes");
     stmt = expected;
   } else {
-    fail_expected();
+    fail_expected("a statement of `layout`");
   }
   if (failed_) return;
   std::visit([&](auto& node) { node.span = since(begin); }, stmt);

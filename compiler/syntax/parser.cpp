@@ -71,7 +71,10 @@ void Parser::declaration() {
   if (!failed_ && !at_end && !at(TokenKind::kSemicolon)) {
     fail_expected();
     // Two declarations on one line: the second is read as if the line had been broken.
-    if (raw_kind() == TokenKind::kIdent && start != pos_) failed_ = false, open_parens_.clear();
+    if (raw_kind() == TokenKind::kIdent && is_declaration_word(text_at(pos_))) {
+      failed_ = false;
+      open_parens_.clear();
+    }
   }
   decl.complete = complete_;
   // A failed @allow or a word that starts no declaration leaves nothing to keep.
@@ -120,7 +123,7 @@ DeclNode Parser::declaration_node() {
       return (this->*rule.parse)();
     }
   }
-  fail_expected();
+  fail_expected("a declaration");
   return UseDecl{};
 }
 

@@ -20,6 +20,8 @@
 
 namespace probe::syntax {
 
+bool is_declaration_word(std::string_view word);
+
 class Parser {
  public:
   Parser(const SourceFile& source, const TokenStream& stream, ErrorBudget& errors);
@@ -54,7 +56,9 @@ class Parser {
   void skip_newlines();
 
   // ---- cursor.cpp: errors and recovery ----
-  void fail_expected();
+  // `noun` stands for the expected set in the message when the set is long; the help then lists it.
+  void fail_expected(std::string_view noun = "something else");
+  bool fail_blank_before_unit();
   void fail(Code code, const Span& span, std::string message);
   Diagnostic* report(Code code, const Span& span, std::string message);
   void fail_too_deep(const Span& span);
@@ -186,9 +190,11 @@ class Parser {
   ErrorBudget& errors_;
   File file_;
 
-  std::uint32_t pos_ = 0;                   // current significant token
-  std::uint32_t prev_ = kNoToken;           // the one before
-  bool newline_before_ = false;             // a newline stands between them
+  std::uint32_t pos_ = 0;          // current significant token
+  std::uint32_t prev_ = kNoToken;  // the one before
+  bool newline_before_ = false;    // a newline stands between them
+  bool on_new_line_ =
+      false;  // the current token is the first of its line, even if that newline was skipped
   bool stray_before_ = false;               // bytes that have been reported stand between them
   std::vector<std::uint32_t> open_parens_;  // of the innermost block
   bool failed_ = false;

@@ -69,6 +69,8 @@ class SlotReader {
 TemplateText Parser::template_text() {
   TemplateText out;
   out.text = string();
+  if (prev_ != kNoToken && unclosed_string_ == prev_)
+    return out;  // has been reported; braces in it mean nothing
   const std::string_view raw = out.text.raw;
   const std::uint32_t base = out.text.span.begin + 1;
   const auto span = [&](std::size_t begin, std::size_t end) {
