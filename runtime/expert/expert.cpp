@@ -34,10 +34,10 @@ constexpr double kOpenGripper = 1, kClosedGripper = -1;
 constexpr int kMostTries = 3;
 constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
 
-constexpr Pace kFreePace{.shift = 0.050, .turn = 0.30, .lead = 1.6};
-constexpr Pace kNearPace{.shift = 0.035, .turn = 0.20, .lead = 1.4};
-constexpr Pace kHeldPace{.shift = 0.040, .turn = 0.20, .lead = 1.5, .jump = 0.045};
-constexpr Pace kTouchPace{.shift = 0.020, .turn = 0.10, .lead = 1.0};
+constexpr Pace kFreePace{.shift = 0.050, .turn = 0.30};
+constexpr Pace kNearPace{.shift = 0.030, .turn = 0.20};
+constexpr Pace kHeldPace{.shift = 0.040, .turn = 0.20, .gain = 0.015};
+constexpr Pace kTouchPace{.shift = 0.015, .turn = 0.10, .lead = false};
 
 class Expert final : public policy::Policy {
  public:
@@ -65,9 +65,13 @@ class Expert final : public policy::Policy {
     const Scene scene = look(observation, {options_.source, options_.close ? options_.target : -1});
     if (observation.horizon > 0) horizon_ = observation.horizon;
     steps_left_ = horizon_ - observation.step;
-    if (!started_) servo_.begin(scene.tcp);
-    if (!started_) last_ = scene;
-    started_ = true;
+    const Arm arm{scene.tcp, scene.joints};
+    if (!started_) {
+      servo_.begin(reach_->chain(), arm);
+      last_ = scene;
+      started_ = true;
+    }
+    servo_.observe(arm, !scene.fingers_on_source[0] && !scene.fingers_on_source[1]);
     // Phases that are done take no time; each leads on, so this ends.
     for (int i = 0; i < 12; ++i) {
       const Phase before = phase_;
@@ -95,11 +99,12 @@ class Expert final : public policy::Policy {
                                  options_.source, options_.target, count),
                      ""};
     }
-    if (observation.proprioception.joints.size() < reach_->arm_joints()) {
-      return Failure{"policy",
-                     fmt::format("the expert needs {} joint positions and got {}",
-                                 reach_->arm_joints(), observation.proprioception.joints.size()),
-                     ""};
+    if (observation.proprioception.joints.size() < reach_->chain().joint_count()) {
+      return Failure{
+          "policy",
+          fmt::format("the expert needs {} joint positions and got {}",
+                      reach_->chain().joint_count(), observation.proprioception.joints.size()),
+          ""};
     }
     return {};
   }
@@ -120,6 +125,8 @@ class Expert final : public policy::Policy {
     const robot::PoseError e = robot::pose_error(a, b);
     return e.position < shift && e.rotation < turn;
   }
+
+  static Arm arm_of(const Scene& s) { return {s.tcp, s.joints}; }
 
   bool both_fingers(const Scene& s) const {
     return s.fingers_on_source[0] && s.fingers_on_source[1];
@@ -240,18 +247,18 @@ class Expert final : public policy::Policy {
       case Phase::kRaise:
         return command_raise(s);
       case Phase::kAbove:
-        return servo_.toward(pick_->above, s.tcp, kOpenGripper, kFreePace);
+        return servo_.toward(pick_->above, arm_of(s), kOpenGripper, kFreePace);
       case Phase::kDescend:
-        return servo_.toward(pick_->grasp.tcp, s.tcp, kOpenGripper, kNearPace);
+        return servo_.toward(pick_->grasp.tcp, arm_of(s), kOpenGripper, kNearPace);
       case Phase::kClose:
-        return servo_.settle(pick_->grasp.tcp, s.tcp,
+        return servo_.settle(pick_->grasp.tcp, arm_of(s),
                              options_.close ? kClosedGripper : kOpenGripper);
       case Phase::kLift:
-        return servo_.toward(pick_->lifted, s.tcp, kClosedGripper, kHeldPace);
+        return servo_.toward(pick_->lifted, arm_of(s), kClosedGripper, kHeldPace);
       case Phase::kCarry: {
         Pose goal = pick_->lifted;
         goal.position.head<2>() = carry_goal(s).head<2>();
-        return servo_.toward(goal, s.tcp, kClosedGripper, kHeldPace);
+        return servo_.toward(goal, arm_of(s), kClosedGripper, kHeldPace);
       }
       case Phase::kLower:
         return command_lower(s);
@@ -262,7 +269,7 @@ class Expert final : public policy::Policy {
       case Phase::kRetreat: {
         Pose goal = release_;
         goal.position.z() += 0.075;
-        return servo_.toward(goal, s.tcp, kOpenGripper, kHeldPace);
+        return servo_.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
       }
       case Phase::kRest:
         return servo_.hold(kOpenGripper);
@@ -275,7 +282,7 @@ class Expert final : public policy::Policy {
     if (s.openness < 0.5 && steps_ < 2) return servo_.hold(kOpenGripper);
     Pose goal = s.tcp;
     goal.position.z() = std::max(goal.position.z(), travel_height(s, GripperShape{}.tip_below));
-    return servo_.toward(goal, s.tcp, kOpenGripper, kHeldPace);
+    return servo_.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
   }
 
   policy::Action command_lower(const Scene& s) {
@@ -283,7 +290,7 @@ class Expert final : public policy::Policy {
     Pose goal = pick_->lifted;
     goal.position = carry_goal(s);
     goal.position.z() -= gap;
-    return servo_.toward(goal, s.tcp, kClosedGripper, gap > 0.02 ? kNearPace : kTouchPace);
+    return servo_.toward(goal, arm_of(s), kClosedGripper, gap > 0.02 ? kNearPace : kTouchPace);
   }
 
   // Takes back what the target leads ahead, and opens by a few millimetres so that nothing is
@@ -293,7 +300,7 @@ class Expert final : public policy::Policy {
     goal.rotation = pick_->lifted.rotation;
     // Openness is over the fingers' travel; the command's range is a little wider.
     const double gripper = std::clamp(2 * (s.openness + 0.20) - 1, -1.0, 1.0);
-    return servo_.settle(goal, s.tcp, gripper);
+    return servo_.settle(goal, arm_of(s), gripper);
   }
 
   ExpertOptions options_;

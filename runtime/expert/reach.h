@@ -18,7 +18,7 @@ class Reach {
   // order.
   static Result<Reach> create(const std::string& urdf_path, std::string_view tcp_link);
 
-  std::size_t arm_joints() const { return chain_.joint_count(); }
+  const robot::Chain& chain() const { return chain_; }
 
   // Follows straight lines from the tool's pose at `q` through the poses, a solution every 5 cm or
   // 0.3 rad, each from the one before. False as soon as one fails.

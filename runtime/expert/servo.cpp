@@ -4,13 +4,17 @@
 
 #include <algorithm>
 
+#include "runtime/base/check.h"
 #include "runtime/robot/control.h"
+#include "runtime/robot/ik.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::expert {
 namespace {
 
-constexpr double kLargestTurn = 0.45;  // rad, of the target in one action
+// What the target may move in one action, whatever is asked: larger jumps swing the arm.
+constexpr double kLargestShift = 0.10;  // m
+constexpr double kLargestTurn = 0.60;   // rad
 
 double share(double length, double most) { return length > most ? most / length : 1.0; }
 
@@ -24,33 +28,64 @@ Pose stepped(const Pose& from, const Pose& to, double shift, double turn) {
               .normalized()};
 }
 
-policy::Action Servo::toward(const Pose& goal, const Pose& measured, double gripper,
-                             const Pace& pace) {
-  const Pose next = stepped(measured, goal, pace.shift, pace.turn);
-  const Vec3 turn = robot::to_rotation_vector(next.rotation * measured.rotation.conjugate());
-  const Pose ahead{
-      measured.position + pace.lead * (next.position - measured.position),
-      (robot::from_rotation_vector(pace.lead * turn) * measured.rotation).normalized()};
-  return set_target(ahead, measured, gripper, pace.jump);
+void Servo::begin(const robot::Chain& chain, const Arm& arm) {
+  PROBE_CHECK(arm.joints.size() >= chain.joint_count(), "a position for each joint of the chain");
+  chain_ = &chain;
+  response_.reset();
+  target_ = arm.tcp;
+  knows_target_ = false;
+  last_shift_ = 0;
 }
 
-policy::Action Servo::settle(const Pose& pose, const Pose& measured, double gripper) {
-  return set_target(pose, measured, gripper, Pace{}.jump);
+void Servo::observe(const Arm& arm, bool free) {
+  const std::size_t n = chain_->joint_count();
+  if (free && knows_target_) {
+    response_.learn(std::span(joints_before_).first(n), std::span(joint_target_).first(n),
+                    arm.joints.first(n));
+  }
+  std::copy_n(arm.joints.begin(), n, joints_before_.begin());
+}
+
+policy::Action Servo::toward(const Pose& goal, const Arm& arm, double gripper, const Pace& pace) {
+  const double shift = std::min(pace.shift, last_shift_ + pace.gain);
+  const Pose next = stepped(arm.tcp, goal, shift, pace.turn);
+  last_shift_ = (next.position - arm.tcp.position).norm();
+  return set_target(pace.lead ? ahead_of(next, arm) : next, arm, gripper);
+}
+
+policy::Action Servo::settle(const Pose& pose, const Arm& arm, double gripper) {
+  last_shift_ = 0;
+  return set_target(pose, arm, gripper);
 }
 
 policy::Action Servo::hold(double gripper) const { return {0, 0, 0, 0, 0, 0, gripper}; }
 
-policy::Action Servo::set_target(const Pose& wanted, const Pose& measured, double gripper,
-                                 double jump) {
-  const Pose next = stepped(target_, wanted, jump, kLargestTurn);
-  const Quat turn = next.rotation * target_.rotation.conjugate();
-  const Vec3 rotation = robot::to_rotation_vector(turn);
+// The pose whose joint positions, as targets, bring the joints to those of `next` within the step.
+Pose Servo::ahead_of(const Pose& next, const Arm& arm) const {
+  const std::size_t n = chain_->joint_count();
+  Joints q{};
+  std::copy_n(arm.joints.begin(), n, q.begin());
+  if (!robot::solve_ik(*chain_, next, std::span(q).first(n)).converged) return next;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double there = arm.joints[j] + (q[j] - arm.joints[j]) * response_.lead(j);
+    q[j] = std::clamp(there, chain_->lower()[j], chain_->upper()[j]);
+  }
+  return chain_->pose(std::span(q).first(n));
+}
+
+policy::Action Servo::set_target(const Pose& wanted, const Arm& arm, double gripper) {
+  const Pose next = stepped(target_, wanted, kLargestShift, kLargestTurn);
+  const Vec3 rotation = robot::to_rotation_vector(next.rotation * target_.rotation.conjugate());
   // The controller turns the target about the measured position; the shift makes up for what that
   // moves.
-  const Vec3 swung = measured.position +
-                     robot::from_rotation_vector(rotation) * (target_.position - measured.position);
+  const Vec3 swung = arm.tcp.position +
+                     robot::from_rotation_vector(rotation) * (target_.position - arm.tcp.position);
   const Vec3 shift = next.position - swung;
-  target_ = robot::moved_target(target_, measured.position, shift, rotation);
+  target_ = robot::moved_target(target_, arm.tcp.position, shift, rotation);
+
+  const std::size_t n = chain_->joint_count();
+  std::copy_n(arm.joints.begin(), n, joint_target_.begin());
+  knows_target_ = robot::solve_ik(*chain_, target_, std::span(joint_target_).first(n)).converged;
   return {shift.x(), shift.y(), shift.z(), rotation.x(), rotation.y(), rotation.z(), gripper};
 }
 

@@ -1,35 +1,48 @@
 // From "the tool should go there" to the seven numbers of an action. The controller adds each
-// action to a target pose of its own, so the servo keeps the same sum; and the arm only covers part
-// of the way to a target in a control step, so the target is set ahead of where the tool shall be
-// next.
+// action to a target pose of its own, so the servo keeps the same sum; and joints cover only part
+// of the way to a target in a control step, each its own part, so the target is set ahead of where
+// the tool shall be next.
 #pragma once
 
+#include <array>
+#include <span>
+
 #include "runtime/base/geometry.h"
+#include "runtime/expert/drive_response.h"
 #include "runtime/policy/policy.h"
+#include "runtime/robot/kinematics.h"
 
 namespace probe::expert {
 
 struct Pace {
   double shift = 0.05;  // m a control step
   double turn = 0.30;   // rad a control step
-  // 1 / the share of the way a drive covers in a control step: the WidowX's time constants are
-  // 0.16-0.28 s, so 0.5-0.7.
-  double lead = 1.6;
-  // What the target may move in one action. The drives are stiff: a jump of the target is a jump of
-  // the speed.
-  double jump = 0.08;
+  double gain = 0.025;  // m a control step may be longer than the one before: stiff drives follow
+                        // jumps at once
+  bool lead = true;     // ask for targets beyond, to arrive within the step
+};
+
+// What the arm measures.
+struct Arm {
+  Pose tcp;
+  std::span<const double> joints;  // at least the chain's
 };
 
 class Servo {
  public:
-  // The controller's target at the start of an episode is the tool's pose.
-  void begin(const Pose& tcp) { target_ = tcp; }
+  // The controller's target at the start of an episode is the tool's pose. The chain must outlive
+  // the servo's use.
+  void begin(const robot::Chain& chain, const Arm& arm);
+
+  // Call once a control step before asking for the action. `free`: nothing was touched, so the
+  // joints' moves tell how the drives respond.
+  void observe(const Arm& arm, bool free);
 
   // Moves towards a goal, at most a pace a step. `gripper` is the action's seventh number.
-  policy::Action toward(const Pose& goal, const Pose& measured, double gripper, const Pace& pace);
+  policy::Action toward(const Pose& goal, const Arm& arm, double gripper, const Pace& pace);
 
   // Sets the target to a pose near by, and to nothing beyond it.
-  policy::Action settle(const Pose& pose, const Pose& measured, double gripper);
+  policy::Action settle(const Pose& pose, const Arm& arm, double gripper);
 
   // Leaves the target where it is.
   policy::Action hold(double gripper) const;
@@ -37,8 +50,16 @@ class Servo {
   const Pose& target() const { return target_; }
 
  private:
-  policy::Action set_target(const Pose& wanted, const Pose& measured, double gripper, double jump);
+  using Joints = std::array<double, robot::kMaxChainJoints>;
+  Pose ahead_of(const Pose& next, const Arm& arm) const;
+  policy::Action set_target(const Pose& wanted, const Arm& arm, double gripper);
+
+  const robot::Chain* chain_ = nullptr;
+  DriveResponse response_;
   Pose target_;
+  Joints joint_target_{}, joints_before_{};
+  bool knows_target_ = false;  // joint_target_ is what the controller's inverse kinematics found
+  double last_shift_ = 0;
 };
 
 // `from` moved towards `to`, no more than the given shift and turn.

@@ -19,6 +19,8 @@
 namespace probe::expert::test {
 
 inline const char* const kUrdf = VLAPROBE_SOURCE_DIR "/assets/robots/widowx/wx250s.urdf";
+inline const std::vector<std::string> kArm = {"waist",        "shoulder",    "elbow",
+                                              "forearm_roll", "wrist_angle", "wrist_rotate"};
 inline constexpr double kSurface = 0.87;
 
 inline std::vector<Vec3> block(const Vec3& low, const Vec3& high) {
@@ -117,8 +119,7 @@ class FakeTable {
     REQUIRE(model.ok());
     auto made = robot::EeDeltaPoseController::create(
         *model, {.tcp_link = "ee_gripper_link",
-                 .arm_joints = {"waist", "shoulder", "elbow", "forearm_roll", "wrist_angle",
-                                "wrist_rotate"},
+                 .arm_joints = kArm,
                  .finger_joints = {"left_finger", "right_finger"}});
     REQUIRE(made.ok());
     return std::move(made).value();

@@ -11,17 +11,23 @@ TEST_CASE("the servo's own target is the controller's, whatever the arm does") {
   test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
   const auto model = robot::load_urdf(test::kUrdf);
   REQUIRE(model.ok());
+  const auto chain = robot::Chain::create(*model, "ee_gripper_link", test::kArm);
+  REQUIRE(chain.ok());
   Servo servo;
-  Pose target = table.observe(0).proprioception.tcp_in_base;
-  servo.begin(target);
+  auto seen = table.observe(0);
+  Pose target = seen.proprioception.tcp_in_base;
+  servo.begin(*chain, {target, seen.proprioception.joints});
   Pose goal = target;
   goal.position += Vec3(0.08, -0.1, -0.05);
   goal.rotation = robot::from_rotation_vector({0.1, 0, 1.2}) * goal.rotation;
   for (int i = 0; i < 15; ++i) {
-    const Pose measured = table.observe(i).proprioception.tcp_in_base;
-    const policy::Action a = servo.toward(goal, measured, 1, {});
+    seen = table.observe(i);
+    const Pose measured = seen.proprioception.tcp_in_base;
+    const Arm arm{measured, seen.proprioception.joints};
+    servo.observe(arm, true);
+    const policy::Action a = servo.toward(goal, arm, 1, {});
     CHECK(Vec3(a[0], a[1], a[2]).norm() < 0.15);
-    CHECK(Vec3(a[3], a[4], a[5]).norm() < 0.46);
+    CHECK(Vec3(a[3], a[4], a[5]).norm() < 0.61);
     target = robot::moved_target(target, measured.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});
     CHECK(robot::pose_error(target, servo.target()).position < 1e-12);
     REQUIRE(table.apply(a).ok());
@@ -30,6 +36,33 @@ TEST_CASE("the servo's own target is the controller's, whatever the arm does") {
       robot::pose_error(table.observe(15).proprioception.tcp_in_base, goal);
   CHECK(left.position < 0.001);
   CHECK(left.rotation < 0.005);
+}
+
+TEST_CASE("once the drives are known the tool arrives where each step asks") {
+  test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
+  const auto model = robot::load_urdf(test::kUrdf);
+  REQUIRE(model.ok());
+  const auto chain = robot::Chain::create(*model, "ee_gripper_link", test::kArm);
+  REQUIRE(chain.ok());
+  Servo servo;
+  auto seen = table.observe(0);
+  servo.begin(*chain, {seen.proprioception.tcp_in_base, seen.proprioception.joints});
+  Pose goal = seen.proprioception.tcp_in_base;
+  goal.position += Vec3(0.1, -0.2, -0.06);
+  goal.rotation = robot::from_rotation_vector({0, 0, 1.2}) * goal.rotation;
+  for (int i = 0; i < 5; ++i) {
+    seen = table.observe(i);
+    const Arm arm{seen.proprioception.tcp_in_base, seen.proprioception.joints};
+    servo.observe(arm, true);
+    const Pace pace{.shift = 0.03, .turn = 0.2};
+    REQUIRE(table.apply(servo.toward(goal, arm, 1, pace)).ok());
+    const Pose expected = stepped(arm.tcp, goal, pace.shift, pace.turn);
+    const robot::PoseError off =
+        robot::pose_error(expected, table.observe(i + 1).proprioception.tcp_in_base);
+    if (i < 2) continue;
+    CHECK(off.position < 0.001);
+    CHECK(off.rotation < 0.01);
+  }
 }
 
 TEST_CASE("a step towards a pose keeps to its limits and ends at the pose") {
