@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/expert/expert.h"
 #include "runtime/policy/simple.h"
 
 namespace probe::policy {
@@ -27,7 +28,7 @@ constexpr std::array kPolicies = {
     Entry{"null", "", Kind::kNull, {}, "stays where it is, gripper open"},
     Entry{"random", "", Kind::kRandom, {true, false}, "uniform actions"},
     Entry{"reach", "", Kind::kReach, {}, "goes to the source and never closes"},
-    Entry{"wrong", "", Kind::kWrong, {}, "the expert on a distractor"},
+    Entry{"wrong", "", Kind::kWrong, {}, "the expert on the first distractor"},
     Entry{"noisy", "SIGMA", Kind::kNoisy, {true, false}, "the expert with noise, SIGMA in metres"},
     Entry{"replay", "DIR", Kind::kReplay, {true, true}, "the recorded actions of another run"},
     Entry{"openpi", "//HOST:PORT?profile=NAME", Kind::kServer, {true, false}, "an openpi server"},
@@ -114,9 +115,14 @@ Result<double> read_sigma(const std::string& text) {
   return sigma;
 }
 
+// The first distractor among the privileged view's roles.
+constexpr int kDistractor = 2;
+
 Result<std::unique_ptr<Policy>> make_scripted(Kind kind) {
-  static_cast<void>(kind);
-  return Failure{"policy", "the scripted expert is not available yet", "--policy"};
+  expert::ExpertOptions options;
+  if (kind == Kind::kReach) options.close = false;
+  if (kind == Kind::kWrong) options.source = kDistractor;
+  return expert::make_expert(options);
 }
 
 }  // namespace

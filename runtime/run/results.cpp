@@ -16,9 +16,23 @@ std::string number(double value) {
 
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
+  std::string out(1, '"');
+  for (const char c : text) {
+    if (c == '"') out.push_back('"');
+    out.push_back(c);
+  }
+  out.push_back('"');
+  return out;
+}
+
+std::string line_of(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& cell : cells) {
+    if (&cell != cells.data()) line.push_back(',');
+    line += quoted(cell);
+  }
+  line.push_back('\n');
+  return line;
 }
 
 std::string cell(const ResultRow& row, const std::string& metric) {
@@ -81,22 +95,24 @@ std::string results_to_json(std::span<const ResultRow> rows) {
 
 std::string results_to_csv(std::span<const ResultRow> rows) {
   const std::vector<std::string> names = metric_names(rows);
-  std::string text = "task,episode,seed,policy";
-  for (const std::string& name : names) text += "," + quoted(name);
-  text +=
-      ",steps,invalid,prompt_sha256,image_sha256,frames_sha256,trace_sha256,episode_id,start_id,"
-      "trace\n";
+  std::vector<std::string> header = {"task", "episode", "seed", "policy"};
+  header.insert(header.end(), names.begin(), names.end());
+  for (const char* name : {"steps", "invalid", "prompt_sha256", "image_sha256", "frames_sha256",
+                           "trace_sha256", "episode_id", "start_id", "trace"}) {
+    header.emplace_back(name);
+  }
+  std::string text = line_of(header);
   for (const ResultRow& row : rows) {
-    text += quoted(row.task) + "," + std::to_string(row.episode) + "," + std::to_string(row.seed) +
-            "," + quoted(row.policy);
-    for (const std::string& name : names) text += "," + cell(row, name);
-    text += "," + std::to_string(row.steps) + "," + quoted(row.invalid.value_or(""));
-    for (const std::string* value :
-         {&row.prompt_sha256, &row.image_sha256, &row.frames_sha256, &row.trace_sha256,
-          &row.episode_id, &row.start_id, &row.trace}) {
-      text += "," + quoted(*value);
+    std::vector<std::string> cells = {row.task, std::to_string(row.episode),
+                                      std::to_string(row.seed), row.policy};
+    for (const std::string& name : names) cells.push_back(cell(row, name));
+    cells.push_back(std::to_string(row.steps));
+    for (const std::string& value :
+         {row.invalid.value_or(""), row.prompt_sha256, row.image_sha256, row.frames_sha256,
+          row.trace_sha256, row.episode_id, row.start_id, row.trace}) {
+      cells.push_back(value);
     }
-    text += "\n";
+    text += line_of(cells);
   }
   return text;
 }

@@ -60,9 +60,9 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
       for (const std::uint32_t seed : plan.seeds(*suite))
         selection.seeds.push_back(static_cast<int>(seed));
     }
-    if (selection.seeds.empty()) selection.seeds = {0};
+    if (selection.seeds.empty()) selection.seeds.push_back(0);
     if (!draws && selection.seeds.size() > 1) {
-      selection.seeds.resize(1);
+      selection.seeds.erase(selection.seeds.begin() + 1, selection.seeds.end());
       selection.notes.push_back("policy `" + options.policy +
                                 "` draws nothing, so every start runs once, with seed " +
                                 std::to_string(selection.seeds[0]) + "; --seeds runs more");
