@@ -65,8 +65,9 @@ Parser::Parser(const SourceFile& source, const TokenStream& stream, ErrorBudget&
 }
 
 bool Parser::is_new_line() const {
-  return newline_before_ && open_parens_.empty() && prev_ != kNoToken &&
-         can_end_statement(tokens_[prev_].kind);
+  if (!newline_before_ || !open_parens_.empty() || prev_ == kNoToken) return false;
+  return can_end_statement(tokens_[prev_].kind) ||
+         stray_before_;  // stray bytes stand for something that ended it
 }
 
 TokenKind Parser::kind() const {
@@ -216,6 +217,7 @@ void Parser::fail(Code code, const Span& span, std::string message) {
 }
 
 void Parser::fail_too_deep(const Span& span) {
+  too_deep_ = pos_;
   if (Diagnostic* error =
           report(Code::P0103, span,
                  "found more than " + std::to_string(kMaxDepth) + " levels in one another")) {
@@ -385,8 +387,12 @@ bool Parser::end_block(std::initializer_list<std::string_view> statements, std::
   }
   expected_count_ = 0;
   if (raw_kind() != TokenKind::kEnd && !looks_like_unclosed_block(statements)) return false;
-  // A string that swallowed the rest of its line has swallowed the `}` and has been reported.
-  const bool swallowed = unclosed_string_ != kNoToken && unclosed_string_ > open;
+  // A string that swallowed the rest of its line, or nesting that was given up, has swallowed the
+  // `}`.
+  const auto lies_in_block = [open](std::uint32_t token) {
+    return token != kNoToken && token > open;
+  };
+  const bool swallowed = lies_in_block(unclosed_string_) || lies_in_block(too_deep_);
   if (swallowed || errors_.is_spent()) {
     failed_ = true;
     complete_ = false;
@@ -404,7 +410,8 @@ void Parser::end_statement(std::uint32_t start) {
     failed_ = true;
     return;
   }
-  const bool ended = at(TokenKind::kSemicolon) || at(TokenKind::kRightBrace);
+  const bool at_end = raw_kind() == TokenKind::kEnd;  // the block will say what it misses
+  const bool ended = at_end || at(TokenKind::kSemicolon) || at(TokenKind::kRightBrace);
   if (!ended) fail_expected();
   if (!failed_) return;
   complete_ = false;

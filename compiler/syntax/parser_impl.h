@@ -201,7 +201,8 @@ class Parser {
   bool complete_ = true;           // of the declaration being parsed
   bool block_lost_ = false;        // the closing brace was missing: its statement has no end either
   std::uint32_t decl_column_ = 0;  // bytes before the declaration's first word on its line
-  std::uint32_t unclosed_string_ = kNoToken;
+  std::uint32_t unclosed_string_ = kNoToken;  // the last one
+  std::uint32_t too_deep_ = kNoToken;         // where nesting was given up last
   std::uint32_t nesting_ = 0;
 
   struct Expected {
