@@ -1,5 +1,6 @@
-// Sine, cosine and their inverses as fixed sequences of IEEE operations in our own source. The C library's dispatch on
-// the CPU (with and without FMA) and so differ in the last bit between machines; results and hashes depend on these.
+// Sine, cosine and their inverses as fixed sequences of IEEE operations in our own source. The C
+// library's dispatch on the CPU (with and without FMA) and so differ in the last bit between
+// machines; results and hashes depend on these.
 #pragma once
 
 namespace probe {
@@ -9,7 +10,8 @@ struct SinCos {
   double cos;
 };
 
-// Radians; |x| below 1e5 keeps full accuracy (about 1 ulp).
+// Radians, to 1 ulp for |x| up to 1e6; beyond that and for what is not finite the result is not a
+// number.
 SinCos portable_sincos(double x);
 double portable_sin(double x);
 double portable_cos(double x);
@@ -17,7 +19,8 @@ double portable_atan2(double y, double x);
 double portable_asin(double x);
 double portable_acos(double x);
 
-// Degrees, exact at multiples of 90 (and 0.5 at 30): what quantities in source text are turned with.
+// Degrees of any size, to 3 ulp, exact at multiples of 90 (no zero is negative) and 0.5 at 30: what
+// quantities in source text are turned with.
 SinCos portable_sincos_deg(double degrees);
 
 }  // namespace probe

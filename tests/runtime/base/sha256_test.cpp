@@ -8,9 +8,26 @@ TEST_CASE("the digest of abc is the one of FIPS 180-4") {
 }
 
 TEST_CASE("strings are hashed with their lengths") {
-  CHECK(probe::Hasher().text("ab").text("c").finish() != probe::Hasher().text("a").text("bc").finish());
+  CHECK(probe::Hasher().text("ab").text("c").finish() !=
+        probe::Hasher().text("a").text("bc").finish());
 }
 
 TEST_CASE("minus zero hashes as zero") {
   CHECK(probe::Hasher().f64(-0.0).finish() == probe::Hasher().f64(0.0).finish());
+}
+
+TEST_CASE("an empty message and a long one have the digests of FIPS 180-4") {
+  CHECK(probe::to_hex(probe::sha256("")) ==
+        "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  probe::Hasher hasher;
+  const std::string block(1000, 'a');
+  for (int i = 0; i < 1000; ++i) hasher.bytes(std::as_bytes(std::span(block)));
+  CHECK(probe::to_hex(hasher.finish()) ==
+        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("numbers are hashed as their little endian bytes") {
+  const std::string bytes("\x01\x02\x03\x04\x05\x06\x07\x08", 8);
+  CHECK(probe::Hasher().u64(0x0807060504030201u).finish() == probe::sha256(bytes));
+  CHECK(probe::Hasher().u32(0x04030201u).u32(0x08070605u).finish() == probe::sha256(bytes));
 }

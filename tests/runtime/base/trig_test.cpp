@@ -51,4 +51,31 @@ TEST_CASE("degrees are exact at quarter turns and at thirty") {
 
 TEST_CASE("a number that is not finite gives a number that is not finite") {
   CHECK(std::isnan(probe::portable_sincos(INFINITY).sin));
+  CHECK(std::isnan(probe::portable_sincos_deg(-INFINITY).cos));
+  CHECK(std::isnan(probe::portable_sincos_deg(std::nan("")).sin));
+  CHECK(std::isnan(probe::portable_asin(1.5)));
+  CHECK(std::isnan(probe::portable_acos(-1.5)));
+}
+
+TEST_CASE("an angle too large to be reduced gives no number instead of a wrong one") {
+  CHECK(std::isnan(probe::portable_sin(1e22)));
+  CHECK(std::isnan(probe::portable_cos(-1e7)));
+  CHECK(std::fabs(probe::portable_sin(1e6) - std::sin(1e6)) <= 2e-16);
+}
+
+TEST_CASE("large angles in degrees are reduced exactly") {
+  CHECK(probe::portable_sincos_deg(1e17).sin == probe::portable_sincos_deg(280.0).sin);
+  CHECK(probe::portable_sincos_deg(1e300).cos ==
+        probe::portable_sincos_deg(std::fmod(1e300, 360.0)).cos);
+  CHECK(probe::portable_sincos_deg(-3690.0).sin == -1.0);
+}
+
+TEST_CASE("no zero at a quarter turn is negative, and a small angle keeps its sign") {
+  for (double turn = -4; turn <= 4; ++turn) {
+    const auto sc = probe::portable_sincos_deg(90.0 * turn);
+    CHECK(!(sc.sin == 0.0 && std::signbit(sc.sin)));
+    CHECK(!(sc.cos == 0.0 && std::signbit(sc.cos)));
+  }
+  CHECK(std::signbit(probe::portable_sin(-0.0)));
+  CHECK(probe::portable_sin(-1e-310) == -1e-310);
 }
