@@ -46,12 +46,15 @@ bool invert(const JointMatrix& m, size_t n, JointMatrix* out) {
 
 }  // namespace
 
-void guess_saturation(const Drives& drives, const Joints& joints, ArmResponse* arm) {
+void guess_saturation(const Drives& drives, const Joints& joints, const JointMatrix& mass,
+                      double dt, ArmResponse* arm) {
   for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
     const double e = drives.stiffness[i] * (joints.target[i] - joints.q[i]);
-    const double now = e - drives.damping[i] * joints.u[i];
-    const bool beyond = std::fabs(e) > drives.limit[i] && std::fabs(now) > drives.limit[i];
-    arm->saturated[i] = !beyond ? 0 : (e > 0 ? 1 : -1);
+    const double resistance = drives.damping[i] + dt * drives.stiffness[i];
+    const double speed = (mass[i][i] * joints.u[i] + dt * e) / (mass[i][i] + dt * resistance);
+    const double torque = e - resistance * speed;
+    const bool beyond = std::fabs(torque) > drives.limit[i];
+    arm->saturated[i] = !beyond ? 0 : (torque > 0 ? 1 : -1);
   }
 }
 

@@ -14,8 +14,12 @@ struct ArmResponse {
       saturated{};  // -1, 0, +1: sign of the force limit that replaces the drive
 };
 
-// First guess of which drives are at their limit: force now and force at rest both beyond it.
-void guess_saturation(const Drives& drives, const Joints& joints, ArmResponse* arm);
+// First guess of which drives are at their limit: the torque that the implicit drive would exert on
+// the joint's own inertia is beyond it. The torque at the present speed says nothing: after a jump
+// of the target a stiff, damped drive reaches its speed within the substep, while a limit force
+// without damping would fling a light joint past it.
+void guess_saturation(const Drives& drives, const Joints& joints, const JointMatrix& mass,
+                      double dt, ArmResponse* arm);
 
 // W and u* for the given saturation. False if the matrix is not positive definite.
 bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass, double dt,

@@ -15,7 +15,7 @@ Status Stepper::advance() {
   if (arm) {
     PROBE_TRY(arm->update(joints.q));
     place_links(*arm, joints.u, links, &colliders);
-    guess_saturation(drives, joints, &response);
+    guess_saturation(drives, joints, arm->mass(), parameters.dt, &response);
     if (!respond(drives, joints, arm->mass(), parameters.dt, &response)) return stiff_failure();
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
