@@ -1,0 +1,36 @@
+// The compiler as one call: .probe files to diagnostics and the bytes of a plan.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/diag/diagnostic.h"
+#include "compiler/source/source.h"
+#include "runtime/base/result.h"
+
+namespace probe {
+
+struct CompileOptions {
+  std::string asset_root;
+  std::string suite;  // the one suite to compile; "" = all
+};
+
+struct Compilation {
+  SourceSet sources;
+  Diagnostics diagnostics;
+  bool ok = false;              // no errors
+  std::vector<std::byte> plan;  // empty unless ok and built
+};
+
+// Diagnoses the files and everything they use. Assets are looked for, not read. A Failure is only
+// for the outside: a root file that cannot be read (code "io"), a suite that no file declares (code
+// "usage").
+Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options);
+
+// The same, and when nothing is wrong the verified plan. Same text and assets, same bytes, from any
+// directory.
+Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options);
+
+}  // namespace probe

@@ -1,0 +1,27 @@
+// The model and its programs as plan records. Decides the order of records and nothing else: bytes,
+// hashes and ids are the plan library's.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/diag/diagnostic.h"
+#include "compiler/sema/model.h"
+#include "runtime/base/result.h"
+
+namespace probe::emit {
+
+struct EmitOptions {
+  std::string asset_root;
+  std::string suite;          // the one suite to keep; "" keeps all tasks
+  std::string source_folder;  // paths of sources are written relative to it
+  bool write = true;          // off: diagnostics only, no bytes
+};
+
+// Empty when something was reported or nothing was to be written. `files`: the sources, in the
+// order in which they are to stand in the plan.
+Result<std::vector<std::byte>> emit(const sema::Model& model, const SourceSet& sources,
+                                    const std::vector<FileId>& files, const EmitOptions& options,
+                                    Diagnostics& diagnostics);
+
+}  // namespace probe::emit

@@ -1,0 +1,426 @@
+#include "compiler/lower/lower.h"
+
+#include <algorithm>
+
+#include "compiler/lower/builder.h"
+#include "compiler/sema/judgement.h"
+#include "runtime/base/check.h"
+#include "runtime/base/trig.h"
+
+namespace probe::lower {
+namespace {
+
+using plan::Op;
+using sema::ExprNode;
+using sema::ExprOp;
+using sema::ExprRef;
+using sema::Measure;
+
+using Bodies = std::vector<std::uint16_t>;  // ascending
+
+class Lowering {
+ public:
+  Lowering(const sema::Model& model, const std::vector<Body>& bodies, Diagnostics& diagnostics)
+      : model_(model), bodies_(bodies), diagnostics_(diagnostics) {}
+
+  // False when something was reported.
+  bool metric(const sema::Metric& metric) {
+    variables_.assign(metric.variables, Value{});
+    Value value = eval(metric.expr);
+    builder_.at(metric.readout_span);
+    ProgramMetric record{metric.name, plan::MetricType::kBool, metric.readout, metric.span};
+    switch (metric.readout) {
+      case plan::Readout::kAtEnd:
+        break;
+      case plan::Readout::kOnce:
+        value = builder_.monitor(Op::kONCE, value);
+        break;
+      case plan::Readout::kAlways:
+        value = builder_.monitor(Op::kALWAYS, value);
+        break;
+      case plan::Readout::kCount:
+        value = builder_.monitor(Op::kCOUNT, value);
+        break;
+      case plan::Readout::kFirst:
+        value = builder_.monitor(Op::kFIRST, value);
+        break;
+      case plan::Readout::kFinal:
+        break;
+      case plan::Readout::kMax:
+        value = builder_.monitor(Op::kMAXR, value);
+        break;
+      case plan::Readout::kMin:
+        value = builder_.monitor(Op::kMINR, value);
+        break;
+    }
+    const bool is_truth = metric.readout == plan::Readout::kAtEnd ||
+                          metric.readout == plan::Readout::kOnce ||
+                          metric.readout == plan::Readout::kAlways;
+    record.type = is_truth ? plan::MetricType::kBool : plan::MetricType::kReal;
+    builder_.emit_metric(value, std::move(record));
+    if (builder_.is_full() && ok_) {
+      diagnostics_.report(Code::P0601, metric.span,
+                          "the metrics of this task need more than 4096 instructions");
+      ok_ = false;
+    }
+    return ok_;
+  }
+
+  Program finish() { return builder_.finish(); }
+
+ private:
+  Value fail(const Span& span, std::string message) {
+    if (ok_) diagnostics_.report(Code::P0601, span, std::move(message));
+    ok_ = false;
+    return Value::of_truth(false);
+  }
+
+  // Inner expressions first, so that each instruction carries the innermost text that asked for it.
+  Value eval(ExprRef ref) {
+    // A program that is too long or wrong is not used: stop unrolling it.
+    if (!ok_ || builder_.is_full()) return Value::of_truth(false);
+    const ExprNode& node = model_.exprs.nodes[ref];
+    switch (node.op) {
+      case ExprOp::kPoison:
+        return fail(node.span, "this has no value");
+      case ExprOp::kConstant:
+        return constant(node);
+      case ExprOp::kRole:
+        return Value::of_body(static_cast<std::uint16_t>(node.a));
+      case ExprOp::kSurface:
+        return surface();
+      case ExprOp::kVariable:
+        return variables_[node.a];
+      case ExprOp::kMeasure:
+        return measure(node);
+      case ExprOp::kCall:
+        return call(node);
+      case ExprOp::kAdd:
+      case ExprOp::kSubtract:
+      case ExprOp::kMultiply:
+      case ExprOp::kDivide:
+        return arithmetic(node);
+      case ExprOp::kNegate:
+        return negate(node);
+      case ExprOp::kLess:
+        return compare(node, false);
+      case ExprOp::kLessEqual:
+        return compare(node, true);
+      case ExprOp::kEqual: {
+        const Value a = eval(node.args[0]);
+        const Value b = eval(node.args[1]);
+        builder_.at(node.span);
+        return builder_.logical_and(builder_.less(a, b, true), builder_.less(b, a, true));
+      }
+      case ExprOp::kAnd:
+      case ExprOp::kOr:
+        return chain(node);
+      case ExprOp::kNot: {
+        const Value operand = eval(node.args[0]);
+        builder_.at(node.span);
+        return builder_.logical_not(operand);
+      }
+      case ExprOp::kOnce:
+        return monitor(node, Op::kONCE);
+      case ExprOp::kAlways:
+        return monitor(node, Op::kALWAYS);
+      case ExprOp::kHold:
+        return monitor(node, Op::kHOLD);
+      case ExprOp::kAny:
+      case ExprOp::kAll:
+      case ExprOp::kNo:
+        return quantified(node);
+    }
+    return Value::of_truth(false);
+  }
+
+  Value constant(const ExprNode& node) {
+    const sema::Quantity& quantity = model_.exprs.quantities[node.a];
+    Value value = Value::of_number(quantity.si());
+    if (quantity.dimension == sema::dim::kAngle) value.angle = quantity;
+    return value;
+  }
+
+  Value surface() const {
+    std::uint16_t at = 0;
+    while (bodies_[at].kind != plan::BodyKind::kSurface) ++at;
+    return Value::of_body(at);
+  }
+
+  Value call(const ExprNode& node) {
+    const sema::Predicate& predicate = model_.predicates[node.predicate];
+    std::vector<Value> inner(predicate.variables);
+    for (std::size_t i = 0; i < node.args.size(); ++i) inner[i] = eval(node.args[i]);
+    std::swap(inner, variables_);
+    const Value value = eval(predicate.body);
+    std::swap(inner, variables_);
+    return value;
+  }
+
+  Value monitor(const ExprNode& node, Op op) {
+    const Value operand = eval(node.args[0]);
+    builder_.at(node.span);
+    return builder_.monitor(
+        op, operand, op == Op::kHOLD ? static_cast<std::uint16_t>(node.a) : std::uint16_t{0});
+  }
+
+  // Operands first, then the chain of connectives, so that the code reads like the text.
+  Value join(const std::vector<Value>& values, bool all, const Span& span) {
+    builder_.at(span);
+    Value result = Value::of_truth(all);
+    for (const Value& value : values) {
+      result = all ? builder_.logical_and(result, value) : builder_.logical_or(result, value);
+    }
+    return result;
+  }
+
+  Value chain(const ExprNode& node) {
+    std::vector<Value> values;
+    for (const ExprRef arg : node.args) values.push_back(eval(arg));
+    return join(values, node.op == ExprOp::kAnd, node.span);
+  }
+
+  Value quantified(const ExprNode& node) {
+    std::vector<Value> values;
+    for (const std::uint16_t body : members(node.set)) {
+      variables_[node.a] = Value::of_body(body);
+      values.push_back(eval(node.args[0]));
+    }
+    const Value result = join(values, node.op == ExprOp::kAll, node.span);
+    return node.op == ExprOp::kNo ? builder_.logical_not(result) : result;
+  }
+
+  Bodies members(sema::SetRef ref) {
+    const sema::SetNode& set = model_.exprs.sets[ref];
+    const auto where = [&](auto&& wanted) {
+      Bodies result;
+      for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (wanted(bodies_[i], i)) result.push_back(static_cast<std::uint16_t>(i));
+      }
+      return result;
+    };
+    using plan::BodyKind;
+    switch (set.op) {
+      case sema::SetOp::kFingers:
+        return where(
+            [](const Body& b, std::size_t) { return b.kind == BodyKind::kLink && b.index < 2; });
+      case sema::SetOp::kLinks:
+        return where([](const Body& b, std::size_t) { return b.kind == BodyKind::kLink; });
+      case sema::SetOp::kBodies:
+        return where([](const Body&, std::size_t) { return true; });
+      case sema::SetOp::kObjects:
+        return where([](const Body& b, std::size_t) { return b.kind == BodyKind::kObject; });
+      case sema::SetOp::kOthers:
+        return where(
+            [](const Body& b, std::size_t i) { return b.kind == BodyKind::kObject && i != 0; });
+      case sema::SetOp::kDistractors:
+        return where(
+            [](const Body& b, std::size_t i) { return b.kind == BodyKind::kObject && i >= 2; });
+      case sema::SetOp::kNames: {
+        Bodies result;
+        for (const ExprRef body : set.bodies) result.push_back(eval(body).index);
+        std::sort(result.begin(), result.end());
+        result.erase(std::unique(result.begin(), result.end()), result.end());
+        return result;
+      }
+      default:
+        break;
+    }
+    const Bodies left = members(set.left);
+    const Bodies right = members(set.right);
+    Bodies result;
+    const auto out = std::back_inserter(result);
+    if (set.op == sema::SetOp::kUnion)
+      std::set_union(left.begin(), left.end(), right.begin(), right.end(), out);
+    if (set.op == sema::SetOp::kIntersection)
+      std::set_intersection(left.begin(), left.end(), right.begin(), right.end(), out);
+    if (set.op == sema::SetOp::kDifference)
+      std::set_difference(left.begin(), left.end(), right.begin(), right.end(), out);
+    return result;
+  }
+
+  Value arithmetic(const ExprNode& node) {
+    const Value a = eval(node.args[0]);
+    const Value b = eval(node.args[1]);
+    builder_.at(node.span);
+    if (node.type.kind == sema::TypeKind::kVector) {
+      const Op op = node.op == ExprOp::kAdd        ? Op::kVADD
+                    : node.op == ExprOp::kSubtract ? Op::kVSUB
+                                                   : Op::kVSCALE;
+      const std::uint16_t right = builder_.in_register(b);
+      return Value::of_register(builder_.emit(op, a.index, right));
+    }
+    if (node.op != ExprOp::kDivide) {
+      const Op op = node.op == ExprOp::kAdd        ? Op::kADD
+                    : node.op == ExprOp::kSubtract ? Op::kSUB
+                                                   : Op::kMUL;
+      return builder_.arithmetic(op, a, b);
+    }
+    if (a.kind == Value::kNumber && b.kind == Value::kNumber && b.number != 0)
+      return Value::of_number(a.number / b.number);
+    return fail(node.span, "the judge has no division: write `a < k * b` for `a / b < k`");
+  }
+
+  Value negate(const ExprNode& node) {
+    const Value operand = eval(node.args[0]);
+    builder_.at(node.span);
+    if (node.type.kind != sema::TypeKind::kVector) return builder_.negate(operand);
+    return Value::of_register(builder_.emit(Op::kVSCALE, operand.index, builder_.constant(-1)));
+  }
+
+  Value compare(const ExprNode& node, bool or_equal) {
+    const bool left_angle = model_.exprs.nodes[node.args[0]].type.is_angle_between;
+    const bool right_angle = model_.exprs.nodes[node.args[1]].type.is_angle_between;
+    if (left_angle || right_angle) return compare_angle(node, left_angle, or_equal);
+    const Value a = eval(node.args[0]);
+    const Value b = eval(node.args[1]);
+    builder_.at(node.span);
+    return builder_.less(a, b, or_equal);
+  }
+
+  // angle(u, v) <= A  is  cos A |u| |v| <= u . v, since the cosine falls from 0 to pi; no inverse
+  // cosine at run time.
+  Value compare_angle(const ExprNode& node, bool angle_on_left, bool or_equal) {
+    const ExprNode& between = model_.exprs.nodes[node.args[angle_on_left ? 0 : 1]];
+    const Value limit = eval(node.args[angle_on_left ? 1 : 0]);
+    if (limit.kind != Value::kNumber) return fail(node.span, "`angle` is compared with a constant");
+    const std::uint16_t u = eval(between.args[0]).index;
+    const std::uint16_t v = eval(between.args[1]).index;
+    builder_.at(node.span);
+    const double cosine = limit.angle ? limit.angle->cosine() : portable_cos(limit.number);
+    const std::uint16_t u_length = builder_.emit(Op::kVLEN, u);
+    const std::uint16_t v_length = builder_.emit(Op::kVLEN, v);
+    const std::uint16_t scaled = builder_.emit(Op::kMUL, builder_.constant(cosine), u_length);
+    const Value edge = Value::of_register(builder_.emit(Op::kMUL, scaled, v_length));
+    const Value dot = Value::of_register(builder_.emit(Op::kVDOT, u, v));
+    return angle_on_left ? builder_.less(edge, dot, or_equal) : builder_.less(dot, edge, or_equal);
+  }
+
+  // A body stands for its centre of mass.
+  std::uint16_t point(const Value& value) {
+    return value.kind == Value::kBody ? builder_.emit(Op::kPOS, value.index) : value.index;
+  }
+
+  Value measure(const ExprNode& node) {
+    std::vector<Value> args;
+    for (const ExprRef arg : node.args) args.push_back(eval(arg));
+    builder_.at(node.span);
+    const auto reg = [&](Op op, std::uint16_t a = 0, std::uint16_t b = 0) {
+      return Value::of_register(builder_.emit(op, a, b));
+    };
+    const std::uint16_t first = args.empty() ? std::uint16_t{0} : args[0].index;
+    switch (node.measure) {
+      case Measure::kImpulse:
+        return reg(Op::kIMP, std::min(first, args[1].index), std::max(first, args[1].index));
+      case Measure::kPush:
+        return reg(Op::kPUSH, first, args[1].index);
+      case Measure::kOpening:
+        if (bodies_[first].kind != plan::BodyKind::kLink || bodies_[first].index >= 2) {
+          return fail(node.span,
+                      "`opening` is measured of a finger, found `" + bodies_[first].name + "`");
+        }
+        return reg(Op::kOPEN, first);
+      case Measure::kAngle:
+        return fail(node.span, "`angle` stands alone on one side of a comparison");
+      case Measure::kDistance:
+      case Measure::kDistanceXy: {
+        const std::uint16_t a = point(args[0]);
+        const std::uint16_t b = point(args[1]);
+        return reg(node.measure == Measure::kDistance ? Op::kVLEN : Op::kVLENXY,
+                   builder_.emit(Op::kVSUB, a, b));
+      }
+      case Measure::kOrigin:
+        return reg(Op::kORIGIN, first);
+      case Measure::kPosition:
+        return reg(Op::kPOS, first);
+      case Measure::kStart:
+        return reg(Op::kSTART, first);
+      case Measure::kVelocity:
+        return reg(Op::kVEL, first);
+      case Measure::kSpeed:
+        return reg(Op::kVLEN, builder_.emit(Op::kVEL, first));
+      case Measure::kSpin:
+        return reg(Op::kSPIN, first);
+      case Measure::kHeight:
+        return reg(Op::kVZ, point(args[0]));
+      case Measure::kHalfHeight:
+        return reg(Op::kVZ, builder_.emit(Op::kHALF, first));
+      case Measure::kHalfDiagonal:
+        return reg(Op::kVLENXY, builder_.emit(Op::kHALF, first));
+      case Measure::kMovedXy: {
+        const std::uint16_t now = builder_.emit(Op::kPOS, first);
+        const std::uint16_t then = builder_.emit(Op::kSTART, first);
+        return reg(Op::kVLENXY, builder_.emit(Op::kVSUB, now, then));
+      }
+      case Measure::kAxisX:
+        return reg(Op::kAXIS, first, 0);
+      case Measure::kAxisY:
+        return reg(Op::kAXIS, first, 1);
+      case Measure::kAxisZ:
+        return reg(Op::kAXIS, first, 2);
+      case Measure::kUp:
+        return Value::of_register(builder_.vector(0, 0, 1));
+      case Measure::kTcp:
+        return reg(Op::kTCP);
+      case Measure::kGrip:
+        return reg(Op::kGRIP);
+      case Measure::kStep:
+        return reg(Op::kSTEP);
+      case Measure::kTime:
+        return reg(Op::kTIME);
+      case Measure::kAbs:
+        if (args[0].kind == Value::kNumber)
+          return Value::of_number(args[0].number < 0 ? -args[0].number : args[0].number);
+        return reg(Op::kABS, first);
+      case Measure::kMin:
+        return builder_.arithmetic(Op::kMIN, args[0], args[1]);
+      case Measure::kMax:
+        return builder_.arithmetic(Op::kMAX, args[0], args[1]);
+    }
+    return fail(node.span, "this cannot be measured");
+  }
+
+  const sema::Model& model_;
+  const std::vector<Body>& bodies_;
+  Diagnostics& diagnostics_;
+  Builder builder_;
+  std::vector<Value> variables_;
+  bool ok_ = true;
+};
+
+}  // namespace
+
+std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
+  const sema::Scene& scene = model.scenes[task.scene];
+  const sema::Robot& robot = model.robots[scene.robot];
+  PROBE_CHECK(robot.model.has_value(), "a task is lowered only after its robot was read");
+  std::vector<Body> bodies;
+  for (const sema::ObjectId id : task.objects()) {
+    bodies.push_back(
+        {plan::BodyKind::kObject, static_cast<std::uint32_t>(id), model.objects[id].name});
+  }
+  bodies.push_back({plan::BodyKind::kSurface, 0, "surface"});
+  if (scene.fixture) bodies.push_back({plan::BodyKind::kFixture, 0, scene.fixture->text});
+  std::uint32_t link = 0;
+  for (const sema::Finger& finger : robot.fingers)
+    bodies.push_back({plan::BodyKind::kLink, link++, finger.link.text});
+  for (const robot::Link& known : robot.model->links) {
+    const bool is_finger =
+        std::any_of(robot.fingers.begin(), robot.fingers.end(),
+                    [&](const sema::Finger& finger) { return finger.link.text == known.name; });
+    if (is_finger || known.collisions.empty()) continue;
+    bodies.push_back({plan::BodyKind::kLink, link++, known.name});
+  }
+  return bodies;
+}
+
+std::optional<Program> lower_task(const sema::Model& model, const sema::Task& task,
+                                  const std::vector<Body>& bodies, Diagnostics& diagnostics) {
+  Lowering lowering(model, bodies, diagnostics);
+  for (const sema::Metric& metric : task.judged) {
+    if (!lowering.metric(metric)) return std::nullopt;
+  }
+  return lowering.finish();
+}
+
+}  // namespace probe::lower

@@ -1,0 +1,29 @@
+// Metrics of one task to a program: predicates inlined, quantifiers unrolled over the task's
+// bodies, units gone.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/diag/diagnostic.h"
+#include "compiler/lower/program.h"
+#include "compiler/sema/model.h"
+
+namespace probe::lower {
+
+// The task-local bodies in the plan's order (format.h, BodyRecord).
+struct Body {
+  plan::BodyKind kind = plan::BodyKind::kObject;
+  std::uint32_t index = 0;  // kObject: sema::ObjectId; kLink: 0, 1 fingers, then on
+  std::string name;
+};
+
+// The robot of the task's scene must have its model.
+std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task);
+
+// Nothing when a metric cannot be measured; then it has been reported.
+std::optional<Program> lower_task(const sema::Model& model, const sema::Task& task,
+                                  const std::vector<Body>& bodies, Diagnostics& diagnostics);
+
+}  // namespace probe::lower

@@ -1,0 +1,35 @@
+// A metric program before it becomes plan records: straight-line code over single-assignment
+// registers, with the place in the text that each instruction came from.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "compiler/source/source.h"
+#include "runtime/plan/format.h"
+
+namespace probe::lower {
+
+struct ProgramMetric {
+  std::string name;
+  plan::MetricType type = plan::MetricType::kBool;
+  plan::Readout readout = plan::Readout::kAtEnd;
+  Span span;
+};
+
+struct Program {
+  std::vector<double> constants;
+  std::vector<plan::StateRecord> states;
+  std::vector<plan::Instruction> code;
+  std::vector<Span> spans;  // one per instruction
+  std::vector<ProgramMetric> metrics;
+
+  // Equal in everything that is judged; spans do not count.
+  bool same_as(const Program& other) const;
+};
+
+// One instruction a line: "  3  VLENXY  r3   r2". Bodies by `body_names` where given.
+std::string to_text(const Program& program, const std::vector<std::string>& body_names = {});
+
+}  // namespace probe::lower

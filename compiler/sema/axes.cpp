@@ -1,0 +1,233 @@
+#include "compiler/sema/axes.h"
+
+#include <algorithm>
+
+#include "compiler/sema/language.h"
+
+namespace probe::sema {
+namespace {
+
+constexpr std::pair<plan::Axis, std::string_view> kAxisNames[] = {
+    {plan::Axis::kObjectSource, "object.source"},
+    {plan::Axis::kObjectTarget, "object.target"},
+    {plan::Axis::kDistractors, "distractors"},
+    {plan::Axis::kLanguageAction, "language.action"},
+    {plan::Axis::kLanguageNegation, "language.negation"},
+    {plan::Axis::kLanguageAppearance, "language.appearance"},
+    {plan::Axis::kLanguageCommonsense, "language.commonsense"},
+    {plan::Axis::kLayout, "layout"},
+    {plan::Axis::kScene, "scene"},
+    {plan::Axis::kLight, "light"},
+    {plan::Axis::kCamera, "camera"},
+    {plan::Axis::kGoal, "goal"},
+};
+
+plan::Axis axis_of(PhraseAxis axis) {
+  return axis == PhraseAxis::kAppearance ? plan::Axis::kLanguageAppearance
+                                         : plan::Axis::kLanguageCommonsense;
+}
+
+bool same_cells(const Layout& a, const std::string& name_a, const Layout& b,
+                const std::string& name_b) {
+  const auto find = [](const Layout& layout, const std::string& name) {
+    return std::find_if(layout.cells.begin(), layout.cells.end(),
+                        [&](const Cells& c) { return c.name == name; });
+  };
+  const auto cells_a = find(a, name_a);
+  const auto cells_b = find(b, name_b);
+  if (cells_a == a.cells.end() || cells_b == b.cells.end())
+    return (cells_a == a.cells.end()) == (cells_b == b.cells.end());
+  if (cells_a->grids.size() != cells_b->grids.size()) return false;
+  for (std::size_t g = 0; g < cells_a->grids.size(); ++g) {
+    const auto& grid_a = cells_a->grids[g];
+    const auto& grid_b = cells_b->grids[g];
+    if (!std::equal(grid_a.begin(), grid_a.end(), grid_b.begin(), grid_b.end(),
+                    [](const Cell& p, const Cell& q) { return p.x == q.x && p.y == q.y; })) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool same_words(const std::vector<Spelled>& a, const std::vector<Spelled>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Spelled& p, const Spelled& q) { return p.text == q.text; });
+}
+
+bool same_layout(const Layout& a, const Layout& b) {
+  if (a.by_rest != b.by_rest || a.jitter != b.jitter || a.drop != b.drop || a.settle != b.settle)
+    return false;
+  if (a.places.size() != b.places.size() || a.orients.size() != b.orients.size()) return false;
+  for (std::size_t i = 0; i < a.places.size(); ++i) {
+    const Place& p = a.places[i];
+    const Place& q = b.places[i];
+    if (p.how != q.how || !same_words(p.what, q.what)) return false;
+    if (p.how == Place::kAt ? (p.at.x != q.at.x || p.at.y != q.at.y)
+                            : !same_cells(a, p.cells, b, q.cells))
+      return false;
+  }
+  for (std::size_t i = 0; i < a.orients.size(); ++i) {
+    if (a.orients[i].what.text != b.orients[i].what.text ||
+        a.orients[i].turns != b.orients[i].turns)
+      return false;
+  }
+  return true;
+}
+
+std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object) {
+  for (const PoseOverride& pose : task.poses) {
+    if (pose.object == object) return pose.turns;
+  }
+  return model.objects[object].rest;
+}
+
+// A pose of an object that only one of the two has comes with that object and is no change of its
+// own.
+bool same_poses(const Model& model, const Task& a, const Task& b) {
+  const std::vector<ObjectId> others = b.objects();
+  for (const ObjectId object : a.objects()) {
+    if (std::find(others.begin(), others.end(), object) == others.end()) continue;
+    if (rest_of(model, a, object) != rest_of(model, b, object)) return false;
+  }
+  return true;
+}
+
+std::string text_of(const std::optional<Spelled>& value) {
+  return value ? value->text : std::string();
+}
+
+// Camera and light are axes of their own.
+bool same_scene(const Scene& a, const Scene& b) {
+  const auto joints = [](const Scene& scene) {
+    std::vector<double> values;
+    for (const Quantity& joint : scene.joints) values.push_back(joint.si());
+    return values;
+  };
+  return a.robot == b.robot && a.base_position == b.base_position && a.base_turn == b.base_turn &&
+         joints(a) == joints(b) && a.surface_z == b.surface_z && a.area == b.area &&
+         text_of(a.fixture) == text_of(b.fixture) && a.fixture_position == b.fixture_position &&
+         text_of(a.backdrop) == text_of(b.backdrop) && text_of(a.overlay) == text_of(b.overlay) &&
+         a.physics_hz == b.physics_hz && a.friction == b.friction;
+}
+
+bool same_goal(const Task& a, const Task& b) {
+  return a.horizon == b.horizon && std::equal(a.judged.begin(), a.judged.end(), b.judged.begin(),
+                                              b.judged.end(), [](const Metric& p, const Metric& q) {
+                                                return p.name == q.name && p.readout == q.readout &&
+                                                       p.expr == q.expr;
+                                              });
+}
+
+bool is_seen(const Object& object) { return !object.seen_in.empty(); }
+
+}  // namespace
+
+CameraId camera_of(const Model& model, const Task& task) {
+  return task.camera != CameraId::kNone ? task.camera : model.scenes[task.scene].camera;
+}
+
+LightId light_of(const Model& model, const Task& task) {
+  return task.light != LightId::kNone ? task.light : model.scenes[task.scene].light;
+}
+
+std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline) {
+  std::uint32_t mask = 0;
+  const auto move = [&mask](plan::Axis axis) { mask |= static_cast<std::uint32_t>(axis); };
+  if (task.source != baseline.source) move(plan::Axis::kObjectSource);
+  if (task.target != baseline.target) move(plan::Axis::kObjectTarget);
+
+  std::vector<ObjectId> here = task.distractors;
+  std::vector<ObjectId> there = baseline.distractors;
+  std::sort(here.begin(), here.end());
+  std::sort(there.begin(), there.end());
+  if (here != there) move(plan::Axis::kDistractors);
+
+  const Template& say = model.templates[task.say];
+  const Template& said = model.templates[baseline.say];
+  if (say.frame != said.frame) move(plan::Axis::kLanguageAction);
+  if (has_negation(say) != has_negation(said)) move(plan::Axis::kLanguageNegation);
+  for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
+    const bool is_source = role == syntax::Role::kSource;
+    const Phrase* now = referring(model, task, role).phrase;
+    const Phrase* then = referring(model, baseline, role).phrase;
+    if (now == nullptr && then == nullptr) continue;
+    const bool same_object =
+        is_source ? task.source == baseline.source : task.target == baseline.target;
+    if (now != nullptr && then != nullptr) {
+      // Two phrases of different objects are alike when they refer in the same way.
+      if (same_object ? now->name == then->name : now->axis == then->axis) continue;
+    }
+    move(axis_of(now != nullptr ? now->axis : then->axis));
+  }
+
+  if (!same_layout(model.layouts[task.layout], model.layouts[baseline.layout]) ||
+      !same_poses(model, task, baseline)) {
+    move(plan::Axis::kLayout);
+  }
+  const bool scene_moves = task.scene != baseline.scene &&
+                           !same_scene(model.scenes[task.scene], model.scenes[baseline.scene]);
+  if (scene_moves) move(plan::Axis::kScene);
+  // Another scene comes with its own camera and light; only an override makes them a change of
+  // their own.
+  const bool light_counts =
+      !scene_moves || task.light != LightId::kNone || baseline.light != LightId::kNone;
+  const bool camera_counts =
+      !scene_moves || task.camera != CameraId::kNone || baseline.camera != CameraId::kNone;
+  if (light_counts &&
+      !(model.lights[light_of(model, task)] == model.lights[light_of(model, baseline)])) {
+    move(plan::Axis::kLight);
+  }
+  if (camera_counts &&
+      !(model.cameras[camera_of(model, task)] == model.cameras[camera_of(model, baseline)])) {
+    move(plan::Axis::kCamera);
+  }
+  if (!same_goal(task, baseline)) move(plan::Axis::kGoal);
+  return mask;
+}
+
+std::string_view axis_name(plan::Axis axis) {
+  for (const auto& [known, name] : kAxisNames) {
+    if (known == axis) return name;
+  }
+  return {};
+}
+
+std::vector<plan::Axis> axes_in(std::uint32_t mask) {
+  std::vector<plan::Axis> axes;
+  for (const auto& [axis, name] : kAxisNames) {
+    if ((mask & static_cast<std::uint32_t>(axis)) != 0) axes.push_back(axis);
+  }
+  return axes;
+}
+
+std::uint32_t out_of_distribution(const Model& model, const Task& task) {
+  if (model.datasets.size() == 0) return 0;
+  const Object& source = model.objects[task.source];
+  const Object& target = model.objects[task.target];
+  std::uint32_t mask = (is_seen(source) ? 0u : 1u) | (is_seen(target) ? 0u : 2u);
+  if (mask != 0) return mask;
+  for (const Dataset& dataset : model.datasets) {
+    for (const Dataset::Relation& relation : dataset.relations) {
+      if (relation.subject == task.source && relation.object == task.target) return 0;
+    }
+  }
+  return 4;
+}
+
+bool uses_action(const Model& model, const Task& task) {
+  const Task* root = &task;
+  for (std::size_t hops = 0; root->baseline != TaskId::kNone && hops < model.tasks.size(); ++hops) {
+    root = &model.tasks[root->baseline];
+  }
+  return root->complete && model.templates[task.say].frame != model.templates[root->say].frame;
+}
+
+bool uses_phrase(const Model& model, const Task& task, PhraseAxis axis) {
+  for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
+    const Phrase* phrase = referring(model, task, role).phrase;
+    if (phrase != nullptr && phrase->axis == axis) return true;
+  }
+  return false;
+}
+
+}  // namespace probe::sema

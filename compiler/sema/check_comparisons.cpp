@@ -1,0 +1,98 @@
+// P07xx: is every variant compared with something that it differs from in one way?
+#include <algorithm>
+#include <set>
+
+#include "compiler/sema/axes.h"
+#include "compiler/sema/passes.h"
+
+namespace probe::sema {
+namespace {
+
+std::string axis_list(std::uint32_t mask) {
+  std::string text;
+  for (const plan::Axis axis : axes_in(mask))
+    text += (text.empty() ? "" : ", ") + std::string(axis_name(axis));
+  return text;
+}
+
+// Every member of a circle loses its baseline, so that later passes can walk to a root.
+void break_cycles(Context& context) {
+  Model& model = context.model;
+  std::vector<bool> safe(model.tasks.size(), false);
+  for (std::size_t start = 0; start < model.tasks.size(); ++start) {
+    std::vector<TaskId> chain;
+    TaskId at = static_cast<TaskId>(start);
+    while (at != TaskId::kNone && !safe[static_cast<std::size_t>(at)] &&
+           std::find(chain.begin(), chain.end(), at) == chain.end()) {
+      chain.push_back(at);
+      at = model.tasks[at].baseline;
+    }
+    if (at != TaskId::kNone && !safe[static_cast<std::size_t>(at)]) {
+      const Task& task = model.tasks[at];
+      context.report(Code::P0703, task.baseline_span,
+                     "task `" + task.name + "` is compared with itself over its baselines");
+      for (auto member = std::find(chain.begin(), chain.end(), at); member != chain.end();
+           ++member) {
+        model.tasks[*member].baseline = TaskId::kNone;
+      }
+    }
+    for (const TaskId id : chain) safe[static_cast<std::size_t>(id)] = true;
+  }
+}
+
+void check_edge(Context& context, const Task& task) {
+  const Task& baseline = context.model.tasks[task.baseline];
+  if (baseline.abstract) {
+    context.report(
+        Code::P0703, task.baseline_span,
+        "`" + task.name + "` is compared with the abstract task `" + baseline.name + "`");
+    return;
+  }
+  if (!baseline.complete) return;
+  const std::size_t axes = axes_in(task.axes).size();
+  if (axes == 0) {
+    context.report(Code::P0702, task.span,
+                   "`" + task.name + "` does not differ from its baseline `" + baseline.name + "`");
+    return;
+  }
+  if (axes == 1 || task.allow_confounded) return;
+  context
+      .report(Code::P0701, task.span,
+              "`" + task.name + "` differs from its baseline on " + std::to_string(axes) + " axes")
+      .label(task.baseline_span, "compared with this")
+      .note("axes: " + axis_list(task.axes))
+      .note("to keep it, put @allow(confounded, \"why\") above the declaration");
+}
+
+}  // namespace
+
+void check_tags(Context& context) {
+  std::set<ObjectId> reported;
+  for (const Suite& suite : context.model.suites) {
+    if (suite.trained_on == DatasetId::kNone) continue;
+    for (const TaskId id : suite.members) {
+      const Task& task = context.model.tasks[id];
+      if (!task.complete) continue;
+      for (const ObjectId object_id : task.objects()) {
+        const Object& object = context.model.objects[object_id];
+        if (object.unseen || !object.seen_in.empty() || !reported.insert(object_id).second)
+          continue;
+        context
+            .report(Code::P0705, object.span,
+                    "object `" + object.name + "` does not say whether it was seen in training")
+            .help("write `seen in " + context.model.datasets[suite.trained_on].name +
+                  "` or `unseen`");
+      }
+    }
+  }
+}
+
+void check_comparisons(Context& context) {
+  break_cycles(context);
+  for (const Task& task : context.model.tasks) {
+    if (!task.abstract && task.complete && task.baseline != TaskId::kNone)
+      check_edge(context, task);
+  }
+}
+
+}  // namespace probe::sema

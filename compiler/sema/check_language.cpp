@@ -1,0 +1,179 @@
+// P04xx: every phrase must single out its referent among the objects of the task, and every
+// instruction must be a sentence that a policy can be given.
+#include <utf8proc.h>
+
+#include <cstdlib>
+
+#include "compiler/sema/language.h"
+#include "compiler/sema/passes.h"
+
+namespace probe::sema {
+namespace {
+
+constexpr std::size_t kMaxPromptBytes = 1000;
+
+struct TaskLanguage {
+  Context& context;
+  const Task& task;
+
+  const Model& model() const { return context.model; }
+  const Span& place(std::size_t role) const {
+    return task.refer[role]          ? task.refer[role]->span
+           : task.say_span.is_none() ? task.span
+                                     : task.say_span;
+  }
+
+  // An attribute or fact that would tell the two apart: a hint that certainly helps.
+  std::string discriminator(const Object& wanted, const Object& other) const {
+    for (std::size_t a = 0; a < wanted.values.size(); ++a) {
+      if (wanted.values[a].size() != 1 || other.values[a].empty()) continue;
+      bool shared = false;
+      for (const std::uint32_t value : other.values[a])
+        shared = shared || value == wanted.values[a][0];
+      if (shared) continue;
+      const Attribute& attribute = model().attributes[static_cast<AttributeId>(a)];
+      return attribute.name + " " + attribute.values[wanted.values[a][0]];
+    }
+    for (std::size_t f = 0; f < wanted.facts.size(); ++f) {
+      if (wanted.facts[f] == Truth::kYes && other.facts[f] == Truth::kNo) return model().facts[f];
+    }
+    return {};
+  }
+
+  void check_phrase(std::size_t role, const Phrase& phrase, ObjectId wanted_id) const {
+    const Object& wanted = model().objects[wanted_id];
+    const std::string quoted = "\"" + phrase.text.text + "\"";
+    if (evaluate(phrase.means, wanted) != Truth::kYes) {
+      context
+          .report(Code::P0401, place(role),
+                  quoted + " does not denote `" + wanted.name + "` in `" + task.name + "`")
+          .label(phrase.text.span, "means `" + phrase.means_text + "`");
+      return;
+    }
+    for (const ObjectId id : task.objects()) {
+      if (id == wanted_id) continue;
+      const Object& other = model().objects[id];
+      const Truth truth = evaluate(phrase.means, other);
+      if (truth == Truth::kNo) continue;
+      const std::string hint = discriminator(wanted, other);
+      Diagnostic& diagnostic =
+          truth == Truth::kYes
+              ? context.report(Code::P0402, place(role),
+                               quoted + " denotes 2 objects in `" + task.name + "`")
+              : context.report(
+                    Code::P0403, place(role),
+                    quoted + " may also denote `" + other.name + "` in `" + task.name + "`");
+      diagnostic.point("also `" + phrase.means_text + "`: `" + other.name + "`")
+          .label(phrase.text.span, "meant for `" + wanted.name + "`");
+      if (!hint.empty()) {
+        diagnostic.help("`" + hint + "` holds for `" + wanted.name + "` and not for `" +
+                        other.name + "`");
+      }
+    }
+  }
+
+  void check_name(std::size_t role, ObjectId wanted_id) const {
+    const Object& wanted = model().objects[wanted_id];
+    for (const ObjectId id : task.objects()) {
+      if (id == wanted_id) continue;
+      const std::string& other = model().objects[id].text.text;
+      const std::string& name = wanted.text.text;
+      const bool same = other == name;
+      const bool part = other.size() > name.size() &&
+                        (other.starts_with(name + " ") || other.ends_with(" " + name));
+      if (!same && !part) continue;
+      context.report(
+          Code::P0405, place(role),
+          same ? "two objects of `" + task.name + "` are called \"" + name + "\""
+               : "\"" + name + "\" is part of the name \"" + other + "\" in `" + task.name + "`");
+    }
+  }
+
+  void check_category(const SlotRef& slot, const Object& object) const {
+    if (!slot.category) return;
+    const auto attribute = context.symbols.attributes.peek("category");
+    if (!attribute) {
+      context.report(Code::P0407, slot.category->span, "there is no attribute `category`");
+      return;
+    }
+    const Attribute& record = model().attributes[static_cast<AttributeId>(*attribute)];
+    for (std::uint32_t value = 0; value < record.values.size(); ++value) {
+      if (record.values[value] != slot.category->text) continue;
+      for (const std::uint32_t has : object.values[*attribute]) {
+        if (has == value) return;
+      }
+    }
+    context
+        .report(Code::P0407, task.say_span.is_none() ? task.span : task.say_span,
+                "`" + object.name + "` is no `" + slot.category->text + "`")
+        .label(slot.span, "this slot wants one");
+  }
+
+  void check_slot(const SlotRef& slot) const {
+    const bool is_source = slot.name.text == "source";
+    if (is_source || slot.name.text == "target") {
+      const ObjectId id = is_source ? task.source : task.target;
+      const std::size_t role = is_source ? 0 : 1;
+      check_category(slot, model().objects[id]);
+      if (slot.avoid && is_source) {
+        context.report(Code::P0404, slot.span, "the source cannot be the object to avoid");
+        return;
+      }
+      const Referring words =
+          referring(model(), task, is_source ? syntax::Role::kSource : syntax::Role::kTarget);
+      if (words.phrase != nullptr) return check_phrase(role, *words.phrase, id);
+      return check_name(role, id);
+    }
+    std::string scene;
+    for (const ObjectId id : task.objects()) {
+      const Object& object = model().objects[id];
+      if (object.name == slot.name.text) return check_category(slot, object);
+      scene += (scene.empty() ? "" : ", ") + object.name;
+    }
+    context
+        .report(Code::P0404, slot.span,
+                "`" + slot.name.text + "` is named in `" + task.name + "` and is not in the scene")
+        .point("the scene has " + scene)
+        .help("add `distractors " + slot.name.text + "`");
+  }
+
+  void check_sentence() const {
+    const Span& span = task.say_span.is_none() ? task.span : task.say_span;
+    if (task.prompt.empty()) {
+      context.report(Code::P0406, span, "the instruction of `" + task.name + "` is empty");
+    } else if (task.prompt.size() > kMaxPromptBytes) {
+      context.report(Code::P0406, span,
+                     "the instruction of `" + task.name + "` is longer than " +
+                         std::to_string(kMaxPromptBytes) + " bytes");
+    } else if (task.prompt.find_first_of("{}") != std::string::npos) {
+      context.report(Code::P0406, span,
+                     "braces are left in the instruction of `" + task.name + "`");
+    } else if (!is_nfc(task.prompt)) {
+      context.report(Code::P0406, span,
+                     "the instruction of `" + task.name + "` is not in composed form (NFC)");
+    }
+  }
+
+  static bool is_nfc(const std::string& text) {
+    utf8proc_uint8_t* normal =
+        utf8proc_NFC(reinterpret_cast<const utf8proc_uint8_t*>(text.c_str()));
+    const bool same = normal != nullptr && text == reinterpret_cast<const char*>(normal);
+    std::free(normal);
+    return same;
+  }
+};
+
+}  // namespace
+
+void check_language(Context& context) {
+  for (const Task& task : context.model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    const TaskLanguage check{context, task};
+    for (const Template::Part& part : context.model.templates[task.say].parts) {
+      if (part.slot) check.check_slot(*part.slot);
+    }
+    check.check_sentence();
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,447 @@
+// Robots, cameras, lights and scenes. Links and joints named here are looked up in the robot's
+// URDF, and every drive's units must fit the kind of its joint.
+#include <filesystem>
+
+#include "compiler/sema/passes.h"
+
+namespace probe::sema {
+namespace {
+
+template <std::size_t N>
+void assign(std::array<double, N>& to, const std::optional<std::vector<Quantity>>& from) {
+  if (!from) return;
+  for (std::size_t i = 0; i < from->size() && i < N; ++i) to[i] = (*from)[i].si();
+}
+
+void missing(Context& context, std::string_view kind, const std::string& name, const Span& span,
+             const char* statement) {
+  context.report(Code::P0206, span,
+                 std::string(kind) + " `" + name + "` has no `" + statement + "`");
+}
+
+// ---- robots
+// ---------------------------------------------------------------------------------------------------------
+
+struct RobotReader {
+  Context& context;
+  Robot& robot;
+  bool has_control = false, has_grip = false;
+
+  void operator()(const syntax::UrdfStmt& stmt) { robot.urdf = spelled(stmt.path); }
+  void operator()(const syntax::TcpStmt& stmt) { robot.tcp = spelled(stmt.link); }
+  void operator()(const syntax::FingersStmt& stmt) {
+    robot.fingers.clear();
+    for (const syntax::Finger& finger : stmt.fingers) {
+      const std::string_view axis = finger.axis.text;
+      Finger record{spelled(finger.link), {}};
+      if (axis != "x" && axis != "y" && axis != "z") {
+        report_unknown(context.diagnostics, "axis", finger.axis, {"x", "y", "z"});
+      } else {
+        record.opens[static_cast<std::size_t>(axis[0] - 'x')] = finger.negative ? -1 : 1;
+      }
+      robot.fingers.push_back(std::move(record));
+    }
+    if (robot.fingers.size() != 2) {
+      context.report(Code::P0304, stmt.span,
+                     "expected 2 fingers, found " + std::to_string(robot.fingers.size()));
+    }
+  }
+  void operator()(const syntax::ControlStmt& stmt) {
+    has_control = true;
+    if (stmt.law.text != "ee_delta_pose") {
+      report_unknown(context.diagnostics, "control law", stmt.law, {"ee_delta_pose"});
+    }
+    robot.control_hz =
+        read_positive(context, stmt.rate, dim::kRate, "`control` takes a frequency").value_or(1);
+  }
+  void operator()(const syntax::ReachStmt& stmt) {
+    robot.reach_min =
+        read_si(context, stmt.least, dim::kLength, "`reach` takes lengths").value_or(0);
+    robot.reach_max =
+        read_positive(context, stmt.most, dim::kLength, "`reach` takes lengths").value_or(1);
+  }
+  void operator()(const syntax::DriveStmt& stmt) {
+    // Whether the joint turns or slides is known only with the URDF; the stiffness decides what the
+    // others must be.
+    const auto stiffness = make_quantity(stmt.stiffness.digits, to_text(stmt.stiffness.unit));
+    const bool slides = stiffness && stiffness->dimension == dim::kLinearStiffness;
+    Drive drive;
+    drive.span = stmt.span;
+    const auto k = read_quantity(context, stmt.stiffness,
+                                 slides ? dim::kLinearStiffness : dim::kAngularStiffness,
+                                 "a stiffness is in Nm/rad, or in N/m for a sliding joint");
+    const auto d = read_quantity(
+        context, stmt.damping, slides ? dim::kLinearDamping : dim::kAngularDamping,
+        slides ? "a sliding joint is damped in Ns/m" : "a turning joint is damped in Nms/rad");
+    const auto f = read_quantity(
+        context, stmt.limit, slides ? dim::kForce : dim::kTorque,
+        slides ? "a sliding joint is limited in N" : "a turning joint is limited in Nm");
+    if (!k || !d || !f) return;
+    drive.stiffness = *k;
+    drive.damping = *d;
+    drive.limit = *f;
+    for (const syntax::Name& joint : stmt.joints) {
+      for (const Drive& known : robot.drives) {
+        if (known.joint.text != joint.text) continue;
+        context.report(Code::P0203, joint.span, "joint `" + known.joint.text + "` is driven twice")
+            .label(known.joint.span, "first driven here");
+      }
+      drive.joint = spelled(joint);
+      robot.drives.push_back(drive);
+    }
+  }
+  void operator()(const syntax::GripStmt& stmt) {
+    has_grip = true;
+    robot.grip_closed =
+        read_si(context, stmt.closed, dim::kLength, "`grip` takes lengths").value_or(0);
+    robot.grip_open = read_si(context, stmt.open, dim::kLength, "`grip` takes lengths").value_or(1);
+    if (stmt.friction) {
+      robot.finger_friction =
+          read_positive(context, *stmt.friction, dim::kNumber, "`friction` takes a number")
+              .value_or(1);
+    }
+    if (stmt.patch)
+      robot.finger_patch =
+          read_si(context, *stmt.patch, dim::kLength, "`patch` takes a length").value_or(0);
+  }
+};
+
+void unknown_part(Context& context, std::string_view kind, const Spelled& name, const Robot& robot,
+                  std::vector<std::string_view> candidates) {
+  report_unknown(context.diagnostics, kind, {name.span, name.text}, candidates)
+      .label(robot.urdf.span, "not in this file");
+}
+
+void check_link(Context& context, const Spelled& link, const Robot& robot) {
+  if (!robot.model || link.text.empty() || robot.model->find_link(link.text) >= 0) return;
+  std::vector<std::string_view> candidates;
+  for (const robot::Link& known : robot.model->links) candidates.push_back(known.name);
+  unknown_part(context, "link", link, robot, std::move(candidates));
+}
+
+void check_drive(Context& context, const Drive& drive, const Robot& robot) {
+  const int index = robot.model->find_joint(drive.joint.text);
+  if (index < 0) {
+    std::vector<std::string_view> candidates;
+    for (const robot::Joint& known : robot.model->joints) candidates.push_back(known.name);
+    unknown_part(context, "joint", drive.joint, robot, std::move(candidates));
+    return;
+  }
+  const robot::JointKind kind = robot.model->joints[static_cast<std::size_t>(index)].kind;
+  if (kind == robot::JointKind::kFixed) {
+    context.report(Code::P0302, drive.joint.span,
+                   "joint `" + drive.joint.text + "` is fixed, it cannot be driven");
+    return;
+  }
+  const bool slides = kind == robot::JointKind::kPrismatic;
+  if (slides == (drive.stiffness.dimension == dim::kLinearStiffness)) return;
+  context
+      .report(Code::P0302, drive.span,
+              "joint `" + drive.joint.text + "` " + (slides ? "slides" : "turns") +
+                  ", its stiffness is in " + (slides ? "N/m" : "Nm/rad"))
+      .label(drive.joint.span, "this joint");
+}
+
+void load_model(Context& context, Robot& robot) {
+  const std::string path = (std::filesystem::path(context.asset_root) / robot.urdf.text).string();
+  auto model = robot::load_urdf(path);
+  if (!model.ok()) {
+    context
+        .report(Code::P0202, robot.urdf.span,
+                "the robot description cannot be read: " + model.failure().message)
+        .note("looked for `" + robot.urdf.text + "` in the assets folder");
+    return;
+  }
+  robot.model = std::move(model).value();
+  check_link(context, robot.tcp, robot);
+  for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);
+  for (const Drive& drive : robot.drives) check_drive(context, drive, robot);
+}
+
+void define_robots(Context& context) {
+  for (const auto& declared : context.symbols.robot_decls) {
+    const syntax::RobotDecl& node = *declared.node;
+    Robot robot;
+    robot.name = std::string(node.name.text);
+    robot.span = node.name.span;
+    RobotReader reader{context, robot};
+    for (const syntax::RobotStmt& stmt : node.body) std::visit(reader, stmt);
+    if (declared.decl->complete) {
+      if (robot.urdf.span.is_none()) missing(context, "robot", robot.name, robot.span, "urdf");
+      if (robot.tcp.span.is_none()) missing(context, "robot", robot.name, robot.span, "tcp");
+      if (robot.fingers.empty()) missing(context, "robot", robot.name, robot.span, "fingers");
+      if (!reader.has_control) missing(context, "robot", robot.name, robot.span, "control");
+      if (!reader.has_grip) missing(context, "robot", robot.name, robot.span, "grip");
+      if (robot.drives.empty()) missing(context, "robot", robot.name, robot.span, "drive");
+    }
+    if (!robot.urdf.span.is_none()) load_model(context, robot);
+    context.model.robots.add(std::move(robot));
+  }
+}
+
+// ---- cameras and lights
+// ---------------------------------------------------------------------------------------------
+
+struct CameraReader {
+  Context& context;
+  Camera& camera;
+
+  void operator()(const syntax::MountStmt& stmt) {
+    if (stmt.frame.parts.size() != 2) {
+      context.report(Code::P0201, stmt.frame.span, "expected `robot.link` to mount the camera on");
+    } else {
+      const auto robot = context.symbols.robots.find(stmt.frame.parts[0], context.diagnostics);
+      camera.mount_link = spelled(stmt.frame.parts[1]);
+      if (robot) {
+        camera.mount_robot = static_cast<RobotId>(*robot);
+        check_link(context, camera.mount_link, context.model.robots[camera.mount_robot]);
+      }
+    }
+    assign(camera.position,
+           read_point(context, stmt.at, 3, 3, dim::kLength, "`mount ... at` takes lengths"));
+    const bool looks = stmt.kind == syntax::MountKind::kLook;
+    camera.aim = looks ? plan::CameraAim::kLook : plan::CameraAim::kQuat;
+    camera.aim_values = {};
+    const std::size_t count = looks ? 3 : 4;
+    const auto aim = read_point(
+        context, stmt.direction, count, count, dim::kNumber,
+        looks ? "`look` takes a direction of plain numbers" : "`quat` takes plain numbers");
+    assign(camera.aim_values, aim);
+    if (aim && looks && camera.aim_values[0] == 0 && camera.aim_values[1] == 0) {
+      context
+          .report(Code::P0304, stmt.direction.span,
+                  "the view is vertical, which leaves its roll open")
+          .help("give the orientation with `quat`");
+    }
+  }
+  void operator()(const syntax::ImageStmt& stmt) {
+    camera.width = size(stmt.width);
+    camera.height = size(stmt.height);
+  }
+  void operator()(const syntax::LensStmt& stmt) {
+    if (stmt.values.size() != 4) {
+      context.report(Code::P0302, stmt.span,
+                     "expected fx, fy, cx, cy, found " + std::to_string(stmt.values.size()) +
+                         (stmt.values.size() == 1 ? " value" : " values"));
+      return;
+    }
+    double* const to[] = {&camera.fx, &camera.fy, &camera.cx, &camera.cy};
+    for (std::size_t i = 0; i < 4; ++i) {
+      *to[i] =
+          read_positive(context, stmt.values[i], dim::kPixel, "`lens` takes pixels").value_or(1);
+    }
+  }
+  std::uint32_t size(const syntax::Int& value) {
+    if (value.value >= 1 && value.value <= 8192) return static_cast<std::uint32_t>(value.value);
+    context.report(Code::P0304, value.span, "expected an image side between 1 and 8192 pixels");
+    return 1;
+  }
+};
+
+void define_cameras(Context& context) {
+  const auto& decls = context.symbols.camera_decls;
+  std::vector<std::optional<std::uint32_t>> parents(decls.size());
+  for (std::size_t i = 0; i < decls.size(); ++i) {
+    context.model.cameras.add({});
+    if (decls[i].node->like)
+      parents[i] = context.symbols.cameras.find(*decls[i].node->like, context.diagnostics);
+  }
+  for (const std::uint32_t i : parents_first(context, parents, context.symbols.cameras.names())) {
+    const syntax::CameraDecl& node = *decls[i].node;
+    Camera camera;
+    if (parents[i]) camera = context.model.cameras[static_cast<CameraId>(*parents[i])];
+    camera.name = std::string(node.name.text);
+    camera.span = node.name.span;
+    for (const syntax::CameraStmt& stmt : node.body)
+      std::visit(CameraReader{context, camera}, stmt);
+    if (decls[i].decl->complete && (!node.like || parents[i])) {
+      if (camera.mount_link.span.is_none())
+        missing(context, "camera", camera.name, camera.span, "mount");
+      if (camera.width == 0) missing(context, "camera", camera.name, camera.span, "image");
+      if (camera.fx == 0) missing(context, "camera", camera.name, camera.span, "lens");
+    }
+    context.model.cameras[static_cast<CameraId>(i)] = std::move(camera);
+  }
+}
+
+void define_lights(Context& context) {
+  for (const auto& declared : context.symbols.light_decls) {
+    Light light;
+    light.name = std::string(declared.node->name.text);
+    light.span = declared.node->name.span;
+    for (const syntax::LightStmt& stmt : declared.node->body) {
+      if (const auto* ambient = std::get_if<syntax::AmbientStmt>(&stmt)) {
+        light.ambient =
+            read_si(context, ambient->value, dim::kNumber, "`ambient` takes a number").value_or(0);
+        continue;
+      }
+      const auto& written = std::get<syntax::SunStmt>(stmt);
+      plan::SunRecord sun;
+      assign(sun.direction, read_point(context, written.direction, 3, 3, dim::kNumber,
+                                       "`sun` takes a direction of plain numbers"));
+      sun.power =
+          read_positive(context, written.power, dim::kNumber, "`power` takes a number").value_or(1);
+      sun.shadow = written.shadow ? 1 : 0;
+      light.suns.push_back(sun);
+    }
+    context.model.lights.add(std::move(light));
+  }
+}
+
+// ---- scenes
+// ---------------------------------------------------------------------------------------------------------
+
+struct SceneReader {
+  Context& context;
+  Scene& scene;
+  bool has_surface = false, has_physics = false;
+
+  void operator()(const syntax::SceneRobotStmt& stmt) {
+    const auto robot = context.symbols.robots.find(stmt.robot, context.diagnostics);
+    if (robot) scene.robot = static_cast<RobotId>(*robot);
+    const auto at =
+        read_point(context, stmt.at, 2, 3, dim::kLength, "`robot ... at` takes lengths");
+    assign(scene.base_position, at);
+    scene.base_on_surface = at && at->size() == 2;
+    if (const auto yaw = read_quantity(context, stmt.yaw, dim::kAngle, "`yaw` takes an angle")) {
+      scene.base_turn = make_turn(nullptr, nullptr, &*yaw);
+    }
+  }
+  void operator()(const syntax::JointsStmt& stmt) {
+    scene.joints.clear();
+    scene.joints_span = stmt.span;
+    // Lengths and angles mix here; each is checked against its joint when the robot is known.
+    for (const syntax::Quantity& value : stmt.positions.coordinates) {
+      const auto as_is = make_quantity("0", to_text(value.unit));
+      const bool is_length = as_is && as_is->dimension == dim::kLength;
+      const auto read = read_quantity(context, value, is_length ? dim::kLength : dim::kAngle,
+                                      "a joint is at an angle or a length");
+      if (read) scene.joints.push_back(*read);
+    }
+    if (scene.joints.size() != stmt.positions.coordinates.size())
+      scene.joints.clear(), scene.joints_span = {};
+  }
+  void operator()(const syntax::SurfaceStmt& stmt) {
+    has_surface = true;
+    scene.surface_z =
+        read_si(context, stmt.height, dim::kLength, "`surface` takes a height").value_or(0);
+    const auto low = read_point(context, stmt.low, 2, 2, dim::kLength, "`area` takes lengths");
+    const auto high = read_point(context, stmt.high, 2, 2, dim::kLength, "`area` takes lengths");
+    if (!low || !high) return;
+    scene.area = {(*low)[0].si(), (*low)[1].si(), (*high)[0].si(), (*high)[1].si()};
+    if (scene.area[0] < scene.area[2] && scene.area[1] < scene.area[3]) return;
+    context.report(Code::P0304, join(stmt.low.span, stmt.high.span),
+                   "the second corner of an area lies above the first on both axes");
+  }
+  void operator()(const syntax::FixtureStmt& stmt) {
+    scene.fixture = spelled(stmt.mesh);
+    assign(scene.fixture_position,
+           read_point(context, stmt.at, 3, 3, dim::kLength, "`fixture ... at` takes lengths"));
+  }
+  void operator()(const syntax::BackdropStmt& stmt) { scene.backdrop = spelled(stmt.mesh); }
+  void operator()(const syntax::SceneCameraStmt& stmt) {
+    const auto camera = context.symbols.cameras.find(stmt.camera, context.diagnostics);
+    if (camera) scene.camera = static_cast<CameraId>(*camera);
+    scene.overlay.reset();
+    if (stmt.overlay) scene.overlay = spelled(*stmt.overlay);
+  }
+  void operator()(const syntax::UseLightStmt& stmt) {
+    const auto light = context.symbols.lights.find(stmt.light, context.diagnostics);
+    if (light) scene.light = static_cast<LightId>(*light);
+  }
+  void operator()(const syntax::PhysicsStmt& stmt) {
+    has_physics = true;
+    scene.physics_hz =
+        read_positive(context, stmt.rate, dim::kRate, "`physics` takes a frequency").value_or(1);
+    scene.friction =
+        read_positive(context, stmt.friction, dim::kNumber, "`friction` takes a number")
+            .value_or(1);
+    if (stmt.window_step)
+      context.report(Code::P0101, stmt.span, "`window step` is not available yet");
+  }
+};
+
+void check_joints(Context& context, const Scene& scene) {
+  if (scene.robot == RobotId::kNone || scene.joints_span.is_none()) return;
+  const Robot& robot = context.model.robots[scene.robot];
+  if (scene.joints.size() != robot.drives.size()) {
+    context.report(Code::P0304, scene.joints_span,
+                   "expected " + std::to_string(robot.drives.size()) +
+                       " joints, one per drive of `" + robot.name + "`, found " +
+                       std::to_string(scene.joints.size()));
+    return;
+  }
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const bool slides = robot.drives[i].stiffness.dimension == dim::kLinearStiffness;
+    const Dimension wanted = slides ? dim::kLength : dim::kAngle;
+    if (scene.joints[i].dimension == wanted) continue;
+    context
+        .report(Code::P0302, scene.joints_span,
+                "expected " + name_of(wanted) + " for joint `" + robot.drives[i].joint.text +
+                    "`, found " + name_of(scene.joints[i].dimension))
+        .point("number " + std::to_string(i + 1));
+  }
+}
+
+void define_scenes(Context& context) {
+  const auto& decls = context.symbols.scene_decls;
+  std::vector<std::optional<std::uint32_t>> parents(decls.size());
+  for (std::size_t i = 0; i < decls.size(); ++i) {
+    context.model.scenes.add({});
+    if (decls[i].node->like)
+      parents[i] = context.symbols.scenes.find(*decls[i].node->like, context.diagnostics);
+  }
+  for (const std::uint32_t i : parents_first(context, parents, context.symbols.scenes.names())) {
+    const syntax::SceneDecl& node = *decls[i].node;
+    Scene scene;
+    if (parents[i]) scene = context.model.scenes[static_cast<SceneId>(*parents[i])];
+    scene.name = std::string(node.name.text);
+    scene.span = node.name.span;
+    SceneReader reader{context, scene};
+    const auto errors = context.diagnostics.error_count();
+    for (const syntax::SceneStmt& stmt : node.body) std::visit(reader, stmt);
+    if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
+    if (decls[i].decl->complete && context.diagnostics.error_count() == errors &&
+        (!node.like || parents[i])) {
+      if (scene.robot == RobotId::kNone) missing(context, "scene", scene.name, scene.span, "robot");
+      if (scene.joints_span.is_none()) missing(context, "scene", scene.name, scene.span, "joints");
+      if (scene.area[0] == scene.area[2])
+        missing(context, "scene", scene.name, scene.span, "surface");
+      if (scene.camera == CameraId::kNone)
+        missing(context, "scene", scene.name, scene.span, "camera");
+      if (scene.light == LightId::kNone) missing(context, "scene", scene.name, scene.span, "light");
+      if (scene.physics_hz == 0) missing(context, "scene", scene.name, scene.span, "physics");
+      check_joints(context, scene);
+    }
+    context.model.scenes[static_cast<SceneId>(i)] = std::move(scene);
+  }
+}
+
+}  // namespace
+
+bool Camera::operator==(const Camera& other) const {
+  return mount_link.text == other.mount_link.text && aim == other.aim &&
+         position == other.position && aim_values == other.aim_values && width == other.width &&
+         height == other.height && fx == other.fx && fy == other.fy && cx == other.cx &&
+         cy == other.cy;
+}
+
+bool Light::operator==(const Light& other) const {
+  if (ambient != other.ambient || suns.size() != other.suns.size()) return false;
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||
+        suns[i].shadow != other.suns[i].shadow) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void define_stage(Context& context) {
+  define_robots(context);
+  define_cameras(context);
+  define_lights(context);
+  define_scenes(context);
+}
+
+}  // namespace probe::sema
