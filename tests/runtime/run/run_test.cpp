@@ -1,0 +1,222 @@
+// Whole runs on the real world, camera and judge: sameness, resume, replay, pictures, and what goes
+// wrong.
+#include "runtime/run/run.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "runtime/run/replay.h"
+#include "runtime/run/store.h"
+#include "runtime/run/trace.h"
+#include "runtime/run/video.h"
+#include "runtime/scene/image.h"
+#include "tests/runtime/run/table_plan.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+RunOptions options_for(const std::string& out, const std::string& policy = "random") {
+  RunOptions options;
+  options.policy = policy;
+  options.out = out;
+  options.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
+  return options;
+}
+
+std::vector<std::string> hashes(const std::string& dir) {
+  std::vector<std::string> all;
+  const auto rows = read_results(dir);
+  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
+  for (const ResultRow& row : *rows) {
+    CHECK_MESSAGE(!row.invalid, row.invalid.value_or(""));
+    all.push_back(row.trace_sha256);
+  }
+  return all;
+}
+
+RunSummary must_run(const plan::Plan& plan, const RunOptions& options) {
+  const auto summary = run(plan, options);
+  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+  return *summary;
+}
+
+TEST_CASE("one job or two, in one go or in shards, with or without videos: the same traces") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 3);
+  RunOptions one = options_for(folder / "one");
+  const RunSummary summary = must_run(plan, one);
+  CHECK(summary.total == 4);  // two starts, two seeds: this policy draws
+  CHECK(summary.done == 4);
+  const auto expected = hashes(folder / "one");
+  REQUIRE(expected.size() == 4);
+  CHECK(std::set<std::string>(expected.begin(), expected.end()).size() == 4);
+
+  RunOptions two = options_for(folder / "two");
+  two.jobs = 2;
+  two.video = VideoChoice::kAll;
+  must_run(plan, two);
+  CHECK(hashes(folder / "two") == expected);
+  const auto video = inspect_video(folder / "two/videos/carrot_on_plate/0-42.mp4");
+  REQUIRE_MESSAGE(video.ok(), to_text(video.failure()));
+  CHECK(video->frames == 4);
+
+  RunOptions part = options_for(folder / "part");
+  part.shards = 2;
+  for (const int shard : {2, 1}) {
+    part.shard = shard;
+    CHECK(must_run(plan, part).done == 2);
+  }
+  CHECK(hashes(folder / "part") == expected);
+
+  // Again: nothing is left to do.
+  const RunSummary again = must_run(plan, one);
+  CHECK(again.done == 0);
+  CHECK(again.skipped == 4);
+}
+
+TEST_CASE("a stored episode repeats bit for bit, and a changed one is told") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 4);
+  RunOptions options = options_for(folder / "run");
+  options.seeds = {7};
+  must_run(plan, options);
+  ReplayOptions replaying;
+  replaying.verify = true;
+  replaying.assets = options.assets;
+  replaying.video = folder / "a.mp4";
+  replaying.png = folder / "last.png";
+  replaying.png_step = 4;
+  const auto report = replay(folder / "run", "carrot_on_plate", 0, std::nullopt, replaying);
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK_MESSAGE(report->identical, report->difference);
+  CHECK(report->steps == 4);
+  CHECK(report->seed == 7);
+  CHECK(report->fingerprint_differences.empty());
+  CHECK(inspect_video(folder / "a.mp4")->frames == 5);
+  CHECK(scene::load_image(folder / "last.png")->width == 640);
+
+  CHECK(replay(folder / "run", "carrot_on_plate", 0, 8, replaying)
+            .failure()
+            .message.find("no seed 8") != std::string::npos);
+  CHECK(replay(folder / "run", "carrot", 0, 7, replaying).failure().code == "usage");
+  CHECK(replay(folder / "run", "carrot_on_plate", 3, 7, replaying).failure().code == "usage");
+
+  // The policy replay:DIR does the same things, under its own name.
+  RunOptions copy = options_for(folder / "copy", "replay:" + (folder / "run"));
+  copy.seeds = {7};
+  must_run(plan, copy);
+  const auto a = read_trace(read_results(folder / "run")->at(0).trace);
+  const auto b = read_trace(read_results(folder / "copy")->at(0).trace);
+  CHECK(a->steps.back().state_hash == b->steps.back().state_hash);
+
+  CHECK(write_contact_sheet(folder / "run", folder / "sheet.png", {"*", 6, 160, options.assets})
+            .ok());
+  CHECK(scene::load_image(folder / "sheet.png")->width > 320);
+}
+
+TEST_CASE("objects settle on the table and the null policy leaves them there") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 5);
+  const RunSummary summary = must_run(plan, options_for(folder / "run", "null"));
+  CHECK(summary.total == 2);  // draws nothing: once a start
+  REQUIRE(summary.notes.size() == 1);
+  CHECK(summary.notes[0].find("seed 42") != std::string::npos);
+  const auto rows = read_results(folder / "run");
+  for (const ResultRow& row : *rows) {
+    CHECK(row.steps == 5);
+    const auto trace = read_trace(row.trace);
+    REQUIRE(trace.ok());
+    const auto& start = trace->start->sample;
+    const auto& end = trace->steps.back().sample;
+    CHECK(start.bodies[0].position.z() > 0.87 + 0.01);
+    CHECK(start.bodies[0].position.z() < 0.87 + 0.03);
+    CHECK(start.bodies[1].position.z() < 0.87 + 0.02);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK((end.bodies[i].position - start.bodies[i].position).norm() < 1e-5);
+    }
+    CHECK(trace->steps.back().sample.grip == doctest::Approx(0).epsilon(0.01));
+    CHECK(trace->header.prompt == "put carrot on plate");
+    CHECK(to_hex(trace->steps[0].prompt_hash) == row.prompt_sha256);
+    CHECK(to_hex(trace->steps[0].image_hash) == row.image_sha256);
+    // Contacts of both objects with the table, ascending.
+    REQUIRE(end.contacts.size() >= 2);
+    CHECK(end.contacts[0].a == 0);
+    CHECK(end.contacts[0].b == 2);
+    CHECK(end.contacts[0].push.z() < 0);  // the carrot presses the table down
+  }
+}
+
+TEST_CASE("a policy that fails makes the episode invalid, and it is tried again") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 3);
+  // No such run to replay.
+  const RunSummary summary =
+      must_run(plan, options_for(folder / "run", "replay:" + (folder / "nothing")));
+  CHECK(summary.invalid == summary.total);
+  const auto rows = read_results(folder / "run");
+  REQUIRE(rows->at(0).invalid.has_value());
+  CHECK(rows->at(0).invalid->starts_with("policy: "));
+  CHECK(rows->at(0).steps == 0);
+  CHECK(read_trace(rows->at(0).trace).ok());
+  const RunSummary again =
+      must_run(plan, options_for(folder / "run", "replay:" + (folder / "nothing")));
+  CHECK(again.skipped == 0);
+  CHECK(read_results(folder / "run")->size() == rows->size());
+}
+
+TEST_CASE("what cannot run is told before anything is written") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 3);
+  const auto refused = [&](const RunOptions& options) {
+    const auto summary = run(plan, options);
+    REQUIRE_FALSE(summary.ok());
+    CHECK_FALSE(fs::exists(options.out));
+    return to_text(summary.failure());
+  };
+  RunOptions options = options_for(folder / "run", "exprt");
+  CHECK(refused(options).find("did you mean `expert`") != std::string::npos);
+  options = options_for(folder / "run");
+  options.tasks = "spoon*";
+  CHECK(refused(options) == "--tasks: no task is called `spoon*`");
+  options = options_for(folder / "run");
+  options.suite = "nightly";
+  CHECK(refused(options).find("no suite `nightly`; the plan has smoke") != std::string::npos);
+  options = options_for(folder / "run");
+  options.episodes = {5, 9};
+  CHECK(refused(options).find("from 5 to 9") != std::string::npos);
+  options = options_for(folder / "run");
+  options.shard = 3;
+  options.shards = 2;
+  CHECK(refused(options).find("3/2") != std::string::npos);
+  options = options_for(folder / "run");
+  options.assets = folder / "nowhere";
+  CHECK(refused(options).find("is not there") != std::string::npos);
+
+  // One byte of one mesh.
+  fs::copy(std::string(VLAPROBE_SOURCE_DIR) + "/assets", folder / "assets",
+           fs::copy_options::recursive);
+  {
+    std::fstream file(folder / "assets/objects/carrot/visual.glb",
+                      std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(2000);
+    file.put('\x55');
+  }
+  options = options_for(folder / "run");
+  options.assets = folder / "assets";
+  CHECK(refused(options) ==
+        "objects/carrot/visual.glb: its bytes are not the ones the plan was built with");
+  fs::remove(folder / "assets/robots/widowx/meshes/wrist_link.glb");
+  fs::copy_file(std::string(VLAPROBE_SOURCE_DIR) + "/assets/objects/carrot/visual.glb",
+                folder / "assets/objects/carrot/visual.glb", fs::copy_options::overwrite_existing);
+  CHECK(refused(options).starts_with(
+      "robots/widowx/meshes/wrist_link.glb: this file of the plan is not in "));
+}
+
+}  // namespace
+}  // namespace probe::run
