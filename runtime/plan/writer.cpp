@@ -181,7 +181,7 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
   std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (file == nullptr)
     return Failure{"io", std::string("cannot write: ") + std::strerror(errno), path};
-  bool ok = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  bool ok = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   ok = std::fflush(file) == 0 && ok;
   ok = ::fsync(::fileno(file)) == 0 && ok;
   int error = errno;
