@@ -65,6 +65,7 @@ Character character_at(std::string_view text, std::size_t at) {
 class PrintedLine {
  public:
   PrintedLine(std::string_view line, std::size_t first_mark) : line_(line) {
+    keep_near(first_mark);
     const std::size_t all = measure(line.size());
     if (all > kMaxColumns) {
       const std::size_t mark = measure(first_mark);
@@ -91,8 +92,20 @@ class PrintedLine {
     return is_in(kZeroWidth, code) ? 0 : is_in(kWide, code) ? 2 : 1;
   }
 
-  // Columns before byte `end`.
+  // A line of megabytes is not measured as a whole for each of its marks: only the bytes around the
+  // first one count.
+  void keep_near(std::size_t mark) {
+    constexpr std::size_t kBefore = 1024, kKept = 4096;
+    if (line_.size() <= kKept) return;
+    skipped_ = mark > kBefore ? mark - kBefore : 0;
+    while (skipped_ > 0 && (static_cast<unsigned char>(line_[skipped_]) & 0xc0u) == 0x80u)
+      --skipped_;
+    line_ = line_.substr(skipped_, kKept);
+  }
+
+  // Columns between the first byte kept and byte `end` of the line.
   std::size_t measure(std::size_t end) const {
+    end = end > skipped_ ? end - skipped_ : 0;
     std::size_t column = 0;
     for (std::size_t at = 0; at < std::min(end, line_.size());) {
       const Character character = character_at(line_, at);
@@ -129,8 +142,10 @@ class PrintedLine {
     while (!text_.empty() && text_.back() == ' ') text_.pop_back();
   }
 
-  std::string_view line_;
-  std::size_t from_ = 0;
+  std::string_view line_;    // what is kept of it
+  std::size_t skipped_ = 0;  // bytes of the line before that
+  std::size_t from_ = 0;     // columns shown
+
   std::size_t to_ = static_cast<std::size_t>(-1);
   std::string text_;
 };
