@@ -222,18 +222,22 @@ class Lexer {
   }
 
   void string() {
+    // The line's end is looked for on the way: many strings on one long line must not each read the
+    // whole of it.
     std::size_t end = at_ + 1;
-    const std::size_t line_end = at_ + rest_of_line();
-    while (end < line_end && text_[end] != '"') {
-      if (text_[end] == '\\') {
-        const char escaped = end + 1 < line_end ? text_[end + 1] : '\0';
-        if (end + 1 < line_end && escaped != '"' && escaped != '\\' && escaped != 'n')
-          unknown_escape(end);
-        if (end + 1 < line_end) ++end;
+    const auto at_line_end = [&](std::size_t i) {
+      if (i >= text_.size() || text_[i] == '\n') return true;
+      return text_[i] == '\r' && i + 1 < text_.size() && text_[i + 1] == '\n';
+    };
+    while (!at_line_end(end) && text_[end] != '"') {
+      if (text_[end] == '\\' && !at_line_end(end + 1)) {
+        const char escaped = text_[end + 1];
+        if (escaped != '"' && escaped != '\\' && escaped != 'n') unknown_escape(end);
+        ++end;
       }
       ++end;
     }
-    const bool closed = end < line_end;
+    const bool closed = !at_line_end(end);
     if (!closed) {
       Diagnostic* error = errors_.report(Code::P0105, span(at_, end),
                                          "found end of line, expected `\"` to close the string");
