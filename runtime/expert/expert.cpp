@@ -193,8 +193,11 @@ class Expert final : public policy::Policy {
       if (auto fresh = plan_pick(s, *reach_, options_.close)) pick_ = fresh;
     }
     const Vec3 off = s.tcp.position - pick_->above.position;
-    const bool there = off.head<2>().norm() < 0.008 && std::abs(off.z()) < 0.02 &&
-                       robot::pose_error(s.tcp, pick_->above).rotation < 0.08;
+    // Wide objects leave the fingers little room beside them.
+    const double room = side_room(GripperShape{}, pick_->grasp.width);
+    const bool there =
+        off.head<2>().norm() < std::clamp(0.7 * room, 0.0006, 0.008) && std::abs(off.z()) < 0.02 &&
+        robot::pose_error(s.tcp, pick_->above).rotation < std::clamp(20 * room, 0.01, 0.08);
     if (there || steps_ >= 16) enter(Phase::kDescend);
   }
 

@@ -17,9 +17,10 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kYaws = 36;  // over half a turn; the other half is the same grasp turned round
 constexpr double kAlongStep = 0.005;  // m, positions along the object
 constexpr double kAlongMost = 0.030;
-constexpr double kSideMargin = 0.003;  // m, between each open finger and the object
-constexpr double kNearest = 0.002;     // m, to another object
-constexpr double kComfortable = 0.02;  // m, farther away earns nothing more
+constexpr double kSideMargin = 0.0008;  // m, between each open finger and the object
+constexpr double kEasySide = 0.006;     // m, wider earns nothing more
+constexpr double kNearest = 0.002;      // m, to another object
+constexpr double kComfortable = 0.02;   // m, farther away earns nothing more
 
 double wrapped(double angle) {
   while (angle > kPi) angle -= 2 * kPi;
@@ -95,14 +96,21 @@ double yaw_of(const Quat& rotation) {
   return portable_atan2(z.y() - y.x(), z.x() + y.y());
 }
 
+double side_room(const GripperShape& gripper, double width) {
+  return gripper.opening_half - 0.5 * width;
+}
+
 std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
   const Footprint& source = *problem.source;
   const GripperShape& g = problem.gripper;
-  // As low as the surface allows, unless the palm would meet the top of the object.
-  const double lowest = problem.surface + g.tip_below + problem.tip_margin;
+  // As low as the surface allows, unless the palm would meet the top of the object. Flat objects
+  // need the tips lower.
+  const double margin =
+      std::clamp(0.25 * (source.top - problem.surface), 0.0015, problem.tip_margin);
+  const double lowest = problem.surface + g.tip_below + margin;
   const double z = std::max(lowest, source.top - g.palm_above + 0.004);
   std::vector<Grasp> out;
-  if (z - g.tip_below > source.top - 0.004) return out;  // the fingers would close above it
+  if (z - g.tip_below > source.top - 0.003) return out;  // the fingers would close above it
   for (const double half_turn : yaws_for(source)) {
     const Directions d = directions_of(half_turn);
     const double middle = d.across.dot(source.center);
@@ -121,6 +129,7 @@ std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
         if (grasp.clearance < kNearest) continue;
         grasp.cost = 20 * grasp.width + 50 * std::abs(along) +
                      0.5 * std::max(0.0, 1 - grasp.clearance / kComfortable) +
+                     0.5 * std::max(0.0, 1 - side_room(g, grasp.width) / kEasySide) +
                      0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now));
         out.push_back(grasp);
       }

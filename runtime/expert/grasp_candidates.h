@@ -35,9 +35,9 @@ struct Grasp {
 struct GraspProblem {
   const Footprint* source = nullptr;
   std::vector<const Footprint*> others;
-  double surface = 0;  // height the fingertips must stay above
-  double tip_margin = 0.004;
-  double yaw_now = 0;  // of the tool, to prefer short turns
+  double surface = 0;         // height the fingertips must stay above
+  double tip_margin = 0.004;  // m above it, less for flat objects
+  double yaw_now = 0;         // of the tool, to prefer short turns
   GripperShape gripper;
 };
 
@@ -47,6 +47,9 @@ Pose top_down(const Vec3& position, double yaw);
 
 // The yaw of the top-down pose nearest to a rotation.
 double yaw_of(const Quat& rotation);
+
+// Between each open finger and an object of this width, m.
+double side_room(const GripperShape& gripper, double width);
 
 // Sorted by cost; empty if nothing fits between the fingers. Several yaws (both ways round) and
 // positions.

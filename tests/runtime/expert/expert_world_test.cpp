@@ -174,6 +174,60 @@ TEST_CASE("neighbours are left where they are") {
   }
 }
 
+test::Thing solid(const std::string& name, double density, const Vec3& half, bool round) {
+  if (!round) {
+    return {name, density, half,
+            std::make_shared<const scene::CollisionShape>(scene::make_box_shape(half))};
+  }
+  // A lying or standing drum: round about its y axis.
+  std::vector<Vec3> rim;
+  for (int i = 0; i < 16; ++i) {
+    const Vec3 spoke =
+        robot::axis_rotation(Vec3::UnitY(), i * 0.39269908169872414) * Vec3(half.x(), 0, 0);
+    rim.push_back(spoke + Vec3(0, half.y(), 0));
+    rim.push_back(spoke - Vec3(0, half.y(), 0));
+  }
+  return {name, density, half,
+          std::make_shared<const scene::CollisionShape>(
+              need(scene::make_collision_shape({rim}, name)))};
+}
+
+TEST_CASE("things of other shapes and sizes are put on others") {
+  struct Job {
+    test::Thing source, target;
+    double yaw = 0, roll = 0;
+  };
+  const auto plate = carrot_and_plate()[1];
+  const auto cube = solid("cube", 1000, {0.015, 0.015, 0.015}, false);
+  const std::vector<Job> jobs = {
+      {cube, solid("other cube", 1000, {0.015, 0.015, 0.015}, false), 0, 0},
+      {cube, plate, 33, 0},
+      {solid("can", 1000, {0.0165, 0.03075, 0.0165}, true), plate, 0, 90},
+      {solid("can", 1000, {0.0165, 0.03075, 0.0165}, true), plate, 90, 0},
+      {solid("juice", 300, {0.034, 0.013, 0.013}, false), plate, -90, 0},
+      {solid("nut", 500, {0.018, 0.020, 0.008}, false), plate, 0, 0},
+      {solid("tile", 700, {0.025, 0.025, 0.006}, false), cube, 0, 0},
+      {cube, solid("keyboard", 1000, {0.076, 0.032, 0.005}, false), 0, 0},
+  };
+  const test::Robot robot = test::load_robot();
+  auto policy = need(make_expert({}));
+  int number = 0;
+  const char* traced = std::getenv("PROBE_TRACE_JOB");
+  for (const Job& job : jobs) {
+    for (const auto& [from, to] : {std::pair{0, 3}, std::pair{3, 1}, std::pair{1, 0}}) {
+      CAPTURE(number);
+      CAPTURE(job.source.name);
+      const std::vector<test::Thing> things{job.source, job.target};
+      Pose start = dropped(kCells[std::size_t(from)], job.yaw);
+      start.rotation =
+          start.rotation * robot::from_rotation_vector({job.roll * 0.0174532925199, 0, 0});
+      test::WorldTable table(robot, things, {start, dropped(kCells[std::size_t(to)], 0)});
+      CHECK(play(table, *policy, traced && std::atoi(traced) == number).success);
+      ++number;
+    }
+  }
+}
+
 TEST_CASE("the same start gives the same bits, whatever was played before") {
   const test::Robot robot = test::load_robot();
   const auto things = carrot_and_plate();
