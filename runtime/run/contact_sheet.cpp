@@ -1,11 +1,10 @@
 // First and last pictures of stored episodes, drawn again from the poses in their traces: no
 // physics, no policy.
 #include <algorithm>
-#include <map>
 
 #include "runtime/run/assets.h"
 #include "runtime/run/glob.h"
-#include "runtime/run/overlay.h"
+#include "runtime/run/picture_grid.h"
 #include "runtime/run/replay.h"
 #include "runtime/run/scene_view.h"
 #include "runtime/run/store.h"
@@ -15,13 +14,7 @@
 namespace probe::run {
 namespace {
 
-constexpr int kMargin = 4, kCaption = kGlyphHeight + 4;
-
-struct Cell {
-  Picture first, last;
-  std::string caption;
-  bool good = false;
-};
+constexpr std::array<std::uint8_t, 3> kGood = {110, 230, 120}, kBad = {255, 150, 110};
 
 Result<Picture> draw(SceneView& view, std::span<const double> q, const vm::StepSample& sample,
                      std::size_t objects, int width) {
@@ -30,8 +23,7 @@ Result<Picture> draw(SceneView& view, std::span<const double> q, const vm::StepS
     poses.push_back({sample.bodies[i].origin, sample.bodies[i].rotation});
   }
   PROBE_ASSIGN(const render::FrameView frame, view.render(q, poses));
-  const Picture picture = copy_picture(frame.width, frame.height, frame.rgb);
-  return shrink(picture, width, std::max(1, width * frame.height / frame.width));
+  return shrink_frame(frame.width, frame.height, frame.rgb, width);
 }
 
 std::string caption(const ResultRow& row) {
@@ -50,26 +42,6 @@ bool succeeded(const ResultRow& row) {
                      [](const MetricValue& m) { return m.name == "success" && m.value != 0; });
 }
 
-Picture lay_out(const std::vector<Cell>& cells, int columns) {
-  columns = std::max(1, std::min(columns, static_cast<int>(cells.size())));
-  const int rows = (static_cast<int>(cells.size()) + columns - 1) / columns;
-  const int width = cells[0].first.width, height = cells[0].first.height;
-  const int cell_width = 2 * width + 2 * kMargin, cell_height = height + kCaption + kMargin;
-  Picture sheet =
-      make_picture(columns * cell_width + kMargin, rows * cell_height + kMargin, {24, 24, 28});
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const int x = kMargin + static_cast<int>(i) % columns * cell_width;
-    const int y = kMargin + static_cast<int>(i) / columns * cell_height;
-    paste(sheet, cells[i].first, x, y);
-    paste(sheet, cells[i].last, x + width + 1, y);
-    const std::array<std::uint8_t, 3> color = cells[i].good
-                                                  ? std::array<std::uint8_t, 3>{110, 230, 120}
-                                                  : std::array<std::uint8_t, 3>{255, 150, 110};
-    draw_text(sheet, x, y + height + 3, fit_text(cells[i].caption, 2 * width, 1), color);
-  }
-  return sheet;
-}
-
 }  // namespace
 
 Status write_contact_sheet(const std::string& dir, const std::string& png_path,
@@ -84,7 +56,7 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
   std::string task_name;
   std::unique_ptr<SceneView> view;
   std::size_t objects = 0;
-  std::vector<Cell> cells;
+  std::vector<GridCell> cells;
   for (const ResultRow& row : rows) {
     if (row.task != task_name) {
       const auto task = plan.find_task(row.task);
@@ -97,20 +69,20 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
     }
     PROBE_ASSIGN(const Trace trace, read_trace_prefix(row.trace));
     if (!trace.start) continue;
-    Cell cell;
+    GridCell cell;
     cell.caption = caption(row);
-    cell.good = succeeded(row);
-    PROBE_ASSIGN(cell.first,
+    cell.color = succeeded(row) ? kGood : kBad;
+    PROBE_ASSIGN(Picture first,
                  draw(*view, trace.start->q, trace.start->sample, objects, options.cell_width));
-    cell.last = cell.first;
+    cell.pictures.assign(2, std::move(first));
     if (!trace.steps.empty()) {
       const TraceStep& last = trace.steps.back();
-      PROBE_ASSIGN(cell.last, draw(*view, last.q, last.sample, objects, options.cell_width));
+      PROBE_ASSIGN(cell.pictures[1], draw(*view, last.q, last.sample, objects, options.cell_width));
     }
     cells.push_back(std::move(cell));
   }
   if (cells.empty()) return Failure{"usage", "no stored episode got as far as its start", dir};
-  const Picture sheet = lay_out(cells, options.columns);
+  const Picture sheet = lay_out_grid(cells, options.columns);
   return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
 }
 

@@ -98,12 +98,12 @@ void paste(Picture& onto, const Picture& what, int x, int y) {
 }
 
 void draw_text(Picture& picture, int x, int y, std::string_view text, Color color, int scale) {
-  constexpr std::array<std::uint8_t, 7> kBox = {0x1f, 0x11, 0x11, 0x11, 0x11, 0x11, 0x1f};
+  constexpr std::array<std::uint8_t, 8> kBox = {0x1f, 0x11, 0x11, 0x11, 0x11, 0x11, 0x1f, 0};
   for (const char raw : text) {
     const auto byte = static_cast<unsigned char>(raw);
     const auto& rows = byte >= 32 && byte < 127 ? kFont[byte - 32u] : kBox;
-    for (int row = 0; row < 7; ++row) {
-      for (int column = 0; column < 5; ++column) {
+    for (int row = 0; row < kGlyphHeight; ++row) {
+      for (int column = 0; column < kGlyphWidth - 1; ++column) {
         if ((rows[static_cast<std::size_t>(row)] >> (4 - column) & 1) == 0) continue;
         fill(picture, x + column * scale, y + row * scale, scale, scale, color);
       }

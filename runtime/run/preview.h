@@ -1,5 +1,4 @@
-// `vlaprobe preview`: what a task looks like at each of its starts, after settling and before the
-// first action.
+// What a task looks like before anybody acts: the settled first picture of each of its starts.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +10,8 @@
 
 namespace probe::run {
 
-// A PNG grid with one picture a start, the start's number under each and the instruction below all.
-// `task` is an index of plan.tasks().
+// A PNG grid, captioned with the start's index; the instruction stands in the first caption.
+// SheetOptions::tasks is not read.
 Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::string& png_path,
                      const SheetOptions& options = {});
 

@@ -30,7 +30,7 @@ struct RunProgress {
 struct RunOptions {
   std::string policy;       // "expert", "noisy:0.01", ...
   std::string out;          // folder, made if absent
-  std::string suite;        // empty: the plan's only suite, or all tasks if it has none
+  std::string suite;        // empty: the plan's first suite, or all tasks if it has none
   std::string tasks = "*";  // glob over task names: * and ?
   std::optional<std::pair<int, int>> episodes;  // first and last index, both included
   // Empty: the suite's seeds; and if the policy draws nothing (every seed would repeat the same

@@ -11,18 +11,16 @@ namespace {
 
 Failure usage(const std::string& message, const char* where) { return {"usage", message, where}; }
 
-// The suite to run: the named one, else the only one, else none.
+// The suite to run: the named one, else the first, else none.
 Result<const plan::SuiteRecord*> choose_suite(const plan::Plan& plan, const std::string& name) {
   const auto suites = plan.suites();
-  if (!name.empty()) {
-    if (const auto index = plan.find_suite(name)) return &suites[*index];
-  }
-  if (name.empty() && suites.size() <= 1) return suites.empty() ? nullptr : suites.data();
+  if (name.empty()) return suites.empty() ? nullptr : suites.data();
+  if (const auto index = plan.find_suite(name)) return &suites[*index];
   std::string known;
   for (const plan::SuiteRecord& suite : suites) {
-    known += (known.empty() ? "" : ", ") + std::string(plan.text(suite.name));
+    if (!known.empty()) known += ", ";
+    known += plan.text(suite.name);
   }
-  if (name.empty()) return usage("the plan has several suites, name one of: " + known, "--suite");
   return usage("no suite `" + name + "`; the plan has " + (known.empty() ? "none" : known),
                "--suite");
 }
@@ -41,6 +39,10 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
   std::vector<std::uint32_t> tasks;
   if (suite != nullptr) {
     selection.suite = std::string(plan.text(suite->name));
+    if (options.suite.empty() && plan.suites().size() > 1) {
+      selection.notes.push_back("suite `" + selection.suite + "`, the first of " +
+                                std::to_string(plan.suites().size()) + "; --suite names another");
+    }
     const auto members = plan.members(*suite);
     tasks.assign(members.begin(), members.end());
   } else {

@@ -1,0 +1,41 @@
+// Arithmetic of a contact sheet.
+#include "runtime/run/picture_grid.h"
+
+#include <algorithm>
+
+#include "runtime/base/check.h"
+
+namespace probe::run {
+namespace {
+
+constexpr int kMargin = 4, kCaption = kGlyphHeight + 4;
+
+}  // namespace
+
+Picture lay_out_grid(const std::vector<GridCell>& cells, int columns) {
+  PROBE_CHECK(!cells.empty() && !cells[0].pictures.empty(), "a grid has pictures");
+  columns = std::max(1, std::min(columns, static_cast<int>(cells.size())));
+  const int rows = (static_cast<int>(cells.size()) + columns - 1) / columns;
+  const int width = cells[0].pictures[0].width, height = cells[0].pictures[0].height;
+  const int strip = static_cast<int>(cells[0].pictures.size()) * (width + 1) - 1;
+  const int step_x = strip + kMargin, step_y = height + kCaption + kMargin;
+  Picture sheet = make_picture(columns * step_x + kMargin, rows * step_y + kMargin, {24, 24, 28});
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    int x = kMargin + static_cast<int>(i) % columns * step_x;
+    const int y = kMargin + static_cast<int>(i) / columns * step_y;
+    draw_text(sheet, x, y + height + 3, fit_text(cells[i].caption, strip, 1), cells[i].color);
+    for (const Picture& picture : cells[i].pictures) {
+      paste(sheet, picture, x, y);
+      x += width + 1;
+    }
+  }
+  return sheet;
+}
+
+Picture shrink_frame(int width, int height, std::span<const std::uint8_t> rgb, int cell_width) {
+  cell_width = std::clamp(cell_width, 1, width);
+  return shrink(copy_picture(width, height, rgb), cell_width,
+                std::max(1, cell_width * height / width));
+}
+
+}  // namespace probe::run
