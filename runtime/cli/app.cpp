@@ -27,7 +27,8 @@ int report_unknown(const CLI::App& app, const CLI::ParseError& error, std::span<
   fmt::print(stderr, "vlaprobe: {}\n", error.what());
   for (const char* word : words) {
     const std::string flag(word, std::strcspn(word, "="));
-    if (flag.rfind("--", 0) != 0 || std::find(known.begin(), known.end(), flag) != known.end()) continue;
+    if (flag.rfind("--", 0) != 0 || std::find(known.begin(), known.end(), flag) != known.end())
+      continue;
     const auto close = nearest(flag, known);
     if (close) fmt::print(stderr, "  did you mean `{}`?\n", *close);
   }
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   add_dis(app, exit);
   add_verify(app, exit);
   add_preview(app, exit);
+  add_sheet(app, exit);
   add_run(app, exit);
   add_results(app, exit);
   add_replay(app, exit);

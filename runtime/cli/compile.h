@@ -1,4 +1,5 @@
-// Compiling for the verbs: runs the compiler and prints its diagnostics in the way the user asked for.
+// Compiling for the verbs: runs the compiler and prints its diagnostics in the way the user asked
+// for.
 #pragma once
 
 #include <string>

@@ -13,7 +13,8 @@ void add_dis(CLI::App& app, int& exit) {
     AssetOptions assets;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("dis", "a plan as text: tables and programs with their source lines");
+  CLI::App* verb =
+      app.add_subcommand("dis", "a plan as text: tables and programs with their source lines");
   verb->footer("example: vlaprobe dis intact.plan carrot_on_plate");
   verb->add_option("F", arguments->file, ".plan file or .probe text")->required();
   verb->add_option("TASK", arguments->task, "the program of this task alone");

@@ -39,11 +39,12 @@ int list_verb(const Arguments& arguments) {
     return kFine;
   }
   std::size_t width = 0;
-  for (const auto& task : all) width = std::max(width, task["task"].get_ref<const std::string&>().size());
+  for (const auto& task : all)
+    width = std::max(width, task["task"].get_ref<const std::string&>().size());
   std::size_t episodes = 0;
   for (const auto& task : all) {
-    fmt::print("{:<{}}  {:>4}  {}\n", task["task"].get<std::string>(), width, task["episodes"].get<std::size_t>(),
-               task["prompt"].get<std::string>());
+    fmt::print("{:<{}}  {:>4}  {}\n", task["task"].get<std::string>(), width,
+               task["episodes"].get<std::size_t>(), task["prompt"].get<std::string>());
     episodes += task["episodes"].get<std::size_t>();
   }
   fmt::print(stderr, "{} tasks, {} episodes\n", all.size(), episodes);
@@ -60,7 +61,9 @@ int show_verb(const Arguments& arguments) {
     fmt::print("{}\n", task.dump(2));
     return kFine;
   }
-  const auto line = [](const char* name, const std::string& value) { fmt::print("{:<12} {}\n", name, value); };
+  const auto line = [](const char* name, const std::string& value) {
+    fmt::print("{:<12} {}\n", name, value);
+  };
   line("task", task["task"].get<std::string>());
   line("prompt", task["prompt"].get<std::string>());
   line("source", task["source"].get<std::string>());
@@ -75,8 +78,8 @@ int show_verb(const Arguments& arguments) {
   for (const auto& start : task["starts"]) {
     fmt::print("start {:>3}", number++);
     for (const auto& object : start) {
-      fmt::print("   {} ({:.4g}, {:.4g}) m", object["object"].get<std::string>(), object["x_m"].get<double>(),
-                 object["y_m"].get<double>());
+      fmt::print("   {} ({:.4g}, {:.4g}) m", object["object"].get<std::string>(),
+                 object["x_m"].get<double>(), object["y_m"].get<double>());
       for (const char* angle : {"roll", "pitch", "yaw"}) {
         const double degrees = object[std::string(angle) + "_deg"].get<double>();
         if (degrees != 0) fmt::print(" {} {:.4g} deg", angle, degrees);
@@ -105,7 +108,8 @@ void add_show(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("show", "one task whole: roles, axes, every start");
   verb->footer("example: vlaprobe show suite/intact.probe carrot_on_plate");
   verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
-  verb->add_option("TASK", arguments->task, "task name, with or without its suite's prefix")->required();
+  verb->add_option("TASK", arguments->task, "task name, with or without its suite's prefix")
+      ->required();
   verb->add_flag("--json", arguments->json, "as a JSON object");
   add_asset_option(*verb, arguments->assets);
   verb->callback([arguments, &exit] { exit = show_verb(*arguments); });

@@ -8,8 +8,8 @@
 namespace probe::cli {
 namespace {
 
-void report_unknown(const char* kind, const std::string& name, const std::vector<std::string_view>& known,
-                    int& exit) {
+void report_unknown(const char* kind, const std::string& name,
+                    const std::vector<std::string_view>& known, int& exit) {
   const auto close = nearest(name, known);
   exit = report({"usage",
                  fmt::format("no {} `{}` here{}", kind, name,
@@ -19,7 +19,8 @@ void report_unknown(const char* kind, const std::string& name, const std::vector
 
 }  // namespace
 
-LoadedPlan load_plan(const std::string& path, const AssetOptions& assets, const std::string& suite) {
+LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
+                     const std::string& suite) {
   LoadedPlan loaded;
   Result<plan::Plan> plan = Failure{};
   if (path.ends_with(".probe")) {
@@ -49,7 +50,8 @@ std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string
   return std::nullopt;
 }
 
-std::optional<std::uint32_t> find_suite(const plan::Plan& plan, const std::string& name, int& exit) {
+std::optional<std::uint32_t> find_suite(const plan::Plan& plan, const std::string& name,
+                                        int& exit) {
   const auto index = plan.find_suite(name);
   if (index) return index;
   std::vector<std::string_view> known;

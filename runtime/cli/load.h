@@ -1,5 +1,5 @@
-// What the verbs take as F: a .plan file, opened and verified, or .probe text, compiled in memory with its diagnostics
-// printed.
+// What the verbs take as F: a .plan file, opened and verified, or .probe text, compiled in memory
+// with its diagnostics printed.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@ struct LoadedPlan {
   std::optional<plan::Plan> plan;
   int exit = kFine;
 };
-LoadedPlan load_plan(const std::string& path, const AssetOptions& assets, const std::string& suite = {});
+LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
+                     const std::string& suite = {});
 
 // Indices by name; on an unknown one prints it with the nearest spelling and sets `exit`.
 std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string& name, int& exit);

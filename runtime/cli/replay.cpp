@@ -19,14 +19,16 @@ struct Arguments {
 int replay_verb(const Arguments& arguments) {
   run::ReplayOptions options = arguments.options;
   options.assets = arguments.assets.root;
-  auto report_or = run::replay(arguments.dir, arguments.task, arguments.episode, arguments.seed, options);
+  auto report_or =
+      run::replay(arguments.dir, arguments.task, arguments.episode, arguments.seed, options);
   if (!report_or) return report(report_or.failure());
   for (const std::string& difference : report_or->fingerprint_differences) {
     fmt::print(stderr, "not as recorded: {}\n", difference);
   }
   if (!options.video.empty()) fmt::print(stderr, "video: {}\n", options.video);
   if (!options.png.empty()) fmt::print(stderr, "picture: {}\n", options.png);
-  const std::string name = fmt::format("{} episode {} seed {}", arguments.task, arguments.episode, report_or->seed);
+  const std::string name =
+      fmt::format("{} episode {} seed {}", arguments.task, arguments.episode, report_or->seed);
   if (options.verify && !report_or->identical) {
     fmt::print(stderr, "vlaprobe: {} differs from its trace: {}\n", name, report_or->difference);
     return kOutside;
@@ -40,8 +42,10 @@ int replay_verb(const Arguments& arguments) {
 
 void add_replay(CLI::App& app, int& exit) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("replay", "a stored episode again, from its recorded actions");
-  verb->footer("example: vlaprobe replay runs/expert carrot_on_plate 3 --verify --video carrot3.mp4");
+  CLI::App* verb =
+      app.add_subcommand("replay", "a stored episode again, from its recorded actions");
+  verb->footer(
+      "example: vlaprobe replay runs/expert carrot_on_plate 3 --verify --video carrot3.mp4");
   verb->add_option("DIR", arguments->dir, "results folder")->required();
   verb->add_option("TASK", arguments->task, "task name")->required();
   verb->add_option("EPISODE", arguments->episode, "start, from 0")->required();
@@ -49,7 +53,8 @@ void add_replay(CLI::App& app, int& exit) {
   verb->add_flag("--verify", arguments->options.verify, "compare every measurement and hash");
   verb->add_option("--video", arguments->options.video, "write an mp4");
   verb->add_option("--png", arguments->options.png, "write the picture at --step");
-  verb->add_option("--step", arguments->options.png_step, "control step of --png, 0 is the first picture");
+  verb->add_option("--step", arguments->options.png_step,
+                   "control step of --png, 0 is the first picture");
   add_asset_option(*verb, arguments->assets);
   verb->callback([arguments, &exit] { exit = replay_verb(*arguments); });
 }

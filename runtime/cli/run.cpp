@@ -34,7 +34,8 @@ std::optional<int> to_int(std::string_view text) {
 Result<std::pair<int, int>> parse_range(const std::string& text) {
   const std::size_t dash = text.find('-');
   const auto first = to_int(std::string_view(text).substr(0, dash));
-  const auto last = dash == std::string::npos ? first : to_int(std::string_view(text).substr(dash + 1));
+  const auto last =
+      dash == std::string::npos ? first : to_int(std::string_view(text).substr(dash + 1));
   if (!first || !last || *first < 0 || *last < *first) {
     return usage(fmt::format("--episodes `{}` is not of the form A-B, as in 0-23", text));
   }
@@ -82,9 +83,10 @@ Result<run::RunOptions> to_options(const Arguments& arguments) {
   PROBE_ASSIGN(const auto shard, parse_shard(arguments.shard));
   options.shard = shard.first;
   options.shards = shard.second;
-  static const std::map<std::string, run::VideoChoice> kVideo = {{"none", run::VideoChoice::kNone},
-                                                                 {"failures", run::VideoChoice::kFailures},
-                                                                 {"all", run::VideoChoice::kAll}};
+  static const std::map<std::string, run::VideoChoice> kVideo = {
+      {"none", run::VideoChoice::kNone},
+      {"failures", run::VideoChoice::kFailures},
+      {"all", run::VideoChoice::kAll}};
   options.video = kVideo.at(arguments.video);
   return options;
 }
@@ -95,8 +97,8 @@ class ProgressPrinter {
   void operator()(const run::RunProgress& progress) {
     if (progress.row && progress.row->invalid) {
       clear();
-      fmt::print(stderr, "invalid: {} episode {} seed {}: {}\n", progress.row->task, progress.row->episode,
-                 progress.row->seed, *progress.row->invalid);
+      fmt::print(stderr, "invalid: {} episode {} seed {}: {}\n", progress.row->task,
+                 progress.row->episode, progress.row->seed, *progress.row->invalid);
     }
     if (!terminal_) return;
     fmt::print(stderr, "\r{}/{} episodes{}", progress.done + progress.skipped, progress.total,
@@ -117,9 +119,18 @@ class ProgressPrinter {
 int run_verb(const Arguments& arguments) {
   auto options = to_options(arguments);
   if (!options) return report(options.failure());
-  if (auto traits = policy::policy_traits(arguments.policy); !traits) return report(traits.failure());
+  if (auto traits = policy::policy_traits(arguments.policy); !traits)
+    return report(traits.failure());
   LoadedPlan loaded = load_plan(arguments.file, arguments.assets);
   if (!loaded.plan) return loaded.exit;
+
+  // The first suite of a file is its main one; the others are asked for by name.
+  const auto suites = loaded.plan->suites();
+  if (options->suite.empty() && suites.size() > 1) {
+    options->suite = loaded.plan->text(suites[0].name);
+    fmt::print(stderr, "note: suite `{}`, the first of {}; --suite chooses another\n",
+               options->suite, suites.size());
+  }
 
   ProgressPrinter printer;
   options->progress = [&](const run::RunProgress& progress) { printer(progress); };
@@ -137,8 +148,9 @@ int run_verb(const Arguments& arguments) {
 void add_run(CLI::App& app, int& exit) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("run", "evaluate a policy; the same command again continues");
-  verb->footer("policies:\n" + policy::policy_help() +
-               "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
+  verb->footer(
+      "policies:\n" + policy::policy_help() +
+      "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
   verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
   verb->add_option("--policy", arguments->policy, "who acts")->required();
   verb->add_option("-o,--out", arguments->out, "results folder")->required();

@@ -32,8 +32,8 @@ struct RollPitchYaw {
   double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;
 };
 
-// Extrinsic x, y, z angles of a unit quaternion (w, x, y, z), rounded to 1e-9 degrees so that a written 90 reads 90;
-// yaw in (-180, 180].
+// Extrinsic x, y, z angles of a unit quaternion (w, x, y, z), rounded to 1e-9 degrees so that a
+// written 90 reads 90; yaw in (-180, 180].
 RollPitchYaw to_angles(const std::array<double, 4>& q) {
   const auto [w, x, y, z] = q;
   constexpr double kDegrees = 180.0 / 3.14159265358979323846;
@@ -56,7 +56,8 @@ Json summarise(const plan::Plan& plan, std::uint32_t index) {
   const plan::TaskRecord& task = plan.tasks()[index];
   Json json;
   json["task"] = plan.text(task.name);
-  json["baseline"] = task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
+  json["baseline"] =
+      task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
   json["axes"] = Json::array();
   for (const auto& [axis, name] : kAxes) {
     if (task.axes & static_cast<std::uint32_t>(axis)) json["axes"].push_back(name);
@@ -80,10 +81,12 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   json["target"] = object_name(plan, task.target);
   json["distractors"] = Json::array();
   const auto bodies = plan.bodies(task);
-  for (std::uint32_t d = 0; d < task.distractors; ++d) json["distractors"].push_back(plan.text(bodies[2 + d].name));
+  for (std::uint32_t d = 0; d < task.distractors; ++d)
+    json["distractors"].push_back(plan.text(bodies[2 + d].name));
   json["horizon"] = task.horizon;
   json["metrics"] = Json::array();
-  for (const plan::MetricRecord& metric : plan.metrics(task)) json["metrics"].push_back(plan.text(metric.name));
+  for (const plan::MetricRecord& metric : plan.metrics(task))
+    json["metrics"].push_back(plan.text(metric.name));
   json["starts"] = Json::array();
   for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
     Json start = Json::array();

@@ -1,5 +1,5 @@
-// The verbs of the command line, one file each. A verb parses its own arguments, calls the library that does the work
-// and prints: data on stdout, words on stderr. No logic lives here.
+// The verbs of the command line, one file each. A verb parses its own arguments, calls the library
+// that does the work and prints: data on stdout, words on stderr. No logic lives here.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -12,7 +12,8 @@
 
 namespace probe::cli {
 
-// Exit codes of the program: fine, the user's text or arguments, the outside, our mistake (check_failed uses 3 too).
+// Exit codes of the program: fine, the user's text or arguments, the outside, our mistake
+// (check_failed uses 3 too).
 enum Exit : int { kFine = 0, kUser = 1, kOutside = 2, kOurs = 3 };
 
 // Prints "vlaprobe: ..." and says with which code to leave.
@@ -32,6 +33,7 @@ void add_show(CLI::App& app, int& exit);
 void add_dis(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
 void add_preview(CLI::App& app, int& exit);
+void add_sheet(CLI::App& app, int& exit);
 void add_run(CLI::App& app, int& exit);
 void add_results(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);

@@ -1,0 +1,44 @@
+// vlaprobe build
+#include <fmt/format.h>
+
+#include "runtime/cli/compile.h"
+#include "runtime/plan/plan.h"
+#include "runtime/plan/writer.h"
+
+namespace probe::cli {
+
+void add_build(CLI::App& app, int& exit) {
+  struct Arguments {
+    std::vector<std::string> files;
+    std::string out, suite;
+    AssetOptions assets;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("build", "check, lower, verify and write one frozen plan");
+  verb->footer(
+      "prints the plan's root, the hash that names it\n"
+      "example: vlaprobe build suite/intact.probe -o intact.plan");
+  verb->add_option("F", arguments->files, ".probe texts")->required();
+  verb->add_option("-o,--out", arguments->out, "plan file to write")->required();
+  verb->add_option("--suite", arguments->suite, "only this suite's tasks");
+  add_asset_option(*verb, arguments->assets);
+  verb->callback([arguments, &exit] {
+    CompiledText text = compile_text(arguments->files, arguments->assets, arguments->suite, true);
+    exit = text.exit;
+    if (exit != kFine) return;
+    if (auto written = plan::write_file(arguments->out, text.plan); !written) {
+      exit = report(written.failure());
+      return;
+    }
+    auto plan = plan::Plan::open(arguments->out);
+    if (!plan) {
+      exit = report(plan.failure());
+      return;
+    }
+    fmt::print("{}\n", to_hex(plan->root()));
+    fmt::print(stderr, "{}: {} tasks, {} episodes, {} bytes\n", arguments->out,
+               plan->tasks().size(), plan->episodes().size(), plan->bytes().size());
+  });
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,43 @@
+#include "runtime/cli/compile.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+
+#include "compiler/diag/json.h"
+#include "compiler/diag/text.h"
+#include "compiler/emit/compile.h"
+#include "runtime/run/assets.h"
+
+namespace probe::cli {
+
+CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
+                          const std::string& suite, bool want_plan, bool json) {
+  CompiledText text;
+  auto root = run::find_asset_root(assets.root);
+  if (!root) {
+    text.exit = report(root.failure());
+    return text;
+  }
+  const CompileOptions options{.asset_root = *root, .suite = suite};
+  auto compiled = want_plan ? build(files, options) : check(files, options);
+  if (!compiled) {
+    text.exit = report(compiled.failure());
+    return text;
+  }
+  const Diagnostics& diagnostics = compiled->diagnostics;
+  text.errors = diagnostics.error_count();
+  text.warnings = diagnostics.size() - text.errors;
+  if (json) {
+    fmt::print("{}\n", render_json(diagnostics, compiled->sources));
+  } else if (!diagnostics.empty()) {
+    const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+    fmt::print(stderr, "{}", render_text(diagnostics, compiled->sources, {.colour = colour}));
+  }
+  text.exit = compiled->ok ? kFine : kUser;
+  text.plan = std::move(compiled->plan);
+  return text;
+}
+
+}  // namespace probe::cli

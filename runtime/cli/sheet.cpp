@@ -1,0 +1,66 @@
+// vlaprobe sheet, vlaprobe preview: pictures of many episodes on one page.
+#include <fmt/format.h>
+
+#include "runtime/cli/load.h"
+#include "runtime/run/preview.h"
+#include "runtime/run/replay.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::string input, task, out;
+  run::SheetOptions options;
+  AssetOptions assets;
+};
+
+int written(const Status& status, const std::string& path) {
+  if (!status) return report(status.failure());
+  fmt::print("{}\n", path);
+  return kFine;
+}
+
+}  // namespace
+
+void add_sheet(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("sheet", "first and last picture of every stored episode, as one PNG");
+  verb->footer("green captions are successes\nexample: vlaprobe sheet runs/expert -o expert.png");
+  verb->add_option("DIR", arguments->input, "results folder")->required();
+  verb->add_option("-o,--out", arguments->out, "PNG to write")->required();
+  verb->add_option("--tasks", arguments->options.tasks, "glob over task names");
+  verb->add_option("--columns", arguments->options.columns, "episodes in a row")
+      ->check(CLI::Range(1, 64));
+  add_asset_option(*verb, arguments->assets);
+  verb->callback([arguments, &exit] {
+    arguments->options.assets = arguments->assets.root;
+    exit = written(run::write_contact_sheet(arguments->input, arguments->out, arguments->options),
+                   arguments->out);
+  });
+}
+
+void add_preview(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("preview", "the first picture of every start of a task, as one PNG");
+  verb->footer("example: vlaprobe preview suite/intact.probe carrot_on_plate -o starts.png");
+  verb->add_option("F", arguments->input, ".probe text or .plan file")->required();
+  verb->add_option("TASK", arguments->task, "task name")->required();
+  verb->add_option("-o,--out", arguments->out, "PNG to write")->required();
+  verb->add_option("--columns", arguments->options.columns, "starts in a row")
+      ->check(CLI::Range(1, 64));
+  add_asset_option(*verb, arguments->assets);
+  verb->callback([arguments, &exit] {
+    LoadedPlan loaded = load_plan(arguments->input, arguments->assets);
+    exit = loaded.exit;
+    if (!loaded.plan) return;
+    const auto task = find_task(*loaded.plan, arguments->task, exit);
+    if (!task) return;
+    arguments->options.assets = arguments->assets.root;
+    exit = written(run::write_preview(*loaded.plan, *task, arguments->out, arguments->options),
+                   arguments->out);
+  });
+}
+
+}  // namespace probe::cli
