@@ -71,7 +71,9 @@ class Expert final : public policy::Policy {
       last_ = scene;
       started_ = true;
     }
-    servo_.observe(arm, !scene.fingers_on_source[0] && !scene.fingers_on_source[1]);
+    // A source in the air hinders the arm no more than an empty hand.
+    const bool touched = scene.fingers_on_source[0] || scene.fingers_on_source[1];
+    servo_.observe(arm, !touched || phase_ == Phase::kCarry);
     // Phases that are done take no time; each leads on, so this ends.
     for (int i = 0; i < 12; ++i) {
       const Phase before = phase_;

@@ -16,6 +16,10 @@ namespace {
 constexpr double kLargestShift = 0.10;  // m
 constexpr double kLargestTurn = 0.60;   // rad
 
+constexpr int kBeforeTrust =
+    3;  // control steps until the drives are known well enough to doubt the target
+constexpr double kBelieved = 0.5;
+
 double share(double length, double most) { return length > most ? most / length : 1.0; }
 
 }  // namespace
@@ -35,6 +39,7 @@ void Servo::begin(const robot::Chain& chain, const Arm& arm) {
   target_ = arm.tcp;
   knows_target_ = false;
   last_shift_ = 0;
+  learnt_ = 0;
 }
 
 void Servo::observe(const Arm& arm, bool free) {
@@ -42,8 +47,22 @@ void Servo::observe(const Arm& arm, bool free) {
   if (free && knows_target_) {
     response_.learn(std::span(joints_before_).first(n), std::span(joint_target_).first(n),
                     arm.joints.first(n));
+    if (++learnt_ > kBeforeTrust) correct_target(arm);
   }
   std::copy_n(arm.joints.begin(), n, joints_before_.begin());
+}
+
+// Had the target been what the servo thinks, the joints would stand elsewhere: somebody changed the
+// actions on their way (noise does). Half of the difference is believed.
+void Servo::correct_target(const Arm& arm) {
+  const std::size_t n = chain_->joint_count();
+  Joints q = joint_target_;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double share = 1 / response_.lead(j);
+    const double expected = joints_before_[j] + share * (joint_target_[j] - joints_before_[j]);
+    q[j] += kBelieved * (arm.joints[j] - expected) / share;
+  }
+  target_ = chain_->pose(std::span(q).first(n));
 }
 
 policy::Action Servo::toward(const Pose& goal, const Arm& arm, double gripper, const Pace& pace) {

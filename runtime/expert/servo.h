@@ -52,6 +52,7 @@ class Servo {
  private:
   using Joints = std::array<double, robot::kMaxChainJoints>;
   Pose ahead_of(const Pose& next, const Arm& arm) const;
+  void correct_target(const Arm& arm);
   policy::Action set_target(const Pose& wanted, const Arm& arm, double gripper);
 
   const robot::Chain* chain_ = nullptr;
@@ -60,6 +61,7 @@ class Servo {
   Joints joint_target_{}, joints_before_{};
   bool knows_target_ = false;  // joint_target_ is what the controller's inverse kinematics found
   double last_shift_ = 0;
+  int learnt_ = 0;  // free control steps seen
 };
 
 // `from` moved towards `to`, no more than the given shift and turn.

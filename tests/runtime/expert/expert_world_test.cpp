@@ -141,6 +141,30 @@ TEST_CASE("a carrot that is taken out of the fingers is fetched again") {
   }
 }
 
+TEST_CASE("two millimetres of noise on every action are survived") {
+  const test::Robot robot = test::load_robot();
+  const auto things = carrot_and_plate();
+  auto policy = need(make_expert({}));
+  policy::Draws draws(3);
+  // A sum of twelve uniforms: mean 0, deviation 1.
+  const auto normal = [&] {
+    double sum = -6;
+    for (int k = 0; k < 12; ++k) sum += draws.uniform();
+    return sum;
+  };
+  for (std::size_t i = 0; i < 4; ++i) {
+    CAPTURE(i);
+    test::WorldTable table(robot, things, {dropped(kCells[i], 180), dropped(kCells[3 - i], 0)});
+    REQUIRE(policy->begin(table.start()).ok());
+    for (int step = 0; step < test::kHorizon; ++step) {
+      policy::Action action = need(policy->act(table.observe(step)));
+      for (std::size_t k = 0; k < 6; ++k) action[k] += normal() * (k < 3 ? 0.002 : 0.006);
+      table.apply(action);
+    }
+    CHECK(table.success());
+  }
+}
+
 TEST_CASE("the one that only reaches touches or nears the source and takes nothing") {
   const test::Robot robot = test::load_robot();
   const auto things = carrot_and_plate();
