@@ -6,6 +6,7 @@
 
 #include "runtime/base/trig.h"
 #include "runtime/scene/hull.h"
+#include "runtime/world/stepper.h"
 #include "runtime/world/world.h"
 
 namespace probe::world {
@@ -71,24 +72,134 @@ TEST_CASE("a cube on an incline holds below the friction angle and slides by the
   }
 }
 
-TEST_CASE("a cube spinning flat on the table is slowed by its corners and then stops") {
-  // The spin is given by a second world's state: worlds start at rest, so friction of an impact is
-  // avoided.
-  WorldSpec spec = quiet_spec();
-  spec.bodies.push_back({"cube", cube, 1000, 0.5, at(0, 0, kHalf)});
-  const auto world = make(spec);
-  run(world.get(), 5);
-  CHECK(world->contacts().size() == 1);
-  CHECK(world->contacts()[0].on_a.z() == doctest::Approx(0.027 * 9.81 * 0.002).epsilon(1e-6));
+// A stepper of cubes without a world around it, so that bodies can start with velocities.
+Stepper cubes(const std::vector<Vec3>& places) {
+  Stepper s;
+  s.sleeping = false;
+  for (const Vec3& place : places) {
+    Body b;
+    b.mass = 1000 * cube->volume;
+    b.inertia = 1000 * cube->unit_inertia;
+    b.inertia_inverse = b.inertia.inverse();
+    b.position = place;
+    Collider c;
+    c.shape = cube;
+    c.friction = 0.5;
+    c.body = static_cast<int>(s.bodies.size());
+    c.local.half = Vec3::Constant(kHalf);
+    c.part_boxes.resize(1);
+    s.bodies.push_back(b);
+    s.colliders.push_back(c);
+  }
+  make_pairs(s.colliders, 0, s.plane, &s.table);
+  return s;
 }
 
-TEST_CASE("an off-centre hit keeps momentum and never gains energy") {
+TEST_CASE(
+    "a cube spinning flat on the table is slowed by its corners, stops and does not turn back") {
+  Stepper s = cubes({Vec3(0, 0, kHalf)});
+  s.ambient.gravity = Vec3(0, 0, -9.81);
+  s.bodies[0].spin = Vec3(0, 0, 20);
+  const double slope =
+      0.75 * s.bodies[0].mass * 9.81 * std::sqrt(2.0) * kHalf / s.bodies[0].inertia(2, 2);
+  for (int i = 0; i < 9; ++i) REQUIRE(s.advance().ok());
+  CHECK((20 - s.bodies[0].spin.z()) / 0.018 == doctest::Approx(slope).epsilon(0.01));
+  double lowest = 20;
+  for (int i = 0; i < 100; ++i) {
+    REQUIRE(s.advance().ok());
+    lowest = std::min(lowest, s.bodies[0].spin.z());
+  }
+  CHECK(lowest > -1e-3);
+  CHECK(std::fabs(s.bodies[0].spin.z()) < 1e-6);
+}
+
+TEST_CASE("an off-centre hit keeps both momenta and never gains energy") {
+  Stepper s = cubes({Vec3(0, 0, 0.5), Vec3(0.04, 0.002, 0.5)});
+  s.bodies[0].velocity = Vec3(0.5, 0, 0);
+  const auto linear = [&] {
+    return Vec3(s.bodies[0].mass * (s.bodies[0].velocity + s.bodies[1].velocity));
+  };
+  const auto angular = [&] {
+    Vec3 l = Vec3::Zero();
+    for (const Body& b : s.bodies) {
+      l += b.mass * b.position.cross(b.velocity) +
+           b.axes * (b.inertia * (b.axes.transpose() * b.spin));
+    }
+    return l;
+  };
+  const auto energy = [&] {
+    double e = 0;
+    for (const Body& b : s.bodies) {
+      const Vec3 w = b.axes.transpose() * b.spin;
+      e += 0.5 * b.mass * b.velocity.squaredNorm() + 0.5 * w.dot(b.inertia * w);
+    }
+    return e;
+  };
+  const Vec3 p = linear(), l = angular();
+  double e = energy();
+  for (int i = 0; i < 200; ++i) {
+    REQUIRE(s.advance().ok());
+    CHECK(energy() <= e * (1 + 1e-12));
+    e = energy();
+  }
+  CHECK(s.bodies[1].velocity.x() > 0.2);
+  CHECK((linear() - p).norm() < 1e-12 * p.norm());
+  CHECK((angular() - l).norm() < 1e-12 * l.norm());
+}
+
+TEST_CASE("a body spinning freely keeps its angular momentum and energy for ten seconds") {
+  Body b;
+  b.mass = 0.055;
+  b.inertia = Vec3(1.1e-5, 7e-5, 7.4e-5).asDiagonal();
+  b.inertia_inverse = b.inertia.inverse();
+  for (const double speed : {5.0, 20.0}) {
+    b.rotation = Quat::Identity();
+    b.axes = Mat3::Identity();
+    b.spin = speed * Vec3(0.6, 0.64, 0.48);
+    const Vec3 momentum = b.inertia * b.spin;
+    const double energy = b.spin.dot(momentum);
+    for (int i = 0; i < 5000; ++i) {
+      predict(&b, Ambient{}, 0.002);
+      integrate(&b, Ambient{}, 0.002);
+    }
+    const Vec3 now = b.axes * (b.inertia * (b.axes.transpose() * b.spin));
+    CHECK((now - momentum).norm() < 1e-10 * momentum.norm());
+    CHECK(std::fabs(b.spin.dot(now) / energy - 1) < (speed < 10 ? 1e-5 : 1e-3));
+  }
+}
+
+TEST_CASE(
+    "sleepers lie still, report their impulses, and wake when something comes or their support "
+    "goes") {
   WorldSpec spec = quiet_spec();
-  spec.gravity = Vec3(0.5 / 0.002 / 10, 0, 0);  // see below: a short push of the first cube
-  spec.bodies.push_back({"a", cube, 1000, 0.5, at(-0.1, 0, 0.5)});
+  spec.sleeping = true;
+  spec.bodies.push_back({"plate", box(0.06, 0.06, 0.003), 300, 0.5, at(0, 0, 0.003)});
+  for (int i = 0; i < 3; ++i) {
+    spec.bodies.push_back(
+        {"cube", cube, 1000, 0.5, at(0, 0, 0.006 + kHalf + 2 * kHalf * i, 0.3 * i)});
+  }
+  spec.bodies.push_back({"late", cube, 1000, 0.5, at(0.5, 0, kHalf)});
   const auto world = make(spec);
-  run(world.get(), 10);
-  CHECK(world->body(0).velocity.x() == doctest::Approx(0.5));
+  run(world.get(), 1000);
+  const Vec3 still = world->body(3).pose.position;
+  CHECK(world->body(3).velocity == Vec3::Zero());
+  CHECK(world->contacts().size() == 5);
+  run(world.get(), 500);
+  CHECK(world->body(3).pose.position == still);
+  CHECK(world->contacts().size() == 5);
+  // Set on top: the stack wakes and hardly moves.
+  world->set_body(4, at(0, 0, still.z() + 2 * kHalf + 1e-5, 0.2));
+  double fastest = 0;
+  for (int i = 0; i < 300; ++i) {
+    run(world.get(), 1);
+    for (std::size_t b = 0; b < 4; ++b) fastest = std::max(fastest, world->body(b).velocity.norm());
+  }
+  MESSAGE("a woken stack moves at ", fastest, " m/s");
+  CHECK(fastest < 1e-3);
+  run(world.get(), 800);
+  world->set_body(0, at(0.5, 0.5, 0.003));
+  run(world.get(), 300);
+  CHECK(world->body(3).pose.position.z() < still.z() - 0.005);
 }
 
 TEST_CASE("four turned cubes stack and stay") {
