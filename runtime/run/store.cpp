@@ -293,12 +293,15 @@ class FolderStore final : public Store {
   }
 
  private:
-  // Traces that a killed process did not finish.
+  // Traces and videos that a killed process did not finish.
   void remove_leftovers() const {
-    std::error_code error;
-    for (fs::recursive_directory_iterator at(fs::path(dir_) / "traces", error), end;
-         !error && at != end; at.increment(error)) {
-      if (at->path().extension() == ".tmp") fs::remove(at->path(), error);
+    for (const char* folder : {"traces", "videos"}) {
+      std::error_code error;
+      for (fs::recursive_directory_iterator at(fs::path(dir_) / folder, error), end;
+           !error && at != end; at.increment(error)) {
+        std::error_code ignored;
+        if (at->path().extension() == ".tmp") fs::remove(at->path(), ignored);
+      }
     }
   }
 

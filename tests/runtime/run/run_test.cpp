@@ -3,6 +3,10 @@
 #include "runtime/run/run.h"
 
 #include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -216,6 +220,52 @@ TEST_CASE("what cannot run is told before anything is written") {
                 folder / "assets/objects/carrot/visual.glb", fs::copy_options::overwrite_existing);
   CHECK(refused(options).starts_with(
       "robots/widowx/meshes/wrist_link.glb: this file of the plan is not in "));
+}
+
+TEST_CASE("a disk that fills up is told, leaves no partial file, and the run continues later") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 4);
+  RunOptions options = options_for(folder / "run");
+  options.seeds = {7};
+  // Files may grow to the size of the plan and no further: traces of these episodes do not fit.
+  const auto limit = static_cast<rlim_t>(plan.bytes().size());
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit size{limit, limit};
+    ::setrlimit(RLIMIT_FSIZE, &size);
+    const auto summary = run(plan, options);
+    ::_exit(summary.ok() ? 0 : summary.failure().code == "store" ? 42 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 42);
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "run")) {
+    CHECK_MESSAGE(entry.path().extension() != ".tmp", entry.path().string());
+  }
+  must_run(plan, options);
+  CHECK(hashes(folder / "run").size() == 2);
+}
+
+TEST_CASE("scripted policies run on the world: reach intends, noise depends on the seed") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 20);
+  must_run(plan, options_for(folder / "reach", "reach"));
+  const auto reach = read_results(folder / "reach");
+  REQUIRE(reach->size() == 1);
+  CHECK_MESSAGE(!reach->at(0).invalid, reach->at(0).invalid.value_or(""));
+  CHECK(reach->at(0).metrics[1].name == "intention");
+  CHECK(reach->at(0).metrics[1].value == 1);
+  CHECK(reach->at(0).metrics[0].value == 0);
+  must_run(plan, options_for(folder / "noisy", "noisy:0.003"));
+  const auto noisy = hashes(folder / "noisy");
+  REQUIRE(noisy.size() == 2);
+  CHECK(noisy[0] != noisy[1]);
+  // No distractor here: the episode cannot count.
+  must_run(plan, options_for(folder / "wrong", "wrong"));
+  CHECK(read_results(folder / "wrong")->at(0).invalid.has_value());
 }
 
 }  // namespace
