@@ -71,7 +71,7 @@ std::string to_text(const Program& program, const std::vector<std::string>& body
     char head[64];
     const std::string dst =
         op->result == plan::Kind::kUnused ? "" : "r" + std::to_string(instruction.dst);
-    std::snprintf(head, sizeof head, "%4zu  %-6.*s  %-5s", i, static_cast<int>(op->name.size()),
+    std::snprintf(head, sizeof head, "%4zu  %-6.*s %-5s", i, static_cast<int>(op->name.size()),
                   op->name.data(), dst.c_str());
     std::string line = head;
     const std::string a = printer.operand(op->a, instruction.a);

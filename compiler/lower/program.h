@@ -29,7 +29,7 @@ struct Program {
   bool same_as(const Program& other) const;
 };
 
-// One instruction a line: "  3  VLENXY  r3   r2". Bodies by `body_names` where given.
+// One instruction a line: "   3  VLENXY r3    r2". Bodies by `body_names` where given.
 std::string to_text(const Program& program, const std::vector<std::string>& body_names = {});
 
 }  // namespace probe::lower

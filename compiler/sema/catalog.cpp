@@ -192,6 +192,7 @@ void require(Context& context, const Object& object, bool there, const char* sta
 void define_objects(Context& context) {
   const auto& decls = context.symbols.object_decls;
   std::vector<std::optional<std::uint32_t>> parents(decls.size());
+  std::vector<bool> broken(decls.size(), false);  // reported; what it lacks follows from that
   for (std::size_t i = 0; i < decls.size(); ++i) {
     context.model.objects.add({});
     if (decls[i].node->like)
@@ -207,7 +208,9 @@ void define_objects(Context& context) {
     object.facts.resize(context.model.facts.size(), Truth::kNo);
     ObjectReader reader{context, *decls[i].file, object};
     for (const syntax::ObjectStmt& stmt : node.body) std::visit(reader, stmt);
-    if (decls[i].decl->complete && (!node.like || parents[i])) {
+    broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
+                (parents[i] && broken[*parents[i]]);
+    if (!broken[i]) {
       require(context, object, !object.mesh.span.is_none(), "mesh");
       require(context, object, object.has_box, "box");
       require(context, object, object.has_density, "density");

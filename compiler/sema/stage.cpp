@@ -25,7 +25,7 @@ void missing(Context& context, std::string_view kind, const std::string& name, c
 struct RobotReader {
   Context& context;
   Robot& robot;
-  bool has_control = false, has_grip = false;
+  bool has_control = false, has_grip = false, has_drive = false;
 
   void operator()(const syntax::UrdfStmt& stmt) { robot.urdf = spelled(stmt.path); }
   void operator()(const syntax::TcpStmt& stmt) { robot.tcp = spelled(stmt.link); }
@@ -61,6 +61,7 @@ struct RobotReader {
         read_positive(context, stmt.most, dim::kLength, "`reach` takes lengths").value_or(1);
   }
   void operator()(const syntax::DriveStmt& stmt) {
+    has_drive = true;
     // Whether the joint turns or slides is known only with the URDF; the stiffness decides what the
     // others must be.
     const auto stiffness = make_quantity(stmt.stiffness.digits, to_text(stmt.stiffness.unit));
@@ -172,7 +173,7 @@ void define_robots(Context& context) {
       if (robot.fingers.empty()) missing(context, "robot", robot.name, robot.span, "fingers");
       if (!reader.has_control) missing(context, "robot", robot.name, robot.span, "control");
       if (!reader.has_grip) missing(context, "robot", robot.name, robot.span, "grip");
-      if (robot.drives.empty()) missing(context, "robot", robot.name, robot.span, "drive");
+      if (!reader.has_drive) missing(context, "robot", robot.name, robot.span, "drive");
     }
     if (!robot.urdf.span.is_none()) load_model(context, robot);
     context.model.robots.add(std::move(robot));
@@ -241,6 +242,7 @@ struct CameraReader {
 void define_cameras(Context& context) {
   const auto& decls = context.symbols.camera_decls;
   std::vector<std::optional<std::uint32_t>> parents(decls.size());
+  std::vector<bool> broken(decls.size(), false);  // reported; what it lacks follows from that
   for (std::size_t i = 0; i < decls.size(); ++i) {
     context.model.cameras.add({});
     if (decls[i].node->like)
@@ -254,7 +256,9 @@ void define_cameras(Context& context) {
     camera.span = node.name.span;
     for (const syntax::CameraStmt& stmt : node.body)
       std::visit(CameraReader{context, camera}, stmt);
-    if (decls[i].decl->complete && (!node.like || parents[i])) {
+    broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
+                (parents[i] && broken[*parents[i]]);
+    if (!broken[i]) {
       if (camera.mount_link.span.is_none())
         missing(context, "camera", camera.name, camera.span, "mount");
       if (camera.width == 0) missing(context, "camera", camera.name, camera.span, "image");
@@ -386,6 +390,7 @@ void check_joints(Context& context, const Scene& scene) {
 void define_scenes(Context& context) {
   const auto& decls = context.symbols.scene_decls;
   std::vector<std::optional<std::uint32_t>> parents(decls.size());
+  std::vector<bool> broken(decls.size(), false);  // reported; what it lacks follows from that
   for (std::size_t i = 0; i < decls.size(); ++i) {
     context.model.scenes.add({});
     if (decls[i].node->like)
@@ -401,8 +406,9 @@ void define_scenes(Context& context) {
     const auto errors = context.diagnostics.error_count();
     for (const syntax::SceneStmt& stmt : node.body) std::visit(reader, stmt);
     if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
-    if (decls[i].decl->complete && context.diagnostics.error_count() == errors &&
-        (!node.like || parents[i])) {
+    broken[i] = !decls[i].decl->complete || context.diagnostics.error_count() != errors ||
+                (node.like && !parents[i]) || (parents[i] && broken[*parents[i]]);
+    if (!broken[i]) {
       if (scene.robot == RobotId::kNone) missing(context, "scene", scene.name, scene.span, "robot");
       if (scene.joints_span.is_none()) missing(context, "scene", scene.name, scene.span, "joints");
       if (scene.area[0] == scene.area[2])

@@ -1,0 +1,191 @@
+#include "compiler/emit/compile.h"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "runtime/plan/plan.h"
+#include "tests/compiler/sema/small_suite.h"
+
+using namespace probe;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder of its own for one test.
+struct Folder {
+  fs::path path;
+  explicit Folder(const std::string& name)
+      : path(fs::temp_directory_path() /
+             ("probe_compile_" + std::to_string(getpid()) + "_" + name)) {
+    fs::create_directories(path);
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    test::write_text(path / name, text);
+    return (path / name).string();
+  }
+};
+
+const std::string kVariants = R"(
+variants of red_on_tray { take_it { say take }
+ new { source blue } }
+set worded = tasks where uses action
+suite one trained on lab { tasks { red_on_tray }; prefix "lab_"; seeds 42, 7; expect 1 tasks, 24 episodes }
+suite all trained on lab { tasks tasks }
+)";
+
+Compilation build_ok(const std::string& file, const std::string& suite = "") {
+  auto result = build(std::span<const std::string>(&file, 1), {test::asset_root(), suite});
+  REQUIRE_MESSAGE(result.ok(), to_text(result.failure()));
+  Compilation compilation = std::move(result).value();
+  REQUIRE_MESSAGE(compilation.ok, render_text(compilation.diagnostics, compilation.sources));
+  REQUIRE_FALSE(compilation.plan.empty());
+  return compilation;
+}
+
+std::string codes(const std::string& text, const std::string& root = test::asset_root()) {
+  const Folder folder("codes");
+  const std::string file = folder.write("x.probe", text);
+  const auto result = build(std::span<const std::string>(&file, 1), {root, ""});
+  REQUIRE(result.ok());
+  std::string said;
+  for (const Diagnostic& item : result->diagnostics.items())
+    said += std::string(info(item.code).text) + " ";
+  CHECK(result->plan.empty() == !result->ok);
+  return said;
+}
+
+}  // namespace
+
+TEST_CASE("a plan holds what the text says") {
+  const Folder folder("plan");
+  const Compilation compilation = build_ok(folder.write("x.probe", test::kSmallSuite + kVariants));
+  const auto plan = plan::Plan::from_bytes(compilation.plan);
+  REQUIRE_MESSAGE(plan.ok(), to_text(plan.failure()));
+  REQUIRE(plan->tasks().size() == 3);
+  const plan::TaskRecord& task = plan->tasks()[0];
+  CHECK(plan->text(task.name) == "red_on_tray");
+  CHECK(plan->text(task.prompt) == "put red block on the tray");
+  CHECK(task.horizon == 60);
+  CHECK(task.bodies.count == 7);
+  CHECK(task.baseline == plan::kNone);
+  CHECK(plan->tasks()[1].axes == static_cast<std::uint32_t>(plan::Axis::kLanguageAction));
+  CHECK(plan->tasks()[2].ood == 4);
+  CHECK(plan->episodes().size() == 72);
+  CHECK(plan->programs().size() == 1);
+  REQUIRE(plan->suites().size() == 2);
+  CHECK(plan->text(plan->suites()[0].prefix) == "lab_");
+  CHECK(plan->suites()[0].seeds.count == 2);
+  CHECK(plan->sets()[0].members.count == 1);
+  CHECK(plan->scenes()[0].base_position == std::array<double, 3>{0.5, 0, 0.8});
+  CHECK(plan->scenes()[0].base_rotation == std::array<double, 4>{0, 0, 0, 1});
+  CHECK(plan->robots()[0].finger_friction == 2);
+  const auto& placement = plan->tables().placements[plan->episodes()[0].placements.first];
+  CHECK(placement.position == std::array<double, 3>{-0.1, -0.1, 0.8 + 0.1});
+}
+
+TEST_CASE("a variant that changes only words shares every start and the judge with its baseline") {
+  const Folder folder("language");
+  const Compilation compilation = build_ok(folder.write("x.probe", test::kSmallSuite + kVariants));
+  const auto plan = plan::Plan::from_bytes(compilation.plan);
+  REQUIRE(plan.ok());
+  CHECK(plan->tasks()[1].judge_id == plan->tasks()[0].judge_id);
+  for (std::size_t e = 0; e < 24; ++e) {
+    CHECK(plan->episodes()[24 + e].start_id == plan->episodes()[e].start_id);
+    CHECK(plan->episodes()[24 + e].episode_id != plan->episodes()[e].episode_id);
+  }
+  CHECK(plan->tables().placements.size() == 2 * 48);
+}
+
+TEST_CASE("the same text gives the same bytes twice and from any folder") {
+  const Folder here("here"), there("there/deeper");
+  const std::string used = std::string(test::kSmallSuite);
+  const std::string root = "use \"parts/world.probe\"\n" + kVariants;
+  here.write("parts/world.probe", used);
+  there.write("parts/world.probe", used);
+  const Compilation a = build_ok(here.write("x.probe", root));
+  const Compilation b = build_ok(here.write("x.probe", root));
+  const Compilation c = build_ok(there.write("x.probe", root));
+  CHECK(a.plan == b.plan);
+  CHECK(a.plan == c.plan);
+  const fs::path before = fs::current_path();
+  fs::current_path(here.path);
+  const Compilation d = build_ok("x.probe");
+  const Compilation e = build_ok("./parts/../x.probe");
+  fs::current_path(before);
+  CHECK(a.plan == d.plan);
+  CHECK(a.plan == e.plan);
+  const auto plan = plan::Plan::from_bytes(a.plan);
+  REQUIRE(plan.ok());
+  CHECK(plan->tables().path(plan->texts()[0]) == "parts/world.probe");
+  CHECK(plan->tables().path(plan->texts()[1]) == "x.probe");
+}
+
+TEST_CASE("one suite keeps its tasks and the baselines they are compared with") {
+  const Folder folder("suite");
+  const std::string file =
+      folder.write("x.probe", test::kSmallSuite + kVariants + "suite late { tasks { new } }\n");
+  const auto one = plan::Plan::from_bytes(build_ok(file, "one").plan);
+  REQUIRE(one.ok());
+  CHECK(one->tasks().size() == 1);
+  CHECK(one->suites().size() == 1);
+  const auto late = plan::Plan::from_bytes(build_ok(file, "late").plan);
+  REQUIRE(late.ok());
+  CHECK(late->tasks().size() == 2);
+  CHECK(late->tasks()[1].baseline == 0);
+  CHECK(late->suites()[0].members.count == 1);
+  const auto unknown = build(std::span<const std::string>(&file, 1), {test::asset_root(), "lat"});
+  REQUIRE_FALSE(unknown.ok());
+  CHECK(to_text(unknown.failure()) == "unknown suite `lat`, did you mean `late`?");
+}
+
+TEST_CASE("a missing asset is reported at its name in the text, once") {
+  const Folder assets("assets");
+  fs::copy(test::asset_root(), assets.path,
+           fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+  fs::remove(assets.path / "objects/tray/collision.obj");
+  CHECK(codes(test::kSmallSuite + kVariants, assets.path.string()) == "P0202 ");
+  fs::remove(assets.path / "arm/part.obj");
+  CHECK(codes(test::kSmallSuite + kVariants, assets.path.string()) == "P0202 P0202 ");
+  CHECK(codes(test::kSmallSuite +
+              std::string(
+                  "object o like red { mesh \"../x\" }\ntask t like red_on_tray { source o }")) ==
+        "P0202 P0202 ");
+}
+
+TEST_CASE("a check says the same as a build and writes nothing") {
+  const Folder folder("check");
+  const std::string file = folder.write(
+      "x.probe", test::kSmallSuite + std::string("variant v of red_on_tray { source bleu }"));
+  const auto result = check(std::span<const std::string>(&file, 1), {test::asset_root(), ""});
+  REQUIRE(result.ok());
+  CHECK_FALSE(result->ok);
+  CHECK(result->plan.empty());
+  CHECK(result->diagnostics.size() == 1);
+}
+
+TEST_CASE("a file that is not there is a failure of the outside that names it") {
+  const std::string file = "/nowhere/x.probe";
+  const auto result = check(std::span<const std::string>(&file, 1), {test::asset_root(), ""});
+  REQUIRE_FALSE(result.ok());
+  CHECK(to_text(result.failure()).find("/nowhere/x.probe") != std::string::npos);
+}
+
+TEST_CASE("files that two roots share are read once") {
+  const Folder folder("roots");
+  folder.write("world.probe", test::kSmallSuite);
+  const std::string files[] = {
+      folder.write("a.probe", "use \"world.probe\"\nvariant va of red_on_tray { source blue }"),
+      folder.write("b.probe", "use \"world.probe\"\nvariant vb of red_on_tray { say take }")};
+  const auto result = build(files, {test::asset_root(), ""});
+  REQUIRE(result.ok());
+  REQUIRE_MESSAGE(result->ok, render_text(result->diagnostics, result->sources));
+  const auto plan = plan::Plan::from_bytes(result->plan);
+  REQUIRE(plan.ok());
+  CHECK(plan->tasks().size() == 3);
+  CHECK(plan->texts().size() == 3);
+}

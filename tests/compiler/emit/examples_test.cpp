@@ -1,0 +1,30 @@
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+#include "compiler/diag/text.h"
+#include "compiler/emit/compile.h"
+#include "runtime/plan/plan.h"
+
+using namespace probe;
+namespace fs = std::filesystem;
+
+TEST_CASE("every example compiles without a word") {
+  std::size_t seen = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(VLAPROBE_SOURCE_DIR) / "examples")) {
+    if (entry.path().extension() != ".probe") continue;
+    ++seen;
+    const std::string file = entry.path().string();
+    CAPTURE(file);
+    const auto built =
+        build(std::span<const std::string>(&file, 1), {VLAPROBE_SOURCE_DIR "/assets", ""});
+    REQUIRE_MESSAGE(built.ok(), to_text(built.failure()));
+    CHECK_MESSAGE(built->diagnostics.empty(), render_text(built->diagnostics, built->sources));
+    REQUIRE(built->ok);
+    const auto plan = plan::Plan::from_bytes(built->plan);
+    REQUIRE_MESSAGE(plan.ok(), to_text(plan.failure()));
+    // The suite of the file itself stands after those of the files it uses.
+    CHECK(plan->suites().size() == 3);
+  }
+  CHECK(seen >= 3);
+}

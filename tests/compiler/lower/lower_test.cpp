@@ -1,0 +1,202 @@
+#include "compiler/lower/lower.h"
+
+#include <doctest/doctest.h>
+
+#include "compiler/lower/builder.h"
+#include "tests/compiler/sema/small_suite.h"
+
+using namespace probe;
+
+namespace {
+
+struct Lowered {
+  std::string text;  // the disassembly, with a line break before it
+  std::string codes;
+  std::string said;
+};
+
+Lowered lowered(const std::string& metrics, const std::string& task = "",
+                const std::string& more = "") {
+  const auto a =
+      test::analyze_with_suite(more + "\nmetrics m { " + metrics +
+                               " }\ntask t like red_on_tray { metrics m; " + task + " }");
+  const sema::Task& t = a->task("t");
+  Lowered result;
+  if (t.complete && !a->diagnostics.has_errors()) {
+    const auto bodies = lower::bodies_of(a->model, t);
+    std::vector<std::string> names;
+    for (const lower::Body& body : bodies) names.push_back(body.name);
+    const auto program = lower::lower_task(a->model, t, bodies, a->diagnostics);
+    if (program) result.text = "\n" + lower::to_text(*program, names);
+  }
+  result.codes = a->codes();
+  result.said = a->said();
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "bodies stand in the plan's order: objects, surface, fingers, other links with collision") {
+  const auto a = test::analyze_with_suite("variant v of red_on_tray { distractors blue }");
+  std::string names;
+  for (const lower::Body& body : lower::bodies_of(a->model, a->task("v"))) names += body.name + " ";
+  CHECK(names == "red tray blue surface left right base wrist ");
+}
+
+TEST_CASE("a greater-than swaps its sides and equal subexpressions are shared") {
+  const Lowered code = lowered(
+      "x = at end (height(source) > height(target) and height(source) - height(target) <= 2cm)");
+  CHECK_MESSAGE(code.text == R"(
+   0  POS    r0    red
+   1  VZ     r1    r0
+   2  POS    r2    tray
+   3  VZ     r3    r2
+   4  LT     r4    r3 r1
+   5  SUB    r5    r1 r3
+   6  KR     r6    0.02
+   7  LE     r7    r5 r6
+   8  AND    r8    r4 r7
+   9  EMITB        r8 -> x
+  10  END
+)",
+                (code.text + code.said));
+}
+
+TEST_CASE("quantifiers unroll over the bodies of the task and fold where the set is empty") {
+  const Lowered two = lowered("x = at end (any f in fingers: impulse(f, source) > 1e-6Ns)");
+  CHECK_MESSAGE(two.text == R"(
+   0  IMP    r0    red left
+   1  KR     r1    1e-06
+   2  LT     r2    r1 r0
+   3  IMP    r3    red right
+   4  LT     r4    r1 r3
+   5  OR     r5    r2 r4
+   6  EMITB        r5 -> x
+   7  END
+)",
+                (two.text + two.said));
+  CHECK(lowered("x = at end (all o in distractors: moved_xy(o) < 1cm)").text == R"(
+   0  KB     r0    1
+   1  EMITB        r0 -> x
+   2  END
+)");
+  CHECK(
+      lowered("x = at end (no b in bodies - {source, target} - links: impulse(source, b) > 1e-6Ns)",
+              "distractors blue")
+          .text == R"(
+   0  IMP    r0    red blue
+   1  KR     r1    1e-06
+   2  LT     r2    r1 r0
+   3  IMP    r3    red surface
+   4  LT     r4    r1 r3
+   5  OR     r5    r2 r4
+   6  NOT    r6    r5
+   7  EMITB        r6 -> x
+   8  END
+)");
+}
+
+TEST_CASE("sets join, meet and differ") {
+  const auto count = [](const char* set) {
+    const std::string text =
+        lowered(std::string("x = at end (any b in ") + set + ": impulse(target, b) > 1e-6Ns)",
+                "distractors blue")
+            .text;
+    std::size_t n = 0;
+    for (std::size_t at = text.find("IMP"); at != std::string::npos; at = text.find("IMP", at + 1))
+      ++n;
+    return n;
+  };
+  CHECK(count("{source}") == 1);
+  CHECK(count("{source, source}") == 1);
+  CHECK(count("others - {target}") == 1);
+  CHECK(count("links") == 4);
+  CHECK(count("links - fingers | {surface}") == 3);
+  CHECK(count("objects & others - {target}") == 1);
+  CHECK(count("bodies - objects") == 5);
+}
+
+TEST_CASE("an angle becomes a cosine, exact for whole degrees") {
+  const Lowered code = lowered("x = once (angle(axis_z(source), up()) <= 60deg)");
+  CHECK_MESSAGE(code.text == R"(
+   0  AXIS   r0    red 2
+   1  KV     r1    0
+   2  VLEN   r2    r0
+   3  VLEN   r3    r1
+   4  KR     r4    0.5
+   5  MUL    r5    r4 r2
+   6  MUL    r6    r5 r3
+   7  VDOT   r7    r0 r1
+   8  LE     r8    r6 r7
+   9  ONCE   r9    r8 s0
+  10  EMITB        r9 -> x
+  11  END
+)",
+                (code.text + code.said));
+  // The wider side swaps the comparison.
+  CHECK(
+      lowered("x = at end (angle(axis_z(source), up()) > 90deg)").text.find("LT     r8    r7 r6") !=
+      std::string::npos);
+}
+
+TEST_CASE("monitors keep one state each and equal ones are shared") {
+  const Lowered code = lowered(
+      "a = once (step > 3 for 5 steps); b = count (step > 3 for 5 steps); c = max height(source); "
+      "d = final grip");
+  CHECK_MESSAGE(code.text == R"(
+   0  STEP   r0
+   1  KR     r1    3
+   2  LT     r2    r1 r0
+   3  HOLD   r3    r2 s0(5)
+   4  ONCE   r4    r3 s1
+   5  EMITB        r4 -> a
+   6  COUNT  r5    r3 s2
+   7  EMITR        r5 -> b
+   8  POS    r6    red
+   9  VZ     r7    r6
+  10  MAXR   r8    r7 s3
+  11  EMITR        r8 -> c
+  12  GRIP   r9
+  13  EMITR        r9 -> d
+  14  END
+)",
+                (code.text + code.said));
+}
+
+TEST_CASE(
+    "constants fold in the order of the text and predicates are inlined with their defaults") {
+  const Lowered code =
+      lowered("x = at end high(source, extra: 1cm + 2cm)", "",
+              "predicate high(o: object, limit: length = 10cm, extra: length = 0cm) "
+              "= height(o) > limit + extra");
+  CHECK_MESSAGE(code.text.find("0.13") != std::string::npos, (code.text + code.said));
+  CHECK(code.text.find("ADD") == std::string::npos);
+}
+
+TEST_CASE("what the judge cannot do is reported once, where it stands") {
+  const Lowered division = lowered("x = at end (height(source) / height(target) < 2)");
+  CHECK(division.codes == "P0601");
+  CHECK(division.said.find("no division") != std::string::npos);
+  CHECK(lowered("x = at end (angle(opening(f: surface), up()) < 60deg)").codes == "P0601");
+  CHECK(lowered("x = at end (any b in links: angle(opening(b), up()) < 60deg)").codes == "P0601");
+  CHECK(lowered("x = at end angles(source, 1deg * step)", "",
+                "predicate angles(o: object, limit: angle) = angle(axis_z(o), up()) <= limit")
+            .codes == "P0601");
+}
+
+TEST_CASE("a program that does not fit is refused, however large it would be") {
+  const Lowered code = lowered(
+      "x = at end (any a in bodies: any b in bodies: any c in bodies: any d in bodies: any e in "
+      "bodies: "
+      "impulse(a, b) + impulse(c, d) > impulse(d, e))");
+  CHECK(code.codes == "P0601");
+  CHECK(code.said.find("4096") != std::string::npos);
+}
+
+TEST_CASE("the builder tells zero from minus zero and shares vectors") {
+  lower::Builder builder;
+  CHECK(builder.constant(0.0) != builder.constant(-0.0));
+  CHECK(builder.vector(0, 0, 1) == builder.vector(0, 0, 1));
+  CHECK(builder.finish().constants.size() == 5);
+}

@@ -1,0 +1,91 @@
+#include "compiler/sema/language.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/compiler/sema/small_suite.h"
+
+using namespace probe;
+using test::analyze_with_suite;
+
+TEST_CASE("an article stands where the slot asks for it and the words are not bare") {
+  const auto a = analyze_with_suite(
+      "variants of red_on_tray { x { say take; refer source as loved }\n y { say take }\n z { "
+      "refer source as by_color } }");
+  CHECK(a->task("x").prompt == "take everybody's darling to the tray");
+  CHECK(a->task("y").prompt == "take the red block to the tray");
+  CHECK(a->task("z").prompt == "put red thing on the tray");
+}
+
+TEST_CASE("a phrase that describes two objects of the scene is ambiguous") {
+  const auto a =
+      analyze_with_suite("task v like red_on_tray { distractors blue; refer source as toy }");
+  CHECK_MESSAGE(a->diagnostics.items().front().code == Code::P0402, a->said());
+  CHECK(a->underlined() == "toy");
+  CHECK(a->diagnostics.items().front().message == "\"toy\" denotes 2 objects in `v`");
+  CHECK(a->diagnostics.items().front().helps.at(0) ==
+        "`color red` holds for `red` and not for `blue`");
+}
+
+TEST_CASE("the same phrase is fine where the other object is absent") {
+  CHECK(analyze_with_suite("variant v of red_on_tray { refer source as toy }")->codes() == "");
+}
+
+TEST_CASE("an inherited phrase that no longer describes its object does not denote it") {
+  const auto a =
+      analyze_with_suite("task v like red_on_tray { source blue; refer source as by_color }");
+  CHECK(a->codes() == "P0401");
+}
+
+TEST_CASE("an object of unknown colour may be meant too: a warning, not silence") {
+  const auto a =
+      analyze_with_suite("task v like red_on_tray { distractors pale; refer source as by_color }");
+  CHECK(a->codes() == "P0403");
+  CHECK(a->diagnostics.items().front().severity == Severity::kWarning);
+}
+
+TEST_CASE("queries follow Kleene's logic") {
+  using sema::Truth;
+  sema::Object object;
+  object.values = {{}, {1}};
+  object.facts = {Truth::kYes, Truth::kUnknown, Truth::kNo};
+  const sema::QueryOp unknown{sema::QueryOp::kValue, 0, 0}, yes{sema::QueryOp::kFact, 0, 0},
+      no{sema::QueryOp::kFact, 2, 0};
+  const sema::QueryOp conjunction{sema::QueryOp::kAnd}, disjunction{sema::QueryOp::kOr},
+      negation{sema::QueryOp::kNot};
+  CHECK(evaluate({unknown}, object) == Truth::kUnknown);
+  CHECK(evaluate({unknown, no, conjunction}, object) == Truth::kNo);
+  CHECK(evaluate({unknown, yes, conjunction}, object) == Truth::kUnknown);
+  CHECK(evaluate({unknown, yes, disjunction}, object) == Truth::kYes);
+  CHECK(evaluate({unknown, negation}, object) == Truth::kUnknown);
+  CHECK(evaluate({no, negation}, object) == Truth::kYes);
+  CHECK(evaluate({{sema::QueryOp::kValue, 1, 1}}, object) == Truth::kYes);
+}
+
+TEST_CASE("an object that is named must be in the scene") {
+  const auto a = analyze_with_suite(
+      "variant v of red_on_tray { say \"put {the source} on {the target}, not {avoid the blue}\" "
+      "}");
+  CHECK(a->codes() == "P0404");
+  CHECK(a->underlined() == "{avoid the blue}");
+  CHECK(a->diagnostics.items().front().primary_label == "the scene has red, tray");
+  CHECK(analyze_with_suite(
+            "@allow(confounded, \"needs something to avoid\")\nvariant v of red_on_tray {\n"
+            "distractors blue; say \"put {the source} on {the target}, not {avoid the blue}\" }")
+            ->codes() == "");
+}
+
+TEST_CASE("a slot that wants a category takes only its objects") {
+  CHECK(analyze_with_suite(
+            "variant v of red_on_tray { say \"put {the source: toy} on {target: dish}, please\" }")
+            ->codes()
+            .find("P0407") == std::string::npos);
+  CHECK(analyze_with_suite(
+            "variant v of red_on_tray { say \"serve {the source: dish} on {target}\" }")
+            ->codes() == "P0407");
+}
+
+TEST_CASE("two objects of one name are a warning") {
+  CHECK(analyze_with_suite("object twin like blue { name \"red block\" }\nvariant v of red_on_tray "
+                           "{ distractors twin }")
+            ->codes() == "P0405");
+}
