@@ -2,9 +2,9 @@
 // bit for bit.
 #include <doctest/doctest.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 
 #include "runtime/base/trig.h"
 #include "runtime/robot/ik.h"
@@ -288,6 +288,7 @@ TEST_CASE("worlds and actions that cannot be are refused with a reason") {
   CHECK(flown.failure().message.find("faster than 50") != std::string::npos);
 }
 
+// A measurement, not a check: only on request, because shared machines are noisy.
 TEST_CASE("speed") {
   if (std::getenv("VLAPROBE_SPEED") == nullptr) return;
   for (const bool sleeping : {false, true}) {
@@ -299,10 +300,10 @@ TEST_CASE("speed") {
         lying("cube2", small_cube(), 0.027, kSpot + Vec3(-0.1, -0.1, 0))};
     if (!make_bench(&bench, bodies, sleeping)) return;
     bench.run(500);
-    const auto seconds = [](auto f) {
-      const auto start = std::chrono::steady_clock::now();
+    const auto seconds = [](auto f) {  // of this process's CPU time: the machine may be busy
+      const std::clock_t start = std::clock();
       f();
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     };
     const double moving = seconds([&] {
       for (int i = 0; i < 50; ++i) {
