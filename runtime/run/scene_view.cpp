@@ -47,6 +47,18 @@ Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRec
   return camera;
 }
 
+void resize(render::Camera& camera, ImageSize size) {
+  if (size.width == 0 || size.height == 0) return;
+  const double x = static_cast<double>(size.width) / camera.width;
+  const double y = static_cast<double>(size.height) / camera.height;
+  camera.fx *= x;
+  camera.cx *= x;
+  camera.fy *= y;
+  camera.cy *= y;
+  camera.width = size.width;
+  camera.height = size.height;
+}
+
 render::Lights make_lights(const plan::Plan& plan, const plan::LightRecord& record) {
   render::Lights lights;
   lights.ambient = record.ambient;
@@ -85,7 +97,8 @@ Pose base_pose(const plan::SceneRecord& scene) {
 
 Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
                                                      std::uint32_t task_index,
-                                                     std::shared_ptr<const SharedAssets> assets) {
+                                                     std::shared_ptr<const SharedAssets> assets,
+                                                     ImageSize size) {
   const plan::TaskRecord& task = plan.tasks()[task_index];
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const plan::RobotRecord& robot = plan.robots()[scene.robot];
@@ -142,6 +155,7 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   view->tree_.link_poses(plan.joints(scene), view->links_);
   const Pose mount_pose = view->base_ * view->links_[static_cast<std::size_t>(mount)];
   PROBE_ASSIGN(spec.camera, make_camera(plan, camera, mount_pose));
+  resize(spec.camera, size);
   spec.lights = make_lights(plan, plan.lights()[task.light]);
   if (scene.photo != plan::kNone) spec.photo = assets->photo(scene.photo);
   PROBE_ASSIGN(view->renderer_, render::Renderer::create(std::move(spec)));

@@ -15,11 +15,17 @@
 
 namespace probe::run {
 
+// Pixels. Zero: the camera's own size; another one squeezes the picture, intrinsics with it.
+struct ImageSize {
+  int width = 0, height = 0;
+};
+
 class SceneView {
  public:
   // `assets` were loaded for this task; the plan may go afterwards.
   static Result<std::unique_ptr<SceneView>> create(const plan::Plan& plan, std::uint32_t task,
-                                                   std::shared_ptr<const SharedAssets> assets);
+                                                   std::shared_ptr<const SharedAssets> assets,
+                                                   ImageSize size = {});
 
   // `q` in drive order; `objects` are model poses in world, in the order source, target,
   // distractors.

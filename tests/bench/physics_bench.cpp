@@ -2,11 +2,10 @@
 // swings over resting objects. `grasping`: a held cube is lifted, held and carried.
 #include <benchmark/benchmark.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <optional>
 
 #include "runtime/robot/control.h"
+#include "tests/bench/need.h"
 #include "tests/runtime/world/widowx.h"
 
 namespace {
@@ -14,25 +13,10 @@ namespace {
 using probe::Pose;
 using probe::Quat;
 using probe::Vec3;
+using probe::bench::need;
 
 constexpr int kSubsteps = 100;  // a control step of 0.2 s
 constexpr double kControlStep = 0.2;
-
-template <typename T>
-T need(probe::Result<T> result) {
-  if (!result.ok()) {
-    std::fprintf(stderr, "bench: %s\n", probe::to_text(result.failure()).c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
-
-void need(const probe::Status& status) {
-  if (!status.ok()) {
-    std::fprintf(stderr, "bench: %s\n", probe::to_text(status.failure()).c_str());
-    std::exit(2);
-  }
-}
 
 // The table setting with a cube where the gripper will find it, carrot, plate and a box of a can's
 // size.

@@ -1,0 +1,52 @@
+// Frames a second on one core: RGB, depth and segmentation of the table scene with the arm moving
+// every frame.
+#include <benchmark/benchmark.h>
+
+#include "runtime/base/trig.h"
+#include "runtime/run/scene_view.h"
+#include "tests/bench/plan_fixture.h"
+
+namespace {
+
+using probe::bench::need;
+
+// The arm swings about its start and the carrot turns with it, so that no block of the picture is
+// reused by luck.
+void render(benchmark::State& state, int width, int height) {
+  const probe::plan::Plan& plan = probe::bench::suite_plan();
+  const std::uint32_t task = probe::bench::bench_task();
+  const auto view = need(probe::run::SceneView::create(plan, task, probe::bench::suite_assets(),
+                                                       probe::run::ImageSize{width, height}));
+  const auto& record = plan.tasks()[task];
+  const auto start = plan.joints(plan.scenes()[record.scene]);
+  std::vector<double> q(start.begin(), start.end());
+  std::vector<probe::Pose> objects;
+  for (const auto& placement : plan.placements(plan.episodes(record)[0])) {
+    const auto& p = placement.position;
+    const auto& r = placement.rotation;
+    objects.push_back({probe::Vec3(p[0], p[1], plan.scenes()[record.scene].surface_z + 0.019),
+                       probe::Quat(r[0], r[1], r[2], r[3])});
+  }
+  double phase = 0;
+  for (auto _ : state) {
+    phase += 0.05;
+    const double swing = probe::portable_sin(phase);
+    q[0] = start[0] + 0.3 * swing;
+    q[1] = start[1] + 0.2 * swing;
+    q[5] = start[5] + swing;
+    const auto frame = view->render(q, objects);
+    if (!frame.ok()) state.SkipWithError(frame.failure().message.c_str());
+  }
+  state.counters["rate"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK_CAPTURE(render, bench, 640, 480)
+    ->Name("render/640x480")
+    ->Unit(benchmark::kMillisecond)
+    ->MinTime(1);
+BENCHMARK_CAPTURE(render, small, 224, 224)
+    ->Name("render/224x224")
+    ->Unit(benchmark::kMillisecond)
+    ->MinTime(1);
+
+}  // namespace
