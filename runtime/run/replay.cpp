@@ -57,7 +57,13 @@ Result<EpisodeJob> find_job(const plan::Plan& plan, const Trace& trace, const st
 
 Result<ReplayReport> replay(const std::string& dir, const std::string& task, int episode,
                             std::optional<int> seed, const ReplayOptions& options) {
-  PROBE_ASSIGN(const StoredTrace stored, find_trace(dir, task, episode, seed));
+  if (auto record = read_run_record(dir); !record) return record.failure();
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(plan_path(dir)));
+  // Rows have the plan's name; the suite's prefix is understood too.
+  std::string name = task;
+  if (const auto found = plan.find_task(task))
+    name = std::string(plan.text(plan.tasks()[*found].name));
+  PROBE_ASSIGN(const StoredTrace stored, find_trace(dir, name, episode, seed));
   const Trace& trace = stored.trace;
   const int steps = static_cast<int>(trace.steps.size());
   if (!options.png.empty() && (options.png_step < 0 || options.png_step > steps)) {
@@ -66,7 +72,6 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
                        std::to_string(options.png_step),
                    "--step"};
   }
-  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(plan_path(dir)));
   PROBE_ASSIGN(const EpisodeJob job, find_job(plan, trace, dir));
 
   ReplayReport report;

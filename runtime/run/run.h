@@ -31,7 +31,7 @@ struct RunOptions {
   std::string policy;       // "expert", "noisy:0.01", ...
   std::string out;          // folder, made if absent
   std::string suite;        // empty: the plan's first suite, or all tasks if it has none
-  std::string tasks = "*";  // glob over task names: * and ?
+  std::string tasks = "*";  // glob over task names, with or without the suite's prefix: * and ?
   std::optional<std::pair<int, int>> episodes;  // first and last index, both included
   // Empty: the suite's seeds; and if the policy draws nothing (every seed would repeat the same
   // episode), only the first of them. Seeds given here are always run.

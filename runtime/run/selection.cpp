@@ -49,8 +49,10 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
     tasks.resize(plan.tasks().size());
     std::iota(tasks.begin(), tasks.end(), 0u);
   }
+  const std::string prefix(suite == nullptr ? "" : plan.text(suite->prefix));
   std::erase_if(tasks, [&](std::uint32_t task) {
-    return !matches_glob(options.tasks, plan.text(plan.tasks()[task].name));
+    const std::string name(plan.text(plan.tasks()[task].name));
+    return !matches_glob(options.tasks, name) && !matches_glob(options.tasks, prefix + name);
   });
   std::sort(tasks.begin(), tasks.end());
   tasks.erase(std::unique(tasks.begin(), tasks.end()), tasks.end());

@@ -71,6 +71,7 @@ TEST_CASE("one job or two, in one go or in shards, with or without videos: the s
   CHECK(video->frames == 4);
 
   RunOptions part = options_for(folder / "part");
+  part.tasks = "widowx_carrot*";
   part.shards = 2;
   for (const int shard : {2, 1}) {
     part.shard = shard;
@@ -108,6 +109,19 @@ TEST_CASE("a stored episode repeats bit for bit, and a changed one is told") {
   CHECK(replay(folder / "run", "carrot_on_plate", 0, 8, replaying)
             .failure()
             .message.find("no seed 8") != std::string::npos);
+  ReplayOptions quiet;
+  quiet.assets = options.assets;
+  CHECK(replay(folder / "run", "widowx_carrot_on_plate", 0, 7, quiet).ok());
+  CHECK(replay(folder / "nothing", "carrot_on_plate", 0, 7, quiet).failure().code == "store");
+  // A damaged trace is refused before anything is repeated.
+  const std::string trace_file = read_results(folder / "run")->at(0).trace;
+  fs::copy_file(trace_file, folder / "whole.trace");
+  fs::resize_file(trace_file, fs::file_size(trace_file) / 2);
+  const auto cut = replay(folder / "run", "carrot_on_plate", 0, 7, quiet);
+  REQUIRE_FALSE(cut.ok());
+  CHECK(cut.failure().where == trace_file);
+  CHECK(cut.failure().message.starts_with("truncated"));
+  fs::copy_file(folder / "whole.trace", trace_file, fs::copy_options::overwrite_existing);
   CHECK(replay(folder / "run", "carrot", 0, 7, replaying).failure().code == "usage");
   CHECK(replay(folder / "run", "carrot_on_plate", 3, 7, replaying).failure().code == "usage");
 
@@ -186,7 +200,7 @@ TEST_CASE("what cannot run is told before anything is written") {
   RunOptions options = options_for(folder / "run", "exprt");
   CHECK(refused(options).find("did you mean `expert`") != std::string::npos);
   options = options_for(folder / "run");
-  options.tasks = "spoon*";
+  options.tasks = "spoon*";  // neither with the suite's prefix nor without
   CHECK(refused(options) == "--tasks: no task is called `spoon*`");
   options = options_for(folder / "run");
   options.suite = "nightly";
