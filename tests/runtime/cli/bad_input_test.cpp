@@ -1,4 +1,5 @@
-// Each kind of bad input gives one clear message that names thing and place, the right exit code, and no partial file.
+// Each kind of bad input gives one clear message that names thing and place, the right exit code,
+// and no partial file.
 #include <doctest/doctest.h>
 
 #include "tests/runtime/cli/program.h"
@@ -13,7 +14,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // The suite's text in the sandbox with one replacement in one of its files.
-void copy_suite(const Sandbox& box, const std::string& file, const std::string& from, const std::string& to) {
+void copy_suite(const Sandbox& box, const std::string& file, const std::string& from,
+                const std::string& to) {
   for (const auto& entry : fs::directory_iterator(VLAPROBE_SOURCE_DIR "/suite")) {
     std::string text = read_file(entry.path());
     if (entry.path().filename() == file) {
@@ -117,7 +119,9 @@ TEST_CASE("an output folder that cannot be written is named and nothing is left"
   CHECK(contains(build.err, "file/x.plan"));
 }
 
-TEST_CASE("a file that is not there is the outside's fault, an unknown verb, flag, policy or task the user's") {
+TEST_CASE(
+    "a file that is not there is the outside's fault, an unknown verb, flag, policy or task the "
+    "user's") {
   Sandbox box;
   const Outcome missing = box.vlaprobe("check none.probe");
   CHECK(missing.exit == 2);

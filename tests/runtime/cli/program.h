@@ -33,7 +33,8 @@ inline void write_file(const std::filesystem::path& path, const std::string& tex
 class Sandbox {
  public:
   Sandbox() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "vlaprobe-test-XXXXXX").string();
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "vlaprobe-test-XXXXXX").string();
     dir_ = mkdtemp(pattern.data());
   }
   ~Sandbox() {
@@ -47,12 +48,14 @@ class Sandbox {
 
   // `arguments` as typed in a shell; $SUITE and $ASSETS are set.
   Outcome vlaprobe(const std::string& arguments) const {
-    const std::string command = "cd '" + dir_.string() + "' && SUITE='" VLAPROBE_SOURCE_DIR
+    const std::string command = "cd '" + dir_.string() +
+                                "' && SUITE='" VLAPROBE_SOURCE_DIR
                                 "/suite/intact.probe' ASSETS='" VLAPROBE_SOURCE_DIR
-                                "/assets' && '" VLAPROBE_BINARY_DIR "/vlaprobe' " + arguments +
-                                " >.out 2>.err </dev/null";
+                                "/assets' && '" VLAPROBE_BINARY_DIR "/vlaprobe' " +
+                                arguments + " >.out 2>.err </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read_file(dir_ / ".out"), read_file(dir_ / ".err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read_file(dir_ / ".out"),
+            read_file(dir_ / ".err")};
   }
 
  private:
