@@ -272,10 +272,14 @@ class Lowering {
     const bool left_angle = model_.exprs.nodes[node.args[0]].type.is_angle_between;
     const bool right_angle = model_.exprs.nodes[node.args[1]].type.is_angle_between;
     if (left_angle || right_angle) return compare_angle(node, left_angle, or_equal);
-    const Value a = eval(node.args[0]);
-    const Value b = eval(node.args[1]);
+    // `a > b` is stored as `b < a`; evaluation follows the text, so that the code reads like it.
+    const bool swapped =
+        model_.exprs.nodes[node.args[1]].span.begin < model_.exprs.nodes[node.args[0]].span.begin;
+    const Value first = eval(node.args[swapped ? 1 : 0]);
+    const Value second = eval(node.args[swapped ? 0 : 1]);
     builder_.at(node.span);
-    return builder_.less(a, b, or_equal);
+    return swapped ? builder_.less(second, first, or_equal)
+                   : builder_.less(first, second, or_equal);
   }
 
   // angle(u, v) <= A  is  cos A |u| |v| <= u . v, since the cosine falls from 0 to pi; no inverse

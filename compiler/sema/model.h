@@ -144,6 +144,7 @@ struct Light {
 struct Scene {
   std::string name;
   Span span;
+  bool complete = false;  // else something was reported, and tasks here are not looked at
   RobotId robot = RobotId::kNone;
   std::array<double, 3> base_position{};
   bool base_on_surface = false;  // no height was written

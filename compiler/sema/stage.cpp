@@ -419,6 +419,8 @@ void define_scenes(Context& context) {
       if (scene.physics_hz == 0) missing(context, "scene", scene.name, scene.span, "physics");
       check_joints(context, scene);
     }
+    scene.complete = !broken[i] && context.diagnostics.error_count() == errors;
+    broken[i] = !scene.complete;
     context.model.scenes[static_cast<SceneId>(i)] = std::move(scene);
   }
 }

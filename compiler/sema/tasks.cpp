@@ -134,6 +134,19 @@ void check_roles(Context& context, const Task& task, bool& poisoned) {
   }
 }
 
+// The camera moves with a link, so that link must be in the scene.
+void check_camera(Context& context, const Task& task, bool& poisoned) {
+  const Scene& scene = context.model.scenes[task.scene];
+  const Camera& camera = context.model.cameras[camera_of(context.model, task)];
+  if (camera.mount_robot == scene.robot) return;
+  context
+      .report(Code::P0201, task.span,
+              "camera `" + camera.name + "` of `" + task.name +
+                  "` is mounted on a robot that is not in scene `" + scene.name + "`")
+      .label(camera.mount_link.span, "this link");
+  poisoned = true;
+}
+
 std::string missing_statements(const Task& task) {
   const std::pair<bool, const char*> wanted[] = {
       {task.scene != SceneId::kNone, "scene"},
@@ -233,8 +246,10 @@ void define_tasks(Context& context) {
       task.baseline_span = declared.against->span;
     }
     const std::string missing = missing_statements(task);
+    if (task.scene != SceneId::kNone) poisoned = poisoned || !model.scenes[task.scene].complete;
     task.complete = missing.empty() && !poisoned;
     if (task.complete) check_roles(context, task, poisoned);
+    if (task.complete) check_camera(context, task, poisoned);
     if (!missing.empty() && !poisoned && !task.abstract) {
       context.report(Code::P0206, task.span, "task `" + task.name + "` has no " + missing);
     }

@@ -135,7 +135,8 @@ TEST_CASE("an object over the edge or out of reach is reported") {
       "drive waist stiffness 100Nm/rad damping 10Nms/rad limit 20Nm; drive l, r stiffness 1000N/m "
       "damping 200Ns/m limit 60N\n"
       "grip 1cm .. 4cm friction 2 patch 1cm }\n"
-      "scene s like bench { robot arm2 at (50cm, 0cm) yaw 180deg }\ntask t like red_on_tray { "
-      "scene s }");
+      "camera eye2 like eye { mount arm2.base at (0cm, 0cm, 1m) look (1, 0, -1) }\n"
+      "scene s like bench { robot arm2 at (50cm, 0cm) yaw 180deg; camera eye2 }\n"
+      "task t like red_on_tray { scene s }");
   CHECK_MESSAGE(far->codes() == "P0502", far->said());
 }

@@ -97,3 +97,10 @@ TEST_CASE("derive, sample and jitter say that they are not available yet") {
   CHECK(analyze_with_suite("set s = sample 1 of tasks seed 7")->said().find("not available yet") !=
         std::string::npos);
 }
+
+TEST_CASE("a scene that lacks a statement is told so once, and its tasks say nothing more") {
+  const auto a = analyze_with_suite(
+      "scene empty { surface 1m area (0m, 0m) .. (1m, 1m) }\ntask t like red_on_tray { scene empty "
+      "}");
+  CHECK(a->codes() == "P0206 P0206 P0206 P0206 P0206");
+}
