@@ -124,14 +124,6 @@ int run_verb(const Arguments& arguments) {
   LoadedPlan loaded = load_plan(arguments.file, arguments.assets);
   if (!loaded.plan) return loaded.exit;
 
-  // The first suite of a file is its main one; the others are asked for by name.
-  const auto suites = loaded.plan->suites();
-  if (options->suite.empty() && suites.size() > 1) {
-    options->suite = loaded.plan->text(suites[0].name);
-    fmt::print(stderr, "note: suite `{}`, the first of {}; --suite chooses another\n",
-               options->suite, suites.size());
-  }
-
   ProgressPrinter printer;
   options->progress = [&](const run::RunProgress& progress) { printer(progress); };
   auto summary = run::run(*loaded.plan, *options);
