@@ -39,6 +39,7 @@ std::optional<std::uint32_t> find_value(Context& context, AttributeId attribute,
 
 // Appends `id` in postfix order. The depth is bounded by the parser.
 bool compile_query(Context& context, const syntax::File& file, syntax::QueryId id, Query& out) {
+  if (id.value == syntax::QueryId::kNone) return false;  // a syntax error, reported
   const auto& node = file[id].node;
   if (const auto* fact = std::get_if<syntax::QueryFact>(&node)) {
     const auto found = context.symbols.facts.find(fact->fact, context.diagnostics);

@@ -80,6 +80,8 @@ class ExprReader {
   ExprRef number(syntax::ExprId id) { return expect(read(id), TypeKind::kReal, "a number"); }
 
   ExprRef read(syntax::ExprId id) {
+    // Left out by a syntax error, which has been reported.
+    if (id.value == syntax::ExprId::kNone) return poison({});
     const syntax::Expr& expr = file_[id];
     return std::visit([&](const auto& node) { return read_node(expr.span, node); }, expr.node);
   }
@@ -444,6 +446,7 @@ class ExprReader {
   }
 
   std::optional<SetRef> read_set(syntax::SetExprId id) {
+    if (id.value == syntax::SetExprId::kNone) return std::nullopt;
     const syntax::SetExpr& written = file_[id];
     SetNode set;
     set.span = written.span;

@@ -56,6 +56,7 @@ class SetReader {
   }
 
   std::vector<TaskId> read(const syntax::File& file, syntax::TaskSetId id) {
+    if (id.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
     return std::visit([&](const auto& node) { return read_node(file, file[id].span, node); },
                       file[id].node);
   }
@@ -133,6 +134,7 @@ class SetReader {
 
   // The words a condition may use; each is checked once, before any task is asked.
   bool check_condition(const syntax::File& file, syntax::CondId id) {
+    if (id.value == syntax::CondId::kNone) return false;  // a syntax error, reported
     const auto& node = file[id].node;
     if (const auto* negation = std::get_if<syntax::CondNot>(&node))
       return check_condition(file, negation->operand);

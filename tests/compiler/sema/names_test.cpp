@@ -104,3 +104,14 @@ TEST_CASE("a scene that lacks a statement is told so once, and its tasks say not
       "}");
   CHECK(a->codes() == "P0206 P0206 P0206 P0206 P0206");
 }
+
+TEST_CASE("what a syntax error leaves out is not looked at") {
+  for (const char* text : {"set s =", "set s = tasks where", "suite s { tasks }",
+                           "predicate p(a: object) =", "metrics m { x = once }",
+                           "object o like red { phrase p appearance \"x\" means }", "variant v of",
+                           "task t like base { source }"}) {
+    CAPTURE(text);
+    const auto a = analyze_with_suite(text);
+    CHECK(a->codes().substr(0, 5) == "P0101");
+  }
+}
