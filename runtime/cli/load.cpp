@@ -4,6 +4,7 @@
 
 #include "compiler/diag/diagnostic.h"
 #include "runtime/cli/compile.h"
+#include "runtime/inspect/task_json.h"
 
 namespace probe::cli {
 namespace {
@@ -58,6 +59,14 @@ std::optional<std::uint32_t> find_suite(const plan::Plan& plan, const std::strin
   for (const plan::SuiteRecord& suite : plan.suites()) known.push_back(plan.text(suite.name));
   report_unknown("suite", name, known, exit);
   return std::nullopt;
+}
+
+std::optional<std::vector<std::uint32_t>> select_tasks(const plan::Plan& plan,
+                                                       const std::string& suite, int& exit) {
+  if (suite.empty()) return inspect::all_tasks(plan);
+  const auto index = find_suite(plan, suite, exit);
+  if (!index) return std::nullopt;
+  return inspect::members(plan, *index);
 }
 
 }  // namespace probe::cli

@@ -21,5 +21,8 @@ LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
 // Indices by name; on an unknown one prints it with the nearest spelling and sets `exit`.
 std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string& name, int& exit);
 std::optional<std::uint32_t> find_suite(const plan::Plan& plan, const std::string& name, int& exit);
+// The members of the suite of that name, or all tasks when `suite` is empty.
+std::optional<std::vector<std::uint32_t>> select_tasks(const plan::Plan& plan,
+                                                       const std::string& suite, int& exit);
 
 }  // namespace probe::cli

@@ -1,0 +1,162 @@
+#include "runtime/inspect/axes.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "runtime/plan/ids.h"
+
+namespace probe::inspect {
+namespace {
+
+constexpr std::array<AxisName, 12> kAxes = {{
+    {plan::Axis::kObjectSource, "object.source"},
+    {plan::Axis::kObjectTarget, "object.target"},
+    {plan::Axis::kDistractors, "distractors"},
+    {plan::Axis::kLanguageAction, "language.action"},
+    {plan::Axis::kLanguageNegation, "language.negation"},
+    {plan::Axis::kLanguageAppearance, "language.appearance"},
+    {plan::Axis::kLanguageCommonsense, "language.commonsense"},
+    {plan::Axis::kLayout, "layout"},
+    {plan::Axis::kScene, "scene"},
+    {plan::Axis::kLight, "light"},
+    {plan::Axis::kCamera, "camera"},
+    {plan::Axis::kGoal, "goal"},
+}};
+
+constexpr std::uint32_t bit(plan::Axis axis) { return static_cast<std::uint32_t>(axis); }
+
+std::vector<std::uint32_t> distractors(const plan::Plan& plan, const plan::TaskRecord& task) {
+  std::vector<std::uint32_t> objects;
+  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors)) {
+    objects.push_back(body.index);
+  }
+  std::sort(objects.begin(), objects.end());
+  return objects;
+}
+
+void replace_all(std::string& text, std::string_view what, std::string_view by) {
+  if (what.empty()) return;
+  for (std::size_t at = text.find(what); at != std::string::npos;
+       at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+}
+
+// The instruction with the names of its objects taken out, the longer name first: one may be part
+// of the other.
+std::string frame_of(const plan::Plan& plan, const plan::TaskRecord& task) {
+  std::string text(plan.text(task.prompt));
+  std::string_view source = plan.text(plan.objects()[task.source].text);
+  std::string_view target = plan.text(plan.objects()[task.target].text);
+  std::array<std::pair<std::string_view, std::string_view>, 2> names = {
+      {{source, "{source}"}, {target, "{target}"}}};
+  if (target.size() > source.size()) std::swap(names[0], names[1]);
+  for (const auto& [name, role] : names) replace_all(text, name, role);
+  return text;
+}
+
+// Where things stand, in what order, and how they get there. A turn counts only where the same
+// object stands in both: rest poses belong to the object. Heights belong to the scene.
+bool same_layout(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b,
+                 bool same_distractors) {
+  const auto ours = plan.episodes(a);
+  const auto theirs = plan.episodes(b);
+  if (a.drop != b.drop || a.settle != b.settle || ours.size() != theirs.size()) return false;
+  const std::size_t compared = same_distractors ? 2 + std::size_t{a.distractors} : 2;
+  for (std::size_t e = 0; e < ours.size(); ++e) {
+    const auto here = plan.placements(ours[e]);
+    const auto there = plan.placements(theirs[e]);
+    for (std::size_t i = 0; i < compared; ++i) {
+      if (here[i].position[0] != there[i].position[0] ||
+          here[i].position[1] != there[i].position[1])
+        return false;
+      if (here[i].object == there[i].object && here[i].rotation != there[i].rotation) return false;
+    }
+  }
+  return true;
+}
+
+// A quantifier over objects unrolls with their number, so equal metrics may be unequal programs
+// when the scenes hold different bodies; then the words they were written with decide, as far as
+// the plan has them.
+bool same_goal(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+  if (a.horizon != b.horizon) return false;
+  if (a.judge_id == b.judge_id) return true;
+  const auto ours = plan.metrics(a);
+  const auto theirs = plan.metrics(b);
+  if (a.bodies.count == b.bodies.count || ours.size() != theirs.size()) return false;
+  const plan::MetricRecord* const table = plan.metrics().data();
+  for (std::size_t m = 0; m < ours.size(); ++m) {
+    if (plan.text(ours[m].name) != plan.text(theirs[m].name) || ours[m].type != theirs[m].type ||
+        ours[m].readout != theirs[m].readout)
+      return false;
+    const plan::SpanRecord* here = plan.span_of(4, static_cast<std::uint32_t>(&ours[m] - table));
+    const plan::SpanRecord* there = plan.span_of(4, static_cast<std::uint32_t>(&theirs[m] - table));
+    if (here != nullptr && there != nullptr &&
+        (here->text != there->text || here->begin != there->begin))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::span<const AxisName> all_axes() { return kAxes; }
+
+std::vector<std::string_view> axis_names(std::uint32_t mask) {
+  std::vector<std::string_view> names;
+  for (const auto& [axis, name] : kAxes) {
+    if ((mask & bit(axis)) != 0) names.push_back(name);
+  }
+  return names;
+}
+
+Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t second) {
+  const plan::TaskRecord& a = plan.tasks()[first];
+  const plan::TaskRecord& b = plan.tasks()[second];
+  Difference found;
+  const auto move = [&found](plan::Axis axis, bool moved) {
+    if (moved) found.axes |= bit(axis);
+  };
+  const bool same_distractors = distractors(plan, a) == distractors(plan, b);
+  move(plan::Axis::kObjectSource, a.source != b.source);
+  move(plan::Axis::kObjectTarget, a.target != b.target);
+  move(plan::Axis::kDistractors, !same_distractors);
+  found.language = frame_of(plan, a) != frame_of(plan, b);
+  move(plan::Axis::kLayout, !same_layout(plan, a, b, same_distractors));
+  // Scenes, cameras and lights are compared by content: as the starts of a task without objects.
+  plan::IdHasher hasher(plan.tables());
+  const auto content = [&hasher](std::uint32_t scene, std::uint32_t camera, std::uint32_t light) {
+    plan::TaskRecord task;
+    task.scene = scene;
+    task.camera = camera;
+    task.light = light;
+    return hasher.start(task, {});
+  };
+  const Sha256 ours = content(a.scene, a.camera, a.light);
+  const bool scene_moves = ours != content(b.scene, a.camera, a.light);
+  move(plan::Axis::kScene, scene_moves);
+  // Another scene comes with its own camera and light; whether one was chosen on top of that is
+  // not in the records.
+  if (!scene_moves) {
+    move(plan::Axis::kLight, ours != content(a.scene, a.camera, b.light));
+    move(plan::Axis::kCamera, ours != content(a.scene, b.camera, a.light));
+  }
+  move(plan::Axis::kGoal, !same_goal(plan, a, b));
+  return found;
+}
+
+std::vector<std::string_view> axes_between(const plan::Plan& plan, std::uint32_t a,
+                                           std::uint32_t b) {
+  const Difference found = difference(plan, a, b);
+  std::optional<std::uint32_t> declared;
+  if (plan.tasks()[a].baseline == b) declared = plan.tasks()[a].axes;
+  if (plan.tasks()[b].baseline == a) declared = plan.tasks()[b].axes;
+  const std::uint32_t language = declared.value_or(0) & kLanguageAxes;
+  std::vector<std::string_view> names = axis_names(found.axes | language);
+  if (found.language && language == 0) names.push_back("language");
+  return names;
+}
+
+}  // namespace probe::inspect

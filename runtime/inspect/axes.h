@@ -1,0 +1,43 @@
+// The axes along which two tasks of one plan differ, by name and from the records alone: what the
+// compiler declares of a variant can be checked against it. Knows nothing of phrases and frames,
+// which a plan does not carry.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/plan/plan.h"
+
+namespace probe::inspect {
+
+struct AxisName {
+  plan::Axis axis;
+  std::string_view name;
+};
+// All of them, in the order in which they are listed everywhere.
+std::span<const AxisName> all_axes();
+// "object.source", "language.action" ... of a mask of plan::Axis.
+std::vector<std::string_view> axis_names(std::uint32_t mask);
+inline constexpr std::uint32_t kLanguageAxes =
+    static_cast<std::uint32_t>(plan::Axis::kLanguageAction) |
+    static_cast<std::uint32_t>(plan::Axis::kLanguageNegation) |
+    static_cast<std::uint32_t>(plan::Axis::kLanguageAppearance) |
+    static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense);
+
+// Everything but language as a mask; of language only whether it moved: the instructions differ
+// also when the names of source and target are taken out of both.
+struct Difference {
+  std::uint32_t axes = 0;
+  bool language = false;
+};
+Difference difference(const plan::Plan& plan, std::uint32_t a, std::uint32_t b);
+
+// The same by name. Between a variant and its baseline the language axes are those the compiler
+// stored, between any other two tasks there is one word for them, "language".
+std::vector<std::string_view> axes_between(const plan::Plan& plan, std::uint32_t a,
+                                           std::uint32_t b);
+
+}  // namespace probe::inspect

@@ -1,0 +1,216 @@
+#include "runtime/inspect/task_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <vector>
+
+#include "runtime/base/trig.h"
+#include "runtime/inspect/axes.h"
+#include "runtime/plan/ids.h"
+
+namespace probe::inspect {
+namespace {
+
+struct RollPitchYaw {
+  double roll_deg = 0, pitch_deg = 0, yaw_deg = 0;
+};
+
+// Extrinsic x, y, z angles of a unit quaternion (w, x, y, z), rounded to 1e-9 degrees so that a
+// written 90 reads 90; yaw in (-180, 180].
+RollPitchYaw to_angles(const std::array<double, 4>& q) {
+  const auto [w, x, y, z] = q;
+  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+  const auto rounded = [](double degrees) {
+    const double value = std::nearbyint(degrees * 1e9) / 1e9;
+    return value == -180.0 ? 180.0 : value + 0.0;
+  };
+  return {rounded(portable_atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) * kDegrees),
+          rounded(portable_asin(std::clamp(2 * (w * y - z * x), -1.0, 1.0)) * kDegrees),
+          rounded(portable_atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) * kDegrees)};
+}
+
+std::string object_name(const plan::Plan& plan, std::uint32_t object) {
+  return std::string(plan.text(plan.objects()[object].name));
+}
+
+std::string hex(const std::array<std::uint8_t, 32>& id) { return to_hex(plan::to_sha256(id)); }
+
+// Names of the sets each task is in; one pass over the sets, whatever the number of tasks.
+std::vector<std::vector<std::string_view>> categories_of(const plan::Plan& plan) {
+  std::vector<std::vector<std::string_view>> categories(plan.tasks().size());
+  for (const plan::SetRecord& set : plan.sets()) {
+    for (const std::uint32_t task : plan.members(set))
+      categories[task].push_back(plan.text(set.name));
+  }
+  return categories;
+}
+
+Json summarise(const plan::Plan& plan, std::uint32_t index,
+               const std::vector<std::string_view>& categories) {
+  const plan::TaskRecord& task = plan.tasks()[index];
+  Json json;
+  json["task"] = plan.text(task.name);
+  json["baseline"] =
+      task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
+  json["axes"] = axis_names(task.axes);
+  json["categories"] = categories;
+  json["prompt"] = plan.text(task.prompt);
+  json["episodes"] = task.episodes.count;
+  return json;
+}
+
+Json start_of(const plan::Plan& plan, const plan::EpisodeRecord& episode) {
+  Json start = Json::array();
+  for (const plan::PlacementRecord& placement : plan.placements(episode)) {
+    const RollPitchYaw angles = to_angles(placement.rotation);
+    start.push_back({{"object", object_name(plan, placement.object)},
+                     {"x_m", placement.position[0]},
+                     {"y_m", placement.position[1]},
+                     {"roll_deg", angles.roll_deg},
+                     {"pitch_deg", angles.pitch_deg},
+                     {"yaw_deg", angles.yaw_deg}});
+  }
+  return start;
+}
+
+double distance(const plan::PlacementRecord& a, const plan::PlacementRecord& b) {
+  const double x = a.position[0] - b.position[0];
+  const double y = a.position[1] - b.position[1];
+  return std::sqrt(x * x + y * y);
+}
+
+std::string joined(const Json& words, const char* when_empty) {
+  std::string text;
+  for (const Json& word : words) text += (text.empty() ? "" : ", ") + word.get<std::string>();
+  return text.empty() ? when_empty : text;
+}
+
+std::string short_id(const Json& id) { return id.get<std::string>().substr(0, 8); }
+
+// A length or an angle to a tenth of a millimetre or degree, without a negative zero.
+double tenth(double value, double scale) { return std::nearbyint(value * scale * 10) / 10 + 0.0; }
+
+}  // namespace
+
+std::vector<std::uint32_t> all_tasks(const plan::Plan& plan) {
+  std::vector<std::uint32_t> tasks(plan.tasks().size());
+  std::iota(tasks.begin(), tasks.end(), 0u);
+  return tasks;
+}
+
+std::vector<std::uint32_t> members(const plan::Plan& plan, std::uint32_t suite) {
+  const auto tasks = plan.members(plan.suites()[suite]);
+  return {tasks.begin(), tasks.end()};
+}
+
+Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
+  std::size_t episodes = 0;
+  for (const std::uint32_t task : tasks) episodes += plan.tasks()[task].episodes.count;
+  return {{"tasks", tasks.size()}, {"episodes", episodes}};
+}
+
+Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
+  const auto categories = categories_of(plan);
+  Json all = Json::array();
+  for (const std::uint32_t task : tasks) all.push_back(summarise(plan, task, categories[task]));
+  return all;
+}
+
+Json describe(const plan::Plan& plan, std::uint32_t index) {
+  const plan::TaskRecord& task = plan.tasks()[index];
+  Json json = summarise(plan, index, categories_of(plan)[index]);
+  json["source"] = object_name(plan, task.source);
+  json["target"] = object_name(plan, task.target);
+  json["distractors"] = Json::array();
+  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors))
+    json["distractors"].push_back(plan.text(body.name));
+  json["horizon"] = task.horizon;
+  json["metrics"] = Json::array();
+  for (const plan::MetricRecord& metric : plan.metrics(task))
+    json["metrics"].push_back(plan.text(metric.name));
+  json["starts"] = Json::array();
+  json["scene"] = plan.text(plan.scenes()[task.scene].name);
+  json["camera"] = plan.text(plan.cameras()[task.camera].name);
+  json["light"] = plan.text(plan.lights()[task.light].name);
+  json["drop_m"] = task.drop;
+  json["settle_s"] = task.settle;
+  json["allow"] = task.allow.length == 0 ? Json() : Json(plan.text(task.allow));
+  json["distances_m"] = Json::array();
+  json["ids"] = {{"prompt", to_hex(plan::prompt_id(plan.text(task.prompt)))},
+                 {"judge", hex(task.judge_id)},
+                 {"starts", Json::array()},
+                 {"episodes", Json::array()}};
+  for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
+    const auto placements = plan.placements(episode);
+    json["starts"].push_back(start_of(plan, episode));
+    json["distances_m"].push_back(distance(placements[0], placements[1]));
+    json["ids"]["starts"].push_back(hex(episode.start_id));
+    json["ids"]["episodes"].push_back(hex(episode.episode_id));
+  }
+  return json;
+}
+
+std::string list_text(const Json& list) {
+  std::size_t width = 0;
+  for (const Json& task : list)
+    width = std::max(width, task["task"].get_ref<const std::string&>().size());
+  std::string text;
+  for (const Json& task : list) {
+    fmt::format_to(std::back_inserter(text), "{:<{}}  {:>4}  {}\n", task["task"].get<std::string>(),
+                   width, task["episodes"].get<std::size_t>(), task["prompt"].get<std::string>());
+  }
+  return text;
+}
+
+std::string describe_text(const Json& task) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const auto line = [&](const char* name, const std::string& value) {
+    fmt::format_to(out, "{:<12} {}\n", name, value);
+  };
+  const auto word = [&](const char* key) { line(key, task[key].get<std::string>()); };
+  word("task");
+  word("prompt");
+  word("source");
+  word("target");
+  line("distractors", joined(task["distractors"], "none"));
+  line("baseline", task["baseline"].is_null() ? "none" : task["baseline"].get<std::string>());
+  line("axes", joined(task["axes"], "none"));
+  if (!task["allow"].is_null()) line("allowed", task["allow"].get<std::string>());
+  line("categories", joined(task["categories"], "none"));
+  word("scene");
+  word("camera");
+  word("light");
+  line("layout",
+       fmt::format("{} starts, dropped from {} cm, settled for {} s", task["starts"].size(),
+                   tenth(task["drop_m"].get<double>(), 100), task["settle_s"].get<double>()));
+  line("metrics", joined(task["metrics"], "none"));
+  line("horizon", fmt::format("{} steps", task["horizon"].get<std::uint32_t>()));
+  const Json& ids = task["ids"];
+  line("prompt id", short_id(ids["prompt"]));
+  line("judge id", short_id(ids["judge"]));
+  fmt::format_to(out, "\n{:>5}  {:<8}  {:<8}  {:>8}  where (cm, deg)\n", "start", "start id",
+                 "episode", "apart");
+  for (std::size_t e = 0; e < task["starts"].size(); ++e) {
+    fmt::format_to(out, "{:>5}  {}  {}  {:>5} cm", e, short_id(ids["starts"][e]),
+                   short_id(ids["episodes"][e]), tenth(task["distances_m"][e].get<double>(), 100));
+    for (const Json& object : task["starts"][e]) {
+      fmt::format_to(out, "  {} ({}, {})", object["object"].get<std::string>(),
+                     tenth(object["x_m"].get<double>(), 100),
+                     tenth(object["y_m"].get<double>(), 100));
+      for (const char* angle : {"roll", "pitch", "yaw"}) {
+        const double degrees = tenth(object[std::string(angle) + "_deg"].get<double>(), 1);
+        if (degrees != 0) fmt::format_to(out, " {} {}", angle, degrees);
+      }
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace probe::inspect

@@ -1,0 +1,33 @@
+// What `list` and `show` say of a task, as JSON with the documented keys and as text for people.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "runtime/plan/plan.h"
+
+namespace probe::inspect {
+
+using Json = nlohmann::ordered_json;
+
+// Indices of all tasks, or of the members of a suite of the plan.
+std::vector<std::uint32_t> all_tasks(const plan::Plan& plan);
+std::vector<std::uint32_t> members(const plan::Plan& plan, std::uint32_t suite);
+
+// {tasks, episodes}
+Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
+// An array of {task, baseline, axes[], categories[], prompt, episodes}.
+Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
+// One task: the same and {source, target, distractors[], horizon, metrics[], starts[][], scene,
+// camera, light, drop_m, settle_s, allow, distances_m[], ids{prompt, judge, starts[],
+// episodes[]}}. A distance is from source to target, horizontal, in the order of the starts.
+Json describe(const plan::Plan& plan, std::uint32_t task);
+
+// A line a task: name, episodes, instruction.
+std::string list_text(const Json& list);
+// Lengths in cm, ids shortened to eight digits.
+std::string describe_text(const Json& task);
+
+}  // namespace probe::inspect
