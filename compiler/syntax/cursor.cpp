@@ -15,20 +15,6 @@ bool is_readout_word(std::string_view word) {
   return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
 }
 
-bool can_end_statement(TokenKind kind) {
-  switch (kind) {
-    case TokenKind::kIdent:
-    case TokenKind::kNumber:
-    case TokenKind::kString:
-    case TokenKind::kRightParen:
-    case TokenKind::kRightBracket:
-    case TokenKind::kRightBrace:
-      return true;
-    default:
-      return false;
-  }
-}
-
 bool is_operator(TokenKind kind) {
   return kind >= TokenKind::kLess && kind <= TokenKind::kAmpersand;
 }
@@ -56,7 +42,10 @@ bool is_declaration_word(std::string_view word) {
 // ---------------------------------------------------------------------------------------------------------
 
 Parser::Parser(const SourceFile& source, const TokenStream& stream, ErrorBudget& errors)
-    : source_(source), tokens_(stream.tokens), errors_(errors) {
+    : source_(source),
+      tokens_(stream.tokens),
+      errors_(errors),
+      roles_(stream.tokens.size(), TokenRole::kPlain) {
   file_.id = stream.file;
   while (is_trivia(raw_kind())) {
     stray_before_ |= raw_kind() == TokenKind::kStray;
@@ -358,6 +347,7 @@ bool Parser::looks_like_unclosed_block(std::initializer_list<std::string_view> s
 }
 
 bool Parser::begin_block() {
+  if (raw_kind() == TokenKind::kLeftBrace) set_role(TokenRole::kBlock);
   if (accept(TokenKind::kLeftBrace)) return true;
   fail_expected();
   // The head of the declaration has been reported; its block is read all the same if it begins on
@@ -460,6 +450,7 @@ Quantity Parser::quantity() {
   const std::uint32_t begin = mark();
   if (raw_kind() == TokenKind::kMinus || raw_kind() == TokenKind::kPlus) {
     out.negative = kind() == TokenKind::kMinus;
+    set_role(TokenRole::kSign);
     accept(raw_kind());
   }
   if (!at(TokenKind::kNumber)) {

@@ -47,6 +47,9 @@ inline bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 inline bool is_word(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
+// Whether a newline behind such a token can end a statement.
+bool can_end_statement(TokenKind kind);
+
 // The token kind as a message names it: "a name", "`,`".
 std::string_view describe(TokenKind kind);
 

@@ -49,6 +49,7 @@ DeclNode Parser::predicate_decl() {
   advance();
   PredicateDecl out;
   out.name = name();
+  set_role(TokenRole::kTightParen);
   expect(TokenKind::kLeftParen);
   if (!at(TokenKind::kRightParen)) out.params = comma_list([this] { return param(); });
   expect(TokenKind::kRightParen);
@@ -268,6 +269,7 @@ ExprId Parser::unary() {
     const NestingGuard guard(*this);
     if (!guard.ok) return {};
     const Span op_span = here();
+    set_role(TokenRole::kSign);
     advance();
     const ExprId operand = unary();
     if (failed_) return {};
@@ -290,7 +292,9 @@ ExprId Parser::unary() {
 ExprId Parser::call_or_name() {
   const std::uint32_t begin = mark();
   const Name first = name();
-  if (!accept(TokenKind::kLeftParen)) return add(Expr{since(begin), ExprName{first}}, {});
+  if (!at(TokenKind::kLeftParen)) return add(Expr{since(begin), ExprName{first}}, {});
+  set_role(TokenRole::kTightParen);
+  accept(TokenKind::kLeftParen);
   ExprCall out{first, {}};
   if (!at(TokenKind::kRightParen)) out.arguments = comma_list([this] { return argument(); });
   expect(TokenKind::kRightParen);
@@ -351,6 +355,7 @@ SetExprId Parser::set_operand() {
     return inner;
   }
   if (at(TokenKind::kLeftBrace)) {
+    set_role(TokenRole::kTightBrace);
     SetNames out{braced_names()};
     return add(SetExpr{since(begin), std::move(out)}, {});
   }

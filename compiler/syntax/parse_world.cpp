@@ -197,6 +197,7 @@ void Parser::robot_statement(std::vector<RobotStmt>& body) {
                          const std::uint32_t start = mark();
                          finger.link = name();
                          expect_word("opens");
+                         set_role(TokenRole::kSign);
                          finger.negative = accept(TokenKind::kMinus);
                          if (!finger.negative) expect(TokenKind::kPlus);
                          finger.axis = name();

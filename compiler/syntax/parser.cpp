@@ -36,6 +36,7 @@ Allow Parser::allow() {
   const std::uint32_t begin = mark();
   expect(TokenKind::kAt);
   expect_word("allow");
+  set_role(TokenRole::kTightParen);
   expect(TokenKind::kLeftParen);
   out.what = name();
   expect(TokenKind::kComma);
@@ -134,8 +135,11 @@ ParseResult parse(const SourceSet& sources, FileId id, Diagnostics& diagnostics)
   ParseResult result;
   result.tokens = std::move(lexed.stream);
   result.file.id = id;
-  if (!lexed.unreadable && !errors.is_spent())
-    result.file = Parser(source, result.tokens, errors).run();
+  if (!lexed.unreadable && !errors.is_spent()) {
+    Parser parser(source, result.tokens, errors);
+    result.file = parser.run();
+    result.tokens.roles = parser.take_roles();
+  }
   result.ok = !errors.has_reported();
   return result;
 }

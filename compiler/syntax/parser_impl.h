@@ -26,6 +26,7 @@ class Parser {
  public:
   Parser(const SourceFile& source, const TokenStream& stream, ErrorBudget& errors);
   File run();
+  std::vector<TokenRole> take_roles() { return std::move(roles_); }
 
  private:
   // ---- cursor.cpp: tokens ----
@@ -38,7 +39,8 @@ class Parser {
   Span span_at(std::uint32_t token) const;
   Span here() const;  // of what kind() says
   std::uint32_t mark() const { return tokens_[pos_].begin; }
-  Span since(std::uint32_t begin) const;  // from a mark to the last token taken
+  void set_role(TokenRole role) { roles_[pos_] = role; }  // of the current token
+  Span since(std::uint32_t begin) const;                  // from a mark to the last token taken
   std::uint32_t next_significant(std::uint32_t token) const;
   void advance();
 
@@ -188,6 +190,7 @@ class Parser {
   const SourceFile& source_;
   const std::vector<Token>& tokens_;
   ErrorBudget& errors_;
+  std::vector<TokenRole> roles_;
   File file_;
 
   std::uint32_t pos_ = 0;          // current significant token

@@ -52,6 +52,20 @@ std::string to_text(const TokenStream& stream, const SourceSet& sources) {
   return out;
 }
 
+bool can_end_statement(TokenKind kind) {
+  switch (kind) {
+    case TokenKind::kIdent:
+    case TokenKind::kNumber:
+    case TokenKind::kString:
+    case TokenKind::kRightParen:
+    case TokenKind::kRightBracket:
+    case TokenKind::kRightBrace:
+      return true;
+    default:
+      return false;
+  }
+}
+
 std::string_view describe(TokenKind kind) {
   switch (kind) {
     case TokenKind::kBlank:

@@ -62,9 +62,20 @@ struct Token {
 };
 static_assert(sizeof(Token) == 12);
 
+// What the grammar took a token for, where its shape alone does not say. For layout.
+enum class TokenRole : std::uint8_t {
+  kPlain,
+  kBlock,       // `{` around statements
+  kTightBrace,  // `{` around names in an expression: `bodies - {a, b}`
+  kTightParen,  // `(` behind the name it belongs to: a call, parameters, @allow
+  kSign,        // `+` or `-` of what follows, not between two operands
+};
+
 struct TokenStream {
   FileId file;
   std::vector<Token> tokens;  // contiguous from byte 0 to the end of the file
+  // One per token after parsing; empty before.
+  std::vector<TokenRole> roles;
 };
 
 // The bytes of all tokens one after the other: the file.

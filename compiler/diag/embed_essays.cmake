@@ -1,0 +1,10 @@
+# Writes OUT: one line PROBE_ESSAY(code, R"essay(text)essay") for each P*.md in FOLDER.
+file(GLOB essays ${FOLDER}/P*.md)
+list(SORT essays)
+file(WRITE ${OUT}.new "// Made from dsl/errors by embed_essays.cmake.\n")
+foreach(essay ${essays})
+  get_filename_component(code ${essay} NAME_WE)
+  file(READ ${essay} text)
+  file(APPEND ${OUT}.new "PROBE_ESSAY(${code}, R\"essay(${text})essay\")\n")
+endforeach()
+file(RENAME ${OUT}.new ${OUT})

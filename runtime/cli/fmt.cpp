@@ -1,0 +1,82 @@
+// vlaprobe fmt
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+
+#include "compiler/diag/text.h"
+#include "compiler/format/format.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/plan/writer.h"
+
+namespace probe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// In place at once: through a link to the file itself, with the permissions it had.
+Status rewrite(const std::string& path, const std::string& text) {
+  std::error_code error;
+  const fs::path real = fs::canonical(path, error);
+  const std::string target = error ? path : real.string();
+  const fs::perms permissions = fs::status(target, error).permissions();
+  PROBE_TRY(plan::write_file(target, std::as_bytes(std::span(text))));
+  if (!error) fs::permissions(target, permissions, error);
+  return {};
+}
+
+struct Tally {
+  std::size_t changed = 0, broken = 0;
+};
+
+// The exit code for this file.
+int format_one(const std::string& path, bool check, Tally& tally) {
+  SourceSet sources;
+  Diagnostics diagnostics;
+  const auto id = sources.load(path);
+  if (!id) return report(id.failure());
+  const auto text = format::format_file(sources, *id, diagnostics);
+  if (!text) return report(text.failure());
+  if (!text->has_value()) {
+    const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+    fmt::print(stderr, "{}", render_text(diagnostics, sources, {.colour = colour}));
+    ++tally.broken;
+    return kUser;
+  }
+  if (**text == sources.file(*id).text()) return kFine;
+  ++tally.changed;
+  fmt::print("{}\n", path);
+  if (check) return kUser;
+  const Status written = rewrite(path, **text);
+  return written ? kFine : report(written.failure());
+}
+
+}  // namespace
+
+void add_fmt(CLI::App& app, int& exit) {
+  struct Arguments {
+    std::vector<std::string> files;
+    bool check = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("fmt", "canonical layout, in place");
+  verb->footer(
+      "prints the files that it changes; a file with syntax errors is left alone\n"
+      "example: vlaprobe fmt suite/*.probe");
+  verb->add_option("F", arguments->files, ".probe texts")->required();
+  verb->add_flag("--check", arguments->check, "write nothing; exit 1 if a file would change");
+  verb->callback([arguments, &exit] {
+    Tally tally;
+    for (const std::string& file : arguments->files) {
+      exit = std::max(exit, format_one(file, arguments->check, tally));
+    }
+    if (tally.changed > 0) {
+      fmt::print(stderr, "{} of {} files {}\n", tally.changed, arguments->files.size(),
+                 arguments->check ? "are not in canonical layout" : "laid out anew");
+    }
+  });
+}
+
+}  // namespace probe::cli
