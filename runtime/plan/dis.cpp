@@ -2,32 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 #include <vector>
 
 #include "runtime/plan/isa.h"
+#include "runtime/plan/source_line.h"
 
 namespace probe::plan {
 namespace {
-
-// One-based line of a byte, and that line without indentation.
-struct SourceLine {
-  std::size_t number = 0;
-  std::string_view text;
-};
-
-SourceLine line_at(std::string_view source, std::size_t byte) {
-  const std::string_view before = source.substr(0, byte);
-  const std::size_t begin =
-      before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-  std::string_view line = source.substr(begin, source.find('\n', byte) == std::string_view::npos
-                                                   ? std::string_view::npos
-                                                   : source.find('\n', byte) - begin);
-  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-  const auto newlines = std::ranges::count(before, '\n');
-  return {static_cast<std::size_t>(newlines) + 1, line};
-}
 
 // What programs are listed with: names of bodies come from one task that runs it.
 class Lister {

@@ -97,17 +97,22 @@ Sha256 IdHasher::robot(const RobotRecord& r) const {
   return h.finish();
 }
 
+// All of a scene but its robot.
+void IdHasher::hash_surroundings(Hasher& h, const SceneRecord& s) const {
+  h.hash(asset(s.photo)).hash(asset(s.backdrop));
+  h.hash(asset(s.fixture_visual)).hash(asset(s.fixture_collision)).f64s(s.fixture_position);
+  h.f64s(s.base_position).f64s(s.base_rotation);
+  h.u32(s.joints.count).f64s(slice_of(tables_.reals, s.joints));
+  h.f64(s.surface_z).f64s(s.area).f64(s.physics_hz).f64(s.friction);
+}
+
 Sha256 IdHasher::scene(std::uint32_t index) {
   std::optional<Sha256>& known = scenes_[index];
   if (known) return *known;
   const SceneRecord& s = tables_.scenes[index];
   Hasher h = tagged("vlaprobe.scene.1");
   h.hash(robot(tables_.robots[s.robot]));
-  h.hash(asset(s.photo)).hash(asset(s.backdrop));
-  h.hash(asset(s.fixture_visual)).hash(asset(s.fixture_collision)).f64s(s.fixture_position);
-  h.f64s(s.base_position).f64s(s.base_rotation);
-  h.u32(s.joints.count).f64s(slice_of(tables_.reals, s.joints));
-  h.f64(s.surface_z).f64s(s.area).f64(s.physics_hz).f64(s.friction);
+  hash_surroundings(h, s);
   known = h.finish();
   return *known;
 }
@@ -150,6 +155,32 @@ Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
     h.hash(object(p.object)).f64s(p.position).f64s(p.rotation);
   }
   return h.finish();
+}
+
+std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
+                                                       const EpisodeRecord& episode) {
+  const SceneRecord& s = tables_.scenes[task.scene];
+  Hasher surroundings = tagged("vlaprobe.surroundings.1");
+  hash_surroundings(surroundings, s);
+  Hasher drop = tagged("vlaprobe.drop.1");
+  drop.f64(task.drop).f64(task.settle);
+  std::vector<StartPart> parts = {{"robot", robot(tables_.robots[s.robot])},
+                                  {"scene", surroundings.finish()},
+                                  {"camera", camera(task.camera)},
+                                  {"light", light(task.light)},
+                                  {"drop", drop.finish()}};
+  std::uint32_t number = 0;
+  for (const PlacementRecord& p : slice_of(tables_.placements, episode.placements)) {
+    const std::string role = number == 0   ? "source"
+                             : number == 1 ? "target"
+                                           : "distractor " + std::to_string(number - 1);
+    Hasher pose = tagged("vlaprobe.pose.1");
+    pose.f64s(p.position).f64s(p.rotation);
+    parts.push_back({role, object(p.object)});
+    parts.push_back({"pose of the " + role, pose.finish()});
+    ++number;
+  }
+  return parts;
 }
 
 Sha256 IdHasher::episode(const TaskRecord& task, const EpisodeRecord& episode) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,10 +40,20 @@ class IdHasher {
   Sha256 start(const TaskRecord& task, const EpisodeRecord& episode);
   Sha256 episode(const TaskRecord& task, const EpisodeRecord& episode);
 
+  // What a start id is made of, for saying which part of two starts differs: the robot, the rest of
+  // the scene, camera, light, drop, then for each placed object what it is and where it lies.
+  struct StartPart {
+    std::string name;
+    Sha256 hash;
+    bool operator==(const StartPart&) const = default;
+  };
+  std::vector<StartPart> start_parts(const TaskRecord& task, const EpisodeRecord& episode);
+
  private:
   Sha256 program(std::uint32_t index);
   Sha256 object(std::uint32_t index);
   Sha256 scene(std::uint32_t index);
+  void hash_surroundings(Hasher& hasher, const SceneRecord& scene) const;
   Sha256 robot(const RobotRecord& robot) const;
   Sha256 camera(std::uint32_t index);
   Sha256 light(std::uint32_t index);

@@ -1,0 +1,103 @@
+// vlaprobe why
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/cli/verbs.h"
+#include "runtime/rejudge/explain.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::string dir, task, metric;
+  int episode = 0;
+  std::optional<int> seed;
+  bool json = false;
+};
+
+std::string value_text(const rejudge::MetricWhy& metric) {
+  if (metric.is_bool) return metric.value != 0 ? "true" : "false";
+  return fmt::format("{:.6g}", metric.value);
+}
+
+void print_json(const rejudge::EpisodeWhy& why) {
+  nlohmann::ordered_json json = {
+      {"task", why.task}, {"episode", why.episode}, {"seed", why.seed}, {"steps", why.steps}};
+  json["invalid"] = why.invalid ? nlohmann::ordered_json(*why.invalid) : nullptr;
+  json["metrics"] = nlohmann::ordered_json::array();
+  for (const rejudge::MetricWhy& metric : why.metrics) {
+    nlohmann::ordered_json entry = {{"metric", metric.name},     {"value", metric.value},
+                                    {"readout", metric.readout}, {"step", metric.step},
+                                    {"when", metric.when},       {"file", metric.file},
+                                    {"line", metric.line}};
+    if (metric.is_bool) entry["value"] = metric.value != 0;
+    entry["conditions"] = nlohmann::ordered_json::array();
+    for (const rejudge::Condition& c : metric.conditions) {
+      entry["conditions"].push_back({{"file", c.file},
+                                     {"line", c.line},
+                                     {"text", c.text},
+                                     {"bodies", c.bodies},
+                                     {"measured", c.measured},
+                                     {"truth", c.truth},
+                                     {"alike", c.alike}});
+    }
+    json["metrics"].push_back(std::move(entry));
+  }
+  fmt::print("{}\n", json.dump(1));
+}
+
+void print_metric(const rejudge::MetricWhy& metric) {
+  fmt::print("{} = {} {} ({})\n", metric.name, value_text(metric), metric.when, metric.readout);
+  const auto left = [](const rejudge::Condition& c) {
+    return c.bodies.empty() ? c.text : c.text + "  [" + c.bodies + "]";
+  };
+  std::size_t text_width = 0, measured_width = 0;
+  for (const rejudge::Condition& c : metric.conditions) {
+    text_width = std::max(text_width, left(c).size());
+    measured_width = std::max(measured_width, c.measured.size());
+  }
+  const std::string* file = nullptr;
+  for (const rejudge::Condition& c : metric.conditions) {
+    if (!c.file.empty() && (file == nullptr || *file != c.file)) fmt::print("  {}\n", c.file);
+    file = &c.file;
+    fmt::print("{:>6} | {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "", left(c),
+               text_width, c.measured, measured_width, c.truth ? "true" : "false",
+               c.alike > 0 ? fmt::format("  and {} alike", c.alike) : "");
+  }
+}
+
+int why_verb(const Arguments& arguments) {
+  const auto why = rejudge::why(arguments.dir, arguments.task, arguments.episode, arguments.seed,
+                                arguments.metric);
+  if (!why) return report(why.failure());
+  if (arguments.json) {
+    print_json(*why);
+    return kFine;
+  }
+  fmt::print("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
+  if (why->invalid) fmt::print("invalid: {}\n", *why->invalid);
+  for (const rejudge::MetricWhy& metric : why->metrics) {
+    fmt::print("\n");
+    print_metric(metric);
+  }
+  return kFine;
+}
+
+}  // namespace
+
+void add_why(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("why", "a verdict explained: source lines with the measured numbers");
+  verb->footer("example: vlaprobe why runs/expert carrot_on_plate 3 --metric success");
+  verb->add_option("DIR", arguments->dir, "results folder")->required();
+  verb->add_option("TASK", arguments->task, "task name")->required();
+  verb->add_option("EPISODE", arguments->episode, "start, from 0")->required();
+  verb->add_option("SEED", arguments->seed, "seed (default: the lowest stored)");
+  verb->add_option("--metric", arguments->metric, "this one alone");
+  verb->add_flag("--json", arguments->json, "as a JSON object");
+  verb->callback([arguments, &exit] { exit = why_verb(*arguments); });
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,59 @@
+#include "runtime/export/export.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "runtime/run/glob.h"
+
+namespace probe::exporting {
+namespace {
+
+Result<std::unique_ptr<Sink>> open_sink(const std::string& path, const std::string& temporary) {
+  if (path.ends_with(".jsonl")) return open_json_lines(temporary);
+  if (path.ends_with(".h5") || path.ends_with(".hdf5")) return open_hdf5(temporary);
+  return Failure{"usage", "traces are exported to a file ending in .jsonl, .h5 or .hdf5", path};
+}
+
+Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportOptions& options) {
+  PROBE_ASSIGN(const auto rows, run::read_results(dir));
+  ExportReport report;
+  for (const run::ResultRow& row : rows) {
+    if (!run::matches_glob(options.tasks, row.task)) continue;
+    PROBE_ASSIGN(const run::Trace trace, run::read_trace(row.trace));
+    if (to_hex(trace.hash) != row.trace_sha256) {
+      return Failure{"trace", "this trace is not the one its result row was made with", row.trace};
+    }
+    PROBE_TRY(sink.episode(row, trace));
+    ++report.episodes;
+    report.steps += static_cast<int>(trace.steps.size());
+  }
+  if (report.episodes == 0) {
+    return Failure{"usage", "no stored episode matches `" + options.tasks + "`", dir};
+  }
+  PROBE_TRY(sink.finish());
+  return report;
+}
+
+}  // namespace
+
+Result<ExportReport> export_run(const std::string& dir, const std::string& path,
+                                const ExportOptions& options) {
+  const std::string temporary = path + ".part";
+  PROBE_ASSIGN(auto sink, open_sink(path, temporary));
+  auto report = write_all(*sink, dir, options);
+  sink.reset();
+  if (!report) {
+    std::remove(temporary.c_str());
+    return report;
+  }
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
+    const std::string reason = std::strerror(errno);
+    std::remove(temporary.c_str());
+    return Failure{"io", "cannot be renamed: " + reason, path};
+  }
+  return report;
+}
+
+}  // namespace probe::exporting

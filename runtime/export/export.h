@@ -1,0 +1,39 @@
+// Stored traces for people with other tools: JSON lines, or one HDF5 file. README.md lists the
+// names. Nothing reads these back; the trace files are the record.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "runtime/base/result.h"
+#include "runtime/run/results.h"
+#include "runtime/run/trace.h"
+
+namespace probe::exporting {
+
+struct ExportOptions {
+  std::string tasks = "*";  // glob over task names
+};
+
+struct ExportReport {
+  int episodes = 0;
+  int steps = 0;
+};
+
+// Writes `path` whole or not at all; its ending decides the form: .jsonl, or .h5 or .hdf5. Fails
+// with code "usage" for another ending or when no stored episode matches.
+Result<ExportReport> export_run(const std::string& dir, const std::string& path,
+                                const ExportOptions& options = {});
+
+// One form of output; episodes come in the stored order.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  virtual Status episode(const run::ResultRow& row, const run::Trace& trace) = 0;
+  virtual Status finish() = 0;
+};
+
+Result<std::unique_ptr<Sink>> open_json_lines(const std::string& path);
+Result<std::unique_ptr<Sink>> open_hdf5(const std::string& path);
+
+}  // namespace probe::exporting

@@ -1,0 +1,53 @@
+// A task's metric program as a graph with its source lines: what explanations walk over. Private to
+// this folder.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "runtime/plan/isa.h"
+#include "runtime/plan/plan.h"
+#include "runtime/rejudge/explain.h"
+#include "runtime/vm/judge.h"
+
+namespace probe::rejudge {
+
+class ProgramView {
+ public:
+  ProgramView(const plan::Plan& plan, const plan::TaskRecord& task);
+
+  // The instruction that writes a register.
+  const plan::Instruction& at(std::uint16_t reg) const { return code_[index_[reg]]; }
+  plan::Op op(std::uint16_t reg) const { return static_cast<plan::Op>(at(reg).op); }
+  std::size_t registers() const { return index_.size(); }
+  // What a metric is emitted from.
+  std::uint16_t emitted(std::uint32_t metric) const;
+  std::uint16_t hold(std::uint16_t reg) const;  // HOLD's n
+
+  // Fills file, line and text of the words that a register's instruction came from.
+  void locate(std::uint16_t reg, Condition& condition) const;
+  // Whose measurements a register depends on, in the order of the code.
+  std::string bodies(std::uint16_t reg) const;
+
+  // Conditions below a truth: comparisons and HOLD, in the order of the code, each once.
+  std::vector<std::uint16_t> conditions(std::uint16_t reg) const;
+
+  // How many conditions must change until each truth is `true`, after the judge's last step: 0 for
+  // those that are. An infinite distance is never less.
+  std::vector<std::uint32_t> distances(const vm::Judge& judge) const;
+  // The conditions below a truth that make it what it is.
+  std::vector<bool> deciding(std::uint16_t reg, const vm::Judge& judge) const;
+
+ private:
+  bool is_condition(std::uint16_t reg) const;
+
+  const plan::Plan& plan_;
+  const plan::TaskRecord& task_;
+  const plan::ProgramRecord& program_;
+  std::span<const plan::Instruction> code_;
+  std::vector<std::uint32_t> index_;  // into code_, by register
+};
+
+}  // namespace probe::rejudge

@@ -1,0 +1,44 @@
+// `vlaprobe judge`: the stored episodes of a folder under another plan's metrics.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+#include "runtime/run/results.h"
+
+namespace probe::rejudge {
+
+struct RejudgeOptions {
+  std::string suite;        // whose tasks judge; empty: all tasks of the plan
+  std::string tasks = "*";  // glob over the stored task names
+  std::string out;          // folder for the new results and traces; empty: none is written
+};
+
+// How one metric's verdicts changed, over the episodes that are valid under both.
+struct MetricChange {
+  std::string name;
+  bool is_bool = true;
+  int before = 0, after = 0;            // episodes at which it is true
+  int lost = 0, gained = 0;             // true before and not after; not before and true after
+  int changed = 0;                      // episodes with another value
+  int episodes = 0;                     // at which both plans have it
+  int only_before = 0, only_after = 0;  // episodes at which one of them has it
+  double mean_before = 0, mean_after = 0;
+};
+
+struct RejudgeReport {
+  std::vector<run::ResultRow> rows;   // as judged now, in the stored order
+  std::vector<MetricChange> metrics;  // the stored plan's, then those that are new
+  int valid = 0, invalid = 0;
+  std::vector<std::string> left_out;  // stored tasks that the plan does not judge
+  bool same_plan = false;             // judged under the plan they were made with
+};
+
+// Refuses (code "usage") the whole folder if an episode of a judged task began at another start,
+// with another instruction or at another rate than the plan says; nothing is written then.
+Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
+                              const RejudgeOptions& options = {});
+
+}  // namespace probe::rejudge

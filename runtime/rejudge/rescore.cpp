@@ -1,0 +1,72 @@
+#include "runtime/rejudge/rescore.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace probe::rejudge {
+
+Status check_measures(const plan::Plan& plan, std::uint32_t task, const run::Trace& trace) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  const run::TraceHeader& header = trace.header;
+  const std::string where =
+      fmt::format("{} episode {} seed {}", header.task, header.episode, header.seed);
+  const auto refuse = [&](std::string message) {
+    return Failure{"usage", std::move(message), where};
+  };
+  const auto bodies = plan.bodies(record);
+  if (bodies.size() != header.bodies.size()) {
+    return refuse(fmt::format("{} bodies were measured, task `{}` judges {}", header.bodies.size(),
+                              plan.text(record.name), bodies.size()));
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    // Equal starts have equal objects, whatever a catalogue calls them.
+    if (bodies[i].kind != static_cast<std::uint32_t>(plan::BodyKind::kLink)) continue;
+    if (plan.text(bodies[i].name) != header.bodies[i]) {
+      return refuse(fmt::format("body {} is `{}`, task `{}` judges `{}`", i, header.bodies[i],
+                                plan.text(record.name), plan.text(bodies[i].name)));
+    }
+  }
+  const double hz = plan.robots()[plan.scenes()[record.scene].robot].control_hz;
+  if (hz != header.control_hz) {
+    return refuse(
+        fmt::format("it was measured at {} Hz, the plan judges at {} Hz", header.control_hz, hz));
+  }
+  if (plan.text(record.prompt) != header.prompt) {
+    return refuse(fmt::format("the policy was told \"{}\", task `{}` says \"{}\"", header.prompt,
+                              plan.text(record.name), plan.text(record.prompt)));
+  }
+  const bool is_invalid = trace.end && trace.end->invalid;
+  if (trace.steps.size() < record.horizon && !is_invalid) {
+    return refuse(fmt::format("it has {} steps, task `{}` judges {}", trace.steps.size(),
+                              plan.text(record.name), record.horizon));
+  }
+  return {};
+}
+
+Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const run::Trace& trace) {
+  PROBE_TRY(check_measures(plan, task, trace));
+  vm::Judge judge(plan, task);
+  Rescored out;
+  for (std::uint32_t m = 0; m < judge.metric_count(); ++m) {
+    out.metrics.push_back(
+        {judge.metric_name(m), judge.metric_type(m) == plan::MetricType::kBool, 0});
+  }
+  if (trace.end) out.invalid = trace.end->invalid;
+  if (!trace.start) return out;  // it ended before it began, and its end says why
+  const auto fail = [&](const Failure& failure) {
+    if (!out.invalid) out.invalid = "judge: " + to_text(failure);
+    return out;
+  };
+  if (auto begun = judge.begin(trace.start->starts); !begun) return fail(begun.failure());
+  const std::size_t steps = std::min<std::size_t>(trace.steps.size(), plan.tasks()[task].horizon);
+  for (std::size_t i = 0; i < steps; ++i) {
+    if (auto judged = judge.step(trace.steps[i].sample); !judged) return fail(judged.failure());
+    const auto values = judge.values();
+    out.steps.emplace_back(values.begin(), values.end());
+    for (std::size_t m = 0; m < values.size(); ++m) out.metrics[m].value = values[m];
+  }
+  return out;
+}
+
+}  // namespace probe::rejudge
