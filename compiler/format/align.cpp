@@ -72,9 +72,9 @@ void align_pieces(std::vector<Line>& lines, std::size_t k) {
       const Piece& lower = lines[end].pieces[k];
       // A much longer neighbour that stands apart in the source stays apart.
       constexpr std::uint32_t kApart = 10;
-      const auto [least, most] =
-          std::minmax(column_of(lines[end - 1], k), column_of(lines[end], k));
-      if (upper.source_column != lower.source_column && most - least > kApart) break;
+      const std::uint32_t above = column_of(lines[end - 1], k), below = column_of(lines[end], k);
+      const std::uint32_t difference = above < below ? below - above : above - below;
+      if (upper.source_column != lower.source_column && difference > kApart) break;
       wanted |= upper.source_column == lower.source_column &&
                 std::max(upper.source_blanks, lower.source_blanks) > 1 &&
                 std::min(upper.source_blanks, lower.source_blanks) > 0;

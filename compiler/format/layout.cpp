@@ -252,7 +252,7 @@ class Layouter {
     if (closes) return {bracket.indent, kNoLine};
     if (bracket.broken) return {bracket.indent + kIndent, kNoLine};
     constexpr std::uint32_t kFarthestHang = 60;
-    if (bracket.hang > kFarthestHang) return {bracket.indent + 2 * kIndent, kNoLine};
+    if (bracket.hang > kFarthestHang) return {content_indent() + 2 * kIndent, kNoLine};
     return {bracket.hang, bracket.line};
   }
 
