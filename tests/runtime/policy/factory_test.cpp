@@ -46,8 +46,8 @@ TEST_CASE("policies say whether seeds matter") {
 }
 
 TEST_CASE("random actions depend on the episode's seed and on nothing else") {
-  auto a = *make_policy("random");
-  auto b = *make_policy("random");
+  auto a = make_policy("random").value();
+  auto b = make_policy("random").value();
   REQUIRE(a->begin(start_with(7)).ok());
   REQUIRE(b->begin(start_with(99)).ok());
   const Action other = *b->act({});
@@ -62,7 +62,7 @@ TEST_CASE("random actions depend on the episode's seed and on nothing else") {
 }
 
 TEST_CASE("the null policy holds still with an open gripper") {
-  auto policy = *make_policy("null");
+  auto policy = make_policy("null").value();
   REQUIRE(policy->begin(start_with(0)).ok());
   CHECK(*policy->act({}) == Action{0, 0, 0, 0, 0, 0, 1});
 }
@@ -75,7 +75,7 @@ TEST_CASE("a replay gives the stored actions and fails past their end") {
     CHECK(task == "carrot_on_plate");
     return std::vector<Action>{{1}, {2}};
   };
-  auto policy = *make_policy("replay:runs/a", context);
+  auto policy = make_policy("replay:runs/a", context).value();
   REQUIRE(policy->begin(start_with(0)).ok());
   Observation observation;
   observation.step = 1;
@@ -83,7 +83,7 @@ TEST_CASE("a replay gives the stored actions and fails past their end") {
   observation.step = 2;
   CHECK(policy->act(observation).failure().message ==
         "the stored episode has 2 actions, this one asks for another");
-  auto absent = *make_policy("replay:runs/b", context);
+  auto absent = make_policy("replay:runs/b", context).value();
   CHECK_FALSE(absent->begin(start_with(0)).ok());
 }
 
