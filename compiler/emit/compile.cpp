@@ -21,11 +21,12 @@ struct Loaded {
   }
 };
 
-Status load(Loaded& loaded, const std::string& root, Compilation& compilation) {
+Status load(Loaded& loaded, const std::string& root, const std::vector<std::string>& folders,
+            Compilation& compilation) {
   // What two roots share is parsed again by the second; its messages have been given already.
   Diagnostics diagnostics;
   PROBE_ASSIGN(syntax::Program program,
-               syntax::load_program(compilation.sources, root, {}, diagnostics));
+               syntax::load_program(compilation.sources, root, folders, diagnostics));
   for (const Diagnostic& diagnostic : diagnostics.items()) {
     if (!loaded.has(diagnostic.primary.file)) compilation.diagnostics.add(diagnostic);
   }
@@ -63,7 +64,7 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
   for (const std::string& file : files) {
     std::string root = std::filesystem::path(file).lexically_normal().string();
     if (std::find(roots.begin(), roots.end(), root) != roots.end()) continue;
-    PROBE_TRY(load(loaded, root, compilation));
+    PROBE_TRY(load(loaded, root, options.library_folders, compilation));
     roots.push_back(std::move(root));
   }
   std::vector<const syntax::File*> trees;

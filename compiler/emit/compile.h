@@ -15,6 +15,8 @@ namespace probe {
 struct CompileOptions {
   std::string asset_root;
   std::string suite;  // the one suite to compile; "" = all
+  // Where a `use` is looked up when the file is not beside its user: folders that hold `std/`.
+  std::vector<std::string> library_folders = {};
 };
 
 struct Compilation {

@@ -48,6 +48,8 @@ int report(const Failure& failure) {
 void add_asset_option(CLI::App& verb, AssetOptions& options) {
   verb.add_option("--assets", options.root,
                   "asset folder (default: $VLAPROBE_ASSETS, then the one beside the program)");
+  verb.add_option("--std", options.library,
+                  "folder that holds std/ (default: $VLAPROBE_STD, then dsl beside the program)");
 }
 
 int main(int argc, char** argv) {
@@ -60,8 +62,14 @@ int main(int argc, char** argv) {
   int exit = kFine;
   add_check(app, exit);
   add_build(app, exit);
+  add_fmt(app, exit);
   add_list(app, exit);
   add_show(app, exit);
+  add_diff(app, exit);
+  add_coverage(app, exit);
+  add_graph(app, exit);
+  add_draw(app, exit);
+  add_explain(app, exit);
   add_dis(app, exit);
   add_verify(app, exit);
   add_preview(app, exit);
@@ -69,6 +77,9 @@ int main(int argc, char** argv) {
   add_run(app, exit);
   add_results(app, exit);
   add_replay(app, exit);
+  add_judge(app, exit);
+  add_why(app, exit);
+  add_export(app, exit);
 
   if (argc > 1 && argv[1][0] != '-') {
     std::vector<std::string> names;

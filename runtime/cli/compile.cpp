@@ -8,6 +8,7 @@
 #include "compiler/diag/json.h"
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/cli/library.h"
 #include "runtime/run/assets.h"
 
 namespace probe::cli {
@@ -20,7 +21,12 @@ CompiledText compile_text(const std::vector<std::string>& files, const AssetOpti
     text.exit = report(root.failure());
     return text;
   }
-  const CompileOptions options{.asset_root = *root, .suite = suite};
+  auto library = find_library_folders(assets.library);
+  if (!library) {
+    text.exit = report(library.failure());
+    return text;
+  }
+  const CompileOptions options{.asset_root = *root, .suite = suite, .library_folders = *library};
   auto compiled = want_plan ? build(files, options) : check(files, options);
   if (!compiled) {
     text.exit = report(compiled.failure());

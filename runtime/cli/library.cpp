@@ -1,0 +1,39 @@
+#include "runtime/cli/library.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace probe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds_library(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_directory(folder / "std", error);
+}
+
+// A place that somebody named is the only one looked at.
+Result<std::vector<std::string>> only(std::string_view folder, const char* who) {
+  if (holds_library(folder)) return std::vector<std::string>{std::string(folder)};
+  return Failure{"usage", std::string("the folder given by ") + who + " holds no std/",
+                 std::string(folder)};
+}
+
+}  // namespace
+
+Result<std::vector<std::string>> find_library_folders(std::string_view chosen) {
+  if (!chosen.empty()) return only(chosen, "--std");
+  if (const char* named = std::getenv("VLAPROBE_STD"); named != nullptr && *named != '\0') {
+    return only(named, "VLAPROBE_STD");
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  for (const fs::path& place :
+       {program.parent_path() / "../dsl", fs::path(VLAPROBE_BUILT_FROM) / "dsl"}) {
+    if (holds_library(place)) return std::vector<std::string>{place.lexically_normal().string()};
+  }
+  return std::vector<std::string>();
+}
+
+}  // namespace probe::cli

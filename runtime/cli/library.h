@@ -1,0 +1,17 @@
+// Where `use "std/..."` finds the standard library.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::cli {
+
+// The folders that hold `std/`: `chosen` if not empty, else the environment's VLAPROBE_STD, else
+// `dsl` beside the program's folder, else that of the source tree it was built from; empty when
+// there is none. Fails (code "usage") when a place that somebody named has no `std/`.
+Result<std::vector<std::string>> find_library_folders(std::string_view chosen = {});
+
+}  // namespace probe::cli
