@@ -1,0 +1,18 @@
+// Two plans: which tasks are only in one, and in which identities the others changed. Episodes of
+// equal identity are the same experiment, so their results can be kept.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "runtime/plan/plan.h"
+
+namespace probe::inspect {
+
+// {a, b, only_a[], only_b[], changed[], equal}: the roots, names of tasks, and how many tasks are
+// equal in all four. A changed task is {task, prompt, judge, starts, episodes, of_a, of_b}: whether
+// the ids are equal, how many of starts and episodes are at equal index, and their numbers.
+nlohmann::ordered_json diff_plans(const plan::Plan& a, const plan::Plan& b);
+std::string plan_diff_text(const nlohmann::ordered_json& diff);
+
+}  // namespace probe::inspect

@@ -1,0 +1,144 @@
+#include "runtime/inspect/task_diff.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
+#include "runtime/inspect/axes.h"
+#include "runtime/inspect/words.h"
+
+namespace probe::inspect {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json side(const plan::Plan& plan, const plan::TaskRecord& task) {
+  Json json;
+  json["prompt"] = plan.text(task.prompt);
+  json["source"] = plan.text(plan.objects()[task.source].name);
+  json["target"] = plan.text(plan.objects()[task.target].name);
+  json["distractors"] = Json::array();
+  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors))
+    json["distractors"].push_back(plan.text(body.name));
+  json["baseline"] =
+      task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
+  json["scene"] = plan.text(plan.scenes()[task.scene].name);
+  json["camera"] = plan.text(plan.cameras()[task.camera].name);
+  json["light"] = plan.text(plan.lights()[task.light].name);
+  json["horizon"] = task.horizon;
+  json["metrics"] = Json::array();
+  for (const plan::MetricRecord& metric : plan.metrics(task))
+    json["metrics"].push_back(plan.text(metric.name));
+  json["instructions"] = plan.code(plan.programs()[task.program]).size();
+  json["episodes"] = task.episodes.count;
+  return json;
+}
+
+Json equal_ids(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+  const auto ours = plan.episodes(a);
+  const auto theirs = plan.episodes(b);
+  std::size_t starts = 0, episodes = 0;
+  for (std::size_t e = 0; e < std::min(ours.size(), theirs.size()); ++e) {
+    starts += ours[e].start_id == theirs[e].start_id ? 1 : 0;
+    episodes += ours[e].episode_id == theirs[e].episode_id ? 1 : 0;
+  }
+  return {{"starts", starts},
+          {"episodes", episodes},
+          {"of", std::max(ours.size(), theirs.size())},
+          {"prompt", plan.text(a.prompt) == plan.text(b.prompt)},
+          {"judge", a.judge_id == b.judge_id},
+          {"program", plan.programs()[a.program].hash == plan.programs()[b.program].hash}};
+}
+
+Json to_json(const std::vector<Word>& words) {
+  Json json = Json::array();
+  for (const Word& word : words) json.push_back({{"text", word.text}, {"differs", word.differs}});
+  return json;
+}
+
+std::vector<Word> to_words(const Json& json) {
+  std::vector<Word> words;
+  for (const Json& word : json)
+    words.push_back({word["text"].get<std::string>(), word["differs"].get<bool>()});
+  return words;
+}
+
+std::string cell(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_null()) return "none";
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const Json& word : value) text += (text.empty() ? "" : ", ") + word.get<std::string>();
+  return text.empty() ? "none" : text;
+}
+
+std::string joined(const Json& axes) {
+  const std::string text = cell(axes);
+  return axes.empty() ? "none" : text;
+}
+
+const char* same(const Json& flag) { return flag.get<bool>() ? "equal" : "differs"; }
+
+}  // namespace
+
+Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t second) {
+  const plan::TaskRecord& a = plan.tasks()[first];
+  const plan::TaskRecord& b = plan.tasks()[second];
+  const bool a_varies = a.baseline == second;
+  const bool b_varies = b.baseline == first;
+  const WordDiff words = diff_words(plan.text(a.prompt), plan.text(b.prompt));
+  Json json;
+  json["a"] = plan.text(a.name);
+  json["b"] = plan.text(b.name);
+  json["baseline"] = a_varies ? Json("b") : b_varies ? Json("a") : Json();
+  json["axes"] = axes_between(plan, first, second);
+  json["declared_axes"] = a_varies   ? Json(axis_names(a.axes))
+                          : b_varies ? Json(axis_names(b.axes))
+                                     : Json();
+  json["equal"] = equal_ids(plan, a, b);
+  json["left"] = side(plan, a);
+  json["right"] = side(plan, b);
+  json["words_a"] = to_json(words.a);
+  json["words_b"] = to_json(words.b);
+  return json;
+}
+
+std::string diff_text(const Json& diff) {
+  struct Row {
+    std::string name, a, b;
+    bool differs;
+  };
+  std::vector<Row> rows = {{"", cell(diff["a"]), cell(diff["b"]), false}};
+  for (const auto& [key, left] : diff["left"].items()) {
+    const Json& right = diff["right"][key];
+    rows.push_back({key, cell(left), cell(right), left != right});
+  }
+  rows[1].a = marked(to_words(diff["words_a"]));
+  rows[1].b = marked(to_words(diff["words_b"]));
+  std::size_t width = 0;
+  for (const Row& row : rows) width = std::max(width, row.a.size());
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (const Row& row : rows) {
+    fmt::format_to(out, "{} {:<12}  {:<{}}  {}\n", row.differs ? '*' : ' ', row.name, row.a, width,
+                   row.b);
+  }
+  const Json& equal = diff["equal"];
+  fmt::format_to(out, "\naxes       {}\n", joined(diff["axes"]));
+  if (!diff["baseline"].is_null()) {
+    const bool a_is_baseline = diff["baseline"] == "a";
+    fmt::format_to(out, "declared   {} is a variant of {}: {}\n",
+                   cell(diff[a_is_baseline ? "b" : "a"]), cell(diff[a_is_baseline ? "a" : "b"]),
+                   joined(diff["declared_axes"]));
+  }
+  const std::size_t of = equal["of"].get<std::size_t>();
+  fmt::format_to(out, "start id   {} of {} equal\n", equal["starts"].get<std::size_t>(), of);
+  fmt::format_to(out, "prompt id  {}\n", same(equal["prompt"]));
+  fmt::format_to(out, "judge id   {}; program {}\n", same(equal["judge"]), same(equal["program"]));
+  fmt::format_to(out, "episode id {} of {} equal\n", equal["episodes"].get<std::size_t>(), of);
+  return text;
+}
+
+}  // namespace probe::inspect

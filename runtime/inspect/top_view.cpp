@@ -1,0 +1,184 @@
+#include "runtime/inspect/top_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <tuple>
+
+#include "runtime/base/geometry.h"
+#include "runtime/base/sha256.h"
+#include "runtime/base/trig.h"
+#include "runtime/inspect/ground_image.h"
+#include "runtime/plan/ids.h"
+#include "runtime/robot/kinematics.h"
+#include "runtime/robot/urdf.h"
+
+namespace probe::inspect {
+namespace {
+
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr double kFar = 20;  // m; the picture of the table ends here where it has no other end
+
+Vec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+Quat to_quat(const std::array<double, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
+
+// Direction of a frame's x axis seen from above, to a billionth of a degree.
+double yaw_deg(const Quat& rotation) {
+  const Vec3 x = rotation * Vec3::UnitX();
+  return std::nearbyint(portable_atan2(x.y(), x.x()) * kDegrees * 1e9) / 1e9 + 0.0;
+}
+
+Footprint footprint_of(const plan::Plan& plan, const plan::PlacementRecord& placement, Role role) {
+  const plan::ObjectRecord& object = plan.objects()[placement.object];
+  const Quat rotation = to_quat(placement.rotation);
+  const Vec3 low = to_vec(object.box_min);
+  const Vec3 high = to_vec(object.box_max);
+  const Vec3 half = (high - low) / 2;
+  const Vec3 middle = rotation * ((low + high) / 2);
+  Footprint print;
+  print.role = role;
+  print.object = plan.text(object.name);
+  print.at = {placement.position[0], placement.position[1]};
+  print.yaw_deg = yaw_deg(rotation);
+  print.outline = box_outline({half.x(), half.y(), half.z()}, placement.rotation);
+  for (Point& corner : print.outline) {
+    corner.x += print.at.x + middle.x();
+    corner.y += print.at.y + middle.y();
+  }
+  return print;
+}
+
+// Every different way in which something stands, in the order of the first start that has it.
+void add_starts(const plan::Plan& plan, const plan::TaskRecord& task, TopView& view) {
+  std::map<std::tuple<Role, std::uint32_t, std::array<double, 3>, std::array<double, 4>>,
+           std::size_t>
+      known;
+  for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
+    const auto placements = plan.placements(episode);
+    for (std::size_t i = 0; i < placements.size(); ++i) {
+      const plan::PlacementRecord& placement = placements[i];
+      const Role role = i == 0 ? Role::kSource : i == 1 ? Role::kTarget : Role::kDistractor;
+      const auto [at, is_new] = known.try_emplace(
+          {role, placement.object, placement.position, placement.rotation}, view.footprints.size());
+      if (is_new) view.footprints.push_back(footprint_of(plan, placement, role));
+      view.footprints[at->second].starts.push_back(episode.index);
+      view.cells.push_back({placement.position[0], placement.position[1]});
+    }
+  }
+  std::sort(view.cells.begin(), view.cells.end());
+  view.cells.erase(std::unique(view.cells.begin(), view.cells.end()), view.cells.end());
+}
+
+Status check_urdf(const plan::AssetRecord& asset, const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file.is_open()) return Failure{"asset", "cannot be read", path};
+  if (sha256(bytes) == plan::to_sha256(asset.sha256)) return {};
+  return Failure{"asset", "has other bytes than when the plan was built", path};
+}
+
+// The camera as it stands when the robot is in its initial position.
+Result<Pinhole> camera_of(const plan::Plan& plan, const plan::TaskRecord& task,
+                          const std::string& asset_root) {
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  const plan::RobotRecord& record = plan.robots()[scene.robot];
+  const plan::CameraRecord& camera = plan.cameras()[task.camera];
+  const plan::AssetRecord& urdf = plan.assets()[record.urdf];
+  const std::string path = asset_root + "/" + std::string(plan.text(urdf.path));
+  PROBE_TRY(check_urdf(urdf, path));
+  PROBE_ASSIGN(const robot::RobotModel model, robot::load_urdf(path));
+  std::vector<std::string> joints;
+  for (const plan::DriveRecord& drive : plan.drives(record))
+    joints.emplace_back(plan.text(drive.joint));
+  PROBE_ASSIGN(const robot::Tree tree, robot::Tree::create(model, joints));
+  std::vector<Pose> links(tree.link_count());
+  tree.link_poses(plan.joints(scene), links);
+  const std::string mount(plan.text(camera.mount_link));
+  const int link = model.find_link(mount);
+  if (link < 0) {
+    return Failure{
+        "urdf", "no link `" + mount + "` for camera `" + std::string(plan.text(camera.name)) + "`",
+        path};
+  }
+  const Pose base{to_vec(scene.base_position), to_quat(scene.base_rotation)};
+  const Pose pose = base * links[static_cast<std::size_t>(link)];
+  const auto& aim = camera.aim_values;
+  Mat3 axes;
+  if (camera.aim == static_cast<std::uint32_t>(plan::CameraAim::kLook)) {
+    const Vec3 forward = Vec3(aim[0], aim[1], aim[2]).normalized();
+    const Vec3 left = Vec3::UnitZ().cross(forward).normalized();
+    axes << forward, left, forward.cross(left);
+  } else {
+    axes = to_quat(aim).normalized().toRotationMatrix();
+  }
+  return Pinhole{pose.apply(to_vec(camera.position)),
+                 pose.rotation.toRotationMatrix() * axes,
+                 static_cast<double>(camera.width),
+                 static_cast<double>(camera.height),
+                 camera.fx,
+                 camera.fy,
+                 camera.cx,
+                 camera.cy};
+}
+
+}  // namespace
+
+std::vector<Point> box_outline(const std::array<double, 3>& half,
+                               const std::array<double, 4>& rotation) {
+  // The shadow of a box is the sum of the shadows of its three edges: walk along them by direction,
+  // up one side and down the other.
+  const Quat turn = to_quat(rotation);
+  std::vector<Point> edges;
+  Point low;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 edge = turn * (Vec3::Unit(axis) * (2 * half[static_cast<std::size_t>(axis)]));
+    if (std::abs(edge.x()) + std::abs(edge.y()) < 1e-9) continue;
+    const bool up = edge.y() > 0 || (edge.y() == 0 && edge.x() > 0);
+    edges.push_back(up ? Point{edge.x(), edge.y()} : Point{-edge.x(), -edge.y()});
+    low.x -= edges.back().x / 2;
+    low.y -= edges.back().y / 2;
+  }
+  std::sort(edges.begin(), edges.end(),
+            [](const Point& a, const Point& b) { return a.x * b.y - a.y * b.x > 0; });
+  std::vector<Point> outline;
+  Point at = low;
+  for (const double sign : {1.0, -1.0}) {
+    for (const Point& edge : edges) {
+      outline.push_back(at);
+      at = {at.x + sign * edge.x, at.y + sign * edge.y};
+    }
+  }
+  return outline;
+}
+
+Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
+                         const std::string& asset_root) {
+  const plan::TaskRecord& task = plan.tasks()[index];
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  const plan::RobotRecord& robot = plan.robots()[scene.robot];
+  TopView view;
+  view.task = plan.text(task.name);
+  view.prompt = plan.text(task.prompt);
+  view.starts = task.episodes.count;
+  view.area = scene.area;
+  view.sources.emplace_back(plan.text(plan.objects()[task.source].name));
+  view.targets.emplace_back(plan.text(plan.objects()[task.target].name));
+  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors))
+    view.distractors.emplace_back(plan.text(body.name));
+  add_starts(plan, task, view);
+  view.robot = plan.text(robot.name);
+  view.base = {scene.base_position[0], scene.base_position[1]};
+  view.base_yaw_deg = yaw_deg(to_quat(scene.base_rotation));
+  view.reach_min = robot.reach_min;
+  view.reach_max = robot.reach_max;
+  view.camera = plan.text(plan.cameras()[task.camera].name);
+  PROBE_ASSIGN(const Pinhole camera, camera_of(plan, task, asset_root));
+  view.eye = {camera.eye.x(), camera.eye.y()};
+  for (const Vec3& corner : frame_on_plane(camera, scene.surface_z, kFar))
+    view.image.push_back({corner.x(), corner.y()});
+  return view;
+}
+
+}  // namespace probe::inspect
