@@ -125,7 +125,10 @@ Status EpisodeWorld::read_bodies() {
     }
     if (is_kind(bodies[i], plan::BodyKind::kSurface)) surface_ = static_cast<std::uint16_t>(i);
     if (is_kind(bodies[i], plan::BodyKind::kFixture)) {
-      return Failure{"world", "fixtures such as `" + name + "` are not available yet", where};
+      fixture_ = static_cast<std::uint16_t>(i);
+      if (!assets_->shape(scene_->fixture_collision)) {
+        return Failure{"asset", "fixture `" + name + "` has no collision mesh", where};
+      }
     }
     if (is_kind(bodies[i], plan::BodyKind::kLink)) {
       if (links_.empty()) first_link_ = static_cast<std::uint16_t>(i);
@@ -163,6 +166,12 @@ world::WorldSpec EpisodeWorld::spec_at(std::span<const Pose> poses, bool with_li
     spec.bodies.push_back({std::string(plan_.text(bodies[i].name)),
                            assets_->shape(object.collision), object.density, object.friction,
                            poses[i]});
+  }
+  if (fixture_ != kNoFixture) {
+    spec.fixtures.push_back({std::string(plan_.text(bodies[fixture_].name)),
+                             assets_->shape(scene_->fixture_collision),
+                             {to_vec(scene_->fixture_position), Quat::Identity()},
+                             scene_->friction});
   }
   spec.dt = 1 / scene_->physics_hz;
   spec.surface_z = scene_->surface_z;
@@ -248,6 +257,8 @@ std::uint16_t EpisodeWorld::local_index(const world::Party& party) const {
       return surface_;
     case world::PartyKind::kLink:
       return static_cast<std::uint16_t>(first_link_ + party.index);
+    case world::PartyKind::kFixture:
+      return fixture_;
     case world::PartyKind::kBody:
       break;
   }
@@ -275,6 +286,10 @@ void EpisodeWorld::measure() {
     privileged_.objects[i].finger_contact[0] = privileged_.objects[i].finger_contact[1] = false;
   }
   sample_.bodies[surface_].position = sample_.bodies[surface_].origin = {0, 0, scene_->surface_z};
+  if (fixture_ != kNoFixture) {
+    sample_.bodies[fixture_].position = sample_.bodies[fixture_].origin =
+        to_vec(scene_->fixture_position);
+  }
   for (std::size_t k = 0; k < links_.size(); ++k) {
     const Pose pose = base_ * link_poses_[static_cast<std::size_t>(links_[k])];
     tree_.jacobian(link_poses_, links_[k], jacobian_);

@@ -76,9 +76,10 @@ class EpisodeWorld {
   int tcp_ = 0;       // link index
   int substeps_ = 1;  // a control step
   Pose base_;
-  std::size_t object_count_ = 0;                // bodies 0 .. object_count_ - 1
-  std::uint16_t surface_ = 0, first_link_ = 0;  // task-local
-  std::vector<int> links_;                      // URDF link of each link body
+  std::size_t object_count_ = 0;  // bodies 0 .. object_count_ - 1
+  static constexpr std::uint16_t kNoFixture = 0xffff;
+  std::uint16_t surface_ = 0, first_link_ = 0, fixture_ = kNoFixture;  // task-local
+  std::vector<int> links_;  // URDF link of each link body
 
   std::unique_ptr<world::World> world_;
   int steps_ = 0;

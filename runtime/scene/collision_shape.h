@@ -9,8 +9,9 @@
 
 namespace probe::scene {
 
-// A convex polyhedron of at most 64 vertices, 128 faces, 160 edges. Coordinates are relative to the shape's centre of
-// mass, in the model frame's axes.
+// A convex polyhedron of at most 64 vertices, 128 faces, 160 edges; or a ball (one vertex) or capsule (two) of radius
+// `round` about its vertices, without faces and edges. Coordinates are relative to the shape's centre of mass, in the
+// model frame's axes.
 struct ConvexPart {
   struct Face {
     Vec3 normal;
@@ -24,6 +25,7 @@ struct ConvexPart {
   std::vector<Vec3> vertices;
   std::vector<Face> faces;
   std::vector<Edge> edges;
+  double round = 0;             // m, above 0 only for balls and capsules
   std::vector<double> x, y, z;  // vertices again, padded to a multiple of 4 with vertex 0
   Vec3 center = Vec3::Zero();   // of the local box
   Vec3 half = Vec3::Zero();

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "runtime/base/trig.h"
+
 extern "C" {
 #include <libqhull_r/qhull_ra.h>
 }
@@ -231,7 +233,7 @@ void derive(ConvexPart* part) {
     high = high.cwiseMax(v);
   }
   part->center = 0.5 * (low + high);
-  part->half = 0.5 * (high - low);
+  part->half = 0.5 * (high - low) + Vec3::Constant(part->round);
 }
 
 // Integrals of 1, x and x x^T over the part, by tetrahedra from the origin over fan triangles.
@@ -333,7 +335,7 @@ CollisionShape assemble_shape(std::vector<HullPart> parts) {
   for (HullPart& hull : parts) {
     for (Vec3& v : hull.part.vertices) {
       v -= shape.center_of_mass;
-      shape.bounding_radius = std::max(shape.bounding_radius, v.norm());
+      shape.bounding_radius = std::max(shape.bounding_radius, v.norm() + hull.part.round);
     }
     derive(&hull.part);
     shape.parts.push_back(std::move(hull.part));
@@ -368,6 +370,33 @@ Result<CollisionShape> make_collision_shape(const std::vector<std::vector<Vec3>>
   return assemble_shape(std::move(parts));
 }
 
+namespace {
+
+// Edges with the normals of both their faces, from closed loops.
+void add_edges(ConvexPart* part) {
+  std::map<std::pair<int, int>, Vec3> left_normal;
+  for (const ConvexPart::Face& face : part->faces) {
+    for (std::size_t i = 0; i < face.loop.size(); ++i) {
+      left_normal[{face.loop[i], face.loop[(i + 1) % face.loop.size()]}] = face.normal;
+    }
+  }
+  for (const auto& [edge, normal] : left_normal) {
+    if (edge.first > edge.second) continue;
+    part->edges.push_back({static_cast<std::uint8_t>(edge.first),
+                           static_cast<std::uint8_t>(edge.second), normal,
+                           left_normal.at({edge.second, edge.first})});
+  }
+}
+
+CollisionShape solid_of(HullPart solid) {
+  add_edges(&solid.part);
+  derive(&solid.part);
+  integrate_mass(&solid);
+  return assemble_shape({std::move(solid)});
+}
+
+}  // namespace
+
 CollisionShape make_box_shape(const Vec3& half) {
   HullPart box;
   for (int i = 0; i < 8; ++i) {
@@ -376,25 +405,64 @@ CollisionShape make_box_shape(const Vec3& half) {
   }
   constexpr std::array<std::array<std::uint8_t, 4>, 6> kLoops{
       {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-  std::map<std::pair<int, int>, Vec3> left_normal;
   for (std::size_t f = 0; f < kLoops.size(); ++f) {
     ConvexPart::Face face;
     face.normal = Vec3::Zero();
     face.normal[static_cast<Eigen::Index>(f / 2)] = f % 2 == 0 ? -1 : 1;
     face.loop.assign(kLoops[f].begin(), kLoops[f].end());
-    for (std::size_t i = 0; i < 4; ++i)
-      left_normal[{kLoops[f][i], kLoops[f][(i + 1) % 4]}] = face.normal;
     box.part.faces.push_back(std::move(face));
   }
-  for (const auto& [edge, normal] : left_normal) {
-    if (edge.first > edge.second) continue;
-    box.part.edges.push_back({static_cast<std::uint8_t>(edge.first),
-                              static_cast<std::uint8_t>(edge.second), normal,
-                              left_normal.at({edge.second, edge.first})});
+  return solid_of(std::move(box));
+}
+
+CollisionShape make_cylinder_shape(double radius, double half_length) {
+  constexpr int kSides = 32;
+  constexpr double kPi = 3.14159265358979323846;
+  HullPart prism;
+  ConvexPart::Face bottom{-Vec3::UnitZ(), 0, {}}, top{Vec3::UnitZ(), 0, {}};
+  for (int i = 0; i < kSides; ++i) {  // bottom corners are even, top ones odd
+    const SinCos corner = portable_sincos(2 * kPi * i / kSides);
+    const SinCos middle = portable_sincos(2 * kPi * (i + 0.5) / kSides);
+    prism.part.vertices.emplace_back(radius * corner.cos, radius * corner.sin, -half_length);
+    prism.part.vertices.emplace_back(radius * corner.cos, radius * corner.sin, half_length);
+    const auto low = static_cast<std::uint8_t>(2 * i);
+    const auto next = static_cast<std::uint8_t>(2 * ((i + 1) % kSides));
+    ConvexPart::Face side{Vec3(middle.cos, middle.sin, 0), 0, {}};
+    side.loop = {low, next, static_cast<std::uint8_t>(next + 1),
+                 static_cast<std::uint8_t>(low + 1)};
+    prism.part.faces.push_back(std::move(side));
+    top.loop.push_back(static_cast<std::uint8_t>(low + 1));
+    bottom.loop.insert(bottom.loop.begin(), low);
   }
-  derive(&box.part);
-  integrate_mass(&box);
-  return assemble_shape({std::move(box)});
+  prism.part.faces.push_back(std::move(bottom));
+  prism.part.faces.push_back(std::move(top));
+  return solid_of(std::move(prism));
+}
+
+CollisionShape make_capsule_shape(double radius, double half_length) {
+  constexpr double kPi = 3.14159265358979323846;
+  const double r = radius, h = half_length;
+  HullPart capsule;
+  capsule.part.round = r;
+  if (h > 0) capsule.part.vertices = {Vec3(0, 0, -h), Vec3(0, 0, h)};
+  if (!(h > 0)) capsule.part.vertices = {Vec3::Zero()};
+  derive(&capsule.part);
+  // A cylinder and two half balls.
+  const double cap = 2.0 / 3.0 * kPi * r * r * r, tube = 2 * kPi * r * r * h;
+  capsule.volume = tube + 2 * cap;
+  const double across = tube * r * r / 4 + 2 * cap * r * r / 5;
+  const double along =
+      tube * h * h / 3 + 2 * (cap * h * h + 2 * h * kPi * r * r * r * r / 4 + cap * r * r / 5);
+  capsule.second = Vec3(across, across, along).asDiagonal();
+  return assemble_shape({std::move(capsule)});
+}
+
+CollisionShape make_sphere_shape(double radius) { return make_capsule_shape(radius, 0); }
+
+CollisionShape make_plane_shape() {
+  CollisionShape slab = make_box_shape({10, 10, 0.5});
+  slab.center_of_mass = Vec3(0, 0, -0.5);
+  return slab;
 }
 
 }  // namespace probe::scene

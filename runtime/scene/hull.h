@@ -38,8 +38,15 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
 Result<CollisionShape> load_collision_obj(const std::string& path, const Vec3& scale,
                                           const HullOptions& options = {});
 
-// A box about the origin; half extents in metres, all positive.
+// Primitives about the origin; lengths in metres, all positive. Balls and capsules are exact and
+// roll smoothly; a cylinder is a prism of 32 sides with its corners on the circle (0.5 % of the
+// radius inside it between them).
 CollisionShape make_box_shape(const Vec3& half);
+CollisionShape make_sphere_shape(double radius);
+CollisionShape make_capsule_shape(double radius, double half_length);   // along z, without the caps
+CollisionShape make_cylinder_shape(double radius, double half_length);  // along z
+// The half space below z = 0 as far as a room goes: 20 m wide, 1 m deep. For fixtures.
+CollisionShape make_plane_shape();
 
 // One part: closed, convex, at most 64 vertices, volume and moments about the origin of the points'
 // frame.

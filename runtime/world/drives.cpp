@@ -1,44 +1,50 @@
 #include "runtime/world/drives.h"
 
 #include <cmath>
+#include <type_traits>
 
 namespace probe::world {
 namespace {
 
 using std::size_t;
 
-// Inverse by Cholesky of the leading n x n block; the rest becomes zero.
-bool invert(const JointMatrix& m, size_t n, JointMatrix* out) {
-  JointMatrix l{};
-  for (size_t i = 0; i < n; ++i) {
-    for (size_t j = 0; j <= i; ++j) {
-      double sum = m[i][j];
-      for (size_t k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
-      if (i != j) {
-        l[i][j] = sum / l[j][j];
-        continue;
-      }
-      if (!(sum > 0)) return false;
-      l[i][i] = std::sqrt(sum);
+// Inverse by Cholesky of the leading n x n block; the rest of `out` stays as it is. Loops run over
+// rows that lie together, so that the usual eight joints vectorise.
+template <typename Count>
+bool invert(const JointMatrix& m, Count count, JointMatrix* out) {
+  const size_t n = static_cast<size_t>(count);
+  double l[kMaxJoints][kMaxJoints];        // lower triangle of L, transposed: l[k][i] = L_ik
+  double inverse[kMaxJoints][kMaxJoints];  // of L: inverse[k][j] = (L^-1)_kj, zero above
+  for (size_t k = 0; k < n; ++k) {
+    for (size_t i = 0; i < n; ++i) l[k][i] = m[k][i];
+  }
+  for (size_t k = 0; k < n; ++k) {
+    if (!(l[k][k] > 0)) return false;
+    const double scale = 1.0 / std::sqrt(l[k][k]);
+    for (size_t i = 0; i < n; ++i) l[k][i] *= scale;
+    for (size_t r = k + 1; r < n; ++r) {
+      const double factor = l[k][r];
+      for (size_t i = 0; i < n; ++i) l[r][i] -= factor * l[k][i];
     }
   }
-  // Columns of the inverse of L, in place of L.
-  JointMatrix inverse{};
-  for (size_t j = 0; j < n; ++j) {
-    inverse[j][j] = 1.0 / l[j][j];
-    for (size_t i = j + 1; i < n; ++i) {
-      double sum = 0;
-      for (size_t k = j; k < i; ++k) sum -= l[i][k] * inverse[k][j];
-      inverse[i][j] = sum / l[i][i];
+  for (size_t k = 0; k < n; ++k) {
+    for (size_t j = 0; j < n; ++j) inverse[k][j] = j == k ? 1.0 : 0.0;
+  }
+  for (size_t k = 0; k < n; ++k) {
+    const double scale = 1.0 / l[k][k];
+    for (size_t j = 0; j < n; ++j) inverse[k][j] *= scale;
+    for (size_t r = k + 1; r < n; ++r) {
+      const double factor = l[k][r];
+      for (size_t j = 0; j < n; ++j) inverse[r][j] -= factor * inverse[k][j];
     }
   }
-  *out = JointMatrix{};
   for (size_t i = 0; i < n; ++i) {
-    for (size_t j = 0; j <= i; ++j) {
-      double sum = 0;
-      for (size_t k = i; k < n; ++k) sum += inverse[k][i] * inverse[k][j];
-      (*out)[i][j] = sum;
-      (*out)[j][i] = sum;
+    for (size_t j = 0; j < n; ++j) (*out)[i][j] = 0;
+  }
+  for (size_t k = 0; k < n; ++k) {
+    for (size_t i = 0; i < n; ++i) {
+      const double factor = inverse[k][i];
+      for (size_t j = 0; j < n; ++j) (*out)[i][j] += factor * inverse[k][j];
     }
   }
   return true;
@@ -61,10 +67,13 @@ void guess_saturation(const Drives& drives, const Joints& joints, const JointMat
 bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass, double dt,
              ArmResponse* arm) {
   const size_t n = static_cast<size_t>(drives.count);
-  JointMatrix m = mass;
+  JointMatrix m;
   JointArray momentum{};
   for (size_t i = 0; i < n; ++i) {
-    for (size_t j = 0; j < n; ++j) momentum[i] += mass[i][j] * joints.u[j];
+    for (size_t j = 0; j < n; ++j) {
+      m[i][j] = mass[i][j];
+      momentum[i] += mass[i][j] * joints.u[j];
+    }
     if (arm->saturated[i] != 0) {
       momentum[i] += dt * arm->saturated[i] * drives.limit[i];
       continue;
@@ -72,7 +81,9 @@ bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass
     m[i][i] += dt * drives.damping[i] + dt * dt * drives.stiffness[i];
     momentum[i] += dt * drives.stiffness[i] * (joints.target[i] - joints.q[i]);
   }
-  if (!invert(m, n, &arm->response)) return false;
+  const bool good = n == 8 ? invert(m, std::integral_constant<size_t, 8>{}, &arm->response)
+                           : invert(m, n, &arm->response);
+  if (!good) return false;
   arm->free_speed = JointArray{};
   for (size_t i = 0; i < n; ++i) {
     for (size_t j = 0; j < n; ++j) arm->free_speed[i] += arm->response[i][j] * momentum[j];

@@ -187,6 +187,7 @@ void vertex_contact(const HullPair& pair, bool of_b, const FaceBest& best, Candi
 void collide_hulls(const ConvexPart& a, const ConvexPart& b, const RelativePose& b_in_a,
                    double margin, FaceRef* cached, Candidates* out) {
   out->count = 0;
+  out->own_normals = false;
   const HullPair pair{a, b, b_in_a};
   if (cached->face >= 0 &&
       pair.face_gap(cached->of_b, static_cast<std::size_t>(cached->face)) > margin) {
@@ -231,6 +232,7 @@ void collide_hulls(const ConvexPart& a, const ConvexPart& b, const RelativePose&
 
 void collide_plane(const Collider& collider, double height, double margin, Candidates* out) {
   out->count = 0;
+  out->own_normals = false;
   out->normal = Vec3::UnitZ();
   const Vec3 up = collider.axes.transpose().col(2);  // world z in the shape's frame
   const double base = collider.position.z() - height;
@@ -239,10 +241,11 @@ void collide_plane(const Collider& collider, double height, double margin, Candi
       continue;
     const ConvexPart& part = collider.shape->parts[p];
     for (std::size_t v = 0; v < part.vertices.size(); ++v) {
-      const double gap = up.dot(part.vertices[v]) + base;
+      const double gap = up.dot(part.vertices[v]) + base - part.round;
       if (gap > margin || out->count == Candidates::kMax) continue;
       Candidate& c = out->points[static_cast<std::size_t>(out->count++)];
       c.on_a = collider.axes * part.vertices[v] + collider.position;
+      c.on_a.z() -= part.round;
       c.on_b = Vec3(c.on_a.x(), c.on_a.y(), height);
       c.middle = 0.5 * (c.on_a + c.on_b);
       c.gap = gap;

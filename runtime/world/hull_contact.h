@@ -20,6 +20,8 @@ struct Candidates {
   static constexpr int kMax = 2048;  // a plate of forty parts lies on all their vertices
   int count = 0;
   Vec3 normal = Vec3::UnitZ();  // from B to A, A's frame (plane: world)
+  bool own_normals = false;     // of round parts: one normal a point instead
+  std::array<Vec3, 4> normals;
   std::array<Candidate, kMax> points;
 };
 

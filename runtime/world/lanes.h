@@ -8,17 +8,28 @@ namespace probe::world {
 
 using Lane2 = double __attribute__((vector_size(16)));
 
-static_assert(kMaxJoints == 8, "dot_joints is written for eight lanes");
+// The width of rows of a robot with `joints` positions.
+inline int padded_lanes(int joints) { return (joints + 3) / 4 * 4; }
 
-// ((0+4) + (1+5)) + ((2+6) + (3+7)).
-inline double dot_joints(const JointArray& a, const JointArray& b) {
-  const Lane2 p0 = Lane2{a[0], a[1]} * Lane2{b[0], b[1]} + Lane2{a[4], a[5]} * Lane2{b[4], b[5]};
-  const Lane2 p1 = Lane2{a[2], a[3]} * Lane2{b[2], b[3]} + Lane2{a[6], a[7]} * Lane2{b[6], b[7]};
-  return (p0[0] + p0[1]) + (p1[0] + p1[1]);
+// Calls f with the number of lanes, as a constant where it is the usual eight.
+template <typename F>
+inline auto with_lanes(int lanes, F f) {
+  if (lanes == 8) return f(std::integral_constant<int, 8>{});
+  return f(lanes);
 }
 
-inline void add_scaled(JointArray* to, const JointArray& from, double factor) {
-  for (std::size_t i = 0; i < kMaxJoints; ++i) (*to)[i] += from[i] * factor;
+// ((0+4+..) + (1+5+..)) + ((2+6+..) + (3+7+..)); a multiple of 4 lanes.
+inline double dot_joints(const double* a, const double* b, int lanes) {
+  Lane2 low{0, 0}, high{0, 0};
+  for (int i = 0; i < lanes; i += 4) {
+    low += Lane2{a[i], a[i + 1]} * Lane2{b[i], b[i + 1]};
+    high += Lane2{a[i + 2], a[i + 3]} * Lane2{b[i + 2], b[i + 3]};
+  }
+  return (low[0] + low[1]) + (high[0] + high[1]);
+}
+
+inline void add_scaled(double* to, const double* from, double factor, int lanes) {
+  for (int i = 0; i < lanes; ++i) to[i] += from[i] * factor;
 }
 
 // Smallest n . vertex of a part.

@@ -43,7 +43,7 @@ void renew(PairRecord* record, std::uint64_t substep, const RelativePose& pose,
     point = ManifoldPoint{};
     point.anchor_a = plane ? Vec3(pose.axes.transpose() * (c.on_a - pose.offset)) : c.on_a;
     point.anchor_b = plane ? c.on_b : Vec3(pose.axes.transpose() * (c.on_b - pose.offset));
-    point.normal_a = candidates.normal;
+    point.normal_a = candidates.own_normals ? candidates.normals[i] : candidates.normal;
     point.id = c.id;
     std::size_t source = kMaxPoints;
     double nearest = match * match;

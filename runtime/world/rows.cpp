@@ -1,6 +1,7 @@
 #include "runtime/world/rows.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "runtime/world/lanes.h"
@@ -22,15 +23,18 @@ Sides sides(const Contact& c, std::vector<Body>* bodies) {
           c.body_b < 0 ? nullptr : &(*bodies)[static_cast<std::size_t>(c.body_b)]};
 }
 
-inline double row_speed(const Row& row, bool links, const Sides& s, const JointArray& u) {
-  double v = links ? dot_joints(row.j, u) : 0.0;
+template <typename Lanes>
+inline double row_speed(const Row& row, const Sides& s, const double* u, Lanes lanes) {
+  double v = row.j != nullptr ? dot_joints(row.j, u, lanes) : 0.0;
   if (s.a != nullptr) v += row.d.dot(s.a->velocity) + row.arm_a.dot(s.a->spin);
   if (s.b != nullptr) v -= row.d.dot(s.b->velocity) + row.arm_b.dot(s.b->spin);
   return v;
 }
 
-inline void push(const Row& row, const Contact& c, const Sides& s, double impulse, JointArray* u) {
-  if (c.links) add_scaled(u, row.wj, impulse);
+template <typename Lanes>
+inline void push(const Row& row, const Contact& c, const Sides& s, double impulse, double* u,
+                 Lanes lanes) {
+  if (row.wj != nullptr) add_scaled(u, row.wj, impulse, lanes);
   if (s.a != nullptr) {
     s.a->velocity += (impulse * c.inverse_mass_a) * row.d;
     s.a->spin += impulse * row.ka;
@@ -73,33 +77,36 @@ void build_twist(Row* row, const Contact& c, const Sides& s) {
   }
 }
 
-void build_columns(const ArmDynamics& arm, std::uint32_t path, Contact* c) {
-  c->normal.j = c->tangent1.j = c->tangent2.j = c->twist.j = JointArray{};
-  for (int j = 0; j < arm.count(); ++j) {
-    if ((path >> j & 1U) == 0) continue;
-    const std::size_t i = static_cast<std::size_t>(j);
-    const MovingLink& link = arm.link(j);
-    const Vec3 at_point = link.h + link.w.cross(c->p - link.origin);
-    c->normal.j[i] = c->n.dot(at_point);
-    c->tangent1.j[i] = c->t1.dot(at_point);
-    c->tangent2.j[i] = c->t2.dot(at_point);
-    if (c->torsion) c->twist.j[i] = c->n.dot(link.w);
+// Adds the columns of the moving links in `path`, times sign.
+void add_columns(const ArmDynamics& arm, std::uint32_t path, double sign, Contact* c) {
+  const Vec3 r = c->p - arm.reference();
+  for (; path != 0; path &= path - 1) {
+    const MovingLink& link = arm.link(std::countr_zero(path));
+    const std::size_t i = static_cast<std::size_t>(link.coordinate);
+    const Vec3 at_point = sign * (link.v + link.w.cross(r));
+    c->normal.j[i] += c->n.dot(at_point);
+    c->tangent1.j[i] += c->t1.dot(at_point);
+    c->tangent2.j[i] += c->t2.dot(at_point);
+    if (c->torsion) c->twist.j[i] += sign * c->n.dot(link.w);
   }
 }
 
-void couple(const ArmResponse& arm, bool links, Row* row) {
+template <typename Lanes>
+void couple(const ArmResponse& arm, Lanes lanes, int joints, Row* row) {
   row->k = row->body_k;
-  if (links) {
-    row->wj = JointArray{};
-    for (std::size_t j = 0; j < kMaxJoints; ++j) {
-      if (row->j[j] != 0) add_scaled(&row->wj, arm.response[j], row->j[j]);
+  if (row->j != nullptr) {
+    double wj[kMaxJoints] = {};
+    for (std::size_t j = 0; j < static_cast<std::size_t>(joints); ++j) {
+      if (row->j[j] != 0) add_scaled(wj, arm.response[j].data(), row->j[j], lanes);
     }
-    row->k += dot_joints(row->j, row->wj);
+    for (int i = 0; i < lanes; ++i) row->wj[i] = wj[i];
+    row->k += dot_joints(row->j, row->wj, lanes);
   }
   row->inverse_k = 1.0 / row->k;
 }
 
-double sweep_limits(const ArmResponse& arm, Problem* problem) {
+template <typename Lanes>
+double sweep_limits(const ArmResponse& arm, Lanes lanes, Problem* problem) {
   double change = 0;
   for (LimitRow& row : problem->limits) {
     const std::size_t j = static_cast<std::size_t>(row.joint);
@@ -108,27 +115,28 @@ double sweep_limits(const ArmResponse& arm, Problem* problem) {
     const double delta = next - row.impulse;
     row.impulse = next;
     if (delta == 0) continue;
-    add_scaled(&problem->u, arm.response[j], row.sign * delta);
+    add_scaled(problem->u.data(), arm.response[j].data(), row.sign * delta, lanes);
     change = std::max(change, std::fabs(delta) * row.k * row.lever);
   }
   return change;
 }
 
-double sweep_contact(Contact* contact, const Sides& s, JointArray* u) {
+template <typename Lanes>
+inline double sweep_contact(Contact* contact, const Sides& s, double* u, Lanes lanes) {
   Contact& c = *contact;
-  const double v = row_speed(c.normal, c.links, s, *u);
+  const double v = row_speed(c.normal, s, u, lanes);
   const double next = std::max(0.0, c.normal.impulse - (v + c.normal.bias) * c.normal.inverse_k);
   const double delta = next - c.normal.impulse;
   double change = std::fabs(delta) * c.normal.k;
   if (delta != 0) {
     c.normal.impulse = next;
-    push(c.normal, c, s, delta, u);
+    push(c.normal, c, s, delta, u, lanes);
   }
 
   const double bound = c.friction * c.normal.impulse;
   if (bound > 0 || c.tangent1.impulse != 0 || c.tangent2.impulse != 0) {
-    const double v1 = row_speed(c.tangent1, c.links, s, *u);
-    const double v2 = row_speed(c.tangent2, c.links, s, *u);
+    const double v1 = row_speed(c.tangent1, s, u, lanes);
+    const double v2 = row_speed(c.tangent2, s, u, lanes);
     double a1 = c.tangent1.impulse - v1 * c.tangent1.inverse_k;
     double a2 = c.tangent2.impulse - v2 * c.tangent2.inverse_k;
     const double length2 = a1 * a1 + a2 * a2;
@@ -140,18 +148,18 @@ double sweep_contact(Contact* contact, const Sides& s, JointArray* u) {
     const double d1 = a1 - c.tangent1.impulse, d2 = a2 - c.tangent2.impulse;
     c.tangent1.impulse = a1;
     c.tangent2.impulse = a2;
-    push(c.tangent1, c, s, d1, u);
-    push(c.tangent2, c, s, d2, u);
+    push(c.tangent1, c, s, d1, u, lanes);
+    push(c.tangent2, c, s, d2, u, lanes);
     change = std::max(change, std::max(std::fabs(d1) * c.tangent1.k, std::fabs(d2) * c.tangent2.k));
   }
 
   if (c.torsion && (bound > 0 || c.twist.impulse != 0)) {
     const double limit = bound * c.patch;
-    const double w = row_speed(c.twist, c.links, s, *u);
+    const double w = row_speed(c.twist, s, u, lanes);
     const double twist = std::clamp(c.twist.impulse - w * c.twist.inverse_k, -limit, limit);
     const double d = twist - c.twist.impulse;
     c.twist.impulse = twist;
-    push(c.twist, c, s, d, u);
+    push(c.twist, c, s, d, u, lanes);
     change = std::max(change, std::fabs(d) * c.twist.k * c.patch);
   }
   return change;
@@ -161,6 +169,11 @@ double sweep_contact(Contact* contact, const Sides& s, JointArray* u) {
 
 void build_rows(const Parameters& parameters, const ArmDynamics* arm,
                 const std::vector<Collider>& colliders, Problem* problem) {
+  const std::size_t width = static_cast<std::size_t>(problem->lanes);
+  std::size_t used = 0;
+  for (const Contact& c : problem->contacts) used += c.links ? 8 * width : 0;
+  problem->columns.assign(used, 0.0);
+  used = 0;
   for (Contact& c : problem->contacts) {
     const Sides s = sides(c, problem->bodies);
     build_linear(&c.normal, c, s, c.n);
@@ -172,7 +185,18 @@ void build_rows(const Parameters& parameters, const ArmDynamics* arm,
             ? c.gap / parameters.dt
             : -std::min(parameters.push,
                         parameters.beta * std::max(0.0, -c.gap - parameters.slop) / parameters.dt);
-    if (c.links) build_columns(*arm, colliders[static_cast<std::size_t>(c.collider_a)].path, &c);
+    if (!c.links) continue;
+    for (Row* row : {&c.normal, &c.tangent1, &c.tangent2, &c.twist}) {
+      row->j = &problem->columns[used];
+      row->wj = row->j + width;
+      used += 2 * width;
+    }
+    // What carries both links moves neither against the other.
+    const std::uint32_t a = colliders[static_cast<std::size_t>(c.collider_a)].path;
+    const std::uint32_t b =
+        c.collider_b < 0 ? 0 : colliders[static_cast<std::size_t>(c.collider_b)].path;
+    add_columns(*arm, a & ~b, 1, &c);
+    if (b != 0) add_columns(*arm, b & ~a, -1, &c);
   }
 }
 
@@ -201,42 +225,50 @@ void build_limits(const Parameters& parameters, const Drives& drives, Joints* jo
 }
 
 void couple_arm(const ArmResponse& arm, Problem* problem) {
-  for (Contact& c : problem->contacts) {
-    couple(arm, c.links, &c.normal);
-    couple(arm, c.links, &c.tangent1);
-    couple(arm, c.links, &c.tangent2);
-    if (c.torsion) couple(arm, c.links, &c.twist);
-  }
+  with_lanes(problem->lanes, [&](auto lanes) {
+    for (Contact& c : problem->contacts) {
+      couple(arm, lanes, problem->joints, &c.normal);
+      couple(arm, lanes, problem->joints, &c.tangent1);
+      couple(arm, lanes, problem->joints, &c.tangent2);
+      if (c.torsion) couple(arm, lanes, problem->joints, &c.twist);
+    }
+  });
   for (LimitRow& row : problem->limits) {
     row.k = arm.response[static_cast<std::size_t>(row.joint)][static_cast<std::size_t>(row.joint)];
   }
 }
 
 void warm_start(Problem* problem, const ArmResponse& arm) {
-  for (Contact& c : problem->contacts) {
-    const Sides s = sides(c, problem->bodies);
-    if (c.torsion && c.twist.impulse != 0) push(c.twist, c, s, c.twist.impulse, &problem->u);
-    if (c.normal.impulse != 0) push(c.normal, c, s, c.normal.impulse, &problem->u);
-    if (c.tangent1.impulse != 0) push(c.tangent1, c, s, c.tangent1.impulse, &problem->u);
-    if (c.tangent2.impulse != 0) push(c.tangent2, c, s, c.tangent2.impulse, &problem->u);
-  }
+  double* u = problem->u.data();
+  with_lanes(problem->lanes, [&](auto lanes) {
+    for (Contact& c : problem->contacts) {
+      const Sides s = sides(c, problem->bodies);
+      if (c.torsion && c.twist.impulse != 0) push(c.twist, c, s, c.twist.impulse, u, lanes);
+      if (c.normal.impulse != 0) push(c.normal, c, s, c.normal.impulse, u, lanes);
+      if (c.tangent1.impulse != 0) push(c.tangent1, c, s, c.tangent1.impulse, u, lanes);
+      if (c.tangent2.impulse != 0) push(c.tangent2, c, s, c.tangent2.impulse, u, lanes);
+    }
+  });
   for (const LimitRow& row : problem->limits) {
     if (row.impulse == 0) continue;
-    add_scaled(&problem->u, arm.response[static_cast<std::size_t>(row.joint)],
-               row.sign * row.impulse);
+    add_scaled(u, arm.response[static_cast<std::size_t>(row.joint)].data(), row.sign * row.impulse,
+               problem->lanes);
   }
 }
 
 int solve(const Parameters& parameters, const ArmResponse& arm, Problem* problem) {
   if (problem->contacts.empty() && problem->limits.empty()) return 0;
-  for (int sweep = 1; sweep <= parameters.max_sweeps; ++sweep) {
-    double change = sweep_limits(arm, problem);
-    for (Contact& c : problem->contacts) {
-      change = std::max(change, sweep_contact(&c, sides(c, problem->bodies), &problem->u));
+  return with_lanes(problem->lanes, [&](auto lanes) {
+    for (int sweep = 1; sweep <= parameters.max_sweeps; ++sweep) {
+      double change = sweep_limits(arm, lanes, problem);
+      for (Contact& c : problem->contacts) {
+        change = std::max(change,
+                          sweep_contact(&c, sides(c, problem->bodies), problem->u.data(), lanes));
+      }
+      if (change < parameters.tolerance) return sweep;
     }
-    if (change < parameters.tolerance) return sweep;
-  }
-  return parameters.max_sweeps;
+    return parameters.max_sweeps;
+  });
 }
 
 }  // namespace probe::world

@@ -13,6 +13,8 @@ namespace probe::world {
 // What the sweeps work on. Arrays keep their capacity from substep to substep.
 struct Problem {
   JointArray u{};
+  int joints = 0, lanes = 0;    // of the robot; lanes: padded to a multiple of 4
+  std::vector<double> columns;  // of the rows that touch links
   std::vector<Body>* bodies = nullptr;
   std::vector<Contact> contacts;
   std::vector<LimitRow> limits;

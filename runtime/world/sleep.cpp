@@ -11,7 +11,8 @@ constexpr int kQuietSubsteps = 200;
 
 bool is_touched(const Parameters& parameters, size_t body, const Sleepers& s) {
   const Collider& self = (*s.colliders)[s.links + body];
-  for (size_t i = 0; i < s.colliders->size(); ++i) {
+  // Fixtures stand still and wake nothing.
+  for (size_t i = 0; i < s.links + s.bodies->size(); ++i) {
     const Collider& other = (*s.colliders)[i];
     if (i < s.links) {
       if (other.path == 0) continue;
@@ -25,14 +26,17 @@ bool is_touched(const Parameters& parameters, size_t body, const Sleepers& s) {
 }
 
 // Records among sleeping bodies, the plane and the base are frozen.
-void freeze(const Problem& problem, Sleepers* s) {
+void freeze(const Problem& problem, std::uint64_t substep, Sleepers* s) {
   const auto rests = [&](int collider) {
     if (collider < 0) return true;
     const Collider& c = (*s->colliders)[static_cast<size_t>(collider)];
     return c.body < 0 ? c.path == 0 : (*s->bodies)[static_cast<size_t>(c.body)].asleep;
   };
   for (const Contact& c : problem.contacts) {
-    if (rests(c.collider_a) && rests(c.collider_b)) s->table->records[c.record].frozen = true;
+    PairRecord& record = s->table->records[c.record];
+    if (record.frozen || !rests(c.collider_a) || !rests(c.collider_b)) continue;
+    record.frozen = true;
+    record.frozen_from = substep + 1;
   }
 }
 
@@ -44,11 +48,12 @@ void wake(size_t body, std::uint64_t substep, Sleepers* s) {
   if (!b.asleep) return;
   b.asleep = false;
   const int collider = static_cast<int>(s->links + body);
-  for (const ColliderPair& pair : s->table->pairs) {
+  for (ColliderPair& pair : s->table->pairs) {
     if (pair.a != collider && pair.b != collider) continue;
     for (std::uint32_t r = pair.first; r < pair.first + pair.count; ++r) {
       PairRecord& record = s->table->records[r];
       if (!record.frozen) continue;
+      add_frozen(record, substep, &pair, *s->table);
       record.frozen = false;
       record.last = substep - 1;
     }
@@ -66,7 +71,7 @@ void wake_touched(const Parameters& parameters, std::uint64_t substep, Sleepers*
   }
 }
 
-void fall_asleep(const Problem& problem, Sleepers* s) {
+void fall_asleep(const Problem& problem, std::uint64_t substep, Sleepers* s) {
   bool candidate = false;
   for (Body& b : *s->bodies) {
     if (b.asleep) continue;
@@ -101,7 +106,7 @@ void fall_asleep(const Problem& problem, Sleepers* s) {
     place_body(b, &(*s->colliders)[static_cast<size_t>(self)]);
     slept = true;
   }
-  if (slept) freeze(problem, s);
+  if (slept) freeze(problem, substep, s);
 }
 
 }  // namespace probe::world

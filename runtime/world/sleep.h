@@ -20,6 +20,6 @@ void wake_touched(const Parameters& parameters, std::uint64_t substep, Sleepers*
 void wake(std::size_t body, std::uint64_t substep, Sleepers* sleepers);
 
 // After the poses have moved: counts quiet substeps and puts to sleep.
-void fall_asleep(const Problem& problem, Sleepers* sleepers);
+void fall_asleep(const Problem& problem, std::uint64_t substep, Sleepers* sleepers);
 
 }  // namespace probe::world

@@ -12,9 +12,9 @@
 
 namespace probe::world {
 
-// Rows are this wide whatever the robot, so that sums over joints have fixed lanes. A multiple
-// of 8.
-constexpr int kMaxJoints = 8;
+// Joint positions of a world, and moving links of its robot. A multiple of 4: rows are padded with
+// zeros to the next one, so that sums over joints have fixed lanes.
+constexpr int kMaxJoints = 32;
 
 struct Parameters {
   double dt = 0.002;
@@ -73,23 +73,28 @@ inline bool overlaps(const Box& a, const Box& b, double margin) {
          std::abs(a.center.z() - b.center.z()) <= a.half.z() + b.half.z() + margin;
 }
 
-// A shape with a place: links first, then bodies, in the order of the spec.
+// A shape with a place: links first, then bodies, then fixtures, in the order of the spec.
 struct Collider {
   std::shared_ptr<const scene::CollisionShape> shape;
   double friction = 1;
   double patch = 0;
-  int body = -1;  // index of a free body, -1 for a link
-  int moving_link =
-      -1;  // of the arm: the joint whose body carries the link; -1 for the base and for free bodies
-  std::uint32_t path = 0;  // joints between the base and the link, one bit each
-  Pose in_carrier;  // of a link: frame of its centre of mass in the moving link (or the base)
-  Box local;        // of all parts, shape frame
+  int body = -1;         // index of a free body, -1 for a link
+  int moving_link = -1;  // of the arm: the body that carries the link; -1 for whatever stands still
+                         // and for free bodies
+  std::uint32_t path = 0;                // moving links from the base to this one, one bit each
+  Mat3 carrier_axes = Mat3::Identity();  // of a link: frame of its centre of mass in the carrier
+  Vec3 carrier_offset = Vec3::Zero();
+  Box local;             // of all parts, shape frame
+  bool rounded = false;  // has a part that rolls: its manifolds are made anew each substep
   // Derived each substep.
   Mat3 axes = Mat3::Identity();
   Vec3 position = Vec3::Zero();
   double reach_speed = 0;  // m/s, bound on the speed of any of its points
   Box box;
   std::vector<Box> part_boxes;
+  // Of a fixture: parts by the low end of their boxes along x, and the longest of these boxes.
+  std::vector<std::uint32_t> sorted_parts;
+  double longest_part = 0;
 };
 
 constexpr int kMaxPoints = 6;
@@ -118,15 +123,16 @@ struct PairRecord {
   Mat3 axes = Mat3::Identity();  // relative pose when the manifold was made: R_A^T R_B (plane: R_A)
   Vec3 offset = Vec3::Zero();    // R_A^T (x_B - x_A) (plane: x_A)
   std::array<ManifoldPoint, kMaxPoints> points;
-  Vec3 impulse = Vec3::Zero();  // on A, last substep, world
+  Vec3 impulse = Vec3::Zero();    // on A, last substep, world
+  std::uint64_t frozen_from = 0;  // the first substep that did not solve it; only for sums
   FaceRef cached;  // last separating or reference face: changes speed only, never results
 };
 
 // A direction of a contact. Impulse l changes u by wj l, v_A by d l / m, omega_A by ka l; B
 // opposite.
 struct Row {
-  alignas(16) JointArray j{};
-  alignas(16) JointArray wj{};
+  double* j = nullptr;  // joint column and its response, `Problem::lanes` wide; null without links
+  double* wj = nullptr;
   Vec3 d, arm_a, arm_b;  // direction, r_A x d, r_B x d
   Vec3 ka, kb;           // K_A (r_A x d), K_B (r_B x d)
   double body_k = 0;     // bodies' part of k, with the regularisation
@@ -137,7 +143,7 @@ struct Row {
 
 // Row without direction: torsion about the normal.
 struct Contact {
-  std::uint32_t record = 0;
+  std::uint32_t record = 0, pair = 0;
   std::int8_t point = 0;
   bool links = false;  // rows have joint columns
   bool torsion = false;

@@ -1,5 +1,7 @@
 #include "runtime/world/stepper.h"
 
+#include "runtime/world/lanes.h"
+
 namespace probe::world {
 namespace {
 
@@ -28,6 +30,8 @@ Status Stepper::advance() {
   }
 
   problem.bodies = &bodies;
+  problem.joints = drives.count;
+  problem.lanes = padded_lanes(drives.count);
   find_contacts(parameters, plane, substep, colliders, &table, &problem);
   build_rows(parameters, arm.get(), colliders, &problem);
   build_limits(parameters, drives, &joints, &problem);
@@ -60,7 +64,7 @@ Status Stepper::advance() {
   for (Body& body : bodies) {
     if (!body.asleep) integrate(&body, ambient, parameters.dt);
   }
-  if (sleeping) fall_asleep(problem, &rest);
+  if (sleeping) fall_asleep(problem, substep, &rest);
   ++substep;
   return {};
 }

@@ -21,7 +21,7 @@ struct Stepper {
   Drives drives;
   Joints joints;
   std::vector<Body> bodies;
-  std::vector<Collider> colliders;  // links, then bodies
+  std::vector<Collider> colliders;  // links, then bodies, then fixtures
   std::size_t links = 0;
   PairTable table;
   Problem problem;

@@ -16,6 +16,7 @@ using std::size_t;
 
 constexpr double kTooFast = 50.0;  // m/s
 constexpr double kTooDeep = 1.0;   // m below the surface
+constexpr double kTooFar = 100.0;  // m from the world's origin
 
 Failure fail(std::string message) { return {"world", std::move(message), ""}; }
 
@@ -40,6 +41,7 @@ Collider make_collider(std::shared_ptr<const scene::CollisionShape> shape, doubl
   Collider c;
   c.local = whole_box(*shape);
   c.part_boxes.resize(shape->parts.size());
+  for (const scene::ConvexPart& part : shape->parts) c.rounded = c.rounded || part.round > 0;
   c.shape = std::move(shape);
   c.friction = friction;
   c.patch = patch;
@@ -85,6 +87,8 @@ class ContactWorld final : public World {
   void stop_bodies() override;
   Status step(int substeps) override;
   std::span<const ContactImpulse> contacts() const override { return contacts_; }
+  std::span<const ContactImpulse> contact_sums() const override { return sums_; }
+  std::span<const ExcludedLinks> excluded_links() const override { return excluded_; }
   std::vector<std::byte> save() const override { return save_state(stepper_); }
   Status restore(std::span<const std::byte> state) override;
   Sha256 state_hash() const override { return hash_state(stepper_); }
@@ -92,17 +96,25 @@ class ContactWorld final : public World {
  private:
   size_t joint_count() const { return static_cast<size_t>(stepper_.drives.count); }
   Status add_arm();
+  Status add_joints(std::vector<int>* order);
+  Status limit_followers();
+  Status add_links();
   Status add_bodies();
+  Status add_fixtures();
+  std::vector<LinkPair> hitting_links();
   Status check_state() const;
   void wake_all();
   void publish_contacts();
+  void publish_sums();
+  Party party(int collider) const;
   // Link poses are of the present q: what the stepper left may be one substep old.
   void refresh() const;
 
   WorldSpec spec_;
   mutable Stepper stepper_;
   std::vector<int> urdf_links_;  // of ArmSpec::links
-  std::vector<ContactImpulse> contacts_;
+  std::vector<ContactImpulse> contacts_, sums_;
+  std::vector<ExcludedLinks> excluded_;
 };
 
 Status ContactWorld::add_arm() {
@@ -115,14 +127,25 @@ Status ContactWorld::add_arm() {
   if (!is_finite(arm.base)) return fail("the robot's base pose is not finite");
   if (arm.joints.size() != arm.drives.size())
     return fail("initial joints and drives differ in number");
-  if (arm.drives.size() > kMaxJoints) return fail("a robot may have at most 8 driven joints");
-  Drives& drives = stepper_.drives;
   std::vector<int> order;
+  PROBE_TRY(add_joints(&order));
+  PROBE_ASSIGN(stepper_.arm, ArmDynamics::create(*arm.model, arm.base, order));
+  PROBE_TRY(limit_followers());
+  PROBE_TRY(stepper_.arm->update(stepper_.joints.q));
+  return add_links();
+}
+
+Status ContactWorld::add_joints(std::vector<int>* order) {
+  const ArmSpec& arm = spec_.arm;
+  if (arm.drives.size() > kMaxJoints) {
+    return fail("a robot may have at most " + std::to_string(kMaxJoints) + " driven joints");
+  }
+  Drives& drives = stepper_.drives;
   for (size_t i = 0; i < arm.drives.size(); ++i) {
     const Drive& drive = arm.drives[i];
     const int joint = arm.model->find_joint(drive.joint);
     if (joint < 0) return fail("no joint `" + drive.joint + "` in the robot");
-    if (std::find(order.begin(), order.end(), joint) != order.end()) {
+    if (std::find(order->begin(), order->end(), joint) != order->end()) {
       return fail("joint `" + drive.joint + "` has two drives");
     }
     const robot::Joint& described = arm.model->joints[static_cast<size_t>(joint)];
@@ -134,7 +157,7 @@ Status ContactWorld::add_arm() {
     }
     if (!std::isfinite(arm.joints[i]))
       return fail("the initial position of joint `" + drive.joint + "` is not finite");
-    order.push_back(joint);
+    order->push_back(joint);
     drives.stiffness[i] = drive.stiffness;
     drives.damping[i] = drive.damping;
     drives.limit[i] = drive.limit;
@@ -145,9 +168,30 @@ Status ContactWorld::add_arm() {
     stepper_.joints.q[i] = stepper_.joints.target[i] = arm.joints[i];
   }
   drives.count = static_cast<int>(arm.drives.size());
-  PROBE_ASSIGN(stepper_.arm, ArmDynamics::create(*arm.model, arm.base, order));
-  PROBE_TRY(stepper_.arm->update(stepper_.joints.q));
+  return {};
+}
 
+// The limits of a joint that follows bind the one it follows.
+Status ContactWorld::limit_followers() {
+  Drives& drives = stepper_.drives;
+  for (const ArmDynamics::Follower& follower : stepper_.arm->followers()) {
+    const robot::Joint& joint = spec_.arm.model->joints[static_cast<size_t>(follower.joint)];
+    if (joint.kind == robot::JointKind::kContinuous || follower.scale == 0) continue;
+    const double at_lower = (joint.lower - follower.offset) / follower.scale;
+    const double at_upper = (joint.upper - follower.offset) / follower.scale;
+    const size_t i = static_cast<size_t>(follower.leader);
+    drives.lower[i] = std::max(drives.lower[i], std::min(at_lower, at_upper));
+    drives.upper[i] = std::min(drives.upper[i], std::max(at_lower, at_upper));
+    if (drives.lower[i] > drives.upper[i]) {
+      return fail("joint `" + joint.name + "` mimics `" + spec_.arm.drives[i].joint +
+                  "`, but no position is within the limits of both");
+    }
+  }
+  return {};
+}
+
+Status ContactWorld::add_links() {
+  const ArmSpec& arm = spec_.arm;
   for (const ArmSpec::Link& link : arm.links) {
     const int index = arm.model->find_link(link.name);
     if (index < 0) return fail("no link `" + link.name + "` in the robot");
@@ -158,21 +202,47 @@ Status ContactWorld::add_arm() {
     }
     Collider c = make_collider(link.shape, link.friction, link.patch);
     const ArmDynamics::Carrier& carrier = stepper_.arm->carrier(index);
-    c.moving_link = carrier.joint;
-    c.path = stepper_.arm->path(carrier.joint);
-    c.in_carrier = carrier.offset * Pose{link.shape->center_of_mass, Quat::Identity()};
-    if (carrier.joint < 0) {
-      // The base never moves: placed once.
-      Body still;
-      const Pose at = arm.base * c.in_carrier;
-      still.position = at.position;
-      still.axes = at.rotation.toRotationMatrix();
-      place_body(still, &c);
-    }
+    c.moving_link = carrier.moving;
+    c.path = stepper_.arm->path(carrier.moving);
+    const Pose in_carrier = carrier.offset * Pose{link.shape->center_of_mass, Quat::Identity()};
+    c.carrier_axes = in_carrier.rotation.toRotationMatrix();
+    c.carrier_offset = in_carrier.position;
+    if (carrier.moving < 0) place_still(arm.base * in_carrier, &c);
     stepper_.colliders.push_back(std::move(c));
     urdf_links_.push_back(index);
   }
+  stepper_.links = stepper_.colliders.size();
   return {};
+}
+
+// All pairs of links but those that cannot move against each other, neighbours in the tree, whose
+// hulls usually overlap at the joint, and pairs that overlap in the initial position.
+std::vector<LinkPair> ContactWorld::hitting_links() {
+  std::vector<LinkPair> pairs;
+  if (!spec_.arm.self_collision || !stepper_.arm) return pairs;
+  place_links(*stepper_.arm, JointArray{}, stepper_.links, &stepper_.colliders);
+  const auto parent = [&](const Collider& c) {
+    return c.moving_link < 0 ? -2 : stepper_.arm->parent(c.moving_link);
+  };
+  for (size_t i = 0; i < stepper_.links; ++i) {
+    for (size_t k = i + 1; k < stepper_.links; ++k) {
+      const Collider& a = stepper_.colliders[i];
+      const Collider& b = stepper_.colliders[k];
+      ExcludedLinks out{static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(k), {}};
+      if (a.moving_link == b.moving_link) {
+        out.reason = ExcludedLinks::Reason::kRigid;
+      } else if (parent(a) == b.moving_link || parent(b) == a.moving_link) {
+        out.reason = ExcludedLinks::Reason::kNeighbours;
+      } else if (is_touching(a, b, &stepper_.table.scratch)) {
+        out.reason = ExcludedLinks::Reason::kTouchingAtStart;
+      } else {
+        pairs.push_back({static_cast<int>(i), static_cast<int>(k)});
+        continue;
+      }
+      excluded_.push_back(out);
+    }
+  }
+  return pairs;
 }
 
 Status ContactWorld::add_bodies() {
@@ -200,6 +270,23 @@ Status ContactWorld::add_bodies() {
   return {};
 }
 
+Status ContactWorld::add_fixtures() {
+  for (const FixtureSpec& fixture : spec_.fixtures) {
+    const std::string name = "fixture `" + fixture.name + "`";
+    if (fixture.shape == nullptr || fixture.shape->parts.empty())
+      return fail(name + " has no shape");
+    if (!is_finite(fixture.pose) || !(fixture.pose.rotation.norm() > 0.5))
+      return fail(name + " stands at a pose that is not finite or not a rotation");
+    if (!(fixture.friction >= 0) || !std::isfinite(fixture.friction))
+      return fail(name + " has negative or non-finite friction");
+    Collider c = make_collider(fixture.shape, fixture.friction, 0);
+    const Pose at{fixture.pose.position, fixture.pose.rotation.normalized()};
+    place_still(at * Pose{fixture.shape->center_of_mass, Quat::Identity()}, &c);
+    stepper_.colliders.push_back(std::move(c));
+  }
+  return {};
+}
+
 Status ContactWorld::build() {
   PROBE_TRY(check_numbers(spec_));
   stepper_.parameters.dt = spec_.dt;
@@ -207,9 +294,10 @@ Status ContactWorld::build() {
   stepper_.plane = {spec_.surface_z, spec_.surface_friction};
   stepper_.sleeping = spec_.sleeping;
   PROBE_TRY(add_arm());
-  stepper_.links = stepper_.colliders.size();
   PROBE_TRY(add_bodies());
-  make_pairs(stepper_.colliders, stepper_.links, stepper_.plane, &stepper_.table);
+  PROBE_TRY(add_fixtures());
+  make_pairs(stepper_.colliders, stepper_.links, stepper_.bodies.size(), hitting_links(),
+             stepper_.plane, &stepper_.table);
   for (size_t b = 0; b < spec_.bodies.size(); ++b) {
     if (!is_finite(spec_.bodies[b].pose) || !(spec_.bodies[b].pose.rotation.norm() > 0.5)) {
       return fail("body `" + spec_.bodies[b].name +
@@ -313,28 +401,37 @@ Status ContactWorld::check_state() const {
     if (body.position.z() < spec_.surface_z - kTooDeep) {
       return fail("body `" + std::string(name) + "` is more than 1 m below the surface");
     }
+    if (body.position.squaredNorm() > kTooFar * kTooFar) {
+      return fail("body `" + std::string(name) + "` is farther than 100 m away");
+    }
   }
   return {};
 }
 
 Status ContactWorld::step(int substeps) {
   PROBE_TRY(check_state());
+  begin_sums(stepper_.substep, &stepper_.table);
   for (int i = 0; i < substeps; ++i) {
     PROBE_TRY(stepper_.advance());
     PROBE_TRY(check_state());
   }
-  if (substeps > 0) publish_contacts();
+  if (substeps <= 0) return {};
+  publish_contacts();
+  publish_sums();
   return {};
+}
+
+Party ContactWorld::party(int collider) const {
+  if (collider < 0) return {PartyKind::kSurface, 0};
+  size_t c = static_cast<size_t>(collider);
+  if (c < stepper_.links) return {PartyKind::kLink, static_cast<std::uint16_t>(c)};
+  c -= stepper_.links;
+  if (c < stepper_.bodies.size()) return {PartyKind::kBody, static_cast<std::uint16_t>(c)};
+  return {PartyKind::kFixture, static_cast<std::uint16_t>(c - stepper_.bodies.size())};
 }
 
 void ContactWorld::publish_contacts() {
   contacts_.clear();
-  const auto party = [&](int collider) -> Party {
-    if (collider < 0) return {PartyKind::kSurface, 0};
-    const size_t c = static_cast<size_t>(collider);
-    if (c < stepper_.links) return {PartyKind::kLink, static_cast<std::uint16_t>(c)};
-    return {PartyKind::kBody, static_cast<std::uint16_t>(c - stepper_.links)};
-  };
   for (const ColliderPair& pair : stepper_.table.pairs) {
     Vec3 sum = Vec3::Zero();
     for (std::uint32_t r = pair.first; r < pair.first + pair.count; ++r) {
@@ -346,9 +443,21 @@ void ContactWorld::publish_contacts() {
   }
 }
 
+void ContactWorld::publish_sums() {
+  sums_.clear();
+  for (ColliderPair& pair : stepper_.table.pairs) {
+    for (std::uint32_t r = pair.first; r < pair.first + pair.count; ++r) {
+      const PairRecord& record = stepper_.table.records[r];
+      if (record.frozen) add_frozen(record, stepper_.substep, &pair, stepper_.table);
+    }
+    if (pair.sum != Vec3::Zero()) sums_.push_back({party(pair.a), party(pair.b), pair.sum});
+  }
+}
+
 Status ContactWorld::restore(std::span<const std::byte> state) {
   PROBE_TRY(restore_state(state, &stepper_));
   publish_contacts();
+  sums_.clear();
   return {};
 }
 

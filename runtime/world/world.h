@@ -26,7 +26,9 @@ struct Drive {
 struct ArmSpec {
   const robot::RobotModel* model = nullptr;  // outlives the world
   Pose base;                                 // of the root link, world
-  std::vector<Drive> drives;   // one per actuated joint; their order is the order of q everywhere
+  // One per actuated joint; their order is the order of q everywhere. A joint without a drive must
+  // mimic one that has: it then follows exactly, as if geared.
+  std::vector<Drive> drives;
   std::vector<double> joints;  // initial q
   // Collision shapes of links by name, in the link's frame (shape's model frame = link frame).
   // Shared, read-only.
@@ -37,6 +39,9 @@ struct ArmSpec {
     double patch = 0;  // torsional patch radius, m
   };
   std::vector<Link> links;
+  // Whether links hit each other and the base. Pairs that cannot or must not are left out: see
+  // World::excluded_links().
+  bool self_collision = false;
 };
 
 struct BodySpec {
@@ -47,9 +52,18 @@ struct BodySpec {
   Pose pose;  // model origin, world
 };
 
+// What never moves: a sink, a shelf. Its parts may be many.
+struct FixtureSpec {
+  std::string name;
+  std::shared_ptr<const scene::CollisionShape> shape;
+  Pose pose;  // model origin, world
+  double friction = 1;
+};
+
 struct WorldSpec {
   ArmSpec arm;
   std::vector<BodySpec> bodies;
+  std::vector<FixtureSpec> fixtures;
   double dt = 0.002;
   Vec3 gravity{0, 0, -9.81};
   double surface_z = 0;
@@ -65,14 +79,21 @@ struct BodyState {
   Vec3 spin;      // angular velocity, world
 };
 
-// Who touches: links are those of ArmSpec::links in order, bodies those of WorldSpec::bodies.
-enum class PartyKind : std::uint8_t { kSurface, kLink, kBody };
+// Who touches: links are those of ArmSpec::links in order, bodies those of WorldSpec::bodies,
+// fixtures those of WorldSpec::fixtures.
+enum class PartyKind : std::uint8_t { kSurface, kLink, kBody, kFixture };
 struct Party {
   PartyKind kind = PartyKind::kSurface;
   std::uint16_t index = 0;
   bool operator==(const Party&) const = default;
 };
-// Sum over all contacts of a pair, last substep, N s, world; exerted by b on a.
+// Two links that never hit each other although self-collision is on, and why.
+struct ExcludedLinks {
+  enum class Reason : std::uint8_t { kRigid, kNeighbours, kTouchingAtStart };
+  std::uint16_t a = 0, b = 0;  // of ArmSpec::links
+  Reason reason = Reason::kRigid;
+};
+// Sum over all contacts of a pair, N s, world; exerted by b on a.
 struct ContactImpulse {
   Party a, b;
   Vec3 on_a = Vec3::Zero();
@@ -103,13 +124,18 @@ class World {
   virtual void stop_bodies() = 0;  // zero velocities
 
   // Advances n substeps. Fails (code "world") when a number is not finite, or a body is faster than
-  // 50 m/s or far below the floor; the message names the body. The world must not be used after
-  // that.
+  // 50 m/s, far below the floor or 100 m away; the message names the body. The world must not be
+  // used after that.
   virtual Status step(int substeps) = 0;
 
   // Contacts of the last substep with a nonzero impulse, in a fixed order; sleeping bodies report
   // frozen impulses.
   virtual std::span<const ContactImpulse> contacts() const = 0;
+  // The same summed over all substeps of the last step(): what a sensor averages over a control
+  // step. Empty after restore().
+  virtual std::span<const ContactImpulse> contact_sums() const = 0;
+  // With self-collision, the pairs of links that were left out at load.
+  virtual std::span<const ExcludedLinks> excluded_links() const = 0;
 
   // The whole state including solver caches; restoring it continues bit for bit.
   virtual std::vector<std::byte> save() const = 0;

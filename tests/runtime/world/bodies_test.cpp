@@ -91,7 +91,7 @@ Stepper cubes(const std::vector<Vec3>& places) {
     s.bodies.push_back(b);
     s.colliders.push_back(c);
   }
-  make_pairs(s.colliders, 0, s.plane, &s.table);
+  make_pairs(s.colliders, 0, s.bodies.size(), {}, s.plane, &s.table);
   return s;
 }
 

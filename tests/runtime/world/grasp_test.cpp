@@ -267,8 +267,8 @@ TEST_CASE("worlds and actions that cannot be are refused with a reason") {
   CHECK(refused([](WorldSpec& s) { s.arm.links[1].name = "tail"; }).find("`tail`") !=
         std::string::npos);
   CHECK(refused([](WorldSpec& s) {
-          s.arm.drives.pop_back();
-          s.arm.joints.pop_back();
+          s.arm.drives.erase(s.arm.drives.begin());
+          s.arm.joints.erase(s.arm.joints.begin());
         }).find("has no drive") != std::string::npos);
   CHECK(refused([](WorldSpec& s) { s.bodies[0].pose.position.x() = std::nan(""); }).find("cube") !=
         std::string::npos);
