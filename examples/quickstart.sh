@@ -18,6 +18,6 @@ cat <<END
 
 results        $out/results.sqlite  (vlaprobe results $out --json)
 contact sheet  $out/contact_sheet.png
-videos         $out/videos/
+a video        $(find "$out/videos" -name '*.mp4' | sort | head -n 1)  (one an episode)
 replay one     $vlaprobe replay $out carrot_on_plate 0 --verify
 END
