@@ -464,6 +464,10 @@ Quantity Parser::quantity() {
   out.unit = token.unit;
   advance();
   out.span = since(begin);
+  // Said here and not where the statement stumbles over it, so that nobody misses the unit again.
+  if (out.unit == Unit::kNone && !on_new_line_ && fail_blank_before_unit()) {
+    out.unit = Unit::kUnknown;
+  }
   return out;
 }
 
