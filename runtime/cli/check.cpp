@@ -1,29 +1,95 @@
 // vlaprobe check
 #include <fmt/format.h>
 
+#include <chrono>
+#include <filesystem>
+
 #include "runtime/cli/compile.h"
+#include "runtime/cli/watch.h"
 
 namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> files;
+  bool json = false, watch = false;
+  AssetOptions assets;
+};
+
+// What a change of may change the outcome. A file that a `use` did not find is in no list, so while
+// there are mistakes the folders count as well.
+std::vector<std::string> to_watch(const Arguments& arguments, const CompiledText& text) {
+  std::vector<std::string> paths = arguments.files;
+  paths.insert(paths.end(), text.files.begin(), text.files.end());
+  if (text.exit == kFine) return paths;
+  for (std::size_t i = 0, files = paths.size(); i < files; ++i) {
+    const auto folder = std::filesystem::path(paths[i]).parent_path();
+    paths.push_back(folder.empty() ? "." : folder.string());
+  }
+  return paths;
+}
+
+int watch_verb(const Arguments& arguments) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds kPoll(100);
+  const Interrupt interrupt;
+  FileWatch files;
+  CompiledText last;
+  bool first = true, edited = false;
+  std::error_code ignored;
+  while (true) {
+    files.begin();
+    const auto start = Clock::now();
+    CompiledText text =
+        compile_quietly(arguments.files, arguments.assets, "", false, arguments.json);
+    const double milliseconds =
+        std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    files.watch(to_watch(arguments, text));
+    // An editor's own files come and go in the folder; only news are printed.
+    if (first || edited || text.said != last.said || text.exit != last.exit) {
+      print_diagnostics(text, arguments.json);
+      fmt::print(stderr, "{} errors, {} warnings in {} files, {:.1f} ms\n", text.errors,
+                 text.warnings, text.files.size(), milliseconds);
+    }
+    if (first) fmt::print(stderr, "watching; Ctrl-C ends\n");
+    first = false;
+    last = std::move(text);
+    // A change, and then until the editor has finished.
+    edited = false;
+    bool waiting = true;
+    while (true) {
+      if (interrupt.wait(waiting ? kPoll : kPoll / 4)) return last.exit;
+      const std::vector<std::string> changed = files.changed();
+      if (changed.empty() && !waiting) break;
+      waiting = waiting && changed.empty();
+      for (const std::string& path : changed)
+        edited = edited || !std::filesystem::is_directory(path, ignored);
+    }
+  }
+}
+
+int check_verb(const Arguments& arguments) {
+  const CompiledText text =
+      compile_text(arguments.files, arguments.assets, "", false, arguments.json);
+  if (text.errors + text.warnings > 0) {
+    fmt::print(stderr, "{} errors, {} warnings\n", text.errors, text.warnings);
+  }
+  return text.exit;
+}
+
+}  // namespace
 
 void add_check(CLI::App& app, int& exit) {
-  struct Arguments {
-    std::vector<std::string> files;
-    bool json = false;
-    AssetOptions assets;
-  };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("check", "diagnose sources");
-  verb->footer("example: vlaprobe check suite/intact.probe");
+  verb->footer("example: vlaprobe check --watch suite/intact.probe");
   verb->add_option("F", arguments->files, ".probe texts")->required();
+  verb->add_flag("--watch", arguments->watch,
+                 "again whenever one of them, or what it uses, changes");
   verb->add_flag("--json", arguments->json, "diagnostics as a JSON array on stdout");
   add_asset_option(*verb, arguments->assets);
   verb->callback([arguments, &exit] {
-    const CompiledText text =
-        compile_text(arguments->files, arguments->assets, "", false, arguments->json);
-    exit = text.exit;
-    if (text.errors + text.warnings > 0) {
-      fmt::print(stderr, "{} errors, {} warnings\n", text.errors, text.warnings);
-    }
+    exit = arguments->watch ? watch_verb(*arguments) : check_verb(*arguments);
   });
 }
 

@@ -13,8 +13,8 @@
 
 namespace probe::cli {
 
-CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
-                          const std::string& suite, bool want_plan, bool json) {
+CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,
+                             const std::string& suite, bool want_plan, bool json) {
   CompiledText text;
   auto root = run::find_asset_root(assets.root);
   if (!root) {
@@ -35,14 +35,30 @@ CompiledText compile_text(const std::vector<std::string>& files, const AssetOpti
   const Diagnostics& diagnostics = compiled->diagnostics;
   text.errors = diagnostics.error_count();
   text.warnings = diagnostics.size() - text.errors;
+  for (std::size_t i = 0; i < compiled->sources.size(); ++i) {
+    text.files.push_back(compiled->sources.file(FileId{static_cast<std::uint32_t>(i)}).name());
+  }
   if (json) {
-    fmt::print("{}\n", render_json(diagnostics, compiled->sources));
+    text.said = render_json(diagnostics, compiled->sources) + "\n";
   } else if (!diagnostics.empty()) {
     const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-    fmt::print(stderr, "{}", render_text(diagnostics, compiled->sources, {.colour = colour}));
+    text.said = render_text(diagnostics, compiled->sources, {.colour = colour});
   }
   text.exit = compiled->ok ? kFine : kUser;
   text.plan = std::move(compiled->plan);
+  return text;
+}
+
+void print_diagnostics(const CompiledText& text, bool json) {
+  std::FILE* const stream = json ? stdout : stderr;
+  fmt::print(stream, "{}", text.said);
+  std::fflush(stream);
+}
+
+CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
+                          const std::string& suite, bool want_plan, bool json) {
+  CompiledText text = compile_quietly(files, assets, suite, want_plan, json);
+  print_diagnostics(text, json);
   return text;
 }
 

@@ -12,8 +12,15 @@ namespace probe::cli {
 struct CompiledText {
   std::vector<std::byte> plan;  // empty unless asked for
   std::size_t errors = 0, warnings = 0;
-  int exit = kFine;  // kUser when there were errors
+  int exit = kFine;                // kUser when there were errors
+  std::string said;                // the diagnostics, as text or as JSON
+  std::vector<std::string> files;  // every file that was read, as it was found
 };
+
+// The same in two steps: nothing is printed but a Failure of the outside, and then what was said.
+CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,
+                             const std::string& suite, bool want_plan, bool json = false);
+void print_diagnostics(const CompiledText& text, bool json);
 
 // Diagnostics go to stderr as text, or to stdout as JSON with `json`.
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
