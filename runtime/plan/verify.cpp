@@ -31,14 +31,14 @@ DirectoryEntry entry_of(std::span<const std::byte> bytes, std::uint32_t index) {
   return entry;
 }
 
-Failure header_failure(std::size_t at, std::string rule) {
-  return {"plan", std::move(rule), fmt::format("header at byte {}", at)};
+Failure header_failure(Rule rule, std::size_t at, std::string message) {
+  return plan_failure(rule, std::move(message), fmt::format("header at byte {}", at));
 }
 
-Failure entry_failure(std::uint32_t index, std::size_t field, std::string rule) {
-  return {
-      "plan", std::move(rule),
-      fmt::format("directory at byte {}", sizeof(Header) + index * sizeof(DirectoryEntry) + field)};
+Failure entry_failure(Rule rule, std::uint32_t index, std::size_t field, std::string message) {
+  return plan_failure(
+      rule, std::move(message),
+      fmt::format("directory at byte {}", sizeof(Header) + index * sizeof(DirectoryEntry) + field));
 }
 
 std::string section_name(std::uint32_t kind) {
@@ -52,32 +52,35 @@ constexpr std::uint64_t align_up(std::uint64_t at) {
 
 Status check_header(std::span<const std::byte> bytes) {
   if (bytes.size() < sizeof(Header)) {
-    return header_failure(0, fmt::format("a plan has at least {} bytes, this file has {}",
-                                         sizeof(Header), bytes.size()));
+    return header_failure(Rule::kShort, 0,
+                          fmt::format("a plan has at least {} bytes, this file has {}",
+                                      sizeof(Header), bytes.size()));
   }
   const Header h = header_of(bytes);
   if (h.magic != kMagic) {
     // The letters of the magic are right when only its line ends were rewritten.
     const bool text_damage =
         std::equal(h.magic.begin() + 1, h.magic.begin() + 5, kMagic.begin() + 1);
-    return header_failure(0, text_damage
-                                 ? "the magic number is damaged, as by a transfer in text mode"
-                                 : "this is not a plan: it does not begin with the magic number");
+    return header_failure(Rule::kMagicNumber, 0,
+                          text_damage
+                              ? "the magic number is damaged, as by a transfer in text mode"
+                              : "this is not a plan: it does not begin with the magic number");
   }
   if (h.major != kMajor) {
     return header_failure(
-        offsetof(Header, major),
+        Rule::kMajorVersion, offsetof(Header, major),
         fmt::format("this program reads format {}, the plan has format {}", kMajor, h.major));
   }
   if (h.file_size != bytes.size()) {
     return header_failure(
-        offsetof(Header, file_size),
+        Rule::kFileSize, offsetof(Header, file_size),
         fmt::format("the plan says it has {} bytes, the file has {}", h.file_size, bytes.size()));
   }
-  if (h.zero != 0) return header_failure(offsetof(Header, zero), "reserved bytes are zero");
+  if (h.zero != 0)
+    return header_failure(Rule::kHeaderZero, offsetof(Header, zero), "reserved bytes are zero");
   if (h.sections > (bytes.size() - sizeof(Header)) / sizeof(DirectoryEntry)) {
     return header_failure(
-        offsetof(Header, sections),
+        Rule::kDirectoryFits, offsetof(Header, sections),
         fmt::format("a directory of {} sections does not fit into the file", h.sections));
   }
   return {};
@@ -88,37 +91,39 @@ Status check_header(std::span<const std::byte> bytes) {
 Status check_entry(const Header& header, std::uint32_t index, const DirectoryEntry& e) {
   const SectionInfo* info = find_section(e.kind);
   if ((e.flags & ~kIgnorable) != 0) {
-    return entry_failure(index, offsetof(DirectoryEntry, flags), "flags other than bit 0 are zero");
+    return entry_failure(Rule::kFlags, index, offsetof(DirectoryEntry, flags),
+                         "flags other than bit 0 are zero");
   }
   const bool ignorable = (e.flags & kIgnorable) != 0;
   if (info == nullptr) {
     // Only a later minor version may hold what this reader does not know, and only if it may be
     // ignored.
     if (header.minor > kMinor && ignorable) return {};
-    return entry_failure(index, 0, fmt::format("section kind {} is not known", e.kind));
+    return entry_failure(Rule::kKind, index, 0,
+                         fmt::format("section kind {} is not known", e.kind));
   }
   if (ignorable != info->ignorable) {
     return entry_failure(
-        index, offsetof(DirectoryEntry, flags),
+        Rule::kMayIgnore, index, offsetof(DirectoryEntry, flags),
         fmt::format("{} {} be ignorable", info->name, info->ignorable ? "must" : "must not"));
   }
   if (e.version != 1) {
     return entry_failure(
-        index, offsetof(DirectoryEntry, version),
+        Rule::kSectionVersion, index, offsetof(DirectoryEntry, version),
         fmt::format("{} has version {}, this program reads 1", info->name, e.version));
   }
   if (e.stride != info->stride) {
     return entry_failure(
-        index, offsetof(DirectoryEntry, stride),
+        Rule::kStride, index, offsetof(DirectoryEntry, stride),
         fmt::format("records of {} have {} bytes, not {}", info->name, info->stride, e.stride));
   }
   if (e.count == 0) {
     return entry_failure(
-        index, offsetof(DirectoryEntry, count),
+        Rule::kEmptySection, index, offsetof(DirectoryEntry, count),
         fmt::format("{} is empty; a section without records is left out", info->name));
   }
   if (e.size != std::uint64_t{e.count} * e.stride) {
-    return entry_failure(index, offsetof(DirectoryEntry, size),
+    return entry_failure(Rule::kSectionSize, index, offsetof(DirectoryEntry, size),
                          fmt::format("{} holds {} records of {} bytes, but has {} bytes",
                                      info->name, e.count, e.stride, e.size));
   }
@@ -129,12 +134,13 @@ Status check_entry(const Header& header, std::uint32_t index, const DirectoryEnt
 Status same(const Place& place, const std::array<std::uint8_t, 32>& stored, const Sha256& computed,
             const char* what) {
   if (to_sha256(stored) == computed) return {};
-  return place.fail(stored.data(), fmt::format("the {} is not the hash of what it names", what));
+  return place.fail(Rule::kIdentity, stored.data(),
+                    fmt::format("the {} is not the hash of what it names", what));
 }
 
 }  // namespace
 
-Failure Place::fail(const void* at, std::string rule) const {
+Failure Place::fail(Rule rule, const void* at, std::string message) const {
   const auto offset = static_cast<std::size_t>(static_cast<const std::byte*>(at) - bytes_.data());
   const Header header = header_of(bytes_);
   std::string section = "plan";
@@ -142,7 +148,7 @@ Failure Place::fail(const void* at, std::string rule) const {
     const DirectoryEntry e = entry_of(bytes_, i);
     if (offset >= e.offset && offset - e.offset < e.size) section = section_name(e.kind);
   }
-  return {"plan", std::move(rule), fmt::format("{} at byte {}", section, offset)};
+  return plan_failure(rule, std::move(message), fmt::format("{} at byte {}", section, offset));
 }
 
 Status verify_envelope(std::span<const std::byte> bytes) {
@@ -156,42 +162,44 @@ Status verify_envelope(std::span<const std::byte> bytes) {
     PROBE_TRY(check_entry(header, i, e));
     if (i > 0 && e.kind <= directory.back().kind) {
       return entry_failure(
-          i, 0,
+          Rule::kSectionOrder, i, 0,
           fmt::format("{} does not ascend: sections are in order of kind and none repeats",
                       section_name(e.kind)));
     }
     if (e.offset != align_up(end)) {
       return entry_failure(
-          i, offsetof(DirectoryEntry, offset),
+          Rule::kSectionOffset, i, offsetof(DirectoryEntry, offset),
           fmt::format("{} must begin at byte {}, the next multiple of 64, not at {}",
                       section_name(e.kind), align_up(end), e.offset));
     }
     if (e.offset > bytes.size() || e.size > bytes.size() - e.offset) {
-      return entry_failure(i, offsetof(DirectoryEntry, size),
+      return entry_failure(Rule::kSectionEnd, i, offsetof(DirectoryEntry, size),
                            fmt::format("{} ends beyond the file", section_name(e.kind)));
     }
     const auto gap = bytes.subspan(end, e.offset - end);
     const auto dirt = std::ranges::find_if(gap, [](std::byte b) { return b != std::byte{0}; });
     if (dirt != gap.end()) {
-      return Failure{"plan", "bytes between sections are zero",
-                     fmt::format("gap before {} at byte {}", section_name(e.kind),
-                                 end + static_cast<std::uint64_t>(dirt - gap.begin()))};
+      return plan_failure(Rule::kGap, "bytes between sections are zero",
+                          fmt::format("gap before {} at byte {}", section_name(e.kind),
+                                      end + static_cast<std::uint64_t>(dirt - gap.begin())));
     }
     end = e.offset + e.size;
     directory.push_back(e);
   }
   if (end != bytes.size()) {
-    return Failure{"plan", "the last section ends where the file ends",
-                   fmt::format("end at byte {}", end)};
+    return plan_failure(Rule::kFileEnd, "the last section ends where the file ends",
+                        fmt::format("end at byte {}", end));
   }
   for (const DirectoryEntry& e : directory) {
     if (sha256(bytes.subspan(e.offset, e.size)) != to_sha256(e.sha256)) {
-      return Failure{"plan", "the section does not have the SHA-256 that the directory says",
-                     fmt::format("{} at byte {}", section_name(e.kind), e.offset)};
+      return plan_failure(Rule::kSectionHash,
+                          "the section does not have the SHA-256 that the directory says",
+                          fmt::format("{} at byte {}", section_name(e.kind), e.offset));
     }
   }
   if (root_hash(header, directory) != to_sha256(header.root)) {
-    return header_failure(offsetof(Header, root), "the root is not the hash of the directory");
+    return header_failure(Rule::kRoot, offsetof(Header, root),
+                          "the root is not the hash of the directory");
   }
   return {};
 }

@@ -28,8 +28,8 @@ inline constexpr std::size_t kMaxMeshes = 256;
 inline constexpr std::uint32_t kMaxPixels = 8192;  // a side of an image
 inline constexpr double kMaxSubsteps = 100000;     // physics steps in a control step
 
-// All four stages. A Failure has code "plan", a message that states the rule, and `where` =
-// "SECTION at byte N".
+// All four stages. A Failure has code "plan", a message that ends with the id of the rule in
+// brackets, and `where` = "SECTION at byte N".
 Status verify(std::span<const std::byte> bytes, const VerifyOptions& options = {});
 
 // The stages, each of which relies on those before it. Public for tests and for readers that have

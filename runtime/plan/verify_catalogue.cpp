@@ -45,15 +45,16 @@ class CatalogueCheck : FieldCheck {
   Status asset(const AssetRecord& a) const {
     PROBE_TRY(check_name(a.path, "the path of an asset"));
     if (!is_inside(t.text(a.path))) {
-      return fail(&a.path,
+      return fail(Rule::kAssetPath, &a.path,
                   fmt::format("asset path `{}` leads out of the asset folder", t.text(a.path)));
     }
     if (a.kind < static_cast<std::uint32_t>(AssetKind::kVisualMesh) ||
         a.kind > static_cast<std::uint32_t>(AssetKind::kPhoto)) {
-      return fail(&a.kind, fmt::format("asset kind {} is not known", a.kind));
+      return fail(Rule::kAssetKind, &a.kind, fmt::format("asset kind {} is not known", a.kind));
     }
     PROBE_TRY(check_zero(a.zero));
-    if (a.byte_size == 0) return fail(&a.byte_size, "an asset has at least one byte");
+    if (a.byte_size == 0)
+      return fail(Rule::kAssetSize, &a.byte_size, "an asset has at least one byte");
     return check_zero({&a.zero2, 1});
   }
 
@@ -66,7 +67,7 @@ class CatalogueCheck : FieldCheck {
     PROBE_TRY(check_finite(o.box_max));
     for (std::size_t i = 0; i < 3; ++i) {
       if (!(o.box_min[i] < o.box_max[i]))
-        return fail(&o.box_min[i], "a box has a positive extent on each axis");
+        return fail(Rule::kBox, &o.box_min[i], "a box has a positive extent on each axis");
     }
     PROBE_TRY(check_positive(o.density, "a density"));
     PROBE_TRY(check_not_negative(o.friction, "a friction"));
@@ -85,7 +86,8 @@ class CatalogueCheck : FieldCheck {
     PROBE_TRY(check_name(r.tcp, "the tool centre point"));
     PROBE_TRY(check_asset(r.urdf, AssetKind::kUrdf, false));
     if (r.control != static_cast<std::uint32_t>(Control::kEeDeltaPose)) {
-      return fail(&r.control, fmt::format("control law {} is not known", r.control));
+      return fail(Rule::kControl, &r.control,
+                  fmt::format("control law {} is not known", r.control));
     }
     PROBE_TRY(check_positive(r.control_hz, "a control rate"));
     for (const FingerRecord& finger : r.fingers) {
@@ -100,24 +102,25 @@ class CatalogueCheck : FieldCheck {
     PROBE_TRY(check_not_negative(r.reach_min, "a reach"));
     PROBE_TRY(check_not_negative(r.reach_max, "a reach"));
     if (r.reach_min > r.reach_max)
-      return fail(&r.reach_min, "the least reach is not more than the greatest");
+      return fail(Rule::kReach, &r.reach_min, "the least reach is not more than the greatest");
     PROBE_TRY(check_zero(r.zero));
 
     PROBE_TRY(check_slice(r.drives, t.drives.size(), "DRIV"));
     if (r.drives.count == 0 || r.drives.count > kMaxDrives) {
-      return fail(&r.drives,
+      return fail(Rule::kDriveCount, &r.drives,
                   fmt::format("a robot has 1 to {} drives, not {}", kMaxDrives, r.drives.count));
     }
     std::vector<std::string_view> joints;
     for (const DriveRecord& d : slice_of(t.drives, r.drives)) joints.push_back(t.text(d.joint));
     std::ranges::sort(joints);
     if (std::ranges::adjacent_find(joints) != joints.end())
-      return fail(&r.drives, "a joint has one drive, not two");
+      return fail(Rule::kDriveTwice, &r.drives, "a joint has one drive, not two");
 
     PROBE_TRY(check_slice(r.meshes, t.list.size(), "LIST"));
     if (r.meshes.count > kMaxMeshes) {
-      return fail(&r.meshes, fmt::format("a robot names at most {} meshes, not {}", kMaxMeshes,
-                                         r.meshes.count));
+      return fail(
+          Rule::kMeshCount, &r.meshes,
+          fmt::format("a robot names at most {} meshes, not {}", kMaxMeshes, r.meshes.count));
     }
     for (const std::uint32_t& mesh : slice_of(t.list, r.meshes)) {
       PROBE_TRY(check_index(mesh, t.assets.size(), "ASST"));
@@ -132,18 +135,22 @@ class CatalogueCheck : FieldCheck {
     PROBE_TRY(check_finite(c.aim_values));
     if (c.aim == static_cast<std::uint32_t>(CameraAim::kLook)) {
       if (c.aim_values[0] == 0 && c.aim_values[1] == 0 && c.aim_values[2] == 0) {
-        return fail(&c.aim_values, "a camera looks in a direction other than zero");
+        return fail(Rule::kCameraDirection, &c.aim_values,
+                    "a camera looks in a direction other than zero");
       }
       if (c.aim_values[3] != 0)
-        return fail(&c.aim_values[3], "the fourth number of a direction is zero");
+        return fail(Rule::kCameraFourth, &c.aim_values[3],
+                    "the fourth number of a direction is zero");
     } else if (c.aim == static_cast<std::uint32_t>(CameraAim::kQuat)) {
       PROBE_TRY(check_unit(c.aim_values, "the quaternion of a camera"));
     } else {
-      return fail(&c.aim, fmt::format("a camera aims by 1 (look) or 2 (quat), not {}", c.aim));
+      return fail(Rule::kCameraAim, &c.aim,
+                  fmt::format("a camera aims by 1 (look) or 2 (quat), not {}", c.aim));
     }
     if (c.width < 1 || c.width > kMaxPixels || c.height < 1 || c.height > kMaxPixels) {
-      return fail(&c.width, fmt::format("an image has 1 to {} pixels a side, not {} x {}",
-                                        kMaxPixels, c.width, c.height));
+      return fail(Rule::kImageSize, &c.width,
+                  fmt::format("an image has 1 to {} pixels a side, not {} x {}", kMaxPixels,
+                              c.width, c.height));
     }
     PROBE_TRY(check_zero(c.zero));
     PROBE_TRY(check_positive(c.fx, "a focal length"));
@@ -156,10 +163,12 @@ class CatalogueCheck : FieldCheck {
   Status sun(const SunRecord& s) const {
     PROBE_TRY(check_finite(s.direction));
     if (s.direction == std::array<double, 3>{0, 0, 0}) {
-      return fail(&s.direction, "light travels in a direction other than zero");
+      return fail(Rule::kSunDirection, &s.direction,
+                  "light travels in a direction other than zero");
     }
     PROBE_TRY(check_not_negative(s.power, "the power of a sun"));
-    if (s.shadow > 1) return fail(&s.shadow, "a sun casts shadows (1) or none (0)");
+    if (s.shadow > 1)
+      return fail(Rule::kSunShadow, &s.shadow, "a sun casts shadows (1) or none (0)");
     return check_zero(s.zero);
   }
 
@@ -168,7 +177,7 @@ class CatalogueCheck : FieldCheck {
     PROBE_TRY(check_not_negative(l.ambient, "ambient light"));
     PROBE_TRY(check_slice(l.suns, t.suns.size(), "SUNS"));
     if (l.suns.count > kMaxSuns) {
-      return fail(&l.suns,
+      return fail(Rule::kSunCount, &l.suns,
                   fmt::format("a light has at most {} suns, not {}", kMaxSuns, l.suns.count));
     }
     return check_zero(l.zero);
@@ -188,19 +197,19 @@ class CatalogueCheck : FieldCheck {
     const RobotRecord& r = t.robots[s.robot];
     PROBE_TRY(check_slice(s.joints, t.reals.size(), "REAL"));
     if (s.joints.count != r.drives.count) {
-      return fail(&s.joints,
+      return fail(Rule::kJointCount, &s.joints,
                   fmt::format("a scene gives {} joint positions, its robot has {} drives",
                               s.joints.count, r.drives.count));
     }
     PROBE_TRY(check_finite({&s.surface_z, 1}));
     PROBE_TRY(check_finite(s.area));
     if (!(s.area[0] < s.area[2]) || !(s.area[1] < s.area[3])) {
-      return fail(&s.area, "the area of a surface has a positive extent on each axis");
+      return fail(Rule::kArea, &s.area, "the area of a surface has a positive extent on each axis");
     }
     PROBE_TRY(check_positive(s.physics_hz, "a physics rate"));
     const double substeps = s.physics_hz / r.control_hz;
     if (!(substeps >= 1 && substeps <= kMaxSubsteps && substeps == std::floor(substeps))) {
-      return fail(&s.physics_hz,
+      return fail(Rule::kSubsteps, &s.physics_hz,
                   fmt::format("a control step has a whole number of physics steps up to {}, not {}",
                               kMaxSubsteps, substeps));
     }

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/check.h"
 #include "runtime/plan/isa.h"
 #include "runtime/plan/verify.h"
 #include "runtime/plan/verify_place.h"
@@ -49,21 +50,23 @@ class ProgramCheck {
 
   Status run(Needs& needs) {
     const auto code = slice_of(t_.code, program_.code);
-    if (code.empty()) return place_.fail(&program_, "a program has at least its END");
+    if (code.empty())
+      return place_.fail(Rule::kNoCode, &program_, "a program has at least its END");
     if (code.size() > kMaxInstructions) {
-      return place_.fail(&program_, fmt::format("a program has at most {} instructions, not {}",
-                                                kMaxInstructions, code.size()));
+      return place_.fail(Rule::kCodeLength, &program_,
+                         fmt::format("a program has at most {} instructions, not {}",
+                                     kMaxInstructions, code.size()));
     }
     for (const Instruction& in : code) PROBE_TRY(instruction(in, &in == &code.back(), needs));
     for (std::size_t i = 0; i < states_used_.size(); ++i) {
       if (!states_used_[i]) {
-        return place_.fail(&slice_of(t_.states, program_.states)[i],
+        return place_.fail(Rule::kStateUnused, &slice_of(t_.states, program_.states)[i],
                            "a state slot belongs to one monitor");
       }
     }
     for (std::size_t i = 0; i < metrics_emitted_.size(); ++i) {
       if (!metrics_emitted_[i]) {
-        return place_.fail(&slice_of(t_.metrics, program_.metrics)[i],
+        return place_.fail(Rule::kMetricMissing, &slice_of(t_.metrics, program_.metrics)[i],
                            "a metric is emitted exactly once");
       }
     }
@@ -74,15 +77,20 @@ class ProgramCheck {
   Status instruction(const Instruction& in, bool last, Needs& needs) {
     const OpInfo* info = find_op(in.op);
     if (info == nullptr)
-      return place_.fail(&in.op, fmt::format("operation {:#04x} is not known", in.op));
-    if (in.zero != 0) return place_.fail(&in.zero, "the second byte of an instruction is zero");
+      return place_.fail(Rule::kOperation, &in.op,
+                         fmt::format("operation {:#04x} is not known", in.op));
+    if (in.zero != 0)
+      return place_.fail(Rule::kInstructionZero, &in.zero,
+                         "the second byte of an instruction is zero");
     if (in.dst != types_.size()) {
-      return place_.fail(&in.dst, fmt::format("{} must say {} results before it, not {}",
-                                              info->name, types_.size(), in.dst));
+      return place_.fail(Rule::kDestination, &in.dst,
+                         fmt::format("{} must say {} results before it, not {}", info->name,
+                                     types_.size(), in.dst));
     }
     if ((info->op == Op::kEND) != last) {
       return place_.fail(
-          &in.op, last ? "a program ends with END" : "END is the last instruction and only there");
+          Rule::kEnd, &in.op,
+          last ? "a program ends with END" : "END is the last instruction and only there");
     }
     PROBE_TRY(operand(*info, info->a, in, in.a, needs));
     PROBE_TRY(operand(*info, info->b, in, in.b, needs));
@@ -95,7 +103,8 @@ class ProgramCheck {
     switch (kind) {
       case Kind::kUnused:
         if (value != 0)
-          return place_.fail(&value, fmt::format("an unused operand of {} is zero", info.name));
+          return place_.fail(Rule::kUnusedOperand, &value,
+                             fmt::format("an unused operand of {} is zero", info.name));
         return {};
       case Kind::kBool:
       case Kind::kReal:
@@ -104,14 +113,16 @@ class ProgramCheck {
       case Kind::kConstant:
         if (value + constant_width(info.op) > program_.constants.count) {
           return place_.fail(
-              &value, fmt::format("{} reads constant {} of {}", info.name,
-                                  value + constant_width(info.op) - 1, program_.constants.count));
+              Rule::kConstantRange, &value,
+              fmt::format("{} reads constant {} of {}", info.name,
+                          value + constant_width(info.op) - 1, program_.constants.count));
         }
         return {};
       case Kind::kImmediate:
         if (value > immediate_limit(info.op)) {
-          return place_.fail(&value, fmt::format("{} takes at most {}, not {}", info.name,
-                                                 immediate_limit(info.op), value));
+          return place_.fail(Rule::kImmediate, &value,
+                             fmt::format("{} takes at most {}, not {}", info.name,
+                                         immediate_limit(info.op), value));
         }
         return {};
       case Kind::kBody:
@@ -121,17 +132,19 @@ class ProgramCheck {
       case Kind::kMetric:
         return emit(info, value);
     }
-    return place_.fail(&in, "an operand has no rule");
+    PROBE_CHECK(false, "every kind of operand has a rule");
+    return {};
   }
 
   Status use_register(const OpInfo& info, Kind kind, const std::uint16_t& value) {
     if (value >= types_.size()) {
-      return place_.fail(&value,
+      return place_.fail(Rule::kReadBeforeWrite, &value,
                          fmt::format("{} reads r{} before it is written", info.name, value));
     }
     if (types_[value] != kind) {
-      return place_.fail(&value, fmt::format("{} wants {} but r{} is {}", info.name,
-                                             type_name(kind), value, type_name(types_[value])));
+      return place_.fail(Rule::kOperandType, &value,
+                         fmt::format("{} wants {} but r{} is {}", info.name, type_name(kind), value,
+                                     type_name(types_[value])));
     }
     return {};
   }
@@ -139,8 +152,9 @@ class ProgramCheck {
   Status use_body(const OpInfo& info, const Instruction& in, const std::uint16_t& value,
                   Needs& needs) {
     if (value >= kMaxBodies) {
-      return place_.fail(&value, fmt::format("{} names body {}, a task has at most {}", info.name,
-                                             value, kMaxBodies));
+      return place_.fail(
+          Rule::kBodyLimit, &value,
+          fmt::format("{} names body {}, a task has at most {}", info.name, value, kMaxBodies));
     }
     if (value + 1u > needs.bodies) {
       needs.bodies = value + 1u;
@@ -156,28 +170,32 @@ class ProgramCheck {
   Status use_state(const OpInfo& info, const Instruction& in, const std::uint16_t& value) {
     if (value >= program_.states.count) {
       return place_.fail(
-          &value, fmt::format("{} uses state {} of {}", info.name, value, program_.states.count));
+          Rule::kStateRange, &value,
+          fmt::format("{} uses state {} of {}", info.name, value, program_.states.count));
     }
     if (states_used_[value])
-      return place_.fail(&value, "a state slot belongs to one monitor, not to two");
+      return place_.fail(Rule::kStateTwice, &value,
+                         "a state slot belongs to one monitor, not to two");
     states_used_[value] = true;
     if (slice_of(t_.states, program_.states)[value].kind != in.op) {
-      return place_.fail(&value, fmt::format("state {} is not of kind {}", value, info.name));
+      return place_.fail(Rule::kStateMismatch, &value,
+                         fmt::format("state {} is not of kind {}", value, info.name));
     }
     return {};
   }
 
   Status emit(const OpInfo& info, const std::uint16_t& value) {
     if (value >= program_.metrics.count) {
-      return place_.fail(&value, fmt::format("{} names metric {} of {}", info.name, value,
-                                             program_.metrics.count));
+      return place_.fail(
+          Rule::kMetricRange, &value,
+          fmt::format("{} names metric {} of {}", info.name, value, program_.metrics.count));
     }
     if (metrics_emitted_[value])
-      return place_.fail(&value, "a metric is emitted exactly once, not twice");
+      return place_.fail(Rule::kMetricTwice, &value, "a metric is emitted exactly once, not twice");
     metrics_emitted_[value] = true;
     const auto type = static_cast<MetricType>(slice_of(t_.metrics, program_.metrics)[value].type);
     if ((type == MetricType::kBool) != (info.a == Kind::kBool)) {
-      return place_.fail(&value,
+      return place_.fail(Rule::kMetricMismatch, &value,
                          fmt::format("{} does not have the type of metric {}", info.name, value));
     }
     return {};
@@ -192,15 +210,16 @@ class ProgramCheck {
 
 Status check_task(const Place& place, const Tables& t, const TaskRecord& task, const Needs& needs) {
   if (needs.bodies > task.bodies.count) {
-    return place.fail(needs.highest,
+    return place.fail(Rule::kTaskBody, needs.highest,
                       fmt::format("names body {}, but task `{}` has {}", needs.bodies - 1,
                                   t.text(task.name), task.bodies.count));
   }
   for (const Instruction* in : needs.fingers) {
     const BodyRecord& body = slice_of(t.bodies, task.bodies)[in->a];
     if (body.kind != static_cast<std::uint32_t>(BodyKind::kLink) || body.index >= 2) {
-      return place.fail(&in->a, fmt::format("OPEN names body {}, which is no finger of task `{}`",
-                                            in->a, t.text(task.name)));
+      return place.fail(Rule::kFinger, &in->a,
+                        fmt::format("OPEN names body {}, which is no finger of task `{}`", in->a,
+                                    t.text(task.name)));
     }
   }
   return {};

@@ -40,28 +40,30 @@ const char* find_text_defect(std::string_view text) {
 
 Status FieldCheck::check_text(const StringRef& ref) const {
   if (std::uint64_t{ref.offset} + ref.length > t.strings.size()) {
-    return fail(&ref, fmt::format("a string at {} of {} bytes ends beyond the {} bytes of STRS",
-                                  ref.offset, ref.length, t.strings.size()));
+    return fail(Rule::kStringRange, &ref,
+                fmt::format("a string at {} of {} bytes ends beyond the {} bytes of STRS",
+                            ref.offset, ref.length, t.strings.size()));
   }
   if (ref.length > kMaxStringBytes) {
-    return fail(&ref,
+    return fail(Rule::kStringLength, &ref,
                 fmt::format("a string has at most {} bytes, not {}", kMaxStringBytes, ref.length));
   }
   const char* defect = find_text_defect(t.text(ref));
-  if (defect != nullptr) return fail(&ref, fmt::format("a string {}", defect));
+  if (defect != nullptr) return fail(Rule::kStringText, &ref, fmt::format("a string {}", defect));
   return {};
 }
 
 Status FieldCheck::check_name(const StringRef& ref, const char* what) const {
   PROBE_TRY(check_text(ref));
-  if (ref.length == 0) return fail(&ref, fmt::format("{} is not empty", what));
+  if (ref.length == 0) return fail(Rule::kEmptyName, &ref, fmt::format("{} is not empty", what));
   return {};
 }
 
 Status FieldCheck::check_slice(const Slice& slice, std::size_t size, const char* table) const {
   if (std::uint64_t{slice.first} + slice.count > size) {
-    return fail(&slice, fmt::format("records {} to {} of {} are named, which has {}", slice.first,
-                                    std::uint64_t{slice.first} + slice.count, table, size));
+    return fail(Rule::kSlice, &slice,
+                fmt::format("records {} to {} of {} are named, which has {}", slice.first,
+                            std::uint64_t{slice.first} + slice.count, table, size));
   }
   return {};
 }
@@ -69,7 +71,8 @@ Status FieldCheck::check_slice(const Slice& slice, std::size_t size, const char*
 Status FieldCheck::check_index(const std::uint32_t& index, std::size_t size,
                                const char* table) const {
   if (index >= size)
-    return fail(&index, fmt::format("record {} of {} is named, which has {}", index, table, size));
+    return fail(Rule::kIndex, &index,
+                fmt::format("record {} of {} is named, which has {}", index, table, size));
   return {};
 }
 
@@ -77,15 +80,16 @@ Status FieldCheck::check_asset(const std::uint32_t& index, AssetKind kind, bool 
   if (optional && index == kNone) return {};
   PROBE_TRY(check_index(index, t.assets.size(), "ASST"));
   if (t.assets[index].kind != static_cast<std::uint32_t>(kind)) {
-    return fail(&index, fmt::format("asset {} has kind {}, wanted is {}", index,
-                                    t.assets[index].kind, static_cast<std::uint32_t>(kind)));
+    return fail(Rule::kAssetUse, &index,
+                fmt::format("asset {} has kind {}, wanted is {}", index, t.assets[index].kind,
+                            static_cast<std::uint32_t>(kind)));
   }
   return {};
 }
 
 Status FieldCheck::check_finite(std::span<const double> values) const {
   for (const double& value : values) {
-    if (!std::isfinite(value)) return fail(&value, "a real number is finite");
+    if (!std::isfinite(value)) return fail(Rule::kFinite, &value, "a real number is finite");
   }
   return {};
 }
@@ -95,7 +99,7 @@ Status FieldCheck::check_unit(std::span<const double> values, const char* what) 
   double square = 0;
   for (double value : values) square += value * value;
   if (!(std::fabs(std::sqrt(square) - 1.0) <= 1e-12)) {
-    return fail(values.data(),
+    return fail(Rule::kUnit, values.data(),
                 fmt::format("{} has length 1 to 1e-12, not {:.17g}", what, std::sqrt(square)));
   }
   return {};
@@ -103,24 +107,26 @@ Status FieldCheck::check_unit(std::span<const double> values, const char* what) 
 
 Status FieldCheck::check_zero(std::span<const std::uint64_t> values) const {
   for (const std::uint64_t& value : values) {
-    if (value != 0) return fail(&value, "reserved bytes are zero");
+    if (value != 0) return fail(Rule::kZeros, &value, "reserved bytes are zero");
   }
   return {};
 }
 
 Status FieldCheck::check_zero(const std::uint32_t& value) const {
-  if (value != 0) return fail(&value, "reserved bytes are zero");
+  if (value != 0) return fail(Rule::kZero, &value, "reserved bytes are zero");
   return {};
 }
 
 Status FieldCheck::check_not_negative(const double& value, const char* what) const {
   if (std::isfinite(value) && value >= 0) return {};
-  return fail(&value, fmt::format("{} is finite and not negative, not {}", what, value));
+  return fail(Rule::kNotNegative, &value,
+              fmt::format("{} is finite and not negative, not {}", what, value));
 }
 
 Status FieldCheck::check_positive(const double& value, const char* what) const {
   if (std::isfinite(value) && value > 0) return {};
-  return fail(&value, fmt::format("{} is finite and greater than zero, not {}", what, value));
+  return fail(Rule::kPositive, &value,
+              fmt::format("{} is finite and greater than zero, not {}", what, value));
 }
 
 Status verify_tables(std::span<const std::byte> bytes, const Tables& tables) {

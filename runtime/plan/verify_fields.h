@@ -24,7 +24,9 @@ class FieldCheck {
   FieldCheck(std::span<const std::byte> bytes, const Tables& tables) : place_(bytes), t(tables) {}
 
  protected:
-  Failure fail(const void* at, std::string rule) const { return place_.fail(at, std::move(rule)); }
+  Failure fail(Rule rule, const void* at, std::string message) const {
+    return place_.fail(rule, at, std::move(message));
+  }
 
   // In range, of good text; `name` must not be empty either.
   Status check_text(const StringRef& ref) const;
@@ -49,7 +51,8 @@ class FieldCheck {
     seen.reserve(table.size());
     for (const Record& record : table) {
       if (seen.insert(t.text(record.name)).second) continue;
-      return fail(&record, fmt::format("two {} are called `{}`", what, t.text(record.name)));
+      return fail(Rule::kUniqueName, &record,
+                  fmt::format("two {} are called `{}`", what, t.text(record.name)));
     }
     return {};
   }

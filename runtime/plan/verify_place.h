@@ -7,6 +7,7 @@
 #include <string>
 
 #include "runtime/base/result.h"
+#include "runtime/plan/rules.h"
 
 namespace probe::plan {
 
@@ -15,7 +16,7 @@ class Place {
   explicit Place(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
   // `at` points into the bytes; `where` of the failure is "TASK at byte 4096".
-  Failure fail(const void* at, std::string rule) const;
+  Failure fail(Rule rule, const void* at, std::string message) const;
 
  private:
   std::span<const std::byte> bytes_;

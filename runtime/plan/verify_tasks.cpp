@@ -40,10 +40,12 @@ class TaskCheck : FieldCheck {
   Status state(const StateRecord& s) const {
     const OpInfo* op = s.kind < 256 ? find_op(static_cast<std::uint8_t>(s.kind)) : nullptr;
     if (op == nullptr || !op->is_monitor())
-      return fail(&s.kind, fmt::format("{:#x} is not a monitor", s.kind));
+      return fail(Rule::kStateKind, &s.kind, fmt::format("{:#x} is not a monitor", s.kind));
     const bool counts = op->op == Op::kHOLD;
-    if (counts && s.n == 0) return fail(&s.n, "HOLD holds for at least one step");
-    if (!counts && s.n != 0) return fail(&s.n, fmt::format("a state of {} has n = 0", op->name));
+    if (counts && s.n == 0)
+      return fail(Rule::kHoldLength, &s.n, "HOLD holds for at least one step");
+    if (!counts && s.n != 0)
+      return fail(Rule::kStateLength, &s.n, fmt::format("a state of {} has n = 0", op->name));
     return {};
   }
 
@@ -51,11 +53,11 @@ class TaskCheck : FieldCheck {
     PROBE_TRY(check_name(m.name, "the name of a metric"));
     if (m.type != static_cast<std::uint32_t>(MetricType::kBool) &&
         m.type != static_cast<std::uint32_t>(MetricType::kReal)) {
-      return fail(&m.type, fmt::format("metric type {} is not known", m.type));
+      return fail(Rule::kMetricType, &m.type, fmt::format("metric type {} is not known", m.type));
     }
     if (m.readout < static_cast<std::uint32_t>(Readout::kAtEnd) ||
         m.readout > static_cast<std::uint32_t>(Readout::kMin)) {
-      return fail(&m.readout, fmt::format("readout {} is not known", m.readout));
+      return fail(Rule::kReadout, &m.readout, fmt::format("readout {} is not known", m.readout));
     }
     return {};
   }
@@ -70,15 +72,19 @@ class TaskCheck : FieldCheck {
       PROBE_TRY(check_slice(p.code, t.code.size(), "CODE"));
       PROBE_TRY(check_slice(p.metrics, t.metrics.size(), "METR"));
       if (p.constants.count > kMaxConstants) {
-        return fail(&p.constants, fmt::format("a program has at most {} constants", kMaxConstants));
+        return fail(Rule::kConstantCount, &p.constants,
+                    fmt::format("a program has at most {} constants", kMaxConstants));
       }
       if (p.metrics.count > kMaxMetrics) {
-        return fail(&p.metrics, fmt::format("a program has at most {} metrics", kMaxMetrics));
+        return fail(Rule::kMetricCount, &p.metrics,
+                    fmt::format("a program has at most {} metrics", kMaxMetrics));
       }
       if (p.code.first != code)
-        return fail(&p.code, fmt::format("its code must begin at record {} of CODE", code));
+        return fail(Rule::kCodeFollows, &p.code,
+                    fmt::format("its code must begin at record {} of CODE", code));
       if (p.states.count > 0 && p.states.first != states) {
-        return fail(&p.states, fmt::format("its states must begin at record {} of STAT", states));
+        return fail(Rule::kStatesFollow, &p.states,
+                    fmt::format("its states must begin at record {} of STAT", states));
       }
       code += p.code.count;
       states += p.states.count;
@@ -87,11 +93,13 @@ class TaskCheck : FieldCheck {
       for (const MetricRecord& m : metrics) names.push_back(t.text(m.name));
       std::ranges::sort(names);
       if (std::ranges::adjacent_find(names) != names.end()) {
-        return fail(&p.metrics, "two metrics of a program have one name");
+        return fail(Rule::kMetricName, &p.metrics, "two metrics of a program have one name");
       }
     }
-    if (code != t.code.size()) return fail(&t.code[code], "an instruction belongs to a program");
-    if (states != t.states.size()) return fail(&t.states[states], "a state belongs to a program");
+    if (code != t.code.size())
+      return fail(Rule::kCodeOwned, &t.code[code], "an instruction belongs to a program");
+    if (states != t.states.size())
+      return fail(Rule::kStatesOwned, &t.states[states], "a state belongs to a program");
     return {};
   }
 
@@ -102,12 +110,13 @@ class TaskCheck : FieldCheck {
         return check_index(b.index, t.objects.size(), "OBJT");
       case BodyKind::kSurface:
       case BodyKind::kFixture:
-        if (b.index != 0) return fail(&b.index, "surface and fixture have index 0");
+        if (b.index != 0)
+          return fail(Rule::kBodyIndex, &b.index, "surface and fixture have index 0");
         return {};
       case BodyKind::kLink:
         return {};
     }
-    return fail(&b.kind, fmt::format("body kind {} is not known", b.kind));
+    return fail(Rule::kBodyKind, &b.kind, fmt::format("body kind {} is not known", b.kind));
   }
 
   Status placement(const PlacementRecord& p) const {
@@ -126,7 +135,7 @@ class TaskCheck : FieldCheck {
       episodes += t.tasks[i].episodes.count;
     }
     if (episodes != t.episodes.size()) {
-      return fail(t.episodes.data(),
+      return fail(Rule::kEpisodesOwned, t.episodes.data(),
                   fmt::format("tasks name {} episodes, EPIS has {}", episodes, t.episodes.size()));
     }
     PROBE_TRY(check_unique_names(t.tasks, "tasks"));
@@ -143,16 +152,16 @@ class TaskCheck : FieldCheck {
     PROBE_TRY(check_index(k.source, t.objects.size(), "OBJT"));
     PROBE_TRY(check_index(k.target, t.objects.size(), "OBJT"));
     if (k.horizon == 0 || k.horizon > kMaxHorizon) {
-      return fail(&k.horizon,
+      return fail(Rule::kHorizon, &k.horizon,
                   fmt::format("a horizon has 1 to {} steps, not {}", kMaxHorizon, k.horizon));
     }
     if (k.baseline != kNone) PROBE_TRY(check_index(k.baseline, t.tasks.size(), "TASK"));
     if ((k.axes & ~kAllAxes) != 0)
-      return fail(&k.axes, fmt::format("axes {:#x} are not all known", k.axes));
+      return fail(Rule::kAxes, &k.axes, fmt::format("axes {:#x} are not all known", k.axes));
     if (k.baseline == kNone && k.axes != 0)
-      return fail(&k.axes, "a task without a baseline differs on no axis");
+      return fail(Rule::kAxesBaseline, &k.axes, "a task without a baseline differs on no axis");
     if ((k.ood & ~kAllOod) != 0)
-      return fail(&k.ood, fmt::format("ood bits {:#x} are not all known", k.ood));
+      return fail(Rule::kOod, &k.ood, fmt::format("ood bits {:#x} are not all known", k.ood));
     PROBE_TRY(check_zero(k.zero));
     PROBE_TRY(check_text(k.allow));
     PROBE_TRY(check_not_negative(k.drop, "a drop"));
@@ -169,7 +178,7 @@ class TaskCheck : FieldCheck {
     const std::uint64_t objects = 2 + std::uint64_t{k.distractors};
     const std::uint64_t first_link = objects + 1 + (has_fixture ? 1 : 0);
     if (k.bodies.count > kMaxBodies || k.bodies.count < first_link + 2) {
-      return fail(&k.bodies,
+      return fail(Rule::kBodyCount, &k.bodies,
                   fmt::format("task `{}` has {} bodies; with its {} objects it needs {} to {}",
                               t.text(k.name), k.bodies.count, objects, first_link + 2, kMaxBodies));
     }
@@ -180,22 +189,26 @@ class TaskCheck : FieldCheck {
                               : i < first_link ? BodyKind::kFixture
                                                : BodyKind::kLink;
       if (bodies[i].kind != static_cast<std::uint32_t>(wanted)) {
-        return fail(&bodies[i].kind,
+        return fail(Rule::kBodyOrder, &bodies[i].kind,
                     fmt::format("body {} of task `{}` has kind {}, wanted is {}", i, t.text(k.name),
                                 bodies[i].kind, static_cast<std::uint32_t>(wanted)));
       }
       if (wanted == BodyKind::kLink && bodies[i].index != i - first_link) {
-        return fail(&bodies[i].index, "links are numbered from 0, the fingers first");
+        return fail(Rule::kLinkOrder, &bodies[i].index,
+                    "links are numbered from 0, the fingers first");
       }
     }
-    if (bodies[0].index != k.source) return fail(&bodies[0].index, "the first body is the source");
-    if (bodies[1].index != k.target) return fail(&bodies[1].index, "the second body is the target");
+    if (bodies[0].index != k.source)
+      return fail(Rule::kSourceFirst, &bodies[0].index, "the first body is the source");
+    if (bodies[1].index != k.target)
+      return fail(Rule::kTargetSecond, &bodies[1].index, "the second body is the target");
     const RobotRecord& robot = t.robots[scene.robot];
     for (std::size_t f = 0; f < robot.fingers.size(); ++f) {
       const BodyRecord& finger = bodies[first_link + f];
       if (t.text(finger.name) != t.text(robot.fingers[f].link)) {
-        return fail(&finger.name, fmt::format("link {} is finger `{}`, not `{}`", f,
-                                              t.text(robot.fingers[f].link), t.text(finger.name)));
+        return fail(Rule::kFingerName, &finger.name,
+                    fmt::format("link {} is finger `{}`, not `{}`", f,
+                                t.text(robot.fingers[f].link), t.text(finger.name)));
       }
     }
     return {};
@@ -205,27 +218,31 @@ class TaskCheck : FieldCheck {
     const TaskRecord& k = t.tasks[index];
     PROBE_TRY(check_slice(k.episodes, t.episodes.size(), "EPIS"));
     if (k.episodes.count == 0)
-      return fail(&k.episodes, fmt::format("task `{}` has no episode", t.text(k.name)));
+      return fail(Rule::kEpisodeCount, &k.episodes,
+                  fmt::format("task `{}` has no episode", t.text(k.name)));
     const auto bodies = slice_of(t.bodies, k.bodies);
     std::uint32_t number = 0;
     for (const EpisodeRecord& e : slice_of(t.episodes, k.episodes)) {
       if (e.task != index) {
-        return fail(&e.task, fmt::format("an episode of task {} stands among those of task {}",
-                                         e.task, index));
+        return fail(
+            Rule::kEpisodeTask, &e.task,
+            fmt::format("an episode of task {} stands among those of task {}", e.task, index));
       }
       if (e.index != number)
-        return fail(&e.index, fmt::format("episode {} says it is episode {}", number, e.index));
+        return fail(Rule::kEpisodeIndex, &e.index,
+                    fmt::format("episode {} says it is episode {}", number, e.index));
       ++number;
       PROBE_TRY(check_zero(e.zero));
       PROBE_TRY(check_slice(e.placements, t.placements.size(), "PLAC"));
       if (e.placements.count != 2 + k.distractors) {
-        return fail(&e.placements, fmt::format("an episode places {} objects, its task has {}",
-                                               e.placements.count, 2 + k.distractors));
+        return fail(Rule::kPlacementCount, &e.placements,
+                    fmt::format("an episode places {} objects, its task has {}", e.placements.count,
+                                2 + k.distractors));
       }
       for (std::uint32_t i = 0; i < e.placements.count; ++i) {
         const PlacementRecord& p = t.placements[e.placements.first + i];
         if (p.object != bodies[i].index) {
-          return fail(&e.placements,
+          return fail(Rule::kPlacementObject, &e.placements,
                       fmt::format("placement {} is of object {}, body {} is object {}", i, p.object,
                                   i, bodies[i].index));
         }
@@ -242,8 +259,9 @@ class TaskCheck : FieldCheck {
       for (; at != kNone && marks[at] == Mark::kNew; at = t.tasks[at].baseline)
         marks[at] = Mark::kOnPath;
       if (at != kNone && marks[at] == Mark::kOnPath) {
-        return fail(&t.tasks[at].baseline, fmt::format("task `{}` is its own baseline in the end",
-                                                       t.text(t.tasks[at].name)));
+        return fail(
+            Rule::kBaselineCycle, &t.tasks[at].baseline,
+            fmt::format("task `{}` is its own baseline in the end", t.text(t.tasks[at].name)));
       }
       for (at = start; at != kNone && marks[at] == Mark::kOnPath; at = t.tasks[at].baseline)
         marks[at] = Mark::kDone;
@@ -258,7 +276,8 @@ class TaskCheck : FieldCheck {
     for (const std::uint32_t& task : slice_of(t.list, slice)) {
       PROBE_TRY(check_index(task, t.tasks.size(), "TASK"));
       if (!seen.insert(task).second) {
-        return fail(&task, fmt::format("task `{}` is a member twice", t.text(t.tasks[task].name)));
+        return fail(Rule::kMemberTwice, &task,
+                    fmt::format("task `{}` is a member twice", t.text(t.tasks[task].name)));
       }
     }
     return {};
@@ -266,7 +285,8 @@ class TaskCheck : FieldCheck {
 
   Status count_list(const Slice& slice) {
     listed_ += slice.count;
-    if (listed_ > t.list.size()) return fail(&slice, "two records share entries of LIST");
+    if (listed_ > t.list.size())
+      return fail(Rule::kSharedList, &slice, "two records share entries of LIST");
     return {};
   }
 
@@ -292,7 +312,7 @@ class TaskCheck : FieldCheck {
   Status sources() const {
     for (const TextRecord& text : t.texts) {
       if (std::uint64_t{text.path.offset} + text.path.length > t.text_bytes.size()) {
-        return fail(&text.path, "the path of a text lies inside TXTB");
+        return fail(Rule::kTextPath, &text.path, "the path of a text lies inside TXTB");
       }
       PROBE_TRY(check_slice(text.bytes, t.text_bytes.size(), "TXTB"));
     }
@@ -301,16 +321,17 @@ class TaskCheck : FieldCheck {
       const std::size_t sizes[] = {t.code.size(), t.tasks.size(), t.objects.size(),
                                    t.metrics.size()};
       if (s.what < 1 || s.what > std::size(sizes))
-        return fail(&s.what, fmt::format("span kind {} is not known", s.what));
+        return fail(Rule::kSpanKind, &s.what, fmt::format("span kind {} is not known", s.what));
       PROBE_TRY(check_index(s.index, sizes[s.what - 1], "what the span describes"));
       PROBE_TRY(check_index(s.text, t.texts.size(), "TEXT"));
       if (s.begin > s.end || s.end > t.texts[s.text].bytes.count) {
-        return fail(&s.begin, fmt::format("bytes {} to {} are no part of a text of {}", s.begin,
-                                          s.end, t.texts[s.text].bytes.count));
+        return fail(Rule::kSpanRange, &s.begin,
+                    fmt::format("bytes {} to {} are no part of a text of {}", s.begin, s.end,
+                                t.texts[s.text].bytes.count));
       }
       if (previous != nullptr &&
           std::pair(previous->what, previous->index) > std::pair(s.what, s.index)) {
-        return fail(&s, "spans ascend by what they describe");
+        return fail(Rule::kSpanOrder, &s, "spans ascend by what they describe");
       }
       previous = &s;
     }

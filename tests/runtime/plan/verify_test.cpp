@@ -10,56 +10,14 @@
 
 #include "runtime/plan/ids.h"
 #include "runtime/plan/plan.h"
-#include "tests/runtime/plan/small_plan.h"
+#include "tests/plan/defects.h"
 
 using namespace probe;
 using namespace probe::plan;
 
 namespace {
 
-Header read_header(std::span<const std::byte> bytes) {
-  Header header;
-  std::memcpy(&header, bytes.data(), sizeof header);
-  return header;
-}
-
-std::vector<DirectoryEntry> read_directory(std::span<const std::byte> bytes) {
-  std::vector<DirectoryEntry> out(read_header(bytes).sections);
-  std::memcpy(out.data(), bytes.data() + sizeof(Header), out.size() * sizeof(DirectoryEntry));
-  return out;
-}
-
-// Writes the directory back and makes all hashes right again, so that deeper stages are reached.
-// Entries that lie outside the file keep their hash.
-void seal(std::vector<std::byte>& bytes, std::vector<DirectoryEntry> directory) {
-  for (DirectoryEntry& e : directory) {
-    if (e.offset > bytes.size() || e.size > bytes.size() - e.offset) continue;
-    e.sha256 = sha256(std::span<const std::byte>(bytes).subspan(e.offset, e.size)).bytes;
-  }
-  Header header = read_header(bytes);
-  header.root = root_hash(header, directory).bytes;
-  std::memcpy(bytes.data(), &header, sizeof header);
-  std::memcpy(bytes.data() + sizeof header, directory.data(),
-              directory.size() * sizeof(DirectoryEntry));
-}
-
-// The failure of verify on a small plan whose records were changed after all ids were filled.
-Failure failure_after(const std::function<void(Records&, Writer&)>& change) {
-  Writer w = small_writer();
-  std::ranges::reverse(w.records.spans);
-  w.fill_ids();
-  change(w.records, w);
-  const Status status = verify(w.lay_out());
-  return status.ok() ? Failure{} : status.failure();
-}
-
-struct Defect {
-  const char* section;
-  const char* rule;  // part of the message
-  std::function<void(Records&, Writer&)> make;
-};
-
-void check_defects(std::span<const Defect> defects) {
+void check_defects(const std::vector<Defect>& defects) {
   for (const Defect& defect : defects) {
     CAPTURE(defect.rule);
     const Failure failure = failure_after(defect.make);
@@ -70,8 +28,6 @@ void check_defects(std::span<const Defect> defects) {
     CHECK(failure.where.starts_with(std::string(defect.section) + " at byte "));
   }
 }
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -106,41 +62,7 @@ TEST_CASE("a plan may begin at any address") {
 }
 
 TEST_CASE("stage 1 names what is wrong with header and directory") {
-  struct Case {
-    const char* rule;
-    std::function<void(Header&, std::vector<DirectoryEntry>&)> make;
-  };
-  using Entries = std::vector<DirectoryEntry>;
-  const Case cases[] = {
-      {"text mode", [](Header& h, Entries&) { h.magic[5] = '\n'; }},
-      {"not a plan", [](Header& h, Entries&) { h.magic[1] = 'G'; }},
-      {"reads format 1", [](Header& h, Entries&) { h.major = 2; }},
-      {"reserved", [](Header& h, Entries&) { h.zero = 1; }},
-      {"the plan says it has", [](Header& h, Entries&) { h.file_size += 1; }},
-      {"does not fit", [](Header& h, Entries&) { h.sections = 0xffffffff; }},
-      {"the root", [](Header& h, Entries&) { h.root[0] ^= 1; }},
-      {"the root", [](Header& h, Entries&) { h.minor = 7; }},
-      {"flags other", [](Header&, Entries& d) { d[0].flags = 2; }},
-      {"must not be ignorable", [](Header&, Entries& d) { d[0].flags = 1; }},
-      {"must be ignorable", [](Header&, Entries& d) { d.back().flags = 0; }},
-      {"not known", [](Header&, Entries& d) { d.back().kind = 777; }},
-      {"has version", [](Header&, Entries& d) { d[3].version = 2; }},
-      {"have 64 bytes", [](Header&, Entries& d) { d[3].stride = 32; }},
-      {"is empty", [](Header&, Entries& d) { d[3].count = 0; }},
-      {"holds", [](Header&, Entries& d) { d[3].count += 1; }},
-      {"holds", [](Header&, Entries& d) { d[3].size = ~std::uint64_t{0}; }},
-      {"next multiple of 64", [](Header&, Entries& d) { d[3].offset += 64; }},
-      {"next multiple of 64", [](Header&, Entries& d) { d[3].offset = ~std::uint64_t{63}; }},
-      {"does not ascend",
-       [](Header&, Entries& d) {
-         std::swap(d[0].kind, d[24].kind), std::swap(d[0].flags, d[24].flags);
-       }},
-      {"SHA-256", [](Header&, Entries& d) { d[3].sha256[9] ^= 4; }},
-      {"beyond the file", [](Header&, Entries& d) { d.back().count += 64, d.back().size += 64; }},
-      {"ends where the file ends",
-       [](Header&, Entries& d) { d.back().count -= 1, d.back().size -= 1; }},
-  };
-  for (const Case& c : cases) {
+  for (const EnvelopeDefect& c : envelope_defects()) {
     CAPTURE(c.rule);
     auto bytes = small_plan();
     Header header = read_header(bytes);
@@ -158,11 +80,11 @@ TEST_CASE("stage 1 names what is wrong with header and directory") {
   }
 }
 
-TEST_CASE("bytes between sections are zero") {
+TEST_CASE("bytes between sections are zero [gap]") {
   auto bytes = small_plan();
   const auto directory = read_directory(bytes);
   bytes[directory[0].offset + directory[0].size] = std::byte{1};
-  CHECK(verify(bytes).failure().message == "bytes between sections are zero");
+  CHECK(verify(bytes).failure().message == "bytes between sections are zero [gap]");
 }
 
 TEST_CASE("a later minor version may add sections that can be ignored, and no others") {
@@ -184,208 +106,16 @@ TEST_CASE("a later minor version may add sections that can be ignored, and no ot
   CHECK(!add_section(0, kIgnorable).ok());
 }
 
-TEST_CASE("stage 2 names what is wrong with the catalogue") {
-  const Defect defects[] = {
-      {"OBJT", "ends beyond",
-       [](Records& r, Writer&) {
-         r.objects[0].name = {0xffffffff, 0xffffffff};
-       }},
-      {"OBJT", "at most 4096 bytes",
-       [](Records& r, Writer& w) { r.objects[0].text = w.text(std::string(5000, 'x')); }},
-      {"OBJT", "is not UTF-8",
-       [](Records& r, Writer& w) { r.objects[0].text = w.text("caf\xe9"); }},
-      {"OBJT", "normal form C",
-       [](Records& r, Writer& w) { r.objects[0].text = w.text("cafe\xcc\x81"); }},
-      {"OBJT", "control character",
-       [](Records& r, Writer& w) { r.objects[0].text = w.text("a\nb"); }},
-      {"OBJT", "control character",
-       [](Records& r, Writer& w) { r.objects[0].text = w.text("a\xc2\x85"); }},
-      {"OBJT", "is not empty", [](Records& r, Writer&) { r.objects[0].name = {}; }},
-      {"OBJT", "two objects are called",
-       [](Records& r, Writer&) { r.objects[0].name = r.objects[1].name; }},
-      {"OBJT", "record 99 of ASST", [](Records& r, Writer&) { r.objects[0].visual = 99; }},
-      {"OBJT", "asset 1 has kind 2", [](Records& r, Writer&) { r.objects[0].visual = 1; }},
-      {"OBJT", "finite", [](Records& r, Writer&) { r.objects[0].box_min[1] = -kInf; }},
-      {"OBJT", "positive extent", [](Records& r, Writer&) { r.objects[0].box_max[1] = -1; }},
-      {"OBJT", "a density", [](Records& r, Writer&) { r.objects[0].density = 0; }},
-      {"OBJT", "a friction", [](Records& r, Writer&) { r.objects[0].friction = std::nan(""); }},
-      {"OBJT", "reserved", [](Records& r, Writer&) { r.objects[0].zero[4] = 1; }},
-      {"ASST", "leads out", [](Records& r, Writer& w) { r.assets[0].path = w.text("../secret"); }},
-      {"ASST", "leads out",
-       [](Records& r, Writer& w) { r.assets[0].path = w.text("/etc/passwd"); }},
-      {"ASST", "leads out", [](Records& r, Writer& w) { r.assets[0].path = w.text("a//b"); }},
-      {"ASST", "kind 9", [](Records& r, Writer&) { r.assets[0].kind = 9; }},
-      {"ASST", "at least one byte", [](Records& r, Writer&) { r.assets[0].byte_size = 0; }},
-      {"ASST", "reserved", [](Records& r, Writer&) { r.assets[0].zero2 = 1; }},
-      {"REAL", "finite", [](Records& r, Writer&) { r.reals[0] = kInf; }},
-      {"DRIV", "the limit", [](Records& r, Writer&) { r.drives[0].limit = 0; }},
-      {"ROBT", "one drive", [](Records& r, Writer&) { r.drives[0].joint = r.drives[1].joint; }},
-      {"ROBT", "of DRIV",
-       [](Records& r, Writer&) {
-         r.robots[0].drives = {1, 0xffffffff};
-       }},
-      {"ROBT", "1 to 64 drives",
-       [](Records& r, Writer&) {
-         r.robots[0].drives = {0, 0};
-       }},
-      {"ROBT", "control law", [](Records& r, Writer&) { r.robots[0].control = 3; }},
-      {"ROBT", "control rate", [](Records& r, Writer&) { r.robots[0].control_hz = -5; }},
-      {"ROBT", "opening axis",
-       [](Records& r, Writer&) {
-         r.robots[0].fingers[1].opens = {0, 2, 0};
-       }},
-      {"ROBT", "record 4294967295 of ASST", [](Records& r, Writer&) { r.robots[0].urdf = kNone; }},
-      {"ROBT", "least reach", [](Records& r, Writer&) { r.robots[0].reach_min = 1; }},
-      {"LIST", "of ASST", [](Records& r, Writer&) { r.list[0] = 99; }},
-      {"CAMR", "aims by", [](Records& r, Writer&) { r.cameras[0].aim = 3; }},
-      {"CAMR", "other than zero",
-       [](Records& r, Writer&) {
-         r.cameras[0].aim_values = {0, 0, 0, 0};
-       }},
-      {"CAMR", "has length 1", [](Records& r, Writer&) { r.cameras[0].aim = 2; }},
-      {"CAMR", "pixels a side", [](Records& r, Writer&) { r.cameras[0].width = 0; }},
-      {"CAMR", "focal", [](Records& r, Writer&) { r.cameras[0].fy = 0; }},
-      {"SUNS", "other than zero",
-       [](Records& r, Writer&) {
-         r.suns[0].direction = {0, 0, 0};
-       }},
-      {"SUNS", "shadows", [](Records& r, Writer&) { r.suns[0].shadow = 2; }},
-      {"LITE", "of SUNS", [](Records& r, Writer&) { r.lights[0].suns.count = 2; }},
-      {"SCNE", "of ROBT", [](Records& r, Writer&) { r.scenes[0].robot = 1; }},
-      {"SCNE", "joint positions", [](Records& r, Writer&) { r.scenes[0].joints.count = 1; }},
-      {"SCNE", "has length 1",
-       [](Records& r, Writer&) { r.scenes[0].base_rotation[0] = 1 + 1e-11; }},
-      {"SCNE", "extent", [](Records& r, Writer&) { r.scenes[0].area[2] = -1; }},
-      {"SCNE", "whole number", [](Records& r, Writer&) { r.scenes[0].physics_hz = 501; }},
-  };
-  check_defects(defects);
-}
+TEST_CASE("stage 2 names what is wrong with the catalogue") { check_defects(catalogue_defects()); }
 
 TEST_CASE("stage 2 names what is wrong with tasks, episodes and lists") {
-  const Defect defects[] = {
-      {"CNST", "finite", [](Records& r, Writer&) { r.constants[0] = std::nan(""); }},
-      {"STAT", "not a monitor", [](Records& r, Writer&) { r.states[0].kind = 0x30; }},
-      {"STAT", "at least one step", [](Records& r, Writer&) { r.states[1].n = 0; }},
-      {"STAT", "n = 0", [](Records& r, Writer&) { r.states[0].n = 1; }},
-      {"STAT", "belongs to a program",
-       [](Records& r, Writer&) { r.states.push_back(r.states[0]); }},
-      {"CODE", "belongs to a program", [](Records& r, Writer&) { r.code.push_back(r.code[0]); }},
-      {"METR", "metric type", [](Records& r, Writer&) { r.metrics[0].type = 0; }},
-      {"METR", "readout", [](Records& r, Writer&) { r.metrics[0].readout = 9; }},
-      {"PROG", "have one name", [](Records& r, Writer&) { r.metrics[0].name = r.metrics[1].name; }},
-      {"PROG", "of CNST", [](Records& r, Writer&) { r.programs[0].constants.first = 1; }},
-      {"PROG", "must begin",
-       [](Records& r, Writer&) {
-         r.programs[0].code = {1, 5};
-       }},
-      {"BODY", "body kind", [](Records& r, Writer&) { r.bodies[0].kind = 0; }},
-      {"BODY", "of OBJT", [](Records& r, Writer&) { r.bodies[0].index = 2; }},
-      {"BODY", "has kind", [](Records& r, Writer&) { r.bodies[2].kind = 3; }},
-      {"BODY", "first body is the source", [](Records& r, Writer&) { r.bodies[0].index = 1; }},
-      {"BODY", "is finger", [](Records& r, Writer&) { r.bodies[3].name = r.bodies[5].name; }},
-      {"BODY", "numbered", [](Records& r, Writer&) { r.bodies[5].index = 7; }},
-      {"PLAC", "has length 1",
-       [](Records& r, Writer&) {
-         r.placements[0].rotation = {1, 1, 0, 0};
-       }},
-      {"PLAC", "finite", [](Records& r, Writer&) { r.placements[0].position[2] = kInf; }},
-      {"TASK", "two tasks are called",
-       [](Records& r, Writer&) { r.tasks[1].name = r.tasks[0].name; }},
-      {"TASK", "is not empty", [](Records& r, Writer&) { r.tasks[0].prompt = {}; }},
-      {"TASK", "of PROG", [](Records& r, Writer&) { r.tasks[0].program = 1; }},
-      {"TASK", "a horizon", [](Records& r, Writer&) { r.tasks[0].horizon = 0; }},
-      {"TASK", "its own baseline", [](Records& r, Writer&) { r.tasks[0].baseline = 1; }},
-      {"TASK", "its own baseline", [](Records& r, Writer&) { r.tasks[1].baseline = 1; }},
-      {"TASK", "axes 0x8000", [](Records& r, Writer&) { r.tasks[1].axes = 0x8000; }},
-      {"TASK", "no axis", [](Records& r, Writer&) { r.tasks[0].axes = 1; }},
-      {"TASK", "ood", [](Records& r, Writer&) { r.tasks[0].ood = 8; }},
-      {"TASK", "bodies; with its",
-       [](Records& r, Writer&) { r.tasks[0].distractors = 0xffffffff; }},
-      {"TASK", "has no episode", [](Records& r, Writer&) { r.tasks[0].episodes.count = 0; }},
-      {"EPIS", "stands among",
-       [](Records& r, Writer&) { r.tasks[0].episodes = r.tasks[1].episodes; }},
-      {"EPIS", "tasks name 3", [](Records& r, Writer&) { r.tasks[1].episodes.count = 1; }},
-      {"EPIS", "says it is", [](Records& r, Writer&) { r.episodes[1].index = 0; }},
-      {"EPIS", "places 1 objects", [](Records& r, Writer&) { r.episodes[1].placements.count = 1; }},
-      {"EPIS", "placement 0 is of object",
-       [](Records& r, Writer&) { r.episodes[1].placements.first = 1; }},
-      {"EPIS", "of PLAC", [](Records& r, Writer&) { r.episodes[1].placements.first = 3; }},
-      {"LIST", "twice", [](Records& r, Writer&) { r.list[3] = r.list[2]; }},
-      {"LIST", "of TASK", [](Records& r, Writer&) { r.list[2] = 7; }},
-      {"SUIT", "share entries",
-       [](Records& r, Writer&) {
-         r.sets[0].members = r.suites[0].members;
-       }},
-      {"SUIT", "of LIST", [](Records& r, Writer&) { r.suites[0].seeds.count = 100; }},
-      {"SPAN", "span kind", [](Records& r, Writer&) { r.spans[0].what = 5; }},
-      {"SPAN", "spans ascend", [](Records& r, Writer&) { std::ranges::reverse(r.spans); }},
-      {"SPAN", "no part of a text", [](Records& r, Writer&) { r.spans[0].end = 9999; }},
-      {"SPAN", "of TEXT", [](Records& r, Writer&) { r.texts.clear(); }},
-      {"TEXT", "of TXTB", [](Records& r, Writer&) { r.texts[0].bytes.count += 1; }},
-      {"TEXT", "path of a text", [](Records& r, Writer&) { r.texts[0].path.length = 0xffffffff; }},
-  };
-  check_defects(defects);
+  check_defects(task_defects());
 }
 
-TEST_CASE("stage 3 names what is wrong with a program") {
-  const auto patch = [](std::size_t i, Instruction in) {
-    return [i, in](Records& r, Writer&) { r.code[i] = in; };
-  };
-  using enum Op;
-  const Defect defects[] = {
-      {"CODE", "operation 0xee", [](Records& r, Writer&) { r.code[0].op = 0xee; }},
-      {"CODE", "second byte", [](Records& r, Writer&) { r.code[0].zero = 1; }},
-      {"CODE", "3 results before it", [](Records& r, Writer&) { r.code[3].dst = 4; }},
-      {"CODE", "ends with END", patch(18, make_instruction(kTCP, 15))},
-      {"CODE", "END is the last", patch(4, make_instruction(kEND, 4))},
-      {"CODE", "unused operand", patch(1, make_instruction(kTCP, 1, 1))},
-      {"CODE", "before it is written", patch(2, make_instruction(kVSUB, 2, 0, 2))},
-      {"CODE", "before it is written", patch(2, make_instruction(kVSUB, 2, 0xffff, 1))},
-      {"CODE", "wants a vector but r3 is a number", patch(5, make_instruction(kVLEN, 5, 3))},
-      {"CODE", "reads constant 4 of 4", patch(4, make_instruction(kKR, 4, 4))},
-      {"CODE", "reads constant 4 of 4", patch(9, make_instruction(kKV, 8, 2))},
-      {"CODE", "at most 1", patch(16, make_instruction(kKB, 13, 2))},
-      {"CODE", "at most 2", patch(17, make_instruction(kAXIS, 14, 0, 3))},
-      {"CODE", "a task has at most 256", patch(0, make_instruction(kPOS, 0, 300))},
-      {"CODE", "names body 6, but task `carrot_on_plate` has 6",
-       patch(0, make_instruction(kPOS, 0, 6))},
-      {"CODE", "is no finger", patch(8, make_instruction(kOPEN, 7, 5))},
-      {"CODE", "uses state 2 of 2", patch(6, make_instruction(kONCE, 6, 5, 2))},
-      {"CODE", "not of kind ALWAYS", patch(6, make_instruction(kALWAYS, 6, 5, 0))},
-      {"CODE", "one monitor, not to two",
-       [](Records& r, Writer&) {
-         r.states[1] = r.states[0], r.code[14] = make_instruction(kONCE, 12, 11, 0);
-       }},
-      {"CODE", "names metric 3 of 3", patch(7, make_instruction(kEMITB, 7, 6, 3))},
-      {"CODE", "not twice", patch(15, make_instruction(kEMITB, 13, 12, 0))},
-      {"CODE", "type of metric", patch(7, make_instruction(kEMITB, 7, 6, 1))},
-      {"METR", "exactly once",
-       [](Records& r, Writer& w) {
-         r.metrics.push_back({w.text("more"), 1, 1}), r.programs[0].metrics.count = 4;
-       }},
-      {"STAT", "belongs to one monitor",
-       [](Records& r, Writer&) {
-         r.states.push_back(r.states[0]), r.programs[0].states.count = 3;
-       }},
-      {"PROG", "at most 4096",
-       [](Records& r, Writer&) { r.code.resize(5000), r.programs[0].code.count = 5000; }},
-      {"PROG", "at least its END",
-       [](Records& r, Writer&) {
-         r.programs.push_back(ProgramRecord{}), r.programs[1].code.first = 19;
-       }},
-  };
-  check_defects(defects);
-}
+TEST_CASE("stage 3 names what is wrong with a program") { check_defects(code_defects()); }
 
 TEST_CASE("stage 4 recomputes all ids") {
-  const Defect defects[] = {
-      {"PROG", "program hash", [](Records& r, Writer&) { r.programs[0].hash[0] ^= 1; }},
-      {"TASK", "judge id", [](Records& r, Writer&) { r.tasks[1].judge_id[0] ^= 1; }},
-      {"EPIS", "start id", [](Records& r, Writer&) { r.episodes[2].start_id[31] ^= 1; }},
-      {"EPIS", "episode id", [](Records& r, Writer&) { r.episodes[2].episode_id[31] ^= 1; }},
-      {"EPIS", "episode id", [](Records& r, Writer& w) { r.tasks[0].prompt = w.text("drop it"); }},
-  };
-  check_defects(defects);
+  check_defects(identity_defects());
   Writer w = small_writer();
   std::ranges::reverse(w.records.spans);
   CHECK(verify(w.lay_out(), {.identity = false}).ok());
