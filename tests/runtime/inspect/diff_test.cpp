@@ -1,0 +1,68 @@
+#include "runtime/inspect/plan_diff.h"
+#include "runtime/inspect/task_diff.h"
+#include "tests/runtime/inspect/small_plan.h"
+
+using namespace probe;
+using namespace probe::inspect;
+
+TEST_CASE("a reworded task has the same starts and the same judge") {
+  const auto diff = diff_tasks(test::small_plan(), test::task("base"), test::task("colored"));
+  CHECK(diff["baseline"] == "a");
+  CHECK(diff["axes"].dump() == R"(["language.appearance"])");
+  CHECK(diff["equal"].dump() ==
+        R"({"starts":24,"episodes":0,"of":24,"prompt":false,"judge":true,"program":true})");
+  CHECK(diff_text(diff) ==
+        R"(                base                                             colored
+* prompt        put [carrot] on [plate]                          put [the orange object] on [the yellow object]
+  source        carrot                                           carrot
+  target        plate                                            plate
+  distractors   none                                             none
+* baseline      none                                             base
+  scene         table                                            table
+  camera        third_view                                       third_view
+  light         studio                                           studio
+  horizon       60                                               60
+  metrics       success, intention, grasp, steady, moved, wrong  success, intention, grasp, steady, moved, wrong
+  instructions  83                                               83
+  episodes      24                                               24
+
+axes       language.appearance
+declared   colored is a variant of base: language.appearance
+start id   24 of 24 equal
+prompt id  differs
+judge id   equal; program equal
+episode id 0 of 24 equal
+)");
+}
+
+TEST_CASE("a distractor changes the starts but not what is meant by the judgement") {
+  const auto diff = diff_tasks(test::small_plan(), test::task("crowded"), test::task("base"));
+  CHECK(diff["baseline"] == "b");
+  CHECK(diff["axes"].dump() == R"(["distractors"])");
+  CHECK(diff["equal"]["starts"] == 0);
+  CHECK(diff["equal"]["prompt"] == true);
+  CHECK(diff["right"]["distractors"].empty());
+}
+
+TEST_CASE("two plans: what is only in one, and which identities changed") {
+  const plan::Plan& before = test::small_plan();
+  const plan::Plan after = test::compile_small(
+      "\nvariant new_one of base { horizon 70 steps }\nsuite more { tasks { new_one }; seeds 1 }\n",
+      "longer  { horizon 90 steps }", "longer  { horizon 91 steps }");
+  const auto diff = diff_plans(before, after);
+  CHECK(plan_diff_text(diff) ==
+        "+ new_one\n"
+        "* longer: judge; 24 of 24 episodes are others\n"
+        "0 only in the first, 1 only in the second, 1 changed, 7 equal\n");
+  CHECK(
+      diff["changed"][0].dump() ==
+      R"({"task":"longer","prompt":true,"judge":false,"starts":24,"episodes":0,"of_a":24,"of_b":24})");
+  CHECK(plan_diff_text(diff_plans(after, before)).substr(0, 10) == "- new_one\n");
+}
+
+TEST_CASE("a plan equals itself") {
+  const auto diff = diff_plans(test::small_plan(), test::small_plan());
+  CHECK(diff["a"] == diff["b"]);
+  CHECK(diff["equal"] == 8);
+  CHECK(diff["changed"].empty());
+}
