@@ -6,6 +6,7 @@
 #include <unistd.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -17,8 +18,18 @@ namespace {
 
 using codec::Tag;
 
-// No episode comes near; a damaged stream must not fill the memory.
+// A forged stream must not fill the memory: what a file may expand to is bounded by its own size.
+// Every step has hashes, check words and times that do not compress, so no real trace comes near.
 constexpr std::size_t kMaxContent = std::size_t{1} << 30;
+constexpr std::size_t kMaxExpansion = 1024;
+constexpr std::size_t kFreeExpansion = std::size_t{1} << 20;
+// The writer's window is 2 MiB; the decoder allocates what the file asks for.
+constexpr int kMaxWindowLog = 23;
+
+std::size_t allowed_content(std::size_t file_bytes) {
+  return std::min(kMaxContent, kFreeExpansion + kMaxExpansion * file_bytes);
+}
+
 constexpr std::size_t kCheckBytes = 8;
 
 // The first bytes of a chunk's hash, tag and size included.
@@ -151,6 +162,7 @@ Result<Content> decompress(const std::string& path) {
     return Failure{"trace", std::string("cannot be opened: ") + std::strerror(errno), path};
   }
   ZSTD_DCtx* stream = ZSTD_createDCtx();
+  ZSTD_DCtx_setParameter(stream, ZSTD_d_windowLogMax, kMaxWindowLog);
   std::vector<char> packed(ZSTD_DStreamInSize());
   std::vector<char> plain(ZSTD_DStreamOutSize());
   Content content;
@@ -174,7 +186,10 @@ Result<Content> decompress(const std::string& path) {
       }
       const auto* begin = reinterpret_cast<const std::byte*>(plain.data());
       content.bytes.insert(content.bytes.end(), begin, begin + out.pos);
-      if (content.bytes.size() > kMaxContent) content.incomplete = "larger than any episode";
+      if (content.bytes.size() > allowed_content(total + in.pos)) {
+        content.incomplete =
+            "expanding beyond any episode at byte " + std::to_string(total + in.pos);
+      }
       if (code == 0) ended = true;
       if (in.pos == in.size && out.pos < out.size) break;
     }
