@@ -68,13 +68,15 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
     roots.push_back(std::move(root));
   }
   std::vector<const syntax::File*> trees;
-  std::vector<FileId> ids;
+  std::vector<FileId> ids, named;
   for (const syntax::ParseResult& result : loaded.files) {
     trees.push_back(&result.file);
     ids.push_back(result.file.id);
+    const std::string& name = compilation.sources.file(result.file.id).name();
+    if (std::find(roots.begin(), roots.end(), name) != roots.end()) named.push_back(result.file.id);
   }
   const sema::Model model =
-      sema::analyze(compilation.sources, trees, options.asset_root, compilation.diagnostics);
+      sema::analyze(compilation.sources, trees, options.asset_root, compilation.diagnostics, named);
   if (!compilation.diagnostics.has_errors()) {
     PROBE_TRY(check_suite_exists(model, options.suite));
     const emit::EmitOptions emit_options{

@@ -1,14 +1,16 @@
 #include "compiler/sema/analyze.h"
 
 #include "compiler/sema/passes.h"
+#include "compiler/sema/report.h"
 
 namespace probe::sema {
 
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
-              const std::string& asset_root, Diagnostics& diagnostics) {
+              const std::string& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots) {
   Model model;
+  Diagnostics found;
   Context context{.sources = sources,
-                  .diagnostics = diagnostics,
+                  .diagnostics = found,
                   .asset_root = asset_root,
                   .model = model,
                   .symbols = {},
@@ -27,6 +29,10 @@ Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& 
   define_sets(context);
   define_suites(context);
   check_tags(context);
+  if (roots.empty()) {
+    for (const syntax::File* file : files) roots.push_back(file->id);
+  }
+  say(context, roots, diagnostics);
   return model;
 }
 

@@ -41,6 +41,7 @@ void break_cycles(Context& context) {
 }
 
 void check_edge(Context& context, const Task& task) {
+  const About about(context, task.decl_span);
   const Task& baseline = context.model.tasks[task.baseline];
   if (baseline.abstract) {
     context.report(
@@ -55,7 +56,7 @@ void check_edge(Context& context, const Task& task) {
                    "`" + task.name + "` does not differ from its baseline `" + baseline.name + "`");
     return;
   }
-  if (axes == 1 || task.allow_confounded) return;
+  if (axes == 1) return;
   context
       .report(Code::P0701, task.span,
               "`" + task.name + "` differs from its baseline on " + std::to_string(axes) + " axes")

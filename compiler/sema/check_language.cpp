@@ -168,6 +168,7 @@ struct TaskLanguage {
 void check_language(Context& context) {
   for (const Task& task : context.model.tasks) {
     if (task.abstract || !task.complete) continue;
+    const About about(context, task.decl_span);
     const TaskLanguage check{context, task};
     for (const Template::Part& part : context.model.templates[task.say].parts) {
       if (part.slot) check.check_slot(*part.slot);

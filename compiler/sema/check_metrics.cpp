@@ -27,6 +27,7 @@ void check_metrics(Context& context) {
   std::set<std::pair<ExprRef, std::uint64_t>> reported;
   for (const Task& task : context.model.tasks) {
     if (task.abstract || !task.complete) continue;
+    const About about(context, task.decl_span);
     for (const Metric& metric : task.judged) {
       HoldFinder finder{context.model, task.horizon, {}};
       finder.visit(metric.expr);

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <set>
 
 #include "compiler/sema/layouts.h"
 #include "compiler/sema/passes.h"
+#include "compiler/sema/tasks.h"
 
 namespace probe::sema {
 namespace {
@@ -159,22 +162,57 @@ struct StartCheck {
   }
 };
 
+// What the starts of a task depend on.
+std::vector<double> starts_key(const Task& task) {
+  std::vector<double> key = {static_cast<double>(task.layout)};
+  for (const ObjectId id : task.objects()) key.push_back(static_cast<double>(id));
+  for (const PoseOverride& pose : task.poses) {
+    key.push_back(-1);
+    key.push_back(static_cast<double>(pose.object));
+    for (const Turn& turn : pose.turns)
+      key.insert(key.end(), turn.rotation.begin(), turn.rotation.end());
+  }
+  return key;
+}
+
+struct StartCache {
+  const std::vector<Start>* starts = nullptr;
+  std::set<SceneId> fine_in;  // scenes in which nothing is wrong with them
+};
+
 }  // namespace
 
 void check_starts(Context& context) {
+  std::map<std::vector<double>, StartCache> known;
+  std::size_t episodes = 0;
   for (Task& task : context.model.tasks) {
     if (task.abstract || !task.complete) continue;
+    const About about(context, task.decl_span);
     const Layout& layout = context.model.layouts[task.layout];
-    std::optional<LayoutProblem> problem;
-    task.starts = enumerate_starts(context.model, layout, task, problem);
-    if (problem) {
-      const Code code = problem->kind == LayoutProblem::kTooFewCells ? Code::P0503
-                        : problem->kind == LayoutProblem::kNotPlaced ? Code::P0206
-                                                                     : Code::P0304;
-      context.report(code, task.layout_span, problem->message + " in `" + task.name + "`")
-          .label(problem->span, "the layout");
-      task.complete = false;
-      continue;
+    StartCache& cache = known[starts_key(task)];
+    if (cache.starts == nullptr) {
+      std::optional<LayoutProblem> problem;
+      std::vector<Start> starts =
+          enumerate_starts(context.model, layout, task, kMaxEpisodes - episodes, problem);
+      if (problem) {
+        const Code code = problem->kind == LayoutProblem::kTooFewCells ? Code::P0503
+                          : problem->kind == LayoutProblem::kNotPlaced ? Code::P0206
+                          : problem->kind == LayoutProblem::kTooMany   ? Code::P0210
+                                                                       : Code::P0304;
+        context.report(code, task.layout_span, problem->message + " in `" + task.name + "`")
+            .label(problem->span, "the layout");
+        task.complete = false;
+        continue;
+      }
+      cache.starts = &context.model.start_lists.emplace_back(std::move(starts));
+    }
+    task.starts = *cache.starts;
+    episodes += task.starts.size();
+    if (episodes > kMaxEpisodes) {
+      context.report(Code::P0210, task.span,
+                     "the suite grows beyond " + std::to_string(kMaxEpisodes) + " episodes with `" +
+                         task.name + "`");
+      return;
     }
     if (layout.expect && *layout.expect != task.starts.size()) {
       context
@@ -183,10 +221,13 @@ void check_starts(Context& context) {
                       " episodes, not " + std::to_string(*layout.expect))
           .label(task.layout_span, "used here");
     }
+    if (cache.fine_in.contains(task.scene)) continue;
+    const std::size_t before = context.diagnostics.size();
     const StartCheck check{context, task, layout};
     check.overlaps();
     check.surface();
     check.reach();
+    if (context.diagnostics.size() == before) cache.fine_in.insert(task.scene);
   }
 }
 

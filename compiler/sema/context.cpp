@@ -119,9 +119,9 @@ struct Collector {
       collect_task(context, {&file, &decl, member.name, false, node.of, node.of, &member.body});
     }
   }
-  void operator()(const syntax::DeriveDecl&) const {
-    context.report(Code::P0101, decl.span, "`derive` is not available yet")
-        .help("write the variants out with `variants of`");
+  // Its tasks are made when those that it goes over are known.
+  void operator()(const syntax::DeriveDecl& node) const {
+    symbols().derive_decls.push_back({&file, &decl, &node});
   }
   void operator()(const syntax::SetDecl& node) const {
     collect(symbols().sets, symbols().set_decls, context, file, decl, node);

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -50,7 +52,12 @@ struct Declared {
   const Node* node = nullptr;
 };
 
-// A task is declared in one of three ways; this is what they have in common.
+// A name that `derive` binds, with what it stands for in one of its tasks.
+struct Binding {
+  std::string_view name, value;
+};
+
+// A task is declared in one of four ways; this is what they have in common.
 struct DeclaredTask {
   const syntax::File* file = nullptr;
   const syntax::Decl* decl = nullptr;
@@ -59,6 +66,8 @@ struct DeclaredTask {
   std::optional<syntax::Name> like;
   std::optional<syntax::Name> against;
   const std::vector<syntax::TaskStmt>* body = nullptr;
+  bool derived = false;
+  std::vector<Binding> bindings = {};
 };
 
 struct Symbols {
@@ -79,7 +88,9 @@ struct Symbols {
   std::vector<Declared<syntax::TemplateDecl>> template_decls;
   std::vector<Declared<syntax::PredicateDecl>> predicate_decls;
   std::vector<Declared<syntax::MetricsDecl>> metrics_decls;
-  std::vector<DeclaredTask> task_decls;
+  std::vector<DeclaredTask> task_decls;  // those of a `derive` behind all written ones
+  std::vector<Declared<syntax::DeriveDecl>> derive_decls;
+  std::deque<std::string> derived_names;  // what their names are views of
   std::vector<Declared<syntax::SetDecl>> set_decls;
   std::vector<Declared<syntax::SuiteDecl>> suite_decls;
 };
@@ -91,10 +102,30 @@ struct Context {
   Model& model;
   Symbols symbols;
   std::vector<const syntax::File*> files;  // a file after the files it uses
+  std::map<std::size_t, Span> about = {};  // by diagnostic: the declaration it is about
 
   Diagnostic& report(Code code, const Span& span, std::string message) {
     return diagnostics.report(code, span, std::move(message));
   }
+};
+
+// While it lives, what is reported is about this declaration, wherever it points: an @allow there
+// silences it.
+class About {
+ public:
+  About(Context& context, const Span& decl)
+      : context_(context), decl_(decl), first_(context.diagnostics.size()) {}
+  ~About() {
+    for (std::size_t i = first_; i < context_.diagnostics.size(); ++i)
+      context_.about.insert({i, decl_});
+  }
+  About(const About&) = delete;
+  About& operator=(const About&) = delete;
+
+ private:
+  Context& context_;
+  Span decl_;
+  std::size_t first_;
 };
 
 // Fills the symbols; P0203.

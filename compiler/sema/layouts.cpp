@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "compiler/sema/passes.h"
+#include "compiler/sema/tasks.h"
+#include "runtime/base/sha256.h"
 
 namespace probe::sema {
 namespace {
@@ -130,7 +132,10 @@ struct LayoutReader {
   void operator()(const syntax::JitterStmt& stmt) {
     layout.jitter =
         read_si(context, stmt.value, dim::kLength, "`jitter` takes a length").value_or(0);
-    context.report(Code::P0101, stmt.span, "`jitter` is not available yet");
+    layout.jitter_span = stmt.value.span;
+    if (layout.jitter >= 0) return;
+    context.report(Code::P0304, stmt.value.span, "expected a jitter of 0 or more");
+    layout.jitter = 0;
   }
   void operator()(const syntax::DropStmt& stmt) {
     layout.drop = read_si(context, stmt.height, dim::kLength, "`drop` takes a height").value_or(0);
@@ -239,6 +244,19 @@ struct Enumerator {
     return std::nullopt;
   }
 
+  // How many starts placements() makes with these grids; a double, so that nothing overflows.
+  double count(const std::vector<std::size_t>& grids) const {
+    double ways = static_cast<double>(turn_count);
+    std::vector<std::size_t> used(layout.cells.size(), 0);
+    for (const Item& item : items) {
+      if (item.place->how == Place::kAt) continue;
+      const std::size_t size = layout.cells[item.cells].grids[grids[item.cells]].size();
+      const std::size_t left = size - std::min(size, used[item.cells]++);
+      ways *= item.place->how == Place::kDistinct ? static_cast<double>(left) : left > 0 ? 1 : 0;
+    }
+    return ways;
+  }
+
   // All ways to give the items their cells, as one odometer: the digit of a `distinct` item is its
   // cell, later items fastest; the others have one way. `grids` chooses a grid for each named set
   // of cells.
@@ -302,17 +320,56 @@ struct Enumerator {
   }
 };
 
+// A number in [-1, 1) from the first bits of a hash.
+double draw(const Sha256& hash) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < 8; ++i) bits = bits << 8 | hash.bytes[i];
+  return static_cast<double>(bits >> 11) * 0x1p-52 - 1.0;
+}
+
+// Every draw has its own key, the start as the grid gives it with the object and the axis, so that
+// no other task, start or object shifts it.
+void jitter(const Model& model, double most, Start& start) {
+  std::vector<std::pair<std::string, const Start::Placed*>> rows;
+  for (const Start::Placed& placed : start.placed)
+    rows.emplace_back(model.objects[placed.object].name, &placed);
+  std::sort(rows.begin(), rows.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  Hasher whole;
+  whole.text("start");
+  for (const auto& [name, placed] : rows)
+    whole.text(name).f64(placed->x).f64(placed->y).f64s(placed->turn.rotation);
+  const Sha256 key = whole.finish();
+  for (Start::Placed& placed : start.placed) {
+    double* const axes[] = {&placed.x, &placed.y};
+    for (std::uint8_t axis = 0; axis < 2; ++axis) {
+      Hasher hasher;
+      hasher.text("jitter").hash(key).text(model.objects[placed.object].name).u8(axis);
+      *axes[axis] += most * draw(hasher.finish());
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
-                                    std::optional<LayoutProblem>& problem) {
+                                    std::size_t most, std::optional<LayoutProblem>& problem) {
   Enumerator enumerator{model, layout, task, task.objects(), {}, {}, 1};
   problem = enumerator.plan_items();
   if (!problem) problem = enumerator.plan_turns();
   if (problem) return {};
   std::vector<Start> starts;
   std::vector<std::size_t> grids(layout.cells.size(), 0);
+  double count = 0;
   while (true) {
+    count += enumerator.count(grids);
+    if (count > static_cast<double>(most)) {
+      problem = LayoutProblem{LayoutProblem::kTooMany,
+                              "the suite grows beyond " + std::to_string(kMaxEpisodes) +
+                                  " episodes with layout `" + layout.name + "`",
+                              layout.span};
+      return {};
+    }
     enumerator.placements(grids, starts);
     std::size_t at = grids.size();
     while (at > 0 && grids[at - 1] + 1 >= layout.cells[at - 1].grids.size()) grids[--at] = 0;
@@ -331,6 +388,9 @@ std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, co
                             std::to_string(enumerator.objects.size()) + " objects for " +
                                 std::to_string(cells) + " cells",
                             span};
+  }
+  if (layout.jitter > 0) {
+    for (Start& start : starts) jitter(model, layout.jitter, start);
   }
   return starts;
 }

@@ -11,15 +11,14 @@ namespace probe::sema {
 
 // Why a layout gives no starts for a task.
 struct LayoutProblem {
-  enum Kind { kNotPlaced, kTooFewCells, kRestCount };
+  enum Kind { kNotPlaced, kTooFewCells, kRestCount, kTooMany };
   Kind kind = kNotPlaced;
   std::string message;
   Span span;  // within the layout
 };
 
-// Starts in episode order. `rests` gives the rest turns of an object in this task (poses
-// overridden). On a problem the list is empty and `problem` is set.
+// Starts in episode order, at most `most`. On a problem the list is empty and `problem` is set.
 std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
-                                    std::optional<LayoutProblem>& problem);
+                                    std::size_t most, std::optional<LayoutProblem>& problem);
 
 }  // namespace probe::sema

@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -246,6 +248,7 @@ struct Task {
   Span decl_span;  // of the declaration
   FileId file;
   bool abstract = false;
+  bool derived = false;  // by a `derive`, whose name text is `span`
   TaskId like = TaskId::kNone;
   TaskId baseline = TaskId::kNone;
   Span baseline_span;
@@ -272,8 +275,8 @@ struct Task {
   std::string prompt;
   std::uint32_t axes = 0;
   std::uint32_t ood = 0;
-  std::vector<Metric> judged;  // the metrics it is judged by, in order
-  std::vector<Start> starts;
+  std::vector<Metric> judged;     // the metrics it is judged by, in order
+  std::span<const Start> starts;  // in Model::start_lists; equal tasks share one
 
   // source, target, distractors
   std::vector<ObjectId> objects() const;
@@ -311,6 +314,7 @@ struct Model {
   Table<TaskId, Task> tasks;
   Table<SetId, TaskSet> sets;
   Table<SuiteId, Suite> suites;
+  std::deque<std::vector<Start>> start_lists;  // a deque: spans into it stay valid
 };
 
 }  // namespace probe::sema

@@ -1,12 +1,14 @@
 // Sets of tasks, computed from conditions, and suites that list them. Sets may name one another in
 // any order.
+#include "compiler/sema/sets.h"
+
 #include <algorithm>
 #include <filesystem>
-#include <set>
 
 #include "compiler/sema/axes.h"
 #include "compiler/sema/language.h"
 #include "compiler/sema/passes.h"
+#include "runtime/base/sha256.h"
 
 namespace probe::sema {
 namespace {
@@ -27,205 +29,243 @@ std::set<std::uint32_t> visible_files(const Context& context, const syntax::File
       const std::string used = (folder / use->path.value).lexically_normal().string();
       for (const syntax::File* other : context.files) {
         const std::filesystem::path name(context.sources.file(other->id).name());
-        if (name.lexically_normal().string() == used) open.push_back(other);
+        // A library file is found in a folder of its own.
+        const std::string path = name.lexically_normal().generic_string();
+        if (path == used || path.ends_with("/" + use->path.value)) open.push_back(other);
       }
     }
   }
   return visible;
 }
 
-class SetReader {
+// Which tasks are in a set.
+class Mask {
  public:
-  explicit SetReader(Context& context)
-      : context_(context), states_(context.symbols.set_decls.size(), kNew) {}
-
-  void define(SetId id) {
-    State& state = states_[static_cast<std::size_t>(id)];
-    if (state == kDone) return;
-    const auto& declared = context_.symbols.set_decls[static_cast<std::size_t>(id)];
-    if (state == kOpen) {
-      context_.report(Code::P0207, declared.node->name.span,
-                      "set `" + std::string(declared.node->name.text) + "` is part of itself");
-      return;
-    }
-    state = kOpen;
-    std::vector<TaskId> members = read(*declared.file, declared.node->tasks);
-    context_.model.sets[id] = {std::string(declared.node->name.text), declared.node->name.span,
-                               std::move(members)};
-    state = kDone;
+  explicit Mask(std::size_t tasks, const std::vector<TaskId>& members = {}) : bits_(tasks, false) {
+    for (const TaskId id : members) add(id);
   }
-
-  std::vector<TaskId> read(const syntax::File& file, syntax::TaskSetId id) {
-    if (id.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
-    return std::visit([&](const auto& node) { return read_node(file, file[id].span, node); },
-                      file[id].node);
-  }
+  void add(TaskId id) { bits_[static_cast<std::size_t>(id)] = true; }
+  bool has(TaskId id) const { return bits_[static_cast<std::size_t>(id)]; }
 
  private:
-  enum State : std::uint8_t { kNew, kOpen, kDone };
-  using Members = std::vector<TaskId>;
+  std::vector<bool> bits_;
+};
 
-  static bool contains(const Members& members, TaskId id) {
-    return std::find(members.begin(), members.end(), id) != members.end();
-  }
+std::string path_text(const syntax::Path& path) {
+  std::string text;
+  for (const syntax::Name& part : path.parts)
+    text += (text.empty() ? "" : ".") + std::string(part.text);
+  return text;
+}
 
-  Members read_node(const syntax::File&, const Span&, const syntax::TaskSetNames& names) {
-    Members members;
-    for (const syntax::Name& name : names.names) {
-      const auto found = context_.symbols.tasks.find(name, context_.diagnostics);
-      if (found && !contains(members, static_cast<TaskId>(*found)))
-        members.push_back(static_cast<TaskId>(*found));
-    }
-    return members;
+}  // namespace
+
+SetReader::SetReader(Context& context, bool preview)
+    : context_(context),
+      preview_(preview),
+      diagnostics_(&context.diagnostics),
+      states_(context.symbols.set_decls.size(), kNew) {}
+
+void SetReader::define(SetId id) {
+  State& state = states_[static_cast<std::size_t>(id)];
+  if (state == kDone) return;
+  const auto& declared = context_.symbols.set_decls[static_cast<std::size_t>(id)];
+  if (state == kOpen) {
+    diagnostics_->report(Code::P0207, declared.node->name.span,
+                         "set `" + std::string(declared.node->name.text) + "` is part of itself");
+    return;
   }
-  Members read_node(const syntax::File& file, const Span&, const syntax::TaskSetName& set) {
-    if (set.name.text == "tasks") {
-      const std::set<std::uint32_t> visible = visible_files(context_, file);
-      Members members;
-      for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
-        const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
-        if (!task.abstract && visible.contains(task.file.value))
-          members.push_back(static_cast<TaskId>(i));
-      }
-      return members;
-    }
-    const auto found = context_.symbols.sets.find(set.name, context_.diagnostics);
-    if (!found) return {};
-    define(static_cast<SetId>(*found));
-    return context_.model.sets[static_cast<SetId>(*found)].members;
+  state = kOpen;
+  Diagnostics* const heard = diagnostics_;
+  if (preview_) diagnostics_ = &unheard_;
+  std::vector<TaskId> members = read(*declared.file, declared.node->tasks);
+  diagnostics_ = heard;
+  context_.model.sets[id] = {std::string(declared.node->name.text), declared.node->name.span,
+                             std::move(members)};
+  state = kDone;
+}
+
+std::vector<TaskId> SetReader::read(const syntax::File& file, syntax::TaskSetId id) {
+  if (id.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
+  return std::visit([&](const auto& node) { return read_node(file, file[id].span, node); },
+                    file[id].node);
+}
+
+SetReader::Members SetReader::read_node(const syntax::File&, const Span&,
+                                        const syntax::TaskSetNames& names) {
+  Members members;
+  Mask seen(context_.model.tasks.size());
+  for (const syntax::Name& name : names.names) {
+    const auto found = context_.symbols.tasks.find(name, *diagnostics_);
+    if (!found) continue;
+    const auto id = static_cast<TaskId>(*found);
+    if (seen.has(id)) continue;
+    seen.add(id);
+    members.push_back(id);
   }
-  Members read_node(const syntax::File& file, const Span&,
-                    const syntax::TaskSetVariants& variants) {
-    const Members of = read(file, variants.of);
+  return members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetName& set) {
+  if (set.name.text == "tasks") {
+    const std::set<std::uint32_t> visible = visible_files(context_, file);
     Members members;
     for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
       const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
-      if (!task.abstract && contains(of, task.baseline)) members.push_back(static_cast<TaskId>(i));
+      if (!task.abstract && !task.name.empty() && visible.contains(task.file.value))
+        members.push_back(static_cast<TaskId>(i));
     }
     return members;
   }
-  Members read_node(const syntax::File& file, const Span& span,
-                    const syntax::TaskSetSample& sample) {
-    (void)read(file, sample.of);
-    context_.report(Code::P0101, span, "`sample` is not available yet");
-    return {};
+  const auto found = context_.symbols.sets.find(set.name, *diagnostics_);
+  if (!found) return {};
+  define(static_cast<SetId>(*found));
+  return context_.model.sets[static_cast<SetId>(*found)].members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetVariants& variants) {
+  const Mask of(context_.model.tasks.size(), read(file, variants.of));
+  Members members;
+  for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
+    const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
+    if (!task.abstract && task.baseline != TaskId::kNone && of.has(task.baseline))
+      members.push_back(static_cast<TaskId>(i));
   }
-  Members read_node(const syntax::File& file, const Span&, const syntax::TaskSetBinary& binary) {
-    Members left = read(file, binary.left);
-    const Members right = read(file, binary.right);
-    if (binary.op == syntax::SetOp::kUnion) {
-      for (const TaskId id : right) {
-        if (!contains(left, id)) left.push_back(id);
-      }
-      return left;
+  return members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetSample& sample) {
+  Members members = read(file, sample.of);
+  if (sample.count.value > members.size()) {
+    diagnostics_
+        ->report(Code::P0304, sample.count.span,
+                 "a sample of " + std::to_string(sample.count.value) + " from a set of " +
+                     std::to_string(members.size()) + " tasks")
+        .label(file[sample.of].span, "this set");
+    return members;
+  }
+  // Every task draws its own number from its name, so that a new task displaces at most one.
+  std::vector<std::pair<Sha256, TaskId>> draws;
+  for (const TaskId id : members) {
+    Hasher hasher;
+    hasher.text("sample").u64(sample.seed.value).text(context_.model.tasks[id].name);
+    draws.emplace_back(hasher.finish(), id);
+  }
+  std::sort(draws.begin(), draws.end());
+  draws.resize(sample.count.value);
+  Mask kept(context_.model.tasks.size());
+  for (const auto& [draw, id] : draws) kept.add(id);
+  std::erase_if(members, [&](TaskId id) { return !kept.has(id); });
+  return members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetBinary& binary) {
+  Members left = read(file, binary.left);
+  const Members right = read(file, binary.right);
+  if (binary.op == syntax::SetOp::kUnion) {
+    const Mask here(context_.model.tasks.size(), left);
+    for (const TaskId id : right) {
+      if (!here.has(id)) left.push_back(id);
     }
-    const bool keep = binary.op == syntax::SetOp::kIntersection;
-    std::erase_if(left, [&](TaskId id) { return contains(right, id) != keep; });
     return left;
   }
-  Members read_node(const syntax::File& file, const Span&, const syntax::TaskSetWhere& where) {
-    Members members = read(file, where.set);
-    if (!check_condition(file, where.condition)) return {};
-    std::erase_if(members, [&](TaskId id) {
-      return !holds(file, where.condition, context_.model.tasks[id]);
-    });
-    return members;
-  }
+  const Mask there(context_.model.tasks.size(), right);
+  const bool keep = binary.op == syntax::SetOp::kIntersection;
+  std::erase_if(left, [&](TaskId id) { return there.has(id) != keep; });
+  return left;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetWhere& where) {
+  Members members = read(file, where.set);
+  if (!check_condition(file, where.condition)) return {};
+  std::erase_if(members,
+                [&](TaskId id) { return !holds(file, where.condition, context_.model.tasks[id]); });
+  return members;
+}
 
-  // The words a condition may use; each is checked once, before any task is asked.
-  bool check_condition(const syntax::File& file, syntax::CondId id) {
-    if (id.value == syntax::CondId::kNone) return false;  // a syntax error, reported
-    const auto& node = file[id].node;
-    if (const auto* negation = std::get_if<syntax::CondNot>(&node))
-      return check_condition(file, negation->operand);
-    if (const auto* both = std::get_if<syntax::CondAnd>(&node)) {
-      const bool left = check_condition(file, both->left);
-      return check_condition(file, both->right) && left;
-    }
-    if (const auto* either = std::get_if<syntax::CondOr>(&node)) {
-      const bool left = check_condition(file, either->left);
-      return check_condition(file, either->right) && left;
-    }
-    const auto& test = std::get<syntax::CondTest>(node);
-    std::vector<std::string_view> words;
-    const char* kind = "";
-    switch (test.kind) {
-      case syntax::CondKind::kAxis:
-        kind = "axis";
-        for (const plan::Axis axis : axes_in(0xffffffffu)) words.push_back(axis_name(axis));
-        break;
-      case syntax::CondKind::kUses:
-        kind = "use of language";
-        words = {"action", "negation", "appearance", "commonsense"};
-        break;
-      case syntax::CondKind::kOod:
-        kind = "kind of novelty";
-        words = {"source", "target", "relation"};
-        break;
-      case syntax::CondKind::kHas:
-        kind = "part of a task";
-        words = {"distractors", "baseline"};
-        break;
-      case syntax::CondKind::kScene:
-        if (test.path.parts.size() == 1) {
-          return context_.symbols.scenes.find(test.path.parts[0], context_.diagnostics).has_value();
-        }
-        kind = "scene";
-        break;
-    }
-    const std::string text = path_text(test.path);
-    if (std::find(words.begin(), words.end(), text) != words.end()) return true;
-    report_unknown(context_.diagnostics, kind, {test.path.span, text}, words);
-    return false;
+bool SetReader::check_condition(const syntax::File& file, syntax::CondId id) {
+  if (id.value == syntax::CondId::kNone) return false;  // a syntax error, reported
+  const auto& node = file[id].node;
+  if (const auto* negation = std::get_if<syntax::CondNot>(&node))
+    return check_condition(file, negation->operand);
+  if (const auto* both = std::get_if<syntax::CondAnd>(&node)) {
+    const bool left = check_condition(file, both->left);
+    return check_condition(file, both->right) && left;
   }
-
-  static std::string path_text(const syntax::Path& path) {
-    std::string text;
-    for (const syntax::Name& part : path.parts)
-      text += (text.empty() ? "" : ".") + std::string(part.text);
-    return text;
+  if (const auto* either = std::get_if<syntax::CondOr>(&node)) {
+    const bool left = check_condition(file, either->left);
+    return check_condition(file, either->right) && left;
   }
-
-  bool holds(const syntax::File& file, syntax::CondId id, const Task& task) const {
-    const auto& node = file[id].node;
-    if (const auto* negation = std::get_if<syntax::CondNot>(&node))
-      return !holds(file, negation->operand, task);
-    if (const auto* both = std::get_if<syntax::CondAnd>(&node)) {
-      return holds(file, both->left, task) && holds(file, both->right, task);
-    }
-    if (const auto* either = std::get_if<syntax::CondOr>(&node)) {
-      return holds(file, either->left, task) || holds(file, either->right, task);
-    }
-    return task.complete && holds(std::get<syntax::CondTest>(node), task);
+  const auto& test = std::get<syntax::CondTest>(node);
+  std::vector<std::string_view> words;
+  const char* kind = "";
+  switch (test.kind) {
+    case syntax::CondKind::kAxis:
+      kind = "axis";
+      for (const plan::Axis axis : axes_in(0xffffffffu)) words.push_back(axis_name(axis));
+      break;
+    case syntax::CondKind::kUses:
+      kind = "use of language";
+      words = {"action", "negation", "appearance", "commonsense"};
+      break;
+    case syntax::CondKind::kOod:
+      kind = "kind of novelty";
+      words = {"source", "target", "relation"};
+      break;
+    case syntax::CondKind::kHas:
+      kind = "part of a task";
+      words = {"distractors", "baseline"};
+      break;
+    case syntax::CondKind::kScene:
+      if (test.path.parts.size() == 1) {
+        return context_.symbols.scenes.find(test.path.parts[0], *diagnostics_).has_value();
+      }
+      kind = "scene";
+      break;
   }
+  const std::string text = path_text(test.path);
+  if (std::find(words.begin(), words.end(), text) != words.end()) return true;
+  report_unknown(*diagnostics_, kind, {test.path.span, text}, words);
+  return false;
+}
 
-  bool holds(const syntax::CondTest& test, const Task& task) const {
-    const Model& model = context_.model;
-    const std::string word = path_text(test.path);
-    switch (test.kind) {
-      case syntax::CondKind::kAxis:
-        for (const plan::Axis axis : axes_in(task.axes)) {
-          if (axis_name(axis) == word) return true;
-        }
-        return false;
-      case syntax::CondKind::kUses:
-        if (word == "action") return uses_action(model, task);
-        if (word == "negation") return has_negation(model.templates[task.say]);
-        return uses_phrase(
-            model, task, word == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense);
-      case syntax::CondKind::kOod:
-        return (task.ood & (word == "source" ? 1u : word == "target" ? 2u : 4u)) != 0;
-      case syntax::CondKind::kHas:
-        return word == "distractors" ? !task.distractors.empty() : task.baseline != TaskId::kNone;
-      case syntax::CondKind::kScene:
-        return model.scenes[task.scene].name == word;
-    }
-    return false;
+bool SetReader::holds(const syntax::File& file, syntax::CondId id, const Task& task) const {
+  const auto& node = file[id].node;
+  if (const auto* negation = std::get_if<syntax::CondNot>(&node))
+    return !holds(file, negation->operand, task);
+  if (const auto* both = std::get_if<syntax::CondAnd>(&node)) {
+    return holds(file, both->left, task) && holds(file, both->right, task);
   }
+  if (const auto* either = std::get_if<syntax::CondOr>(&node)) {
+    return holds(file, either->left, task) || holds(file, either->right, task);
+  }
+  return task.complete && holds(std::get<syntax::CondTest>(node), task);
+}
 
-  Context& context_;
-  std::vector<State> states_;
-};
+bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
+  const Model& model = context_.model;
+  const std::string word = path_text(test.path);
+  switch (test.kind) {
+    case syntax::CondKind::kAxis:
+      for (const plan::Axis axis : axes_in(task.axes)) {
+        if (axis_name(axis) == word) return true;
+      }
+      return false;
+    case syntax::CondKind::kUses:
+      if (word == "action") return uses_action(model, task);
+      if (word == "negation") return has_negation(model.templates[task.say]);
+      return uses_phrase(model, task,
+                         word == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense);
+    case syntax::CondKind::kOod:
+      return (task.ood & (word == "source" ? 1u : word == "target" ? 2u : 4u)) != 0;
+    case syntax::CondKind::kHas:
+      return word == "distractors" ? !task.distractors.empty() : task.baseline != TaskId::kNone;
+    case syntax::CondKind::kScene:
+      return model.scenes[task.scene].name == word;
+  }
+  return false;
+}
+namespace {
 
 void expect_suite(Context& context, const Suite& suite, const syntax::ExpectTasksStmt& expect) {
   std::uint64_t episodes = 0;
@@ -243,7 +283,6 @@ void expect_suite(Context& context, const Suite& suite, const syntax::ExpectTask
 
 void define_sets(Context& context) {
   const std::size_t count = context.symbols.set_decls.size();
-  for (std::size_t i = 0; i < count; ++i) context.model.sets.add({});
   SetReader reader(context);
   for (std::size_t i = 0; i < count; ++i) reader.define(static_cast<SetId>(i));
 }

@@ -1,5 +1,7 @@
 // Tasks and variants: fields copied along `like`, statements over them, then everything that
 // follows from the fields.
+#include "compiler/sema/tasks.h"
+
 #include <algorithm>
 
 #include "compiler/sema/axes.h"
@@ -14,7 +16,7 @@ namespace {
 // `poisoned` tasks have a statement that was reported; what follows from them is not said again.
 struct TaskReader {
   Context& context;
-  const syntax::File& file;
+  const DeclaredTask& declared;
   Task& task;
   bool& poisoned;
 
@@ -80,6 +82,9 @@ struct TaskReader {
   void operator()(const syntax::ReferStmt& stmt) {
     const std::size_t index = stmt.role == syntax::Role::kSource ? 0 : 1;
     task.refer[index] = spelled(stmt.phrase);
+    for (const Binding& binding : declared.bindings) {
+      if (binding.name == stmt.phrase.text) task.refer[index]->text = binding.value;
+    }
   }
   void operator()(const syntax::PoseStmt& stmt) {
     PoseOverride pose;
@@ -101,7 +106,7 @@ struct TaskReader {
     poisoned = true;
   }
   void operator()(const syntax::MetricStmt& stmt) {
-    Metric metric = analyze_metric(context, file, stmt);
+    Metric metric = analyze_metric(context, *declared.file, stmt);
     std::erase_if(task.overrides, [&](const Metric& old) { return old.name == metric.name; });
     task.overrides.push_back(std::move(metric));
   }
@@ -199,74 +204,115 @@ std::vector<ObjectId> Task::objects() const {
   return all;
 }
 
-void define_tasks(Context& context) {
-  const auto& decls = context.symbols.task_decls;
-  Model& model = context.model;
-  std::vector<std::optional<std::uint32_t>> parents(decls.size());
-  std::vector<bool> poison(decls.size(), false);
-  for (std::size_t i = 0; i < decls.size(); ++i) {
-    model.tasks.add({});
-    if (decls[i].like) parents[i] = context.symbols.tasks.find(*decls[i].like, context.diagnostics);
-    poison[i] = decls[i].like && !parents[i];
+TaskTable::TaskTable(Context& context) : context_(context) {
+  for (std::size_t i = 0; i < context.symbols.task_decls.size(); ++i) add_row();
+}
+
+void TaskTable::add_row() {
+  context_.model.tasks.add({});
+  poison_.push_back(false);
+  defined_.push_back(false);
+}
+
+void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent) {
+  const DeclaredTask& declared = context_.symbols.task_decls[index];
+  Model& model = context_.model;
+  Task task;
+  bool poisoned = !declared.decl->complete || (declared.like && !parent);
+  if (parent) {
+    task = model.tasks[static_cast<TaskId>(*parent)];
+    poisoned = poisoned || poison_[*parent];
   }
-  for (const std::uint32_t i : parents_first(context, parents, context.symbols.tasks.names())) {
-    const DeclaredTask& declared = decls[i];
-    Task task;
-    bool poisoned = poison[i] || !declared.decl->complete;
-    if (parents[i]) {
-      task = model.tasks[static_cast<TaskId>(*parents[i])];
-      poisoned = poisoned || poison[*parents[i]];
-    } else if (declared.like) {
-      poisoned = true;
-    }
-    task.name = std::string(declared.name.text);
-    task.span = declared.name.span;
-    task.decl_span = declared.decl->span;
-    task.file = declared.file->id;
-    task.abstract = declared.abstract;
-    task.like = parents[i] ? static_cast<TaskId>(*parents[i]) : TaskId::kNone;
-    task.baseline = TaskId::kNone;
-    task.starts.clear();
-    read_allows(context, *declared.decl, task);
-    TaskReader reader{context, *declared.file, task, poisoned};
-    for (const syntax::TaskStmt& stmt : *declared.body) {
-      if (!std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
-    }
-    for (const syntax::TaskStmt& stmt : *declared.body) {
-      if (std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
-    }
-    check_refer(context, task, 0, poisoned);
-    check_refer(context, task, 1, poisoned);
+  task.name = std::string(declared.name.text);
+  task.span = declared.name.span;
+  task.decl_span = declared.decl->span;
+  task.file = declared.file->id;
+  task.abstract = declared.abstract;
+  task.derived = declared.derived;
+  task.like = parent ? static_cast<TaskId>(*parent) : TaskId::kNone;
+  task.baseline = TaskId::kNone;
+  task.axes = 0;
+  const About about(context_, task.decl_span);
+  read_allows(context_, *declared.decl, task);
+  TaskReader reader{context_, declared, task, poisoned};
+  for (const syntax::TaskStmt& stmt : *declared.body) {
+    if (!std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
+  }
+  for (const syntax::TaskStmt& stmt : *declared.body) {
+    if (std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
+  }
+  check_refer(context_, task, 0, poisoned);
+  check_refer(context_, task, 1, poisoned);
+  const std::string missing = missing_statements(task);
+  if (task.scene != SceneId::kNone) poisoned = poisoned || !model.scenes[task.scene].complete;
+  task.complete = missing.empty() && !poisoned;
+  if (task.complete) check_roles(context_, task, poisoned);
+  if (task.complete) check_camera(context_, task, poisoned);
+  if (!missing.empty() && !poisoned && !task.abstract) {
+    context_.report(Code::P0206, task.span, "task `" + task.name + "` has no " + missing);
+  }
+  task.complete = task.complete && !poisoned;
+  poison_[index] = poisoned;
+  defined_[index] = true;
+  if (task.complete) {
+    task.prompt = render_prompt(model, task);
+    task.judged = judged_metrics(model, task);
+    task.ood = out_of_distribution(model, task);
+  }
+  model.tasks[static_cast<TaskId>(index)] = std::move(task);
+}
+
+void TaskTable::compare(std::uint32_t index, bool last_chance) {
+  const DeclaredTask& declared = context_.symbols.task_decls[index];
+  Task& task = context_.model.tasks[static_cast<TaskId>(index)];
+  if (!declared.against) return;
+  if (task.baseline == TaskId::kNone) {
+    auto baseline = context_.symbols.tasks.peek(declared.against->text);
     // A `variant of` names its baseline once; when unknown it has been reported as `like`.
-    const bool reported =
-        declared.against && poison[i] && declared.against->span == declared.like->span;
-    if (declared.against && !reported) {
-      const auto baseline = context.symbols.tasks.find(*declared.against, context.diagnostics);
-      if (baseline) task.baseline = static_cast<TaskId>(*baseline);
-      task.baseline_span = declared.against->span;
-    }
-    const std::string missing = missing_statements(task);
-    if (task.scene != SceneId::kNone) poisoned = poisoned || !model.scenes[task.scene].complete;
-    task.complete = missing.empty() && !poisoned;
-    if (task.complete) check_roles(context, task, poisoned);
-    if (task.complete) check_camera(context, task, poisoned);
-    if (!missing.empty() && !poisoned && !task.abstract) {
-      context.report(Code::P0206, task.span, "task `" + task.name + "` has no " + missing);
-    }
-    task.complete = task.complete && !poisoned;
-    poison[i] = poisoned;
-    if (task.complete) {
-      task.prompt = render_prompt(model, task);
-      task.judged = judged_metrics(model, task);
-      task.ood = out_of_distribution(model, task);
-    }
-    model.tasks[static_cast<TaskId>(i)] = std::move(task);
+    const bool reported = declared.like && task.like == TaskId::kNone &&
+                          declared.against->span == declared.like->span;
+    if (!baseline && last_chance && !reported)
+      baseline = context_.symbols.tasks.find(*declared.against, context_.diagnostics);
+    if (baseline) task.baseline = static_cast<TaskId>(*baseline);
+    task.baseline_span = declared.against->span;
   }
-  for (Task& task : model.tasks) {
-    if (task.complete && task.baseline != TaskId::kNone && model.tasks[task.baseline].complete) {
-      task.axes = axes_between(model, task, model.tasks[task.baseline]);
-    }
+  if (task.complete && task.baseline != TaskId::kNone &&
+      context_.model.tasks[task.baseline].complete) {
+    task.axes = axes_between(context_.model, task, context_.model.tasks[task.baseline]);
   }
+}
+
+void define_tasks(Context& context) {
+  for (std::size_t i = 0; i < context.symbols.set_decls.size(); ++i) context.model.sets.add({});
+  TaskTable table(context);
+  const std::size_t written = context.symbols.task_decls.size();
+  const bool derives = !context.symbols.derive_decls.empty();
+  std::vector<std::optional<std::uint32_t>> parents(written);
+  std::vector<bool> later(written, false);  // copies a task that a `derive` may still make
+  for (std::size_t i = 0; i < written; ++i) {
+    const DeclaredTask& declared = context.symbols.task_decls[i];
+    if (!declared.like) continue;
+    parents[i] = context.symbols.tasks.peek(declared.like->text);
+    later[i] = derives && !parents[i];
+    if (!parents[i] && !derives) context.symbols.tasks.find(*declared.like, context.diagnostics);
+  }
+  const auto order = parents_first(context, parents, context.symbols.tasks.names());
+  for (const std::uint32_t i : order) {
+    if (parents[i] && later[*parents[i]]) later[i] = true;
+    if (!later[i]) table.define(i, parents[i]);
+  }
+  for (std::uint32_t i = 0; i < written; ++i) {
+    if (!later[i]) table.compare(i, !derives);
+  }
+  if (!derives) return;
+  expand_derives(context, table);
+  for (const std::uint32_t i : order) {
+    if (!later[i]) continue;
+    const DeclaredTask& declared = context.symbols.task_decls[i];
+    if (!parents[i]) parents[i] = context.symbols.tasks.find(*declared.like, context.diagnostics);
+    table.define(i, parents[i]);
+  }
+  for (std::uint32_t i = 0; i < written; ++i) table.compare(i, true);
 }
 
 }  // namespace probe::sema

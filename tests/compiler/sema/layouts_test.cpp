@@ -12,7 +12,7 @@ namespace {
 // "red(-0.1,0.1) tray(...)" of one start.
 std::string places(const test::Analysis& a, const sema::Task& task, std::size_t episode) {
   std::string text;
-  for (const auto& placed : task.starts.at(episode).placed) {
+  for (const auto& placed : task.starts[episode].placed) {
     char part[96];
     std::snprintf(part, sizeof part, "%s%s(%.17g,%.17g)", text.empty() ? "" : " ",
                   a.model.objects[placed.object].name.c_str(), placed.x, placed.y);

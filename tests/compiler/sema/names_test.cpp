@@ -90,14 +90,6 @@ TEST_CASE("a missing robot description is reported at the path in the text") {
   CHECK(a->underlined() == "\"nowhere.urdf\"");
 }
 
-TEST_CASE("derive, sample and jitter say that they are not available yet") {
-  CHECK(analyze_with_suite("derive \"{t}_dim\" for t in tasks { light night }")
-            ->said()
-            .find("not available yet") != std::string::npos);
-  CHECK(analyze_with_suite("set s = sample 1 of tasks seed 7")->said().find("not available yet") !=
-        std::string::npos);
-}
-
 TEST_CASE("a scene that lacks a statement is told so once, and its tasks say nothing more") {
   const auto a = analyze_with_suite(
       "scene empty { surface 1m area (0m, 0m) .. (1m, 1m) }\ntask t like red_on_tray { scene empty "

@@ -1,0 +1,199 @@
+// `derive`: one task for each member of a set and each choice of phrases. What it makes is a
+// variant of that member, named by the text of the derive.
+#include <algorithm>
+
+#include "compiler/sema/sets.h"
+#include "compiler/sema/tasks.h"
+
+namespace probe::sema {
+namespace {
+
+bool is_identifier(const std::string& text) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9');
+  });
+}
+
+class Derive {
+ public:
+  Derive(Context& context, TaskTable& table, const Declared<syntax::DeriveDecl>& declared)
+      : context_(context), table_(table), declared_(declared), node_(*declared.node) {}
+
+  // False when the limit is reached.
+  bool expand() {
+    if (!declared_.decl->complete || !check_binders() || !check_name()) return true;
+    SetReader reader(context_, true);
+    const auto& over = std::get<syntax::BinderTasks>(tasks_->over);
+    const std::vector<TaskId> members = reader.read(*declared_.file, over.tasks);
+    if (node_.where && !reader.check_condition(*declared_.file, *node_.where)) return true;
+    for (const TaskId id : members) {
+      if (!table_.is_defined(id)) {
+        report_undefined(context_.symbols.tasks.names()[static_cast<std::size_t>(id)].text);
+        return true;
+      }
+      const Task& base = context_.model.tasks[id];
+      if (!base.complete) continue;  // reported
+      if (node_.where && !reader.holds(*declared_.file, *node_.where, base)) continue;
+      if (!expand_phrases(id)) return false;
+    }
+    return true;
+  }
+
+ private:
+  bool check_binders() {
+    bool fits = true;
+    std::vector<std::string_view> names;
+    for (const syntax::Binder& binder : node_.binders) {
+      if (std::find(names.begin(), names.end(), binder.name.text) != names.end()) {
+        context_.report(Code::P0203, binder.name.span,
+                        "`" + std::string(binder.name.text) + "` is bound twice");
+        fits = false;
+      }
+      names.push_back(binder.name.text);
+      if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
+        if (phrases->axis.text == "appearance" || phrases->axis.text == "commonsense") continue;
+        report_unknown(context_.diagnostics, "axis", phrases->axis, {"appearance", "commonsense"});
+        fits = false;
+      } else if (tasks_ == nullptr) {
+        tasks_ = &binder;
+      } else {
+        context_
+            .report(Code::P0203, binder.span, "a `derive` varies the tasks of one set, found two")
+            .label(tasks_->span, "the first")
+            .help("unite them: `for t in a | b`");
+        fits = false;
+      }
+    }
+    if (tasks_ != nullptr) return fits;
+    context_.report(Code::P0206, node_.name.text.span, "this `derive` goes over no set of tasks")
+        .help("add a binder such as `for t in tasks`");
+    return false;
+  }
+
+  bool check_name() {
+    std::vector<std::string_view> names;
+    for (const syntax::Binder& binder : node_.binders) names.push_back(binder.name.text);
+    bool fits = true;
+    for (const syntax::TemplatePart& part : node_.name.parts) {
+      const auto* slot = std::get_if<syntax::Slot>(&part);
+      if (slot == nullptr) continue;
+      if (slot->avoid || slot->the || slot->category) {
+        context_.report(Code::P0101, slot->span, "a slot of a name holds a binder alone");
+        fits = false;
+      } else if (std::find(names.begin(), names.end(), slot->name.text) == names.end()) {
+        report_unknown(context_.diagnostics, "binder", slot->name, names);
+        fits = false;
+      }
+    }
+    return fits;
+  }
+
+  void report_undefined(std::string_view task) {
+    context_
+        .report(Code::P0207, tasks_->span,
+                "task `" + std::string(task) + "` is made from tasks of a `derive` below")
+        .help("move this `derive` behind it");
+  }
+
+  // All choices of phrases for one task: the first binder slowest.
+  bool expand_phrases(TaskId id) {
+    const Task& base = context_.model.tasks[id];
+    const std::string_view name =
+        context_.symbols.task_decls[static_cast<std::size_t>(id)].name.text;
+    std::vector<std::vector<Binding>> rows = {{}};
+    for (const syntax::Binder& binder : node_.binders) {
+      std::vector<Binding> values;
+      if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
+        const ObjectId object = phrases->role == syntax::Role::kSource ? base.source : base.target;
+        const PhraseAxis axis =
+            phrases->axis.text == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense;
+        for (const Phrase& phrase : context_.model.objects[object].phrases) {
+          if (phrase.axis == axis) values.push_back({binder.name.text, phrase.name});
+        }
+      } else {
+        values.push_back({binder.name.text, name});
+      }
+      if (rows.size() * values.size() > kMaxTasks) return report_limit();
+      std::vector<std::vector<Binding>> longer;
+      for (const std::vector<Binding>& row : rows) {
+        for (const Binding& value : values) {
+          longer.push_back(row);
+          longer.back().push_back(value);
+        }
+      }
+      rows = std::move(longer);
+    }
+    for (std::vector<Binding>& row : rows) {
+      if (!add(id, std::move(row))) return false;
+    }
+    return true;
+  }
+
+  bool add(TaskId base, std::vector<Binding> bindings) {
+    Symbols& symbols = context_.symbols;
+    if (symbols.task_decls.size() >= kMaxTasks) return report_limit();
+    std::string name;
+    for (const syntax::TemplatePart& part : node_.name.parts) {
+      if (const auto* literal = std::get_if<std::string>(&part)) name += *literal;
+      const auto* slot = std::get_if<syntax::Slot>(&part);
+      if (slot == nullptr) continue;
+      for (const Binding& binding : bindings) {
+        if (binding.name == slot->name.text) name += binding.value;
+      }
+    }
+    const Span& span = node_.name.text.span;
+    if (!is_identifier(name)) {
+      context_.report(Code::P0101, span, "`" + name + "` is no name")
+          .point("a name is letters, digits and `_`, a letter first");
+      return true;
+    }
+    if (const auto taken = symbols.tasks.peek(name)) {
+      const DeclaredTask& first = symbols.task_decls[*taken];
+      Diagnostic& twice =
+          context_.report(Code::P0203, span, "task `" + name + "` is declared twice");
+      if (first.decl == declared_.decl) {
+        twice.help("give every binder a slot in the name");
+      } else {
+        twice.label(first.name.span, "first declared here");
+      }
+      return true;
+    }
+    symbols.derived_names.push_back(std::move(name));
+    const auto index = static_cast<std::uint32_t>(symbols.task_decls.size());
+    const syntax::Name like{span, symbols.task_decls[static_cast<std::size_t>(base)].name.text};
+    DeclaredTask task{declared_.file, declared_.decl, {span, symbols.derived_names.back()},
+                      false,          like,           like,
+                      &node_.body,    true,           std::move(bindings)};
+    (void)symbols.tasks.declare(task.name, context_.diagnostics);
+    symbols.task_decls.push_back(std::move(task));
+    table_.add_row();
+    table_.define(index, static_cast<std::uint32_t>(base));
+    table_.compare(index, true);
+    return true;
+  }
+
+  bool report_limit() {
+    context_.report(Code::P0210, node_.name.text.span,
+                    "the suite grows beyond " + std::to_string(kMaxTasks) + " tasks here");
+    return false;
+  }
+
+  Context& context_;
+  TaskTable& table_;
+  const Declared<syntax::DeriveDecl>& declared_;
+  const syntax::DeriveDecl& node_;
+  const syntax::Binder* tasks_ = nullptr;
+};
+
+}  // namespace
+
+void expand_derives(Context& context, TaskTable& table) {
+  for (const auto& declared : context.symbols.derive_decls) {
+    if (!Derive(context, table, declared).expand()) return;
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,93 @@
+#include "compiler/sema/report.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace probe::sema {
+namespace {
+
+// What is about tasks may be said of each at one place, such as a layout they share. Written tasks
+// are few and their names matter; a `derive` makes thousands.
+constexpr std::size_t kSaidOfOnePlace = 3;
+
+struct Allowed {
+  const syntax::Allow* allow = nullptr;
+  Code code{};
+  Span decl;
+  bool used = false;
+};
+
+std::vector<Allowed> collect_allows(const Context& context) {
+  std::vector<Allowed> allows;
+  for (const syntax::File* file : context.files) {
+    for (const syntax::Decl& decl : file->decls) {
+      for (const syntax::Allow& allow : decl.allows) {
+        if (const auto code = code_from_slug(allow.what.text))
+          allows.push_back({&allow, *code, decl.span});
+      }
+    }
+  }
+  return allows;
+}
+
+bool is_silenced(const Context& context, const Diagnostic& diagnostic, std::size_t index,
+                 std::vector<Allowed>& allows) {
+  if (diagnostic.severity != Severity::kWarning) return false;
+  const auto about = context.about.find(index);
+  bool silenced = false;
+  for (Allowed& allowed : allows) {
+    if (allowed.code != diagnostic.code) continue;
+    const bool here = is_within(diagnostic.primary, allowed.decl) ||
+                      (about != context.about.end() && is_within(about->second, allowed.decl));
+    allowed.used = allowed.used || here;
+    silenced = silenced || here;
+  }
+  return silenced;
+}
+
+bool is_in_derive(const Context& context, const Span& span) {
+  return std::any_of(context.symbols.derive_decls.begin(), context.symbols.derive_decls.end(),
+                     [&](const auto& declared) { return is_within(span, declared.decl->span); });
+}
+
+}  // namespace
+
+void say(const Context& context, std::span<const FileId> roots, Diagnostics& out) {
+  std::vector<Allowed> allows = collect_allows(context);
+  struct Said {
+    std::size_t count = 0;
+    std::size_t limit = kSaidOfOnePlace;
+    Diagnostic* last = nullptr;
+  };
+  std::map<std::tuple<Code, std::uint32_t, std::uint32_t, std::uint32_t>, Said> places;
+  std::size_t index = 0;
+  for (const Diagnostic& diagnostic : context.diagnostics.items()) {
+    const std::size_t at = index++;
+    if (is_silenced(context, diagnostic, at, allows)) continue;
+    if (!context.about.contains(at)) {
+      out.add(diagnostic);
+      continue;
+    }
+    const Span& span = diagnostic.primary;
+    Said& place = places[{diagnostic.code, span.file.value, span.begin, span.end}];
+    if (place.count == 0 && is_in_derive(context, span)) place.limit = 1;
+    if (++place.count <= place.limit) place.last = &out.add(diagnostic);
+  }
+  for (auto& [key, place] : places) {
+    if (place.count > place.limit)
+      place.last->note("the same holds for " + std::to_string(place.count - place.limit) +
+                       " more tasks");
+  }
+  // A mistake elsewhere may be why there is nothing to silence.
+  if (context.diagnostics.has_errors()) return;
+  for (const Allowed& allowed : allows) {
+    const bool is_root = std::any_of(roots.begin(), roots.end(), [&](FileId id) {
+      return id.value == allowed.allow->span.file.value;
+    });
+    if (allowed.used || !is_root) continue;
+    out.report(Code::P0209, allowed.allow->span,
+               "`@allow(" + std::string(allowed.allow->what.text) + ")` silences nothing");
+  }
+}
+
+}  // namespace probe::sema
