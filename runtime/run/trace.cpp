@@ -230,14 +230,14 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
     }
     case Tag::kFingerprint:
       trace.header.fingerprint = from.text();
-      return from.ok() ? "" : "a fingerprint of another form";
+      return from.ok() && from.left() == 0 ? "" : "a fingerprint of another form";
     case Tag::kSettled:
       if (trace.start) return "a second settled start";
       trace.start = codec::get_start(payload);
       return trace.start ? "" : "a settled start of another form";
     case Tag::kTime:
       for (double& seconds : timing) seconds = from.f64();
-      return from.ok() ? "" : "a timing of another form";
+      return from.ok() && from.left() == 0 ? "" : "a timing of another form";
     case Tag::kStep: {
       auto step = codec::get_step(payload);
       if (!step) return "a step of another form";
@@ -253,9 +253,10 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
       return trace.end->steps == trace.steps.size() ? ""
                                                     : "another number of steps than its end says";
     case Tag::kHash:
-      break;
+      if (!trace.end) return "a hash before the end";
+      return payload.size() == sizeof(Sha256) ? "" : "a hash of another form";
   }
-  return {};
+  return "a chunk of unknown kind";
 }
 
 }  // namespace
@@ -281,11 +282,13 @@ Result<Trace> read_trace_prefix(const std::string& path) {
         content.incomplete.empty() ? "not a trace" : "not a trace, or " + content.incomplete, path};
   }
   const std::uint32_t version = from.u32();
-  from.u32();
+  const std::uint32_t zero = from.u32();
   if (from.ok() && version != codec::kVersion) {
     return Failure{"trace", "trace format " + std::to_string(version) + ", this program reads 1",
                    path};
   }
+
+  if (zero != 0) return Failure{"trace", "reserved bytes after the version are not zero", path};
 
   Trace trace;
   Hasher hasher;

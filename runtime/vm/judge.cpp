@@ -104,7 +104,8 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
   }
   const auto key = [](const Pair& p) { return std::pair(p.a, p.b); };
   std::ranges::sort(pairs_, {}, key);
-  pairs_.erase(std::ranges::unique(pairs_, {}, key).begin(), pairs_.end());
+  const auto same = [&](const Pair& p, const Pair& q) { return key(p) == key(q); };
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end(), same), pairs_.end());
 
   // Instructions that hang on constants and the start alone run once an episode instead of once a
   // step.
