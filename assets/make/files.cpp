@@ -139,7 +139,10 @@ std::string glb_bytes(const std::string& name, const std::vector<Part>& parts) {
     }
     pbr["metallicFactor"] = 0.0;
     pbr["roughnessFactor"] = part.material.roughness;
-    materials.push_back({{"name", part.material.name}, {"pbrMetallicRoughness", pbr}});
+    Json material = {{"name", part.material.name}, {"pbrMetallicRoughness", pbr}};
+    const Colour& glow = part.material.emission;
+    if (glow != Colour{0, 0, 0}) material["emissiveFactor"] = {glow[0], glow[1], glow[2]};
+    materials.push_back(material);
   }
   Json root = {{"asset", {{"version", "2.0"}, {"generator", "vlaprobe make_assets"}}},
                {"scene", 0},

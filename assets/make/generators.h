@@ -7,10 +7,32 @@
 
 namespace probe::make {
 
-std::vector<OutputFile> make_carrot();       // objects/carrot/
-std::vector<OutputFile> make_plate();        // objects/plate/
-std::vector<OutputFile> make_widowx();       // robots/widowx/meshes/
-std::vector<OutputFile> make_table_scene();  // scenes/table/
+// objects/<name>/visual.glb and collision.obj, each.
+std::vector<OutputFile> make_basket();
+std::vector<OutputFile> make_carrot();
+std::vector<OutputFile> make_coke_can();
+std::vector<OutputFile> make_eggplant();
+std::vector<OutputFile> make_green_cube();
+std::vector<OutputFile> make_half_sponge();
+std::vector<OutputFile> make_keyboard();
+std::vector<OutputFile> make_nut();
+std::vector<OutputFile> make_orange();
+std::vector<OutputFile> make_orange_juice();
+std::vector<OutputFile> make_pepsi_can();
+std::vector<OutputFile> make_plate();
+std::vector<OutputFile> make_rabbit();
+std::vector<OutputFile> make_ramekin();
+std::vector<OutputFile> make_small_plate();
+std::vector<OutputFile> make_sponge();
+std::vector<OutputFile> make_spoon();
+std::vector<OutputFile> make_towel();
+std::vector<OutputFile> make_wheel();
+std::vector<OutputFile> make_yellow_cube();
+
+std::vector<OutputFile> make_widowx();        // robots/widowx/meshes/
+std::vector<OutputFile> make_table_scene();   // scenes/table/
+std::vector<OutputFile> make_sink_fixture();  // fixtures/sink/
+std::vector<OutputFile> make_sink_scene();    // scenes/sink/
 
 // All of them, without the manifest.
 std::vector<OutputFile> make_all();

@@ -153,6 +153,18 @@ inline const std::vector<std::string>& link_names() {
   return names;
 }
 
+inline const std::vector<std::string>& object_names() {
+  static const std::vector<std::string> names{
+      "basket",      "carrot", "coke_can",     "eggplant",  "green_cube", "half_sponge", "keyboard",
+      "nut",         "orange", "orange_juice", "pepsi_can", "plate",      "rabbit",      "ramekin",
+      "small_plate", "sponge", "spoon",        "towel",     "wheel",      "yellow_cube"};
+  return names;
+}
+
+inline std::string object_file(const std::string& object, const std::string& file) {
+  return asset_path("objects/" + object + "/" + file);
+}
+
 inline std::string link_mesh(const std::string& link) {
   return asset_path("robots/widowx/meshes/" + link + ".glb");
 }
