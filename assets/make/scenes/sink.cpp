@@ -22,7 +22,7 @@ struct Basin {
   double floor;
 };
 constexpr double kDivider = -33;  // y between the basins
-const Basin kLarge{{23.5, 76}, {76, 94}, 40}, kSmall{{19, -99}, {79, 51}, 47};
+const Basin kLarge{{26, 79}, {82, 94}, 40}, kSmall{{19, -99}, {79, 51}, 47};
 
 std::vector<Vec3> shifted(std::vector<Vec3> loop, const Vec2& by) {
   for (Vec3& p : loop) p.head<2>() += by;
