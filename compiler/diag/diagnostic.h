@@ -73,11 +73,14 @@ struct Diagnostic {
   // For building one in place: diagnostics.report(...).point("...").label(other,
   // "...").help("...").
   Diagnostic& point(std::string text) { return primary_label = std::move(text), *this; }
+  // A place that the text does not have (a default, a lost statement) is left out.
   Diagnostic& label(const Span& span, std::string text) {
-    return labels.push_back({span, std::move(text), false}), *this;
+    if (!span.is_none()) labels.push_back({span, std::move(text), false});
+    return *this;
   }
   Diagnostic& also(const Span& span, std::string text) {
-    return labels.push_back({span, std::move(text), true}), *this;
+    if (!span.is_none()) labels.push_back({span, std::move(text), true});
+    return *this;
   }
   Diagnostic& help(std::string text) { return helps.push_back(std::move(text)), *this; }
   Diagnostic& note(std::string text) { return notes.push_back(std::move(text)), *this; }

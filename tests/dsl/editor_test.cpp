@@ -1,0 +1,58 @@
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "dsl/editor/textmate.h"
+
+using namespace probe;
+
+namespace {
+
+const std::filesystem::path kExtension =
+    std::filesystem::path(VLAPROBE_SOURCE_DIR) / "dsl/editor/vscode";
+
+std::string read(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("the editor's grammar is the one that the tables of words and units give") {
+  const std::filesystem::path path = kExtension / "syntaxes/probe.tmLanguage.json";
+  const std::string wanted = editor::textmate_grammar();
+  if (std::getenv("VLAPROBE_UPDATE_GOLDEN") != nullptr) {
+    std::ofstream(path, std::ios::binary) << wanted;
+  }
+  CHECK_MESSAGE(read(path) == wanted, "tests/golden/run --update rewrites it");
+}
+
+TEST_CASE("numbers match with their longest unit") {
+  const auto grammar = nlohmann::json::parse(editor::textmate_grammar());
+  std::string pattern = grammar["repository"]["numbers"]["patterns"][0]["match"];
+  pattern.erase(0, pattern.find(')') + 1);  // without what stands before it
+  const std::regex number(pattern);
+  std::smatch match;
+  for (const std::string& text : {std::string("700kg/m3"), std::string("152.12Nms/rad"),
+                                  std::string("1e-6Ns"), std::string("20.6cm")}) {
+    CHECK_MESSAGE(std::regex_match(text, match, number), text);
+  }
+  CHECK(!std::regex_match("2x", number));
+}
+
+TEST_CASE("the extension's parts are there and refer to one another") {
+  const auto package = nlohmann::json::parse(read(kExtension / "package.json"));
+  const auto& contributes = package["contributes"];
+  for (const std::string& path : {contributes["languages"][0]["configuration"].get<std::string>(),
+                                  contributes["grammars"][0]["path"].get<std::string>()}) {
+    CHECK_MESSAGE(nlohmann::json::accept(read(kExtension / path)), path);
+  }
+  CHECK(contributes["grammars"][0]["scopeName"] == "source.probe");
+}
