@@ -15,7 +15,9 @@ TEST_CASE("every code has one line in the table, warnings have a word for @allow
     CHECK(entry.code == code);
     CHECK(code_from_text(entry.text) == code);
     CHECK(!entry.title.empty());
-    if (entry.severity == Severity::kWarning) CHECK_MESSAGE(!entry.slug.empty(), entry.text);
+    // An idle @allow is removed, not allowed.
+    const bool can_be_allowed = entry.severity == Severity::kWarning && code != Code::P0209;
+    if (can_be_allowed) CHECK_MESSAGE(!entry.slug.empty(), entry.text);
     if (!entry.slug.empty()) CHECK_MESSAGE(slugs.insert(entry.slug).second, entry.slug);
   }
   CHECK(code_from_slug("confounded") == Code::P0701);
