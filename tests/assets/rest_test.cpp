@@ -49,8 +49,7 @@ Quat turn(const Rest& rest) {
 
 Result<std::shared_ptr<const scene::CollisionShape>> shape_of(const std::string& object) {
   PROBE_ASSIGN(scene::CollisionShape shape,
-               scene::load_collision_obj(test::object_file(object, "collision.obj"), Vec3::Ones(),
-                                         {.max_vertices = 64}));
+               scene::load_collision_obj(test::object_file(object, "collision.obj"), Vec3::Ones()));
   return std::make_shared<const scene::CollisionShape>(std::move(shape));
 }
 

@@ -60,15 +60,14 @@ TEST_CASE("objects fill the published boxes to a tenth of a millimetre") {
   }
 }
 
-TEST_CASE("collision parts are closed and convex with at most 32 corners, 64 if they are round") {
+TEST_CASE("collision parts are closed and convex with at most 32 corners") {
   for (const Pair& pair : all_pairs()) {
     CAPTURE(pair.collision);
     const auto parts = test::read_collision(pair.collision);
     CHECK(!parts.empty());
     for (const test::ConvexObject& part : parts) {
       CAPTURE(part.name);
-      const bool round = part.name == "can" || part.name == "fruit";
-      CHECK(part.vertices.size() <= (round ? 64 : 32));
+      CHECK(part.vertices.size() <= 32);
       std::map<std::array<std::size_t, 2>, int> edges;
       std::set<std::size_t> used;
       for (const auto& loop : part.faces) {

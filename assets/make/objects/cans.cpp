@@ -119,11 +119,17 @@ std::vector<OutputFile> make_can(const std::string& name, Image label) {
   for (Surface* surface : all) lay_along(*surface, 1);
   fit_to_box(all, box_of({33, 61.5, 33}));
   for (Surface* surface : all) smooth_normals(*surface, 40);
-  // Sixteen flat sides, so that a pair of them faces the fingers; flat ends to stand on.
+  // Twelve flat sides, so that a pair of them faces the fingers; flat square ends to stand on.
   std::vector<Vec3> hull;
-  for (const auto& [radius, along] : {std::pair{12.8, 30.75}, std::pair{16.5, 23.6},
-                                      std::pair{16.5, -26.5}, std::pair{12.8, -30.75}}) {
-    for (const Vec3& p : flat_sided(radius, 16, along)) hull.emplace_back(p.y(), p.z(), p.x());
+  struct Ring {
+    double apothem, along;
+    int corners;
+  };
+  for (const Ring& ring :
+       {Ring{9.1, 30.75, 4}, {16.5, 23.6, 12}, {16.5, -26.5, 12}, {9.1, -30.75, 4}}) {
+    for (const Vec3& p : flat_sided(ring.apothem, ring.corners, ring.along)) {
+      hull.emplace_back(p.y(), p.z(), p.x());
+    }
   }
   const Colour metal = albedo_for({186, 189, 195}, 0.62, 0.02);
   return object_files(

@@ -64,13 +64,11 @@ std::vector<OutputFile> make_orange() {
   fit_to_box(both, box_of({35, 35, 34}));
   smooth_normals(peel, 60);
   smooth_normals(star, 60);
-  // Six rings; the widest band's sides are flat and upright, a pair of them for the fingers.
+  // The widest band's sides are flat and upright, a pair of them for the fingers.
   std::vector<Vec3> hull;
   for (const auto& [apothem, z] :
-       {std::pair{4.6, 17.0}, std::pair{11.8, 13.0}, std::pair{17.5, 3.4}, std::pair{17.5, -3.4},
-        std::pair{11.8, -13.0}, std::pair{5.6, -17.0}}) {
-    const int corners = apothem < 6 ? 8 : 12;
-    const std::vector<Vec3> ring = flat_sided(apothem, corners, z);
+       {std::pair{6.0, 17.0}, std::pair{17.5, 4.6}, std::pair{17.5, -4.6}, std::pair{6.0, -17.0}}) {
+    const std::vector<Vec3> ring = flat_sided(apothem, apothem < 7 ? 4 : 12, z);
     hull.insert(hull.end(), ring.begin(), ring.end());
   }
   return object_files("orange",
