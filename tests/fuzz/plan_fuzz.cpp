@@ -1,6 +1,7 @@
 // Any bytes as a plan: the verifier refuses or everything behind it works on what it accepts:
 // accessors, ids, disassembler, judge. Hashes stop almost all random bytes, so half of the runs
 // seal the mutated bytes first, as a forger would.
+// links: probe_plan probe_vm
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
