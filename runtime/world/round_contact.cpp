@@ -8,10 +8,8 @@ namespace {
 
 using scene::ConvexPart;
 
-// A capsule touches along the stretch of its axis that is at most this farther than the nearest
-// point, m.
-constexpr double kStretch = 2e-4;
-constexpr double kDeeper = 1e-5;  // m by which the nearest point must be deeper than both ends
+constexpr double kAligned = 0.985;  // cosine of 10 degrees
+constexpr double kDeeper = 1e-5;    // m by which the nearest point must be deeper than both ends
 constexpr double kTouching = 1e-12;
 
 struct Nearest {
@@ -109,15 +107,44 @@ struct Axis {
     return t;
   }
 
-  // Between `end` and t, the farthest point from t whose distance is at most `level`.
-  double reach(double t, double end, double level) const {
-    if (distance(end) <= level) return end;
-    double inside = t, outside = end;
-    for (int i = 0; i < 30; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (distance(middle) <= level ? inside : outside) = middle;
+  // The stretch [low, high] over the face that looks most along n, or beside the other's axis if
+  // that is nearly parallel; empty (low > high) if there is none.
+  void support(const Vec3& n, double* low, double* high) const {
+    *low = 0, *high = 1;
+    if (other.round > 0) {
+      const Vec3 beside = other.vertices.back() - other.vertices.front();
+      const double along2 = along.squaredNorm(), beside2 = beside.squaredNorm();
+      if (along.cross(beside).squaredNorm() >= (1 - kAligned * kAligned) * along2 * beside2) {
+        *high = -1;
+        return;
+      }
+      const double a = along.dot(other.vertices.front() - from) / along2;
+      const double b = along.dot(other.vertices.back() - from) / along2;
+      *low = std::max(0.0, std::min(a, b));
+      *high = std::min(1.0, std::max(a, b));
+      return;
     }
-    return inside;
+    const ConvexPart::Face* face = nullptr;
+    double cosine = kAligned;
+    for (const ConvexPart::Face& f : other.faces) {
+      if (f.normal.dot(n) <= cosine) continue;
+      cosine = f.normal.dot(n);
+      face = &f;
+    }
+    if (face == nullptr) {
+      *high = -1;
+      return;
+    }
+    const Vec3* corner = &other.vertices[face->loop.back()];
+    for (const std::uint8_t v : face->loop) {
+      const Vec3& to = other.vertices[v];
+      const Vec3 side = (to - *corner).cross(face->normal);
+      const double gap = side.dot(from - to), slope = side.dot(along);
+      corner = &to;
+      if (slope > 0) *high = std::min(*high, -gap / slope);
+      if (slope < 0) *low = std::max(*low, -gap / slope);
+      if (slope == 0 && gap > 0) *high = -1;
+    }
   }
 };
 
@@ -162,15 +189,17 @@ void collide_rounded(const ConvexPart& a, const ConvexPart& b, const RelativePos
   const double t = axis.lowest();
   const Nearest deepest = axis.at(t);
   if (deepest.distance - round.round - other.round > margin) return;
-  const double level = deepest.distance + kStretch;
-  const double ends[2] = {axis.reach(t, 0, level), axis.reach(t, 1, level)};
-  bool middle = true;
-  for (const double end : ends) {
+  double low = 0, high = 0;
+  axis.support(deepest.normal, &low, &high);
+  bool alone = true;  // no end of the support is as deep
+  for (const double end : {low, high}) {
+    if (low > high) break;
     const Nearest n = axis.at(end);
-    middle = middle && n.distance > deepest.distance + kDeeper;
+    alone = alone && n.distance > deepest.distance + kDeeper;
     add(n);
+    if (high - low < 1e-9) break;
   }
-  if (middle) add(deepest);
+  if (alone) add(deepest);
 }
 
 }  // namespace probe::world

@@ -259,15 +259,15 @@ void warm_start(Problem* problem, const ArmResponse& arm) {
 int solve(const Parameters& parameters, const ArmResponse& arm, Problem* problem) {
   if (problem->contacts.empty() && problem->limits.empty()) return 0;
   return with_lanes(problem->lanes, [&](auto lanes) {
-    for (int sweep = 1; sweep <= parameters.max_sweeps; ++sweep) {
+    for (int sweep = 1;; ++sweep) {
       double change = sweep_limits(arm, lanes, problem);
       for (Contact& c : problem->contacts) {
         change = std::max(change,
                           sweep_contact(&c, sides(c, problem->bodies), problem->u.data(), lanes));
       }
-      if (change < parameters.tolerance) return sweep;
+      const bool enough = sweep >= parameters.max_sweeps && change < parameters.jam_change;
+      if (change < parameters.tolerance || enough || sweep >= parameters.jam_sweeps) return sweep;
     }
-    return parameters.max_sweeps;
   });
 }
 

@@ -19,6 +19,8 @@ constexpr int kMaxJoints = 32;
 struct Parameters {
   double dt = 0.002;
   int max_sweeps = 50;
+  int jam_sweeps = 200;      // at most, while a sweep still changes more than jam_change:
+  double jam_change = 1e-3;  // m/s; something is squeezed between the arm and the table
   double tolerance = 1e-5;  // m/s, largest velocity change of a sweep at which it ends
   double beta = 0.2;        // share of the overlap removed in a substep
   double slop = 5e-5;  // m of overlap left alone, so that resting contacts never switch off and on

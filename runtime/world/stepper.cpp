@@ -1,5 +1,8 @@
 #include "runtime/world/stepper.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "runtime/world/lanes.h"
 
 namespace probe::world {
@@ -12,6 +15,17 @@ Failure stiff_failure() {
 }
 
 }  // namespace
+
+void Stepper::note_load() {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(drives.count); ++i) {
+    const double torque = response.saturated[i] != 0
+                              ? drives.limit[i]
+                              : drives.stiffness[i] * (joints.target[i] - joints.q[i] -
+                                                       parameters.dt * problem.u[i]) -
+                                    drives.damping[i] * problem.u[i];
+    drive_load = std::max(drive_load, std::fabs(torque) / drives.limit[i]);
+  }
+}
 
 Status Stepper::advance() {
   if (arm) {
@@ -53,6 +67,7 @@ Status Stepper::advance() {
       body.spin = body.start_spin;
     }
   }
+  if (arm) note_load();
   store_impulses(problem, &table);
   for (const LimitRow& row : problem.limits) {
     joints.limit_impulse[static_cast<std::size_t>(row.joint)][row.sign > 0 ? 0 : 1] = row.impulse;

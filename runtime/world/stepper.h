@@ -28,10 +28,14 @@ struct Stepper {
   ArmResponse response;
   std::uint64_t substep = 1;  // the number of the next substep; records compare with it
   int last_sweeps = 0,
-      resolves = 0;  // of the last substep, since the start: for tests and benchmarks
+      resolves = 0;       // of the last substep, since the start: for tests and benchmarks
+  double drive_load = 0;  // largest torque of a drive over its limit since it was last zeroed
 
   Sleepers sleepers() { return {links, &colliders, &bodies, &table}; }
   Status advance();
+
+ private:
+  void note_load();
 };
 
 }  // namespace probe::world

@@ -74,6 +74,7 @@ class ContactWorld final : public World {
   std::span<const double> joint_speeds() const override {
     return {stepper_.joints.u.data(), joint_count()};
   }
+  double drive_load() const override { return stepper_.drive_load; }
   void set_targets(std::span<const double> targets) override {
     PROBE_CHECK(targets.size() == joint_count(), "one target per driven joint");
     std::copy(targets.begin(), targets.end(), stepper_.joints.target.begin());
@@ -411,6 +412,7 @@ Status ContactWorld::check_state() const {
 Status ContactWorld::step(int substeps) {
   PROBE_TRY(check_state());
   begin_sums(stepper_.substep, &stepper_.table);
+  stepper_.drive_load = 0;
   for (int i = 0; i < substeps; ++i) {
     PROBE_TRY(stepper_.advance());
     PROBE_TRY(check_state());

@@ -110,6 +110,8 @@ class World {
 
   virtual std::span<const double> joints() const = 0;        // q, in drive order
   virtual std::span<const double> joint_speeds() const = 0;  // u
+  // The largest share of its force limit that any drive exerted during the last step().
+  virtual double drive_load() const = 0;
   virtual void set_targets(std::span<const double> targets) = 0;
   virtual BodyState body(std::size_t index) const = 0;
   virtual Pose link_pose(

@@ -1,0 +1,373 @@
+// Robots of other kinds: an arm with geared fingers, a mobile manipulator with turning fingers.
+// They load, move to targets, stop at limits and hold a box.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "runtime/base/trig.h"
+#include "runtime/robot/ik.h"
+#include "runtime/robot/kinematics.h"
+#include "runtime/scene/hull.h"
+#include "runtime/world/arm_dynamics.h"
+#include "runtime/world/world.h"
+
+namespace probe::world {
+namespace {
+
+constexpr double kHalfPi = 1.5707963267948966;
+
+// A link of a rod's inertia, a joint above it.
+std::string link(const std::string& name, double mass = 1.0) {
+  const std::string i = std::to_string(0.01 * mass);
+  return "<link name='" + name + "'><inertial><origin xyz='0.01 0.02 0.03' rpy='0.1 0 0.2'/>" +
+         "<mass value='" + std::to_string(mass) + "'/><inertia ixx='" + i + "' iyy='" + i +
+         "' izz='" + i + "' ixy='" + std::to_string(0.002 * mass) +
+         "' ixz='0' iyz='0'/></inertial></link>\n";
+}
+std::string joint(const std::string& name, const std::string& type, const std::string& parent,
+                  const std::string& child, const std::string& origin, const std::string& axis,
+                  const std::string& more = "") {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
+         "'/><child link='" + child + "'/><origin " + origin + "/><axis xyz='" + axis + "'/>" +
+         more + "</joint>\n";
+}
+std::string limits(double lower, double upper) {
+  return "<limit lower='" + std::to_string(lower) + "' upper='" + std::to_string(upper) +
+         "' effort='87' velocity='2'/>";
+}
+
+// Seven turning joints in a zigzag and two fingers of which one follows the other.
+std::string geared_arm() {
+  std::string text = "<robot name='geared'>" + link("link0", 3);
+  const char* origins[] = {"xyz='0 0 0.333'",
+                           "rpy='-1.5707963267948966 0 0'",
+                           "xyz='0 -0.316 0' rpy='1.5707963267948966 0 0'",
+                           "xyz='0.0825 0 0' rpy='1.5707963267948966 0 0'",
+                           "xyz='-0.0825 0.384 0' rpy='-1.5707963267948966 0 0'",
+                           "rpy='1.5707963267948966 0 0'",
+                           "xyz='0.088 0 0' rpy='1.5707963267948966 0 0'"};
+  for (int i = 0; i < 7; ++i) {
+    const std::string n = std::to_string(i + 1);
+    text += link("link" + n, 2.5 - 0.2 * i);
+    text += joint("joint" + n, "revolute", "link" + std::to_string(i), "link" + n, origins[i],
+                  "0 0 1", limits(i == 3 ? -3.07 : -2.9, i == 3 ? -0.07 : (i == 5 ? 3.75 : 2.9)));
+  }
+  text += link("hand", 0.7) + link("finger1", 0.015) + link("finger2", 0.015) + link("tip", 0.001);
+  text +=
+      joint("hand_joint", "fixed", "link7", "hand", "xyz='0 0 0.107' rpy='0 0 -0.785398'", "0 0 1");
+  text +=
+      joint("slide1", "prismatic", "hand", "finger1", "xyz='0 0 0.0584'", "0 1 0", limits(0, 0.04));
+  text += joint("slide2", "prismatic", "hand", "finger2", "xyz='0 0 0.0584'", "0 -1 0",
+                limits(0, 0.04) + "<mimic joint='slide1'/>");
+  text += joint("tip_joint", "fixed", "hand", "tip", "xyz='0 0 0.1034'", "0 0 1");
+  return text + "</robot>";
+}
+
+// A base that stands, a lift, six arm joints of which two turn without end, a head, two fingers
+// that turn.
+std::string mobile_arm() {
+  std::string text = "<robot name='mobile'>";
+  for (const char* name : {"wheels", "base", "torso", "shoulder", "bicep", "forearm", "roll",
+                           "wrist", "gripper", "neck", "head", "tip"}) {
+    text += link(name, 1);
+  }
+  text += link("finger_left", 0.05) + link("finger_right", 0.05);
+  text += joint("stand", "fixed", "wheels", "base", "xyz='0 0 0.2'", "1 0 0");
+  text += joint("lift", "prismatic", "base", "torso", "xyz='0 0 0.3'", "0 0 1", limits(0, 0.4));
+  text += joint("shoulder_yaw", "continuous", "torso", "shoulder", "xyz='0.1 0 0.2'", "0 0 1");
+  text += joint("shoulder_pitch", "revolute", "shoulder", "bicep", "xyz='0 0 0.05'", "0 1 0",
+                limits(-1.6, 1.6));
+  text +=
+      joint("elbow", "revolute", "bicep", "forearm", "xyz='0.35 0 0'", "0 1 0", limits(-0.2, 2.8));
+  text += joint("forearm_roll", "continuous", "forearm", "roll", "xyz='0.1 0 0'", "1 0 0");
+  text +=
+      joint("wrist_pitch", "revolute", "roll", "wrist", "xyz='0.2 0 0'", "0 1 0", limits(-2, 2));
+  text += joint("gripper_roll", "continuous", "wrist", "gripper", "xyz='0.1 0 0'", "1 0 0");
+  text += joint("hinge_left", "revolute", "gripper", "finger_left", "xyz='0.02 0.04 0'", "0 0 -1",
+                limits(0, 1.3));
+  text += joint("hinge_right", "revolute", "gripper", "finger_right", "xyz='0.02 -0.04 0'", "0 0 1",
+                limits(0, 1.3));
+  text += joint("tip_joint", "fixed", "gripper", "tip", "xyz='0.12 0 0'", "1 0 0");
+  text += joint("pan", "revolute", "torso", "neck", "xyz='0 0 0.4'", "0 0 1", limits(-2, 2));
+  text += joint("tilt", "revolute", "neck", "head", "xyz='0 0 0.1'", "0 1 0", limits(-1, 1));
+  return text + "</robot>";
+}
+
+robot::RobotModel load(const std::string& name, const std::string& text) {
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("vlaprobe_" + name + ".urdf")).string();
+  std::ofstream(path) << text;
+  auto model = robot::load_urdf(path);
+  std::filesystem::remove(path);
+  REQUIRE_MESSAGE(model.ok(), (model.ok() ? "" : to_text(model.failure())));
+  return std::move(model).value();
+}
+
+std::shared_ptr<const scene::CollisionShape> box(const Vec3& low, const Vec3& high) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i) {
+    points.emplace_back(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(),
+                        i & 4 ? high.z() : low.z());
+  }
+  auto shape = scene::make_collision_shape({points}, "box");
+  REQUIRE(shape.ok());
+  return std::make_shared<scene::CollisionShape>(std::move(shape).value());
+}
+
+// Drives by name; the drives' order is the order of q.
+struct Robot {
+  robot::RobotModel model;
+  WorldSpec spec;
+  std::vector<std::string> arm_joints;
+  std::size_t arm = 0;
+};
+
+Robot geared() {
+  Robot r{load("geared", geared_arm()), {}, {}, 7};
+  ArmSpec& arm = r.spec.arm;
+  for (int i = 1; i <= 7; ++i) {
+    arm.drives.push_back({"joint" + std::to_string(i), 1000, 100, 100});
+    r.arm_joints.push_back(arm.drives.back().joint);
+  }
+  arm.drives.push_back({"slide1", 1000, 100, 40});
+  arm.joints = {0, -0.785398, 0, -2.356194, 0, kHalfPi, 0.785398, 0.04};
+  arm.links = {{"hand", box({-0.02, -0.1, -0.02}, {0.02, 0.1, 0.06}), 1.0, 0},
+               {"finger1", box({-0.009, 0, 0.02}, {0.009, 0.012, 0.0535}), 2.0, 0.01},
+               {"finger2", box({-0.009, -0.012, 0.02}, {0.009, 0, 0.0535}), 2.0, 0.01}};
+  return r;
+}
+
+Robot mobile() {
+  Robot r{load("mobile", mobile_arm()), {}, {}, 7};
+  ArmSpec& arm = r.spec.arm;
+  for (const char* name : {"lift", "shoulder_yaw", "shoulder_pitch", "elbow", "forearm_roll",
+                           "wrist_pitch", "gripper_roll"}) {
+    arm.drives.push_back({name, 1500, 200, 300});
+    r.arm_joints.push_back(name);
+  }
+  arm.drives.push_back({"pan", 100, 10, 10});
+  arm.drives.push_back({"tilt", 100, 10, 10});
+  arm.drives.push_back({"hinge_left", 50, 2, 10});
+  arm.drives.push_back({"hinge_right", 50, 2, 10});
+  arm.joints = {0.2, 0, 0.3, 0.5, 0, kHalfPi - 0.8, 0, 0, 0, 0, 0};
+  const auto finger = box({0, -0.005, -0.012}, {0.1, 0.005, 0.012});
+  arm.links = {{"base", box({-0.3, -0.3, -0.2}, {0.1, 0.3, 0.2}), 1.0, 0},
+               {"gripper", box({-0.05, -0.05, -0.03}, {0.01, 0.05, 0.03}), 1.0, 0},
+               {"finger_left", finger, 2.0, 0.01},
+               {"finger_right", finger, 2.0, 0.01}};
+  return r;
+}
+
+std::unique_ptr<World> make(Robot* r) {
+  r->spec.arm.model = &r->model;
+  auto world = World::create(r->spec);
+  REQUIRE_MESSAGE(world.ok(), (world.ok() ? "" : to_text(world.failure())));
+  return std::move(world).value();
+}
+
+void run(World* world, int substeps) {
+  const Status status = world->step(substeps);
+  REQUIRE_MESSAGE(status.ok(), (status.ok() ? "" : to_text(status.failure())));
+}
+
+std::vector<double> state(const World& world) {
+  return {world.joints().begin(), world.joints().end()};
+}
+
+// Joint positions that put the link `tip` there with its present orientation.
+std::vector<double> reach(const Robot& r, const std::vector<double>& from, const Vec3& place) {
+  auto chain = robot::Chain::create(r.model, "tip", r.arm_joints);
+  REQUIRE(chain.ok());
+  std::vector<double> q = from;
+  const std::span<double> arm = std::span(q).first(r.arm);
+  const Pose now = chain->pose(arm);
+  const auto found = robot::solve_ik(*chain, {place, now.rotation}, arm);
+  REQUIRE(found.converged);
+  return q;
+}
+
+Vec3 tip(const World& world) { return world.frame_pose("tip").position; }
+
+TEST_CASE("the mass matrix is the multibody library's own, geared fingers included") {
+  for (const bool is_geared : {true, false}) {
+    Robot r = is_geared ? geared() : mobile();
+    std::vector<int> order;
+    for (const Drive& d : r.spec.arm.drives) order.push_back(r.model.find_joint(d.joint));
+    const Pose base{{0.3, -0.2, 0.1}, Quat(0.8, 0, 0.6, 0)};
+    auto arm = ArmDynamics::create(r.model, base, order);
+    REQUIRE_MESSAGE(arm.ok(), (arm.ok() ? "" : to_text(arm.failure())));
+    JointArray q{};
+    for (std::size_t i = 0; i < order.size(); ++i) q[i] = r.spec.arm.joints[i] + 0.1;
+    REQUIRE((*arm)->update(q).ok());
+    const JointMatrix ours = (*arm)->mass(), library = (*arm)->library_mass();
+    double worst = 0, largest = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      for (std::size_t j = 0; j < order.size(); ++j) {
+        worst = std::max(worst, std::fabs(ours[i][j] - library[i][j]));
+        largest = std::max(largest, std::fabs(library[i][j]));
+      }
+    }
+    CHECK(largest > 0.1);
+    CHECK(worst < 1e-12 * largest);
+    CHECK((*arm)->followers().size() == (is_geared ? 1 : 0));
+  }
+}
+
+TEST_CASE("links stand where kinematics says, followers too") {
+  Robot r = geared();
+  const auto world = make(&r);
+  std::vector<std::string> names;
+  for (const Drive& d : r.spec.arm.drives) names.push_back(d.joint);
+  auto tree = robot::Tree::create(r.model, names);
+  REQUIRE(tree.ok());
+  std::vector<double> q = state(*world);
+  for (std::size_t i = 0; i < 7; ++i) q[i] += 0.1 * static_cast<double>(i % 3);
+  q[7] = 0.013;
+  world->set_joints(q);
+  std::vector<Pose> poses(r.model.links.size());
+  tree->link_poses(q, poses);
+  for (const char* name : {"link4", "hand", "finger1", "finger2", "tip"}) {
+    const Pose expected = poses[static_cast<std::size_t>(r.model.find_link(name))];
+    CHECK((world->frame_pose(name).position - expected.position).norm() < 1e-12);
+  }
+}
+
+TEST_CASE("robots of either kind go to their targets and stop at both limits of every joint") {
+  for (const bool is_geared : {true, false}) {
+    Robot r = is_geared ? geared() : mobile();
+    r.spec.surface_z = -5;
+    const auto world = make(&r);
+    std::vector<double> target = state(*world);
+    for (std::size_t i = 0; i < r.arm; ++i) target[i] += i % 2 ? 0.1 : -0.1;
+    world->set_targets(target);
+    run(world.get(), 2000);
+    for (std::size_t i = 0; i < r.arm; ++i) {
+      CHECK(std::fabs(world->joints()[i] - target[i]) < 1e-3);
+    }
+    const std::vector<double> home = r.spec.arm.joints;
+    for (std::size_t i = 0; i < home.size(); ++i) {
+      const Drive& drive = r.spec.arm.drives[i];
+      const robot::Joint& joint =
+          r.model.joints[static_cast<std::size_t>(r.model.find_joint(drive.joint))];
+      for (const double side : {-1.0, 1.0}) {
+        world->set_joints(home);
+        target = home;
+        target[i] += side * 8;
+        world->set_targets(target);
+        double farthest = 0;  // past the limit
+        for (int k = 0; k < 30; ++k) {
+          run(world.get(), 100);
+          farthest = std::max(
+              {farthest, world->joints()[i] - joint.upper, joint.lower - world->joints()[i]});
+        }
+        if (joint.kind == robot::JointKind::kContinuous) {
+          CHECK(std::fabs(world->joints()[i] - target[i]) < 1.0);
+          continue;
+        }
+        const double limit = side < 0 ? joint.lower : joint.upper;
+        CHECK_MESSAGE(std::fabs(world->joints()[i] - limit) < 1e-3, drive.joint, " ", side);
+        CHECK_MESSAGE(farthest < 1e-3, drive.joint, " ", side, " passes its limit by ", farthest);
+      }
+    }
+  }
+}
+
+TEST_CASE("robots of either kind hold a box and carry it up without slip") {
+  for (const bool is_geared : {true, false}) {
+    Robot r = is_geared ? geared() : mobile();
+    const double half = is_geared ? 0.02 : 0.025;
+    r.spec.surface_z = is_geared ? 0.0 : 0.3;
+    r.spec.sleeping = false;
+    {
+      const auto bare = make(&r);
+      Vec3 spot = tip(*bare);
+      spot.z() = r.spec.surface_z + half;
+      r.spec.arm.joints = reach(r, state(*bare), spot + Vec3(0, 0, is_geared ? 0.0 : 0.005));
+      r.spec.bodies.push_back(
+          {"box",
+           std::make_shared<scene::CollisionShape>(scene::make_box_shape(Vec3::Constant(half))),
+           500, 0.5, Pose{spot, Quat::Identity()}});
+    }
+    const auto world = make(&r);
+    std::vector<double> target = state(*world);
+    for (std::size_t i = is_geared ? 7 : 9; i < target.size(); ++i) target[i] = is_geared ? 0 : 0.2;
+    world->set_targets(target);
+    run(world.get(), 300);
+    const Vec3 start = tip(*world);
+    for (int k = 1; k <= 5; ++k) {
+      const std::vector<double> q = reach(r, state(*world), start + Vec3(0, 0, 0.03 * k));
+      std::copy_n(q.begin(), r.arm, target.begin());
+      world->set_targets(target);
+      run(world.get(), 150);
+    }
+    run(world.get(), 500);
+    const auto held = [&] { return (world->frame_pose("tip").inverse() * world->body(0).pose); };
+    const Pose before = held();
+    CHECK(world->body(0).pose.position.z() > r.spec.surface_z + half + 0.1);
+    double slip = 0;
+    for (int k = 0; k < 20; ++k) {
+      run(world.get(), 100);
+      slip = std::max(slip, (held().position - before.position).norm());
+    }
+    MESSAGE(r.model.name, ": slip ", slip * 1e3, " mm in 4 s");
+    CHECK(slip < 1e-6);
+    if (is_geared) {
+      const Vec3 a = world->frame_pose("finger1").position, b = world->frame_pose("tip").position,
+                 c = world->frame_pose("finger2").position;
+      const Mat3 axes = world->frame_pose("hand").rotation.toRotationMatrix();
+      CHECK(std::fabs(axes.col(1).dot(a - b) + axes.col(1).dot(c - b)) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("a follower's limits bind its leader, and limits that contradict are refused") {
+  std::string text = geared_arm();
+  const auto change = [&](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+  };
+  change("<mimic joint='slide1'/>", "<mimic joint='slide1' multiplier='2' offset='-0.01'/>");
+  Robot r = geared();
+  r.model = load("geared2", text);
+  {
+    const auto world = make(&r);
+    std::vector<double> target = state(*world);
+    for (const double to : {0.0, 0.1}) {
+      target[7] = to;
+      world->set_targets(target);
+      run(world.get(), 1500);
+      // 0 <= 2 q - 0.01 <= 0.04.
+      CHECK(world->joints()[7] == doctest::Approx(to == 0 ? 0.005 : 0.025).epsilon(0.02));
+    }
+  }
+  change("offset='-0.01'", "offset='0.1'");
+  r.model = load("geared3", text);
+  r.spec.arm.model = &r.model;
+  const auto refused = World::create(r.spec);
+  REQUIRE(!refused.ok());
+  CHECK(refused.failure().message.find("`slide2` mimics `slide1`") != std::string::npos);
+}
+
+TEST_CASE("more joints than a world has room for are refused") {
+  std::string text = "<robot name='snake'>" + link("l0");
+  Robot r{{}, {}, {}, 0};
+  for (int i = 1; i <= kMaxJoints + 1; ++i) {
+    const std::string n = std::to_string(i);
+    text += link("l" + n) + joint("j" + n, "continuous", "l" + std::to_string(i - 1), "l" + n,
+                                  "xyz='0 0 0.1'", i % 2 ? "1 0 0" : "0 1 0");
+    r.spec.arm.drives.push_back({"j" + n, 100, 50, 20});
+    r.spec.arm.joints.push_back(0);
+  }
+  r.model = load("snake", text + "</robot>");
+  r.spec.arm.model = &r.model;
+  const auto refused = World::create(r.spec);
+  REQUIRE(!refused.ok());
+  CHECK(refused.failure().message.find("at most 32") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace probe::world
