@@ -211,9 +211,14 @@ std::string after(const Trace& trace) {
                              : "after step " + std::to_string(trace.steps.size());
 }
 
+bool is_known(Tag tag) {
+  return is_hashed(tag) || tag == Tag::kFingerprint || tag == Tag::kTime || tag == Tag::kHash;
+}
+
 // One chunk into the trace; what is wrong with it, if anything is.
 std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing, Tag tag,
                    std::span<const std::byte> payload) {
+  if (!is_known(tag)) return "a chunk of unknown kind";
   if ((tag == Tag::kHead) == has_header) return has_header ? "a second header" : "no header";
   if (tag != Tag::kHead && tag != Tag::kFingerprint && tag != Tag::kSettled && !trace.start) {
     return "a step before the settled start";
@@ -256,7 +261,7 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
       if (!trace.end) return "a hash before the end";
       return payload.size() == sizeof(Sha256) ? "" : "a hash of another form";
   }
-  return "a chunk of unknown kind";
+  return {};
 }
 
 }  // namespace

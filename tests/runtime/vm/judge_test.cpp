@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-#include "tests/runtime/plan/small_plan.h"
+#include "tests/runtime/vm/random_judge.h"
 #include "tests/runtime/vm/reference.h"
 
 using namespace probe;
@@ -19,154 +19,6 @@ using namespace probe::plan;
 using namespace probe::vm;
 
 namespace {
-
-constexpr std::uint32_t kBodies =
-    6;  // of the small plan's tasks: carrot, plate, surface, two fingers, wrist
-
-// A random well-typed program over the small plan: every operation of isa.def can occur.
-class RandomProgram {
- public:
-  explicit RandomProgram(std::uint64_t seed) : draw_(seed) {}
-
-  Plan make(std::size_t instructions) {
-    Writer w = small_writer();
-    Records& r = w.records;
-    r.spans.clear();
-    r.code.clear();
-    r.states.clear();
-    r.metrics.clear();
-    r.constants = {0.0, -0.0, 1.0, 0.05, -2.5, 1e-6, 3.0};
-    const OpInfo* const ops = all_ops().data();
-    while (r.code.size() < instructions) {
-      const OpInfo& op = ops[pick(all_ops().size())];
-      if (op.op == Op::kEND || op.b == Kind::kMetric) continue;
-      add(r, op);
-    }
-    // Half of the results become metrics, as far as they are truths or numbers.
-    for (std::uint32_t i = 0; i < types_.size() && r.metrics.size() < kMaxMetrics; ++i) {
-      if (types_[i] == Kind::kVector || pick(2) == 0) continue;
-      const bool is_truth = types_[i] == Kind::kBool;
-      const auto metric = static_cast<std::uint32_t>(r.metrics.size());
-      const auto type =
-          static_cast<std::uint32_t>(is_truth ? MetricType::kBool : MetricType::kReal);
-      r.metrics.push_back({w.text(fmt::format("m{}", metric)), type, 1});
-      r.code.push_back(make_instruction(is_truth ? Op::kEMITB : Op::kEMITR, count(), i, metric));
-    }
-    r.code.push_back(make_instruction(Op::kEND, count()));
-    r.programs[0].constants = {0, static_cast<std::uint32_t>(r.constants.size())};
-    r.programs[0].states = {0, static_cast<std::uint32_t>(r.states.size())};
-    r.programs[0].code = {0, static_cast<std::uint32_t>(r.code.size())};
-    r.programs[0].metrics = {0, static_cast<std::uint32_t>(r.metrics.size())};
-    auto bytes = w.finish();
-    REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
-    auto plan = Plan::from_bytes(std::move(*bytes));
-    REQUIRE(plan.ok());
-    return std::move(plan).value();
-  }
-
- private:
-  std::uint32_t pick(std::size_t n) { return static_cast<std::uint32_t>(draw_() % n); }
-  std::uint32_t count() const { return static_cast<std::uint32_t>(types_.size()); }
-
-  // A register of that type, a late one by preference so that expressions get deep; none ->
-  // count().
-  std::uint32_t find(Kind type) {
-    std::vector<std::uint32_t> fitting;
-    for (std::uint32_t i = 0; i < types_.size(); ++i) {
-      if (types_[i] == type && depth_[i] < 6) fitting.push_back(i);
-    }
-    return fitting.empty() ? count() : fitting[pick(fitting.size())];
-  }
-
-  void add(Records& r, const OpInfo& op) {
-    std::uint32_t operands[2] = {0, 0};
-    int depth = 0;
-    for (int i = 0; i < 2; ++i) {
-      std::uint32_t& value = operands[i];
-      switch (i == 0 ? op.a : op.b) {
-        case Kind::kBool:
-        case Kind::kReal:
-        case Kind::kVector:
-          value = find(i == 0 ? op.a : op.b);
-          if (value == count()) return;
-          depth = std::max(depth, depth_[value] + 1);
-          break;
-        case Kind::kConstant:
-          value = pick(5);
-          break;
-        case Kind::kImmediate:
-          value = pick(op.op == Op::kAXIS ? 3 : 2);
-          break;
-        case Kind::kBody:
-          value = op.op == Op::kOPEN ? 3 + pick(2) : pick(kBodies);
-          break;
-        case Kind::kState: {
-          // Monitors of monitors cost the reference a power of the steps each.
-          if (depth_[operands[0]] > 3) return;
-          value = static_cast<std::uint32_t>(r.states.size());
-          const auto n = static_cast<std::uint16_t>(op.op == Op::kHOLD ? 1 + pick(4) : 0);
-          r.states.push_back({static_cast<std::uint16_t>(op.op), n});
-          depth += 2;
-          break;
-        }
-        default:
-          break;
-      }
-    }
-    r.code.push_back(make_instruction(op.op, count(), operands[0], operands[1]));
-    types_.push_back(op.result);
-    depth_.push_back(depth);
-  }
-
-  std::mt19937_64 draw_;
-  std::vector<Kind> types_;
-  std::vector<int> depth_;
-};
-
-class RandomWorld {
- public:
-  explicit RandomWorld(std::uint64_t seed) : draw_(seed) {}
-
-  std::vector<BodyStart> starts() {
-    std::vector<BodyStart> out(kBodies);
-    for (BodyStart& b : out) b = {vector(), vector(), vector().normalized()};
-    return out;
-  }
-
-  StepSample step(double number) {
-    StepSample s;
-    for (std::uint32_t i = 0; i < kBodies; ++i) {
-      s.bodies.push_back({vector(), vector(), vector(), vector(), rotation()});
-    }
-    for (std::uint16_t a = 0; a < kBodies; ++a) {
-      for (auto b = static_cast<std::uint16_t>(a + 1); b < kBodies; ++b) {
-        if (draw_() % 3 == 0) s.contacts.push_back({a, b, vector()});
-      }
-    }
-    s.tcp = vector();
-    s.grip = number_();
-    s.step = number;
-    s.time = number / 5;
-    return s;
-  }
-
- private:
-  // Coarse numbers too, so that equalities and zeros of both signs occur.
-  double number_() {
-    const double fine = std::uniform_real_distribution<double>(-1, 1)(draw_);
-    return draw_() % 3 == 0 ? std::round(fine * 2) / 2 : fine;
-  }
-  Vec3 vector() {
-    const double x = number_(), y = number_(), z = number_();
-    return {x, y, z};
-  }
-  Quat rotation() {
-    const Quat q(number_() + 2, number_(), number_(), number_());
-    return q.normalized();
-  }
-
-  std::mt19937_64 draw_;
-};
 
 Plan open_small() {
   auto plan = Plan::from_bytes(small_plan());
@@ -213,6 +65,34 @@ TEST_CASE("the judge and the naive evaluator agree bit for bit on random program
   }
   CHECK(compared > 10000);
   CHECK(ops_seen.size() == all_ops().size());
+}
+
+TEST_CASE("the judge and the naive evaluator agree on a million pairs of a program and a world") {
+  constexpr std::uint64_t kPrograms = 2000;
+  constexpr int kWorlds = 500;
+  std::size_t pairs = 0, values = 0, different = 0;
+  for (std::uint64_t seed = 0; seed < kPrograms; ++seed) {
+    const Plan plan = RandomProgram(seed + 5000).make(6 + seed % 20);
+    const auto task = static_cast<std::uint32_t>(seed % 2);
+    RandomWorld world(seed + 77);
+    const auto starts = world.starts();
+    Judge judge(plan, task);
+    for (int w = 0; w < kWorlds; ++w) {
+      const std::vector<StepSample> history = {world.step(1)};
+      if (!judge.begin(starts).ok() || !judge.step(history[0]).ok()) ++different;
+      const Reference reference(plan, plan.tasks()[task], starts, history);
+      for (std::uint16_t m = 0; m < judge.metric_count(); ++m) {
+        const double want = reference.metric(m, 0);
+        ++values;
+        different +=
+            std::bit_cast<std::uint64_t>(judge.value(m)) != std::bit_cast<std::uint64_t>(want);
+      }
+      ++pairs;
+    }
+  }
+  MESSAGE(pairs << " pairs, " << values << " values, " << different << " different");
+  CHECK(pairs == 1'000'000);
+  CHECK(different == 0);
 }
 
 TEST_CASE("a metric keeps the value last emitted, and monitors start again with each episode") {

@@ -1,0 +1,138 @@
+// What is exported is what was recorded, read back with the other tools' own libraries.
+#include "runtime/export/export.h"
+
+#include <doctest/doctest.h>
+#include <hdf5.h>
+
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tests/runtime/run/sample_trace.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::exporting {
+namespace {
+
+using run::TemporaryFolder;
+
+struct Recorded {
+  run::ResultRow row;
+  run::Trace trace;
+};
+
+Recorded recorded(const TemporaryFolder& folder) {
+  const auto hash = run::write_sample_trace(folder / "a.trace", 4);
+  REQUIRE(hash.ok());
+  auto trace = run::read_trace(folder / "a.trace");
+  REQUIRE(trace.ok());
+  Recorded out{{}, std::move(*trace)};
+  out.row.task = out.trace.header.task;
+  out.row.metrics = out.trace.end->metrics;
+  out.row.trace_sha256 = to_hex(out.trace.hash);
+  return out;
+}
+
+std::vector<double> read_reals(hid_t file, const std::string& name, std::vector<hsize_t>& shape) {
+  const hid_t set = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+  REQUIRE_MESSAGE(set >= 0, name);
+  const hid_t space = H5Dget_space(set);
+  shape.resize(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+  H5Sget_simple_extent_dims(space, shape.data(), nullptr);
+  std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  if (!values.empty())
+    CHECK(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  H5Sclose(space);
+  H5Dclose(set);
+  return values;
+}
+
+std::string read_text(hid_t file, const std::string& group, const char* name) {
+  const hid_t attribute = H5Aopen_by_name(file, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT);
+  REQUIRE_MESSAGE(attribute >= 0, name);
+  const hid_t type = H5Aget_type(attribute);
+  char* text = nullptr;
+  CHECK(H5Aread(attribute, type, &text) >= 0);
+  std::string value = text == nullptr ? "" : text;
+  H5free_memory(text);
+  H5Tclose(type);
+  H5Aclose(attribute);
+  return value;
+}
+
+TEST_CASE("an HDF5 file has a group an episode with every number of its trace") {
+  const TemporaryFolder folder;
+  const Recorded in = recorded(folder);
+  auto sink = open_hdf5(folder / "x.h5");
+  REQUIRE(sink.ok());
+  REQUIRE((*sink)->episode(in.row, in.trace).ok());
+  REQUIRE((*sink)->finish().ok());
+
+  const hid_t file = H5Fopen((folder / "x.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  const std::string group = "/carrot_on_plate/3-42";
+  CHECK(read_text(file, group, "prompt") == "put carrot on plate");
+  CHECK(read_text(file, group, "start_id") == to_hex(in.trace.header.start_id));
+  CHECK(read_text(file, group, "invalid").empty());
+  std::vector<hsize_t> shape;
+  const auto action = read_reals(file, group + "/action", shape);
+  CHECK(shape == std::vector<hsize_t>{4, 7});
+  for (std::size_t i = 0; i < action.size(); ++i)
+    CHECK(action[i] == in.trace.steps[i / 7].action[i % 7]);
+  const auto position = read_reals(file, group + "/body_position", shape);
+  CHECK(shape == std::vector<hsize_t>{4, 2, 3});
+  CHECK(position[3 * 2 * 3] == in.trace.steps[3].sample.bodies[0].position.x());
+  const auto rotation = read_reals(file, group + "/body_rotation", shape);
+  CHECK(rotation[0] == in.trace.steps[0].sample.bodies[0].rotation.w());
+  const auto metrics = read_reals(file, group + "/metrics", shape);
+  CHECK(metrics[2 * 3] == 1.0);
+  CHECK(metrics[2 * 3 + 1] == 0.5);
+  const auto push = read_reals(file, group + "/contact_push", shape);
+  CHECK(shape == std::vector<hsize_t>{4, 3});
+  CHECK(push[3 * 1 + 2] == -2e-3);
+  const auto image = read_reals(file, group + "/image_sha256", shape);
+  CHECK(image[32 + 5] == in.trace.steps[1].image_hash.bytes[5]);
+  const auto half = read_reals(file, group + "/start_half", shape);
+  CHECK(half[3] == 0.05);
+  H5Fclose(file);
+}
+
+TEST_CASE("JSON lines have an episode line and a line a step with exact numbers") {
+  const TemporaryFolder folder;
+  const Recorded in = recorded(folder);
+  auto sink = open_json_lines(folder / "x.jsonl");
+  REQUIRE(sink.ok());
+  REQUIRE((*sink)->episode(in.row, in.trace).ok());
+  REQUIRE((*sink)->finish().ok());
+  std::ifstream file(folder / "x.jsonl");
+  std::vector<nlohmann::json> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(nlohmann::json::parse(line));
+  REQUIRE(lines.size() == 5);
+  CHECK(lines[0]["kind"] == "episode");
+  CHECK(lines[0]["metrics"]["success"] == true);
+  CHECK(lines[0]["start"]["q"][0] == 0.5);
+  CHECK(lines[2]["kind"] == "step");
+  CHECK(lines[2]["step"] == 2.0);
+  CHECK(lines[2]["tcp_m"][2] == 1.0 / 3);
+  CHECK(lines[2]["bodies"]["carrot"]["position_m"][0] ==
+        in.trace.steps[1].sample.bodies[0].position.x());
+  CHECK(lines[2]["contacts"][0]["b"] == "plate");
+  CHECK(lines[2]["image_sha256"] == to_hex(in.trace.steps[1].image_hash));
+  CHECK(lines[2]["metrics"]["success"] == false);
+}
+
+TEST_CASE("what cannot be written is told") {
+  const TemporaryFolder folder;
+  CHECK(open_hdf5(folder / "no/such/x.h5").failure().code == "io");
+  CHECK(open_json_lines(folder / "no/such/x.jsonl").failure().code == "io");
+  CHECK(export_run(folder / "absent", folder / "x.h5").failure().code == "store");
+  CHECK(export_run(folder / "absent", folder / "x.csv").failure().code == "usage");
+  Recorded in = recorded(folder);
+  in.trace.steps[1].q.pop_back();  // a forged trace whose steps do not have what its header names
+  auto sink = open_hdf5(folder / "y.h5");
+  REQUIRE(sink.ok());
+  CHECK(!(*sink)->episode(in.row, in.trace).ok());
+}
+
+}  // namespace
+}  // namespace probe::exporting

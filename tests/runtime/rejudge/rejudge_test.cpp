@@ -1,0 +1,197 @@
+// Matching, refusing and explaining, on made-up traces of the small plan.
+#include "runtime/rejudge/rejudge.h"
+
+#include <doctest/doctest.h>
+
+#include "runtime/rejudge/dimension.h"
+#include "runtime/rejudge/explain.h"
+#include "runtime/rejudge/match.h"
+#include "runtime/rejudge/rescore.h"
+#include "tests/runtime/plan/small_plan.h"
+
+namespace probe::rejudge {
+namespace {
+
+plan::Plan opened(plan::Writer& w) {
+  auto bytes = w.finish();
+  REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
+  auto plan = plan::Plan::from_bytes(std::move(*bytes));
+  REQUIRE(plan.ok());
+  return std::move(plan).value();
+}
+
+plan::Plan small() {
+  plan::Writer w = plan::small_writer();
+  return opened(w);
+}
+
+// The carrot comes within 4 cm of the tool at step 3 of 60 and is touched from step 10 on.
+run::Trace made_trace(const plan::Plan& plan, std::uint32_t task) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  run::Trace trace;
+  trace.header.task = plan.text(record.name);
+  trace.header.prompt = plan.text(record.prompt);
+  trace.header.control_hz = 5;
+  for (const plan::BodyRecord& body : plan.bodies(record))
+    trace.header.bodies.emplace_back(plan.text(body.name));
+  const std::size_t bodies = trace.header.bodies.size();
+  trace.start.emplace();
+  trace.start->starts.resize(bodies);
+  trace.start->starts[3].opening = {0, 1, 0};
+  for (std::uint32_t i = 1; i <= record.horizon; ++i) {
+    run::TraceStep step;
+    step.sample.bodies.resize(bodies);
+    step.sample.step = i;
+    step.sample.tcp = {i == 3 ? 0.04 : 0.5 / i + 0.06, 0, 0};
+    if (i >= 10) step.sample.contacts = {{0, 3, {0, 0.2, 0}}};
+    trace.steps.push_back(step);
+  }
+  return trace;
+}
+
+run::ResultRow row_of(const plan::Plan& plan, std::uint32_t task, int episode) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  run::ResultRow row;
+  row.task = plan.text(record.name);
+  row.episode = episode;
+  row.start_id = to_hex(Sha256{plan.episodes(record)[static_cast<std::size_t>(episode)].start_id});
+  return row;
+}
+
+TEST_CASE("a trace is judged to the horizon, and its metrics are those of its steps") {
+  const plan::Plan plan = small();
+  const auto score = rescore(plan, 0, made_trace(plan, 0));
+  REQUIRE_MESSAGE(score.ok(), to_text(score.failure()));
+  CHECK(!score->invalid);
+  REQUIRE(score->steps.size() == 60);
+  CHECK(score->steps[1][0] == 0);
+  CHECK(score->steps[2][0] == 1);
+  CHECK(score->metrics[0] == run::MetricValue{"near", true, 1});
+  CHECK(score->steps[12][2] == 0);  // touched for 4 steps
+  CHECK(score->steps[13][2] == 1);
+}
+
+TEST_CASE("measurements that are not the task's are refused with the reason") {
+  const plan::Plan plan = small();
+  const auto refusal = [&](auto&& change) {
+    run::Trace trace = made_trace(plan, 0);
+    change(trace);
+    const auto score = rescore(plan, 0, trace);
+    REQUIRE(!score.ok());
+    CHECK(score.failure().code == "usage");
+    return score.failure().message;
+  };
+  using run::Trace;
+  CHECK(refusal([](Trace& t) { t.header.bodies.pop_back(); }).starts_with("5 bodies were"));
+  CHECK(refusal([](Trace& t) { t.header.bodies[4] = "thumb"; }).starts_with("body 4 is `thumb`"));
+  CHECK(refusal([](Trace& t) { t.header.control_hz = 10; }).starts_with("it was measured at 10"));
+  CHECK(refusal([](Trace& t) { t.header.prompt = "drop it"; }).find("drop it") !=
+        std::string::npos);
+  CHECK(refusal([](Trace& t) { t.steps.pop_back(); }).starts_with("it has 59 steps"));
+  run::Trace renamed = made_trace(plan, 0);
+  renamed.header.bodies[0] = "vegetable";
+  CHECK(rescore(plan, 0, renamed).ok());
+}
+
+TEST_CASE("an invalid episode stays invalid with its reason, judged as far as it went") {
+  const plan::Plan plan = small();
+  run::Trace trace = made_trace(plan, 0);
+  trace.steps.resize(7);
+  trace.end = run::TraceEnd{7, {}, "policy: gone"};
+  const auto score = rescore(plan, 0, trace);
+  REQUIRE(score.ok());
+  CHECK(score->steps.size() == 7);
+  CHECK(score->invalid == "policy: gone");
+  run::Trace broken = made_trace(plan, 0);
+  broken.steps[4].sample.tcp.x() = NAN;
+  const auto judged = rescore(plan, 0, broken);
+  REQUIRE(judged.ok());
+  CHECK(judged->steps.size() == 4);
+  CHECK(judged->invalid->starts_with("judge: "));
+}
+
+TEST_CASE("a start is matched by its id, and the part that differs is named") {
+  const plan::Plan recorded = small();
+  CHECK(match_start(recorded, 0, row_of(recorded, 0, 1), recorded)->episode == 1);
+  const auto difference = [&](auto&& change) {
+    plan::Writer w = plan::small_writer();
+    change(w.records);
+    const plan::Plan other = opened(w);
+    const auto match = match_start(other, 0, row_of(recorded, 0, 1), recorded);
+    REQUIRE(!match.ok());
+    CHECK(match.failure().where == "carrot_on_plate episode 1 seed 0");
+    const std::string& text = match.failure().message;
+    return text.substr(text.find("differ in: ") + 11);
+  };
+  using plan::Records;
+  CHECK(difference([](Records& r) { r.scenes[0].surface_z = 0.9; }) == "scene");
+  CHECK(difference([](Records& r) { r.robots[0].grip_open = 0.03; }) == "robot");
+  CHECK(difference([](Records& r) { r.cameras[0].fx = 500; }) == "camera");
+  CHECK(difference([](Records& r) { r.suns[0].power = 1; }) == "light");
+  CHECK(difference([](Records& r) { r.tasks[0].settle = 1; }) == "drop");
+  CHECK(difference([](Records& r) { r.objects[0].density = 1; }) == "source");
+  CHECK(difference([](Records& r) { r.objects[1].friction = 1; }) == "target");
+  CHECK(difference([](Records& r) { r.placements[2].position[0] = 0; }) == "pose of the source");
+  CHECK(difference([](Records& r) {
+          r.lights[0].ambient = 1;
+          r.placements[3].position[1] = 0;
+        }) == "light, pose of the target");
+  run::ResultRow late = row_of(recorded, 0, 1);
+  late.episode = 2;
+  CHECK(match_start(recorded, 0, late, recorded).failure().message.find("has 2 episodes") !=
+        std::string::npos);
+}
+
+TEST_CASE("a task is judged by its namesake, or by the variant that differs in the goal alone") {
+  plan::Writer w = plan::small_writer();
+  w.records.tasks[1].axes = static_cast<std::uint32_t>(plan::Axis::kGoal);
+  const plan::Plan goal = opened(w);
+  const std::uint32_t all[] = {0, 1}, second[] = {1};
+  CHECK(**find_judge(goal, all, "carrot_on_plate") == 0);
+  CHECK(**find_judge(goal, second, "carrot_on_plate") == 1);
+  CHECK(!find_judge(goal, all, "spoon_on_towel")->has_value());
+  const plan::Plan language = small();  // the variant says something else
+  CHECK(!find_judge(language, second, "carrot_on_plate")->has_value());
+}
+
+TEST_CASE("an explanation names the deciding step and the numbers measured there") {
+  const plan::Plan plan = small();
+  const auto why = explain(plan, 0, made_trace(plan, 0));
+  REQUIRE_MESSAGE(why.ok(), to_text(why.failure()));
+  REQUIRE(why->size() == 3);
+  const MetricWhy& near = (*why)[0];
+  CHECK(near.name == "near");
+  CHECK(near.step == 3);
+  CHECK(near.when == "since step 3");
+  REQUIRE(near.conditions.size() == 1);
+  CHECK(near.conditions[0].measured == "4cm < 5cm");
+  CHECK(near.conditions[0].truth);
+  const MetricWhy& steady = (*why)[2];
+  CHECK(steady.when == "at step 60, since step 14");
+  REQUIRE(steady.conditions.size() == 2);
+  CHECK(steady.conditions[0].measured == "0.05Ns <= 0.2Ns");
+  CHECK(steady.conditions[1].measured == "5 of 5 steps");
+
+  run::Trace far = made_trace(plan, 0);
+  far.steps[2].sample.tcp.x() = 0.9;
+  far.steps[40].sample.tcp.x() = 0.0501;
+  const auto never = explain(plan, 0, far, "near");
+  REQUIRE(never->size() == 1);
+  CHECK((*never)[0].when.starts_with("never, nearest at step"));
+  CHECK(!(*never)[0].conditions[0].truth);
+  CHECK(explain(plan, 0, far, "nearly").failure().code == "usage");
+}
+
+TEST_CASE("numbers are written in people's units, with the digits that tell them apart") {
+  CHECK(quantity(0.031, Dimension::kLength) == "3.1cm");
+  CHECK(quantity(1.25, Dimension::kLength) == "1.25m");
+  CHECK(quantity(0.004, Dimension::kImpulse) == "0.004Ns");
+  CHECK(quantity(14, Dimension::kSteps) == "14");
+  CHECK(angle_text(1.0471975511965976) == "60deg");
+  CHECK(quantities(0.02, 0.0200001, Dimension::kLength) ==
+        std::pair<std::string, std::string>("2cm", "2.00001cm"));
+  CHECK(quantities(0.02, 0.02, Dimension::kLength).first == "2cm");
+}
+
+}  // namespace
+}  // namespace probe::rejudge
