@@ -177,6 +177,7 @@ TEST_CASE("export writes every step as a line of JSON and as HDF5") {
 }
 
 TEST_CASE("build gives one root from any directory, and whatever order files are listed in") {
+  std::filesystem::create_directories(sandbox() / "elsewhere");
   std::filesystem::copy(
       VLAPROBE_SOURCE_DIR "/suite", sandbox() / "elsewhere/deep",
       std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
