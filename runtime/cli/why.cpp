@@ -40,6 +40,7 @@ void print_json(const rejudge::EpisodeWhy& why) {
                                      {"bodies", c.bodies},
                                      {"measured", c.measured},
                                      {"truth", c.truth},
+                                     {"decides", c.decides},
                                      {"alike", c.alike}});
     }
     json["metrics"].push_back(std::move(entry));
@@ -61,8 +62,10 @@ void print_metric(const rejudge::MetricWhy& metric) {
   for (const rejudge::Condition& c : metric.conditions) {
     if (!c.file.empty() && (file == nullptr || *file != c.file)) fmt::print("  {}\n", c.file);
     file = &c.file;
-    fmt::print("{:>6} | {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "", left(c),
-               text_width, c.measured, measured_width, c.truth ? "true" : "false",
+    // What did not decide stands without the mark.
+    fmt::print("{:>6} {} {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "",
+               c.decides ? '>' : '|', left(c), text_width, c.measured, measured_width,
+               c.truth ? "true" : "false",
                c.alike > 0 ? fmt::format("  and {} alike", c.alike) : "");
   }
 }
@@ -90,7 +93,9 @@ void add_why(CLI::App& app, int& exit) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb =
       app.add_subcommand("why", "a verdict explained: source lines with the measured numbers");
-  verb->footer("example: vlaprobe why runs/expert carrot_on_plate 3 --metric success");
+  verb->footer(
+      "lines marked > are those that made the metric what it is\n"
+      "example: vlaprobe why runs/expert carrot_on_plate 3 --metric success");
   verb->add_option("DIR", arguments->dir, "results folder")->required();
   verb->add_option("TASK", arguments->task, "task name")->required();
   verb->add_option("EPISODE", arguments->episode, "start, from 0")->required();

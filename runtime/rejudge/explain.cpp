@@ -191,6 +191,7 @@ class Explainer {
       std::size_t copies = 0, listed = 0;
       for (const Condition& other : all) copies += same_text(other, all[i]) ? 1 : 0;
       if (copies == 1) all[i].bodies.clear();
+      all[i].decides = deciding[regs[i]];
       Condition* twin = nullptr;
       for (Condition& other : why.conditions) {
         if (!same_text(other, all[i])) continue;

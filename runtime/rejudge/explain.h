@@ -21,7 +21,8 @@ struct Condition {
   std::string bodies;    // whose measurements it compares: "carrot, surface"
   std::string measured;  // "3.1cm <= 2cm"
   bool truth = false;
-  int alike = 0;  // further ones of the same text and truth that are not listed
+  bool decides = true;  // the predicate is what it is because of this one, perhaps with others
+  int alike = 0;        // further ones of the same text and truth that are not listed
 };
 
 struct MetricWhy {

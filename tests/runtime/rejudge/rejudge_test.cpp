@@ -166,6 +166,7 @@ TEST_CASE("an explanation names the deciding step and the numbers measured there
   REQUIRE(near.conditions.size() == 1);
   CHECK(near.conditions[0].measured == "4cm < 5cm");
   CHECK(near.conditions[0].truth);
+  CHECK(near.conditions[0].decides);
   const MetricWhy& steady = (*why)[2];
   CHECK(steady.when == "at step 60, since step 14");
   REQUIRE(steady.conditions.size() == 2);
