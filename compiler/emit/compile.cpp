@@ -55,39 +55,54 @@ Status check_suite_exists(const sema::Model& model, const std::string& suite) {
   return Failure{"usage", message, ""};
 }
 
-Result<Compilation> compile(std::span<const std::string> files, const CompileOptions& options,
-                            bool write) {
-  if (files.empty()) return Failure{"usage", "no file to compile", ""};
+// Everything but the bytes. The model's spans point into `compilation.sources`.
+struct Analyzed {
   Compilation compilation;
-  Loaded loaded;
   std::vector<std::string> roots;
+  Loaded loaded;
+  std::vector<FileId> ids;
+  sema::Model model;
+};
+
+Status analyze(std::span<const std::string> files, const CompileOptions& options, Analyzed& out) {
+  if (files.empty()) return Failure{"usage", "no file to compile", ""};
   for (const std::string& file : files) {
     std::string root = std::filesystem::path(file).lexically_normal().string();
-    if (std::find(roots.begin(), roots.end(), root) != roots.end()) continue;
-    PROBE_TRY(load(loaded, root, options.library_folders, compilation));
-    roots.push_back(std::move(root));
+    if (std::find(out.roots.begin(), out.roots.end(), root) != out.roots.end()) continue;
+    PROBE_TRY(load(out.loaded, root, options.library_folders, out.compilation));
+    out.roots.push_back(std::move(root));
   }
   std::vector<const syntax::File*> trees;
-  std::vector<FileId> ids, named;
-  for (const syntax::ParseResult& result : loaded.files) {
+  std::vector<FileId> named;
+  for (const syntax::ParseResult& result : out.loaded.files) {
     trees.push_back(&result.file);
-    ids.push_back(result.file.id);
-    const std::string& name = compilation.sources.file(result.file.id).name();
-    if (std::find(roots.begin(), roots.end(), name) != roots.end()) named.push_back(result.file.id);
+    out.ids.push_back(result.file.id);
+    const std::string& name = out.compilation.sources.file(result.file.id).name();
+    if (std::find(out.roots.begin(), out.roots.end(), name) != out.roots.end())
+      named.push_back(result.file.id);
   }
-  const sema::Model model =
-      sema::analyze(compilation.sources, trees, options.asset_root, compilation.diagnostics, named);
-  if (!compilation.diagnostics.has_errors()) {
-    PROBE_TRY(check_suite_exists(model, options.suite));
+  out.model = sema::analyze(out.compilation.sources, trees, options.asset_root,
+                            out.compilation.diagnostics, named);
+  out.compilation.ok = !out.compilation.diagnostics.has_errors();
+  if (out.compilation.ok) PROBE_TRY(check_suite_exists(out.model, options.suite));
+  return {};
+}
+
+Result<Compilation> compile(std::span<const std::string> files, const CompileOptions& options,
+                            bool write) {
+  Analyzed analyzed;
+  PROBE_TRY(analyze(files, options, analyzed));
+  Compilation& compilation = analyzed.compilation;
+  if (compilation.ok) {
     const emit::EmitOptions emit_options{
         options.asset_root, options.suite,
-        std::filesystem::path(roots.front()).parent_path().string(), write};
-    PROBE_ASSIGN(compilation.plan, emit::emit(model, compilation.sources, ids, emit_options,
-                                              compilation.diagnostics));
+        std::filesystem::path(analyzed.roots.front()).parent_path().string(), write};
+    PROBE_ASSIGN(compilation.plan, emit::emit(analyzed.model, compilation.sources, analyzed.ids,
+                                              emit_options, compilation.diagnostics));
   }
   compilation.ok = !compilation.diagnostics.has_errors();
   if (!compilation.ok) compilation.plan.clear();
-  return compilation;
+  return std::move(compilation);
 }
 
 }  // namespace
@@ -98,6 +113,25 @@ Result<Compilation> check(std::span<const std::string> files, const CompileOptio
 
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options) {
   return compile(files, options, true);
+}
+
+Result<Counted> count(std::span<const std::string> files, const CompileOptions& options) {
+  Analyzed analyzed;
+  PROBE_TRY(analyze(files, options, analyzed));
+  Counts counts;
+  const auto add = [&](const sema::Task& task) {
+    if (task.abstract || !task.complete) return;
+    ++counts.tasks;
+    counts.episodes += task.starts.size();
+  };
+  if (options.suite.empty()) {
+    for (const sema::Task& task : analyzed.model.tasks) add(task);
+  }
+  for (const sema::Suite& suite : analyzed.model.suites) {
+    if (options.suite.empty() || suite.name != options.suite) continue;
+    for (const sema::TaskId id : suite.members) add(analyzed.model.tasks[id]);
+  }
+  return Counted{std::move(analyzed.compilation), counts};
 }
 
 }  // namespace probe

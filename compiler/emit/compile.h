@@ -35,4 +35,15 @@ Result<Compilation> check(std::span<const std::string> files, const CompileOptio
 // directory.
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options);
 
+// How large a suite is, without lowering or writing anything.
+struct Counts {
+  std::size_t tasks = 0;  // concrete ones, or the members of the one suite asked for
+  std::size_t episodes = 0;
+};
+struct Counted {
+  Compilation compilation;  // no plan; `ok` is false when the text has errors
+  Counts counts;
+};
+Result<Counted> count(std::span<const std::string> files, const CompileOptions& options);
+
 }  // namespace probe

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "compiler/emit/assets.h"
+#include "compiler/lower/intervals.h"
 #include "compiler/lower/lower.h"
 #include "compiler/sema/axes.h"
 #include "runtime/plan/writer.h"
@@ -62,6 +64,7 @@ class Emitter {
     for (std::size_t i = 0; i < chosen.size(); ++i)
       tasks_.add(chosen[i], static_cast<std::uint32_t>(i));
     for (const TaskId id : chosen) add_task(model_.tasks[id]);
+    report_constants();
     if (diagnostics_.has_errors() || !options_.write) return std::vector<std::byte>{};
     add_assets();
     add_sets_and_suites();
@@ -252,10 +255,11 @@ class Emitter {
   // --------------------------------------------------------------------------------------------------------
 
   // Tasks of one shape share one program.
-  std::uint32_t add_program(lower::Program program) {
+  std::uint32_t add_program(lower::Program program, std::uint64_t horizon) {
     for (std::size_t i = 0; i < programs_.size(); ++i) {
       if (programs_[i].same_as(program)) return static_cast<std::uint32_t>(i);
     }
+    note_constants(program, horizon);
     plan::ProgramRecord record;
     record.constants =
         plan::append(records().constants, std::span<const double>(program.constants));
@@ -275,6 +279,39 @@ class Emitter {
     records().programs.push_back(record);
     programs_.push_back(std::move(program));
     return size32(programs_) - 1;
+  }
+
+  // P0603 at once; P0602 when a metric is constant in every program that has it: over the
+  // distractors of a task without any it may be.
+  void note_constants(const lower::Program& program, std::uint64_t horizon) {
+    const lower::Findings findings = lower::find_constants(program, horizon);
+    for (const std::size_t at : findings.contradictions) {
+      const Span& span = program.spans[at];
+      if (!contradictions_.insert({span.file.value, span.begin}).second) continue;
+      diagnostics_.report(Code::P0603, span, "these conditions exclude one another");
+    }
+    for (std::size_t i = 0; i < program.metrics.size(); ++i) {
+      const auto known =
+          std::find_if(findings.constants.begin(), findings.constants.end(),
+                       [&](const lower::ConstantMetric& found) { return found.metric == i; });
+      const Span& span = program.metrics[i].span;
+      Constant& constant = constants_[{span.file.value, span.begin}];
+      constant.metric = program.metrics[i];
+      if (known == findings.constants.end()) {
+        constant.varies = true;
+      } else {
+        (known->value ? constant.is_true : constant.is_false) = true;
+      }
+    }
+  }
+
+  void report_constants() {
+    for (const auto& [place, constant] : constants_) {
+      if (constant.varies || constant.is_true == constant.is_false) continue;
+      diagnostics_.report(Code::P0602, constant.metric.span,
+                          "metric `" + constant.metric.name + "` is always " +
+                              (constant.is_true ? "true" : "false"));
+    }
   }
 
   plan::Slice add_bodies(const std::vector<lower::Body>& bodies) {
@@ -326,7 +363,7 @@ class Emitter {
     record.scene = scenes_[task.scene];
     record.camera = cameras_[camera_of(model_, task)];
     record.light = lights_[light_of(model_, task)];
-    record.program = add_program(std::move(*program));
+    record.program = add_program(std::move(*program), task.horizon);
     record.source = objects_[task.source];
     record.target = objects_[task.target];
     record.bodies = add_bodies(bodies);
@@ -433,6 +470,12 @@ class Emitter {
   Used<sema::SceneId> scenes_;
   Used<TaskId> tasks_;
   std::vector<lower::Program> programs_;
+  struct Constant {
+    lower::ProgramMetric metric;
+    bool varies = false, is_true = false, is_false = false;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
+  std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
   std::map<std::vector<double>, plan::Slice> placements_;
 };
 

@@ -29,9 +29,11 @@ Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& 
   define_sets(context);
   define_suites(context);
   check_tags(context);
+  check_magnitudes(context);
   if (roots.empty()) {
     for (const syntax::File* file : files) roots.push_back(file->id);
   }
+  check_unused(context, roots);
   say(context, roots, diagnostics);
   return model;
 }

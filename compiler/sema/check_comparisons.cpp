@@ -4,6 +4,7 @@
 
 #include "compiler/sema/axes.h"
 #include "compiler/sema/passes.h"
+#include "compiler/sema/report.h"
 
 namespace probe::sema {
 namespace {
@@ -40,6 +41,28 @@ void break_cycles(Context& context) {
   }
 }
 
+// Marks the statements of this declaration that moved an axis; what was copied has no mark.
+void label_axes(const Context& context, const Task& task, const Task& baseline,
+                Diagnostic& diagnostic) {
+  const auto mark = [&](plan::Axis axis, const Span& span, std::string text) {
+    const bool moved = (task.axes & static_cast<std::uint32_t>(axis)) != 0;
+    if (moved && is_within(span, task.decl_span)) diagnostic.also(span, std::move(text));
+  };
+  std::string others;
+  for (const ObjectId id : task.distractors) {
+    const auto& known = baseline.distractors;
+    if (std::find(known.begin(), known.end(), id) == known.end())
+      others += (others.empty() ? "distractors: + " : ", ") + context.model.objects[id].name;
+  }
+  if (others.empty()) others = "distractors";
+  mark(plan::Axis::kObjectSource, task.role_span[0], "object.source");
+  mark(plan::Axis::kObjectTarget, task.role_span[1], "object.target");
+  mark(plan::Axis::kDistractors, task.distractors_span, others);
+  mark(plan::Axis::kLayout, task.layout_span, "layout");
+  mark(plan::Axis::kLanguageAction, task.say_span, "language.action");
+  mark(plan::Axis::kLanguageNegation, task.say_span, "language.negation");
+}
+
 void check_edge(Context& context, const Task& task) {
   const About about(context, task.decl_span);
   const Task& baseline = context.model.tasks[task.baseline];
@@ -57,11 +80,22 @@ void check_edge(Context& context, const Task& task) {
     return;
   }
   if (axes == 1) return;
-  context
-      .report(Code::P0701, task.span,
-              "`" + task.name + "` differs from its baseline on " + std::to_string(axes) + " axes")
-      .label(task.baseline_span, "compared with this")
-      .note("axes: " + axis_list(task.axes))
+  Diagnostic& diagnostic = context.report(
+      Code::P0701, task.span,
+      "`" + task.name + "` differs from its baseline on " + std::to_string(axes) + " axes");
+  label_axes(context, task, baseline, diagnostic);
+  diagnostic.label(task.baseline_span, "compared with this");
+  // The task it copies is often the honest baseline.
+  if (task.like != TaskId::kNone && task.like != task.baseline &&
+      context.model.tasks[task.like].complete && !context.model.tasks[task.like].abstract) {
+    const Task& like = context.model.tasks[task.like];
+    const std::uint32_t closer = axes_between(context.model, task, like);
+    if (axes_in(closer).size() == 1) {
+      diagnostic.help("compare with `" + like.name + "`, where only " + axis_list(closer) +
+                      " moves");
+    }
+  }
+  diagnostic.note("axes: " + axis_list(task.axes))
       .note("to keep it, put @allow(confounded, \"why\") above the declaration");
 }
 

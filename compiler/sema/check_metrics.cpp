@@ -1,5 +1,6 @@
 // P06xx over finished metrics: what can never become true within the horizon. Types were checked
 // when reading.
+#include <algorithm>
 #include <set>
 
 #include "compiler/sema/passes.h"
@@ -21,9 +22,67 @@ struct HoldFinder {
   }
 };
 
+// P0605: read-outs that mean something else than they seem to.
+struct LatchLint {
+  Context& context;
+
+  const ExprNode& node(ExprRef ref) const { return context.model.exprs.nodes[ref]; }
+
+  // A comparison of contact impulses, which come and go within a step.
+  bool is_pulse(ExprRef ref) const {
+    const ExprNode& at = node(ref);
+    switch (at.op) {
+      case ExprOp::kLess:
+      case ExprOp::kLessEqual:
+        return std::any_of(at.args.begin(), at.args.end(), [&](ExprRef arg) {
+          const ExprNode& side = node(arg);
+          return side.op == ExprOp::kMeasure && side.measure == Measure::kImpulse;
+        });
+      case ExprOp::kAny:
+        return is_pulse(at.args[0]);
+      case ExprOp::kCall:
+        return is_pulse(context.model.predicates[at.predicate].body);
+      default:
+        return false;
+    }
+  }
+
+  void check(const Metric& metric) const {
+    const ExprNode& top = node(metric.expr);
+    const std::string name = "metric `" + metric.name + "`";
+    const bool once = metric.readout == plan::Readout::kOnce;
+    if (metric.readout == plan::Readout::kAtEnd && is_pulse(metric.expr)) {
+      context
+          .report(Code::P0605, metric.readout_span, name + " reads a contact at the last step only")
+          .help("a contact comes and goes: `once` keeps it");
+    } else if (once && top.op == ExprOp::kNot) {
+      context
+          .report(Code::P0605, metric.readout_span,
+                  name + " is true as soon as one step lacks its condition")
+          .help("for a condition that never holds write `always not`");
+    } else if ((once || metric.readout == plan::Readout::kAlways) &&
+               (top.op == ExprOp::kOnce || top.op == ExprOp::kAlways)) {
+      context.report(Code::P0605, metric.readout_span, name + " latches what is latched already")
+          .help("one latch is enough: with `at end`, the inner one is read at the last step");
+    }
+  }
+};
+
 }  // namespace
 
 void check_metrics(Context& context) {
+  // A metric that is copied with `like` is looked at where it stands.
+  std::set<std::pair<std::uint32_t, std::uint32_t>> looked_at;
+  const auto lint = [&](const Metric& metric) {
+    if (looked_at.insert({metric.span.file.value, metric.span.begin}).second)
+      LatchLint{context}.check(metric);
+  };
+  for (const Metrics& metrics : context.model.metrics) {
+    for (const Metric& metric : metrics.items) lint(metric);
+  }
+  for (const Task& task : context.model.tasks) {
+    for (const Metric& metric : task.overrides) lint(metric);
+  }
   std::set<std::pair<ExprRef, std::uint64_t>> reported;
   for (const Task& task : context.model.tasks) {
     if (task.abstract || !task.complete) continue;

@@ -1,6 +1,7 @@
 #include "compiler/sema/context.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace probe::sema {
 
@@ -161,7 +162,17 @@ std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& 
       context.report(Code::P0302, written.span,
                      "expected " + name_of(wanted) + ", found " + name_of(quantity->dimension));
   diagnostic.point(std::string(takes));
-  if (quantity->dimension == dim::kNumber && !usual_unit(wanted).empty()) {
+  // A layout's numbers are seen beside the first surface they may mean.
+  const bool is_place =
+      takes.starts_with("`grid") || takes.starts_with("`spread") || takes.starts_with("`place");
+  if (quantity->dimension == dim::kNumber && is_place && context.model.scenes.size() != 0 &&
+      context.model.scenes[static_cast<SceneId>(0)].complete) {
+    const std::array<double, 4>& area = context.model.scenes[static_cast<SceneId>(0)].area;
+    char depth[32];
+    std::snprintf(depth, sizeof depth, "%.4gcm", (area[2] - area[0]) * 100);
+    diagnostic.help("the surface is " + std::string(depth) + " deep: did you mean `" + digits +
+                    "cm`?");
+  } else if (quantity->dimension == dim::kNumber && !usual_unit(wanted).empty()) {
     diagnostic.help("a unit touches its number: `" + digits + std::string(usual_unit(wanted)) +
                     "`");
   }

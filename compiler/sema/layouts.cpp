@@ -141,9 +141,16 @@ struct LayoutReader {
     layout.drop = read_si(context, stmt.height, dim::kLength, "`drop` takes a height").value_or(0);
     if (layout.drop < 0)
       context.report(Code::P0304, stmt.height.span, "objects are dropped from above the surface");
-    if (stmt.settle)
-      layout.settle =
-          read_si(context, *stmt.settle, dim::kTime, "`settle` takes a time").value_or(0);
+    if (!stmt.settle) return;
+    // A phase of the drop; a minute is far beyond what any object needs and still quick to
+    // simulate.
+    constexpr double kLongestSettle = 60;
+    layout.settle =
+        read_positive(context, *stmt.settle, dim::kTime, "`settle` takes a time").value_or(1);
+    if (layout.settle > kLongestSettle)
+      context.report(Code::P0304, stmt.settle->span,
+                     "expected at most 60s to settle, found `" +
+                         std::string(context.sources.text(stmt.settle->span)) + "`");
   }
   void operator()(const syntax::ExpectEpisodesStmt& stmt) {
     layout.expect = stmt.episodes.value;

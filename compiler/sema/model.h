@@ -162,6 +162,7 @@ struct Scene {
   std::optional<Spelled> overlay;
   LightId light = LightId::kNone;
   double physics_hz = 0;
+  Span physics_span;
   double friction = 0;
 };
 

@@ -2,6 +2,8 @@
 // earlier tables from the context, adds its own table to the model and reports what it finds wrong.
 #pragma once
 
+#include <span>
+
 #include "compiler/sema/context.h"
 
 namespace probe::sema {
@@ -21,5 +23,8 @@ void check_starts(Context& context);
 void check_metrics(Context& context);
 void check_comparisons(Context& context);
 void check_tags(Context& context);  // after the suites
+void check_magnitudes(Context& context);
+// `roots`: the files named by the user rather than by `use`.
+void check_unused(Context& context, std::span<const FileId> roots);
 
 }  // namespace probe::sema

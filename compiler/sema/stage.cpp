@@ -1,5 +1,8 @@
 // Robots, cameras, lights and scenes. Links and joints named here are looked up in the robot's
 // URDF, and every drive's units must fit the kind of its joint.
+#include <fmt/format.h>
+
+#include <cmath>
 #include <filesystem>
 
 #include "compiler/sema/passes.h"
@@ -27,6 +30,15 @@ struct RobotReader {
   Robot& robot;
   bool has_control = false, has_grip = false, has_drive = false;
 
+  void check_above_zero(const syntax::Quantity& written, double value, const char* why) {
+    if (value > 0) return;
+    context
+        .report(Code::P0304, written.span,
+                "expected a value above zero, found `" +
+                    std::string(context.sources.text(written.span)) + "`")
+        .point(why);
+  }
+
   void operator()(const syntax::UrdfStmt& stmt) { robot.urdf = spelled(stmt.path); }
   void operator()(const syntax::TcpStmt& stmt) { robot.tcp = spelled(stmt.link); }
   void operator()(const syntax::FingersStmt& stmt) {
@@ -40,6 +52,10 @@ struct RobotReader {
         record.opens[static_cast<std::size_t>(axis[0] - 'x')] = finger.negative ? -1 : 1;
       }
       robot.fingers.push_back(std::move(record));
+    }
+    if (robot.fingers.size() == 2 && robot.fingers[0].link.text == robot.fingers[1].link.text) {
+      context.report(Code::P0304, stmt.fingers[1].link.span,
+                     "expected two fingers, found `" + robot.fingers[0].link.text + "` twice");
     }
     if (robot.fingers.size() != 2) {
       context.report(Code::P0304, stmt.span,
@@ -78,6 +94,9 @@ struct RobotReader {
         context, stmt.limit, slides ? dim::kForce : dim::kTorque,
         slides ? "a sliding joint is limited in N" : "a turning joint is limited in Nm");
     if (!k || !d || !f) return;
+    check_above_zero(stmt.stiffness, k->si(), "a drive without stiffness holds nothing");
+    check_above_zero(stmt.damping, d->si(), "a drive without damping swings for ever");
+    check_above_zero(stmt.limit, f->si(), "a drive without force moves nothing");
     drive.stiffness = *k;
     drive.damping = *d;
     drive.limit = *f;
@@ -96,6 +115,11 @@ struct RobotReader {
     robot.grip_closed =
         read_si(context, stmt.closed, dim::kLength, "`grip` takes lengths").value_or(0);
     robot.grip_open = read_si(context, stmt.open, dim::kLength, "`grip` takes lengths").value_or(1);
+    if (robot.grip_closed >= robot.grip_open) {
+      context.report(Code::P0304, stmt.span,
+                     "expected the closed position below the open one, found `" +
+                         std::string(context.sources.text(stmt.span)) + "`");
+    }
     if (stmt.friction) {
       robot.finger_friction =
           read_positive(context, *stmt.friction, dim::kNumber, "`friction` takes a number")
@@ -277,12 +301,18 @@ void define_lights(Context& context) {
       if (const auto* ambient = std::get_if<syntax::AmbientStmt>(&stmt)) {
         light.ambient =
             read_si(context, ambient->value, dim::kNumber, "`ambient` takes a number").value_or(0);
+        if (light.ambient < 0)
+          context.report(Code::P0304, ambient->value.span,
+                         "expected an ambient light of 0 or more");
         continue;
       }
       const auto& written = std::get<syntax::SunStmt>(stmt);
       plan::SunRecord sun;
       assign(sun.direction, read_point(context, written.direction, 3, 3, dim::kNumber,
                                        "`sun` takes a direction of plain numbers"));
+      if (sun.direction == std::array<double, 3>{})
+        context.report(Code::P0304, written.direction.span,
+                       "a sun shines along a direction, found none");
       sun.power =
           read_positive(context, written.power, dim::kNumber, "`power` takes a number").value_or(1);
       sun.shadow = written.shadow ? 1 : 0;
@@ -355,6 +385,7 @@ struct SceneReader {
   }
   void operator()(const syntax::PhysicsStmt& stmt) {
     has_physics = true;
+    scene.physics_span = stmt.rate.span;
     scene.physics_hz =
         read_positive(context, stmt.rate, dim::kRate, "`physics` takes a frequency").value_or(1);
     scene.friction =
@@ -385,6 +416,22 @@ void check_joints(Context& context, const Scene& scene) {
                     "`, found " + name_of(scene.joints[i].dimension))
         .point("number " + std::to_string(i + 1));
   }
+}
+
+// A control step is a whole number of physics steps.
+void check_rates(Context& context, const Scene& scene) {
+  if (scene.robot == RobotId::kNone || scene.physics_hz == 0) return;
+  const double control_hz = context.model.robots[scene.robot].control_hz;
+  if (control_hz == 0) return;
+  const double substeps = scene.physics_hz / control_hz;
+  constexpr double kMostSubsteps = 100000;
+  if (substeps >= 1 && substeps <= kMostSubsteps && substeps == std::floor(substeps)) return;
+  context
+      .report(Code::P0304, scene.physics_span,
+              "expected a whole number of physics steps in a control step, found " +
+                  fmt::format("{:.6g}", substeps))
+      .help("the robot is controlled at " + fmt::format("{:.6g}", control_hz) +
+            "Hz: write a multiple of that, such as `500Hz` for 5Hz");
 }
 
 void define_scenes(Context& context) {
@@ -418,6 +465,7 @@ void define_scenes(Context& context) {
       if (scene.light == LightId::kNone) missing(context, "scene", scene.name, scene.span, "light");
       if (scene.physics_hz == 0) missing(context, "scene", scene.name, scene.span, "physics");
       check_joints(context, scene);
+      check_rates(context, scene);
     }
     scene.complete = !broken[i] && context.diagnostics.error_count() == errors;
     broken[i] = !scene.complete;

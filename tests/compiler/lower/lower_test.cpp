@@ -187,7 +187,7 @@ TEST_CASE("what the judge cannot do is reported once, where it stands") {
 
 TEST_CASE("a program that does not fit is refused, however large it would be") {
   const Lowered code = lowered(
-      "x = at end (any a in bodies: any b in bodies: any c in bodies: any d in bodies: any e in "
+      "x = once (any a in bodies: any b in bodies: any c in bodies: any d in bodies: any e in "
       "bodies: "
       "impulse(a, b) + impulse(c, d) > impulse(d, e))");
   CHECK(code.codes == "P0601");

@@ -13,7 +13,7 @@ TEST_CASE("a number without its unit is reported with what the statement takes")
   const Diagnostic& said = a->diagnostics.items().front();
   CHECK(said.message == "expected a length, found a number");
   CHECK(said.primary_label == "`grid ... at` takes lengths");
-  CHECK(said.helps.at(0) == "a unit touches its number: `-16cm`");
+  CHECK(said.helps.at(0) == "the surface is 100cm deep: did you mean `-16cm`?");
 }
 
 TEST_CASE("each statement wants its own dimension") {

@@ -1,0 +1,50 @@
+#include <doctest/doctest.h>
+
+#include "compiler/emit/compile.h"
+#include "compiler/emit/emit.h"
+#include "tests/compiler/sema/small_suite.h"
+
+using namespace probe;
+
+namespace {
+
+// The codes for one metric of the small suite's task, after lowering.
+std::string codes(const std::string& metric, const std::string& more = "") {
+  auto a = test::analyze_with_suite(more + "\nmetrics m { x = " + metric +
+                                    " }\ntask t like red_on_tray { metrics m }");
+  if (!a->diagnostics.has_errors()) {
+    const auto bytes = emit::emit(a->model, a->sources, {a->files[0].file.id},
+                                  {test::asset_root(), "", "", false}, a->diagnostics);
+    REQUIRE(bytes.ok());
+  }
+  return a->codes();
+}
+
+}  // namespace
+
+TEST_CASE("a metric that no measurement can change is constant") {
+  CHECK(codes("once distance(source, target) < 0m") == "P0602");
+  CHECK(codes("at end distance(source, target) >= 0cm") == "P0602");
+  CHECK(codes("once grip > 1.5") == "P0602");
+  CHECK(codes("once step > 60") == "P0602");
+  CHECK(codes("once step > 59") == "");
+  CHECK(codes("once (abs(height(source)) + 1cm < 5mm)") == "P0602");
+  CHECK(codes("once (height(source) < height(source))") == "P0602");
+  CHECK(codes("once height(source) < 1m") == "");
+}
+
+TEST_CASE("conditions that exclude one another are a contradiction") {
+  CHECK(codes("once (distance(tcp, source) < 5cm and distance(tcp, source) > 10cm)") == "P0603");
+  CHECK(codes("once (height(source) < 5cm and grip > 0.5 and height(source) >= 5cm)") == "P0603");
+  CHECK(codes("once (height(source) <= 5cm and height(source) >= 5cm)") == "");
+  CHECK(codes("once (not height(source) < 5cm and height(source) < 4cm)") == "P0603");
+  CHECK(codes("once (near(source) and distance(tcp, source) > 10cm)",
+              "predicate near(o: object) = distance(tcp, o) < 5cm") == "P0603");
+  CHECK(codes("once (distance(tcp, source) < 5cm or distance(tcp, source) > 10cm)") == "");
+}
+
+TEST_CASE("a condition over no distractors is constant only where no task has any") {
+  const std::string metric = "once (any d in distractors: moved_xy(d) > 3cm)";
+  CHECK(codes(metric) == "P0602");
+  CHECK(codes(metric, "task u like red_on_tray { metrics m; distractors blue }") == "");
+}

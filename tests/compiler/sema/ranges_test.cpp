@@ -1,0 +1,61 @@
+// Numbers with the right unit that no world can have: refused at their place in the text, not by
+// the plan's verifier.
+#include <doctest/doctest.h>
+
+#include "tests/compiler/sema/small_suite.h"
+
+using probe::test::analyze_with_suite;
+
+namespace {
+
+// What is underlined when `declaration` follows the suite; empty when nothing is wrong.
+std::string refused(const std::string& declaration) {
+  const auto a = analyze_with_suite(declaration);
+  if (a->codes().empty()) return {};
+  CHECK_MESSAGE(a->codes().substr(0, 5) == "P0304", a->said());
+  return a->underlined();
+}
+
+std::string robot(const std::string& statement) {
+  return "robot other { urdf \"arm/arm.urdf\"; tcp tool; control ee_delta_pose 5Hz\n" + statement +
+         " }";
+}
+const std::string kFingers = "fingers left opens +y, right opens -y\n";
+const std::string kDrives =
+    "drive waist stiffness 100Nm/rad damping 10Nms/rad limit 20Nm\n"
+    "drive l, r stiffness 1000N/m damping 200Ns/m limit 60N\n";
+const std::string kGrip = "grip 1cm .. 4cm friction 2 patch 1cm\n";
+
+}  // namespace
+
+TEST_CASE("objects settle for more than no time and at most a minute") {
+  CHECK(refused("layout l like pairs { drop 10cm settle 1s }") == "");
+  CHECK(refused("layout l like pairs { drop 10cm settle 0s }") == "0s");
+  CHECK(refused("layout l like pairs { drop 10cm settle 4294967.296s }") == "4294967.296s");
+}
+
+TEST_CASE("a control step is a whole number of physics steps") {
+  CHECK(refused("scene s like bench { physics 1000Hz friction 1 }") == "");
+  CHECK(refused("scene s like bench { physics 7Hz friction 1 }") == "7Hz");
+}
+
+TEST_CASE("drives hold, damp and push") {
+  CHECK(refused(robot(kFingers + kGrip + kDrives)) == "");
+  CHECK(refused(robot(kFingers + kGrip +
+                      "drive waist stiffness -730Nm/rad damping 1Nms/rad limit 2Nm")) ==
+        "-730Nm/rad");
+  CHECK(refused(robot(kFingers + kGrip +
+                      "drive waist stiffness 730Nm/rad damping 0Nms/rad limit 2Nm")) == "0Nms/rad");
+  CHECK(refused(robot(kFingers + kGrip +
+                      "drive waist stiffness 730Nm/rad damping 1Nms/rad limit 0Nm")) == "0Nm");
+}
+
+TEST_CASE("two fingers are two links, and closed is nearer than open") {
+  CHECK(refused(robot("fingers left opens +y, left opens -y\n" + kGrip + kDrives)) == "left");
+  CHECK(refused(robot(kFingers + kDrives + "grip 4cm .. 1cm")) == "grip 4cm .. 1cm");
+}
+
+TEST_CASE("light has a direction and is not negative") {
+  CHECK(refused("light l { ambient 0.3; sun (0, 0, 0) power 1 }") == "(0, 0, 0)");
+  CHECK(refused("light l { ambient -3 }") == "-3");
+}
