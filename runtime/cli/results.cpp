@@ -17,6 +17,7 @@ struct Arguments {
 
 struct Tally {
   int valid = 0, invalid = 0;
+  std::string first_invalid;                       // which, and why
   std::vector<std::pair<std::string, int>> trues;  // by metric, in the plan's order
 };
 
@@ -29,7 +30,10 @@ void print_counts(const std::vector<run::ResultRow>& rows) {
     if (fresh) order.push_back(row.task);
     Tally& tally = it->second;
     if (row.invalid) {
-      ++tally.invalid;
+      if (tally.invalid++ == 0) {
+        tally.first_invalid =
+            fmt::format("episode {} seed {}: {}", row.episode, row.seed, *row.invalid);
+      }
       continue;
     }
     ++tally.valid;
@@ -47,7 +51,7 @@ void print_counts(const std::vector<run::ResultRow>& rows) {
   for (const std::string& task : order) {
     const Tally& tally = tallies[task];
     fmt::print("{}: {} episodes", task, tally.valid + tally.invalid);
-    if (tally.invalid) fmt::print(", {} invalid", tally.invalid);
+    if (tally.invalid) fmt::print(", {} invalid ({})", tally.invalid, tally.first_invalid);
     fmt::print("\n");
     for (const auto& [name, count] : tally.trues) {
       fmt::print("  {:<12} {:>4} of {}\n", name, count, tally.valid);

@@ -8,7 +8,7 @@
 #include "runtime/run/replay.h"
 #include "runtime/run/scene_view.h"
 #include "runtime/run/store.h"
-#include "runtime/run/trace.h"
+#include "runtime/run/stored_trace.h"
 #include "runtime/scene/image.h"
 
 namespace probe::run {
@@ -67,8 +67,11 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
       objects = 2 + plan.tasks()[*task].distractors;
       task_name = row.task;
     }
-    PROBE_ASSIGN(const Trace trace, read_trace_prefix(row.trace));
-    if (!trace.start) continue;
+    // An invalid episode may have ended before its start: then there is nothing to draw.
+    auto read = row.invalid ? read_trace_prefix(row.trace) : read_stored_trace(row);
+    if (!read && !row.invalid) return read.failure();
+    if (!read || !read->start || read->header.task != row.task) continue;
+    const Trace& trace = *read;
     GridCell cell;
     cell.caption = caption(row);
     cell.color = succeeded(row) ? kGood : kBad;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "runtime/run/stored_trace.h"
+
 namespace probe::run {
 
 Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, int episode,
@@ -28,10 +30,7 @@ Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, 
                        std::to_string(*seed),
                    dir};
   }
-  PROBE_ASSIGN(Trace trace, read_trace(found->trace));
-  if (to_hex(trace.hash) != found->trace_sha256) {
-    return Failure{"trace", "this trace is not the one its result row was made with", found->trace};
-  }
+  PROBE_ASSIGN(Trace trace, read_stored_trace(*found));
   return StoredTrace{*found, std::move(trace)};
 }
 

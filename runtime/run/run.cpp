@@ -115,18 +115,41 @@ std::vector<std::uint32_t> tasks_of(const std::vector<EpisodeJob>& jobs) {
   return {tasks.begin(), tasks.end()};
 }
 
-// Leaves the jobs that are not stored yet, or only as invalid.
-Result<int> drop_stored(const plan::Plan& plan, Store& store, std::vector<EpisodeJob>& jobs) {
+using EpisodeKey = std::tuple<std::string, int, int>;
+
+EpisodeKey key_of(const plan::Plan& plan, const EpisodeJob& job) {
+  return {std::string(plan.text(plan.tasks()[job.task].name)), static_cast<int>(job.index),
+          job.seed};
+}
+
+std::string text_of(const std::string& task, int episode, int seed) {
+  return task + " episode " + std::to_string(episode) + " seed " + std::to_string(seed);
+}
+
+// Leaves the jobs that are not stored yet, or only as invalid. Returns the others.
+Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, Store& store,
+                                         std::vector<EpisodeJob>& jobs, RunSummary& summary) {
+  constexpr std::size_t kToldOneByOne = 5;
   PROBE_ASSIGN(const auto stored, store.episodes());
-  std::set<std::tuple<std::string, int, int>> valid;
+  std::set<EpisodeKey> chosen, valid;
+  for (const EpisodeJob& job : jobs) chosen.insert(key_of(plan, job));
+  std::size_t again = 0;
   for (const StoredEpisode& episode : stored) {
-    if (episode.valid) valid.emplace(episode.task, episode.episode, episode.seed);
+    EpisodeKey key{episode.task, episode.episode, episode.seed};
+    if (!chosen.contains(key)) continue;
+    if (episode.valid) {
+      valid.insert(std::move(key));
+    } else if (++again <= kToldOneByOne) {
+      summary.notes.push_back(text_of(episode.task, episode.episode, episode.seed) +
+                              " was run again: " + episode.why);
+    }
   }
-  const auto dropped = std::erase_if(jobs, [&](const EpisodeJob& job) {
-    return valid.contains({std::string(plan.text(plan.tasks()[job.task].name)),
-                           static_cast<int>(job.index), job.seed});
-  });
-  return static_cast<int>(dropped);
+  if (again > kToldOneByOne) {
+    summary.notes.push_back(std::to_string(again - kToldOneByOne) +
+                            " more invalid or damaged episodes were run again");
+  }
+  std::erase_if(jobs, [&](const EpisodeJob& job) { return valid.contains(key_of(plan, job)); });
+  return valid;
 }
 
 }  // namespace
@@ -155,7 +178,8 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
   for (const std::string& line : differences(store->record().fingerprint, fingerprint)) {
     summary.notes.push_back("this folder was begun by another build or machine: " + line);
   }
-  PROBE_ASSIGN(summary.skipped, drop_stored(plan, *store, selection.jobs));
+  PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
+  summary.skipped = static_cast<int>(stored.size());
   if (options.progress) options.progress({0, summary.skipped, summary.total, nullptr});
 
   Shared shared{

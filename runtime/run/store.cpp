@@ -14,6 +14,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "runtime/run/stored_trace.h"
+
 namespace probe::run {
 namespace {
 
@@ -36,10 +38,27 @@ Failure failed(const std::string& message, const std::string& where) {
   return {"store", message, where};
 }
 
+enum class Access { kRead, kWrite };
+
+// What SQLite said, with what to do about it: the traces do not depend on the database.
+Failure sqlite_failure(sqlite3* database, Access access, const std::string& where) {
+  const int code = sqlite3_errcode(database);
+  const std::string said = sqlite3_errmsg(database);
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
+    return failed("results.sqlite cannot be read (" + said +
+                      "); the traces are intact: move this file away and run again",
+                  where);
+  }
+  return failed(std::string("the results cannot be ") +
+                    (access == Access::kRead ? "read: " : "stored: ") + said,
+                where);
+}
+
 // A prepared statement; every failure becomes ours, with the folder's name.
 class Statement {
  public:
-  Statement(sqlite3* database, const char* sql) : database_(database) {
+  Statement(sqlite3* database, const char* sql, Access access = Access::kRead)
+      : database_(database), access_(access) {
     code_ = sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr);
   }
   ~Statement() { sqlite3_finalize(statement_); }
@@ -80,11 +99,12 @@ class Statement {
   // After the last next().
   Status done(const std::string& where) const {
     if (code_ == SQLITE_DONE || code_ == SQLITE_OK || code_ == SQLITE_ROW) return {};
-    return failed(std::string("the results cannot be stored: ") + sqlite3_errmsg(database_), where);
+    return sqlite_failure(database_, access_, where);
   }
 
  private:
   sqlite3* database_;
+  Access access_;
   sqlite3_stmt* statement_ = nullptr;
   int code_ = SQLITE_OK;
   int bound_ = 0;
@@ -113,7 +133,7 @@ class Database {
   }
   Status execute(const char* sql) {
     if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) == SQLITE_OK) return {};
-    return failed(std::string("the results cannot be stored: ") + sqlite3_errmsg(handle_), path_);
+    return sqlite_failure(handle_, Access::kWrite, path_);
   }
   sqlite3* handle() const { return handle_; }
   const std::string& path() const { return path_; }
@@ -140,6 +160,19 @@ nlohmann::json to_json(const RunRecord& record) {
           {"fingerprint", to_json(record.fingerprint)}};
 }
 
+Failure bad_record(const std::string& key, const char* wanted, const std::string& where) {
+  return failed(
+      "`" + key + "` of its run record is not " + wanted + "; move this file away and run again",
+      where);
+}
+
+Result<std::string> record_text(const nlohmann::json& json, const char* key,
+                                const std::string& where) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_string()) return bad_record(key, "a text", where);
+  return found->get<std::string>();
+}
+
 // Nothing when the database has no run yet.
 Result<std::optional<RunRecord>> load_record(Database& database) {
   Statement select(database.handle(), "select value from run where name = 'record'");
@@ -148,14 +181,32 @@ Result<std::optional<RunRecord>> load_record(Database& database) {
     return std::optional<RunRecord>();
   }
   const auto json = nlohmann::json::parse(select.text(0), nullptr, false);
-  if (!json.is_object() || json.value("schema", std::string()) != kSchemaVersion) {
+  if (!json.is_object()) {
+    return failed("its run record is no JSON object; move this file away and run again",
+                  database.path());
+  }
+  PROBE_ASSIGN(const std::string schema, record_text(json, "schema", database.path()));
+  if (schema != kSchemaVersion) {
     return failed("was written by a program with another layout of results", database.path());
   }
   RunRecord record;
-  record.identity = {json.value("plan_root", ""), json.value("policy", "")};
-  record.suite = json.value("suite", "");
-  record.seeds = json.value("seeds", std::vector<int>());
-  PROBE_ASSIGN(record.fingerprint, fingerprint_from_json(json.value("fingerprint", "{}")));
+  PROBE_ASSIGN(record.identity.plan_root, record_text(json, "plan_root", database.path()));
+  PROBE_ASSIGN(record.identity.policy, record_text(json, "policy", database.path()));
+  PROBE_ASSIGN(record.suite, record_text(json, "suite", database.path()));
+  const auto seeds = json.find("seeds");
+  if (seeds == json.end() || !seeds->is_array()) {
+    return bad_record("seeds", "a list of whole numbers", database.path());
+  }
+  for (const auto& seed : *seeds) {
+    if (!seed.is_number_integer()) {
+      return bad_record("seeds", "a list of whole numbers", database.path());
+    }
+    record.seeds.push_back(seed.get<int>());
+  }
+  PROBE_ASSIGN(const std::string fingerprint, record_text(json, "fingerprint", database.path()));
+  auto read = fingerprint_from_json(fingerprint);
+  if (!read) return bad_record("fingerprint", "an object of texts", database.path());
+  record.fingerprint = std::move(*read);
   return std::optional(std::move(record));
 }
 
@@ -224,6 +275,40 @@ std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& tex
   return metrics;
 }
 
+Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
+  Statement select(database.handle(),
+                   "select task, episode, seed, policy, metrics, steps, invalid, prompt_sha256, "
+                   "image_sha256, frames_sha256, trace_sha256, episode_id, start_id, trace "
+                   "from episodes order by task_order, task, episode, seed");
+  std::vector<ResultRow> rows;
+  while (select.next()) {
+    ResultRow row;
+    row.task = select.text(0);
+    row.episode = select.number(1);
+    row.seed = select.number(2);
+    row.policy = select.text(3);
+    auto metrics = metrics_from_text(select.text(4));
+    if (metrics) row.metrics = std::move(*metrics);
+    row.steps = select.number(5);
+    if (!select.is_null(6)) {
+      row.invalid = select.text(6);
+    } else if (!metrics) {
+      // One damaged row must not hide the others; the next run makes it anew.
+      row.invalid = "store: its metrics in results.sqlite cannot be read";
+    }
+    row.prompt_sha256 = select.text(7);
+    row.image_sha256 = select.text(8);
+    row.frames_sha256 = select.text(9);
+    row.trace_sha256 = select.text(10);
+    row.episode_id = select.text(11);
+    row.start_id = select.text(12);
+    row.trace = fs::absolute(fs::path(dir) / select.text(13)).lexically_normal().string();
+    rows.push_back(std::move(row));
+  }
+  PROBE_TRY(select.done(database.path()));
+  return rows;
+}
+
 class FolderStore final : public Store {
  public:
   FolderStore(std::string dir, int lock, Database database)
@@ -246,7 +331,7 @@ class FolderStore final : public Store {
     // The plan goes first: a folder with a record always has its plan.
     PROBE_TRY(write_whole(plan_path(dir_), plan_bytes));
     sync_folder(dir_);
-    Statement insert(database_.handle(), "insert into run values ('record', ?)");
+    Statement insert(database_.handle(), "insert into run values ('record', ?)", Access::kWrite);
     insert.bind(to_json(record).dump()).next();
     PROBE_TRY(insert.done(dir_));
     record_ = record;
@@ -256,16 +341,20 @@ class FolderStore final : public Store {
   const RunRecord& record() const override { return record_; }
 
   Result<std::vector<StoredEpisode>> episodes() override {
-    Statement select(database_.handle(),
-                     "select task, episode, seed, invalid, trace from episodes");
+    PROBE_ASSIGN(const auto rows, load_rows(database_, dir_));
     std::vector<StoredEpisode> episodes;
-    while (select.next()) {
-      // A row whose trace was removed has nothing to show for it: it is run again.
-      const bool has_trace = fs::exists(fs::path(dir_) / select.text(4));
-      episodes.push_back(
-          {select.text(0), select.number(1), select.number(2), select.is_null(3) && has_trace});
+    for (const ResultRow& row : rows) {
+      StoredEpisode episode{row.task, row.episode, row.seed, !row.invalid,
+                            row.invalid.value_or("")};
+      // A row is worth what its trace can show for it.
+      if (episode.valid) {
+        if (const auto trace = read_stored_trace(row); !trace) {
+          episode.valid = false;
+          episode.why = to_text(trace.failure());
+        }
+      }
+      episodes.push_back(std::move(episode));
     }
-    PROBE_TRY(select.done(dir_));
     return episodes;
   }
 
@@ -282,7 +371,8 @@ class FolderStore final : public Store {
     }
     sync_folder(fs::path(trace).parent_path());
     Statement insert(database_.handle(),
-                     "insert or replace into episodes values (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+                     "insert or replace into episodes values (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
+                     Access::kWrite);
     insert.bind(row.task).bind(row.episode).bind(row.seed).bind(task_order);
     insert.bind(row.episode_id).bind(row.start_id).bind(row.policy);
     insert.bind(metrics_to_text(row.metrics)).bind(row.steps).bind(row.invalid);
@@ -356,33 +446,7 @@ Result<RunRecord> read_run_record(const std::string& dir) {
 Result<std::vector<ResultRow>> read_results(const std::string& dir) {
   if (!fs::exists(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), false));
-  Statement select(database.handle(),
-                   "select task, episode, seed, policy, metrics, steps, invalid, prompt_sha256, "
-                   "image_sha256, frames_sha256, trace_sha256, episode_id, start_id, trace "
-                   "from episodes order by task_order, task, episode, seed");
-  std::vector<ResultRow> rows;
-  while (select.next()) {
-    ResultRow row;
-    row.task = select.text(0);
-    row.episode = select.number(1);
-    row.seed = select.number(2);
-    row.policy = select.text(3);
-    auto metrics = metrics_from_text(select.text(4));
-    if (!metrics) return failed("metrics of " + row.task + " cannot be read", database.path());
-    row.metrics = std::move(*metrics);
-    row.steps = select.number(5);
-    if (!select.is_null(6)) row.invalid = select.text(6);
-    row.prompt_sha256 = select.text(7);
-    row.image_sha256 = select.text(8);
-    row.frames_sha256 = select.text(9);
-    row.trace_sha256 = select.text(10);
-    row.episode_id = select.text(11);
-    row.start_id = select.text(12);
-    row.trace = fs::absolute(fs::path(dir) / select.text(13)).lexically_normal().string();
-    rows.push_back(std::move(row));
-  }
-  PROBE_TRY(select.done(dir));
-  return rows;
+  return load_rows(database, dir);
 }
 
 }  // namespace probe::run

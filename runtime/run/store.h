@@ -1,5 +1,5 @@
 // A run's folder: results.sqlite, traces/, suite.plan, lock. Rows and traces are committed
-// together: a trace gets its final name before its row is written, and a row without its trace
+// together: a trace gets its final name before its row is written, and a row without its own trace
 // counts as absent. store.cpp is the only file that includes SQLite.
 #pragma once
 
@@ -32,7 +32,8 @@ struct RunRecord {
 struct StoredEpisode {
   std::string task;
   int episode = 0, seed = 0;
-  bool valid = false;  // an invalid one is run again
+  bool valid = false;  // an invalid one is run again, and so is one whose trace is not its own
+  std::string why;     // it is not valid
 };
 
 // One process writes a folder at a time; the methods may be called from any thread, one at a time.
@@ -47,6 +48,7 @@ class Store {
 
   // The record that the folder was made with.
   virtual const RunRecord& record() const = 0;
+  // Reads every stored trace to see that it is whole and its row's.
   virtual Result<std::vector<StoredEpisode>> episodes() = 0;
 
   // Where the trace of this episode is to be written before commit().

@@ -65,8 +65,9 @@ inline TraceStep sample_step(int number) {
 
 // Writes `steps` of them; returns the trace's hash.
 inline Result<Sha256> write_sample_trace(const std::string& path, int steps,
-                                         double render_s = 0.006) {
-  PROBE_ASSIGN(auto writer, TraceWriter::create(path, sample_header()));
+                                         double render_s = 0.006,
+                                         const TraceHeader& header = sample_header()) {
+  PROBE_ASSIGN(auto writer, TraceWriter::create(path, header));
   PROBE_TRY(writer->start(sample_start()));
   for (int i = 1; i <= steps; ++i) {
     TraceStep step = sample_step(i);

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 #include <signal.h>
+#include <sqlite3.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,16 +38,27 @@ ResultRow row_of(int episode, std::optional<std::string> invalid = std::nullopt)
   row.steps = 60;
   row.invalid = std::move(invalid);
   row.prompt_sha256 = to_hex(sha256(std::string_view("put carrot on plate")));
-  row.trace_sha256 = "t" + std::to_string(episode);
   return row;
 }
 
-Status store_episode(Store& store, const ResultRow& row) {
-  PROBE_TRY([&]() -> Status {
-    auto written = write_sample_trace(store.temporary_trace(row.task, row.episode, row.seed), 1);
-    return written.ok() ? Status() : Status(written.failure());
-  }());
+Status store_episode(Store& store, ResultRow row) {
+  TraceHeader header = sample_header();
+  header.task = row.task;
+  header.episode = row.episode;
+  header.seed = row.seed;
+  PROBE_ASSIGN(
+      const Sha256 hash,
+      write_sample_trace(store.temporary_trace(row.task, row.episode, row.seed), 1, 0.006, header));
+  row.trace_sha256 = to_hex(hash);
   return store.commit(row, 0);
+}
+
+// What a stranger's hand does to results.sqlite.
+void change_database(const std::string& dir, const std::string& sql) {
+  sqlite3* database = nullptr;
+  REQUIRE(sqlite3_open((dir + "/results.sqlite").c_str(), &database) == SQLITE_OK);
+  CHECK(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(database);
 }
 
 TEST_CASE("rows come back in order, with an absolute trace path") {
@@ -94,6 +106,73 @@ TEST_CASE("valid rows are kept, invalid ones and lost traces are run again") {
   CHECK_FALSE((*rows)[1].invalid.has_value());
 }
 
+TEST_CASE("a truncated, swapped or foreign trace does not count as stored") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  for (int episode = 0; episode < 4; ++episode) {
+    REQUIRE(store_episode(**store, row_of(episode)).ok());
+  }
+  const auto path = [&](int episode) { return trace_path(dir, "carrot_on_plate", episode, 42); };
+  fs::resize_file(path(1), fs::file_size(path(1)) - 20);
+  fs::copy_file(path(0), path(2), fs::copy_options::overwrite_existing);
+  REQUIRE(write_sample_trace(path(3), 2).ok());  // of the right episode, but other content
+  const auto episodes = (*store)->episodes();
+  REQUIRE(episodes.ok());
+  REQUIRE(episodes->size() == 4);
+  CHECK(episodes->at(0).valid);
+  CHECK(episodes->at(1).why.find("truncated") != std::string::npos);
+  for (const int episode : {1, 2, 3}) {
+    CHECK_FALSE(episodes->at(static_cast<std::size_t>(episode)).valid);
+    CHECK(episodes->at(static_cast<std::size_t>(episode)).why.starts_with(path(episode)));
+  }
+  CHECK(episodes->at(2).why.find("of carrot_on_plate episode 0 seed 42") != std::string::npos);
+}
+
+TEST_CASE("a row with metrics that cannot be read is invalid, and the others are there") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  REQUIRE(store_episode(**store, row_of(0)).ok());
+  REQUIRE(store_episode(**store, row_of(1)).ok());
+  change_database(dir, "update episodes set metrics = '[[1,2]' where episode = 1");
+  const auto rows = read_results(dir);
+  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
+  CHECK_FALSE(rows->at(0).invalid);
+  CHECK(rows->at(1).invalid == "store: its metrics in results.sqlite cannot be read");
+  CHECK_FALSE((*store)->episodes()->at(1).valid);
+}
+
+TEST_CASE("a run record of another form names the file and the key") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  REQUIRE(Store::open(dir, record_of(), plan_bytes()).ok());
+  for (const auto& [key, json] :
+       std::vector<std::pair<std::string, std::string>>{{"plan_root", "5"},
+                                                        {"schema", "1"},
+                                                        {"policy", "null"},
+                                                        {"suite", "[]"},
+                                                        {"seeds", "[\"a\"]"},
+                                                        {"seeds", "7"},
+                                                        {"fingerprint", "{}"},
+                                                        {"fingerprint", "\"5\""}}) {
+    CAPTURE(key);
+    CAPTURE(json);
+    auto record = nlohmann::json{{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
+                                 {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
+    record[key] = nlohmann::json::parse(json);
+    change_database(dir, "update run set value = '" + record.dump() + "'");
+    const auto read = read_run_record(dir);
+    REQUIRE_FALSE(read.ok());
+    CHECK(read.failure().code == "store");
+    CHECK(read.failure().where == dir + "/results.sqlite");
+    CHECK(read.failure().message.find("`" + key + "`") != std::string::npos);
+    CHECK_FALSE(Store::open(dir, record_of(), plan_bytes()).ok());
+  }
+}
+
 TEST_CASE("another plan or policy is refused, and so is a second writer") {
   TemporaryFolder folder;
   const std::string dir = folder / "run";
@@ -125,6 +204,10 @@ TEST_CASE("a folder that cannot be written is named") {
   CHECK_FALSE(read_results(folder / "nothing").ok());
   std::ofstream(folder / "results.sqlite") << "this is no database, and it is longer than a header";
   CHECK(read_results(folder.path).failure().code == "store");
+  CHECK(read_results(folder.path).failure().message.find("move this file away and run again") !=
+        std::string::npos);
+  CHECK(
+      read_run_record(folder.path).failure().message.starts_with("results.sqlite cannot be read"));
   CHECK(Store::open(folder.path, record_of(), plan_bytes()).failure().code == "store");
 }
 
