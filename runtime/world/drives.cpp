@@ -42,7 +42,7 @@ bool invert(const JointMatrix& m, Count count, JointMatrix* out) {
     for (size_t j = 0; j < n; ++j) (*out)[i][j] = 0;
   }
   for (size_t k = 0; k < n; ++k) {
-    for (size_t i = 0; i < n; ++i) {
+    for (size_t i = 0; i <= k; ++i) {
       const double factor = inverse[k][i];
       for (size_t j = 0; j < n; ++j) (*out)[i][j] += factor * inverse[k][j];
     }

@@ -95,7 +95,8 @@ template <typename Lanes>
 void couple(const ArmResponse& arm, Lanes lanes, int joints, Row* row) {
   row->k = row->body_k;
   if (row->j != nullptr) {
-    double wj[kMaxJoints] = {};
+    double wj[kMaxJoints];
+    for (int i = 0; i < lanes; ++i) wj[i] = 0;
     for (std::size_t j = 0; j < static_cast<std::size_t>(joints); ++j) {
       if (row->j[j] != 0) add_scaled(wj, arm.response[j].data(), row->j[j], lanes);
     }
