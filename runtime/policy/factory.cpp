@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/base/spelling.h"
 #include "runtime/expert/expert.h"
 #include "runtime/policy/simple.h"
 
@@ -26,36 +27,30 @@ struct Entry {
 constexpr std::array kPolicies = {
     Entry{"expert", "", Kind::kExpert, {}, "the scripted expert, which sees the world's state"},
     Entry{"null", "", Kind::kNull, {}, "stays where it is, gripper open"},
-    Entry{"random", "", Kind::kRandom, {true, false}, "uniform actions"},
+    Entry{"random", "", Kind::kRandom, {true, false, false}, "uniform actions"},
     Entry{"reach", "", Kind::kReach, {}, "goes to the source and never closes"},
-    Entry{"wrong", "", Kind::kWrong, {}, "the expert on the first distractor"},
-    Entry{"noisy", "SIGMA", Kind::kNoisy, {true, false}, "the expert with noise, SIGMA in metres"},
-    Entry{"replay", "DIR", Kind::kReplay, {true, true}, "the recorded actions of another run"},
-    Entry{"openpi", "//HOST:PORT?profile=NAME", Kind::kServer, {true, false}, "an openpi server"},
-    Entry{"intact", "//HOST:PORT?model=PATH", Kind::kServer, {true, false}, "an INT-ACT server"},
-    Entry{"vlaeval", "//HOST:PORT", Kind::kServer, {true, false}, "a vla-eval server"},
-    Entry{"gr00t", "//HOST:PORT", Kind::kServer, {true, false}, "a GR00T server"},
-    Entry{"openvla", "//HOST:PORT", Kind::kServer, {true, false}, "an OpenVLA server"},
+    Entry{"wrong", "", Kind::kWrong, {false, false, true}, "the expert on the first distractor"},
+    Entry{"noisy",
+          "SIGMA",
+          Kind::kNoisy,
+          {true, false, false},
+          "the expert with noise, SIGMA in metres"},
+    Entry{
+        "replay", "DIR", Kind::kReplay, {true, true, false}, "the recorded actions of another run"},
+    Entry{"openpi",
+          "//HOST:PORT?profile=NAME",
+          Kind::kServer,
+          {true, false, false},
+          "an openpi server"},
+    Entry{"intact",
+          "//HOST:PORT?model=PATH",
+          Kind::kServer,
+          {true, false, false},
+          "an INT-ACT server"},
+    Entry{"vlaeval", "//HOST:PORT", Kind::kServer, {true, false, false}, "a vla-eval server"},
+    Entry{"gr00t", "//HOST:PORT", Kind::kServer, {true, false, false}, "a GR00T server"},
+    Entry{"openvla", "//HOST:PORT", Kind::kServer, {true, false, false}, "an OpenVLA server"},
 };
-
-// Edits between two words, a swap of neighbours counting as one.
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> table(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) table[i][0] = i;
-  for (std::size_t j = 0; j <= b.size(); ++j) table[0][j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t swap = a[i - 1] == b[j - 1] ? 0 : 1;
-      std::size_t best =
-          std::min({table[i - 1][j] + 1, table[i][j - 1] + 1, table[i - 1][j - 1] + swap});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        best = std::min(best, table[i - 2][j - 2] + 1);
-      }
-      table[i][j] = best;
-    }
-  }
-  return table[a.size()][b.size()];
-}
 
 std::string form(const Entry& entry) {
   std::string text(entry.name);
@@ -64,20 +59,14 @@ std::string form(const Entry& entry) {
 }
 
 Failure unknown(std::string_view name) {
-  const Entry* nearest = nullptr;
-  std::size_t distance = 3;  // further away than two edits is no misspelling
-  std::string known;
-  for (const Entry& entry : kPolicies) {
-    known += (known.empty() ? "" : ", ") + form(entry);
-    const std::size_t d = edits(name, entry.name);
-    if (d < distance && d < entry.name.size()) {
-      distance = d;
-      nearest = &entry;
-    }
-  }
-  std::string message = "unknown policy `" + std::string(name) + "`";
-  if (nearest != nullptr) message += ", did you mean `" + form(*nearest) + "`?";
-  return {"usage", message + "; known: " + known, "--policy"};
+  std::vector<std::string> names;
+  for (const Entry& entry : kPolicies) names.emplace_back(entry.name);
+  std::string help = policy_help();
+  help.pop_back();  // the last line's end
+  return {"usage",
+          "unknown policy `" + std::string(name) + "`" + did_you_mean(name, names) +
+              "\nthe policies are:\n" + help,
+          "--policy"};
 }
 
 struct Choice {
@@ -90,7 +79,7 @@ Result<Choice> choose(std::string_view text) {
   const std::string_view name = text.substr(0, colon);
   for (const Entry& entry : kPolicies) {
     if (entry.name != name) continue;
-    const std::string argument(colon == std::string_view::npos ? "" : text.substr(colon + 1));
+    const std::string argument = policy_argument(text);
     if (entry.argument.empty() && colon != std::string_view::npos) {
       return Failure{"usage", "policy `" + std::string(name) + "` takes no argument", "--policy"};
     }
@@ -131,7 +120,7 @@ Result<PolicyTraits> policy_traits(std::string_view text) {
   PROBE_ASSIGN(const Choice choice, choose(text));
   if (choice.entry->kind == Kind::kNoisy) {
     PROBE_ASSIGN(const double sigma, read_sigma(choice.argument));
-    return PolicyTraits{sigma > 0, false};
+    return PolicyTraits{sigma > 0, false, false};
   }
   return choice.entry->traits;
 }
@@ -159,6 +148,11 @@ Result<std::unique_ptr<Policy>> make_policy(std::string_view text, const PolicyC
   }
   return Failure{"usage", "policy servers are not available yet: `" + std::string(text) + "`",
                  "--policy"};
+}
+
+std::string policy_argument(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  return std::string(colon == std::string_view::npos ? "" : text.substr(colon + 1));
 }
 
 std::string policy_help() {

@@ -12,8 +12,9 @@
 namespace probe::policy {
 
 struct PolicyTraits {
-  bool draws = false;     // whether two seeds can give two different episodes
-  bool recorded = false;  // wants PolicyContext::recorded_actions
+  bool draws = false;             // whether two seeds can give two different episodes
+  bool recorded = false;          // wants PolicyContext::recorded_actions of its argument
+  bool wants_distractor = false;  // has nothing to do in a task without one
 };
 
 // What a policy may need from outside. `recorded_actions` gives the actions of a stored episode
@@ -29,6 +30,9 @@ struct PolicyContext {
 Result<PolicyTraits> policy_traits(std::string_view text);
 Result<std::unique_ptr<Policy>> make_policy(std::string_view text,
                                             const PolicyContext& context = {});
+
+// What stands after the first ':', or nothing.
+std::string policy_argument(std::string_view text);
 
 // One line each, for --help: "noisy:SIGMA   the expert with ...".
 std::string policy_help();

@@ -23,10 +23,6 @@ EpisodeVideo::~EpisodeVideo() {
 Status EpisodeVideo::frame(const render::FrameView& frame, int step,
                            std::span<const MetricValue> metrics) {
   if (!writer_) {
-    std::error_code ignored;  // the encoder's own opening says what is wrong
-    if (const fs::path folder = fs::path(path_).parent_path(); !folder.empty()) {
-      fs::create_directories(folder, ignored);
-    }
     PROBE_ASSIGN(writer_,
                  VideoWriter::create(temporary(), frame.width, frame.height, frames_per_second_));
   }

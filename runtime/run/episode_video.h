@@ -12,7 +12,7 @@ namespace probe::run {
 
 class EpisodeVideo final : public FrameSink {
  public:
-  // The file is begun with the first frame; `path`'s folder is made if absent.
+  // The file is begun with the first frame; `path`'s folder is there.
   EpisodeVideo(const TraceHeader& header, std::string path);
   ~EpisodeVideo() override;
   Status frame(const render::FrameView& frame, int step,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/base/spelling.h"
 #include "runtime/run/stored_trace.h"
 
 namespace probe::run {
@@ -21,7 +22,11 @@ Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, 
   }
   if (found == nullptr) {
     const std::string name = "task `" + task + "`";
-    if (!has_task) return Failure{"usage", "this run has no " + name, dir};
+    if (!has_task) {
+      std::vector<std::string> names;
+      for (const ResultRow& row : rows) names.push_back(row.task);
+      return Failure{"usage", "this run has no " + name + did_you_mean(task, names), dir};
+    }
     if (!has_episode) {
       return Failure{"usage", name + " has no stored episode " + std::to_string(episode), dir};
     }
@@ -36,16 +41,11 @@ Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, 
 
 policy::PolicyContext policy_context() {
   policy::PolicyContext context;
-  // The other run may have had other seeds: then its only or first one is meant.
   context.recorded_actions = [](const std::string& dir, std::string_view task, int episode,
                                 int seed) -> Result<std::vector<policy::Action>> {
-    auto found = find_trace(dir, std::string(task), episode, seed);
-    if (!found && found.failure().code == "usage") {
-      found = find_trace(dir, std::string(task), episode, std::nullopt);
-    }
-    if (!found) return found.failure();
+    PROBE_ASSIGN(const StoredTrace found, find_trace(dir, std::string(task), episode, seed));
     std::vector<policy::Action> actions;
-    for (const TraceStep& step : found->trace.steps) actions.push_back(step.action);
+    for (const TraceStep& step : found.trace.steps) actions.push_back(step.action);
     return actions;
   };
   return context;

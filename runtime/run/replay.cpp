@@ -1,6 +1,8 @@
 // Plan and trace from the folder, actions from the trace, everything else computed again.
 #include "runtime/run/replay.h"
 
+#include <filesystem>
+
 #include "runtime/run/episode.h"
 #include "runtime/run/episode_video.h"
 #include "runtime/run/fingerprint.h"
@@ -44,6 +46,13 @@ class ReplayPictures final : public FrameSink {
   std::optional<EpisodeVideo> video_;
 };
 
+// A picture's folder is not made: a slip of the pen should not leave folders behind.
+Status check_folder_of(const std::string& file, const char* option) {
+  const auto folder = std::filesystem::path(file).parent_path();
+  if (file.empty() || folder.empty() || std::filesystem::is_directory(folder)) return {};
+  return Failure{"usage", "there is no folder `" + folder.string() + "` to write into", option};
+}
+
 Result<EpisodeJob> find_job(const plan::Plan& plan, const Trace& trace, const std::string& dir) {
   const auto task = plan.find_task(trace.header.task);
   const Failure stranger{"store", "its plan is not the one of its traces", plan_path(dir)};
@@ -57,6 +66,8 @@ Result<EpisodeJob> find_job(const plan::Plan& plan, const Trace& trace, const st
 
 Result<ReplayReport> replay(const std::string& dir, const std::string& task, int episode,
                             std::optional<int> seed, const ReplayOptions& options) {
+  PROBE_TRY(check_folder_of(options.video, "--video"));
+  PROBE_TRY(check_folder_of(options.png, "--png"));
   if (auto record = read_run_record(dir); !record) return record.failure();
   PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(plan_path(dir)));
   // Rows have the plan's name; the suite's prefix is understood too.

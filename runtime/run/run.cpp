@@ -41,6 +41,11 @@ bool has_failed(const ResultRow& row) {
   return false;
 }
 
+fs::path video_path(const std::string& out, const std::string& task, int episode, int seed) {
+  return fs::path(out) / "videos" / task /
+         (std::to_string(episode) + "-" + std::to_string(seed) + ".mp4");
+}
+
 class EpisodeWorker {
  public:
   explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
@@ -75,7 +80,11 @@ class EpisodeWorker {
     PROBE_ASSIGN(auto trace, TraceWriter::create(path, header));
     std::optional<EpisodeVideo> video;
     if (shared_.options.video != VideoChoice::kNone) {
-      video.emplace(header, video_path(header));
+      const fs::path file =
+          video_path(shared_.options.out, header.task, header.episode, header.seed);
+      std::error_code ignored;  // the encoder's own opening says what is wrong
+      fs::create_directories(file.parent_path(), ignored);
+      video.emplace(header, file.string());
     }
     PROBE_ASSIGN(ResultRow row, run_episode(*stage_, shared_.plan, job, shared_.options.policy,
                                             *policy_, *trace, video ? &*video : nullptr));
@@ -84,12 +93,6 @@ class EpisodeWorker {
       PROBE_TRY(keep ? video->finish() : video->discard());
     }
     return row;
-  }
-
-  std::string video_path(const TraceHeader& header) const {
-    return (fs::path(shared_.options.out) / "videos" / header.task /
-            (std::to_string(header.episode) + "-" + std::to_string(header.seed) + ".mp4"))
-        .string();
   }
 
   Status commit(const ResultRow& row, int task_order) {
@@ -113,6 +116,33 @@ std::vector<std::uint32_t> tasks_of(const std::vector<EpisodeJob>& jobs) {
   std::set<std::uint32_t> tasks;
   for (const EpisodeJob& job : jobs) tasks.insert(job.task);
   return {tasks.begin(), tasks.end()};
+}
+
+// Rows of the run that `replay:DIR` repeats; only those that came to an end.
+Result<std::vector<ResultRow>> recorded_rows(const std::string& dir) {
+  const auto record = read_run_record(dir);
+  auto rows = read_results(dir);
+  for (const Failure* failure :
+       {record ? nullptr : &record.failure(), rows ? nullptr : &rows.failure()}) {
+    if (failure == nullptr) continue;
+    return Failure{"usage", "DIR of `replay:DIR` is the folder of a run, but " + to_text(*failure),
+                   "--policy"};
+  }
+  std::erase_if(*rows, [](const ResultRow& row) { return row.invalid.has_value(); });
+  return rows;
+}
+
+Status check_distractors(const plan::Plan& plan, const Selection& selection,
+                         const std::string& policy) {
+  for (const std::uint32_t task : tasks_of(selection.jobs)) {
+    if (plan.tasks()[task].distractors > 0) continue;
+    return Failure{"usage",
+                   "policy `" + policy + "` goes for a distractor, and task `" +
+                       std::string(plan.text(plan.tasks()[task].name)) +
+                       "` has none; --tasks chooses tasks that have one",
+                   "--policy"};
+  }
+  return {};
 }
 
 using EpisodeKey = std::tuple<std::string, int, int>;
@@ -152,6 +182,30 @@ Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, Store& store,
   return valid;
 }
 
+// Videos are made while an episode runs; says how to get those of episodes that were there.
+Status note_missing_videos(const RunOptions& options, const std::set<EpisodeKey>& stored,
+                           RunSummary& summary) {
+  if (options.video == VideoChoice::kNone || stored.empty()) return {};
+  PROBE_ASSIGN(const auto rows, read_results(options.out));
+  int missing = 0;
+  std::string first;
+  for (const ResultRow& row : rows) {
+    if (!stored.contains({row.task, row.episode, row.seed})) continue;
+    if (options.video == VideoChoice::kFailures && !has_failed(row)) continue;
+    if (fs::exists(video_path(options.out, row.task, row.episode, row.seed))) continue;
+    if (missing++ == 0) {
+      first = row.task + " " + std::to_string(row.episode) + " " + std::to_string(row.seed);
+    }
+  }
+  if (missing > 0) {
+    summary.notes.push_back(std::to_string(missing) +
+                            " episodes that were there have no video; one is made by `vlaprobe "
+                            "replay " +
+                            options.out + " " + first + " --video FILE.mp4`");
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
@@ -160,12 +214,23 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
   // exists.
   if (auto made = policy::make_policy(options.policy, policy_context()); !made)
     return made.failure();
-  PROBE_ASSIGN(Selection selection, select_jobs(plan, options, traits.draws));
+  std::vector<ResultRow> recorded;
+  if (traits.recorded) {
+    PROBE_ASSIGN(recorded, recorded_rows(policy::policy_argument(options.policy)));
+  }
+  PROBE_ASSIGN(Selection selection,
+               select_jobs(plan, options, traits.draws, traits.recorded ? &recorded : nullptr));
+  if (traits.wants_distractor) PROBE_TRY(check_distractors(plan, selection, options.policy));
   PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
 
   RunSummary summary;
   summary.notes = selection.notes;
   summary.total = static_cast<int>(selection.jobs.size());
+  if (selection.jobs.empty()) {
+    summary.notes.push_back("shard " + std::to_string(options.shard) + "/" +
+                            std::to_string(options.shards) + " holds no episode: nothing to do");
+    return summary;
+  }
   // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
   PROBE_ASSIGN(auto assets, SharedAssets::load(plan, root, tasks_of(selection.jobs)));
   const Fingerprint fingerprint = take_fingerprint(asset_digest(plan));
@@ -180,6 +245,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
   }
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
   summary.skipped = static_cast<int>(stored.size());
+  PROBE_TRY(note_missing_videos(options, stored, summary));
   if (options.progress) options.progress({0, summary.skipped, summary.total, nullptr});
 
   Shared shared{

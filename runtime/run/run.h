@@ -1,6 +1,7 @@
 // `vlaprobe run`: every chosen episode of a plan, once, in parallel worlds, into a folder that a
 // later call with the same arguments continues. Traces and rows do not depend on the number of
-// jobs, on order or on interruptions.
+// jobs, on order or on interruptions. What cannot work is refused before the folder is made; a
+// shard without an episode makes none.
 #pragma once
 
 #include <functional>

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
+#include <tuple>
 
+#include "runtime/base/spelling.h"
 #include "runtime/run/glob.h"
 
 namespace probe::run {
@@ -25,9 +28,30 @@ Result<const plan::SuiteRecord*> choose_suite(const plan::Plan& plan, const std:
                "--suite");
 }
 
+// The nearest name of a task, or all of them, each on its line.
+Failure no_task(const std::string& glob, const std::vector<std::string>& names) {
+  std::string message = "no task is called `" + glob + "`";
+  const std::string near = did_you_mean(glob, names);
+  if (!near.empty()) return usage(message + near, "--tasks");
+  message += "; the tasks are:";
+  for (const std::string& name : names) message += "\n  " + name;
+  return usage(message, "--tasks");
+}
+
+using EpisodeKey = std::tuple<std::string, int, int>;
+
+std::set<EpisodeKey> keys_of(const std::vector<ResultRow>* rows) {
+  std::set<EpisodeKey> keys;
+  if (rows != nullptr) {
+    for (const ResultRow& row : *rows) keys.emplace(row.task, row.episode, row.seed);
+  }
+  return keys;
+}
+
 }  // namespace
 
-Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws) {
+Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,
+                              const std::vector<ResultRow>* recorded) {
   if (options.shards < 1 || options.shard < 1 || options.shard > options.shards) {
     return usage("shard " + std::to_string(options.shard) + "/" + std::to_string(options.shards) +
                      " is not one of 1/N .. N/N",
@@ -50,15 +74,21 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
     std::iota(tasks.begin(), tasks.end(), 0u);
   }
   const std::string prefix(suite == nullptr ? "" : plan.text(suite->prefix));
+  std::vector<std::string> names;
   std::erase_if(tasks, [&](std::uint32_t task) {
     const std::string name(plan.text(plan.tasks()[task].name));
+    names.push_back(name);
     return !matches_glob(options.tasks, name) && !matches_glob(options.tasks, prefix + name);
   });
   std::sort(tasks.begin(), tasks.end());
   tasks.erase(std::unique(tasks.begin(), tasks.end()), tasks.end());
-  if (tasks.empty()) return usage("no task is called `" + options.tasks + "`", "--tasks");
+  if (tasks.empty()) return no_task(options.tasks, names);
 
+  const std::set<EpisodeKey> held = keys_of(recorded);
   selection.seeds = options.seeds;
+  if (selection.seeds.empty()) {
+    for (const auto& [task, episode, seed] : held) selection.seeds.push_back(seed);
+  }
   if (selection.seeds.empty()) {
     if (suite != nullptr) {
       for (const std::uint32_t seed : plan.seeds(*suite))
@@ -77,7 +107,7 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
                         selection.seeds.end());
 
   std::size_t place = 0;
-  bool any = false;
+  bool any = false, any_held = recorded == nullptr;
   for (const std::uint32_t task : tasks) {
     const auto count = static_cast<std::uint32_t>(plan.episodes(plan.tasks()[task]).size());
     for (std::uint32_t index = 0; index < count; ++index) {
@@ -87,6 +117,11 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
       }
       any = true;
       for (const int seed : selection.seeds) {
+        if (recorded != nullptr) {
+          const std::string name(plan.text(plan.tasks()[task].name));
+          if (!held.contains({name, static_cast<int>(index), seed})) continue;
+          any_held = true;
+        }
         const bool ours = place++ % static_cast<std::size_t>(options.shards) ==
                           static_cast<std::size_t>(options.shard - 1);
         if (ours) selection.jobs.push_back({task, index, seed});
@@ -97,6 +132,10 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
     return usage("no chosen task has an episode from " + std::to_string(options.episodes->first) +
                      " to " + std::to_string(options.episodes->second),
                  "--episodes");
+  }
+  if (!any_held) {
+    return usage("the run to replay holds none of the chosen tasks, episodes and seeds",
+                 "--policy");
   }
   return selection;
 }

@@ -19,9 +19,11 @@ struct Selection {
   std::vector<std::string> notes;
 };
 
-// `draws`: whether the policy can do two different things with two seeds. Fails (code "usage") on
-// an unknown suite, a glob that no task matches, episodes that no chosen task has, and a shard
-// outside 1/1 .. N/N.
-Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws);
+// `draws`: whether the policy can do two different things with two seeds. `recorded`: rows of the
+// run whose actions are repeated; then only episodes and seeds that it holds are chosen, with
+// `options.seeds` only narrowing them. Fails (code "usage") on an unknown suite, a glob that no
+// task matches, episodes that no chosen task has, and a shard outside 1/1 .. N/N.
+Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,
+                              const std::vector<ResultRow>* recorded = nullptr);
 
 }  // namespace probe::run

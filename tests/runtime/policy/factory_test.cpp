@@ -21,7 +21,9 @@ TEST_CASE("a misspelt policy names the nearest and the known ones") {
   const auto made = make_policy("exprt");
   REQUIRE_FALSE(made.ok());
   CHECK(made.failure().code == "usage");
-  CHECK(made.failure().message.find("did you mean `expert`?") != std::string::npos);
+  CHECK(made.failure().message.starts_with(
+      "unknown policy `exprt`, did you mean `expert`?\nthe policies are:\n  expert "));
+  CHECK_FALSE(made.failure().message.ends_with("\n"));
   CHECK(made.failure().message.find("noisy:SIGMA") != std::string::npos);
   CHECK(policy_traits("zzz").failure().message.find("did you mean") == std::string::npos);
 }
@@ -43,6 +45,10 @@ TEST_CASE("policies say whether seeds matter") {
   CHECK_FALSE(policy_traits("noisy:0")->draws);
   CHECK(policy_traits("noisy:0.01")->draws);
   CHECK(policy_traits("random")->draws);
+  CHECK(policy_traits("wrong")->wants_distractor);
+  CHECK_FALSE(policy_traits("expert")->wants_distractor);
+  CHECK(policy_traits("replay:runs/a:b")->recorded);
+  CHECK(policy_argument("replay:runs/a:b") == "runs/a:b");
 }
 
 TEST_CASE("random actions depend on the episode's seed and on nothing else") {

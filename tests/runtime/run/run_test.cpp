@@ -173,19 +173,76 @@ TEST_CASE("objects settle on the table and the null policy leaves them there") {
 TEST_CASE("a policy that fails makes the episode invalid, and it is tried again") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(1, 3);
-  // No such run to replay.
-  const RunSummary summary =
-      must_run(plan, options_for(folder / "run", "replay:" + (folder / "nothing")));
+  // The run to replay is one step shorter.
+  must_run(table_plan(1, 2), options_for(folder / "short", "null"));
+  const RunOptions options = options_for(folder / "run", "replay:" + (folder / "short"));
+  const RunSummary summary = must_run(plan, options);
   CHECK(summary.invalid == summary.total);
   const auto rows = read_results(folder / "run");
   REQUIRE(rows->at(0).invalid.has_value());
   CHECK(rows->at(0).invalid->starts_with("policy: "));
-  CHECK(rows->at(0).steps == 0);
+  CHECK(rows->at(0).steps == 2);
   CHECK(read_trace(rows->at(0).trace).ok());
-  const RunSummary again =
-      must_run(plan, options_for(folder / "run", "replay:" + (folder / "nothing")));
+  const RunSummary again = must_run(plan, options);
   CHECK(again.skipped == 0);
+  CHECK(again.notes.at(0).starts_with("carrot_on_plate episode 0 seed 42 was run again: policy: "));
   CHECK(read_results(folder / "run")->size() == rows->size());
+}
+
+TEST_CASE("a replayed run has the episodes and seeds of the other, neither more nor fewer") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  RunOptions options = options_for(folder / "a");
+  options.seeds = {42};
+  options.episodes = {1, 1};
+  must_run(plan, options);
+  options.seeds = {9};
+  options.episodes = {0, 0};
+  must_run(plan, options);
+  RunOptions copy = options_for(folder / "b", "replay:" + (folder / "a"));
+  CHECK(must_run(plan, copy).total == 2);
+  const auto rows = read_results(folder / "b");
+  REQUIRE(rows->size() == 2);
+  CHECK(rows->at(0).seed == 9);
+  CHECK(rows->at(1).seed == 42);
+  CHECK_FALSE(rows->at(1).invalid);
+  copy.seeds = {7};
+  CHECK(run(plan, copy).failure().message.find("holds none of the chosen") != std::string::npos);
+}
+
+TEST_CASE("a damaged trace is run again with a note, and videos that were not made are noted") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  RunOptions options = options_for(folder / "run", "null");
+  must_run(plan, options);
+  const auto before = hashes(folder / "run");
+  fs::resize_file(read_results(folder / "run")->at(1).trace, 300);
+  options.video = VideoChoice::kAll;
+  const RunSummary again = must_run(plan, options);
+  CHECK(again.done == 1);
+  CHECK(hashes(folder / "run") == before);
+  REQUIRE(again.notes.size() == 3);
+  CHECK(again.notes[1].starts_with("carrot_on_plate episode 1 seed 42 was run again: "));
+  CHECK(again.notes[2] ==
+        "1 episodes that were there have no video; one is made by `vlaprobe replay " +
+            (folder / "run") + " carrot_on_plate 0 42 --video FILE.mp4`");
+
+  // The trace of another episode under this one's name.
+  const auto rows = read_results(folder / "run");
+  fs::copy_file(rows->at(0).trace, rows->at(1).trace, fs::copy_options::overwrite_existing);
+  ReplayOptions replaying;
+  replaying.assets = options.assets;
+  const auto replayed = replay(folder / "run", "carrot_on_plate", 1, 42, replaying);
+  CHECK(replayed.failure().where == rows->at(1).trace);
+  CHECK(write_contact_sheet(folder / "run", folder / "sheet.png", {"*", 6, 160, options.assets})
+            .failure()
+            .where == rows->at(1).trace);
+  CHECK(replay(folder / "run", "carot_on_plate", 0, 42, replaying)
+            .failure()
+            .message.ends_with("did you mean `carrot_on_plate`?"));
+  replaying.video = folder / "absent/x.mp4";
+  CHECK(replay(folder / "run", "carrot_on_plate", 0, 42, replaying).failure().code == "usage");
+  CHECK_FALSE(fs::exists(folder / "absent"));
 }
 
 TEST_CASE("what cannot run is told before anything is written") {
@@ -201,7 +258,22 @@ TEST_CASE("what cannot run is told before anything is written") {
   CHECK(refused(options).find("did you mean `expert`") != std::string::npos);
   options = options_for(folder / "run");
   options.tasks = "spoon*";  // neither with the suite's prefix nor without
-  CHECK(refused(options) == "--tasks: no task is called `spoon*`");
+  CHECK(refused(options) ==
+        "--tasks: no task is called `spoon*`; the tasks are:\n  carrot_on_plate");
+  options.tasks = "carot_on_plate";
+  CHECK(refused(options) ==
+        "--tasks: no task is called `carot_on_plate`, did you mean `carrot_on_plate`?");
+  CHECK(refused(options_for(folder / "run", "wrong"))
+            .find("goes for a distractor, and task `carrot_on_plate` has none") !=
+        std::string::npos);
+  CHECK(refused(options_for(folder / "run", "replay:" + (folder / "nothing")))
+            .find("is the folder of a run, but ") != std::string::npos);
+  options = options_for(folder / "run", "null");
+  options.shard = options.shards = 2;  // the only episode is in the first
+  const RunSummary nothing = must_run(plan, options);
+  CHECK(nothing.total == 0);
+  CHECK(nothing.notes.back() == "shard 2/2 holds no episode: nothing to do");
+  CHECK_FALSE(fs::exists(options.out));
   options = options_for(folder / "run");
   options.suite = "nightly";
   CHECK(refused(options).find("no suite `nightly`; the plan has smoke") != std::string::npos);
@@ -277,9 +349,6 @@ TEST_CASE("scripted policies run on the world: reach intends, noise depends on t
   const auto noisy = hashes(folder / "noisy");
   REQUIRE(noisy.size() == 2);
   CHECK(noisy[0] != noisy[1]);
-  // No distractor here: the episode cannot count.
-  must_run(plan, options_for(folder / "wrong", "wrong"));
-  CHECK(read_results(folder / "wrong")->at(0).invalid.has_value());
 }
 
 }  // namespace

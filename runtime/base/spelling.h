@@ -1,0 +1,47 @@
+// The name that was probably meant by a misspelt one, for messages.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace probe {
+
+// Edits between two words, a swap of neighbours counting as one.
+inline std::size_t spelling_edits(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> table(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) table[i][0] = i;
+  for (std::size_t j = 0; j <= b.size(); ++j) table[0][j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t swap = a[i - 1] == b[j - 1] ? 0 : 1;
+      std::size_t best =
+          std::min({table[i - 1][j] + 1, table[i][j - 1] + 1, table[i - 1][j - 1] + swap});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        best = std::min(best, table[i - 2][j - 2] + 1);
+      }
+      table[i][j] = best;
+    }
+  }
+  return table[a.size()][b.size()];
+}
+
+// ", did you mean `NAME`?" with the nearest of `known`, the earlier on a tie; empty when none is
+// within two edits: further away is no misspelling.
+inline std::string did_you_mean(std::string_view name, std::span<const std::string> known) {
+  const std::string* nearest = nullptr;
+  std::size_t distance = 3;
+  for (const std::string& candidate : known) {
+    const std::size_t edits = spelling_edits(name, candidate);
+    if (edits < distance && edits < candidate.size()) {
+      distance = edits;
+      nearest = &candidate;
+    }
+  }
+  return nearest == nullptr ? std::string() : ", did you mean `" + *nearest + "`?";
+}
+
+}  // namespace probe
