@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
 
 namespace probe::cli {
@@ -56,6 +57,7 @@ void add_replay(CLI::App& app, int& exit) {
   verb->add_option("--step", arguments->options.png_step,
                    "control step of --png, 0 is the first picture");
   add_asset_option(*verb, arguments->assets);
+  refuse_empty_values(*verb);
   verb->callback([arguments, &exit] { exit = replay_verb(*arguments); });
 }
 

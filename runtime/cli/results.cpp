@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
 
 namespace probe::cli {
@@ -81,6 +82,7 @@ void add_results(CLI::App& app, int& exit) {
   verb->add_option("DIR", arguments->dir, "results folder")->required();
   CLI::Option* json = verb->add_flag("--json", arguments->json, "a JSON array of rows");
   verb->add_flag("--csv", arguments->csv, "rows as comma-separated values")->excludes(json);
+  refuse_empty_values(*verb);
   verb->callback([arguments, &exit] { exit = results_verb(*arguments); });
 }
 

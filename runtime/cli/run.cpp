@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "runtime/cli/filled.h"
 #include "runtime/cli/load.h"
 #include "runtime/policy/factory.h"
 
@@ -130,6 +131,7 @@ int run_verb(const Arguments& arguments) {
   printer.clear();
   if (!summary) return report(summary.failure());
   for (const std::string& note : summary->notes) fmt::print(stderr, "note: {}\n", note);
+  if (summary->total == 0) return kFine;
   fmt::print(stderr, "{} episodes in {}: {} run now, {} were there, {} invalid\n", summary->total,
              arguments.out, summary->done, summary->skipped, summary->invalid);
   return summary->invalid ? kOutside : kFine;
@@ -155,6 +157,7 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--video", arguments->video, "none, failures or all")
       ->check(CLI::IsMember({"none", "failures", "all"}));
   add_asset_option(*verb, arguments->assets);
+  refuse_empty_values(*verb);
   verb->callback([arguments, &exit] { exit = run_verb(*arguments); });
 }
 

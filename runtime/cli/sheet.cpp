@@ -1,6 +1,7 @@
 // vlaprobe sheet, vlaprobe preview: pictures of many episodes on one page.
 #include <fmt/format.h>
 
+#include "runtime/cli/filled.h"
 #include "runtime/cli/load.h"
 #include "runtime/run/preview.h"
 #include "runtime/run/replay.h"
@@ -33,6 +34,7 @@ void add_sheet(CLI::App& app, int& exit) {
   verb->add_option("--columns", arguments->options.columns, "episodes in a row")
       ->check(CLI::Range(1, 64));
   add_asset_option(*verb, arguments->assets);
+  refuse_empty_values(*verb);
   verb->callback([arguments, &exit] {
     arguments->options.assets = arguments->assets.root;
     exit = written(run::write_contact_sheet(arguments->input, arguments->out, arguments->options),
@@ -51,6 +53,7 @@ void add_preview(CLI::App& app, int& exit) {
   verb->add_option("--columns", arguments->options.columns, "starts in a row")
       ->check(CLI::Range(1, 64));
   add_asset_option(*verb, arguments->assets);
+  refuse_empty_values(*verb);
   verb->callback([arguments, &exit] {
     LoadedPlan loaded = load_plan(arguments->input, arguments->assets);
     exit = loaded.exit;
