@@ -25,6 +25,17 @@ for program in "$root"/build/tests/test_*; do
   grep -a 'SKIPPED' "$log" | sed 's/^/    /' | sort -u || true
   if [ "$f" -ne 0 ]; then cat "$log"; fi
 done
+
+# Fuzzing: a minute each over parser and checker, plan reader and judge, trace reader. VLAPROBE_FUZZ_SECONDS=0 skips.
+seconds=${VLAPROBE_FUZZ_SECONDS:-60}
+if [ "$seconds" -gt 0 ]; then
+  fuzz=$("$root/tests/fuzz/run.sh" "$seconds" 2>&1) || true
+  echo "$fuzz"
+  t=$(sed -n 's/^\([0-9]*\) targets, [0-9]* failed$/\1/p' <<<"$fuzz")
+  f=$(sed -n 's/^[0-9]* targets, \([0-9]*\) failed$/\1/p' <<<"$fuzz")
+  passed=$((passed + ${t:-0} - ${f:-0})) failed=$((failed + ${f:-1}))
+fi
+
 [ $((passed + failed)) -gt 0 ] || { echo "no test ran" >&2; failed=1; }
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -19,6 +19,7 @@ constexpr std::uint32_t kAllAxes = (static_cast<std::uint32_t>(Axis::kGoal) << 1
 constexpr std::uint32_t kAllOod = 7;
 // A day at 5 Hz is 432,000 steps; more is a unit slip.
 constexpr std::uint32_t kMaxHorizon = 1'000'000;
+constexpr double kMaxSettle = 60;  // s
 
 class TaskCheck : FieldCheck {
  public:
@@ -166,6 +167,9 @@ class TaskCheck : FieldCheck {
     PROBE_TRY(check_text(k.allow));
     PROBE_TRY(check_not_negative(k.drop, "a drop"));
     PROBE_TRY(check_not_negative(k.settle, "a settling time"));
+    if (k.settle > kMaxSettle)
+      return fail(Rule::kSettle, &k.settle,
+                  fmt::format("a settling time is at most {} s, not {}", kMaxSettle, k.settle));
     return check_zero(k.zero2);
   }
 

@@ -208,6 +208,7 @@ inline std::vector<Defect> task_defects() {
       {"TASK", "is not empty", [](Records& r, Writer&) { r.tasks[0].prompt = {}; }},
       {"TASK", "of PROG", [](Records& r, Writer&) { r.tasks[0].program = 1; }},
       {"TASK", "a horizon", [](Records& r, Writer&) { r.tasks[0].horizon = 0; }},
+      {"TASK", "a settling time is at most", [](Records& r, Writer&) { r.tasks[0].settle = 61; }},
       {"TASK", "its own baseline", [](Records& r, Writer&) { r.tasks[0].baseline = 1; }},
       {"TASK", "its own baseline", [](Records& r, Writer&) { r.tasks[1].baseline = 1; }},
       {"TASK", "axes 0x8000", [](Records& r, Writer&) { r.tasks[1].axes = 0x8000; }},
