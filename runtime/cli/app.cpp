@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <span>
+#include <system_error>
 
 #include "compiler/diag/diagnostic.h"
 #include "runtime/cli/verbs.h"
@@ -99,6 +101,14 @@ int main(int argc, char** argv) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
     return report_unknown(app, error, std::span(argv + 1, static_cast<std::size_t>(argc - 1)));
+  } catch (const std::system_error& error) {  // fmt, when a stream takes no more
+    return report({"io", error.what(), "standard output"});
+  } catch (const std::exception& error) {
+    return report({"internal", error.what(), ""});
+  }
+  // A full disk behind a redirection shows only now.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return report({"io", "cannot be written", "standard output"});
   }
   if (app.get_subcommands().empty()) {
     fmt::print("{}", app.help());

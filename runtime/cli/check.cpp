@@ -29,6 +29,11 @@ std::vector<std::string> to_watch(const Arguments& arguments, const CompiledText
   return paths;
 }
 
+// "1 error", "2 errors".
+std::string counted(std::size_t count, const char* thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 int watch_verb(const Arguments& arguments) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kPoll(100);
@@ -48,8 +53,9 @@ int watch_verb(const Arguments& arguments) {
     // An editor's own files come and go in the folder; only news are printed.
     if (first || edited || text.said != last.said || text.exit != last.exit) {
       print_diagnostics(text, arguments.json);
-      fmt::print(stderr, "{} errors, {} warnings in {} files, {:.1f} ms\n", text.errors,
-                 text.warnings, text.files.size(), milliseconds);
+      fmt::print(stderr, "{}, {} in {}, {:.1f} ms\n", counted(text.errors, "error"),
+                 counted(text.warnings, "warning"), counted(text.files.size(), "file"),
+                 milliseconds);
     }
     if (first) fmt::print(stderr, "watching; Ctrl-C ends\n");
     first = false;
@@ -72,7 +78,8 @@ int check_verb(const Arguments& arguments) {
   const CompiledText text =
       compile_text(arguments.files, arguments.assets, "", false, arguments.json);
   if (text.errors + text.warnings > 0) {
-    fmt::print(stderr, "{} errors, {} warnings\n", text.errors, text.warnings);
+    fmt::print(stderr, "{}, {}\n", counted(text.errors, "error"),
+               counted(text.warnings, "warning"));
   }
   return text.exit;
 }

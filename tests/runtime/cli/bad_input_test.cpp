@@ -150,3 +150,19 @@ TEST_CASE("results of a folder without a run say so") {
   CHECK(outcome.exit == 2);
   CHECK(contains(outcome.err, "nowhere"));
 }
+
+TEST_CASE("data that cannot be written to standard output is an error of the outside") {
+  if (!fs::exists("/dev/full")) {
+    MESSAGE("SKIPPED: no /dev/full here");
+    return;
+  }
+  Sandbox box;
+  for (const char* verb : {"list $SUITE --json", "show $SUITE carrot_on_plate", "dis $SUITE"}) {
+    // The sandbox redirects standard output behind these words; a subshell gets there first.
+    const Outcome outcome =
+        box.vlaprobe("--version >/dev/null; ( '" VLAPROBE_BINARY_DIR "/vlaprobe' " +
+                     std::string(verb) + " >/dev/full )");
+    CHECK_MESSAGE(outcome.exit == 2, verb);
+    CHECK(contains(outcome.err, "standard output"));
+  }
+}
