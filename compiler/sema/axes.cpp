@@ -3,24 +3,10 @@
 #include <algorithm>
 
 #include "compiler/sema/language.h"
+#include "runtime/plan/axis_names.h"
 
 namespace probe::sema {
 namespace {
-
-constexpr std::pair<plan::Axis, std::string_view> kAxisNames[] = {
-    {plan::Axis::kObjectSource, "object.source"},
-    {plan::Axis::kObjectTarget, "object.target"},
-    {plan::Axis::kDistractors, "distractors"},
-    {plan::Axis::kLanguageAction, "language.action"},
-    {plan::Axis::kLanguageNegation, "language.negation"},
-    {plan::Axis::kLanguageAppearance, "language.appearance"},
-    {plan::Axis::kLanguageCommonsense, "language.commonsense"},
-    {plan::Axis::kLayout, "layout"},
-    {plan::Axis::kScene, "scene"},
-    {plan::Axis::kLight, "light"},
-    {plan::Axis::kCamera, "camera"},
-    {plan::Axis::kGoal, "goal"},
-};
 
 plan::Axis axis_of(PhraseAxis axis) {
   return axis == PhraseAxis::kAppearance ? plan::Axis::kLanguageAppearance
@@ -186,7 +172,7 @@ std::uint32_t axes_between(const Model& model, const Task& task, const Task& bas
 }
 
 std::string_view axis_name(plan::Axis axis) {
-  for (const auto& [known, name] : kAxisNames) {
+  for (const auto& [known, name] : plan::kAxisNames) {
     if (known == axis) return name;
   }
   return {};
@@ -194,7 +180,7 @@ std::string_view axis_name(plan::Axis axis) {
 
 std::vector<plan::Axis> axes_in(std::uint32_t mask) {
   std::vector<plan::Axis> axes;
-  for (const auto& [axis, name] : kAxisNames) {
+  for (const auto& [axis, name] : plan::kAxisNames) {
     if ((mask & static_cast<std::uint32_t>(axis)) != 0) axes.push_back(axis);
   }
   return axes;

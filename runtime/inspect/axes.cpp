@@ -4,25 +4,11 @@
 #include <array>
 #include <optional>
 
+#include "runtime/plan/axis_names.h"
 #include "runtime/plan/ids.h"
 
 namespace probe::inspect {
 namespace {
-
-constexpr std::array<AxisName, 12> kAxes = {{
-    {plan::Axis::kObjectSource, "object.source"},
-    {plan::Axis::kObjectTarget, "object.target"},
-    {plan::Axis::kDistractors, "distractors"},
-    {plan::Axis::kLanguageAction, "language.action"},
-    {plan::Axis::kLanguageNegation, "language.negation"},
-    {plan::Axis::kLanguageAppearance, "language.appearance"},
-    {plan::Axis::kLanguageCommonsense, "language.commonsense"},
-    {plan::Axis::kLayout, "layout"},
-    {plan::Axis::kScene, "scene"},
-    {plan::Axis::kLight, "light"},
-    {plan::Axis::kCamera, "camera"},
-    {plan::Axis::kGoal, "goal"},
-}};
 
 constexpr std::uint32_t bit(plan::Axis axis) { return static_cast<std::uint32_t>(axis); }
 
@@ -102,11 +88,9 @@ bool same_goal(const plan::Plan& plan, const plan::TaskRecord& a, const plan::Ta
 
 }  // namespace
 
-std::span<const AxisName> all_axes() { return kAxes; }
-
 std::vector<std::string_view> axis_names(std::uint32_t mask) {
   std::vector<std::string_view> names;
-  for (const auto& [axis, name] : kAxes) {
+  for (const auto& [axis, name] : plan::kAxisNames) {
     if ((mask & bit(axis)) != 0) names.push_back(name);
   }
   return names;

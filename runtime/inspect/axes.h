@@ -13,12 +13,6 @@
 
 namespace probe::inspect {
 
-struct AxisName {
-  plan::Axis axis;
-  std::string_view name;
-};
-// All of them, in the order in which they are listed everywhere.
-std::span<const AxisName> all_axes();
 // "object.source", "language.action" ... of a mask of plan::Axis.
 std::vector<std::string_view> axis_names(std::uint32_t mask);
 inline constexpr std::uint32_t kLanguageAxes =

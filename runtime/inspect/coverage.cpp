@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/inspect/axes.h"
+#include "runtime/plan/axis_names.h"
 
 namespace probe::inspect {
 namespace {
@@ -24,12 +25,12 @@ struct Row {
     ++variants;
     confounded += std::popcount(mask) > 1 ? 1 : 0;
     for (std::size_t i = 0; i < axes.size(); ++i)
-      axes[i] += (mask & static_cast<std::uint32_t>(all_axes()[i].axis)) != 0 ? 1 : 0;
+      axes[i] += (mask & static_cast<std::uint32_t>(plan::kAxisNames[i].axis)) != 0 ? 1 : 0;
   }
   Json to_json() const {
     Json json = {{"variants", variants}, {"confounded", confounded}, {"axes", Json::object()}};
     for (std::size_t i = 0; i < axes.size(); ++i)
-      json["axes"][std::string(all_axes()[i].name)] = axes[i];
+      json["axes"][std::string(plan::kAxisNames[i].name)] = axes[i];
     return json;
   }
 };
@@ -95,7 +96,7 @@ Json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
     total.add(plan.tasks()[task].axes);
   }
   Json json = {{"axes", Json::array()}, {"bases", Json::array()}};
-  for (const AxisName& axis : all_axes()) json["axes"].push_back(axis.name);
+  for (const plan::AxisName& axis : plan::kAxisNames) json["axes"].push_back(axis.name);
   std::size_t empty = 0;
   for (const auto& [base, row] : rows) {
     Json entry = {{"task", plan.text(plan.tasks()[base].name)}};
@@ -105,7 +106,7 @@ Json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
   }
   json["total"] = total.to_json();
   json["empty"] = empty;
-  json["cells"] = rows.size() * all_axes().size();
+  json["cells"] = rows.size() * plan::kAxisNames.size();
   json["objects"] = unused_objects(plan, tasks);
   return json;
 }
