@@ -1,13 +1,16 @@
 // P05xx: enumerates every task's starts and tests them: overlap of footprints, the surface's edge,
-// the arm's reach. Looks at boxes only; collision hulls and inverse kinematics are not known here.
+// the camera's image, the arm's reach. Looks at boxes only; collision hulls are not known here.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <set>
 
+#include "compiler/sema/axes.h"
+#include "compiler/sema/in_frame.h"
 #include "compiler/sema/layouts.h"
 #include "compiler/sema/passes.h"
+#include "compiler/sema/reachable.h"
 #include "compiler/sema/tasks.h"
 
 namespace probe::sema {
@@ -62,6 +65,36 @@ double overlap(const Footprint& a, const Footprint& b) {
   return least;
 }
 
+// The factor by which the vector between two cells must grow until their footprints only touch;
+// nothing when they stand on the same cell.
+std::optional<double> growth(const Footprint& a, const Footprint& b, const Vec2& cells) {
+  std::optional<double> least;
+  for (const Footprint* shape : {&a, &b}) {
+    for (const Vec2& axis : shape->axes) {
+      const double length = std::sqrt(axis.x * axis.x + axis.y * axis.y);
+      if (length < 1e-9) continue;
+      Vec2 n = {-axis.y / length, axis.x / length};
+      double step = cells.x * n.x + cells.y * n.y;
+      if (step < 0) n = {-n.x, -n.y}, step = -step;
+      if (step < 1e-6) continue;
+      const double apart = (b.centre.x - a.centre.x) * n.x + (b.centre.y - a.centre.y) * n.y;
+      const double missing = a.reach_along(n) + b.reach_along(n) - apart;
+      least = std::min(least.value_or(1e9), 1 + missing / step);
+    }
+  }
+  return least;
+}
+
+// The height of a turned box (m).
+double height(const Object& object, const Turn& turn) {
+  const auto& [w, x, y, z] = turn.rotation;
+  const double row[3] = {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    sum += std::abs(row[i]) * (object.box_max[i] - object.box_min[i]);
+  return sum;
+}
+
 std::string centimetres(double metres) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4gcm", metres * 100);
@@ -72,10 +105,16 @@ std::string at(const Object& object, const Start::Placed& placed) {
   return object.name + " at (" + centimetres(placed.x) + ", " + centimetres(placed.y) + ")";
 }
 
+// Rounded up to a whole millimetre: what is advised has to fit.
+std::string millimetre_up(double metres) {
+  return centimetres(std::ceil(metres * 1000 - 1e-6) / 1000);
+}
+
 struct StartCheck {
   Context& context;
   const Task& task;
   const Layout& layout;
+  std::map<SceneId, std::optional<Arm>>& arms;
 
   const Object& object(const Start::Placed& placed) const {
     return context.model.objects[placed.object];
@@ -104,14 +143,103 @@ struct StartCheck {
       }
     }
     if (bad == 0) return;
-    context
-        .report(Code::P0501, place(),
-                "`" + object(*first[0]).name + "` and `" + object(*first[1]).name +
-                    "` overlap by " + centimetres(depth) + " in `" + task.name + "`; " +
-                    std::to_string(bad) + " of " + std::to_string(pairs) +
-                    " object pairs overlap in this task")
-        .point("episode " + std::to_string(first_episode) + ": " +
-               at(object(*first[0]), *first[0]) + ", " + at(object(*first[1]), *first[1]))
+    Diagnostic& said =
+        context
+            .report(Code::P0501, place(),
+                    "`" + object(*first[0]).name + "` and `" + object(*first[1]).name +
+                        "` overlap by " + centimetres(depth) + " in `" + task.name + "`; " +
+                        std::to_string(bad) + " of " + std::to_string(pairs) +
+                        " object pairs overlap in this task")
+            .point("episode " + std::to_string(first_episode) + ": " +
+                   at(object(*first[0]), *first[0]) + ", " + at(object(*first[1]), *first[1]));
+    if (!advise_spread(said)) said.label(layout.span, "the layout");
+  }
+
+  // At each spread that is too small, the least of the same shape at which nothing overlaps.
+  // Nothing is said when something overlaps that a spread does not move apart.
+  bool advise_spread(Diagnostic& said) const {
+    if (layout.jitter > 0) return false;
+    std::map<const Cells::Spread*, double> factors;
+    for (const Start& start : task.starts) {
+      for (std::size_t i = 0; i < start.placed.size(); ++i) {
+        for (std::size_t j = i + 1; j < start.placed.size(); ++j) {
+          const Start::Placed &a = start.placed[i], &b = start.placed[j];
+          const Footprint one = footprint(object(a), a), two = footprint(object(b), b);
+          if (overlap(one, two) <= 1e-6) continue;
+          const Cells::Spread* spread = spread_of(a, b);
+          if (spread == nullptr) return false;
+          const auto factor = growth(one, two, {b.x - a.x, b.y - a.y});
+          if (!factor) return false;
+          double& most = factors[spread];
+          most = std::max(most, *factor);
+        }
+      }
+    }
+    for (const Cells& cells : layout.cells) {
+      for (const Cells::Spread& spread : cells.spreads) {
+        const auto found = factors.find(&spread);
+        if (found == factors.end()) continue;
+        const std::string x = millimetre_up(spread.x * found->second);
+        const std::string y = millimetre_up(spread.y * found->second);
+        said.label(spread.span, (x == y ? x : "(" + x + ", " + y + ")") +
+                                    " is the least that fits these objects");
+      }
+    }
+    return true;
+  }
+
+  // Of the grid on which both stand.
+  const Cells::Spread* spread_of(const Start::Placed& a, const Start::Placed& b) const {
+    for (const Cells& cells : layout.cells) {
+      for (std::size_t g = 0; g < cells.grids.size(); ++g) {
+        const auto holds = [&](const Start::Placed& placed) {
+          return std::any_of(cells.grids[g].begin(), cells.grids[g].end(), [&](const Cell& cell) {
+            return cell.x == placed.x && cell.y == placed.y;
+          });
+        };
+        if (holds(a) && holds(b)) return &cells.spreads[g];
+      }
+    }
+    return nullptr;
+  }
+
+  // One warning for the task, of the object that is the farthest out.
+  void frame() const {
+    const Scene& scene = context.model.scenes[task.scene];
+    const CameraId id = camera_of(context.model, task);
+    if (id == CameraId::kNone) return;
+    const Camera& camera = context.model.cameras[id];
+    const auto view = View::of(context.model, scene, camera);
+    if (!view) return;
+    constexpr double kBehind = 1e9;  // px
+    double most = 0;
+    std::size_t bad = 0, all = 0, episode = 0;
+    const Start::Placed* worst = nullptr;
+    for (std::size_t e = 0; e < task.starts.size(); ++e) {
+      for (const Start::Placed& placed : task.starts[e].placed) {
+        ++all;
+        const double out = std::min(kBehind, view->outside(object(placed), placed).value_or(1e10));
+        if (out < 1) continue;  // part of a pixel is no loss
+        ++bad;
+        if (out <= most) continue;
+        most = out;
+        episode = e;
+        worst = &placed;
+      }
+    }
+    if (worst == nullptr) return;
+    const std::string how = most < kBehind
+                                ? "lies " + std::to_string(static_cast<long>(std::ceil(most))) +
+                                      " pixels outside the image of"
+                                : "lies behind";
+    Diagnostic& said =
+        context.report(Code::P0505, place(),
+                       "`" + object(*worst).name + "` " + how + " `" + camera.name + "` in `" +
+                           task.name + "`; " + std::to_string(bad) + " of " + std::to_string(all) +
+                           " objects are mostly out of view in this task");
+    said.severity = Severity::kWarning;
+    said.point("episode " + std::to_string(episode) + ": " + at(object(*worst), *worst))
+        .label(camera.span, "the camera")
         .label(layout.span, "the layout");
   }
 
@@ -141,8 +269,7 @@ struct StartCheck {
     const Scene& scene = context.model.scenes[task.scene];
     if (scene.robot == RobotId::kNone) return;
     const Robot& robot = context.model.robots[scene.robot];
-    if (robot.reach_max == 0) return;
-    for (std::size_t e = 0; e < task.starts.size(); ++e) {
+    for (std::size_t e = 0; robot.reach_max != 0 && e < task.starts.size(); ++e) {
       for (const Start::Placed& placed : task.starts[e].placed) {
         const double dx = placed.x - scene.base_position[0];
         const double dy = placed.y - scene.base_position[1];
@@ -155,6 +282,38 @@ struct StartCheck {
                         "`, which reaches " + centimetres(robot.reach_min) + " to " +
                         centimetres(robot.reach_max))
             .point("episode " + std::to_string(e) + ": " + at(object(placed), placed))
+            .label(layout.span, "the layout");
+        return;
+      }
+    }
+    grasps(scene, robot);
+  }
+
+  // A pose over the middle of the source, and one over the target with the source in hand.
+  void grasps(const Scene& scene, const Robot& robot) const {
+    auto found = arms.find(task.scene);
+    if (found == arms.end()) found = arms.emplace(task.scene, Arm::of(context.model, scene)).first;
+    if (!found->second) return;
+    constexpr double kAboveTarget = 0.02;  // m
+    for (std::size_t e = 0; e < task.starts.size(); ++e) {
+      const auto& placed = task.starts[e].placed;
+      const double half = height(object(placed[0]), placed[0].turn) / 2;
+      const double on_target = height(object(placed[1]), placed[1].turn) + half + kAboveTarget;
+      for (std::size_t i = 0; i < 2; ++i) {
+        const double z = scene.surface_z + (i == 0 ? half : on_target);
+        const auto miss = found->second->misses(placed[i].x, placed[i].y, z);
+        if (!miss) continue;
+        char degrees[32];
+        std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / 3.14159265358979);
+        context
+            .report(Code::P0502, place(),
+                    "`" + robot.name + "` cannot " +
+                        (i == 0 ? "grasp `" + object(placed[0]).name + "` from above"
+                                : "place `" + object(placed[0]).name + "` on `" +
+                                      object(placed[1]).name + "`") +
+                        " in `" + task.name + "`: the tool stays " + centimetres(miss->position) +
+                        " and " + degrees + "deg away")
+            .point("episode " + std::to_string(e) + ": " + at(object(placed[i]), placed[i]))
             .label(layout.span, "the layout");
         return;
       }
@@ -177,13 +336,14 @@ std::vector<double> starts_key(const Task& task) {
 
 struct StartCache {
   const std::vector<Start>* starts = nullptr;
-  std::set<SceneId> fine_in;  // scenes in which nothing is wrong with them
+  std::set<std::pair<SceneId, CameraId>> fine_in;  // where nothing is wrong with them
 };
 
 }  // namespace
 
 void check_starts(Context& context) {
   std::map<std::vector<double>, StartCache> known;
+  std::map<SceneId, std::optional<Arm>> arms;
   std::size_t episodes = 0;
   for (Task& task : context.model.tasks) {
     if (task.abstract || !task.complete) continue;
@@ -221,13 +381,15 @@ void check_starts(Context& context) {
                       " episodes, not " + std::to_string(*layout.expect))
           .label(task.layout_span, "used here");
     }
-    if (cache.fine_in.contains(task.scene)) continue;
+    const std::pair where{task.scene, camera_of(context.model, task)};
+    if (cache.fine_in.contains(where)) continue;
     const std::size_t before = context.diagnostics.size();
-    const StartCheck check{context, task, layout};
+    const StartCheck check{context, task, layout, arms};
     check.overlaps();
     check.surface();
+    check.frame();
     check.reach();
-    if (context.diagnostics.size() == before) cache.fine_in.insert(task.scene);
+    if (context.diagnostics.size() == before) cache.fine_in.insert(where);
   }
 }
 

@@ -35,7 +35,7 @@ struct LayoutReader {
   bool has_orient = false;
 
   void operator()(const syntax::CellsStmt& stmt) {
-    Cells cells{std::string(stmt.name.text), stmt.span, {}};
+    Cells cells{std::string(stmt.name.text), stmt.span, {}, {}};
     const auto at = read_point(context, stmt.at, 2, 2, dim::kLength, "`grid ... at` takes lengths");
     const bool fits =
         stmt.nx.value >= 1 && stmt.ny.value >= 1 && stmt.nx.value <= 1000 && stmt.ny.value <= 1000;
@@ -53,6 +53,7 @@ struct LayoutReader {
         }
       }
       cells.grids.push_back(std::move(grid));
+      cells.spreads.push_back({(*spread)[0].si(), (*spread)[1].si(), point.span});
     }
     for (Cells& known : layout.cells) {
       if (known.name != cells.name) continue;
@@ -420,7 +421,9 @@ void define_layouts(Context& context) {
     for (const syntax::LayoutStmt& stmt : node.body) std::visit(reader, stmt);
     // A grid that could not be read has been reported; one cell keeps the enumeration going.
     for (Cells& cells : layout.cells) {
-      if (cells.grids.empty()) cells.grids.push_back({{}});
+      if (!cells.grids.empty()) continue;
+      cells.grids.push_back({{}});
+      cells.spreads.push_back({});
     }
     context.model.layouts[static_cast<LayoutId>(i)] = std::move(layout);
   }

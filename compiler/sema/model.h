@@ -176,6 +176,11 @@ struct Cells {
   std::string name;
   Span span;
   std::vector<std::vector<Cell>> grids;  // one per spread; `distinct` never mixes two
+  struct Spread {
+    double x = 0, y = 0;
+    Span span;
+  };
+  std::vector<Spread> spreads;  // by grid
 };
 struct Place {
   enum How : std::uint8_t { kAt, kDistinct, kRemaining };

@@ -122,6 +122,52 @@ TEST_CASE(
   CHECK_MESSAGE(a->codes() == "P0501", a->said());
   CHECK(a->diagnostics.items().front().message ==
         "`red` and `tray` overlap by 1cm in `v`; 8 of 24 object pairs overlap in this task");
+  // A block of 4cm x 2cm and a tray of 6cm square, side by side along the block: 2cm + 3cm apart.
+  const Label& label = a->diagnostics.items().front().labels.front();
+  CHECK(a->sources.text(label.span) == "(2cm, 2cm)");
+  CHECK(label.text == "2.5cm is the least that fits these objects");
+  CHECK(analyze_with_suite("layout fits like pairs { cells spots = grid 2 x 2 at (0cm, 0cm) spread "
+                           "(2.5cm, 2.5cm) }\nvariant v of red_on_tray { layout fits }")
+            ->codes() == "");
+}
+
+TEST_CASE("the advised spread keeps the shape of the grid, and there is none for fixed places") {
+  const auto a = analyze_with_suite(
+      "layout tight like pairs { cells spots = grid 2 x 2 at (0cm, 0cm) spread (2cm, 1cm) }\n"
+      "variant v of red_on_tray { layout tight }");
+  REQUIRE(a->codes() == "P0501");
+  const std::string advice = a->diagnostics.items().front().labels.front().text;
+  CHECK(advice == "(5cm, 2.5cm) is the least that fits these objects");
+  const auto fixed = analyze_with_suite(
+      "layout l { place source at (0cm, 0cm); place target at (1cm, 0cm); drop 1cm }\n"
+      "variant v of red_on_tray { layout l }");
+  REQUIRE(fixed->codes() == "P0501");
+  CHECK(fixed->diagnostics.items().front().labels.front().text == "the layout");
+}
+
+TEST_CASE("an object that the camera does not see is doubted once for the task") {
+  const std::string narrow =
+      "camera narrow like eye { lens 60px, 60px, 32px, 24px }\n"
+      "variant v of red_on_tray { camera narrow }";
+  const auto a = analyze_with_suite(narrow);
+  REQUIRE_MESSAGE(a->codes() == "P0505", a->said());
+  CHECK(a->diagnostics.items().front().severity == Severity::kWarning);
+  const std::string said = a->diagnostics.items().front().message;
+  CHECK_MESSAGE(said.find("the image of `narrow` in `v`; 12 of 48 objects") != said.npos, said);
+  CHECK(analyze_with_suite("@allow(out_of_frame, \"why\")\n" + narrow)->diagnostics.has_errors() ==
+        false);
+  const auto away = analyze_with_suite(
+      "camera away like eye { mount arm.base at (0cm, 0cm, 1m) look (-1, 0, -0.1) }\n"
+      "variant v of red_on_tray { camera away }");
+  REQUIRE_MESSAGE(away->codes() == "P0505", away->said());
+  CHECK(away->diagnostics.items().front().message.find("lies behind `away`") != std::string::npos);
+}
+
+TEST_CASE("a camera that moves with the arm is not asked what it sees") {
+  const auto a = analyze_with_suite(
+      "camera hand like eye { mount arm.wrist at (0cm, 0cm, 1m) look (-1, 0, -0.1) }\n"
+      "variant v of red_on_tray { camera hand }");
+  CHECK_MESSAGE(a->codes() == "", a->said());
 }
 
 TEST_CASE("an object over the edge or out of reach is reported") {

@@ -88,7 +88,7 @@ robot arm {
   drive l, r stiffness 1000N/m damping 200Ns/m limit 60N
   grip 1cm .. 4cm friction 2 patch 1cm
 }
-camera eye { mount arm.base at (0cm, 0cm, 1m) look (1, 0, -1); image 64 x 48; lens 60px, 60px, 32px, 24px }
+camera eye { mount arm.base at (0cm, 0cm, 1m) look (1, 0, -1); image 64 x 48; lens 30px, 30px, 32px, 24px }
 light day { ambient 0.3; sun (0, 0, -1) power 2 }
 light night { ambient 0.1 }
 scene bench {
