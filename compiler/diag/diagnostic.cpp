@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "runtime/base/spelling.h"
+
 namespace probe {
 namespace {
 
@@ -72,23 +74,7 @@ std::vector<const Diagnostic*> Diagnostics::in_source_order() const {
   return sorted;
 }
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  // Three rows of the optimal string alignment table: the one being filled and the two above it.
-  std::vector<std::size_t> above2(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::swap(above2, above);
-    std::swap(above, row);
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t cost = a[i - 1] == b[j - 1] ? 0 : 1;
-      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + cost});
-      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-      if (swapped) row[j] = std::min(row[j], above2[j - 2] + 1);
-    }
-  }
-  return row[b.size()];
-}
+std::size_t edit_distance(std::string_view a, std::string_view b) { return spelling_edits(a, b); }
 
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates) {
