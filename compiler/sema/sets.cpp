@@ -222,6 +222,12 @@ bool SetReader::check_condition(const syntax::File& file, syntax::CondId id) {
       }
       kind = "scene";
       break;
+    case syntax::CondKind::kMetrics:
+      if (test.path.parts.size() == 1) {
+        return context_.symbols.metrics.find(test.path.parts[0], *diagnostics_).has_value();
+      }
+      kind = "metrics";
+      break;
   }
   const std::string text = path_text(test.path);
   if (std::find(words.begin(), words.end(), text) != words.end()) return true;
@@ -263,6 +269,8 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
     case syntax::CondKind::kScene:
       return model.scenes[task.scene].name == word;
   }
+    case syntax::CondKind::kMetrics:
+      return model.metrics[task.metrics].name == word;
   return false;
 }
 namespace {

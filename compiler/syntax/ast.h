@@ -254,7 +254,7 @@ struct TaskSet {
       node;
 };
 
-enum class CondKind : std::uint8_t { kAxis, kUses, kOod, kHas, kScene };
+enum class CondKind : std::uint8_t { kAxis, kUses, kOod, kHas, kScene, kMetrics };
 struct CondTest {  // `axis language.action`, `ood source`
   CondKind kind;
   Path path;

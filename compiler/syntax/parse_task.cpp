@@ -17,11 +17,9 @@ struct CondWord {
   std::string_view word;
   CondKind kind;
 };
-constexpr CondWord kConds[] = {{"axis", CondKind::kAxis},
-                               {"uses", CondKind::kUses},
-                               {"ood", CondKind::kOod},
-                               {"has", CondKind::kHas},
-                               {"scene", CondKind::kScene}};
+constexpr CondWord kConds[] = {{"axis", CondKind::kAxis},   {"uses", CondKind::kUses},
+                               {"ood", CondKind::kOod},     {"has", CondKind::kHas},
+                               {"scene", CondKind::kScene}, {"metrics", CondKind::kMetrics}};
 
 }  // namespace
 

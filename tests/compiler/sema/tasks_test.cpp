@@ -115,7 +115,8 @@ variant v_take_dark of v_take { light night }
   CHECK_MESSAGE(a->codes() == "", a->said());
   CHECK(members(*a, "early") == "v_take v_take_dark");
   CHECK(members(*a, "late") == "v_take v_take_dark v_dark");
-  CHECK(members(*a, "rest") == "v_color v_new");
+  CHECK(members(*a, "rest") == "v_color v_new v_ever");
+  CHECK(members(*a, "lenient") == "v_ever");
   CHECK(members(*a, "wordy") == "v_color");
   CHECK(members(*a, "moved") == "v_dark");
   CHECK(members(*a, "fresh") == "v_new");
@@ -134,6 +135,9 @@ TEST_CASE("a hold that is longer than the horizon can never become true") {
   const auto a = analyze_with_suite(
       "metrics m { steady = once (speed(source) < 1e-3 * speed(target) for 80 steps) }\ntask t "
       "like red_on_tray { metrics m }");
+set lenient = tasks where metrics ever
+metrics ever { success = once height(source) > height(target) }
   CHECK_MESSAGE(a->codes() == "P0604", a->said());
   CHECK(a->underlined() == "for 80 steps");
 }
+  v_ever { metrics ever }
