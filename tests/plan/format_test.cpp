@@ -1,0 +1,312 @@
+// FORMAT.md is held to the code: its record tables give every field's offset and size, and a reader
+// that knows only the page finds in a file what Plan finds.
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "runtime/plan/axis_names.h"
+#include "runtime/plan/plan.h"
+#include "runtime/plan/rules.h"
+#include "tests/runtime/plan/small_plan.h"
+
+using namespace probe::plan;
+
+namespace {
+
+struct Field {
+  std::size_t at = 0, bytes = 0;
+  std::string name;
+  bool operator==(const Field&) const = default;
+};
+
+struct Record {
+  std::size_t stride = 0;
+  std::vector<Field> fields;
+};
+
+const std::string& page() {
+  static const std::string text = [] {
+    std::ifstream in(VLAPROBE_SOURCE_DIR "/runtime/plan/FORMAT.md", std::ios::binary);
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+  }();
+  return text;
+}
+
+std::size_t size_of_type(std::istringstream& line) {
+  static const std::map<std::string, std::size_t> kSizes = {
+      {"u8", 1}, {"u16", 2}, {"u32", 4}, {"u64", 8}, {"f64", 8}, {"str", 8}, {"slice", 8}};
+  std::string type, times;
+  std::size_t count = 0;
+  line >> type;
+  if (type == "zero") {
+    line >> count;
+    return count;
+  }
+  REQUIRE_MESSAGE(kSizes.contains(type), "a type of the page: ", type);
+  const std::size_t size = kSizes.at(type);
+  return line >> times && times == "x" && line >> count ? size * count : size;
+}
+
+// The tables between "```" lines: "ASST 64   comment", then "8    kind   u32   comment".
+std::map<std::string, Record> documented() {
+  std::map<std::string, Record> records;
+  std::istringstream lines(page());
+  Record* record = nullptr;
+  for (std::string text; std::getline(lines, text);) {
+    std::istringstream line(text);
+    std::string first;
+    line >> first;
+    if (first.empty() || first == "```") {
+      record = nullptr;
+    } else if (record != nullptr) {
+      Field field{std::stoul(first), 0, ""};
+      line >> field.name;
+      field.bytes = size_of_type(line);
+      record->fields.push_back(field);
+    } else if (first.size() == 4 && text.size() > 5 && std::isdigit(text[5]) != 0) {
+      record = &records[first];
+      line >> record->stride;
+    }
+  }
+  return records;
+}
+
+#define PROBE_FIELD(Struct, member) \
+  Field { offsetof(Struct, member), sizeof(Struct::member), #member }
+
+constexpr std::size_t kFinger = sizeof(FingerRecord);
+
+const std::map<std::string, std::vector<Field>>& in_code() {
+  static const std::map<std::string, std::vector<Field>> fields = {
+      {"ASST",
+       {PROBE_FIELD(AssetRecord, path), PROBE_FIELD(AssetRecord, kind),
+        PROBE_FIELD(AssetRecord, zero), PROBE_FIELD(AssetRecord, byte_size),
+        PROBE_FIELD(AssetRecord, sha256), PROBE_FIELD(AssetRecord, zero2)}},
+      {"OBJT",
+       {PROBE_FIELD(ObjectRecord, name), PROBE_FIELD(ObjectRecord, text),
+        PROBE_FIELD(ObjectRecord, visual), PROBE_FIELD(ObjectRecord, collision),
+        PROBE_FIELD(ObjectRecord, box_min), PROBE_FIELD(ObjectRecord, box_max),
+        PROBE_FIELD(ObjectRecord, density), PROBE_FIELD(ObjectRecord, friction),
+        PROBE_FIELD(ObjectRecord, zero)}},
+      {"ROBT",
+       {PROBE_FIELD(RobotRecord, name),
+        PROBE_FIELD(RobotRecord, tcp),
+        PROBE_FIELD(RobotRecord, urdf),
+        PROBE_FIELD(RobotRecord, control),
+        PROBE_FIELD(RobotRecord, control_hz),
+        {offsetof(RobotRecord, fingers), sizeof(StringRef), "finger_0"},
+        {offsetof(RobotRecord, fingers) + offsetof(FingerRecord, opens), 24, "opens_0"},
+        {offsetof(RobotRecord, fingers) + kFinger, sizeof(StringRef), "finger_1"},
+        {offsetof(RobotRecord, fingers) + kFinger + offsetof(FingerRecord, opens), 24, "opens_1"},
+        PROBE_FIELD(RobotRecord, grip_closed),
+        PROBE_FIELD(RobotRecord, grip_open),
+        PROBE_FIELD(RobotRecord, finger_friction),
+        PROBE_FIELD(RobotRecord, finger_patch),
+        PROBE_FIELD(RobotRecord, link_friction),
+        PROBE_FIELD(RobotRecord, reach_min),
+        PROBE_FIELD(RobotRecord, reach_max),
+        PROBE_FIELD(RobotRecord, drives),
+        PROBE_FIELD(RobotRecord, meshes),
+        PROBE_FIELD(RobotRecord, zero)}},
+      {"DRIV",
+       {PROBE_FIELD(DriveRecord, joint), PROBE_FIELD(DriveRecord, stiffness),
+        PROBE_FIELD(DriveRecord, damping), PROBE_FIELD(DriveRecord, limit)}},
+      {"CAMR",
+       {PROBE_FIELD(CameraRecord, name), PROBE_FIELD(CameraRecord, mount_link),
+        PROBE_FIELD(CameraRecord, aim), PROBE_FIELD(CameraRecord, width),
+        PROBE_FIELD(CameraRecord, height), PROBE_FIELD(CameraRecord, zero),
+        PROBE_FIELD(CameraRecord, position), PROBE_FIELD(CameraRecord, aim_values),
+        PROBE_FIELD(CameraRecord, fx), PROBE_FIELD(CameraRecord, fy), PROBE_FIELD(CameraRecord, cx),
+        PROBE_FIELD(CameraRecord, cy), PROBE_FIELD(CameraRecord, zero2)}},
+      {"LITE",
+       {PROBE_FIELD(LightRecord, name), PROBE_FIELD(LightRecord, ambient),
+        PROBE_FIELD(LightRecord, suns), PROBE_FIELD(LightRecord, zero)}},
+      {"SUNS",
+       {PROBE_FIELD(SunRecord, direction), PROBE_FIELD(SunRecord, power),
+        PROBE_FIELD(SunRecord, shadow), PROBE_FIELD(SunRecord, zero)}},
+      {"SCNE",
+       {PROBE_FIELD(SceneRecord, name), PROBE_FIELD(SceneRecord, robot),
+        PROBE_FIELD(SceneRecord, photo), PROBE_FIELD(SceneRecord, backdrop),
+        PROBE_FIELD(SceneRecord, fixture_visual), PROBE_FIELD(SceneRecord, fixture_collision),
+        PROBE_FIELD(SceneRecord, zero), PROBE_FIELD(SceneRecord, fixture_position),
+        PROBE_FIELD(SceneRecord, base_position), PROBE_FIELD(SceneRecord, base_rotation),
+        PROBE_FIELD(SceneRecord, joints), PROBE_FIELD(SceneRecord, surface_z),
+        PROBE_FIELD(SceneRecord, area), PROBE_FIELD(SceneRecord, physics_hz),
+        PROBE_FIELD(SceneRecord, friction), PROBE_FIELD(SceneRecord, zero2)}},
+      {"STAT", {PROBE_FIELD(StateRecord, kind), PROBE_FIELD(StateRecord, n)}},
+      {"CODE",
+       {PROBE_FIELD(Instruction, op), PROBE_FIELD(Instruction, zero), PROBE_FIELD(Instruction, dst),
+        PROBE_FIELD(Instruction, a), PROBE_FIELD(Instruction, b)}},
+      {"PROG",
+       {PROBE_FIELD(ProgramRecord, constants), PROBE_FIELD(ProgramRecord, states),
+        PROBE_FIELD(ProgramRecord, code), PROBE_FIELD(ProgramRecord, metrics),
+        PROBE_FIELD(ProgramRecord, hash)}},
+      {"METR",
+       {PROBE_FIELD(MetricRecord, name), PROBE_FIELD(MetricRecord, type),
+        PROBE_FIELD(MetricRecord, readout)}},
+      {"BODY",
+       {PROBE_FIELD(BodyRecord, kind), PROBE_FIELD(BodyRecord, index),
+        PROBE_FIELD(BodyRecord, name)}},
+      {"PLAC",
+       {PROBE_FIELD(PlacementRecord, object), PROBE_FIELD(PlacementRecord, zero),
+        PROBE_FIELD(PlacementRecord, position), PROBE_FIELD(PlacementRecord, rotation)}},
+      {"TASK", {PROBE_FIELD(TaskRecord, name),     PROBE_FIELD(TaskRecord, prompt),
+                PROBE_FIELD(TaskRecord, scene),    PROBE_FIELD(TaskRecord, camera),
+                PROBE_FIELD(TaskRecord, light),    PROBE_FIELD(TaskRecord, program),
+                PROBE_FIELD(TaskRecord, source),   PROBE_FIELD(TaskRecord, target),
+                PROBE_FIELD(TaskRecord, bodies),   PROBE_FIELD(TaskRecord, distractors),
+                PROBE_FIELD(TaskRecord, horizon),  PROBE_FIELD(TaskRecord, baseline),
+                PROBE_FIELD(TaskRecord, axes),     PROBE_FIELD(TaskRecord, ood),
+                PROBE_FIELD(TaskRecord, zero),     PROBE_FIELD(TaskRecord, allow),
+                PROBE_FIELD(TaskRecord, episodes), PROBE_FIELD(TaskRecord, drop),
+                PROBE_FIELD(TaskRecord, settle),   PROBE_FIELD(TaskRecord, judge_id),
+                PROBE_FIELD(TaskRecord, zero2)}},
+      {"EPIS",
+       {PROBE_FIELD(EpisodeRecord, task), PROBE_FIELD(EpisodeRecord, index),
+        PROBE_FIELD(EpisodeRecord, placements), PROBE_FIELD(EpisodeRecord, start_id),
+        PROBE_FIELD(EpisodeRecord, episode_id), PROBE_FIELD(EpisodeRecord, zero)}},
+      {"SETS", {PROBE_FIELD(SetRecord, name), PROBE_FIELD(SetRecord, members)}},
+      {"SUIT",
+       {PROBE_FIELD(SuiteRecord, name), PROBE_FIELD(SuiteRecord, prefix),
+        PROBE_FIELD(SuiteRecord, trained_on), PROBE_FIELD(SuiteRecord, members),
+        PROBE_FIELD(SuiteRecord, seeds), PROBE_FIELD(SuiteRecord, zero)}},
+      {"SPAN",
+       {PROBE_FIELD(SpanRecord, what), PROBE_FIELD(SpanRecord, index),
+        PROBE_FIELD(SpanRecord, text), PROBE_FIELD(SpanRecord, begin),
+        PROBE_FIELD(SpanRecord, end)}},
+      {"TEXT", {PROBE_FIELD(TextRecord, path), PROBE_FIELD(TextRecord, bytes)}},
+  };
+  return fields;
+}
+
+#undef PROBE_FIELD
+
+// Reads a file by the page alone: offsets in the text, no struct of the program.
+class PageReader {
+ public:
+  explicit PageReader(std::vector<std::byte> bytes) : bytes_(std::move(bytes)) {
+    for (std::uint64_t i = 0; i < number(12, 4); ++i) {
+      const std::size_t entry = 64 + 64 * i;
+      sections_[number(entry, 4)] = {number(entry + 8, 8), number(entry + 24, 4),
+                                     number(entry + 28, 4)};
+    }
+  }
+
+  std::uint64_t number(std::size_t at, std::size_t bytes) const {
+    std::uint64_t value = 0;
+    for (std::size_t i = bytes; i-- > 0;)
+      value = value << 8 | std::to_integer<std::uint64_t>(bytes_.at(at + i));
+    return value;
+  }
+  std::size_t count(unsigned kind) const { return sections_.at(kind).count; }
+  std::size_t at(unsigned kind, std::size_t index, std::size_t field) const {
+    const Where& where = sections_.at(kind);
+    return where.offset + index * where.stride + field;
+  }
+  std::uint64_t u32(unsigned kind, std::size_t index, std::size_t field) const {
+    return number(at(kind, index, field), 4);
+  }
+  double f64(unsigned kind, std::size_t index, std::size_t field) const {
+    return std::bit_cast<double>(number(at(kind, index, field), 8));
+  }
+  std::string text(unsigned kind, std::size_t index, std::size_t field) const {
+    const std::size_t begin = sections_.at(1).offset + u32(kind, index, field);
+    std::string out;
+    for (std::size_t i = 0; i < u32(kind, index, field + 4); ++i)
+      out.push_back(static_cast<char>(bytes_.at(begin + i)));
+    return out;
+  }
+
+ private:
+  struct Where {
+    std::uint64_t offset = 0, count = 0, stride = 0;
+  };
+  std::vector<std::byte> bytes_;
+  std::map<std::uint64_t, Where> sections_;
+};
+
+bool contains(const std::string& part) { return page().find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("the page gives every field of every record where the code has it") {
+  const auto records = documented();
+  CHECK(records.size() == in_code().size());
+  for (const auto& [name, fields] : in_code()) {
+    CAPTURE(name);
+    REQUIRE(records.contains(name));
+    const Record& record = records.at(name);
+    REQUIRE(record.fields.size() == fields.size());
+    std::size_t end = 0;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      CAPTURE(fields[i].name);
+      CHECK(record.fields[i] == fields[i]);
+      CHECK(record.fields[i].at == end);  // no byte without a field
+      end = record.fields[i].at + record.fields[i].bytes;
+    }
+    CHECK(record.stride == end);
+  }
+}
+
+TEST_CASE("the page lists every section and axis as the code has them") {
+  for (const SectionInfo& section : all_sections()) {
+    const std::string row = "| " + std::to_string(static_cast<unsigned>(section.kind)) + " | " +
+                            section.name + " | " + std::to_string(section.stride) + " | ";
+    CHECK_MESSAGE(contains(row), row);
+    const bool says = contains(row + "ignorable");
+    CHECK(says == section.ignorable);
+  }
+  std::string flat = page();
+  for (char& c : flat) c = c == '\n' ? ' ' : c;
+  for (const AxisName& axis : kAxisNames) {
+    const int bit = std::countr_zero(static_cast<std::uint32_t>(axis.axis));
+    const std::string item = " " + std::to_string(bit) + " " + std::string(axis.name);
+    CHECK_MESSAGE(flat.find(item) != std::string::npos, item);
+  }
+}
+
+TEST_CASE("a reader that knows the page alone finds what Plan finds") {
+  const auto bytes = probe::plan::small_plan();
+  const PageReader page_reader(bytes);
+  const auto plan = Plan::from_bytes(bytes);
+  REQUIRE(plan.ok());
+  REQUIRE(page_reader.count(19) == plan->tasks().size());
+  for (std::size_t t = 0; t < plan->tasks().size(); ++t) {
+    const TaskRecord& task = plan->tasks()[t];
+    CHECK(page_reader.text(19, t, 0) == plan->text(task.name));
+    CHECK(page_reader.text(19, t, 8) == plan->text(task.prompt));
+    CHECK(page_reader.u32(19, t, 52) == task.horizon);
+    const auto episodes = plan->episodes(task);
+    REQUIRE(page_reader.u32(19, t, 84) == episodes.size());
+    for (std::size_t e = 0; e < episodes.size(); ++e) {
+      const std::size_t episode = page_reader.u32(19, t, 80) + e;
+      CHECK(page_reader.u32(20, episode, 4) == e);
+      CHECK(page_reader.number(page_reader.at(20, episode, 16), 1) == episodes[e].start_id[0]);
+      const std::size_t first = page_reader.u32(20, episode, 8);
+      const auto placements = plan->placements(episodes[e]);
+      REQUIRE(page_reader.u32(20, episode, 12) == placements.size());
+      for (std::size_t p = 0; p < placements.size(); ++p) {
+        CHECK(page_reader.text(5, page_reader.u32(18, first + p, 0), 0) ==
+              plan->text(plan->objects()[placements[p].object].name));
+        for (std::size_t k = 0; k < 3; ++k)
+          CHECK(page_reader.f64(18, first + p, 8 + 8 * k) == placements[p].position[k]);
+      }
+    }
+    const std::size_t program = page_reader.u32(19, t, 28);
+    const auto code = plan->code(plan->programs()[program]);
+    REQUIRE(page_reader.u32(15, program, 20) == code.size());
+    for (std::size_t i = 0; i < code.size(); ++i) {
+      const std::size_t at = page_reader.at(14, page_reader.u32(15, program, 16) + i, 0);
+      CHECK(page_reader.number(at, 1) == code[i].op);
+      CHECK(page_reader.number(at + 4, 2) == code[i].a);
+    }
+  }
+}
