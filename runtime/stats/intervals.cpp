@@ -1,0 +1,68 @@
+#include "runtime/stats/intervals.h"
+
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <limits>
+
+#include "runtime/base/check.h"
+
+namespace probe::stats {
+namespace {
+
+constexpr Interval kUnknown{0, 1};
+
+void check(Count count, double confidence) {
+  PROBE_CHECK(count.k >= 0 && count.k <= count.n, "a count of successes lies in 0..n");
+  PROBE_CHECK(confidence > 0 && confidence < 1, "a confidence lies between 0 and 1");
+}
+
+double beta_quantile(double a, double b, double p) {
+  return boost::math::quantile(boost::math::beta_distribution<>(a, b), p);
+}
+
+}  // namespace
+
+double Count::rate() const {
+  if (n == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(k) / static_cast<double>(n);
+}
+
+double normal_two_sided(double confidence) {
+  return boost::math::quantile(boost::math::normal_distribution<>(), 0.5 + confidence / 2);
+}
+
+Interval wilson(Count count, double confidence) {
+  check(count, confidence);
+  if (count.n == 0) return kUnknown;
+  const double n = static_cast<double>(count.n);
+  const double p = count.rate();
+  const double z = normal_two_sided(confidence);
+  const double scale = 1 / (1 + z * z / n);
+  const double centre = scale * (p + z * z / (2 * n));
+  const double half = scale * z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+  // At k = 0 and k = n one end is exactly 0 or 1; rounding must not say otherwise.
+  return {count.k == 0 ? 0 : centre - half, count.k == count.n ? 1 : centre + half};
+}
+
+Interval clopper_pearson(Count count, double confidence) {
+  check(count, confidence);
+  if (count.n == 0) return kUnknown;
+  const double tail = (1 - confidence) / 2;
+  const double k = static_cast<double>(count.k);
+  const double n = static_cast<double>(count.n);
+  return {count.k == 0 ? 0 : beta_quantile(k, n - k + 1, tail),
+          count.k == count.n ? 1 : beta_quantile(k + 1, n - k, 1 - tail)};
+}
+
+Interval jeffreys(Count count, double confidence) {
+  check(count, confidence);
+  if (count.n == 0) return kUnknown;
+  const double tail = (1 - confidence) / 2;
+  const double a = static_cast<double>(count.k) + 0.5;
+  const double b = static_cast<double>(count.n - count.k) + 0.5;
+  return {count.k == 0 ? 0 : beta_quantile(a, b, tail),
+          count.k == count.n ? 1 : beta_quantile(a, b, 1 - tail)};
+}
+
+}  // namespace probe::stats

@@ -1,0 +1,40 @@
+// Confidence intervals of one proportion: k successes of n episodes. Knows nothing of runs or
+// tables.
+#pragma once
+
+#include <cstdint>
+
+namespace probe::stats {
+
+// Both ends in [0, 1] for a proportion, in [-1, 1] for a difference of two.
+struct Interval {
+  double low = 0;
+  double high = 0;
+};
+
+// k successes of n independent episodes; 0 <= k <= n.
+struct Count {
+  std::int64_t k = 0;
+  std::int64_t n = 0;
+
+  // k / n; not a number when n is 0.
+  double rate() const;
+};
+
+// The upper quantile of the standard normal distribution that a two-sided interval of `confidence`
+// (0.95 gives 1.959964) is made with. `confidence` lies strictly between 0 and 1 everywhere here.
+double normal_two_sided(double confidence);
+
+// Wilson's score interval (Wilson 1927, JASA 22:209): the roots of the score test. Near its nominal
+// coverage for every n; what tables show. With n = 0 all three give [0, 1]: nothing is known.
+Interval wilson(Count count, double confidence = 0.95);
+
+// Clopper and Pearson's interval (Biometrika 1934, 26:404), from quantiles of the beta
+// distribution: never covers less than `confidence`, and is the widest.
+Interval clopper_pearson(Count count, double confidence = 0.95);
+
+// Jeffreys' equal-tailed interval, the beta(k + 1/2, n - k + 1/2) posterior, with the ends 0 at k =
+// 0 and 1 at k = n (Brown, Cai and DasGupta 2001, Statistical Science 16:101, section 4.1).
+Interval jeffreys(Count count, double confidence = 0.95);
+
+}  // namespace probe::stats

@@ -1,0 +1,88 @@
+#include "runtime/stats/paired.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+namespace probe::stats {
+
+// R 4.2.2: binom.test(3, 15)$p.value; the concordant pairs say nothing.
+TEST_CASE("McNemar's exact test is the binomial test of the discordant pairs") {
+  CHECK(mcnemar_exact({.both = 5, .only_a = 3, .only_b = 12, .neither = 4}) ==
+        doctest::Approx(0.03515625));
+  CHECK(mcnemar_exact({.both = 20, .only_a = 0, .only_b = 0, .neither = 4}) == 1);
+  CHECK(mcnemar_exact({.only_a = 4, .only_b = 4}) == 1);
+}
+
+TEST_CASE("clusters of one pair give McNemar's exact test") {
+  std::vector<Cluster> clusters(9, Cluster{.both = 1});
+  clusters.insert(clusters.end(), 3, Cluster{.only_a = 1});
+  clusters.insert(clusters.end(), 12, Cluster{.only_b = 1});
+  CHECK(clustered_exact(clusters) == doctest::Approx(0.03515625));
+}
+
+// Three starts, all three seeds of each won by A: as pairs p = 2/2^9, but only 2 of the 2^3 sign
+// flips of the starts are as extreme.
+TEST_CASE("seeds that repeat a start are not independent evidence") {
+  const std::vector<Cluster> clusters(3, Cluster{.only_a = 3});
+  CHECK(mcnemar_exact(pooled(clusters)) == doctest::Approx(2.0 / 512));
+  CHECK(clustered_exact(clusters) == doctest::Approx(2.0 / 8));
+}
+
+// Sums of +-3 +-2 +-1: |s| >= 4 for 6, 4, -4, -6 (one flip each) = 4 of 8.
+TEST_CASE("sign flips of unequal clusters are counted exactly") {
+  const std::vector<Cluster> clusters{{.only_a = 3}, {.only_a = 2}, {.only_b = 1}};
+  CHECK(clustered_exact(clusters) == doctest::Approx(4.0 / 8));
+}
+
+// Newcombe 1998 (Statistics in Medicine 17:873), table II, method 10: 56/70 against 48/80.
+TEST_CASE("the unpaired difference equals Newcombe's published example") {
+  const Difference d = newcombe_unpaired({56, 70}, {48, 80});
+  CHECK(d.estimate == doctest::Approx(0.2));
+  CHECK(d.interval.low == doctest::Approx(0.0524).epsilon(1e-3));
+  CHECK(d.interval.high == doctest::Approx(0.3339).epsilon(1e-3));
+}
+
+// Airway hyper-responsiveness (Bentur et al. 2009), in Fagerland, Lydersen and Laake, Statistical
+// Analysis of Contingency Tables, chapter 8: -0.286 (-0.507 to -0.026).
+TEST_CASE("the paired difference equals a published example") {
+  const Difference d = newcombe_paired({.both = 1, .only_a = 1, .only_b = 7, .neither = 12});
+  CHECK(d.estimate == doctest::Approx(-6.0 / 21));
+  CHECK(d.interval.low == doctest::Approx(-0.507).epsilon(1e-3));
+  CHECK(d.interval.high == doctest::Approx(-0.026).epsilon(0.02));
+}
+
+TEST_CASE("swapping the policies mirrors the difference") {
+  const Difference ab = newcombe_paired({.both = 9, .only_a = 2, .only_b = 6, .neither = 7});
+  const Difference ba = newcombe_paired({.both = 9, .only_a = 6, .only_b = 2, .neither = 7});
+  CHECK(ab.estimate == doctest::Approx(-ba.estimate));
+  CHECK(ab.interval.low == doctest::Approx(-ba.interval.high));
+  CHECK(ab.interval.high == doctest::Approx(-ba.interval.low));
+}
+
+TEST_CASE("equal seeds of a start count as one pair, independent ones as many") {
+  std::vector<Cluster> same, one;
+  for (int i = 0; i < 24; ++i) {
+    const bool a = i < 8;
+    const bool b = i >= 20;
+    same.push_back({.only_a = a ? 3 : 0, .only_b = b ? 3 : 0, .neither = a || b ? 0 : 3});
+    one.push_back({.only_a = a ? 1 : 0, .only_b = b ? 1 : 0, .neither = a || b ? 0 : 1});
+  }
+  const Difference wide = clustered_difference(same);
+  const Difference as_one = newcombe_paired(pooled(one));
+  CHECK(wide.interval.low == doctest::Approx(as_one.interval.low));
+  CHECK(wide.interval.high == doctest::Approx(as_one.interval.high));
+  // One of three seeds differs in every start: less variance between starts than between pairs.
+  const std::vector<Cluster> spread(24, Cluster{.only_a = 1, .neither = 2});
+  CHECK(clustered_difference(spread).interval.low ==
+        doctest::Approx(newcombe_paired(pooled(spread)).interval.low));
+}
+
+TEST_CASE("no pair leaves the difference open") {
+  const Difference d = clustered_difference({});
+  CHECK(d.interval.low == -1);
+  CHECK(d.interval.high == 1);
+  CHECK(clustered_exact({}) == 1);
+}
+
+}  // namespace probe::stats
