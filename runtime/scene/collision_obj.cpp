@@ -2,14 +2,18 @@
 // our own, because a general importer welds, splits or triangulates vertices as it likes, and
 // components are defined by shared indices.
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <numeric>
 #include <sstream>
 
 #include "runtime/scene/hull.h"
+#include "runtime/scene/mesh_import.h"
 
 namespace probe::scene {
 namespace {
+
+const MeshLimits kLimits;
 
 // The vertex number of a face corner "7", "7/1", "7//3", "-1/2"; 0 when it is no number.
 long corner_index(const std::string& word) {
@@ -31,7 +35,10 @@ std::uint32_t find_root(std::vector<std::uint32_t>* parent, std::uint32_t i) {
 
 Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& scale) {
   std::ifstream file(path);
-  if (!file) return Failure{"io", "the mesh cannot be opened", path};
+  std::error_code error;
+  if (!file || !std::filesystem::is_regular_file(path, error)) {
+    return Failure{"asset", "there is no such mesh file", path};
+  }
   TriangleSoup soup;
   std::string line, word;
   for (int number = 1; std::getline(file, line); ++number) {
@@ -52,6 +59,9 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
       }
       p = p.cwiseProduct(scale);
       if (!p.allFinite()) return fail("a vertex is not a finite number");
+      if (p.cwiseAbs().maxCoeff() > kLimits.extent) {
+        return fail("a vertex lies more than 1000 m from the origin");
+      }
       soup.vertices.push_back(p);
     } else if (word == "f") {
       std::vector<std::uint32_t> loop;
@@ -63,6 +73,9 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
         loop.push_back(static_cast<std::uint32_t>(index - 1));
       }
       if (loop.size() < 3) return fail("a face has fewer than three corners");
+      if (soup.indices.size() / 3 + loop.size() - 2 > kLimits.triangles) {
+        return fail("more than 1000000 triangles");
+      }
       for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
         soup.indices.insert(soup.indices.end(), {loop[0], loop[i], loop[i + 1]});
       }

@@ -33,7 +33,7 @@ Result<CollisionShape> make_mesh_shape(const TriangleSoup& mesh, const std::stri
                                        const HullOptions& options = {});
 
 // Reads positions and faces of a Wavefront file and multiplies them by `scale`. Fails naming file
-// and line.
+// and line, also for a coordinate more than a kilometre out or more than a million triangles.
 Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& scale);
 Result<CollisionShape> load_collision_obj(const std::string& path, const Vec3& scale,
                                           const HullOptions& options = {});

@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -105,23 +106,33 @@ Status write_any(const std::string& path, int width, int height, const PngFormat
 
 }  // namespace
 
-Result<Texture> decode_image(std::span<const std::byte> encoded, const std::string& where) {
+Result<ImageSize> image_size(std::span<const std::byte> encoded, const std::string& where) {
   if (encoded.empty()) return asset_failure("the image is empty", where);
   if (encoded.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
     return asset_failure("the image file is larger than 2 GB", where);
   }
-  const auto* bytes = reinterpret_cast<const stbi_uc*>(encoded.data());
-  const int size = static_cast<int>(encoded.size());
-  int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_memory(bytes, size, &width, &height, &channels) == 0) {
+  ImageSize size;
+  int channels = 0;
+  if (stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(encoded.data()),
+                            static_cast<int>(encoded.size()), &size.width, &size.height,
+                            &channels) == 0) {
     return asset_failure(std::string("cannot read the image (") + stbi_failure_reason() + ")",
                          where);
   }
-  if (width > kMaxImageSide || height > kMaxImageSide) {
-    return asset_failure("the image has " + std::to_string(width) + " x " + std::to_string(height) +
-                             " pixels, at most 16384 a side are read",
+  if (size.width > kMaxImageSide || size.height > kMaxImageSide) {
+    return asset_failure("the image has " + std::to_string(size.width) + " x " +
+                             std::to_string(size.height) + " pixels, at most " +
+                             std::to_string(kMaxImageSide) + " a side are read",
                          where);
   }
+  return size;
+}
+
+Result<Texture> decode_image(std::span<const std::byte> encoded, const std::string& where) {
+  PROBE_TRY(image_size(encoded, where));
+  const auto* bytes = reinterpret_cast<const stbi_uc*>(encoded.data());
+  const int size = static_cast<int>(encoded.size());
+  int width = 0, height = 0, channels = 0;
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes, size, &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) {
@@ -148,6 +159,18 @@ Result<Texture> load_image(const std::string& path) {
   stream.read(reinterpret_cast<char*>(bytes.data()), size);
   if (!stream) return asset_failure("cannot read the image file", path);
   return decode_image(bytes, path);
+}
+
+Result<std::string> png_bytes(const Texture& texture) {
+  char* data = nullptr;
+  std::size_t size = 0;
+  std::unique_ptr<std::FILE, FileCloser> file(open_memstream(&data, &size));
+  bool fine = file && encode_png(file.get(), texture.width, texture.height,
+                                 {PNG_COLOR_TYPE_RGB_ALPHA, 8, 4}, texture.rgba.data());
+  if (file) fine = std::fclose(file.release()) == 0 && fine;
+  const std::unique_ptr<char, void (*)(void*)> owned(data, std::free);
+  if (!fine) return Failure{"io", "no memory to write a picture", ""};
+  return std::string(data, size);
 }
 
 Status write_png(const std::string& path, int width, int height,

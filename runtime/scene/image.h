@@ -11,15 +11,24 @@
 
 namespace probe::scene {
 
-// Larger images are refused: more texels than any picture of ours can show, and a header can
-// promise anything.
-inline constexpr int kMaxImageSide = 16384;
+// Larger images are refused by their header, before anything is decoded: 8192 x 8192 texels are
+// 268 MB already, and more than any picture of ours can show.
+inline constexpr int kMaxImageSide = 8192;
 
 // Fails (code "asset", where = path) on a missing file, a format that cannot be read, damage, or a
 // side above the limit.
 Result<Texture> load_image(const std::string& path);
 // The same for an encoded image in memory; `where` is for messages.
 Result<Texture> decode_image(std::span<const std::byte> encoded, const std::string& where);
+
+// The size an encoded image says it has, without decoding it. Fails as decode_image does.
+struct ImageSize {
+  int width = 0, height = 0;
+};
+Result<ImageSize> image_size(std::span<const std::byte> encoded, const std::string& where);
+
+// A texture as the bytes of a PNG file.
+Result<std::string> png_bytes(const Texture& texture);
 
 // Writes beside the target and renames, so that the file is whole or absent; a full disk is a
 // Failure (code "io"). Rows from the top. `rgb` has 3 bytes a pixel, `gray` 1 byte or 1 16-bit

@@ -1,4 +1,5 @@
-// Meshes as pictures and physics need them: plain arrays, already scaled to metres, node transforms baked in.
+// Meshes as pictures and physics need them: plain arrays, already scaled to metres, node transforms
+// baked in.
 #pragma once
 
 #include <array>
@@ -27,7 +28,8 @@ struct Material {
   float f0 = 0.04f;
 };
 
-// Triangles of one material. Float arrays, 3 (positions, normals) or 2 (uv) a vertex; uv may be empty.
+// Triangles of one material. Float arrays, 3 (positions, normals) or 2 (uv) a vertex; uv may be
+// empty.
 struct MeshPart {
   int material = 0;
   std::vector<float> positions;
@@ -36,11 +38,20 @@ struct MeshPart {
   std::vector<std::uint32_t> indices;  // 3 a triangle
 };
 
+// A picture as its file holds it.
+struct EncodedImage {
+  std::string bytes;
+  std::string mime;  // "image/png", "image/jpeg"; empty: another format
+};
+
 struct Mesh {
   std::string name;  // path, for messages
   std::vector<MeshPart> parts;
   std::vector<Material> materials;
   std::vector<Texture> textures;
+  // As `textures` where the import was told to keep them, else empty. Bytes are empty for a texture
+  // that has no file, such as baked vertex colours.
+  std::vector<EncodedImage> encoded;
 };
 
 }  // namespace probe::scene

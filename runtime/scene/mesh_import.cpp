@@ -1,5 +1,6 @@
 #include "runtime/scene/mesh_import.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
 #include <assimp/config.h>
 #include <assimp/material.h>
@@ -8,16 +9,20 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
+#include "runtime/scene/asset_path.h"
 #include "runtime/scene/color.h"
 #include "runtime/scene/image.h"
+#include "runtime/scene/mesh_references.h"
+#include "runtime/scene/vertex_colors.h"
 
 namespace probe::scene {
 namespace {
@@ -32,25 +37,67 @@ Failure asset_failure(std::string message, const std::string& path) {
   return {.code = "asset", .message = std::move(message), .where = path};
 }
 
-std::string lower_extension(const fs::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+// Lets assimp open the mesh and the files it names inside the asset folder, nothing else.
+class NamedFiles : public Assimp::DefaultIOSystem {
+ public:
+  NamedFiles(const std::string& mesh, const std::vector<MeshReference>& references) {
+    allowed_.insert(key(mesh));
+    for (const MeshReference& reference : references) {
+      if (!reference.path.empty()) allowed_.insert(key(reference.path));
+    }
+  }
+
+  bool Exists(const char* path) const override {
+    return allowed_.contains(key(path)) && DefaultIOSystem::Exists(path);
+  }
+  Assimp::IOStream* Open(const char* path, const char* mode) override {
+    return allowed_.contains(key(path)) ? DefaultIOSystem::Open(path, mode) : nullptr;
+  }
+
+ private:
+  static std::string key(const std::string& path) {
+    return fs::absolute(path).lexically_normal().string();
+  }
+  std::set<std::string> allowed_;
+};
+
+enum class UpAxis { kX, kY, kZ };
+
+// What a Collada file says of itself; the asset element is at its beginning.
+UpAxis read_up_axis(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(1 << 16, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  const std::size_t at = head.find("<up_axis>");
+  if (at == head.npos) return UpAxis::kY;  // Collada's default
+  if (head.compare(at + 9, 1, "X") == 0) return UpAxis::kX;
+  return head.compare(at + 9, 1, "Z") == 0 ? UpAxis::kZ : UpAxis::kY;
+}
+
+// Two bytes tell PNG from JPEG.
+std::string mime_of(std::string_view bytes) {
+  if (bytes.starts_with("\x89P")) return "image/png";
+  return bytes.starts_with("\xff\xd8") ? "image/jpeg" : "";
 }
 
 // One file being read: assimp's scene and the mesh that grows from it.
 class Import {
  public:
-  Import(const aiScene& scene, const std::string& path, const Vec3& scale, const MeshLimits& limits)
-      : scene_(scene), path_(path), scale_(scale), limits_(limits) {
-    gltf_ = lower_extension(path) == ".glb";
+  Import(const aiScene& scene, const std::string& path, const Vec3& scale, const MeshLimits& limits,
+         const std::vector<MeshReference>& references)
+      : scene_(scene), path_(path), scale_(scale), limits_(limits), references_(references) {
+    const std::string extension = lower_extension(path);
+    gltf_ = extension == ".glb" || extension == ".gltf";
+    if (extension == ".dae" && limits.turn_up_axis) up_ = read_up_axis(path);
   }
 
   Result<std::shared_ptr<const Mesh>> run() {
     mesh_.name = path_;
     PROBE_TRY(read_materials());
     PROBE_TRY(read_parts());
+    PROBE_TRY(check_size());
+    bake_colors();
     fold_constant_textures();
     drop_unused_textures();
     return std::make_shared<const Mesh>(std::move(mesh_));
@@ -140,13 +187,26 @@ class Import {
 
   Result<Texture> read_texture(const std::string& name) {
     const std::string where = path_ + " (texture " + name + ")";
+    EncodedImage encoded;
+    Result<Texture> texture = read_texture(name, where, encoded);
+    if (texture && limits_.keep_encoded) {
+      encoded.mime = mime_of(encoded.bytes);
+      mesh_.encoded.push_back(std::move(encoded));
+    }
+    return texture;
+  }
+
+  Result<Texture> read_texture(const std::string& name, const std::string& where,
+                               EncodedImage& encoded) {
     if (const aiTexture* embedded = scene_.GetEmbeddedTexture(name.c_str())) {
       if (embedded->mHeight == 0) {  // a compressed file of mWidth bytes
-        return decode_image(
-            {reinterpret_cast<const std::byte*>(embedded->pcData), embedded->mWidth}, where);
+        const auto* bytes = reinterpret_cast<const char*>(embedded->pcData);
+        if (limits_.keep_encoded) encoded.bytes.assign(bytes, embedded->mWidth);
+        return decode_image({reinterpret_cast<const std::byte*>(bytes), embedded->mWidth}, where);
       }
       if (embedded->mWidth > kMaxImageSide || embedded->mHeight > kMaxImageSide) {
-        return asset_failure("the texture has more than 16384 pixels a side", where);
+        return asset_failure(
+            "the texture has more than " + std::to_string(kMaxImageSide) + " pixels a side", where);
       }
       Texture texture{static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight), {}};
       const std::size_t count = std::size_t{embedded->mWidth} * embedded->mHeight;
@@ -159,29 +219,36 @@ class Import {
     }
     if (name.starts_with("*")) return asset_failure("the embedded texture is not there", where);
 
-    std::string relative = name;
-    std::replace(relative.begin(), relative.end(), '\\', '/');
-    const bool has_drive = relative.size() > 1 && relative[1] == ':';
-    if (fs::path(relative).is_absolute() || has_drive ||
-        relative.find("://") != std::string::npos) {
-      return asset_failure("texture paths must be relative to the mesh file", where);
-    }
-    const fs::path folder = fs::absolute(path_).lexically_normal().parent_path();
-    const fs::path root = limits_.asset_root.empty()
-                              ? folder.parent_path()
-                              : fs::absolute(limits_.asset_root).lexically_normal();
-    const fs::path file = (folder / relative).lexically_normal();
-    const fs::path inside = file.lexically_relative(root);
-    if (inside.empty() || *inside.begin() == "..") {
-      return asset_failure("the texture lies outside the asset folder " + root.string(), where);
-    }
-    Result<Texture> texture = load_image(file.string());
+    PROBE_ASSIGN(const std::string file, find_reference(name, where));
+    Result<Texture> texture = load_image(file);
     if (!texture) return asset_failure(texture.failure().message, where);
+    if (limits_.keep_encoded) {
+      std::ifstream stream(file, std::ios::binary);
+      encoded.bytes.assign(std::istreambuf_iterator<char>(stream), {});
+    }
     return texture;
   }
 
+  // assimp may give back a decoded or otherwise tidied name, but means one of the files found.
+  Result<std::string> find_reference(const std::string& name, const std::string& where) const {
+    for (const MeshReference& reference : references_) {
+      if (reference.written != name) continue;
+      if (reference.path.empty()) return asset_failure(reference.problem, where);
+      return reference.path;
+    }
+    const fs::path folder = fs::absolute(path_).lexically_normal().parent_path();
+    auto file = resolve_inside(folder, name, reference_root(path_, limits_.asset_root));
+    if (!file) return asset_failure(file.failure().message, where);
+    for (const MeshReference& reference : references_) {
+      if (reference.path == *file) return *file;
+    }
+    return asset_failure("the mesh file does not name this texture in a way that is understood",
+                         where);
+  }
+
   Status read_parts() {
-    std::map<std::pair<unsigned, bool>, std::size_t> part_of;  // (material, has uv) -> part
+    // (material, has uv, has colours) -> part
+    std::map<std::tuple<unsigned, bool, bool>, std::size_t> part_of;
     std::size_t triangles = 0;
     for (unsigned m = 0; m < scene_.mNumMeshes; ++m) {
       const aiMesh& source = *scene_.mMeshes[m];
@@ -193,9 +260,10 @@ class Import {
                              path_);
       }
       const bool has_uv = source.HasTextureCoords(0);
-      const auto [place, fresh] =
-          part_of.try_emplace({source.mMaterialIndex, has_uv}, mesh_.parts.size());
+      const auto [place, fresh] = part_of.try_emplace(
+          {source.mMaterialIndex, has_uv, source.HasVertexColors(0)}, mesh_.parts.size());
       if (fresh) {
+        colors_.emplace_back();
         MeshPart part;
         part.material = source.mMaterialIndex < mesh_.materials.size()
                             ? static_cast<int>(source.mMaterialIndex)
@@ -203,6 +271,7 @@ class Import {
         mesh_.parts.push_back(std::move(part));
       }
       PROBE_TRY(append(source, mesh_.parts[place->second]));
+      append_colors(source, colors_[place->second]);
     }
     if (triangles == 0) return asset_failure("the mesh has no triangles", path_);
     return {};
@@ -213,11 +282,10 @@ class Import {
     const bool has_uv = source.HasTextureCoords(0);
     for (unsigned v = 0; v < source.mNumVertices; ++v) {
       const aiVector3D p = source.mVertices[v];
-      const Vec3 scaled(p.x * scale_.x(), p.y * scale_.y(), p.z * scale_.z());
+      const Vec3 scaled = upright(p).cwiseProduct(scale_);
       Vec3 normal = Vec3::Zero();
       if (source.HasNormals()) {
-        const aiVector3D n = source.mNormals[v];
-        normal = Vec3(n.x / scale_.x(), n.y / scale_.y(), n.z / scale_.z());
+        normal = upright(source.mNormals[v]).cwiseQuotient(scale_);
         const double length = normal.norm();
         normal = std::isfinite(length) && length > 1e-12 ? Vec3(normal / length) : Vec3::Zero();
       }
@@ -226,6 +294,13 @@ class Import {
         if (!std::isfinite(position)) {
           return asset_failure("vertex " + std::to_string(v) + " of part " +
                                    std::to_string(part.material) + " is not finite",
+                               path_);
+        }
+        if (std::abs(position) > limits_.extent) {
+          return asset_failure("vertex " + std::to_string(v) + " of part " +
+                                   std::to_string(part.material) + " lies more than " +
+                                   std::to_string(std::lround(limits_.extent)) +
+                                   " m from the origin",
                                path_);
         }
         part.positions.push_back(position);
@@ -253,6 +328,56 @@ class Import {
       fill_missing_normals(part, part.indices.size() - 3);
     }
     return {};
+  }
+
+  Vec3 upright(const aiVector3D& p) const {
+    if (up_ == UpAxis::kY) return {p.x, -p.z, p.y};
+    if (up_ == UpAxis::kX) return {-p.y, -p.z, p.x};
+    return {p.x, p.y, p.z};
+  }
+
+  Status check_size() const {
+    const std::vector<float>& first = mesh_.parts[0].positions;
+    for (const MeshPart& part : mesh_.parts) {
+      for (std::size_t i = 0; i < part.positions.size(); ++i) {
+        if (part.positions[i] != first[i % 3]) return {};
+      }
+    }
+    return asset_failure("the mesh has no size: all vertices are at one point", path_);
+  }
+
+  // glTF's are linear factors of the colour; elsewhere they are display values in its place.
+  void append_colors(const aiMesh& source, std::vector<LinearRgb>& colors) const {
+    if (!source.HasVertexColors(0)) return;
+    const std::array<float, 3> factor = source.mMaterialIndex < mesh_.materials.size()
+                                            ? mesh_.materials[source.mMaterialIndex].base_color
+                                            : std::array<float, 3>{1, 1, 1};
+    const auto unit = [](float x) { return std::isfinite(x) ? std::clamp(x, 0.0f, 1.0f) : 0.0f; };
+    const auto display = [&](float x) {
+      return kSrgbToLinear[static_cast<std::size_t>(std::lround(255 * unit(x)))];
+    };
+    for (unsigned v = 0; v < source.mNumVertices; ++v) {
+      const aiColor4D& c = source.mColors[0][v];
+      colors.push_back(
+          gltf_ ? LinearRgb{unit(c.r * factor[0]), unit(c.g * factor[1]), unit(c.b * factor[2])}
+                : LinearRgb{display(c.r), display(c.g), display(c.b)});
+    }
+  }
+
+  // A texture wins over colours at vertices. Materials are shared by parts, so each gets its own.
+  void bake_colors() {
+    for (std::size_t i = 0; i < mesh_.parts.size(); ++i) {
+      MeshPart& part = mesh_.parts[i];
+      const Material& shared = mesh_.materials[static_cast<std::size_t>(part.material)];
+      if (colors_[i].empty() || shared.base_color_texture >= 0 || shared.emission_texture >= 0) {
+        continue;
+      }
+      Material own = shared;
+      part.material = static_cast<int>(mesh_.materials.size());
+      bake_vertex_colors(colors_[i], part, own, mesh_.textures);
+      if (limits_.keep_encoded) mesh_.encoded.resize(mesh_.textures.size());
+      mesh_.materials.push_back(own);
+    }
   }
 
   // Vertices whose normal is missing or zero get that of a triangle they belong to.
@@ -316,11 +441,14 @@ class Import {
       part.material = place->second;
     }
     std::vector<Texture> textures;
+    std::vector<EncodedImage> encoded;
     std::map<int, int> new_texture;
     const auto keep = [&](int& index) {
       if (index < 0) return;
       const auto [place, fresh] = new_texture.try_emplace(index, static_cast<int>(textures.size()));
-      if (fresh) textures.push_back(std::move(mesh_.textures[static_cast<std::size_t>(index)]));
+      const auto old = static_cast<std::size_t>(index);
+      if (fresh) textures.push_back(std::move(mesh_.textures[old]));
+      if (fresh && limits_.keep_encoded) encoded.push_back(std::move(mesh_.encoded[old]));
       index = place->second;
     };
     for (Material& material : materials) {
@@ -329,20 +457,34 @@ class Import {
     }
     mesh_.materials = std::move(materials);
     mesh_.textures = std::move(textures);
+    mesh_.encoded = std::move(encoded);
   }
 
   const aiScene& scene_;
   const std::string& path_;
   const Vec3 scale_;
   const MeshLimits& limits_;
+  const std::vector<MeshReference>& references_;
   bool gltf_ = false;
+  UpAxis up_ = UpAxis::kZ;  // of the coordinates as assimp gives them
   Mesh mesh_;
+  std::vector<std::vector<LinearRgb>> colors_;  // of each part, one a vertex or none
   std::map<std::string, int> texture_index_;
 };
 
 Result<std::shared_ptr<const Mesh>> load(const std::string& path, const Vec3& scale,
                                          const MeshLimits& limits) {
+  PROBE_ASSIGN(const std::vector<MeshReference> references,
+               mesh_references(path, limits.asset_root));
+  for (const MeshReference& reference : references) {
+    // A missing picture matters only if a material shows it; without the rest there is no mesh.
+    const std::string extension = lower_extension(reference.written);
+    if (reference.path.empty() && (extension == ".mtl" || extension == ".bin")) {
+      return asset_failure(reference.problem, path + " (" + reference.written + ")");
+    }
+  }
   Assimp::Importer importer;
+  importer.SetIOHandler(new NamedFiles(path, references));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -353,10 +495,15 @@ Result<std::shared_ptr<const Mesh>> load(const std::string& path, const Vec3& sc
   if ((scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) {
     return asset_failure("the mesh file is incomplete", path);
   }
-  return Import(*scene, path, scale, limits).run();
+  return Import(*scene, path, scale, limits, references).run();
 }
 
 }  // namespace
+
+bool is_mesh_extension(std::string_view extension) {
+  return std::find(kMeshExtensions.begin(), kMeshExtensions.end(), extension) !=
+         kMeshExtensions.end();
+}
 
 Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path, const Vec3& scale,
                                               const MeshLimits& limits) {
@@ -365,9 +512,11 @@ Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path, const Vec
   }
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return asset_failure("there is no such mesh file", path);
-  const std::set<std::string> known{".glb", ".obj", ".dae", ".stl"};
-  if (!known.contains(lower_extension(path))) {
-    return asset_failure("meshes are read from glb, obj, dae and stl files", path);
+  if (!is_mesh_extension(lower_extension(path))) {
+    return asset_failure("meshes are read from glb, gltf, obj, dae and stl files", path);
+  }
+  if (fs::file_size(path, error) > kMaxMeshBytes || error) {
+    return asset_failure("larger than 512 MB, the most that is read", path);
   }
   // assimp catches its own exceptions, except that of an exhausted memory.
   try {

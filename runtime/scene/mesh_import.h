@@ -1,27 +1,42 @@
-// Reads mesh files (glb, obj, dae, stl) into plain arrays. mesh_import.cpp is the only file that
-// includes assimp.
+// Reads mesh files (glb, gltf, obj, dae, stl) into plain arrays. mesh_import.cpp is the only file
+// that includes assimp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "runtime/base/result.h"
 #include "runtime/scene/mesh.h"
 
 namespace probe::scene {
 
+// The formats that are read, in the order in which a folder is searched for one.
+inline constexpr std::array<std::string_view, 5> kMeshExtensions{".glb", ".gltf", ".dae", ".obj",
+                                                                 ".stl"};
+bool is_mesh_extension(std::string_view extension);  // in lower case, with the dot
+
 struct MeshLimits {
   std::size_t triangles = 1'000'000;
-  // Textures are found relative to the mesh file but never outside this folder; empty: the parent
-  // of its folder, so that a mesh can name "../black.png" and no more.
+  double extent = 1000;  // m, farthest coordinate from the origin
+  // Files that a mesh names are found relative to it but never outside this folder; empty: the
+  // parent of its folder, so that a mesh can name "../black.png" and no more.
   std::string asset_root{};
+  // Collada's <up_axis>: a Y_UP or X_UP file is turned so that z is up. Off: coordinates as they
+  // are written, which is how SAPIEN reads them.
+  bool turn_up_axis = true;
+  // Keep the encoded bytes of the textures in Mesh::encoded, for writing the mesh again.
+  bool keep_encoded = false;
 };
 
-// Scale is baked into positions (and normals), so that poses stay rigid. Fails (code "asset", where
-// = path) on a missing or unreadable file, no triangles or more than the limit, a coordinate that
-// is not finite, a texture that is missing, lies outside the asset root or is larger than 16384 a
-// side; the message names the texture.
+// Scale, node transforms and Collada's <unit> are baked into positions (and normals), so that poses
+// stay rigid and lengths are metres. glTF, OBJ and STL are taken in the axes they are written in.
+// Fails (code "asset", where = path) on a missing, unreadable or oversized file, no triangles or
+// more than the limit, a coordinate that is not finite or beyond the extent, no size at all, a file
+// it names that is missing or lies outside the asset root, a texture above kMaxImageSide; the
+// message names that file.
 Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path,
                                               const Vec3& scale = {1, 1, 1},
                                               const MeshLimits& limits = {});

@@ -17,6 +17,6 @@
 #define STBI_NO_PSD
 #define STBI_NO_PIC
 #define STBI_NO_PNM
-#define STBI_MAX_DIMENSIONS 16384
+#define STBI_MAX_DIMENSIONS 65535  // decode_image states the limit before it decodes
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop

@@ -197,7 +197,7 @@ TEST_CASE("Collada files are not turned and their emission colours are read") {
 TEST_CASE("bad mesh files are refused by name") {
   const fs::path folder = fs::path(write("bad/x.txt", "")).parent_path();
   CHECK(refusal((folder / "missing.obj").string()).find("no such mesh file") != std::string::npos);
-  CHECK(refusal((folder / "x.txt").string()).find("glb, obj, dae and stl") != std::string::npos);
+  CHECK(refusal((folder / "x.txt").string()).find("glb, gltf, obj, dae and stl") != std::string::npos);
   refusal(write("bad/empty.obj", ""));
   refusal(write("bad/empty.glb", ""));
   refusal(write("bad/short.glb", std::string("glTF\2\0\0\0\xff\0\0\0", 12)));

@@ -1,0 +1,21 @@
+// Which file a path inside an asset means. Files name each other by relative paths; none may lead
+// out of the asset folder, by dots or by a link.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "runtime/base/result.h"
+
+namespace probe::scene {
+
+// The absolute path of `written`, read from a file in `folder`, backslashes taken as slashes. Fails
+// (code "asset", where = written) on an absolute path, a drive or a URL, on one that leads out of
+// `root` as written or through a symbolic link, and where no file is.
+Result<std::string> resolve_inside(const std::filesystem::path& folder, const std::string& written,
+                                   const std::filesystem::path& root);
+
+// ".glb" of "Mug.GLB".
+std::string lower_extension(const std::filesystem::path& path);
+
+}  // namespace probe::scene
