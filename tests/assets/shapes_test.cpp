@@ -122,19 +122,23 @@ TEST_CASE("link hulls reach the visual's box, so that nothing seen is out of tou
   }
 }
 
-TEST_CASE("both fingers grip with one flat face and mirror each other") {
+TEST_CASE("both fingers slope from the pins to a flat tip and mirror each other") {
   const auto left = test::read_collision(test::link_hull("left_finger_link")).at(0);
   const auto right = test::read_collision(test::link_hull("right_finger_link")).at(0);
-  double face_start = 1, face_end = -1;
+  int pins = 0, tip = 0;
   for (const Vec3& p : left.vertices) {
     CHECK(p.y() >= -0.011);
-    if (p.y() > -0.011 + 1e-6) continue;
-    face_start = std::min(face_start, p.x());
-    face_end = std::max(face_end, p.x());
-    CHECK(std::abs(p.z()) >= 0.012);
+    if (p.y() < -0.011 + 1e-6) {
+      ++pins;
+      CHECK(std::abs(p.x()) <= 0.0019);
+      CHECK(std::abs(p.z()) <= 0.0119);
+    }
+    if (p.x() > 0.043 - 1e-6 && p.y() < -0.00895 + 1e-6) ++tip;
+    // Nothing but the pins stands over the flat face.
+    if (p.y() > -0.011 + 1e-6) CHECK(p.y() >= -0.00895 - 1e-6);
   }
-  CHECK(face_start <= -0.004);
-  CHECK(face_end == doctest::Approx(0.043));
+  CHECK(pins == 4);
+  CHECK(tip == 2);
   REQUIRE(left.vertices.size() == right.vertices.size());
   for (const Vec3& p : left.vertices) {
     const Vec3 twin(p.x(), -p.y(), p.z());

@@ -246,7 +246,11 @@ LinkShape gripper_bar_link() {
   return shape;
 }
 
-// One finger, left: it opens along +y, its gripping face is the plane y = -11.
+// One finger, left: it opens along +y. Its inner side is the plane y = kFace with two pins that
+// stand out to y = kPins near the carriage, so its convex hull slopes by 2.9 degrees towards the
+// tip, as that of the real finger does.
+constexpr double kFace = -8.95, kPins = -11;
+
 struct FingerPoint {
   double x, y, half_z;
 };
@@ -261,37 +265,58 @@ std::vector<Vec3> both_sides(std::initializer_list<FingerPoint> outline) {
 }
 
 std::vector<Vec3> finger_hull() {
-  return both_sides({{-12, -5, 9},
-                     {-12, 5, 9},
-                     {-5, -11, 15},
-                     {-6, 5, 15},
-                     {15, -11, 15},
-                     {15, 5, 15},
-                     {37, 0.4, 13.6},
-                     {43, -11, 12.6},
-                     {43, -6, 12.6}});
+  return both_sides({{-12, -4.5, 5},
+                     {-12, 5, 5},
+                     {-8, 5, 12.6},
+                     {-6.3, -5, 14.5},
+                     {-5, kFace, 14.5},
+                     {-1.5, kPins, 11.4},
+                     {1.5, kPins, 11.4},
+                     {12, kFace, 14.5},
+                     {12, 2.5, 14.5},
+                     {12, 5, 12.2},
+                     {38, 0, 10.5},
+                     {37, -2.4, 13.1},
+                     {43, kFace, 12.4},
+                     {43, -6, 10.4}});
 }
 
 std::vector<std::vector<Vec3>> finger_pieces() {
   std::vector<std::vector<Vec3>> pieces;
   // The gripping plate and the block at the carriage.
-  pieces.push_back(both_sides(
-      {{-5, -11, 15}, {15, -11, 15}, {43, -11, 12.6}, {43, -7, 12.6}, {15, -5, 15}, {-5, -5, 15}}));
-  pieces.push_back(both_sides(
-      {{-9, -8, 13}, {-6, -9, 15}, {-9, 5, 13}, {-6, 5, 15}, {14, 5, 15}, {14, -9, 15}}));
+  pieces.push_back(both_sides({{-5, kFace, 14.5},
+                               {12, kFace, 14.5},
+                               {43, kFace, 12.4},
+                               {43, -6, 10.4},
+                               {15, -5, 14.3},
+                               {-5, -5, 14.5}}));
+  pieces.push_back(both_sides({{-8, -5, 12.6},
+                               {-6.3, -5, 14.5},
+                               {-8, 5, 12.6},
+                               {-6.3, 3, 14.5},
+                               {12, 2.5, 14.5},
+                               {12, 5, 12.2},
+                               {12, kFace, 14.5},
+                               {-5, kFace, 14.5}}));
   // Two cheeks leave a pocket on the outer side, closed at the tip.
   for (const double side : {-1.0, 1.0}) {
     const auto at = [&](double x, double y, double z) { return Vec3(x, y, side * z); };
-    pieces.push_back({at(13, -6, 15), at(13, 5, 15), at(15, 5, 15), at(37, 0.4, 13.6),
-                      at(43, -6, 12.6), at(43, -8, 12.6), at(13, -6, 10.5), at(13, 4.2, 10.5),
-                      at(36, -0.2, 9.5), at(42, -7, 9.5)});
+    pieces.push_back({at(11, -6, 14.5), at(11, 2.5, 14.5), at(12, 2.5, 14.5), at(12, 5, 12.2),
+                      at(37, -2.4, 13.1), at(38, 0, 10.5), at(43, -6, 10.4), at(43, -8.5, 12.4),
+                      at(11, -6, 10.5), at(11, 4.8, 10.5), at(36, -0.2, 9.5), at(42, -7, 9.5)});
+    pieces.push_back(disc_points({.axis = 1,
+                                  .centre = {0, 0, side * 10},
+                                  .radius = 1.9,
+                                  .low = kPins,
+                                  .high = kFace,
+                                  .corners = 16}));
   }
   pieces.push_back(both_sides(
-      {{34, -8, 12.8}, {34, -0.9, 11}, {37, -0.7, 12.8}, {43, -6.4, 12.4}, {43, -8, 12.4}}));
+      {{34, -8, 12.8}, {34, -0.9, 11}, {37, -0.7, 12.4}, {43, -6.4, 10.3}, {43, -8.5, 12.2}}));
   // The carriage: a tongue towards the bar's plate and a shoe on each side of the rail.
-  pieces.push_back(box_points({-12, -5, -9}, {-7, 5, 9}, 0.8));
+  pieces.push_back(box_points({-12, -4.5, -5}, {-7, 5, 5}, 0.8));
   for (const double side : {-1.0, 1.0}) {
-    pieces.push_back(box_points({-11, -10.5, side * 10 - 3.2}, {-6, 4.6, side * 10 + 3.2}, 0.8));
+    pieces.push_back(box_points({-9, -4.8, side * 9 - 3.2}, {-6, 4.6, side * 9 + 3.2}, 0.8));
   }
   return pieces;
 }
