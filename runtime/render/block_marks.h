@@ -16,6 +16,7 @@ class BlockMarks {
 
   void clear();
   void mark_all();
+  void mark_block(int x, int y) { marks_[at(x, y)] = 1; }
   // Marks the rectangle of pixels of every triangle of every instance, as placed.
   void mark(const std::vector<Instance>& instances);
 
@@ -34,7 +35,7 @@ class BlockMarks {
   void mark_rectangle(float min_x, float max_x, float min_y, float max_y);
   void mark_clipped(const float (&corners)[3][3]);
 
-  Camera camera_;
+  Camera camera_;  // of the samples
   float nearest_;
   float max_x_, max_y_;  // last pixel
   int blocks_x_, blocks_y_;

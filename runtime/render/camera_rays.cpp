@@ -29,6 +29,16 @@ Result<Mat3> look_along(const Vec3& direction) {
   return axes;
 }
 
+Camera sample_camera(Camera camera, int samples) {
+  camera.width *= samples;
+  camera.height *= samples;
+  camera.fx *= samples;
+  camera.fy *= samples;
+  camera.cx *= samples;
+  camera.cy *= samples;
+  return camera;
+}
+
 Result<CameraRays> make_camera_rays(const Camera& camera) {
   constexpr int kMaxSide = 8192;
   if (camera.width < 1 || camera.height < 1 || camera.width > kMaxSide ||

@@ -1,5 +1,6 @@
-// One ray a pixel, in tile order: 16 x 16 tiles, Morton order within, so that 8 samples are 4 x 2
-// pixels and 64 are an 8 x 8 block.
+// One ray a sample, in tile order: 16 x 16 tiles, Morton order within, so that 8 samples are 4 x 2
+// of them and 64 are an 8 x 8 block. A picture with s x s samples a pixel is one of s times the
+// size.
 #pragma once
 
 #include <array>
@@ -46,6 +47,9 @@ struct CameraRays {
 
   int tiles() const { return tiles_x * tiles_y; }
 };
+
+// The camera whose pixels are the samples of this one's.
+Camera sample_camera(Camera camera, int samples);
 
 // Fails (code "render") on sizes outside 1 .. 8192, focal lengths that are not positive, numbers
 // that are not finite or axes that are not orthonormal.

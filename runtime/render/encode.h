@@ -50,4 +50,10 @@ inline std::uint8_t to_display_byte(float linear) {
   return static_cast<std::uint8_t>(k);
 }
 
+// What a sample counts in the mean of a pixel: light above 1 shows as 1, NaN as 0.
+inline float capped(float linear) {
+  if (!(linear > 0)) return 0;
+  return linear < 1 ? linear : 1;
+}
+
 }  // namespace probe::render

@@ -31,7 +31,7 @@ Result<Mat3> look_along(const Vec3& direction);
 struct Sun {
   Vec3 direction{0, 0, -1};  // the way light travels
   double power = 1;          // irradiance on a surface that faces it
-  bool shadow = false;
+  bool shadow = false;       // casts; off in the reference
 };
 
 struct Lights {
@@ -55,8 +55,9 @@ struct SceneSpec {
   Camera camera;
   Lights lights;
   std::shared_ptr<const scene::Texture>
-      photo;             // shown wherever no dynamic visual is nearest; may be null
-  bool shadows = false;  // suns marked `shadow` cast; off in the reference
+      photo;               // shown wherever no dynamic visual is nearest; may be null
+  int samples = 1;         // a side of every pixel: 1, 2 or 4
+  int occlusion_rays = 0;  // of ambient occlusion a sample: 0 (off) to 16
 };
 
 // Views into the renderer, valid until the next render().
@@ -74,6 +75,9 @@ class Renderer {
   // `poses`: one per dynamic visual, world. Fails (code "render") on a non-finite pose, naming the
   // visual.
   virtual Result<FrameView> render(std::span<const Pose> poses) = 0;
+  // The same through another camera of the spec's size, for one that moves: everything is traced
+  // again, which takes as long as render_full.
+  virtual Result<FrameView> render_from(const Camera& camera, std::span<const Pose> poses) = 0;
   // Traces every pixel again, without the block cache: the picture must be the same. For tests and
   // golden frames.
   virtual Result<FrameView> render_full(std::span<const Pose> poses) = 0;

@@ -1,5 +1,6 @@
 #include "runtime/render/shading.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/render/clones.h"
@@ -18,12 +19,12 @@ inline float clamp(float x, float low, float high) {
   return above > high ? high : above;
 }
 
-// E + A (1-m) rho, the part of no light's direction.
+// E + A (1-m) ao rho, the part of no light's direction.
 PROBE_CLONES void shade_ambient(const ShadeInput& __restrict in, int count, float ambient,
-                                ShadeOutput& __restrict out) {
+                                const float* __restrict open, ShadeOutput& __restrict out) {
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const float diffuse = ambient * (1 - in.metallic[k]);
+    const float diffuse = ambient * open[k] * (1 - in.metallic[k]);
     out.r[k] = in.emission_r[k] + diffuse * in.albedo_r[k];
     out.g[k] = in.emission_g[k] + diffuse * in.albedo_g[k];
     out.b[k] = in.emission_b[k] + diffuse * in.albedo_b[k];
@@ -93,15 +94,21 @@ void pad(ShadeInput& in, int count) {
   }
 }
 
+bool LightTable::any_shadow() const {
+  return std::any_of(suns.begin(), suns.end(), [](const LightRay& sun) { return sun.shadow; });
+}
+
 void shade(const ShadeInput& input, int count, const LightTable& lights,
-           const std::vector<const float*>& visible, ShadeOutput& output) {
+           const LightFactors& factors, ShadeOutput& output) {
   static const ShadeInput::Array kOnes = make_ones();
   const int n = padded(count);
-  shade_ambient(input, n, lights.ambient, output);
+  shade_ambient(input, n, lights.ambient, factors.open != nullptr ? factors.open : kOnes.data(),
+                output);
   for (std::size_t s = 0; s < lights.suns.size(); ++s) {
     const LightRay& sun = lights.suns[s];
-    const float* factors = s < visible.size() && visible[s] != nullptr ? visible[s] : kOnes.data();
-    shade_sun(input, n, sun.x, sun.y, sun.z, sun.irradiance, factors, output);
+    const bool given = s < factors.visible.size() && factors.visible[s] != nullptr;
+    shade_sun(input, n, sun.x, sun.y, sun.z, sun.irradiance,
+              given ? factors.visible[s] : kOnes.data(), output);
   }
 }
 

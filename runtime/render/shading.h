@@ -37,14 +37,21 @@ struct LightRay {
 struct LightTable {
   float ambient = 0;
   std::vector<LightRay> suns;
+
+  bool any_shadow() const;
 };
 
 // Fills entries count .. next multiple of 16.
 void pad(ShadeInput& input, int count);
 int padded(int count);
 
-// `visible[s]` holds for sun s one factor a hit (0 in shadow), or is null: all visible.
+// Factors one a hit, null: all 1. `visible[s]`: of sun s, 0 in shadow; `open`: of the ambient
+// light, the share of directions that nothing near closes.
+struct LightFactors {
+  std::vector<const float*> visible;
+  const float* open = nullptr;
+};
 void shade(const ShadeInput& input, int count, const LightTable& lights,
-           const std::vector<const float*>& visible, ShadeOutput& output);
+           const LightFactors& factors, ShadeOutput& output);
 
 }  // namespace probe::render

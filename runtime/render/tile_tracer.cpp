@@ -12,9 +12,6 @@ namespace {
 constexpr float kRobotRoughness = 0.3f;
 constexpr float kRobotF0 = 0.9f * 0.08f;
 
-constexpr float kShadowBias = 0.0002f;  // m along the face normal
-constexpr float kShadowReach = 5.0f;    // m
-
 struct V3 {
   float x, y, z;
 };
@@ -106,6 +103,33 @@ void TileTracer::trace(const TopScene& scene, const CameraRays& rays, int tile, 
   }
 }
 
+void StoredHits::add_tile(const TileHits& tile) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(tile.count); ++i) {
+    hits.push_back({tile.sample[i], tile.instance[i], tile.part[i], tile.primitive[i], tile.t[i],
+                    tile.u[i], tile.v[i]});
+  }
+  first.push_back(static_cast<std::uint32_t>(hits.size()));
+}
+
+void TileTracer::take(const StoredHits& stored, int tile, unsigned blocks,
+                      const std::array<bool, kTileSamples>& hidden) {
+  std::size_t count = 0;
+  const auto at = static_cast<std::size_t>(tile);
+  for (std::size_t k = stored.first[at]; k < stored.first[at + 1]; ++k) {
+    const StoredHits::Hit& hit = stored.hits[k];
+    if ((blocks >> (hit.sample / 64) & 1u) == 0 || hidden[hit.sample]) continue;
+    hits_.sample[count] = hit.sample;
+    hits_.instance[count] = hit.instance;
+    hits_.part[count] = hit.part;
+    hits_.primitive[count] = hit.primitive;
+    hits_.t[count] = hit.t;
+    hits_.u[count] = hit.u;
+    hits_.v[count] = hit.v;
+    ++count;
+  }
+  hits_.count = static_cast<int>(count);
+}
+
 void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile, bool points) {
   const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
   const auto count = static_cast<std::size_t>(hits_.count);
@@ -163,70 +187,58 @@ void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile,
   pad(input_, hits_.count);
 }
 
-void TileTracer::test_sun(const TopScene& scene, const LightRay& sun,
-                          std::array<float, kTileSamples>& visible) {
-  visible.fill(1);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  alignas(32) RTCRay8 packet;
-  alignas(32) int valid[8];
-  std::size_t owner[8];
-  std::size_t lanes = 0;
-  const auto flush = [&] {
-    if (lanes == 0) return;
-    for (std::size_t k = 0; k < 8; ++k) {
-      valid[k] = k < lanes ? -1 : 0;
-      if (k >= lanes) {
-        packet.org_x[k] = packet.org_y[k] = packet.org_z[k] = 0;
-        packet.tnear[k] = 1;
-        packet.tfar[k] = 0;
-      } else {
-        packet.tnear[k] = 0;
-        packet.tfar[k] = kShadowReach;
-      }
-      packet.dir_x[k] = sun.x;
-      packet.dir_y[k] = sun.y;
-      packet.dir_z[k] = sun.z;
-      packet.time[k] = 0;
-      packet.mask[k] = ~0u;
-      packet.id[k] = 0;
-      packet.flags[k] = 0;
+void TileTracer::test_suns(const LightTable& lights, const Casters& casters) {
+  visible_.resize(lights.suns.size());
+  factors_.visible.clear();
+  for (std::size_t s = 0; s < lights.suns.size(); ++s) {
+    const bool cast = lights.suns[s].shadow;
+    if (cast) {
+      test_sun(casters, lights.suns[s], input_, points_, hits_.count, visible_[s]);
     }
-    rtcOccluded8(valid, scene.scene(), &context, &packet);
-    for (std::size_t k = 0; k < lanes; ++k) {
-      if (packet.tfar[k] < 0) visible[owner[k]] = 0;
-    }
-    lanes = 0;
-  };
-  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
-    const float facing = input_.nx[i] * sun.x + input_.ny[i] * sun.y + input_.nz[i] * sun.z;
-    if (!(facing > 0)) continue;
-    if (points_.gx[i] * sun.x + points_.gy[i] * sun.y + points_.gz[i] * sun.z <= 0) {
-      visible[i] = 0;
-      continue;
-    }
-    packet.org_x[lanes] = points_.px[i] + kShadowBias * points_.gx[i];
-    packet.org_y[lanes] = points_.py[i] + kShadowBias * points_.gy[i];
-    packet.org_z[lanes] = points_.pz[i] + kShadowBias * points_.gz[i];
-    owner[lanes++] = i;
-    if (lanes == 8) flush();
+    factors_.visible.push_back(cast ? visible_[s].data() : nullptr);
   }
-  flush();
 }
 
 void TileTracer::shade(const TopScene& scene, const CameraRays& rays, int tile,
-                       const LightTable& lights, bool shadows) {
-  gather(scene, rays, tile, shadows);
-  visible_pointers_.clear();
-  if (shadows) {
-    visible_.resize(lights.suns.size());
-    for (std::size_t s = 0; s < lights.suns.size(); ++s) {
-      const bool cast = lights.suns[s].shadow;
-      if (cast) test_sun(scene, lights.suns[s], visible_[s]);
-      visible_pointers_.push_back(cast ? visible_[s].data() : nullptr);
+                       const LightTable& lights, const Occlusion& occlusion) {
+  const bool shadows = lights.any_shadow();
+  gather(scene, rays, tile, shadows || occlusion.rays > 0);
+  factors_.visible.clear();
+  factors_.open = nullptr;
+  if (shadows) test_suns(lights, occlusion.suns);
+  if (occlusion.rays > 0) {
+    std::array<std::uint32_t, kTileSamples> seeds;
+    const auto left = static_cast<std::uint32_t>(tile % rays.tiles_x * kTileSide);
+    const auto top = static_cast<std::uint32_t>(tile / rays.tiles_x * kTileSide);
+    const auto count = static_cast<std::size_t>(hits_.count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const TileOffset at = kTileOffsets[hits_.sample[i]];
+      seeds[i] = place_hash(left + at.x, top + at.y);
     }
+    test_openness(occlusion.ambient, input_, points_, {seeds.data(), count}, occlusion.rays, open_);
+    factors_.open = open_.data();
   }
-  render::shade(input_, hits_.count, lights, visible_pointers_, output_);
+  render::shade(input_, hits_.count, lights, factors_, output_);
+}
+
+void TileTracer::catch_shadow(const TopScene& scene, const CameraRays& rays, int tile,
+                              const LightTable& lights, const TopScene& dynamics) {
+  constexpr float kPi = 3.14159265358979323846f;
+  gather(scene, rays, tile, true);
+  test_suns(lights, {&dynamics, nullptr});
+  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
+    float all = lights.ambient, left = lights.ambient;
+    for (std::size_t s = 0; s < lights.suns.size(); ++s) {
+      const LightRay& sun = lights.suns[s];
+      const float facing = input_.nx[i] * sun.x + input_.ny[i] * sun.y + input_.nz[i] * sun.z;
+      const float light = sun.irradiance * std::clamp(facing, 0.0f, 1.0f) / kPi;
+      all += light;
+      // A face turned away was dark in the photo too.
+      const bool away = points_.gx[i] * sun.x + points_.gy[i] * sun.y + points_.gz[i] * sun.z <= 0;
+      if (away || factors_.visible[s] == nullptr || factors_.visible[s][i] > 0) left += light;
+    }
+    light_left_[i] = all > 0 ? left / all : 1;
+  }
 }
 
 }  // namespace probe::render

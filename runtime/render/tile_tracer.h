@@ -6,8 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/occlusion.h"
 #include "runtime/render/shading.h"
 #include "runtime/render/top_scene.h"
 
@@ -21,6 +23,19 @@ struct TileHits {
   alignas(64) std::array<float, kTileSamples> t, u, v;
 };
 
+// Hits kept for later, tile after tile.
+struct StoredHits {
+  struct Hit {
+    std::uint8_t sample = 0;
+    std::uint32_t instance = 0, part = 0, primitive = 0;
+    float t = 0, u = 0, v = 0;
+  };
+  std::vector<Hit> hits;
+  std::vector<std::uint32_t> first{0};  // per tile, and one behind the last
+
+  void add_tile(const TileHits& tile);
+};
+
 class TileTracer {
  public:
   // Traces the blocks of `blocks` (bit b: samples 64 b .. 64 b + 63) up to `farthest[sample]`, then
@@ -28,30 +43,32 @@ class TileTracer {
   // Embree's.
   void trace(const TopScene& scene, const CameraRays& rays, int tile, unsigned blocks,
              const float* farthest);
-  // Attributes, textures and the shading law for all hits. `shadows`: suns marked so are tested
-  // against `scene`.
+  // Takes hits of that tile and blocks which were traced before, leaving out samples in `hidden`.
+  void take(const StoredHits& stored, int tile, unsigned blocks,
+            const std::array<bool, kTileSamples>& hidden);
+  // Attributes, textures and the shading law for all hits on `scene`.
   void shade(const TopScene& scene, const CameraRays& rays, int tile, const LightTable& lights,
-             bool shadows);
+             const Occlusion& occlusion);
+  // Instead of shade(): the share of light that the dynamics leave each hit, 1 where none is
+  // blocked: (A + sum of unblocked e NoL / pi) / (A + sum of e NoL / pi).
+  void catch_shadow(const TopScene& scene, const CameraRays& rays, int tile,
+                    const LightTable& lights, const TopScene& dynamics);
 
   const TileHits& hits() const { return hits_; }
   const ShadeOutput& colors() const { return output_; }
+  const std::array<float, kTileSamples>& light_left() const { return light_left_; }
 
  private:
   void gather(const TopScene& scene, const CameraRays& rays, int tile, bool points);
-  void test_sun(const TopScene& scene, const LightRay& sun,
-                std::array<float, kTileSamples>& visible);
-
-  // World points and face normals of the hits, only where shadows are on.
-  struct Points {
-    alignas(64) std::array<float, kTileSamples> px, py, pz, gx, gy, gz;
-  };
+  void test_suns(const LightTable& lights, const Casters& casters);
 
   TileHits hits_{};
   ShadeInput input_{};
   ShadeOutput output_{};
-  Points points_{};
-  std::vector<std::array<float, kTileSamples>> visible_;
-  std::vector<const float*> visible_pointers_;
+  SurfacePoints points_{};  // of the hits, only where light is traced
+  LightFactors factors_;
+  std::vector<std::array<float, kTileSamples>> visible_;  // per sun
+  std::array<float, kTileSamples> open_{}, light_left_{};
 };
 
 }  // namespace probe::render

@@ -228,24 +228,59 @@ TEST_CASE("textures repeat, row 0 is on top and emission is shown as it is") {
   CHECK(near(pixel(48, 48), {255, 255, 255}));
 }
 
-TEST_CASE("a cached frame equals a full one on random poses, with bodies entering and leaving") {
+std::shared_ptr<const scene::Texture> gradient(int width, int height) {
+  auto photo = std::make_shared<scene::Texture>();
+  *photo = {width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(4 * width * height))};
+  for (std::size_t k = 0; k < photo->rgba.size(); ++k) {
+    photo->rgba[k] = static_cast<std::uint8_t>(40 + k * 13 % 200);
+  }
+  return photo;
+}
+
+struct Mode {
+  bool shadow = false, photo = false;
+  int samples = 1, occlusion = 0;
+};
+
+TEST_CASE("a cached frame equals a full one on random poses, entering and leaving, in every mode") {
   SceneSpec spec;
   spec.camera = plain_camera(200, 150);
-  spec.lights = table_lights();
-  spec.lights.suns[0].shadow = true;
-  Visual wall = visual(square(0.3), kBackdrop, "wall");
+  spec.lights = {
+      .ambient = 0.3,
+      .suns = {{Vec3(1, -0.3, -0.5), 2.2}, {Vec3(-1, -0.5, -1), 0.7}, {Vec3(0, 0, -1), 1}}};
+  Visual wall = visual(square(0.5), kBackdrop, "wall");
   wall.origin = at(1.2, 0.1, 0);
-  spec.statics = {wall};
+  Visual floor = visual(colored(quad_part(Vec3::Zero(), Vec3(2, 0, 0), Vec3(0, 2, 0)), 0.4f),
+                        kBackdrop, "floor");
+  floor.origin = at(1, 0, -0.3);
+  spec.statics = {wall, floor};
   spec.dynamics = {visual(sphere(0.1, 24), 0, "ball"), visual(square(0.2), 1, "card"),
                    visual(sphere(0.02, 12), 2, "pea")};
-  for (const bool shadows : {false, true}) {
-    spec.shadows = shadows;
+  const Mode modes[] = {{},
+                        {.photo = true},
+                        {.shadow = true},
+                        {.shadow = true, .photo = true},
+                        {.samples = 2},
+                        {.photo = true, .samples = 2},
+                        {.occlusion = 4},
+                        {.shadow = true, .samples = 2, .occlusion = 3},
+                        {.shadow = true, .photo = true, .samples = 4, .occlusion = 8}};
+  for (const Mode& mode : modes) {
+    CAPTURE(mode.shadow);
+    CAPTURE(mode.photo);
+    CAPTURE(mode.samples);
+    CAPTURE(mode.occlusion);
+    for (std::size_t sun : {0, 1}) spec.lights.suns[sun].shadow = mode.shadow;
+    spec.photo = mode.photo ? gradient(200, 150) : nullptr;
+    spec.samples = mode.samples;
+    spec.occlusion_rays = mode.occlusion;
     const auto cached = make(spec);
     const auto full = make(spec);
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(-1, 1);
     int different = 0, seen = 0;
-    for (int frame = 0; frame < 200; ++frame) {
+    const int frames = mode.samples > 1 ? 40 : 200;
+    for (int frame = 0; frame < frames; ++frame) {
       std::vector<Pose> poses;
       for (int b = 0; b < 3; ++b) {
         const double far = 0.8 * unit(random) + 0.4;  // often around and behind the camera
@@ -259,8 +294,133 @@ TEST_CASE("a cached frame equals a full one on random poses, with bodies enterin
       seen += static_cast<int>(std::count(a.ids.begin(), a.ids.end(), std::uint16_t{1}) > 0);
     }
     CHECK(different == 0);
-    CHECK(seen > 20);
+    CHECK(10 * seen > frames);
   }
+}
+
+// A floor one metre under the camera's sight, a roof over its middle, the sun above both.
+SceneSpec roofed_floor() {
+  SceneSpec spec;
+  spec.camera = plain_camera(64, 64);
+  spec.camera.forward_left_up = look_along(Vec3(1, 0, -1)).value();
+  spec.camera.fx = spec.camera.fy = 64;
+  spec.camera.cx = spec.camera.cy = 32;
+  spec.lights = {.ambient = 0.3, .suns = {{Vec3(0, 0, -1), 2.2, true}}};
+  Visual floor = visual(colored(quad_part(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)), 0.25f),
+                        kBackdrop, "floor");
+  floor.origin = at(1, 0, -1);
+  spec.statics = {floor};
+  spec.dynamics = {
+      visual(colored(quad_part(Vec3::Zero(), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0)), 0.25f), 0, "roof")};
+  return spec;
+}
+constexpr std::size_t kMiddle = 3 * (32 * 64 + 32);
+const Pose kRoof = at(1, 0, 0.5);  // above the view
+const Pose kAway = at(1, 5, 0.5);
+
+TEST_CASE("a shadow darkens a static floor to its ambient light and goes with what cast it") {
+  SceneSpec spec = roofed_floor();
+  const auto renderer = make(spec);
+  const Copy lit(draw(*renderer, {kAway}));
+  const Copy dark(draw(*renderer, {kRoof}));
+  CHECK(static_cast<int>(lit.rgb[kMiddle]) == 135);  // (0.25 (0.3 + 2.2 / pi))^(1/2.2)
+  CHECK(static_cast<int>(dark.rgb[kMiddle]) == 78);  // (0.25 0.3)^(1/2.2)
+  CHECK(lit.depth == dark.depth);
+  CHECK(Copy(draw(*renderer, {kAway})) == lit);
+}
+
+TEST_CASE("the photo catches the shadow: scaled by the share of light that is left") {
+  SceneSpec spec = roofed_floor();
+  auto photo = std::make_shared<scene::Texture>();
+  *photo = {64, 64, std::vector<std::uint8_t>(4 * 64 * 64, 200)};
+  spec.photo = photo;
+  const auto renderer = make(spec);
+  const Copy lit(draw(*renderer, {kAway}));
+  CHECK(std::all_of(lit.rgb.begin(), lit.rgb.end(), [](std::uint8_t b) { return b == 200; }));
+  const FrameView dark = draw(*renderer, {kRoof});
+  // 200 (0.3 / (0.3 + 2.2 / pi))^(1/2.2) = 115.7
+  CHECK(static_cast<int>(dark.rgb[kMiddle]) == 115);
+  CHECK(static_cast<int>(dark.rgb[0]) == 200);
+}
+
+TEST_CASE("statics shade statics and moving things where a sun casts") {
+  SceneSpec spec = roofed_floor();
+  Visual roof = spec.dynamics[0];
+  roof.origin = kRoof;
+  spec.statics.push_back(roof);
+  spec.dynamics = {visual(
+      colored(quad_part(Vec3::Zero(), Vec3(0.05, 0, 0), Vec3(0, 0.05, 0)), 0.5f), 0, "card")};
+  const auto renderer = make(spec);
+  CHECK(static_cast<int>(draw(*renderer, {kAway}).rgb[kMiddle]) == 78);
+  CHECK(static_cast<int>(draw(*renderer, {at(0.95, 0, -0.95)}).rgb[kMiddle]) ==
+        107);  // (0.5 0.3)^(1/2.2)
+}
+
+TEST_CASE("several samples a pixel average light, not bytes; depth and id stay one sample's") {
+  // A white card's edge runs through the middle of a pixel column on black.
+  SceneSpec spec;
+  spec.camera = plain_camera(64, 48);
+  spec.camera.fx = spec.camera.fy = 64;
+  spec.camera.cx = 31.5;
+  auto card = square(0.1);
+  card->materials[0].emission = {1, 1, 1};
+  spec.dynamics = {visual(card, 4, "card")};
+  spec.samples = 2;
+  const auto renderer = make(spec);
+  const FrameView frame = draw(*renderer, {at(1, 0.1, 0)});  // its right edge at x = cx
+  const std::size_t row = 24 * 64;
+  CHECK(static_cast<int>(frame.rgb[3 * (row + 30)]) == 255);
+  CHECK(static_cast<int>(frame.rgb[3 * (row + 31)]) == 186);  // half the light
+  CHECK(static_cast<int>(frame.rgb[3 * (row + 32)]) == 0);
+  CHECK(frame.segmentation[row + 31] == 5);
+  CHECK(frame.depth[row + 31] == doctest::Approx(1).epsilon(1e-6));
+  CHECK(frame.depth[row + 32] == 0);
+}
+
+TEST_CASE("a corner is less open to ambient light than a plane") {
+  SceneSpec spec = roofed_floor();
+  spec.lights = {.ambient = 1, .suns = {}};
+  Visual wall = visual(square(1), kBackdrop, "wall");
+  wall.origin = at(1, 0, 0);
+  spec.statics.push_back(wall);
+  spec.dynamics = {visual(sphere(0.01, 8), 0, "pea")};
+  spec.occlusion_rays = 16;
+  const auto renderer = make(spec);
+  const FrameView frame = draw(*renderer, {kAway});
+  // Rows below the middle show the floor, farther from the wall the lower they are.
+  const auto at_row = [&frame](std::size_t row) {
+    return static_cast<int>(frame.rgb[3 * (row * 64 + 32)]);
+  };
+  CHECK(at_row(60) == 135);  // 0.25^(1/2.2), open
+  CHECK(at_row(32) < 112);
+  CHECK(at_row(32) > 95);  // half open: 99
+}
+
+TEST_CASE("a camera that moves shows what one standing there shows") {
+  SceneSpec spec = roofed_floor();
+  spec.dynamics[0].origin = at(0, 0, -1.2);
+  const auto moving = make(spec);
+  draw(*moving, {kRoof});
+  SceneSpec there = spec;
+  there.camera.position = Vec3(0.1, 0.05, 0.02);
+  there.camera.forward_left_up = look_along(Vec3(1, -0.2, -1.1)).value();
+  const auto standing = make(there);
+  const Result<FrameView> seen = moving->render_from(there.camera, std::vector<Pose>{kRoof});
+  REQUIRE(seen.ok());
+  CHECK(Copy(*seen) == Copy(draw(*standing, {kRoof})));
+  const auto first = make(spec);
+  CHECK(Copy(draw(*moving, {kRoof})) == Copy(draw(*first, {kRoof})));
+  there.camera.width = 32;
+  CHECK_FALSE(moving->render_from(there.camera, std::vector<Pose>{kRoof}).ok());
+}
+
+TEST_CASE("qualities that are not there are refused") {
+  SceneSpec spec = roofed_floor();
+  spec.samples = 3;
+  CHECK_FALSE(Renderer::create(spec).ok());
+  spec.samples = 1;
+  spec.occlusion_rays = 99;
+  CHECK_FALSE(Renderer::create(spec).ok());
 }
 
 TEST_CASE("two worlds on two threads draw what they draw one after the other") {
@@ -300,7 +460,7 @@ TEST_CASE("a sun marked so casts the shadow of one moving body on another") {
   spec.camera.forward_left_up = look_along(Vec3(1, 0, -1)).value();
   spec.camera.fx = spec.camera.fy = 64;
   spec.camera.cx = spec.camera.cy = 32;
-  spec.lights = {.ambient = 0.3, .suns = {{Vec3(0, 0, -1), 2.2, true}}};
+  spec.lights = {.ambient = 0.3, .suns = {{Vec3(0, 0, -1), 2.2, false}}};
   const auto floor = colored(quad_part(Vec3::Zero(), Vec3(1, 0, 0), Vec3(0, 1, 0)), 0.25f);
   const auto roof = colored(quad_part(Vec3::Zero(), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0)), 0.25f);
   spec.dynamics = {visual(floor, 0, "floor"), visual(roof, 1, "roof")};
@@ -308,7 +468,7 @@ TEST_CASE("a sun marked so casts the shadow of one moving body on another") {
   const std::size_t middle = 3 * (32 * 64 + 32);
   const auto plain = make(spec);
   const int lit = draw(*plain, poses).rgb[middle];
-  spec.shadows = true;
+  spec.lights.suns[0].shadow = true;
   const auto shadowed = make(spec);
   const int dark = draw(*shadowed, poses).rgb[middle];
   CHECK(lit > 130);

@@ -142,11 +142,11 @@ TEST_CASE("a sun that is not seen adds nothing, and padding is harmless") {
   const LightTable lights{.ambient = 0.3f, .suns = {{0, 0, 1, 2, true}}};
   std::array<float, kTileSamples> visible{};
   visible[1] = 1;
-  shade(*input, 2, lights, {visible.data()}, *output);
+  shade(*input, 2, lights, {{visible.data()}, nullptr}, *output);
   CHECK(output->r[0] == doctest::Approx(0.15));
   CHECK(output->r[1] > 0.4f);
   pad(*input, 2);
-  shade(*input, 2, lights, {visible.data()}, *output);
+  shade(*input, 2, lights, {{visible.data()}, nullptr}, *output);
   CHECK(output->r[5] == 0.0f);
 }
 
