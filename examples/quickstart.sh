@@ -10,7 +10,7 @@ out=${1:-$root/runs/quickstart}
 
 vlaprobe=$root/build/vlaprobe
 "$vlaprobe" check "$root/suite/intact.probe"
-"$vlaprobe" run "$root/suite/intact.probe" --policy expert --jobs "$(nproc)" --video all -o "$out"
+"$vlaprobe" run "$root/suite/intact.probe" --tasks carrot_on_plate --policy expert --jobs "$(nproc)" --video all -o "$out"
 "$vlaprobe" sheet "$out" -o "$out/contact_sheet.png"
 "$vlaprobe" results "$out"
 

@@ -130,11 +130,15 @@ struct TaskLanguage {
       if (object.name == slot.name.text) return check_category(slot, object);
       scene += (scene.empty() ? "" : ", ") + object.name;
     }
-    context
-        .report(Code::P0404, slot.span,
+    Diagnostic& diagnostic =
+        context
+            .report(
+                Code::P0404, slot.span,
                 "`" + slot.name.text + "` is named in `" + task.name + "` and is not in the scene")
-        .point("the scene has " + scene)
-        .help("add `distractors " + slot.name.text + "`");
+            .point("the scene has " + scene)
+            .help("add `distractors " + slot.name.text + "`");
+    // Only a warning can be silenced: a suite that was published like this says so.
+    if (task.allow_absent) diagnostic.severity = Severity::kWarning;
   }
 
   void check_sentence() const {

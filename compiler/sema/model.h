@@ -275,6 +275,7 @@ struct Task {
   Span layout_span, say_span, distractors_span, horizon_span;
   std::array<Span, 2> role_span;
   std::optional<std::string> allow_confounded;
+  bool allow_absent = false;  // its text may tell of an object that is not in the scene
 
   // Computed.
   bool complete = false;  // every field is there and means something

@@ -238,6 +238,19 @@ struct CameraReader {
                   "the view is vertical, which leaves its roll open")
           .help("give the orientation with `quat`");
     }
+    if (aim && !looks) make_unit(stmt.direction.span);
+  }
+  // A published quaternion has six digits or so; a plan wants its length to be 1.
+  void make_unit(const Span& span) {
+    double squares = 0;
+    for (const double value : camera.aim_values) squares += value * value;
+    const double length = std::sqrt(squares);
+    if (std::abs(length - 1) > 1e-3) {
+      context.report(Code::P0304, span,
+                     "expected a unit quaternion (w, x, y, z), found one of another length");
+      return;
+    }
+    for (double& value : camera.aim_values) value /= length;
   }
   void operator()(const syntax::ImageStmt& stmt) {
     camera.width = size(stmt.width);

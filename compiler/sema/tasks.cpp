@@ -185,6 +185,7 @@ std::vector<Metric> judged_metrics(const Model& model, const Task& task) {
 
 void read_allows(Context& context, const syntax::Decl& decl, Task& task) {
   task.allow_confounded.reset();
+  task.allow_absent = false;
   for (const syntax::Allow& allow : decl.allows) {
     const auto code = code_from_slug(allow.what.text);
     if (!code) {
@@ -192,6 +193,8 @@ void read_allows(Context& context, const syntax::Decl& decl, Task& task) {
                      "`" + std::string(allow.what.text) + "` is nothing that can be allowed");
     } else if (*code == Code::P0701) {
       task.allow_confounded = allow.reason.value;
+    } else if (*code == Code::P0404) {
+      task.allow_absent = true;
     }
   }
 }

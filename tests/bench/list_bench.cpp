@@ -33,7 +33,9 @@ std::string sweep_text() {
             "\" for t in wave_0 | derived where axis light or axis goal { horizon " +
             std::to_string(61 + i) + " steps }\n";
   }
-  text += "set derived = tasks where axis goal\n";
+  // What the lines above derive moves the goal alone.
+  text +=
+      "set derived = tasks where axis goal and not axis object.target and not axis distractors\n";
   return text;
 }
 

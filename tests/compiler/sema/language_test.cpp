@@ -74,6 +74,13 @@ TEST_CASE("an object that is named must be in the scene") {
             ->codes() == "");
 }
 
+TEST_CASE("a published sentence that tells of an absent object is kept under an allow") {
+  CHECK(analyze_with_suite(
+            "@allow(absent, \"published like this\")\nvariant v of red_on_tray {\n"
+            "say \"put {the source} on {the target}, not {avoid the blue}\" }")
+            ->codes() == "");
+}
+
 TEST_CASE("a slot that wants a category takes only its objects") {
   CHECK(analyze_with_suite(
             "variant v of red_on_tray { say \"put {the source: toy} on {target: dish}, please\" }")

@@ -2,6 +2,8 @@
 // the plan's verifier.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "tests/compiler/sema/small_suite.h"
 
 using probe::test::analyze_with_suite;
@@ -58,4 +60,18 @@ TEST_CASE("two fingers are two links, and closed is nearer than open") {
 TEST_CASE("light has a direction and is not negative") {
   CHECK(refused("light l { ambient 0.3; sun (0, 0, 0) power 1 }") == "(0, 0, 0)");
   CHECK(refused("light l { ambient -3 }") == "-3");
+}
+
+TEST_CASE("a camera's quaternion is made unit, unless it is far from it") {
+  const auto a = analyze_with_suite(
+      "camera c like eye { mount arm.base at (0m, 0m, 1m) quat (-0.907313, 0.0782, -0.36434, "
+      "-0.194741) }\nscene s like bench { camera c }\nvariant v of red_on_tray { scene s }");
+  double squares = 0;
+  for (const probe::sema::Camera& camera : a->model.cameras) {
+    if (camera.name != "c") continue;
+    for (const double value : camera.aim_values) squares += value * value;
+  }
+  CHECK(std::abs(squares - 1) < 1e-15);
+  CHECK(refused("camera c like eye { mount arm.base at (0m, 0m, 1m) quat (1, 1, 0, 0) }") ==
+        "(1, 1, 0, 0)");
 }

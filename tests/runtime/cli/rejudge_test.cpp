@@ -14,7 +14,8 @@ namespace {
 // Two episodes of the first task, run once for all tests of this file.
 struct RunOnce {
   Sandbox box;
-  Outcome run = box.vlaprobe("run $SUITE --policy expert --episodes 0-1 --assets $ASSETS -o run");
+  Outcome run = box.vlaprobe(
+      "run $SUITE --tasks carrot_on_plate --policy expert --episodes 0-1 --assets $ASSETS -o run");
 };
 
 const Sandbox& sandbox() {

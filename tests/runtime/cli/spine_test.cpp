@@ -41,7 +41,8 @@ std::map<int, std::string> trace_hashes(const json& rows) {
 
 void run_expert(const Sandbox& box, const std::string& dir, int jobs) {
   const Outcome outcome =
-      box.vlaprobe("run $SUITE --policy expert --jobs " + std::to_string(jobs) + " -o " + dir);
+      box.vlaprobe("run $SUITE --tasks carrot_on_plate --policy expert --jobs " +
+                   std::to_string(jobs) + " -o " + dir);
   REQUIRE_MESSAGE(outcome.exit == 0, outcome.err);
 }
 
@@ -84,8 +85,8 @@ TEST_CASE("a run that is killed in the middle continues to the rows of an undist
     if (child == 0) {
       freopen("/dev/null", "w", stderr);
       execl(VLAPROBE_BINARY_DIR "/vlaprobe", "vlaprobe", "run",
-            VLAPROBE_SOURCE_DIR "/suite/intact.probe", "--policy", "expert", "--jobs", "2", "-o",
-            dir.c_str(), static_cast<char*>(nullptr));
+            VLAPROBE_SOURCE_DIR "/suite/intact.probe", "--tasks", "carrot_on_plate", "--policy",
+            "expert", "--jobs", "2", "-o", dir.c_str(), static_cast<char*>(nullptr));
       _exit(127);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(700 + 450 * attempt));
