@@ -1,0 +1,88 @@
+#include "runtime/wire/npy.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <string_view>
+
+namespace probe::wire {
+namespace {
+
+constexpr std::string_view kMagic("\x93NUMPY", 6);
+constexpr std::size_t kAlignment = 64;  // of the data, from numpy 1.14 on
+
+Failure failed(const std::string& message) { return {"policy", "a .npy array " + message, ""}; }
+
+std::string shape_text(const std::vector<std::int64_t>& shape) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    text += (i > 0 ? ", " : "") + std::to_string(shape[i]);
+  return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+// What stands after 'key': in the header's dictionary, up to its own end.
+std::string_view after_key(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  if (at == std::string_view::npos) return {};
+  std::string_view rest = header.substr(at + key.size());
+  const std::size_t first = rest.find_first_not_of(": ");
+  return first == std::string_view::npos ? std::string_view() : rest.substr(first);
+}
+
+}  // namespace
+
+Bytes to_npy(const Array& array) {
+  std::string header = "{'descr': '" + array.dtype +
+                       "', 'fortran_order': False, 'shape': " + shape_text(array.shape) + ", }";
+  const std::size_t before = kMagic.size() + 2 + 2;
+  const std::size_t total = (before + header.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
+  header.append(total - before - header.size() - 1, ' ');
+  header += '\n';
+  std::string text(kMagic);
+  text += {1, 0, static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
+  text += header;
+  Bytes file(text.size() + array.bytes.size());
+  std::copy(text.begin(), text.end(), file.begin());
+  std::copy(array.bytes.begin(), array.bytes.end(),
+            file.begin() + static_cast<std::ptrdiff_t>(text.size()));
+  return file;
+}
+
+Result<Array> from_npy(const Bytes& file) {
+  if (file.size() < 10 || std::memcmp(file.data(), kMagic.data(), kMagic.size()) != 0) {
+    return failed("does not begin with numpy's mark");
+  }
+  // Versions 2 and 3 have a 4-byte length.
+  const bool is_long = file[6] >= 2;
+  const std::size_t first = is_long ? 12 : 10;
+  if (file.size() < first) return failed("ends in its header");
+  std::size_t length = 0;
+  for (std::size_t i = first; i-- > 8;) length = length << 8 | file[i];
+  if (length > file.size() - first) return failed("ends in its header");
+  const std::string_view header(reinterpret_cast<const char*>(file.data()) + first, length);
+
+  Array array;
+  const std::string_view descr = after_key(header, "'descr'");
+  if (descr.size() < 2 || descr[0] != '\'') return failed("has no dtype");
+  array.dtype = std::string(descr.substr(1, descr.find('\'', 1) - 1));
+  if (!after_key(header, "'fortran_order'").starts_with("False"))
+    return failed("is not in C order");
+  std::string_view shape = after_key(header, "'shape'");
+  if (!shape.starts_with("(") || shape.find(')') == std::string_view::npos)
+    return failed("has no shape");
+  shape = shape.substr(1, shape.find(')') - 1);
+  while (!shape.empty()) {
+    std::int64_t n = 0;
+    const auto [end, error] = std::from_chars(shape.data(), shape.data() + shape.size(), n);
+    if (error != std::errc()) return failed("has a shape that is not made of sizes");
+    array.shape.push_back(n);
+    shape.remove_prefix(static_cast<std::size_t>(end - shape.data()));
+    const std::size_t next = shape.find_first_not_of(", ");
+    shape = next == std::string_view::npos ? std::string_view() : shape.substr(next);
+  }
+  array.bytes.assign(file.begin() + static_cast<std::ptrdiff_t>(first + length), file.end());
+  PROBE_TRY(check_fit(array));
+  return array;
+}
+
+}  // namespace probe::wire
