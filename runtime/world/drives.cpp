@@ -61,6 +61,9 @@ void guess_saturation(const Drives& drives, const Joints& joints, const JointMat
     const double torque = e - resistance * speed;
     const bool beyond = std::fabs(torque) > drives.limit[i];
     arm->saturated[i] = !beyond ? 0 : (torque > 0 ? 1 : -1);
+    // One that pressed with its limit and would press beyond it at its present speed still does.
+    const double steady = joints.saturated[i] * (e - resistance * joints.u[i]);
+    if (steady > drives.limit[i]) arm->saturated[i] = joints.saturated[i];
   }
 }
 
@@ -92,15 +95,19 @@ bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass
 }
 
 bool find_overload(const Drives& drives, const Joints& joints, const JointArray& u, double dt,
-                   ArmResponse* arm) {
+                   bool release, ArmResponse* arm) {
   constexpr double kOver = 1.001;
   bool any = false;
   for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
-    if (arm->saturated[i] != 0) continue;
     const double torque = drives.stiffness[i] * (joints.target[i] - joints.q[i] - dt * u[i]) -
                           drives.damping[i] * u[i];
-    if (!(std::fabs(torque) > kOver * drives.limit[i])) continue;
-    arm->saturated[i] = torque > 0 ? 1 : -1;
+    if (arm->saturated[i] != 0) {
+      if (!release || arm->saturated[i] * torque > drives.limit[i] / kOver) continue;
+      arm->saturated[i] = 0;
+    } else {
+      if (!(std::fabs(torque) > kOver * drives.limit[i])) continue;
+      arm->saturated[i] = torque > 0 ? 1 : -1;
+    }
     any = true;
   }
   return any;

@@ -17,7 +17,10 @@ struct ArmResponse {
 // First guess of which drives are at their limit: the torque that the implicit drive would exert on
 // the joint's own inertia is beyond it. The torque at the present speed says nothing: after a jump
 // of the target a stiff, damped drive reaches its speed within the substep, while a limit force
-// without damping would fling a light joint past it.
+// without damping would fling a light joint past it. But a drive that ended the last substep at its
+// limit and would exceed it at its present speed presses against something: it stays at its limit.
+// Otherwise each substep would begin with impulses that belong to another drive, and what is held
+// creeps.
 void guess_saturation(const Drives& drives, const Joints& joints, const JointMatrix& mass,
                       double dt, ArmResponse* arm);
 
@@ -25,8 +28,9 @@ void guess_saturation(const Drives& drives, const Joints& joints, const JointMat
 bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass, double dt,
              ArmResponse* arm);
 
-// Marks drives that exceed their limit at the new speeds `u`; true if there are any.
+// Marks drives that exceed their limit at the new speeds `u` and, with `release`, unmarks those
+// that would not reach it; true if there are any.
 bool find_overload(const Drives& drives, const Joints& joints, const JointArray& u, double dt,
-                   ArmResponse* arm);
+                   bool release, ArmResponse* arm);
 
 }  // namespace probe::world

@@ -10,7 +10,7 @@ using std::size_t;
 
 static_assert(std::endian::native == std::endian::little,
               "states are written as they lie in memory");
-constexpr std::uint32_t kMagic = 0x31535756;  // VWS1
+constexpr std::uint32_t kMagic = 0x32535756;  // VWS2
 
 class Writer {
  public:
@@ -94,7 +94,7 @@ template <typename Stream>
 void joint_fields(Stream&& s, auto& joints) {
   for (size_t j = 0; j < kMaxJoints; ++j) {
     s(joints.q[j]), s(joints.u[j]), s(joints.target[j]);
-    s(joints.limit_impulse[j][0]), s(joints.limit_impulse[j][1]);
+    s(joints.limit_impulse[j][0]), s(joints.limit_impulse[j][1]), s(joints.saturated[j]);
   }
 }
 

@@ -21,8 +21,8 @@ struct Parameters {
   int max_sweeps = 50;
   int jam_sweeps = 200;      // at most, while a sweep still changes more than jam_change:
   double jam_change = 1e-3;  // m/s; something is squeezed between the arm and the table
-  double tolerance = 1e-5;  // m/s, largest velocity change of a sweep at which it ends
-  double beta = 0.2;        // share of the overlap removed in a substep
+  double tolerance = 1e-5;   // m/s, largest velocity change of a sweep at which it ends
+  double beta = 0.2;         // share of the overlap removed in a substep
   double slop = 5e-5;  // m of overlap left alone, so that resting contacts never switch off and on
   double push = 0.2;   // m/s, cap of the push-out
   double margin = 0.002;  // m, least gap from which a contact exists
@@ -44,6 +44,8 @@ struct Drives {
 struct Joints {
   JointArray q{}, u{}, target{};
   std::array<std::array<double, 2>, kMaxJoints> limit_impulse{};  // lower, upper
+  // Drives that ended the last substep at their force limit: its sign, else 0.
+  std::array<std::int8_t, kMaxJoints> saturated{};
 };
 
 struct Body {

@@ -55,7 +55,7 @@ Status Stepper::advance() {
     warm_start(&problem, response);
     last_sweeps = solve(parameters, response, &problem);
     if (!arm || attempt == kMaxResolves ||
-        !find_overload(drives, joints, problem.u, parameters.dt, &response)) {
+        !find_overload(drives, joints, problem.u, parameters.dt, attempt == 0, &response)) {
       break;
     }
     // A drive would exceed its limit: solve again with it replaced by the limit.
@@ -74,6 +74,8 @@ Status Stepper::advance() {
   }
 
   joints.u = problem.u;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(drives.count); ++i)
+    joints.saturated[i] = static_cast<std::int8_t>(response.saturated[i]);
   for (std::size_t i = 0; i < static_cast<std::size_t>(drives.count); ++i)
     joints.q[i] += parameters.dt * joints.u[i];
   for (Body& body : bodies) {

@@ -359,6 +359,7 @@ void ContactWorld::set_joints(std::span<const double> q) {
   stepper_.joints.target = stepper_.joints.q;
   stepper_.joints.u = JointArray{};
   stepper_.joints.limit_impulse = {};
+  stepper_.joints.saturated = {};
   for (size_t l = 0; l < stepper_.links; ++l) drop_records(static_cast<int>(l), &stepper_.table);
 }
 

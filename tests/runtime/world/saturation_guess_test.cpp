@@ -21,7 +21,7 @@ TEST_CASE("a jump of the target moves a light joint at its drive's speed, not at
   REQUIRE(respond(drives, joints, mass, 0.002, &arm));
   // 100 N m on 3 g m2 for 2 ms would be 67 rad/s.
   CHECK(arm.free_speed[0] < 300.0 / 200.0);
-  CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, &arm));
+  CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, true, &arm));
 }
 
 TEST_CASE(
@@ -38,6 +38,51 @@ TEST_CASE(
   ArmResponse arm;
   guess_saturation(drives, joints, mass, 0.002, &arm);
   CHECK(arm.saturated[0] == -1);
+}
+
+Drives finger(Joints* joints) {
+  Drives drives;
+  drives.count = 1;
+  drives.stiffness[0] = 50;
+  drives.damping[0] = 2;
+  drives.limit[0] = 10;
+  joints->target[0] = 1;  // e is 50 N m, five times the limit
+  return drives;
+}
+
+TEST_CASE("a drive that presses with its limit against something still does in the next substep") {
+  Joints joints;
+  const Drives drives = finger(&joints);
+  JointMatrix mass{};
+  mass[0][0] = 1e-4;
+  ArmResponse arm;
+  joints.saturated[0] = 1;
+  guess_saturation(drives, joints, mass, 0.002, &arm);
+  CHECK(arm.saturated[0] == 1);
+  // Moving so fast that the drive would not reach its limit, or never at its limit: a drive again.
+  joints.u[0] = 23;
+  guess_saturation(drives, joints, mass, 0.002, &arm);
+  CHECK(arm.saturated[0] == 0);
+  joints.u[0] = 0;
+  joints.saturated[0] = 0;
+  guess_saturation(drives, joints, mass, 0.002, &arm);
+  CHECK(arm.saturated[0] == 0);
+}
+
+TEST_CASE("a drive taken to be at its limit that would not reach it is solved for again, once") {
+  Joints joints;
+  const Drives drives = finger(&joints);
+  JointMatrix mass{};
+  mass[0][0] = 1e-4;
+  ArmResponse arm;
+  arm.saturated[0] = 1;
+  REQUIRE(respond(drives, joints, mass, 0.002, &arm));
+  CHECK(arm.free_speed[0] == doctest::Approx(200));  // what held it is gone
+  CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, false, &arm));
+  REQUIRE(find_overload(drives, joints, arm.free_speed, 0.002, true, &arm));
+  REQUIRE(respond(drives, joints, mass, 0.002, &arm));
+  CHECK(arm.free_speed[0] < 25);
+  CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, true, &arm));
 }
 
 }  // namespace

@@ -323,6 +323,46 @@ TEST_CASE("robots of either kind hold a box and carry it up without slip") {
   }
 }
 
+TEST_CASE("turning fingers that press with their full force hold a box without creep") {
+  for (const double beyond : {1.0, 1.3}) {
+    Robot r = mobile();
+    const double half = 0.025;
+    r.spec.surface_z = 0.3;
+    r.spec.sleeping = false;
+    {
+      const auto bare = make(&r);
+      Vec3 spot = tip(*bare);
+      spot.z() = r.spec.surface_z + half;
+      r.spec.arm.joints = reach(r, state(*bare), spot + Vec3(0, 0, 0.005));
+      r.spec.bodies.push_back(
+          {"box",
+           std::make_shared<scene::CollisionShape>(scene::make_box_shape(Vec3::Constant(half))),
+           500, 0.5, Pose{spot, Quat::Identity()}});
+    }
+    const auto world = make(&r);
+    std::vector<double> target = state(*world);
+    target[9] = target[10] = beyond;
+    world->set_targets(target);
+    run(world.get(), 300);
+    const Vec3 start = tip(*world);
+    for (int k = 1; k <= 5; ++k) {
+      const std::vector<double> q = reach(r, state(*world), start + Vec3(0, 0, 0.03 * k));
+      std::copy_n(q.begin(), r.arm, target.begin());
+      world->set_targets(target);
+      run(world.get(), 150);
+    }
+    run(world.get(), 500);
+    CHECK(world->body(0).pose.position.z() > r.spec.surface_z + half + 0.1);
+    CHECK(world->drive_load() == doctest::Approx(1).epsilon(2e-3));
+    const auto held = [&] { return world->frame_pose("tip").inverse() * world->body(0).pose; };
+    const Vec3 before = held().position;
+    run(world.get(), 5000);
+    const double creep = (held().position - before).norm();
+    MESSAGE("targets of ", beyond, " rad: creep ", creep * 1e3, " mm in 10 s");
+    CHECK(creep < 1e-6);
+  }
+}
+
 TEST_CASE("a follower's limits bind its leader, and limits that contradict are refused") {
   std::string text = geared_arm();
   const auto change = [&](const std::string& from, const std::string& to) {
