@@ -1,6 +1,6 @@
 // The phases of a pick and place. Each control step the expert looks, moves on through phases that
-// are done, and asks the servo for one action. A grasp that is lost, or a source that is not on the
-// target in the end, starts it over.
+// are done, and asks the servo for one action. The two long moves follow planned paths. A grasp
+// that is lost, or a source that is not on the target in the end, starts it over.
 #include "runtime/expert/expert.h"
 
 #include <algorithm>
@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/expert/path_planner.h"
+#include "runtime/expert/place_candidates.h"
 #include "runtime/expert/servo.h"
 #include "runtime/expert/waypoints.h"
 #include "runtime/robot/rotation.h"
@@ -17,24 +19,23 @@ namespace probe::expert {
 namespace {
 
 enum class Phase {
-  kRaise,    // straight up until the fingers clear everything
-  kAbove,    // over the source, fingers turned
-  kDescend,  // straight down
-  kClose,    // still, fingers closing
-  kLift,     // straight up with the source
-  kCarry,    // over the target
-  kLower,    // until the source rests on it
-  kLoosen,   // fingers just off the source
-  kOpen,     // fingers wide
-  kRetreat,  // straight up
-  kRest,     // still to the end
+  kRaise,      // straight up until the fingers clear everything, opening
+  kApproach,   // to the grasp, on a planned path
+  kClose,      // still, fingers closing
+  kTransport,  // with the source to the place, on a planned path
+  kLower,      // until the source rests on the target
+  kLoosen,     // fingers just off the source
+  kOpen,       // fingers wide
+  kRetreat,    // straight up
+  kRest,       // still to the end
 };
 
 constexpr double kOpenGripper = 1, kClosedGripper = -1;
 constexpr int kMostTries = 3;
 constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
 
-constexpr Pace kFreePace{.shift = 0.050, .turn = 0.30};
+constexpr int kLongestApproach = 30;  // steps in which a source that moves is followed
+
 constexpr Pace kNearPace{.shift = 0.030, .turn = 0.20};
 constexpr Pace kHeldPace{.shift = 0.040, .turn = 0.20, .gain = 0.015};
 constexpr Pace kTouchPace{.shift = 0.015, .turn = 0.10, .lead = false};
@@ -54,6 +55,7 @@ class Expert final : public policy::Policy {
     started_ = false;
     tries_ = 0;
     pick_.reset();
+    path_.reset();
     enter(Phase::kRaise);
     return {};
   }
@@ -70,10 +72,13 @@ class Expert final : public policy::Policy {
       servo_.begin(reach_->chain(), arm);
       last_ = scene;
       started_ = true;
+      recent_.assign(Path::kPast, joints_of(scene));
     }
+    recent_.erase(recent_.begin());
+    recent_.push_back(joints_of(scene));
     // A source in the air hinders the arm no more than an empty hand.
     const bool touched = scene.fingers_on_source[0] || scene.fingers_on_source[1];
-    servo_.observe(arm, !touched || phase_ == Phase::kCarry);
+    servo_.observe(arm, !touched || (phase_ == Phase::kTransport && steps_ > 1));
     // Phases that are done take no time; each leads on, so this ends.
     for (int i = 0; i < 12; ++i) {
       const Phase before = phase_;
@@ -120,6 +125,7 @@ class Expert final : public policy::Policy {
   void start_over() {
     const bool again = ++tries_ < kMostTries && steps_left_ >= kStepsOfATry;
     pick_.reset();
+    path_.reset();
     enter(again ? Phase::kRaise : Phase::kRest);
   }
 
@@ -144,16 +150,12 @@ class Expert final : public policy::Policy {
     switch (phase_) {
       case Phase::kRaise:
         return advance_raise(s);
-      case Phase::kAbove:
-        return advance_above(s);
-      case Phase::kDescend:
-        return advance_descend(s);
+      case Phase::kApproach:
+        return advance_approach(s);
       case Phase::kClose:
         return advance_close(s);
-      case Phase::kLift:
-        return advance_lift(s);
-      case Phase::kCarry:
-        return advance_carry(s);
+      case Phase::kTransport:
+        return advance_transport(s);
       case Phase::kLower:
         return advance_lower(s);
       case Phase::kLoosen:
@@ -180,8 +182,20 @@ class Expert final : public policy::Policy {
     const bool open = s.openness > 0.8 || steps_ >= 3;
     const bool still = (s.source_pose.position - last_.source_pose.position).norm() < 0.002;
     if (!(clear && open && still) && steps_ < 8) return;
+    enter(plan_to_grasp(s) ? Phase::kApproach : Phase::kRest);
+  }
+
+  JointVector joints_of(const Scene& s) const {
+    return Eigen::Map<const JointVector>(s.joints.data(),
+                                         static_cast<Eigen::Index>(reach_->chain().joint_count()));
+  }
+
+  bool plan_to_grasp(const Scene& s) {
     pick_ = plan_pick(s, *reach_, options_.close);
-    enter(pick_ ? Phase::kAbove : Phase::kRest);
+    if (!pick_) return false;
+    path_ = plan_approach(s, *reach_, *pick_, recent_);
+    path_step_ = 0;
+    return path_.has_value();
   }
 
   // Something pushed the source since the plan was made.
@@ -190,22 +204,23 @@ class Expert final : public policy::Policy {
     return e.position > 0.004 || e.rotation > 0.06;
   }
 
-  void advance_above(const Scene& s) {
-    if (moved_since_plan(s)) {
-      if (auto fresh = plan_pick(s, *reach_, options_.close)) pick_ = fresh;
-    }
-    const Vec3 off = s.tcp.position - pick_->above.position;
-    // Wide objects leave the fingers little room beside them.
-    const double room = side_room(GripperShape{}, pick_->grasp.width);
-    const bool there =
-        off.head<2>().norm() < std::clamp(0.7 * room, 0.0006, 0.008) && std::abs(off.z()) < 0.02 &&
-        robot::pose_error(s.tcp, pick_->above).rotation < std::clamp(20 * room, 0.01, 0.08);
-    if (there || steps_ >= 16) enter(Phase::kDescend);
-  }
+  bool path_done() const { return path_step_ >= path_->path.steps(); }
 
-  void advance_descend(const Scene& s) {
+  void advance_approach(const Scene& s) {
+    if (moved_since_plan(s) && steps_ < kLongestApproach) {
+      const auto old_pick = pick_;
+      const auto old_path = path_;
+      const int old_step = path_step_;
+      if (!plan_to_grasp(s)) {
+        pick_ = old_pick;
+        path_ = old_path;
+        path_step_ = old_step;
+      }
+    }
+    if (!path_done()) return;
+    // Wide objects leave the fingers little room, so the end must be met.
     if (near(s.tcp, pick_->grasp.tcp, 0.003, 0.04)) return enter(Phase::kClose);
-    if (steps_ < 9) return;
+    if (path_step_ < path_->path.steps() + 3) return;
     if (near(s.tcp, pick_->grasp.tcp, 0.010, 0.15)) return enter(Phase::kClose);
     start_over();
   }
@@ -217,28 +232,32 @@ class Expert final : public policy::Policy {
       in_hand_ = s.tcp.inverse().apply(s.source_pose.position);
       taken_ = s.tcp;
       taken_bottom_ = s.source.bottom;
-      return enter(Phase::kLift);
+      return begin_transport(s);
     }
     if (steps_ >= 4) start_over();
   }
 
-  void advance_lift(const Scene& s) {
-    const double rise = s.tcp.position.z() - taken_.position.z();
-    if (rise > 0.02 && !lifted_enough(s, rise)) return start_over();
-    if (std::abs(s.tcp.position.z() - pick_->lifted.position.z()) < 0.010) {
-      return enter(Phase::kCarry);
-    }
-    if (steps_ >= 8) start_over();
+  void begin_transport(const Scene& s) {
+    const JointVector q = joints_of(s);
+    const auto place = plan_place(s, *reach_, std::span(q.data(), std::size_t(q.size())));
+    if (!place) return start_over();
+    place_ = place->tcp;
+    path_ = plan_transport(s, *reach_, place_, recent_);
+    path_step_ = 0;
+    if (!path_) return start_over();
+    enter(Phase::kTransport);
   }
 
   bool lifted_enough(const Scene& s, double rise) const {
     return holds(s) && s.source.bottom - taken_bottom_ > 0.3 * rise - 0.005;
   }
 
-  void advance_carry(const Scene& s) {
-    if (!holds(s)) return start_over();
+  void advance_transport(const Scene& s) {
+    const double rise = s.tcp.position.z() - taken_.position.z();
+    if (!holds(s) || (rise > 0.02 && !lifted_enough(s, rise))) return start_over();
+    if (!path_done()) return;
     const double off = (carry_goal(s) - s.tcp.position).head<2>().norm();
-    if (off < 0.006 || steps_ >= 14) enter(Phase::kLower);
+    if (off < 0.006 || path_step_ >= path_->path.steps() + 3) enter(Phase::kLower);
   }
 
   void advance_lower(const Scene& s) {
@@ -251,20 +270,13 @@ class Expert final : public policy::Policy {
     switch (phase_) {
       case Phase::kRaise:
         return command_raise(s);
-      case Phase::kAbove:
-        return servo_.toward(pick_->above, arm_of(s), kOpenGripper, kFreePace);
-      case Phase::kDescend:
-        return servo_.toward(pick_->grasp.tcp, arm_of(s), kOpenGripper, kNearPace);
+      case Phase::kApproach:
+        return follow_path(s, kOpenGripper);
       case Phase::kClose:
         return servo_.settle(pick_->grasp.tcp, arm_of(s),
                              options_.close ? kClosedGripper : kOpenGripper);
-      case Phase::kLift:
-        return servo_.toward(pick_->lifted, arm_of(s), kClosedGripper, kHeldPace);
-      case Phase::kCarry: {
-        Pose goal = pick_->lifted;
-        goal.position.head<2>() = carry_goal(s).head<2>();
-        return servo_.toward(goal, arm_of(s), kClosedGripper, kHeldPace);
-      }
+      case Phase::kTransport:
+        return follow_path(s, kClosedGripper);
       case Phase::kLower:
         return command_lower(s);
       case Phase::kLoosen:
@@ -282,6 +294,11 @@ class Expert final : public policy::Policy {
     return servo_.hold(kOpenGripper);
   }
 
+  policy::Action follow_path(const Scene& s, double gripper) {
+    const JointVector next = path_->path.at(++path_step_);
+    return servo_.follow(std::span(next.data(), std::size_t(next.size())), arm_of(s), gripper);
+  }
+
   // Opens first: a half-held source must not come along.
   policy::Action command_raise(const Scene& s) {
     if (s.openness < 0.5 && steps_ < 2) return servo_.hold(kOpenGripper);
@@ -292,7 +309,7 @@ class Expert final : public policy::Policy {
 
   policy::Action command_lower(const Scene& s) {
     const double gap = gap_to_target(s);
-    Pose goal = pick_->lifted;
+    Pose goal = place_;
     goal.position = carry_goal(s);
     goal.position.z() -= gap;
     return servo_.toward(goal, arm_of(s), kClosedGripper, gap > 0.02 ? kNearPace : kTouchPace);
@@ -302,7 +319,7 @@ class Expert final : public policy::Policy {
   // flung.
   policy::Action command_loosen(const Scene& s) {
     Pose goal = s.tcp;
-    goal.rotation = pick_->lifted.rotation;
+    goal.rotation = place_.rotation;
     // Openness is over the fingers' travel; the command's range is a little wider.
     const double gripper = std::clamp(2 * (s.openness + 0.20) - 1, -1.0, 1.0);
     return servo_.settle(goal, arm_of(s), gripper);
@@ -319,7 +336,11 @@ class Expert final : public policy::Policy {
   int steps_ = 0;  // in this phase
   int tries_ = 0;
   Scene last_;
+  Recent recent_;
   std::optional<Pick> pick_;
+  std::optional<PlannedPath> path_;
+  int path_step_ = 0;            // of the path, asked for last
+  Pose place_;                   // of the tool, where the path ends
   Vec3 in_hand_ = Vec3::Zero();  // the source's origin in the tool's frame when taken
   Pose taken_;
   double taken_bottom_ = 0;

@@ -30,6 +30,7 @@ struct Grasp {
   double off_center = 0;  // along the fingers' width, from the object's centre
   double clearance = 0;   // to the nearest other object
   double cost = 0;
+  bool rim = false;  // one finger inside the object's outline
 };
 
 struct GraspProblem {

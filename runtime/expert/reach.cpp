@@ -31,8 +31,10 @@ Result<Reach> Reach::create(const std::string& urdf_path, std::string_view tcp_l
   return Reach(std::move(chain));
 }
 
-bool Reach::follows(std::span<const double> q, std::span<const Pose> way) const {
-  if (q.size() < chain_.joint_count()) return false;
+std::optional<std::vector<JointVector>> Reach::follow(std::span<const double> q,
+                                                      std::span<const Pose> way) const {
+  if (q.size() < chain_.joint_count()) return std::nullopt;
+  std::vector<JointVector> found;
   std::array<double, robot::kMaxChainJoints> joints{};
   const std::span<double> now = std::span(joints).first(chain_.joint_count());
   std::copy_n(q.begin(), now.size(), now.begin());
@@ -44,13 +46,14 @@ bool Reach::follows(std::span<const double> q, std::span<const Pose> way) const 
       if (!robot::solve_ik(chain_, at, now,
                            {.position_tolerance = 1e-5, .rotation_tolerance = 1e-5})
                .converged) {
-        return false;
+        return std::nullopt;
       }
       const robot::PoseError left = robot::pose_error(at, goal);
       if (left.position < 1e-9 && left.rotation < 1e-9) break;
     }
+    found.push_back(Eigen::Map<const JointVector>(now.data(), Eigen::Index(now.size())));
   }
-  return true;
+  return found;
 }
 
 }  // namespace probe::expert

@@ -1,6 +1,7 @@
 // Whether the arm follows a way of the tool by small steps, as the controller will ask for it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +9,7 @@
 
 #include "runtime/base/geometry.h"
 #include "runtime/base/result.h"
+#include "runtime/expert/path.h"
 #include "runtime/robot/kinematics.h"
 
 namespace probe::expert {
@@ -21,8 +23,10 @@ class Reach {
   const robot::Chain& chain() const { return chain_; }
 
   // Follows straight lines from the tool's pose at `q` through the poses, a solution every 5 cm or
-  // 0.3 rad, each from the one before. False as soon as one fails.
-  bool follows(std::span<const double> q, std::span<const Pose> way) const;
+  // 0.3 rad, each from the one before. The joint positions at each pose; nothing as soon as one
+  // fails.
+  std::optional<std::vector<JointVector>> follow(std::span<const double> q,
+                                                 std::span<const Pose> way) const;
 
  private:
   explicit Reach(robot::Chain chain) : chain_(std::move(chain)) {}

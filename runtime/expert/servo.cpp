@@ -85,11 +85,21 @@ Pose Servo::ahead_of(const Pose& next, const Arm& arm) const {
   Joints q{};
   std::copy_n(arm.joints.begin(), n, q.begin());
   if (!robot::solve_ik(*chain_, next, std::span(q).first(n)).converged) return next;
-  for (std::size_t j = 0; j < n; ++j) {
-    const double there = arm.joints[j] + (q[j] - arm.joints[j]) * response_.lead(j);
+  return ahead_of(std::span(q).first(n), arm);
+}
+
+Pose Servo::ahead_of(std::span<const double> next, const Arm& arm) const {
+  Joints q{};
+  for (std::size_t j = 0; j < next.size(); ++j) {
+    const double there = arm.joints[j] + (next[j] - arm.joints[j]) * response_.lead(j);
     q[j] = std::clamp(there, chain_->lower()[j], chain_->upper()[j]);
   }
-  return chain_->pose(std::span(q).first(n));
+  return chain_->pose(std::span(q).first(next.size()));
+}
+
+policy::Action Servo::follow(std::span<const double> joints, const Arm& arm, double gripper) {
+  last_shift_ = (chain_->pose(joints).position - arm.tcp.position).norm();
+  return set_target(ahead_of(joints, arm), arm, gripper);
 }
 
 policy::Action Servo::set_target(const Pose& wanted, const Arm& arm, double gripper) {

@@ -41,6 +41,9 @@ class Servo {
   // Moves towards a goal, at most a pace a step. `gripper` is the action's seventh number.
   policy::Action toward(const Pose& goal, const Arm& arm, double gripper, const Pace& pace);
 
+  // Asks for joint positions to be reached within the control step: the next ones of a path.
+  policy::Action follow(std::span<const double> joints, const Arm& arm, double gripper);
+
   // Sets the target to a pose near by, and to nothing beyond it.
   policy::Action settle(const Pose& pose, const Arm& arm, double gripper);
 
@@ -52,6 +55,7 @@ class Servo {
  private:
   using Joints = std::array<double, robot::kMaxChainJoints>;
   Pose ahead_of(const Pose& next, const Arm& arm) const;
+  Pose ahead_of(std::span<const double> next, const Arm& arm) const;
   void correct_target(const Arm& arm);
   policy::Action set_target(const Pose& wanted, const Arm& arm, double gripper);
 

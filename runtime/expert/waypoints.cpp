@@ -5,6 +5,7 @@
 #include <array>
 
 #include "runtime/base/check.h"
+#include "runtime/expert/place_candidates.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::expert {
@@ -13,7 +14,7 @@ namespace {
 constexpr double kAbove = 0.055;      // m, from the grasp up to where the descent starts
 constexpr double kTravelGap = 0.020;  // m, between what moves and what it passes over
 constexpr double kReleaseGap = 0.001;
-constexpr std::size_t kMostTried = 80;  // candidates put to inverse kinematics
+constexpr std::size_t kMostTried = 40;  // candidates put to inverse kinematics
 
 // Over the target the held source has its own height; the fingers' tips may be lower or higher than
 // its bottom.
@@ -31,9 +32,8 @@ Pose at_height(Pose pose, double z) {
 GraspProblem problem_of(const Scene& scene, bool place) {
   GraspProblem problem;
   problem.source = &scene.source;
-  for (const Footprint& other : scene.others) problem.others.push_back(&other);
-  if (place) problem.others.push_back(&scene.target);
-  problem.surface = scene.surface;
+  problem.others = others_of(scene, place);
+  problem.surface = std::max(scene.surface, scene.source.bottom);
   problem.yaw_now = yaw_of(scene.tcp.rotation);
   return problem;
 }
@@ -48,20 +48,15 @@ Pick pick_of(const Scene& scene, const Grasp& grasp) {
   const double over = std::max({z + kAbove, travel_height(scene, gripper.tip_below),
                                 scene.source.top + gripper.tip_below + 0.01});
   pick.above = at_height(grasp.tcp, over);
-  const double hang = std::max(gripper.tip_below, z - scene.source.bottom);
-  pick.lifted = at_height(grasp.tcp, std::max(z + 0.05, travel_height(scene, hang)));
   return pick;
 }
 
 bool reachable(const Scene& scene, const Reach& reach, const Pick& pick, bool place) {
-  std::vector<Pose> way{pick.above, pick.grasp.tcp, pick.lifted};
-  if (place) {
-    const Pose carried = over_target(scene, pick.lifted);
-    way.push_back(carried);
-    way.push_back(at_height(carried, pick.grasp.tcp.position.z() +
-                                         std::max(0.0, scene.target.top - scene.source.bottom)));
-  }
-  return reach.follows(scene.joints, way);
+  const auto there = reach.follow(scene.joints, std::array{pick.above, pick.grasp.tcp});
+  if (!there) return false;
+  if (!place) return true;
+  const JointVector& q = there->back();
+  return plan_place(scene, reach, std::span(q.data(), std::size_t(q.size()))).has_value();
 }
 
 }  // namespace
@@ -78,6 +73,9 @@ Scene look(const policy::Observation& observation, const Roles& roles) {
     if (int(i) == roles.source) {
       scene.source = std::move(footprint);
       scene.source_pose = pose;
+      for (const std::vector<Vec3>& part : object.parts) {
+        for (const Vec3& vertex : part) scene.source_points.push_back(pose.apply(vertex));
+      }
       std::copy_n(object.finger_contact, 2, scene.fingers_on_source);
     } else if (int(i) == roles.target) {
       scene.target = std::move(footprint);
@@ -85,6 +83,9 @@ Scene look(const policy::Observation& observation, const Roles& roles) {
     } else {
       scene.others.push_back(std::move(footprint));
     }
+  }
+  for (const std::vector<Vec3>& part : seen.fixtures) {
+    scene.fixtures.push_back(footprint_of(std::span(&part, 1), to_base));
   }
   scene.tcp = observation.proprioception.tcp_in_base;
   scene.joints = observation.proprioception.joints;
@@ -95,10 +96,19 @@ Scene look(const policy::Observation& observation, const Roles& roles) {
   return scene;
 }
 
+std::vector<const Footprint*> others_of(const Scene& scene, bool with_target) {
+  std::vector<const Footprint*> out;
+  for (const Footprint& other : scene.others) out.push_back(&other);
+  for (const Footprint& part : scene.fixtures) out.push_back(&part);
+  if (with_target) out.push_back(&scene.target);
+  return out;
+}
+
 double travel_height(const Scene& scene, double hang) {
-  double top =
-      std::max(scene.surface, scene.target.whole.empty() ? scene.surface : scene.target.top);
-  for (const Footprint& other : scene.others) top = std::max(top, other.top);
+  double top = scene.surface;
+  for (const Footprint* other : others_of(scene, true)) {
+    if (!other->whole.empty()) top = std::max(top, other->top);
+  }
   return top + hang + kTravelGap;
 }
 

@@ -15,7 +15,9 @@ namespace probe::expert {
 // An observation as the planner needs it.
 struct Scene {
   Footprint source, target;
-  std::vector<Footprint> others;  // neither source nor target
+  std::vector<Footprint> others;    // neither source nor target
+  std::vector<Footprint> fixtures;  // a convex part each
+  std::vector<Vec3> source_points;
   Pose source_pose, target_pose;  // model frames
   bool fingers_on_source[2] = {false, false};
   Pose tcp;
@@ -33,7 +35,6 @@ Scene look(const policy::Observation& observation, const Roles& roles);
 struct Pick {
   Grasp grasp;
   Pose above;        // straight over the grasp, fingers clear of everything
-  Pose lifted;       // what is held clears the target and the others
   Pose source_pose;  // when planned
 };
 
@@ -42,8 +43,11 @@ struct Pick {
 std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place);
 
 // The tool's height so that its tips and what hangs below them (`hang` m under the tool centre
-// point) clear all others.
+// point) clear everything but the source.
 double travel_height(const Scene& scene, double hang);
+
+// Everything else than the source, each as it is seen from above; the target if asked.
+std::vector<const Footprint*> others_of(const Scene& scene, bool with_target);
 
 // Where the tool must go so that the held source lies over the middle of the target, at the tool's
 // present height...

@@ -44,6 +44,7 @@ struct PrivilegedObject {
 // The privileged view: task roles by index into `objects` (0 source, 1 target, 2.. distractors).
 struct Privileged {
   std::vector<PrivilegedObject> objects;
+  std::vector<std::vector<Vec3>> fixtures;  // convex parts of what stands fixed, world frame
   Pose base;  // robot base in world
   double surface_z = 0;
 };

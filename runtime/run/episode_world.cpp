@@ -126,8 +126,14 @@ Status EpisodeWorld::read_bodies() {
     if (is_kind(bodies[i], plan::BodyKind::kSurface)) surface_ = static_cast<std::uint16_t>(i);
     if (is_kind(bodies[i], plan::BodyKind::kFixture)) {
       fixture_ = static_cast<std::uint16_t>(i);
-      if (!assets_->shape(scene_->fixture_collision)) {
-        return Failure{"asset", "fixture `" + name + "` has no collision mesh", where};
+      const auto shape = assets_->shape(scene_->fixture_collision);
+      if (!shape) return Failure{"asset", "fixture `" + name + "` has no collision mesh", where};
+      for (const scene::ConvexPart& part : shape->parts) {
+        privileged_.fixtures.emplace_back();
+        for (const Vec3& vertex : part.vertices) {
+          privileged_.fixtures.back().push_back(vertex + shape->center_of_mass +
+                                                to_vec(scene_->fixture_position));
+        }
       }
     }
     if (is_kind(bodies[i], plan::BodyKind::kLink)) {

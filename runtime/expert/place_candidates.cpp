@@ -1,0 +1,89 @@
+// Turns and heights, scored.
+#include "runtime/expert/place_candidates.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "runtime/base/trig.h"
+#include "runtime/expert/path_planner.h"
+#include "runtime/robot/rotation.h"
+
+namespace probe::expert {
+namespace {
+
+constexpr int kTurns = 12;             // over a full turn
+constexpr double kTouch = 0.004;       // m, where the smooth path ends and feeling begins
+constexpr double kComfortable = 0.01;  // m of clearance; more earns nothing
+constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};
+constexpr std::size_t kMostTried = 10;
+
+Eigen::Matrix2d turn_by(double angle) {
+  const SinCos t = portable_sincos(angle);
+  Eigen::Matrix2d m;
+  m << t.cos, -t.sin, t.sin, t.cos;
+  return m;
+}
+
+double overhang_of(const Scene& scene, const Eigen::Matrix2d& turn) {
+  const Outline& over = scene.source.whole;
+  if (over.empty() || scene.target.whole.size() < 3) return 0;
+  const Prism target = make_prism(scene.target.whole, -1, 1);
+  int outside = 0;
+  for (const Vec2& p : over) {
+    const Vec2 at = scene.target.center + turn * (p - scene.source.center);
+    outside += distance_to(target, {at.x(), at.y(), 0}).value > 0;
+  }
+  return static_cast<double>(outside) / static_cast<double>(over.size());
+}
+
+}  // namespace
+
+std::vector<Place> place_candidates(const Scene& scene, const Pose& tool) {
+  const GripperShape gripper;
+  std::vector<Ball> balls = gripper_balls(gripper, gripper.opening_half);
+  const std::vector<Ball> held = held_balls(scene, tool);
+  balls.insert(balls.end(), held.begin(), held.end());
+  const Obstacles obstacles = obstacles_of(scene, false);
+  const double rise = scene.target.top + kTouch - scene.source.bottom;
+  std::vector<Place> out;
+  for (int i = 0; i < kTurns; ++i) {
+    Place place;
+    place.turn = 2 * std::numbers::pi / kTurns * (i <= kTurns / 2 ? i : i - kTurns);
+    const Eigen::Matrix2d flat = turn_by(place.turn);
+    const Vec2 arm = tool.position.head<2>() - scene.source.center;
+    const Vec2 at = scene.target.center + flat * arm;
+    place.tcp.rotation = robot::from_rotation_vector({0, 0, place.turn}) * tool.rotation;
+    place.overhang = overhang_of(scene, flat);
+    for (const double lift : kLifts) {
+      place.lift = lift;
+      place.tcp.position = {at.x(), at.y(), tool.position.z() + rise + lift};
+      place.clearance = least_clearance(place.tcp, balls, obstacles, kComfortable);
+      place.cost = 0.3 * std::abs(place.turn) + 0.3 * place.overhang + 20 * lift +
+                   100 * (kComfortable - place.clearance);
+      out.push_back(place);
+      if (place.clearance >= kComfortable) break;
+    }
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Place& a, const Place& b) { return a.cost < b.cost; });
+  return out;
+}
+
+std::optional<Place> plan_place(const Scene& scene, const Reach& reach,
+                                std::span<const double> joints) {
+  const Pose tool = reach.chain().pose(joints.first(reach.chain().joint_count()));
+  const std::vector<Place> places = place_candidates(scene, tool);
+  const double hang = std::max(GripperShape{}.tip_below, tool.position.z() - scene.source.bottom);
+  Pose lifted = tool;
+  lifted.position.z() = std::max(tool.position.z() + 0.03, travel_height(scene, hang));
+  for (std::size_t i = 0; i < std::min(places.size(), kMostTried); ++i) {
+    Pose over = places[i].tcp;
+    over.position.z() = std::max(over.position.z(), lifted.position.z());
+    if (reach.follow(joints, std::array{lifted, over, places[i].tcp})) return places[i];
+  }
+  return std::nullopt;
+}
+
+}  // namespace probe::expert

@@ -1,0 +1,30 @@
+// Where the tool lets go: the held source over the middle of the target, turned about the vertical
+// or let go from higher where neighbours and walls leave the gripper no room.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/expert/reach.h"
+#include "runtime/expert/waypoints.h"
+
+namespace probe::expert {
+
+struct Place {
+  Pose tcp;              // base frame
+  double turn = 0;       // rad about the vertical, from the tool's present pose
+  double lift = 0;       // m that the source is let go above where it would touch
+  double clearance = 0;  // m, of gripper and source from all but the target; up to 1 cm
+  double overhang = 0;   // share of the source's outline corners beyond the target's outline
+  double cost = 0;
+};
+
+// Sorted by cost. `tool` holds the source where it is seen now, or will once it is there.
+std::vector<Place> place_candidates(const Scene& scene, const Pose& tool);
+
+// The best that the arm reaches from joint positions at which it holds the source.
+std::optional<Place> plan_place(const Scene& scene, const Reach& reach,
+                                std::span<const double> joints);
+
+}  // namespace probe::expert
