@@ -1,0 +1,28 @@
+// Where a policy server is: what stands after the protocol in
+// `openpi://HOST:PORT/path?key=value&key=value`.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "runtime/base/result.h"
+
+namespace probe::wire {
+
+struct Endpoint {
+  std::string host;
+  std::string port;
+  std::string path = "/";
+  std::map<std::string, std::string> options;  // percent-decoded
+
+  std::string name() const {
+    return host + ":" + port;
+  }  // for messages: without options, which may be private
+};
+
+// `text` begins with "//". A missing port is `default_port`; a host in brackets is an IPv6 address.
+// Fails (code "usage", place "--policy") naming what is missing or twice there.
+Result<Endpoint> parse_endpoint(std::string_view text, std::string_view default_port);
+
+}  // namespace probe::wire
