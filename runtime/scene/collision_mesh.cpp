@@ -1,9 +1,10 @@
 #include "runtime/scene/collision_mesh.h"
 
 #include <array>
+#include <filesystem>
 #include <map>
 
-#include "runtime/scene/asset_path.h"
+#include "runtime/base/asset_path.h"
 
 namespace probe::scene {
 namespace {
@@ -44,18 +45,20 @@ TriangleSoup weld_triangles(const TriangleSoup& soup) {
 }
 
 Result<TriangleSoup> load_triangles(const std::string& path, const Vec3& scale,
-                                    const MeshLimits& limits, bool weld) {
+                                    const MeshLimits& limits) {
   if (lower_extension(path) == ".obj") {
     PROBE_ASSIGN(TriangleSoup soup, load_obj_triangles(path, scale));
-    return weld ? weld_triangles(soup) : std::move(soup);
+    const bool keeps_components =
+        std::filesystem::path(path).stem().string().find("collision") != std::string::npos;
+    return keeps_components ? std::move(soup) : weld_triangles(soup);
   }
   PROBE_ASSIGN(const auto mesh, load_mesh(path, scale, limits));
   return weld_triangles(*mesh);
 }
 
 Result<CollisionShape> load_collision_mesh(const std::string& path, const Vec3& scale,
-                                           const MeshLimits& limits, bool weld) {
-  PROBE_ASSIGN(const TriangleSoup soup, load_triangles(path, scale, limits, weld));
+                                           const MeshLimits& limits) {
+  PROBE_ASSIGN(const TriangleSoup soup, load_triangles(path, scale, limits));
   PROBE_ASSIGN(CollisionShape shape, make_mesh_shape(soup, path));
   if (shape.parts.size() > kMaxCollisionParts) {
     return Failure{"asset",

@@ -14,19 +14,18 @@ namespace probe::scene {
 // More separate pieces make a slow world and mostly mean a picture mesh: they are refused.
 inline constexpr std::size_t kMaxCollisionParts = 64;
 
-// The triangles of a file. In an OBJ a component is what shares vertex indices, as convex
-// decompositions are stored; the other formats split vertices at seams, so there and with `weld`
-// vertices at one place are one. Fails as load_obj_triangles and load_mesh do.
+// The triangles of a file. In an OBJ whose name has "collision" in it a component is what shares
+// vertex indices, as convex decompositions are stored; everywhere else vertices are split at seams,
+// so those at one place are one. Fails as load_obj_triangles and load_mesh do.
 Result<TriangleSoup> load_triangles(const std::string& path, const Vec3& scale,
-                                    const MeshLimits& limits = {}, bool weld = false);
+                                    const MeshLimits& limits = {});
 
 // All triangles of a mesh, vertices of equal coordinates made one.
 TriangleSoup weld_triangles(const Mesh& mesh);
 TriangleSoup weld_triangles(const TriangleSoup& soup);
 
-// One convex part a component. `weld` for a file that was made to be seen. Fails also when there
-// are more than kMaxCollisionParts.
+// One convex part a component. Fails also when there are more than kMaxCollisionParts.
 Result<CollisionShape> load_collision_mesh(const std::string& path, const Vec3& scale,
-                                           const MeshLimits& limits = {}, bool weld = false);
+                                           const MeshLimits& limits = {});
 
 }  // namespace probe::scene

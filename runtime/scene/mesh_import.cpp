@@ -18,7 +18,7 @@
 #include <set>
 #include <tuple>
 
-#include "runtime/scene/asset_path.h"
+#include "runtime/base/asset_path.h"
 #include "runtime/scene/color.h"
 #include "runtime/scene/image.h"
 #include "runtime/scene/mesh_references.h"
@@ -476,6 +476,12 @@ Result<std::shared_ptr<const Mesh>> load(const std::string& path, const Vec3& sc
                                          const MeshLimits& limits) {
   PROBE_ASSIGN(const std::vector<MeshReference> references,
                mesh_references(path, limits.asset_root));
+  if (limits.self_contained && !references.empty()) {
+    return asset_failure("names `" + references.front().written +
+                             "`, and a plan freezes one file a mesh: `vlaprobe assets pack` puts "
+                             "all into one",
+                         path);
+  }
   for (const MeshReference& reference : references) {
     // A missing picture matters only if a material shows it; without the rest there is no mesh.
     const std::string extension = lower_extension(reference.written);

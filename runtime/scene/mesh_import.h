@@ -2,7 +2,6 @@
 // that includes assimp.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -13,9 +12,7 @@
 
 namespace probe::scene {
 
-// The formats that are read, in the order in which a folder is searched for one.
-inline constexpr std::array<std::string_view, 5> kMeshExtensions{".glb", ".gltf", ".dae", ".obj",
-                                                                 ".stl"};
+// Whether it is one of kMeshExtensions.
 bool is_mesh_extension(std::string_view extension);  // in lower case, with the dot
 
 struct MeshLimits {
@@ -27,6 +24,8 @@ struct MeshLimits {
   // Collada's <up_axis>: a Y_UP or X_UP file is turned so that z is up. Off: coordinates as they
   // are written, which is how SAPIEN reads them.
   bool turn_up_axis = true;
+  // Refuse a mesh that names other files: a plan freezes one file a mesh.
+  bool self_contained = false;
   // Keep the encoded bytes of the textures in Mesh::encoded, for writing the mesh again.
   bool keep_encoded = false;
 };

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "runtime/scene/asset_path.h"
+#include "runtime/base/asset_path.h"
 
 namespace probe::scene {
 namespace {

@@ -1,9 +1,9 @@
-#include "runtime/scene/asset_path.h"
+#include "runtime/base/asset_path.h"
 
 #include <algorithm>
 #include <cctype>
 
-namespace probe::scene {
+namespace probe {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,4 +50,4 @@ Result<std::string> resolve_inside(const fs::path& folder, const std::string& wr
   return file.string();
 }
 
-}  // namespace probe::scene
+}  // namespace probe

@@ -2,12 +2,14 @@
 // out of the asset folder, by dots or by a link.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "runtime/base/result.h"
 
-namespace probe::scene {
+namespace probe {
 
 // The absolute path of `written`, read from a file in `folder`, backslashes taken as slashes. Fails
 // (code "asset", where = written) on an absolute path, a drive or a URL, on one that leads out of
@@ -18,4 +20,9 @@ Result<std::string> resolve_inside(const std::filesystem::path& folder, const st
 // ".glb" of "Mug.GLB".
 std::string lower_extension(const std::filesystem::path& path);
 
-}  // namespace probe::scene
+// What is read, in the order in which a folder is searched.
+inline constexpr std::array<std::string_view, 5> kMeshExtensions{".glb", ".gltf", ".dae", ".obj",
+                                                                 ".stl"};
+inline constexpr std::array<std::string_view, 3> kPhotoExtensions{".png", ".jpg", ".jpeg"};
+
+}  // namespace probe

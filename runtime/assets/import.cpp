@@ -1,0 +1,355 @@
+#include "runtime/assets/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "runtime/assets/catalogue_text.h"
+#include "runtime/assets/data_folder.h"
+#include "runtime/assets/known_models.h"
+#include "runtime/assets/model_files.h"
+#include "runtime/assets/output_folder.h"
+#include "runtime/assets/robot_files.h"
+#include "runtime/base/asset_path.h"
+#include "runtime/robot/urdf.h"
+#include "runtime/scene/glb_writer.h"
+#include "runtime/scene/image.h"
+
+namespace probe::assets {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kBoxSlack = 0.005;  // m that a mesh may differ from its database entry
+constexpr int kLargeTexture = 2048;
+constexpr std::size_t kManyTriangles = 20'000;
+
+Result<std::string> read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file || bytes.empty()) return Failure{"asset", "cannot be read or is empty", path.string()};
+  return bytes;
+}
+
+// What a failure says, with the file's path relative to the data.
+std::string short_text(const Failure& failure, const std::string& from) {
+  std::string text = to_text(failure);
+  const std::string prefix = fs::absolute(from).lexically_normal().string();
+  if (const std::size_t at = text.find(prefix); at != text.npos) {
+    text.erase(at, prefix.size());
+    if (text.compare(at, 1, "/") == 0) text.erase(at, 1);
+  }
+  return text;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string out;
+  for (const std::string& part : parts) out += (out.empty() ? "" : "; ") + part;
+  return out;
+}
+
+class Import {
+ public:
+  Import(const ImportOptions& options, DataFolder data, OutputFolder out)
+      : options_(options), data_(std::move(data)), out_(std::move(out)) {
+    limits_.asset_root = fs::absolute(options.from).lexically_normal().string();
+    limits_.turn_up_axis = false;  // the simulator these files were made for does not
+  }
+
+  Result<ImportReport> run() {
+    std::set<std::string> known;
+    for (const KnownModel& model : kKnownModels) {
+      known.emplace(model.id);
+      PROBE_TRY(add_model(std::string(model.id), std::string(model.folder), model.scale));
+    }
+    for (const KnownScene& scene : kKnownScenes) PROBE_TRY(add_scene(scene));
+    PROBE_TRY(add_robot());
+    // The rest of the models keep their names.
+    for (const auto& [id, folder] : data_.models) {
+      if (known.contains(id)) continue;
+      const auto info = data_.infos.find(id);
+      const double scale = info == data_.infos.end() ? 1 : info->second.scales.front();
+      PROBE_TRY(add_model(id, "objects/" + id, scale));
+    }
+    for (const Failure& odd : data_.odd) {
+      say(Verdict::kOdd, "database", short_text(odd, options_.from));
+    }
+    if (report_.files == 0) {
+      return Failure{"asset", "nothing in it can be used: " + report_.lines.front().text,
+                     options_.from};
+    }
+    PROBE_TRY(write("objects.probe", catalogue_text(objects_), "the model databases"));
+    report_.bytes = out_.bytes();
+    PROBE_TRY(out_.finish());
+    return std::move(report_);
+  }
+
+ private:
+  void say(Verdict verdict, const std::string& name, std::string text) {
+    report_.lines.push_back({verdict, name, std::move(text)});
+  }
+
+  Status write(const std::string& path, std::string_view bytes, const std::string& source) {
+    PROBE_TRY(out_.write(path, bytes, source));
+    ++report_.files;
+    return {};
+  }
+
+  std::string relative(const fs::path& path) const {
+    return path.lexically_relative(limits_.asset_root).generic_string();
+  }
+
+  // ---- models
+
+  static std::string find_mesh(const fs::path& folder, const std::string& stem) {
+    std::error_code error;
+    for (const std::string_view extension : kMeshExtensions) {
+      const fs::path file = folder / (stem + std::string(extension));
+      if (fs::is_regular_file(file, error)) return file.string();
+    }
+    return "";
+  }
+
+  Status add_model(const std::string& id, const std::string& name, double scale) {
+    const auto folder = data_.models.find(id);
+    if (folder == data_.models.end()) return miss(name, "no model `" + id + "` in the data");
+    const std::string seen = find_mesh(folder->second, "textured");
+    std::string felt = find_mesh(folder->second, "collision");
+    const bool is_unseen = id == kUnseenModel;
+    if (seen.empty() && !is_unseen) {
+      return miss(name, id + " has no textured.glb, .gltf, .dae, .obj or .stl");
+    }
+    const Vec3 scales(scale, scale, scale);
+    auto visual = is_unseen ? unseen_visual() : convert_visual(seen, scales, limits_, id);
+    if (!visual) return miss(name, short_text(visual.failure(), options_.from));
+    const bool from_visual = felt.empty();
+    if (from_visual) felt = seen;
+    auto collision = convert_collision(felt, scales, limits_, from_visual);
+    if (!collision) return miss(name, short_text(collision.failure(), options_.from));
+
+    PROBE_TRY(write(name + "/visual.glb", visual->glb, is_unseen ? id : relative(seen)));
+    PROBE_TRY(write(name + "/collision.obj", collision->obj, relative(felt)));
+    std::vector<std::string> odd = oddities(id, scale, *visual, *collision);
+    if (is_unseen) odd.push_back("never drawn in the reference: the photo shows it");
+    const std::string summary = fmt::format(
+        "{}{}: {} triangles, {}{} convex part{}, {}", id,
+        scale == 1 ? "" : fmt::format(" at {}", scale), visual->triangles,
+        visual->largest_texture == 0 ? "" : fmt::format("{} px texture, ", visual->largest_texture),
+        collision->parts, collision->parts == 1 ? "" : "s", size_text(collision->extent.size()));
+    say(odd.empty() ? Verdict::kTaken : Verdict::kOdd, name,
+        odd.empty() ? summary : summary + "; " + joined(odd));
+    if (name.starts_with("objects/")) note_object(id, name.substr(8), scale, *collision);
+    return {};
+  }
+
+  // A speck that no ray meets, for what is only felt.
+  static Result<VisualFile> unseen_visual() {
+    constexpr float kSpeck = 1e-6f;
+    scene::GlbDocument document{std::string(kUnseenModel), kGenerator, {}, {{}}, {}};
+    document.parts.push_back(
+        {{0, 0, 0, kSpeck, 0, 0, 0, kSpeck, 0}, {0, 0, 1, 0, 0, 1, 0, 0, 1}, {}, {0, 1, 2}, 0});
+    VisualFile file;
+    file.glb = scene::glb_bytes(document);
+    file.triangles = 1;
+    return file;
+  }
+
+  std::vector<std::string> oddities(const std::string& id, double scale, const VisualFile& visual,
+                                    const CollisionFile& collision) const {
+    std::vector<std::string> odd;
+    if (!collision.odd.empty()) odd.push_back(collision.odd);
+    const auto info = data_.infos.find(id);
+    if (info == data_.infos.end()) {
+      odd.push_back("in no model database");
+    } else {
+      const ModelInfo& known = info->second;
+      const Extent box{scale * Vec3(known.min.data()), scale * Vec3(known.max.data())};
+      const auto differs = [&](const Extent& extent) {
+        return (extent.min - box.min).cwiseAbs().maxCoeff() > kBoxSlack ||
+               (extent.max - box.max).cwiseAbs().maxCoeff() > kBoxSlack;
+      };
+      if (id != kUnseenModel && differs(visual.extent)) {
+        odd.push_back(
+            "seen as " + size_text(visual.extent.size()) + ", the database says " +
+            size_text(box.size()) +
+            (visual.extent.size().isApprox(box.size(), 0.05) ? " about another origin" : ""));
+      }
+      if (differs(collision.extent)) {
+        odd.push_back("felt as " + size_text(collision.extent.size()) + ", the database says " +
+                      size_text(box.size()));
+      }
+      if (std::find(known.scales.begin(), known.scales.end(), scale) == known.scales.end()) {
+        odd.push_back(fmt::format("the database has it at {}", fmt::join(known.scales, ", ")));
+      }
+      if (known.density <= 0) odd.push_back("the database gives no density");
+    }
+    if (visual.largest_texture > kLargeTexture) odd.push_back("large texture");
+    if (visual.triangles > kManyTriangles) odd.push_back("many triangles");
+    return odd;
+  }
+
+  void note_object(const std::string& id, const std::string& folder, double scale,
+                   const CollisionFile& collision) {
+    CatalogueObject object{folder, collision.extent.min, collision.extent.max, 1000};
+    if (const auto info = data_.infos.find(id); info != data_.infos.end()) {
+      object.min = scale * Vec3(info->second.min.data());
+      object.max = scale * Vec3(info->second.max.data());
+      if (info->second.density > 0) object.density = info->second.density;
+    }
+    objects_.push_back(object);
+  }
+
+  // ---- scenes
+
+  Status add_scene(const KnownScene& scene) {
+    const std::string name = "scenes/" + std::string(scene.name);
+    const auto photo = data_.photos.find(std::string(scene.photo));
+    const auto stage = data_.stages.find(std::string(scene.stage));
+    std::vector<std::string> taken, odd;
+    if (photo != data_.photos.end()) {
+      auto bytes = read_file(photo->second);
+      auto texture =
+          bytes ? scene::decode_image(std::as_bytes(std::span(*bytes)), photo->second.string())
+                : Result<scene::Texture>(bytes.failure());
+      if (!texture) return miss(name, short_text(texture.failure(), options_.from));
+      const std::string extension = lower_extension(photo->second);
+      PROBE_TRY(write(name + "/photo" + extension, *bytes, relative(photo->second)));
+      taken.push_back(
+          fmt::format("photo {}, {} x {}", scene.photo, texture->width, texture->height));
+      if (texture->width != 640 || texture->height != 480) {
+        odd.push_back("the camera's picture is 640 x 480: the photo is scaled to it");
+      }
+    } else {
+      odd.push_back("no photo " + std::string(scene.photo));
+    }
+    if (stage != data_.stages.end()) {
+      const Pose place{Vec3(kStageOffset.data()), Quat(std::sqrt(0.5), std::sqrt(0.5), 0, 0)};
+      auto visual = convert_visual(stage->second.string(), {1, 1, 1}, limits_,
+                                   std::string(scene.name), place);
+      if (visual) {
+        PROBE_TRY(write(name + "/visual.glb", visual->glb, relative(stage->second)));
+        taken.push_back(fmt::format("stage {}, {} triangles", scene.stage, visual->triangles));
+      } else {
+        odd.push_back(short_text(visual.failure(), options_.from));
+      }
+    } else {
+      odd.push_back("no stage " + std::string(scene.stage) +
+                    ": the table is in no depth picture and hides nothing");
+    }
+    if (taken.empty()) return miss(name, joined(odd));
+    say(odd.empty() ? Verdict::kTaken : Verdict::kOdd, name,
+        joined(taken) + (odd.empty() ? "" : "; " + joined(odd)));
+    return {};
+  }
+
+  // ---- robot
+
+  Status add_robot() {
+    const std::string name = "robots/widowx";
+    if (!data_.urdf) return miss(name, "no wx250s.urdf in the data");
+    std::map<std::string, std::string> files;  // what is written, by path below `name`
+    std::map<std::string, std::string> sources;
+    const auto text = convert_robot(*data_.urdf, files, sources);
+    if (!text) return miss(name, short_text(text.failure(), options_.from));
+    for (const auto& [path, bytes] : files) {
+      PROBE_TRY(write(name + "/" + path, bytes, sources[path]));
+    }
+    PROBE_TRY(write(name + "/wx250s.urdf", *text, relative(*data_.urdf)));
+    say(Verdict::kTaken, name,
+        fmt::format("{}: {} mesh files", data_.urdf->filename().string(), files.size()));
+    return {};
+  }
+
+  Result<std::string> convert_robot(const fs::path& urdf, std::map<std::string, std::string>& files,
+                                    std::map<std::string, std::string>& sources) {
+    PROBE_TRY(robot::load_urdf(urdf.string()));
+    PROBE_ASSIGN(const std::string text, read_file(urdf));
+    std::map<std::string, std::string> names;  // by file, scale and use
+    return replace_meshes(text, [&](const MeshElement& element) -> Result<std::string> {
+      std::string& name =
+          names[element.file + "|" + element.scale + (element.is_collision ? "|felt" : "|seen")];
+      if (!name.empty()) return name;
+      PROBE_ASSIGN(const std::string path, resolve_urdf_file(urdf.parent_path().string(),
+                                                             element.file, limits_.asset_root));
+      Vec3 scale(1, 1, 1);
+      if (!element.scale.empty() &&
+          std::sscanf(element.scale.c_str(), "%lf %lf %lf", &scale[0], &scale[1], &scale[2]) != 3) {
+        return Failure{"urdf", "a mesh has the scale `" + element.scale + "`", urdf.string()};
+      }
+      const std::string stem = "meshes/" + fs::path(path).stem().string();
+      name = stem + (element.is_collision ? "_collision.obj" : ".glb");
+      for (int i = 2; files.contains(name); ++i) {  // the same file at another scale
+        name = fmt::format("{}_{}{}", stem, i, element.is_collision ? "_collision.obj" : ".glb");
+      }
+      if (element.is_collision) {
+        PROBE_ASSIGN(CollisionFile file, convert_collision(path, scale, limits_, false));
+        files[name] = std::move(file.obj);
+      } else {
+        PROBE_ASSIGN(VisualFile file, convert_visual(path, scale, limits_, stem));
+        files[name] = std::move(file.glb);
+      }
+      sources[name] = relative(path);
+      return name;
+    });
+  }
+
+  // ---- what is not there
+
+  // Says so, and takes ours if that was asked for.
+  Status miss(const std::string& name, const std::string& why) {
+    const fs::path ours = fs::path(options_.fill_from) / name;
+    std::error_code error;
+    if (options_.fill_from.empty() || !fs::is_directory(ours, error)) {
+      say(Verdict::kMissing, name, why);
+      return {};
+    }
+    std::vector<fs::path> paths;
+    for (const auto& entry : fs::recursive_directory_iterator(ours, error)) {
+      if (entry.is_regular_file(error)) paths.push_back(entry.path());
+    }
+    std::sort(paths.begin(), paths.end());
+    for (const fs::path& path : paths) {
+      PROBE_ASSIGN(const std::string bytes, read_file(path));
+      const std::string below = path.lexically_relative(options_.fill_from).generic_string();
+      PROBE_TRY(out_.write(below, bytes, "vlaprobe's own " + below));
+    }
+    say(Verdict::kFilled, name, why + ": vlaprobe's own is taken");
+    return {};
+  }
+
+  const ImportOptions& options_;
+  DataFolder data_;
+  OutputFolder out_;
+  scene::MeshLimits limits_;
+  ImportReport report_;
+  std::vector<CatalogueObject> objects_;
+};
+
+}  // namespace
+
+const char* to_word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kTaken:
+      return "taken";
+    case Verdict::kOdd:
+      return "odd";
+    case Verdict::kMissing:
+      return "missing";
+    case Verdict::kFilled:
+      return "filled";
+  }
+  return "";
+}
+
+Result<ImportReport> import_data(const ImportOptions& options) {
+  PROBE_ASSIGN(DataFolder data, find_data(options.from));
+  PROBE_ASSIGN(OutputFolder out, OutputFolder::create(options.to));
+  return Import(options, std::move(data), std::move(out)).run();
+}
+
+}  // namespace probe::assets

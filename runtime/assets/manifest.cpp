@@ -1,0 +1,48 @@
+#include "runtime/assets/manifest.h"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace probe::assets {
+
+const ManifestEntry* Manifest::find(std::string_view path) const {
+  const auto found = files.find(path);
+  return found == files.end() ? nullptr : &found->second;
+}
+
+std::string Manifest::to_json() const {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const auto& [path, entry] : files) {
+    nlohmann::ordered_json file = {
+        {"path", path}, {"bytes", entry.bytes}, {"sha256", entry.sha256}};
+    if (!entry.source.empty()) file["source"] = entry.source;
+    list.push_back(std::move(file));
+  }
+  return nlohmann::ordered_json{{"files", list}}.dump(1) + "\n";
+}
+
+Result<Manifest> read_manifest(const std::string& folder) {
+  const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return Manifest{};
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto root = nlohmann::json::parse(text, nullptr, false);
+  const Failure malformed{"asset", "is not a manifest of files with path, bytes and sha256", path};
+  if (!root.is_object() || !root.contains("files") || !root["files"].is_array()) return malformed;
+  Manifest manifest;
+  for (const auto& entry : root["files"]) {
+    if (!entry.is_object() || !entry.contains("path") || !entry["path"].is_string() ||
+        !entry.contains("bytes") || !entry["bytes"].is_number_unsigned() ||
+        !entry.contains("sha256") || !entry["sha256"].is_string()) {
+      return malformed;
+    }
+    manifest.files[entry["path"].get<std::string>()] = {
+        entry["bytes"].get<std::uint64_t>(), entry["sha256"].get<std::string>(),
+        entry.contains("source") && entry["source"].is_string() ? entry["source"].get<std::string>()
+                                                                : std::string()};
+  }
+  return manifest;
+}
+
+}  // namespace probe::assets

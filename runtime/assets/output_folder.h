@@ -1,0 +1,35 @@
+// An asset folder while it is being made: whole under its name, or absent.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "runtime/assets/manifest.h"
+#include "runtime/base/result.h"
+
+namespace probe::assets {
+
+class OutputFolder {
+ public:
+  // Fails (code "io") when `path` is there and not an empty folder.
+  static Result<OutputFolder> create(const std::string& path);
+  OutputFolder(OutputFolder&& other) noexcept;
+  OutputFolder& operator=(OutputFolder&&) = delete;
+  ~OutputFolder();  // removes what was not finished
+
+  // `source` is what the file was made from, for the manifest.
+  Status write(const std::string& path, std::string_view bytes, const std::string& source);
+  bool has(std::string_view path) const { return manifest_.find(path) != nullptr; }
+  std::uint64_t bytes() const;
+
+  // Writes manifest.json and gives the folder its name.
+  Status finish();
+
+ private:
+  OutputFolder(std::string target, std::string temporary)
+      : target_(std::move(target)), temporary_(std::move(temporary)) {}
+  std::string target_, temporary_;
+  Manifest manifest_;
+};
+
+}  // namespace probe::assets
