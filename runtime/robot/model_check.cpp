@@ -103,6 +103,20 @@ Status check_meshes(const RobotModel& model, const Link& link, const std::vector
   return {};
 }
 
+Status check_primitives(const RobotModel& model, const Link& link) {
+  for (const Primitive& primitive : link.primitives) {
+    if (is_finite(primitive.origin) && primitive.half.allFinite() &&
+        primitive.half.minCoeff() > 0) {
+      continue;
+    }
+    return wrong(model,
+                 fmt::format("link `{}` has a collision shape of a size that is not positive "
+                             "or a place that is not finite",
+                             link.name));
+  }
+  return {};
+}
+
 }  // namespace
 
 Status check_model(const RobotModel& model) {
@@ -111,6 +125,7 @@ Status check_model(const RobotModel& model) {
     PROBE_TRY(check_inertia(model, link));
     PROBE_TRY(check_meshes(model, link, link.visuals));
     PROBE_TRY(check_meshes(model, link, link.collisions));
+    PROBE_TRY(check_primitives(model, link));
   }
   return check_moving_mass(model);
 }

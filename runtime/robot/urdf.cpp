@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <mutex>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -65,29 +66,52 @@ Result<std::string> read_text(const std::string& path) {
 
 Vec3 to_vec(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
-// Box, sphere and cylinder would be dropped silently; better to say so.
-Result<MeshRef> to_mesh(const urdf::Geometry* geometry, const urdf::Pose& origin, const Quat& turn,
-                        const std::string& link, const std::string& path) {
-  const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry);
-  if (mesh == nullptr) {
-    return Failure{"urdf",
-                   fmt::format("link `{}` has a shape that is no mesh; only meshes are read", link),
-                   path};
-  }
-  return MeshRef{mesh->filename, to_vec(mesh->scale), Pose{to_vec(origin.position), turn}};
+MeshRef to_mesh(const urdf::Mesh& mesh, const Pose& origin) {
+  return MeshRef{mesh.filename, to_vec(mesh.scale), origin};
 }
 
+std::optional<Primitive> to_primitive(const urdf::Geometry* geometry, const Pose& origin) {
+  using Kind = Primitive::Kind;
+  if (const auto* box = dynamic_cast<const urdf::Box*>(geometry)) {
+    return Primitive{Kind::kBox, 0.5 * to_vec(box->dim), origin};
+  }
+  if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(geometry)) {
+    return Primitive{Kind::kSphere, Vec3::Constant(sphere->radius), origin};
+  }
+  if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(geometry)) {
+    const double r = cylinder->radius;
+    return Primitive{Kind::kCylinder, Vec3(r, r, 0.5 * cylinder->length), origin};
+  }
+  return std::nullopt;
+}
+
+// Meshes into `meshes`; other shapes into `primitives`, or refused where there is no such list:
+// they would otherwise be dropped silently.
 template <typename Elements>
-Status add_meshes(const Elements& elements, const std::vector<Quat>& turns, const std::string& link,
-                  const std::string& path, std::vector<MeshRef>& out) {
+Status add_shapes(const Elements& elements, const std::vector<Quat>& turns, const std::string& link,
+                  const std::string& path, std::vector<MeshRef>* meshes,
+                  std::vector<Primitive>* primitives) {
   if (elements.size() != turns.size()) {
     return Failure{"urdf", fmt::format("link `{}` has a shape that was not understood", link),
                    path};
   }
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    PROBE_ASSIGN(MeshRef mesh,
-                 to_mesh(elements[i]->geometry.get(), elements[i]->origin, turns[i], link, path));
-    out.push_back(std::move(mesh));
+    const urdf::Geometry* geometry = elements[i]->geometry.get();
+    const Pose origin{to_vec(elements[i]->origin.position), turns[i]};
+    if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry)) {
+      meshes->push_back(to_mesh(*mesh, origin));
+      continue;
+    }
+    const std::optional<Primitive> primitive = to_primitive(geometry, origin);
+    if (primitive && primitives != nullptr) {
+      primitives->push_back(*primitive);
+      continue;
+    }
+    return Failure{"urdf",
+                   fmt::format("link `{}` has a visual shape that is no mesh; boxes, spheres and "
+                               "cylinders are read as collision shapes only",
+                               link),
+                   path};
   }
   return {};
 }
@@ -105,8 +129,9 @@ Result<Link> to_link(const urdf::Link& from, const LinkText& text, const std::st
     const Mat3 turned = turn * inertia * turn.transpose();
     link.inertia = 0.5 * (turned + turned.transpose());
   }
-  PROBE_TRY(add_meshes(from.visual_array, text.visuals, link.name, path, link.visuals));
-  PROBE_TRY(add_meshes(from.collision_array, text.collisions, link.name, path, link.collisions));
+  PROBE_TRY(add_shapes(from.visual_array, text.visuals, link.name, path, &link.visuals, nullptr));
+  PROBE_TRY(add_shapes(from.collision_array, text.collisions, link.name, path, &link.collisions,
+                       &link.primitives));
   return link;
 }
 

@@ -16,6 +16,15 @@ struct MeshRef {
   Pose origin;  // mesh frame in the link frame
 };
 
+// A collision shape given by numbers instead of a file, about its origin.
+struct Primitive {
+  enum class Kind { kBox, kSphere, kCylinder };
+  Kind kind = Kind::kBox;
+  Vec3 half = Vec3::Zero();  // m, half extents: of a sphere all its radius, of a cylinder along z
+                             // its half length and else its radius
+  Pose origin;               // its frame in the link frame
+};
+
 struct Link {
   std::string name;
   int parent_joint = -1;               // index into joints, -1 for the root
@@ -24,6 +33,8 @@ struct Link {
   Mat3 inertia = Mat3::Zero();         // about the centre of mass, link frame axes
   std::vector<MeshRef> visuals;
   std::vector<MeshRef> collisions;
+  std::vector<Primitive> primitives;  // collisions too
+  bool can_collide() const { return !collisions.empty() || !primitives.empty(); }
 };
 
 enum class JointKind { kFixed, kRevolute, kContinuous, kPrismatic };

@@ -459,6 +459,37 @@ CollisionShape make_capsule_shape(double radius, double half_length) {
 
 CollisionShape make_sphere_shape(double radius) { return make_capsule_shape(radius, 0); }
 
+CollisionShape join_shapes(std::vector<PlacedShape> shapes) {
+  CollisionShape joined;
+  Vec3 moment = Vec3::Zero();
+  for (const PlacedShape& placed : shapes) {
+    joined.volume += placed.shape.volume;
+    moment += placed.shape.volume * placed.pose.apply(placed.shape.center_of_mass);
+  }
+  joined.center_of_mass = moment / joined.volume;
+  for (PlacedShape& placed : shapes) {
+    const Mat3 turn = placed.pose.rotation.toRotationMatrix();
+    const Vec3 shift = placed.pose.apply(placed.shape.center_of_mass) - joined.center_of_mass;
+    const Mat3 outer = shift * shift.transpose();
+    joined.unit_inertia += turn * placed.shape.unit_inertia * turn.transpose() +
+                           placed.shape.volume * (outer.trace() * Mat3::Identity() - outer);
+    for (ConvexPart& part : placed.shape.parts) {
+      for (Vec3& v : part.vertices) {
+        v = turn * v + shift;
+        joined.bounding_radius = std::max(joined.bounding_radius, v.norm() + part.round);
+      }
+      for (ConvexPart::Face& face : part.faces) face.normal = turn * face.normal;
+      for (ConvexPart::Edge& edge : part.edges) {
+        edge.normal_a = turn * edge.normal_a;
+        edge.normal_b = turn * edge.normal_b;
+      }
+      derive(&part);
+      joined.parts.push_back(std::move(part));
+    }
+  }
+  return joined;
+}
+
 CollisionShape make_plane_shape() {
   CollisionShape slab = make_box_shape({10, 10, 0.5});
   slab.center_of_mass = Vec3(0, 0, -0.5);

@@ -48,6 +48,13 @@ CollisionShape make_cylinder_shape(double radius, double half_length);  // along
 // The half space below z = 0 as far as a room goes: 20 m wide, 1 m deep. For fixtures.
 CollisionShape make_plane_shape();
 
+// Several shapes of equal density in one frame, each at its place: all their parts.
+struct PlacedShape {
+  CollisionShape shape;
+  Pose pose;  // of its model frame
+};
+CollisionShape join_shapes(std::vector<PlacedShape> shapes);
+
 // One part: closed, convex, at most 64 vertices, volume and moments about the origin of the points'
 // frame.
 struct HullPart {

@@ -257,11 +257,57 @@ TEST_CASE("masses and inertias that no body has are refused by name") {
             .starts_with("link `b` has an inertia with the principal moment 0"));
 }
 
-TEST_CASE("a shape that is no mesh is refused rather than dropped") {
+std::string colliding(const std::string& geometry) {
+  return two_links(revolute(kLimit), std::string(kBody) +
+                                         "<collision><origin xyz='1 2 3' rpy='0 0 1'/><geometry>" +
+                                         geometry + "</geometry></collision>");
+}
+
+TEST_CASE("boxes, spheres and cylinders are collision shapes") {
+  const auto read = [](const std::string& geometry) {
+    const test::TextFile file(colliding(geometry));
+    auto model = load_urdf(file.path());
+    REQUIRE_MESSAGE(model.ok(), (model.ok() ? std::string() : to_text(model.failure())));
+    const Link& link = model->links[std::size_t(model->find_link("b"))];
+    REQUIRE(link.primitives.size() == 1);
+    CHECK(link.collisions.empty());
+    CHECK(link.can_collide());
+    CHECK(link.primitives[0].origin.position == Vec3(1, 2, 3));
+    CHECK(link.primitives[0].origin.rotation.z() == doctest::Approx(std::sin(0.5)));
+    return link.primitives[0];
+  };
+  const Primitive box = read("<box size='0.2 0.4 0.6'/>");
+  CHECK(box.kind == Primitive::Kind::kBox);
+  CHECK((box.half - Vec3(0.1, 0.2, 0.3)).norm() < 1e-15);
+  const Primitive sphere = read("<sphere radius='0.05'/>");
+  CHECK(sphere.kind == Primitive::Kind::kSphere);
+  CHECK(sphere.half == Vec3(0.05, 0.05, 0.05));
+  const Primitive cylinder = read("<cylinder radius='0.05' length='0.3'/>");
+  CHECK(cylinder.kind == Primitive::Kind::kCylinder);
+  CHECK((cylinder.half - Vec3(0.05, 0.05, 0.15)).norm() < 1e-15);
+}
+
+TEST_CASE("a primitive without extent is refused by its link's name") {
+  for (const char* geometry : {"<box size='1 0 1'/>", "<box size='1 -1 1'/>",
+                               "<sphere radius='0'/>", "<cylinder radius='0.1' length='-1'/>",
+                               "<sphere radius='nan'/>", "<box size='1 inf 1'/>"}) {
+    const std::string message = load_message(colliding(geometry));
+    CHECK_MESSAGE(!message.empty(), geometry);
+    if (std::string(geometry).find("nan") == std::string::npos &&
+        std::string(geometry).find("inf") == std::string::npos) {
+      CHECK(message ==
+            "link `b` has a collision shape of a size that is not positive or a place that is not "
+            "finite");
+    }
+  }
+}
+
+TEST_CASE("a visual shape that is no mesh is refused rather than dropped") {
   CHECK(load_message(two_links(revolute(kLimit), std::string(kBody) +
-                                                     "<collision><geometry><box size='1 1 1'/>"
-                                                     "</geometry></collision>")) ==
-        "link `b` has a shape that is no mesh; only meshes are read");
+                                                     "<visual><geometry><box size='1 1 1'/>"
+                                                     "</geometry></visual>")) ==
+        "link `b` has a visual shape that is no mesh; boxes, spheres and cylinders are read as "
+        "collision shapes only");
   CHECK(!load_message(two_links(revolute(kLimit), std::string(kBody) +
                                                       "<visual><geometry><mesh/></geometry>"
                                                       "</visual>"))
