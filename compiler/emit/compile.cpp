@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "compiler/emit/emit.h"
 #include "compiler/sema/analyze.h"
@@ -64,6 +65,25 @@ struct Analyzed {
   sema::Model model;
 };
 
+std::vector<std::string> unused_phrases(const sema::Model& model) {
+  std::set<std::pair<sema::ObjectId, std::string>> used;
+  std::set<sema::ObjectId> objects;
+  for (const sema::Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    for (const sema::ObjectId object : task.objects()) objects.insert(object);
+    if (task.refer[0]) used.emplace(task.source, task.refer[0]->text);
+    if (task.refer[1]) used.emplace(task.target, task.refer[1]->text);
+  }
+  std::vector<std::string> names;
+  for (const sema::ObjectId object : objects) {
+    for (const sema::Phrase& phrase : model.objects[object].phrases) {
+      if (!used.contains({object, phrase.name}))
+        names.push_back(model.objects[object].name + "." + phrase.name);
+    }
+  }
+  return names;
+}
+
 Status analyze(std::span<const std::string> files, const CompileOptions& options, Analyzed& out) {
   if (files.empty()) return Failure{"usage", "no file to compile", ""};
   for (const std::string& file : files) {
@@ -83,6 +103,13 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
   }
   out.model = sema::analyze(out.compilation.sources, trees, options.asset_root,
                             out.compilation.diagnostics, named);
+  out.compilation.unused_phrases = unused_phrases(out.model);
+  const auto behind_used = std::stable_partition(
+      out.model.suites.begin(), out.model.suites.end(), [&](const sema::Suite& suite) {
+        return std::find(named.begin(), named.end(), suite.span.file) != named.end();
+      });
+  for (auto suite = out.model.suites.begin(); suite != behind_used; ++suite)
+    out.compilation.own_suites.push_back(suite->name);
   out.compilation.ok = !out.compilation.diagnostics.has_errors();
   if (out.compilation.ok) PROBE_TRY(check_suite_exists(out.model, options.suite));
   return {};

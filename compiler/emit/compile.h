@@ -36,6 +36,11 @@ Result<Compilation> check(std::span<const std::string> files, const CompileOptio
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options);
 
 // How large a suite is, without lowering or writing anything.
+  // Suites that the named files declare themselves, in the order of the text; those of used files
+  // stand behind them in the plan.
+  std::vector<std::string> own_suites;
+  // "object.phrase" of the objects of some task by which no concrete task refers.
+  std::vector<std::string> unused_phrases;
 struct Counts {
   std::size_t tasks = 0;  // concrete ones, or the members of the one suite asked for
   std::size_t episodes = 0;

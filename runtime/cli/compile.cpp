@@ -63,3 +63,5 @@ CompiledText compile_text(const std::vector<std::string>& files, const AssetOpti
 }
 
 }  // namespace probe::cli
+  text.unused_phrases = std::move(compiled->unused_phrases);
+  text.own_suites = std::move(compiled->own_suites);

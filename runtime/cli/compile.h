@@ -16,6 +16,8 @@ struct CompiledText {
   std::string said;                // the diagnostics, as text or as JSON
   std::vector<std::string> files;  // every file that was read, as it was found
 };
+  std::vector<std::string> unused_phrases;
+  std::vector<std::string> own_suites;  // declared by the named files, not by those they use
 
 // The same in two steps: nothing is printed but a Failure of the outside, and then what was said.
 CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,

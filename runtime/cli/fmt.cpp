@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <span>
 
 #include "compiler/diag/text.h"
@@ -28,7 +29,7 @@ Status rewrite(const std::string& path, const std::string& text) {
 }
 
 struct Tally {
-  std::size_t changed = 0, broken = 0;
+  std::vector<std::string> changed;
 };
 
 // The exit code for this file.
@@ -42,12 +43,10 @@ int format_one(const std::string& path, bool check, Tally& tally) {
   if (!text->has_value()) {
     const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
     fmt::print(stderr, "{}", render_text(diagnostics, sources, {.colour = colour}));
-    ++tally.broken;
     return kUser;
   }
   if (**text == sources.file(*id).text()) return kFine;
-  ++tally.changed;
-  fmt::print("{}\n", path);
+  tally.changed.push_back(path);
   if (check) return kUser;
   const Status written = rewrite(path, **text);
   return written ? kFine : report(written.failure());
@@ -58,7 +57,7 @@ int format_one(const std::string& path, bool check, Tally& tally) {
 void add_fmt(CLI::App& app, int& exit) {
   struct Arguments {
     std::vector<std::string> files;
-    bool check = false;
+    bool check = false, json = false;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("fmt", "canonical layout, in place");
@@ -67,13 +66,19 @@ void add_fmt(CLI::App& app, int& exit) {
       "example: vlaprobe fmt suite/*.probe");
   verb->add_option("F", arguments->files, ".probe texts")->required();
   verb->add_flag("--check", arguments->check, "write nothing; exit 1 if a file would change");
+  verb->add_flag("--json", arguments->json, "those files as a JSON array");
   verb->callback([arguments, &exit] {
     Tally tally;
     for (const std::string& file : arguments->files) {
       exit = std::max(exit, format_one(file, arguments->check, tally));
     }
-    if (tally.changed > 0) {
-      fmt::print(stderr, "{} of {} files {}\n", tally.changed, arguments->files.size(),
+    if (arguments->json) {
+      fmt::print("{}\n", nlohmann::json(tally.changed).dump());
+      return;
+    }
+    for (const std::string& file : tally.changed) fmt::print("{}\n", file);
+    if (!tally.changed.empty()) {
+      fmt::print(stderr, "{} of {} files {}\n", tally.changed.size(), arguments->files.size(),
                  arguments->check ? "are not in canonical layout" : "laid out anew");
     }
   });

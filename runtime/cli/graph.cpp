@@ -1,37 +1,22 @@
 // vlaprobe graph
 #include "runtime/inspect/graph.h"
 
-#include <fmt/format.h>
-
-#include "runtime/cli/load.h"
+#include "runtime/cli/plan_table.h"
 
 namespace probe::cli {
 
 void add_graph(CLI::App& app, int& exit) {
-  struct Arguments {
-    std::string file, suite;
-    bool json = false;
-    AssetOptions assets;
-  };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb =
-      app.add_subcommand("graph", "which task is compared with which, for Graphviz (DOT)");
-  verb->footer(
-      "dashed: more than one axis moves\n"
-      "example: vlaprobe graph suite/intact.probe | dot -Tsvg > tasks.svg");
-  verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
-  verb->add_option("--suite", arguments->suite, "only the members of this suite");
-  verb->add_flag("--json", arguments->json, "tasks and edges as a JSON object");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] {
-    LoadedPlan loaded = load_plan(arguments->file, arguments->assets);
-    exit = loaded.exit;
-    if (!loaded.plan) return;
-    const auto tasks = select_tasks(*loaded.plan, arguments->suite, exit);
-    if (!tasks) return;
-    const auto graph = inspect::graph(*loaded.plan, *tasks);
-    fmt::print("{}", arguments->json ? graph.dump(2) + "\n" : inspect::graph_dot(graph));
-  });
+  add_plan_table(app, exit,
+                 {.name = "graph",
+                  .about = "which task is compared with which, for Graphviz (DOT)",
+                  .footer = "dashed: more than one axis moves\n"
+                            "example: vlaprobe graph suite/intact.probe | dot -Tsvg > tasks.svg",
+                  .json = "tasks and edges as a JSON object",
+                  .make =
+                      [](const LoadedPlan& loaded, std::span<const std::uint32_t> tasks) {
+                        return inspect::graph(*loaded.plan, tasks);
+                      },
+                  .text = inspect::graph_dot});
 }
 
 }  // namespace probe::cli

@@ -13,9 +13,18 @@ bool holds_library(const fs::path& folder) {
   return fs::is_directory(folder / "std", error);
 }
 
+// The folder itself for "std/..."; beside it, where there is one, for "suite/...".
+std::vector<std::string> with_suite(const fs::path& folder) {
+  std::vector<std::string> folders = {folder.lexically_normal().string()};
+  const fs::path beside = (folder / "..").lexically_normal();
+  std::error_code error;
+  if (fs::is_directory(beside / "suite", error)) folders.push_back(beside.string());
+  return folders;
+}
+
 // A place that somebody named is the only one looked at.
 Result<std::vector<std::string>> only(std::string_view folder, const char* who) {
-  if (holds_library(folder)) return std::vector<std::string>{std::string(folder)};
+  if (holds_library(folder)) return with_suite(folder);
   return Failure{"usage", std::string("the folder given by ") + who + " holds no std/",
                  std::string(folder)};
 }
@@ -31,7 +40,7 @@ Result<std::vector<std::string>> find_library_folders(std::string_view chosen) {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   for (const fs::path& place :
        {program.parent_path() / "../dsl", fs::path(VLAPROBE_BUILT_FROM) / "dsl"}) {
-    if (holds_library(place)) return std::vector<std::string>{place.lexically_normal().string()};
+    if (holds_library(place)) return with_suite(place);
   }
   return std::vector<std::string>();
 }

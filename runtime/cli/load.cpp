@@ -31,6 +31,9 @@ LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
       return loaded;
     }
     plan = plan::Plan::from_bytes(std::move(text.plan));
+    loaded.is_text = true;
+    loaded.unused_phrases = std::move(text.unused_phrases);
+    loaded.only_used_suites = plan && !plan->suites().empty() && text.own_suites.empty();
   } else {
     plan = plan::Plan::open(path);
   }

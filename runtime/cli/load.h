@@ -14,6 +14,9 @@ namespace probe::cli {
 struct LoadedPlan {
   std::optional<plan::Plan> plan;
   int exit = kFine;
+  bool is_text = false;                     // compiled just now
+  std::vector<std::string> unused_phrases;  // of a text: "object.phrase" that no task refers by
+  bool only_used_suites = false;  // a text that declares no suite, while files that it uses do
 };
 LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
                      const std::string& suite = {});

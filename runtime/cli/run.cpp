@@ -117,6 +117,19 @@ class ProgressPrinter {
   bool dirty_ = false;
 };
 
+// The suites of a file that is only used are not what the user asked for.
+Failure no_own_suite(const plan::Plan& plan, const std::string& file) {
+  std::string names;
+  for (const plan::SuiteRecord& suite : plan.suites())
+    names += (names.empty() ? "" : ", ") + std::string(plan.text(suite.name));
+  return {"usage",
+          "declares no suite; add `suite mine { tasks { ... }; seeds 42 }`, or take one of a used "
+          "file with "
+          "--suite: " +
+              names,
+          file};
+}
+
 int run_verb(const Arguments& arguments) {
   auto options = to_options(arguments);
   if (!options) return report(options.failure());
@@ -126,6 +139,8 @@ int run_verb(const Arguments& arguments) {
   if (!loaded.plan) return loaded.exit;
 
   ProgressPrinter printer;
+  if (loaded.only_used_suites && arguments.suite.empty())
+    return report(no_own_suite(*loaded.plan, arguments.file));
   options->progress = [&](const run::RunProgress& progress) { printer(progress); };
   auto summary = run::run(*loaded.plan, *options);
   printer.clear();
@@ -148,7 +163,8 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
   verb->add_option("--policy", arguments->policy, "who acts")->required();
   verb->add_option("-o,--out", arguments->out, "results folder")->required();
-  verb->add_option("--suite", arguments->suite, "which suite (default: the first of the file)");
+  verb->add_option("--suite", arguments->suite,
+                   "which suite (default: the first that F itself declares)");
   verb->add_option("--tasks", arguments->tasks, "glob over task names");
   verb->add_option("--episodes", arguments->episodes, "A-B, first and last start of each task");
   verb->add_option("--seeds", arguments->seeds, "A,B,... instead of the suite's");

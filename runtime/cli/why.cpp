@@ -16,21 +16,16 @@ struct Arguments {
   bool json = false;
 };
 
-std::string value_text(const rejudge::MetricWhy& metric) {
-  if (metric.is_bool) return metric.value != 0 ? "true" : "false";
-  return fmt::format("{:.6g}", metric.value);
-}
-
 void print_json(const rejudge::EpisodeWhy& why) {
   nlohmann::ordered_json json = {
       {"task", why.task}, {"episode", why.episode}, {"seed", why.seed}, {"steps", why.steps}};
   json["invalid"] = why.invalid ? nlohmann::ordered_json(*why.invalid) : nullptr;
   json["metrics"] = nlohmann::ordered_json::array();
   for (const rejudge::MetricWhy& metric : why.metrics) {
-    nlohmann::ordered_json entry = {{"metric", metric.name},     {"value", metric.value},
-                                    {"readout", metric.readout}, {"step", metric.step},
-                                    {"when", metric.when},       {"file", metric.file},
-                                    {"line", metric.line}};
+    nlohmann::ordered_json entry = {{"metric", metric.name}, {"value", metric.value},
+                                    {"shown", metric.shown}, {"readout", metric.readout},
+                                    {"step", metric.step},   {"when", metric.when},
+                                    {"file", metric.file},   {"line", metric.line}};
     if (metric.is_bool) entry["value"] = metric.value != 0;
     entry["conditions"] = nlohmann::ordered_json::array();
     for (const rejudge::Condition& c : metric.conditions) {
@@ -49,7 +44,7 @@ void print_json(const rejudge::EpisodeWhy& why) {
 }
 
 void print_metric(const rejudge::MetricWhy& metric) {
-  fmt::print("{} = {} {} ({})\n", metric.name, value_text(metric), metric.when, metric.readout);
+  fmt::print("{} = {} {} ({})\n", metric.name, metric.shown, metric.when, metric.readout);
   const auto left = [](const rejudge::Condition& c) {
     return c.bodies.empty() ? c.text : c.text + "  [" + c.bodies + "]";
   };

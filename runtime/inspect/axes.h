@@ -3,6 +3,7 @@
 // which a plan does not carry.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -20,6 +21,9 @@ inline constexpr std::uint32_t kLanguageAxes =
     static_cast<std::uint32_t>(plan::Axis::kLanguageNegation) |
     static_cast<std::uint32_t>(plan::Axis::kLanguageAppearance) |
     static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense);
+
+// The bits of a task's `ood`: what was not seen in training.
+inline constexpr std::array<std::string_view, 3> kNovelty = {"source", "target", "relation"};
 
 // Everything but language as a mask; of language only whether it moved: the instructions differ
 // also when the names of source and target are taken out of both.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/inspect/axes.h"
+#include "runtime/inspect/wrap.h"
 #include "runtime/plan/axis_names.h"
 
 namespace probe::inspect {
@@ -18,19 +19,25 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Row {
-  std::size_t variants = 0, confounded = 0;
-  std::array<std::size_t, 12> axes{};
+  std::size_t tasks = 0, variants = 0, confounded = 0;
+  std::array<std::size_t, plan::kAxisNames.size()> axes{};
+  std::array<std::size_t, kNovelty.size()> ood{};
 
-  void add(std::uint32_t mask) {
+  void add_task(const plan::TaskRecord& task) {
+    ++tasks;
+    for (std::size_t i = 0; i < ood.size(); ++i) ood[i] += (task.ood >> i & 1u) != 0 ? 1 : 0;
+    if (task.baseline == plan::kNone) return;
     ++variants;
-    confounded += std::popcount(mask) > 1 ? 1 : 0;
+    confounded += std::popcount(task.axes) > 1 ? 1 : 0;
     for (std::size_t i = 0; i < axes.size(); ++i)
-      axes[i] += (mask & static_cast<std::uint32_t>(plan::kAxisNames[i].axis)) != 0 ? 1 : 0;
+      axes[i] += (task.axes & static_cast<std::uint32_t>(plan::kAxisNames[i].axis)) != 0 ? 1 : 0;
   }
   Json to_json() const {
     Json json = {{"variants", variants}, {"confounded", confounded}, {"axes", Json::object()}};
     for (std::size_t i = 0; i < axes.size(); ++i)
       json["axes"][std::string(plan::kAxisNames[i].name)] = axes[i];
+    json["tasks"] = tasks;
+    for (std::size_t i = 0; i < ood.size(); ++i) json["ood"][std::string(kNovelty[i])] = ood[i];
     return json;
   }
 };
@@ -63,21 +70,6 @@ Json unused_objects(const plan::Plan& plan, std::span<const std::uint32_t> tasks
           {"never_distractor", never(kDistractor)}};
 }
 
-// "language.action" stands in two lines, "language" above "action".
-struct Heading {
-  std::string group, leaf;
-  std::size_t width = 0;
-};
-
-Heading heading_of(const std::string& axis) {
-  const std::size_t dot = axis.find('.');
-  Heading heading;
-  heading.group = dot == std::string::npos ? "" : axis.substr(0, dot);
-  heading.leaf = dot == std::string::npos ? axis : axis.substr(dot + 1);
-  heading.width = std::max(heading.group.size(), heading.leaf.size());
-  return heading;
-}
-
 std::string joined(const Json& words) {
   std::string text;
   for (const Json& word : words) text += (text.empty() ? "" : ", ") + word.get<std::string>();
@@ -90,10 +82,8 @@ Json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
   std::map<std::uint32_t, Row> rows;  // by base, in the order of the plan
   Row total;
   for (const std::uint32_t task : tasks) {
-    Row& row = rows[base_of(plan, task)];
-    if (plan.tasks()[task].baseline == plan::kNone) continue;
-    row.add(plan.tasks()[task].axes);
-    total.add(plan.tasks()[task].axes);
+    rows[base_of(plan, task)].add_task(plan.tasks()[task]);
+    total.add_task(plan.tasks()[task]);
   }
   Json json = {{"axes", Json::array()}, {"bases", Json::array()}};
   for (const plan::AxisName& axis : plan::kAxisNames) json["axes"].push_back(axis.name);
@@ -111,43 +101,71 @@ Json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
   return json;
 }
 
-std::string coverage_text(const Json& coverage) {
-  std::vector<Heading> headings;
-  for (const Json& axis : coverage["axes"]) headings.push_back(heading_of(axis.get<std::string>()));
-  std::size_t width = 5;  // "total"
-  for (const Json& base : coverage["bases"])
-    width = std::max(width, base["task"].get_ref<const std::string&>().size());
+namespace {
 
-  std::string text;
+struct Column {
+  std::string heading;
+  const Json* counts;
+};
+
+std::string number(const Json& count) { return count == 0 ? "." : count.dump(); }
+
+// One column a base, as many as fit on a screen.
+void table(const Json& coverage, std::span<const Column> columns, std::string& text) {
+  constexpr std::size_t kNameWidth = 20;  // "language.commonsense"
   const auto out = std::back_inserter(text);
-  std::string group;
-  fmt::format_to(out, "{:<{}}", "", width);
-  for (const Heading& heading : headings) {
-    fmt::format_to(out, "  {:>{}}", heading.group == group ? "" : heading.group, heading.width);
-    group = heading.group;
-  }
-  fmt::format_to(out, "\n{:<{}}", "base", width);
-  for (const Heading& heading : headings)
-    fmt::format_to(out, "  {:>{}}", heading.leaf, heading.width);
-  text += "  variants  confounded\n";
-  const auto row = [&](const std::string& name, const Json& counts) {
-    fmt::format_to(out, "{:<{}}", name, width);
-    std::size_t column = 0;
-    for (const Json& number : counts["axes"]) {
-      const std::string shown = number == 0 ? "." : number.dump();
-      fmt::format_to(out, "  {:>{}}", shown, headings[column++].width);
-    }
-    fmt::format_to(out, "  {:>8}  {:>10}\n", counts["variants"].get<std::size_t>(),
-                   counts["confounded"].get<std::size_t>());
+  const auto line = [&](const std::string& name, const auto& cell) {
+    fmt::format_to(out, "{:<{}}", name, kNameWidth);
+    for (const Column& column : columns)
+      fmt::format_to(out, "  {:>{}}", cell(column), column.heading.size());
+    text += '\n';
   };
-  for (const Json& base : coverage["bases"]) row(base["task"].get<std::string>(), base);
-  row("total", coverage["total"]);
+  line("", [](const Column& column) { return column.heading; });
+  for (const Json& axis : coverage["axes"]) {
+    const std::string name = axis.get<std::string>();
+    line(name, [&](const Column& c) { return number((*c.counts)["axes"][name]); });
+  }
+  for (const char* name : {"variants", "confounded"})
+    line(name, [&](const Column& c) { return number((*c.counts)[name]); });
+  for (const std::string_view novelty : kNovelty) {
+    line(fmt::format("ood {}", novelty),
+         [&](const Column& c) { return number((*c.counts)["ood"][std::string(novelty)]); });
+  }
+  line("tasks", [](const Column& c) { return number((*c.counts)["tasks"]); });
+}
+
+}  // namespace
+
+std::string coverage_text(const Json& coverage) {
+  constexpr std::size_t kScreen = 100, kNames = 20;
+  std::vector<Column> columns;
+  for (const Json& base : coverage["bases"])
+    columns.push_back({base["task"].get<std::string>(), &base});
+  columns.push_back({"total", &coverage["total"]});
+  std::string text;
+  for (std::size_t first = 0; first < columns.size();) {
+    std::size_t width = kNames, count = 0;
+    while (first + count < columns.size()) {
+      width += 2 + columns[first + count].heading.size();
+      if (count > 0 && width > kScreen) break;
+      ++count;
+    }
+    if (first > 0) text += '\n';
+    table(coverage, std::span(columns).subspan(first, count), text);
+    first += count;
+  }
+  const auto out = std::back_inserter(text);
   fmt::format_to(out, "\n{} of {} cells are empty\n", coverage["empty"].get<std::size_t>(),
                  coverage["cells"].get<std::size_t>());
   const Json& objects = coverage["objects"];
-  fmt::format_to(out, "objects never a source: {}\n", joined(objects["never_source"]));
-  fmt::format_to(out, "objects never a target: {}\n", joined(objects["never_target"]));
-  fmt::format_to(out, "objects never a distractor: {}\n", joined(objects["never_distractor"]));
+  const auto list = [&](const char* what, const Json& words) {
+    text += wrapped(fmt::format("{}: {}", what, joined(words)), kScreen) + "\n";
+  };
+  list("objects never a source", objects["never_source"]);
+  list("objects never a target", objects["never_target"]);
+  list("objects never a distractor", objects["never_distractor"]);
+  if (coverage.contains("unused_phrases"))
+    list("phrases that no task uses", coverage["unused_phrases"]);
   return text;
 }
 

@@ -11,11 +11,14 @@
 namespace probe::inspect {
 
 // {axes[], bases[], total{}, empty, cells, objects{never_source[], never_target[],
-// never_distractor[]}}. A base is {task, variants, confounded, axes{name: number}}: variants count
-// wherever they hang below it, on each axis that differs from their own baseline; `confounded`
-// ones differ on more than one. Objects are those of the plan; of `tasks` alone is counted.
+// never_distractor[]}}. A base is {task, variants, confounded, axes{name: number}, tasks,
+// ood{source, target, relation}}: variants count wherever they hang below it, on each axis that
+// differs from their own baseline; `confounded` ones differ on more than one; `tasks` are the base
+// itself and all below it, of which `ood` counts those with something that was not seen in
+// training. Objects are those of the plan; of `tasks` alone is counted.
 nlohmann::ordered_json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
-// A table with a dot in every empty cell.
+// Axis by base, with a dot in every empty cell; bases side by side as far as a screen is wide. Also
+// says `unused_phrases`, an array of "object.phrase", where somebody added it.
 std::string coverage_text(const nlohmann::ordered_json& coverage);
 
 }  // namespace probe::inspect

@@ -8,6 +8,7 @@
 
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/words.h"
+#include "runtime/inspect/wrap.h"
 
 namespace probe::inspect {
 namespace {
@@ -117,13 +118,19 @@ std::string diff_text(const Json& diff) {
   }
   rows[1].a = marked(to_words(diff["words_a"]));
   rows[1].b = marked(to_words(diff["words_b"]));
+  // Two columns side by side within a screen of 100; longer cells go on below themselves.
+  constexpr std::size_t kMost = 41;
   std::size_t width = 0;
-  for (const Row& row : rows) width = std::max(width, row.a.size());
+  for (const Row& row : rows) width = std::max(width, std::min(kMost, row.a.size()));
   std::string text;
   const auto out = std::back_inserter(text);
   for (const Row& row : rows) {
-    fmt::format_to(out, "{} {:<12}  {:<{}}  {}\n", row.differs ? '*' : ' ', row.name, row.a, width,
-                   row.b);
+    const std::vector<std::string> left = lines_of(row.a, kMost), right = lines_of(row.b, kMost);
+    for (std::size_t i = 0; i < std::max(left.size(), right.size()); ++i) {
+      fmt::format_to(out, "{} {:<12}  {:<{}}  {}\n", i == 0 && row.differs ? '*' : ' ',
+                     i == 0 ? row.name : "", i < left.size() ? left[i] : "", width,
+                     i < right.size() ? right[i] : "");
+    }
   }
   const Json& equal = diff["equal"];
   fmt::format_to(out, "\naxes       {}\n", joined(diff["axes"]));

@@ -11,6 +11,7 @@
 
 #include "runtime/base/trig.h"
 #include "runtime/inspect/axes.h"
+#include "runtime/inspect/wrap.h"
 #include "runtime/plan/ids.h"
 
 namespace probe::inspect {
@@ -137,6 +138,10 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   json["scene"] = plan.text(plan.scenes()[task.scene].name);
   json["camera"] = plan.text(plan.cameras()[task.camera].name);
   json["light"] = plan.text(plan.lights()[task.light].name);
+  json["ood"] = Json::array();
+  for (std::size_t i = 0; i < kNovelty.size(); ++i) {
+    if ((task.ood >> i & 1u) != 0) json["ood"].push_back(kNovelty[i]);
+  }
   json["drop_m"] = task.drop;
   json["settle_s"] = task.settle;
   json["allow"] = task.allow.length == 0 ? Json() : Json(plan.text(task.allow));
@@ -156,22 +161,79 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
 }
 
 std::string list_text(const Json& list) {
+  constexpr std::size_t kScreen = 100, kLeast = 30;
   std::size_t width = 0;
   for (const Json& task : list)
     width = std::max(width, task["task"].get_ref<const std::string&>().size());
+  // Long instructions go on below themselves.
+  const std::size_t before = width + 8;
+  const std::size_t room = before + kLeast < kScreen ? kScreen - before : kLeast;
   std::string text;
   for (const Json& task : list) {
+    const auto lines = lines_of(task["prompt"].get_ref<const std::string&>(), room);
     fmt::format_to(std::back_inserter(text), "{:<{}}  {:>4}  {}\n", task["task"].get<std::string>(),
-                   width, task["episodes"].get<std::size_t>(), task["prompt"].get<std::string>());
+                   width, task["episodes"].get<std::size_t>(), lines[0]);
+    for (std::size_t i = 1; i < lines.size(); ++i)
+      fmt::format_to(std::back_inserter(text), "{:<{}}{}\n", "", before, lines[i]);
   }
   return text;
 }
+
+namespace {
+
+// "-23.5, 7.5 yaw 90": centimetres and degrees.
+std::string place_text(const Json& object) {
+  std::string text = fmt::format("{}, {}", tenth(object["x_m"].get<double>(), 100),
+                                 tenth(object["y_m"].get<double>(), 100));
+  for (const char* angle : {"roll", "pitch", "yaw"}) {
+    const double degrees = tenth(object[std::string(angle) + "_deg"].get<double>(), 1);
+    if (degrees != 0) fmt::format_to(std::back_inserter(text), " {} {}", angle, degrees);
+  }
+  return text;
+}
+
+// A line a start, a column an object. The ids of episodes are in the JSON.
+std::string starts_text(const Json& task) {
+  std::vector<std::string> names;
+  std::vector<std::size_t> widths;
+  if (!task["starts"].empty()) {
+    for (const Json& object : task["starts"][0]) {
+      names.push_back(object["object"].get<std::string>());
+      widths.push_back(names.back().size());
+    }
+  }
+  for (const Json& start : task["starts"]) {
+    for (std::size_t i = 0; i < names.size(); ++i)
+      widths[i] = std::max(widths[i], place_text(start[i]).size());
+  }
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const auto column = [&](std::size_t i, const std::string& cell) {
+    fmt::format_to(out, "  {:<{}}", cell, i + 1 < names.size() ? widths[i] : 0);
+  };
+  fmt::format_to(out, "{:>5}  {:<8}  {:>5}", "start", "start id", "apart");
+  for (std::size_t i = 0; i < names.size(); ++i) column(i, names[i]);
+  text += '\n';
+  for (std::size_t e = 0; e < task["starts"].size(); ++e) {
+    fmt::format_to(out, "{:>5}  {}  {:>5}", e, short_id(task["ids"]["starts"][e]),
+                   tenth(task["distances_m"][e].get<double>(), 100));
+    for (std::size_t i = 0; i < names.size(); ++i) column(i, place_text(task["starts"][e][i]));
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string describe_text(const Json& task) {
   std::string text;
   const auto out = std::back_inserter(text);
   const auto line = [&](const char* name, const std::string& value) {
-    fmt::format_to(out, "{:<12} {}\n", name, value);
+    const char* key = name;
+    for (const std::string& part : lines_of(value, 87)) {
+      fmt::format_to(out, "{:<12} {}\n", key, part);
+      key = "";
+    }
   };
   const auto word = [&](const char* key) { line(key, task[key].get<std::string>()); };
   word("task");
@@ -182,6 +244,7 @@ std::string describe_text(const Json& task) {
   line("baseline", task["baseline"].is_null() ? "none" : task["baseline"].get<std::string>());
   line("axes", joined(task["axes"], "none"));
   if (!task["allow"].is_null()) line("allowed", task["allow"].get<std::string>());
+  line("unseen", joined(task["ood"], "nothing"));
   line("categories", joined(task["categories"], "none"));
   word("scene");
   word("camera");
@@ -194,22 +257,7 @@ std::string describe_text(const Json& task) {
   const Json& ids = task["ids"];
   line("prompt id", short_id(ids["prompt"]));
   line("judge id", short_id(ids["judge"]));
-  fmt::format_to(out, "\n{:>5}  {:<8}  {:<8}  {:>8}  where (cm, deg)\n", "start", "start id",
-                 "episode", "apart");
-  for (std::size_t e = 0; e < task["starts"].size(); ++e) {
-    fmt::format_to(out, "{:>5}  {}  {}  {:>5} cm", e, short_id(ids["starts"][e]),
-                   short_id(ids["episodes"][e]), tenth(task["distances_m"][e].get<double>(), 100));
-    for (const Json& object : task["starts"][e]) {
-      fmt::format_to(out, "  {} ({}, {})", object["object"].get<std::string>(),
-                     tenth(object["x_m"].get<double>(), 100),
-                     tenth(object["y_m"].get<double>(), 100));
-      for (const char* angle : {"roll", "pitch", "yaw"}) {
-        const double degrees = tenth(object[std::string(angle) + "_deg"].get<double>(), 1);
-        if (degrees != 0) fmt::format_to(out, " {} {}", angle, degrees);
-      }
-    }
-    text += '\n';
-  }
+  text += "\nstarts: cm and degrees, source and target apart in cm\n" + starts_text(task);
   return text;
 }
 

@@ -75,6 +75,16 @@ std::vector<Dimension> dimensions_of(const plan::Plan& plan, const plan::Program
   return out;
 }
 
+std::vector<Dimension> metric_dimensions(const plan::Plan& plan,
+                                         const plan::ProgramRecord& program) {
+  const std::vector<Dimension> registers = dimensions_of(plan, program);
+  std::vector<Dimension> out(program.metrics.count, Dimension::kNumber);
+  for (const plan::Instruction& in : plan.code(program)) {
+    if (plan::find_op(in.op)->op == Op::kEMITR) out[in.b] = registers[in.a];
+  }
+  return out;
+}
+
 std::string quantity(double value, Dimension dimension, int digits) {
   const auto with = [&](double number, const char* unit) {
     return fmt::format("{:.{}g}{}", number, digits, unit);

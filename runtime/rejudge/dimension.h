@@ -26,6 +26,10 @@ enum class Dimension : std::uint8_t {
 // By register of the program.
 std::vector<Dimension> dimensions_of(const plan::Plan& plan, const plan::ProgramRecord& program);
 
+// By metric of the program: what its number measures; a truth is a number.
+std::vector<Dimension> metric_dimensions(const plan::Plan& plan,
+                                         const plan::ProgramRecord& program);
+
 // "3.1cm", "1.2m", "0.004Ns", "12cm/s", "60deg" (radians in), "0.8s", "14", to three digits.
 std::string quantity(double value, Dimension dimension, int digits = 3);
 std::string angle_text(double radians, int digits = 3);

@@ -148,6 +148,8 @@ class Explainer {
     why.name = plan_.text(record.name);
     why.is_bool = record.type == static_cast<std::uint32_t>(plan::MetricType::kBool);
     why.value = h.value;
+    why.shown = why.is_bool ? (h.value != 0 ? "true" : "false")
+                            : quantity(h.value, metric_dimensions(plan_, program_)[metric]);
     why.readout = readout_name(record.readout);
     std::tie(why.step, why.when) = decision(h, steps);
     if (const auto* span = plan_.span_of(4, program_.metrics.first + metric)) {

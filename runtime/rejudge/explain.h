@@ -29,6 +29,7 @@ struct MetricWhy {
   std::string name;
   bool is_bool = true;
   double value = 0;
+  std::string shown;    // the value with its unit: "true", "91.2cm", "14"
   std::string readout;  // "at end", "once", ...
   int step = 0;         // that decides, one-based; 0 when there was none
   std::string when;     // "at step 60", "since step 14", "never, nearest at step 41"

@@ -1,5 +1,7 @@
 #include "runtime/inspect/coverage.h"
 
+#include <sstream>
+
 #include "runtime/inspect/graph.h"
 #include "runtime/inspect/task_json.h"
 #include "tests/runtime/inspect/small_plan.h"
@@ -15,19 +17,49 @@ TEST_CASE("coverage counts the variants of every base by axis and shows what is 
   CHECK(found["bases"][0]["axes"]["language.action"] == 2);
   CHECK(found["bases"][0]["axes"]["layout"] == 0);
   CHECK(found["objects"]["never_target"].dump() == R"(["carrot","twig"])");
-  CHECK(
-      coverage_text(found) ==
-      R"(       object                       language                                                                       
-base   source  target  distractors    action  negation  appearance  commonsense  layout  scene  light  camera  goal  variants  confounded
-base        .       .            2         2         .           1            .       .      .      1       .     1         6           1
-other       .       .            .         .         .           .            .       .      .      .       .     .         0           0
-total       .       .            2         2         .           1            .       .      .      1       .     1         6           1
+  CHECK(coverage_text(found) ==
+        R"(                      base  other  total
+object.source            .      .      .
+object.target            .      .      .
+distractors              2      .      2
+language.action          2      .      2
+language.negation        .      .      .
+language.appearance      1      .      1
+language.commonsense     .      .      .
+language.paraphrase      .      .      .
+layout                   .      .      .
+scene                    .      .      .
+light                    1      .      1
+camera                   .      .      .
+goal                     1      .      1
+variants                 6      .      6
+confounded               1      .      1
+ood source               .      .      .
+ood target               .      .      .
+ood relation             .      1      1
+tasks                    7      1      8
 
-19 of 24 cells are empty
+21 of 26 cells are empty
 objects never a source: plate
 objects never a target: carrot, twig
 objects never a distractor: carrot, plate
 )");
+}
+
+TEST_CASE("a table of many bases goes on below itself, within a screen") {
+  auto found = coverage(test::small_plan(), all_tasks(test::small_plan()));
+  auto base = found["bases"][0];
+  for (int i = 0; i < 8; ++i) {
+    base["task"] = "a_base_with_a_name_" + std::to_string(i);
+    found["bases"].push_back(base);
+  }
+  const std::string text = coverage_text(found);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) CHECK(line.size() <= 100);
+  std::size_t tables = 0;
+  for (std::size_t at = 0; (at = text.find("object.source ", at)) != std::string::npos; ++at)
+    ++tables;
+  CHECK(tables == 3);
 }
 
 TEST_CASE("coverage of some tasks counts only those") {

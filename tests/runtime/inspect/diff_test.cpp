@@ -12,19 +12,21 @@ TEST_CASE("a reworded task has the same starts and the same judge") {
   CHECK(diff["equal"].dump() ==
         R"({"starts":24,"episodes":0,"of":24,"prompt":false,"judge":true,"program":true})");
   CHECK(diff_text(diff) ==
-        R"(                base                                             colored
-* prompt        put [carrot] on [plate]                          put [the orange object] on [the yellow object]
-  source        carrot                                           carrot
-  target        plate                                            plate
-  distractors   none                                             none
-* baseline      none                                             base
-  scene         table                                            table
-  camera        third_view                                       third_view
-  light         studio                                           studio
-  horizon       60                                               60
-  metrics       success, intention, grasp, steady, moved, wrong  success, intention, grasp, steady, moved, wrong
-  instructions  83                                               83
-  episodes      24                                               24
+        R"(                base                                       colored
+* prompt        put [carrot] on [plate]                    put [the orange object] on [the yellow
+                                                           object]
+  source        carrot                                     carrot
+  target        plate                                      plate
+  distractors   none                                       none
+* baseline      none                                       base
+  scene         table                                      table
+  camera        third_view                                 third_view
+  light         studio                                     studio
+  horizon       60                                         60
+  metrics       success, intention, grasp, steady, moved,  success, intention, grasp, steady, moved,
+                wrong                                      wrong
+  instructions  83                                         83
+  episodes      24                                         24
 
 axes       language.appearance
 declared   colored is a variant of base: language.appearance

@@ -44,5 +44,20 @@ TEST_CASE("people read centimetres and short ids") {
   CHECK(text.find("layout       24 starts, dropped from 50 cm, settled for 0.5 s\n") !=
         std::string::npos);
   CHECK(text.find("allowed      published \"so\"\n") != std::string::npos);
-  CHECK(text.find("carrot (-23.5, -7.5) yaw 180  plate (-23.5, 7.5)  twig (") != std::string::npos);
+  CHECK(text.find("start  start id  apart  carrot               plate") != std::string::npos);
+  CHECK(text.find("-23.5, -7.5 yaw 180  -23.5, 7.5") != std::string::npos);
+  CHECK(text.find("unseen       nothing\n") != std::string::npos);
+}
+
+TEST_CASE("long instructions go on below themselves") {
+  const Json list = {{{"task", "a_task_with_a_long_name_of_forty_letters_xx"},
+                      {"episodes", 24},
+                      {"prompt",
+                       "pick up the object that one needs the most when they are thirsty "
+                       "and drop it off on the plate"}}};
+  CHECK(list_text(list) ==
+        "a_task_with_a_long_name_of_forty_letters_xx    24  pick up the object that one needs the "
+        "most when\n"
+        "                                                   they are thirsty and drop it off on "
+        "the plate\n");
 }

@@ -1,0 +1,122 @@
+#include "runtime/rejudge/tally.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <vector>
+
+#include "runtime/rejudge/dimension.h"
+#include "runtime/run/store.h"
+
+namespace probe::rejudge {
+namespace {
+
+struct Column {
+  std::string name;
+  bool is_bool = true;
+  int trues = 0;
+  int never = 0;  // of a `first`
+  std::vector<double> values;
+};
+
+struct Tally {
+  int valid = 0, invalid = 0;
+  std::string first_invalid;  // which, and why
+  std::vector<Column> columns;
+};
+
+// What the plan says of one metric; without it a number is a number.
+struct Kind {
+  Dimension dimension = Dimension::kNumber;
+  bool is_first = false;
+};
+
+Kind kind_of(const plan::Plan* plan, const std::string& task, const std::string& metric) {
+  const auto index = plan == nullptr ? std::nullopt : plan->find_task(task);
+  if (!index) return {};
+  const plan::TaskRecord& record = plan->tasks()[*index];
+  const auto at = plan->find_metric(record, metric);
+  if (!at) return {};
+  return {metric_dimensions(*plan, plan->programs()[record.program])[*at],
+          plan->metrics(record)[*at].readout == static_cast<std::uint32_t>(plan::Readout::kFirst)};
+}
+
+void add(Tally& tally, const run::ResultRow& row) {
+  if (row.invalid) {
+    if (tally.invalid++ == 0) {
+      tally.first_invalid =
+          fmt::format("episode {} seed {}: {}", row.episode, row.seed, *row.invalid);
+    }
+    return;
+  }
+  ++tally.valid;
+  for (const run::MetricValue& metric : row.metrics) {
+    auto column = std::find_if(tally.columns.begin(), tally.columns.end(),
+                               [&](const Column& known) { return known.name == metric.name; });
+    if (column == tally.columns.end()) {
+      tally.columns.push_back({metric.name, metric.is_bool, 0, 0, {}});
+      column = tally.columns.end() - 1;
+    }
+    column->trues += metric.is_bool && metric.value != 0 ? 1 : 0;
+    if (!metric.is_bool) column->values.push_back(metric.value);
+  }
+}
+
+// "mean 91.2cm, 88cm .. 1.02m", and of a `first` how often it never came.
+std::string numbers_text(Column column, const Kind& kind) {
+  if (kind.is_first) {
+    column.never = static_cast<int>(std::erase(column.values, -1.0));
+  }
+  std::string text;
+  if (!column.values.empty()) {
+    double sum = 0;
+    for (const double value : column.values) sum += value;
+    const auto [low, high] = std::minmax_element(column.values.begin(), column.values.end());
+    text = fmt::format("mean {}, {} .. {}",
+                       quantity(sum / static_cast<double>(column.values.size()), kind.dimension),
+                       quantity(*low, kind.dimension), quantity(*high, kind.dimension));
+  }
+  if (column.never > 0)
+    text += fmt::format("{}never in {}", text.empty() ? "" : "; ", column.never);
+  return text;
+}
+
+}  // namespace
+
+std::optional<plan::Plan> stored_plan(const std::string& dir) {
+  auto plan = plan::Plan::open(run::plan_path(dir));
+  if (!plan) return std::nullopt;
+  return std::move(plan).value();
+}
+
+std::string tally_text(std::span<const run::ResultRow> rows, const plan::Plan* plan) {
+  std::vector<std::string> order;
+  std::map<std::string, Tally> tallies;
+  for (const run::ResultRow& row : rows) {
+    const auto [it, fresh] = tallies.try_emplace(row.task);
+    if (fresh) order.push_back(row.task);
+    add(it->second, row);
+  }
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (const std::string& task : order) {
+    const Tally& tally = tallies[task];
+    fmt::format_to(out, "{}: {} episodes", task, tally.valid + tally.invalid);
+    if (tally.invalid > 0)
+      fmt::format_to(out, ", {} invalid ({})", tally.invalid, tally.first_invalid);
+    text += '\n';
+    for (const Column& column : tally.columns) {
+      if (column.is_bool) {
+        fmt::format_to(out, "  {:<12} {:>4} of {}\n", column.name, column.trues, tally.valid);
+      } else {
+        fmt::format_to(out, "  {:<12} {}\n", column.name,
+                       numbers_text(column, kind_of(plan, task, column.name)));
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace probe::rejudge
