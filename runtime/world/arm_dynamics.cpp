@@ -1,8 +1,13 @@
-#include "runtime/world/arm_dynamics.h"
-
-#ifdef NDEBUG
-#error "Debian's libsimbody is built without NDEBUG and its inline State has another layout with it"
+// Before all else: a wrong combination compiles, links and may even run.
+#if defined(NDEBUG) && !defined(PROBE_SIMBODY_NDEBUG)
+#error "NDEBUG: this Simbody is built without it, and its inline State has another layout with it"
 #endif
+#if !defined(NDEBUG) && defined(PROBE_SIMBODY_NDEBUG)
+#error \
+    "no NDEBUG: this Simbody is built with it, and its inline State has another layout without it"
+#endif
+
+#include "runtime/world/arm_dynamics.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -55,6 +60,27 @@ bool ArmDynamics::Lump::is_possible() const {
   return moments[0] > 0 && moments[0] + moments[1] >= moments[2] * (1 - 1e-6);
 }
 
+MultibodyBuild multibody_build() {
+  char debug[64] = "", version[64] = "";
+  SimTK_about_SimTKcommon("debug", sizeof debug, debug);
+  SimTK_about_SimTKcommon("version", sizeof version, version);
+#ifdef NDEBUG
+  constexpr bool kAssertsHere = false;
+#else
+  constexpr bool kAssertsHere = true;
+#endif
+  return {version, std::string(debug) == "debug", kAssertsHere};
+}
+
+Status check_layout(const MultibodyBuild& build) {
+  if (build.library_asserts == build.adapter_asserts) return {};
+  const char* with[] = {"with NDEBUG", "without NDEBUG"};
+  return world_failure("the linked Simbody " + build.version + " is built " +
+                       with[build.library_asserts ? 1 : 0] +
+                       ", but vlaprobe was compiled for one " +
+                       with[build.adapter_asserts ? 1 : 0] + ": their data do not fit");
+}
+
 struct ArmDynamics::Simbody {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter{system};
@@ -69,6 +95,7 @@ ArmDynamics::~ArmDynamics() = default;
 Result<std::unique_ptr<ArmDynamics>> ArmDynamics::create(const robot::RobotModel& model,
                                                          const Pose& base,
                                                          const std::vector<int>& joints) {
+  PROBE_TRY(check_layout(multibody_build()));
   std::unique_ptr<ArmDynamics> arm(new ArmDynamics);
   arm->count_ = static_cast<int>(joints.size());
   arm->base_ = base;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +25,16 @@ struct MovingLink {
   // velocity, and the velocity of the point at ArmDynamics::reference(), world.
   Vec3 w = Vec3::Zero(), v = Vec3::Zero();
 };
+
+// How the multibody library at hand was compiled, and how the one file was that includes it. Its
+// inline classes have another layout without assertions, so both must agree.
+struct MultibodyBuild {
+  std::string version;
+  bool library_asserts = true, adapter_asserts = true;
+};
+MultibodyBuild multibody_build();
+// Fails (code "world") if they differ; each robot that is made checks it.
+Status check_layout(const MultibodyBuild& build);
 
 class ArmDynamics {
  public:

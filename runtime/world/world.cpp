@@ -14,9 +14,10 @@ namespace {
 
 using std::size_t;
 
-constexpr double kTooFast = 50.0;  // m/s
-constexpr double kTooDeep = 1.0;   // m below the surface
-constexpr double kTooFar = 100.0;  // m from the world's origin
+constexpr double kTooFast = 50.0;      // m/s
+constexpr double kTooDeep = 1.0;       // m below the surface
+constexpr double kTooFar = 100.0;      // m from the world's origin
+constexpr double kBeyondLimit = 1e-3;  // m or rad that a joint may start past a limit, by rounding
 
 Failure fail(std::string message) { return {"world", std::move(message), ""}; }
 
@@ -166,6 +167,12 @@ Status ContactWorld::add_joints(std::vector<int>* order) {
     drives.lower[i] = endless ? -std::numeric_limits<double>::infinity() : described.lower;
     drives.upper[i] = endless ? std::numeric_limits<double>::infinity() : described.upper;
     drives.prismatic[i] = described.kind == robot::JointKind::kPrismatic;
+    if (arm.joints[i] < drives.lower[i] - kBeyondLimit ||
+        arm.joints[i] > drives.upper[i] + kBeyondLimit) {
+      return fail("joint `" + drive.joint + "` starts at " + std::to_string(arm.joints[i]) +
+                  ", beyond its limits of " + std::to_string(drives.lower[i]) + " and " +
+                  std::to_string(drives.upper[i]));
+    }
     stepper_.joints.q[i] = stepper_.joints.target[i] = arm.joints[i];
   }
   drives.count = static_cast<int>(arm.drives.size());

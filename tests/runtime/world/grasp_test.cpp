@@ -152,6 +152,13 @@ TEST_CASE("worlds and actions that cannot be are refused with a reason") {
         }).find("has no drive") != std::string::npos);
   CHECK(refused([](WorldSpec& s) { s.bodies[0].pose.position.x() = std::nan(""); }).find("cube") !=
         std::string::npos);
+  for (const double q : {4.0, -4.0}) {
+    CHECK(refused([&](WorldSpec& s) { s.arm.joints[2] = q; }).find("joint `elbow` starts at") !=
+          std::string::npos);
+  }
+  CHECK(refused([&](WorldSpec& s) { s.arm.joints[6] = 0.05; })
+            .find("joint `left_finger` starts at 0.050000, beyond its limits of 0.015000 and "
+                  "0.037000") != std::string::npos);
 
   std::array<double, 8> targets = bench.target;
   targets[1] = std::nan("");
