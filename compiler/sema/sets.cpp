@@ -148,6 +148,7 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
   std::vector<std::pair<Sha256, TaskId>> draws;
   for (const TaskId id : members) {
     Hasher hasher;
+  if (sample.of.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
     hasher.text("sample").u64(sample.seed.value).text(context_.model.tasks[id].name);
     draws.emplace_back(hasher.finish(), id);
   }
