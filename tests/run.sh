@@ -6,12 +6,12 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 "$root/.ci/build"
 
 passed=0 failed=0
-for program in "$root"/build/tests/test_*; do
-  [ -x "$program" ] || continue
-  name=$(basename "$program")
-  log="$root/build/tests/$name.log"
-  status=0
-  (cd "$root/build/tests" && "$program") >"$log" 2>&1 || status=$?
+# run_program PROGRAM NAME: in its own folder; its log beside it is shown if anything failed.
+run_program() {
+  local program=$1 name=$2 folder log summary p f status=0
+  folder=$(dirname "$program")
+  log="$folder/$(basename "$program").log"
+  (cd "$folder" && "$program") >"$log" 2>&1 || status=$?
   # doctest's summary: "[doctest] test cases: 7 | 7 passed | 0 failed | 0 skipped"
   summary=$(grep -a 'test cases:' "$log" | tail -n 1 | sed 's/\x1b\[[0-9;]*m//g' || true)
   p=$(sed -n 's/.* \([0-9]*\) passed.*/\1/p' <<<"$summary")
@@ -24,7 +24,22 @@ for program in "$root"/build/tests/test_*; do
   printf '%-28s %4d passed %4d failed\n' "$name" "$p" "$f"
   grep -a 'SKIPPED' "$log" | sed 's/^/    /' | sort -u || true
   if [ "$f" -ne 0 ]; then cat "$log"; fi
+}
+for program in "$root"/build/tests/test_*; do
+  [ -x "$program" ] && run_program "$program" "$(basename "$program")"
 done
+
+# The physics once more with the optimised Simbody, where it was built before; VLAPROBE_SIMBODY=source builds it now.
+if [ "${VLAPROBE_SIMBODY:-}" = source ] || "$root/.ci/simbody_source" --where >/dev/null 2>&1; then
+  fast=$root/build/simbody-source
+  log=$root/build/simbody-source.log
+  if cmake -S "$root" -B "$fast" -G Ninja -DVLAPROBE_SIMBODY=source >"$log" 2>&1 &&
+    cmake --build "$fast" --target test_runtime_world >>"$log" 2>&1; then
+    run_program "$fast/tests/test_runtime_world" "test_runtime_world, fast"
+  else
+    cat "$log"; failed=$((failed + 1))
+  fi
+fi
 
 # Fuzzing: a minute each over parser and checker, plan reader and judge, trace reader. VLAPROBE_FUZZ_SECONDS=0 skips.
 seconds=${VLAPROBE_FUZZ_SECONDS:-60}

@@ -45,20 +45,22 @@ std::shared_ptr<const scene::CollisionShape> try_object(const std::string& name)
   return std::make_shared<scene::CollisionShape>(std::move(shape).value());
 }
 
-double lowest_vertex(const scene::CollisionShape& shape) {
+double lowest_vertex(const scene::CollisionShape& shape, const Quat& turn = Quat::Identity()) {
   double low = 0;
   for (const scene::ConvexPart& part : shape.parts) {
-    for (const Vec3& v : part.vertices) low = std::min(low, v.z() - part.round);
+    for (const Vec3& v : part.vertices) low = std::min(low, (turn * v).z() - part.round);
   }
   return low;
 }
 
-// The widest extent across the fingers (along y) and the height, m.
-double width(const scene::CollisionShape& shape) {
+// The widest extent across the fingers (along y), m.
+double width(const scene::CollisionShape& shape, const Quat& turn) {
   double low = 0, high = 0;
   for (const scene::ConvexPart& part : shape.parts) {
-    low = std::min(low, part.center.y() - part.half.y());
-    high = std::max(high, part.center.y() + part.half.y());
+    for (const Vec3& v : part.vertices) {
+      low = std::min(low, (turn * v).y() - part.round);
+      high = std::max(high, (turn * v).y() + part.round);
+    }
   }
   return high - low;
 }
@@ -85,6 +87,13 @@ Hold lift_and_hold(Bench* bench, const Vec3& center, int watch_substeps) {
   return out;
 }
 
+bool is_required(const std::string& name) {
+  for (const char* one : {"cube 3 cm", "carrot", "spoon", "coke_can", "eggplant", "nut"}) {
+    if (name == one) return true;
+  }
+  return false;
+}
+
 TEST_CASE("table: slip in the hand over 10 s of every object that fits it") {
   struct Item {
     std::string name;
@@ -94,23 +103,26 @@ TEST_CASE("table: slip in the hand over 10 s of every object that fits it") {
   for (const std::string& name : object_names()) items.push_back({name, try_object(name)});
   for (const Item& item : items) {
     if (item.shape == nullptr) continue;
-    if (width(*item.shape) > 0.06) {
+    // Cans stand on their ends.
+    const bool stands = item.name.ends_with("_can");
+    const Quat turn = stands ? Quat(std::sqrt(0.5), std::sqrt(0.5), 0, 0) : Quat::Identity();
+    if (width(*item.shape, turn) > 0.06) {
       MESSAGE(item.name, ": wider than the gripper opens, not grasped");
+      CHECK(!is_required(item.name));
       continue;
     }
-    const double up = -lowest_vertex(*item.shape);
+    const double up = -lowest_vertex(*item.shape, turn);
     const double density = item.name == "cube 3 cm" ? 1000 : 700;
+    BodySpec body = lying(item.name.c_str(), item.shape, density * item.shape->volume, kSpot);
+    body.pose = Pose{Vec3(kSpot.x(), kSpot.y(), kTable + up + 1e-4), turn} *
+                Pose{-item.shape->center_of_mass, Quat::Identity()};
     Bench bench;
-    if (!make_bench(&bench, {lying(item.name.c_str(), item.shape, density * item.shape->volume,
-                                   Vec3(kSpot.x(), kSpot.y(), kTable + up + 1e-4))})) {
-      return;
-    }
+    if (!make_bench(&bench, {body})) return;
     bench.run(500);
     const Hold hold = lift_and_hold(&bench, bench.world->body(0).center, 5000);
     if (!hold.held) {
       MESSAGE(item.name, ": slid out of the fingers on the way up");
-      CHECK(item.name != "carrot");
-      CHECK(item.name != "cube 3 cm");
+      CHECK(!is_required(item.name));
       continue;
     }
     MESSAGE(item.name, ": slip ", hold.slip * 1e3, " mm, turn ", hold.turn * 57.29578, " deg");
