@@ -130,6 +130,7 @@ struct TaskLanguage {
       if (object.name == slot.name.text) return check_category(slot, object);
       scene += (scene.empty() ? "" : ", ") + object.name;
     }
+    if (task.keeps_absent && !task.allow_absent) return;
     Diagnostic& diagnostic =
         context
             .report(

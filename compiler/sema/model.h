@@ -287,6 +287,7 @@ struct Task {
 
   // source, target, distractors
   std::vector<ObjectId> objects() const;
+  bool keeps_absent = false;  // it keeps the text of a task that may
 };
 
 struct TaskSet {

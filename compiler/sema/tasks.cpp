@@ -183,7 +183,9 @@ std::vector<Metric> judged_metrics(const Model& model, const Task& task) {
   return metrics;
 }
 
-void read_allows(Context& context, const syntax::Decl& decl, Task& task) {
+// A comparison is each task's own; what is allowed of a text holds for the tasks that keep it.
+void read_allows(Context& context, const syntax::Decl& decl,
+                 const std::vector<syntax::TaskStmt>& body, Task& task) {
   task.allow_confounded.reset();
   task.allow_absent = false;
   for (const syntax::Allow& allow : decl.allows) {
@@ -209,6 +211,11 @@ std::vector<ObjectId> Task::objects() const {
 
 TaskTable::TaskTable(Context& context) : context_(context) {
   for (std::size_t i = 0; i < context.symbols.task_decls.size(); ++i) add_row();
+  const auto says = [](const syntax::TaskStmt& stmt) {
+    return std::holds_alternative<syntax::SayStmt>(stmt);
+  };
+  task.keeps_absent =
+      (task.allow_absent || task.keeps_absent) && std::none_of(body.begin(), body.end(), says);
 }
 
 void TaskTable::add_row() {
@@ -236,7 +243,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   task.baseline = TaskId::kNone;
   task.axes = 0;
   const About about(context_, task.decl_span);
-  read_allows(context_, *declared.decl, task);
+  read_allows(context_, *declared.decl, *declared.body, task);
   TaskReader reader{context_, declared, task, poisoned};
   for (const syntax::TaskStmt& stmt : *declared.body) {
     if (!std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);

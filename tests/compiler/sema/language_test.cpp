@@ -75,10 +75,19 @@ TEST_CASE("an object that is named must be in the scene") {
 }
 
 TEST_CASE("a published sentence that tells of an absent object is kept under an allow") {
-  CHECK(analyze_with_suite(
-            "@allow(absent, \"published like this\")\nvariant v of red_on_tray {\n"
-            "say \"put {the source} on {the target}, not {avoid the blue}\" }")
+  CHECK(analyze_with_suite("@allow(absent, \"published like this\")\nvariant v of red_on_tray {\n"
+                           "say \"put {the source} on {the target}, not {avoid the blue}\" }")
             ->codes() == "");
+  // It holds for tasks that keep the sentence, and no longer for one that says something else.
+  const char* const kept =
+      "@allow(absent, \"published like this\")\nvariant v of red_on_tray {\n"
+      "say \"put {the source} on {the target}, not {avoid the blue}\" }\n"
+      "light night2 { ambient 0.1 }\nvariant w of v { light night2 }\n"
+      "derive \"{t}_dark\" for t in { v } { light night2 }\n";
+  CHECK(analyze_with_suite(kept)->codes() == "");
+  const auto other =
+      analyze_with_suite(std::string(kept) + "variant x of w { say \"put {source}, not {blue}\" }");
+  CHECK_MESSAGE(other->codes().find("P0404") != std::string::npos, other->said());
 }
 
 TEST_CASE("a slot that wants a category takes only its objects") {
