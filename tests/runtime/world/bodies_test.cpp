@@ -147,6 +147,43 @@ TEST_CASE("an off-centre hit keeps both momenta and never gains energy") {
   CHECK((angular() - l).norm() < 1e-12 * l.norm());
 }
 
+TEST_CASE("two balls without friction exchange what they have along their centres, nothing else") {
+  const double radius = 0.02, speed = 0.6, offset = 0.02;
+  Stepper s = cubes({Vec3(0, 0, 0.5), Vec3(0.1, offset, 0.5)});
+  const auto ball = std::make_shared<scene::CollisionShape>(scene::make_sphere_shape(radius));
+  for (Collider& c : s.colliders) {
+    c.shape = ball;
+    c.friction = 0;
+    c.rounded = true;
+    c.local.half = Vec3::Constant(radius);
+  }
+  for (Body& b : s.bodies) {
+    b.mass = 1000 * ball->volume;
+    b.inertia = 1000 * ball->unit_inertia;
+    b.inertia_inverse = b.inertia.inverse();
+  }
+  s.table = {};
+  make_pairs(s.colliders, 0, s.bodies.size(), {}, s.plane, &s.table);
+  const Vec3 before(speed, 0, 0);
+  s.bodies[0].velocity = before;
+  for (int i = 0; i < 200; ++i) REQUIRE(s.advance().ok());
+  const Vec3 a = s.bodies[0].velocity, b = s.bodies[1].velocity;
+  CHECK((a + b - before).norm() < 1e-14);
+  CHECK(s.bodies[0].spin.norm() < 1e-12);
+  CHECK(s.bodies[1].spin.norm() < 1e-12);
+  // They touch where the centres are 2 r apart: sin(angle) = offset / 2 r.
+  const double sine = offset / (2 * radius), cosine = std::sqrt(1 - sine * sine);
+  const Vec3 along(cosine, sine, 0);
+  CHECK((b - 0.5 * before.dot(along) * along).norm() < 0.01 * speed);
+  CHECK((a - (before - 0.5 * before.dot(along) * along)).norm() < 0.01 * speed);
+  // What is left along the common direction is equal, and half the energy of that part is gone; to
+  // the turn of that direction while the balls pass within a substep or two.
+  const Vec3 n = b.normalized();
+  CHECK(std::fabs((a - b).dot(n)) < 0.01 * speed);
+  const double lost = before.squaredNorm() - a.squaredNorm() - b.squaredNorm();
+  CHECK(lost == doctest::Approx(0.5 * before.dot(n) * before.dot(n)).epsilon(0.01));
+}
+
 TEST_CASE("a body spinning freely keeps its angular momentum and energy for ten seconds") {
   Body b;
   b.mass = 0.055;
