@@ -1,9 +1,12 @@
 // vlaprobe judge
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "runtime/cli/load.h"
+#include "runtime/rejudge/readings.h"
 #include "runtime/rejudge/rejudge.h"
 
 namespace probe::cli {
@@ -11,34 +14,58 @@ namespace {
 
 struct Arguments {
   std::string dir, with;
+  std::vector<std::string> suites;  // globs
+  std::string metric;
   rejudge::RejudgeOptions options;
   bool json = false;
   AssetOptions assets;
 };
 
-void print_json(const rejudge::RejudgeReport& report, const plan::Plan& plan) {
-  nlohmann::ordered_json json;
-  json["plan_root"] = to_hex(plan.root());
-  json["same_plan"] = report.same_plan;
-  json["valid"] = report.valid;
-  json["invalid"] = report.invalid;
-  json["left_out"] = report.left_out;
-  json["metrics"] = nlohmann::ordered_json::array();
-  for (const rejudge::MetricChange& m : report.metrics) {
-    nlohmann::ordered_json entry = {{"metric", m.name},
-                                    {"episodes", m.episodes},
-                                    {"only_before", m.only_before},
-                                    {"only_after", m.only_after},
-                                    {"changed", m.changed}};
+using Json = nlohmann::ordered_json;
+
+Json changes_json(const std::vector<rejudge::MetricChange>& changes) {
+  Json list = Json::array();
+  for (const rejudge::MetricChange& m : changes) {
+    Json entry = {{"metric", m.name},
+                  {"episodes", m.episodes},
+                  {"only_before", m.only_before},
+                  {"only_after", m.only_after},
+                  {"changed", m.changed}};
     if (m.is_bool) {
       entry.update(
           {{"before", m.before}, {"after", m.after}, {"lost", m.lost}, {"gained", m.gained}});
     } else {
       entry.update({{"mean_before", m.mean_before}, {"mean_after", m.mean_after}});
     }
-    json["metrics"].push_back(std::move(entry));
+    list.push_back(std::move(entry));
   }
-  json["episodes"] = nlohmann::ordered_json::parse(run::results_to_json(report.rows));
+  return list;
+}
+
+void print_json(const rejudge::RejudgeReport& report, const plan::Plan& plan) {
+  const Json json = {{"plan_root", to_hex(plan.root())},
+                     {"same_plan", report.same_plan},
+                     {"valid", report.valid},
+                     {"invalid", report.invalid},
+                     {"left_out", report.left_out},
+                     {"metrics", changes_json(report.metrics)},
+                     {"episodes", Json::parse(run::results_to_json(report.rows))}};
+  fmt::print("{}\n", json.dump(1));
+}
+
+void print_json(const std::vector<rejudge::Reading>& readings, const plan::Plan& plan) {
+  Json json = {{"plan_root", to_hex(plan.root())}, {"suites", Json::array()}};
+  for (const rejudge::Reading& reading : readings) {
+    Json tasks = Json::array();
+    for (const rejudge::TaskReading& task : reading.tasks)
+      tasks.push_back({{"task", task.task}, {"metrics", changes_json(task.metrics)}});
+    json["suites"].push_back({{"suite", reading.suite},
+                              {"valid", reading.valid},
+                              {"invalid", reading.invalid},
+                              {"left_out", reading.left_out},
+                              {"metrics", changes_json(reading.metrics)},
+                              {"tasks", std::move(tasks)}});
+  }
   fmt::print("{}\n", json.dump(1));
 }
 
@@ -61,13 +88,131 @@ void print_table(const rejudge::RejudgeReport& report) {
   }
 }
 
-int judge_verb(const Arguments& arguments) {
+// Cells under a heading each, the first column to the left, the others to the right.
+void print_cells(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  for (const auto& row : rows) {
+    std::string line = fmt::format("{:<{}}", row[0], widths[0]);
+    for (std::size_t i = 1; i < row.size(); ++i) line += fmt::format("  {:>{}}", row[i], widths[i]);
+    fmt::print("{}\n", line);
+  }
+}
+
+const rejudge::MetricChange* find(const std::vector<rejudge::MetricChange>& changes,
+                                  const std::string& name) {
+  const auto it = std::ranges::find(changes, name, &rejudge::MetricChange::name);
+  return it == changes.end() || it->episodes == 0 ? nullptr : &*it;
+}
+
+std::string before_text(const rejudge::MetricChange& m) {
+  return m.is_bool ? fmt::format("{}", m.before) : fmt::format("{:.4g}", m.mean_before);
+}
+
+// "31 +9 -2": true in 31, in 9 that were not and no more in 2 that were.
+std::string after_text(const rejudge::MetricChange& m) {
+  if (!m.is_bool) return fmt::format("{:.4g}", m.mean_after);
+  std::string text = fmt::format("{}", m.after);
+  if (m.gained > 0) text += fmt::format(" +{}", m.gained);
+  if (m.lost > 0) text += fmt::format(" -{}", m.lost);
+  return text;
+}
+
+// A suite a line, a metric a column.
+void print_by_suite(const std::vector<rejudge::Reading>& readings) {
+  std::vector<std::vector<std::string>> rows = {{"suite", "episodes"}, {"as stored", ""}};
+  std::vector<std::string> names;
+  for (const rejudge::Reading& reading : readings) {
+    for (const rejudge::MetricChange& m : reading.metrics) {
+      if (std::ranges::find(names, m.name) != names.end()) continue;
+      names.push_back(m.name);
+      rows[0].push_back(m.name);
+      rows[1].push_back(m.episodes > 0 ? before_text(m) : "");
+    }
+  }
+  // What was stored is told for the episodes of the first suite.
+  rows[1][1] = fmt::format("{}", readings.front().valid);
+  for (const rejudge::Reading& reading : readings) {
+    rows.push_back({reading.suite, fmt::format("{}", reading.valid)});
+    for (const std::string& name : names) {
+      const rejudge::MetricChange* m = find(reading.metrics, name);
+      rows.back().push_back(m == nullptr ? "" : after_text(*m));
+    }
+  }
+  print_cells(rows);
+}
+
+// A task a line, a suite a column, one metric.
+void print_by_task(const std::vector<rejudge::Reading>& readings, const std::string& metric) {
+  std::vector<std::vector<std::string>> rows = {{"task", "episodes", "as stored"}};
+  std::vector<std::string> tasks;
+  for (const rejudge::Reading& reading : readings) {
+    rows[0].push_back(reading.suite);
+    for (const rejudge::TaskReading& task : reading.tasks) {
+      if (std::ranges::find(tasks, task.task) == tasks.end()) tasks.push_back(task.task);
+    }
+  }
+  for (const std::string& name : tasks) {
+    std::vector<std::string> row = {name, "", ""};
+    for (const rejudge::Reading& reading : readings) {
+      const auto task = std::ranges::find(reading.tasks, name, &rejudge::TaskReading::task);
+      const auto* m = task == reading.tasks.end() ? nullptr : find(task->metrics, metric);
+      row.push_back(m == nullptr ? "" : after_text(*m));
+      if (m == nullptr) continue;
+      row[1] = fmt::format("{}", m->episodes);
+      row[2] = before_text(*m);
+    }
+    rows.push_back(std::move(row));
+  }
+  print_cells(rows);
+}
+
+int judge_under_several(const Arguments& arguments, const plan::Plan& plan) {
+  if (!arguments.options.out.empty()) {
+    return report({"usage", "a results folder is written under one suite; name it whole", "--out"});
+  }
+  const auto readings =
+      rejudge::read_under(arguments.dir, plan, arguments.suites, arguments.options.tasks);
+  if (!readings) return report(readings.failure());
+  const auto has_metric = [&](const rejudge::Reading& reading) {
+    return std::ranges::find(reading.metrics, arguments.metric, &rejudge::MetricChange::name) !=
+           reading.metrics.end();
+  };
+  if (!arguments.metric.empty() && std::ranges::none_of(*readings, has_metric))
+    return report({"usage", "no metric is called `" + arguments.metric + "`", "--metric"});
+  if (arguments.json) {
+    print_json(*readings, plan);
+  } else if (arguments.metric.empty()) {
+    print_by_suite(*readings);
+  } else {
+    print_by_task(*readings, arguments.metric);
+  }
+  for (const rejudge::Reading& reading : *readings) {
+    if (reading.left_out.empty()) continue;
+    fmt::print(stderr, "left out by suite `{}`: {}\n", reading.suite,
+               fmt::join(reading.left_out, ", "));
+  }
+  return kFine;
+}
+
+int judge_verb(Arguments arguments) {
   LoadedPlan loaded = load_plan(arguments.with, arguments.assets);
   if (!loaded.plan) return loaded.exit;
   const plan::Plan& plan = *loaded.plan;
-  if (!arguments.options.suite.empty() && !find_suite(plan, arguments.options.suite, loaded.exit)) {
-    return loaded.exit;
+  bool several = arguments.suites.size() > 1 || !arguments.metric.empty();
+  for (const std::string& suite : arguments.suites) {
+    const bool is_glob = suite.find_first_of("*?") != std::string::npos;
+    if (!is_glob && !find_suite(plan, suite, loaded.exit)) return loaded.exit;
+    several = several || is_glob;
   }
+  if (several) {
+    if (arguments.suites.empty()) arguments.suites = {"*"};
+    return judge_under_several(arguments, plan);
+  }
+  if (!arguments.suites.empty()) arguments.options.suite = arguments.suites.front();
   auto judged = rejudge::rejudge(arguments.dir, plan, arguments.options);
   if (!judged) return report(judged.failure());
   if (arguments.json) {
@@ -92,10 +237,16 @@ void add_judge(CLI::App& app, int& exit) {
       "judge", "stored traces under another plan's metrics: no policy, no physics");
   verb->footer(
       "tasks are matched by name, or through variants that differ in nothing but what is judged\n"
+      "with several suites the table has a line for each, with --metric a column for each and\n"
+      "a line a task; `40 +9 -2` is 40 episodes, 9 that were none before, without 2 that were\n"
       "example: vlaprobe judge runs/expert --with suite/semantics.probe --suite ever");
   verb->add_option("DIR", arguments->dir, "results folder")->required();
   verb->add_option("--with", arguments->with, "the judging .plan or .probe text")->required();
-  verb->add_option("--suite", arguments->options.suite, "judge with this suite's tasks");
+  verb->add_option("--suite", arguments->suites,
+                   "judge with this suite's tasks; several, or a glob: a table of them")
+      ->allow_extra_args(false);
+  verb->add_option("--metric", arguments->metric,
+                   "this one alone, task by task and suite by suite");
   verb->add_option("--tasks", arguments->options.tasks, "glob over the stored task names");
   verb->add_option("-o,--out", arguments->options.out, "write a results folder");
   verb->add_flag("--json", arguments->json, "changes and rows as a JSON object");

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "runtime/run/glob.h"
+#include "runtime/run/stored_trace.h"
 
 namespace probe::exporting {
 namespace {
@@ -21,10 +22,7 @@ Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportO
   ExportReport report;
   for (const run::ResultRow& row : rows) {
     if (!run::matches_glob(options.tasks, row.task)) continue;
-    PROBE_ASSIGN(const run::Trace trace, run::read_trace(row.trace));
-    if (to_hex(trace.hash) != row.trace_sha256) {
-      return Failure{"trace", "this trace is not the one its result row was made with", row.trace};
-    }
+    PROBE_ASSIGN(const run::Trace trace, run::read_stored_trace(row));
     PROBE_TRY(sink.episode(row, trace));
     ++report.episodes;
     report.steps += static_cast<int>(trace.steps.size());

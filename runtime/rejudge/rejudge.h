@@ -6,6 +6,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
+#include "runtime/rejudge/changes.h"
 #include "runtime/run/results.h"
 
 namespace probe::rejudge {
@@ -14,18 +15,6 @@ struct RejudgeOptions {
   std::string suite;        // whose tasks judge; empty: all tasks of the plan
   std::string tasks = "*";  // glob over the stored task names
   std::string out;          // folder for the new results and traces; empty: none is written
-};
-
-// How one metric's verdicts changed, over the episodes that are valid under both.
-struct MetricChange {
-  std::string name;
-  bool is_bool = true;
-  int before = 0, after = 0;            // episodes at which it is true
-  int lost = 0, gained = 0;             // true before and not after; not before and true after
-  int changed = 0;                      // episodes with another value
-  int episodes = 0;                     // at which both plans have it
-  int only_before = 0, only_after = 0;  // episodes at which one of them has it
-  double mean_before = 0, mean_after = 0;
 };
 
 struct RejudgeReport {

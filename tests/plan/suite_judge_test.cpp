@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <set>
+#include <tuple>
 
 #include "compiler/emit/compile.h"
 #include "runtime/vm/judge.h"
@@ -10,6 +11,36 @@
 #include "tests/runtime/vm/reference.h"
 
 namespace probe::vm {
+
+TEST_CASE("a handful of programs serve the suite's tasks, and none computes a thing twice") {
+  const std::string files[] = {VLAPROBE_SOURCE_DIR "/suite/intact.probe"};
+  auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets", .suite = ""});
+  REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
+  REQUIRE(compiled->ok);
+  const auto opened = plan::Plan::from_bytes(std::move(compiled->plan));
+  REQUIRE(opened.ok());
+  const plan::Plan& plan = *opened;
+  std::set<std::uint32_t> used;
+  for (const plan::TaskRecord& task : plan.tasks()) used.insert(task.program);
+  std::size_t instructions = 0;
+  for (const plan::ProgramRecord& program : plan.programs()) {
+    std::set<std::tuple<int, int, int, int>> seen;
+    for (const plan::Instruction& in : plan.code(program)) {
+      const plan::OpInfo& info = *plan::find_op(in.op);
+      if (info.result == plan::Kind::kUnused) continue;
+      // Two monitors are the same when they remember the same thing of the same register.
+      const bool remembers = info.is_monitor();
+      const int n = remembers ? plan.states(program)[in.b].n : 0;
+      CHECK_MESSAGE(seen.emplace(in.op, in.a, remembers ? 0 : in.b, n).second, info.name);
+    }
+    instructions = std::max<std::size_t>(instructions, program.code.count);
+  }
+  MESSAGE(plan.tasks().size() << " tasks, " << plan.programs().size() << " programs of at most "
+                              << instructions << " instructions");
+  CHECK(used.size() == plan.programs().size());
+  CHECK(plan.tasks().size() == 51);
+  CHECK(plan.programs().size() <= 9);
+}
 
 TEST_CASE("judge and naive evaluator agree on every program of the suite and its scoring rules") {
   const std::string files[] = {VLAPROBE_SOURCE_DIR "/suite/semantics.probe"};
