@@ -12,6 +12,7 @@
 #include "runtime/expert/path_planner.h"
 #include "runtime/expert/place_candidates.h"
 #include "runtime/expert/servo.h"
+#include "runtime/expert/shove.h"
 #include "runtime/expert/waypoints.h"
 #include "runtime/robot/rotation.h"
 
@@ -21,6 +22,7 @@ namespace {
 enum class Phase {
   kRaise,      // straight up until the fingers clear everything, opening
   kApproach,   // to the grasp, on a planned path
+  kShove,      // instead of all that follows, for what cannot be gripped: it is pushed
   kClose,      // still, fingers closing
   kTransport,  // with the source to the place, on a planned path
   kLower,      // until the source rests on the target
@@ -32,8 +34,11 @@ enum class Phase {
 
 constexpr double kOpenGripper = 1, kClosedGripper = -1;
 constexpr int kMostTries = 3;
+constexpr double kCareful = 0.4;  // more steps with each try
 constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
 
+constexpr int kLongestShove = 8;      // steps
+constexpr double kShoved = 0.038;     // m that are enough
 constexpr int kLongestApproach = 30;  // steps in which a source that moves is followed
 
 constexpr Pace kNearPace{.shift = 0.030, .turn = 0.20};
@@ -54,7 +59,9 @@ class Expert final : public policy::Policy {
     horizon_ = start.horizon;
     started_ = false;
     tries_ = 0;
+    failed_.clear();
     pick_.reset();
+    shove_.reset();
     path_.reset();
     enter(Phase::kRaise);
     return {};
@@ -72,6 +79,7 @@ class Expert final : public policy::Policy {
       servo_.begin(reach_->chain(), arm);
       last_ = scene;
       started_ = true;
+      first_seen_ = scene.source.center;
       recent_.assign(Path::kPast, joints_of(scene));
     }
     recent_.erase(recent_.begin());
@@ -123,6 +131,7 @@ class Expert final : public policy::Policy {
 
   // Opens and begins again, or gives up and keeps still.
   void start_over() {
+    if (pick_) failed_.push_back(pick_->source_pose.inverse() * pick_->grasp.tcp);
     const bool again = ++tries_ < kMostTries && steps_left_ >= kStepsOfATry;
     pick_.reset();
     path_.reset();
@@ -152,6 +161,10 @@ class Expert final : public policy::Policy {
         return advance_raise(s);
       case Phase::kApproach:
         return advance_approach(s);
+      case Phase::kShove:
+        if (!near(s.tcp, shove_->end, 0.006, 0.2) && steps_ < kLongestShove) return;
+        release_ = s.tcp;
+        return enter(Phase::kRetreat);
       case Phase::kClose:
         return advance_close(s);
       case Phase::kTransport:
@@ -169,7 +182,9 @@ class Expert final : public policy::Policy {
         return;
       case Phase::kRetreat:
         if (s.tcp.position.z() < release_.position.z() + 0.055 && steps_ < 6) return;
-        if (lies_on_target(s)) return enter(Phase::kRest);
+        if (shove_ ? (s.source.center - first_seen_).norm() > kShoved : lies_on_target(s)) {
+          return enter(Phase::kRest);
+        }
         return start_over();
       case Phase::kRest:
         return;
@@ -191,7 +206,12 @@ class Expert final : public policy::Policy {
   }
 
   bool plan_to_grasp(const Scene& s) {
-    pick_ = plan_pick(s, *reach_, options_.close);
+    pick_ = plan_pick(s, *reach_, options_.close, failed_);
+    shove_.reset();
+    if (options_.close && (!pick_ || (pick_->grasp.rim && tries_ > 0))) {
+      shove_ = plan_shove(s, *reach_);
+      if (shove_) pick_ = shove_->start;
+    }
     if (!pick_) return false;
     path_ = plan_approach(s, *reach_, *pick_, recent_);
     path_step_ = 0;
@@ -219,9 +239,10 @@ class Expert final : public policy::Policy {
     }
     if (!path_done()) return;
     // Wide objects leave the fingers little room, so the end must be met.
-    if (near(s.tcp, pick_->grasp.tcp, 0.003, 0.04)) return enter(Phase::kClose);
+    const Phase next = shove_ ? Phase::kShove : Phase::kClose;
+    if (near(s.tcp, pick_->grasp.tcp, 0.003, 0.04)) return enter(next);
     if (path_step_ < path_->path.steps() + 3) return;
-    if (near(s.tcp, pick_->grasp.tcp, 0.010, 0.15)) return enter(Phase::kClose);
+    if (near(s.tcp, pick_->grasp.tcp, 0.010, 0.15)) return enter(next);
     start_over();
   }
 
@@ -242,7 +263,7 @@ class Expert final : public policy::Policy {
     const auto place = plan_place(s, *reach_, std::span(q.data(), std::size_t(q.size())));
     if (!place) return start_over();
     place_ = place->tcp;
-    path_ = plan_transport(s, *reach_, place_, recent_);
+    path_ = plan_transport(s, *reach_, place_, recent_, 1 + kCareful * tries_);
     path_step_ = 0;
     if (!path_) return start_over();
     enter(Phase::kTransport);
@@ -271,7 +292,10 @@ class Expert final : public policy::Policy {
       case Phase::kRaise:
         return command_raise(s);
       case Phase::kApproach:
-        return follow_path(s, kOpenGripper);
+        return follow_path(s, shove_ && shove_->closed ? kClosedGripper : kOpenGripper);
+      case Phase::kShove:
+        return servo_.toward(shove_->end, arm_of(s), shove_->closed ? kClosedGripper : kOpenGripper,
+                             kNearPace);
       case Phase::kClose:
         return servo_.settle(pick_->grasp.tcp, arm_of(s),
                              options_.close ? kClosedGripper : kOpenGripper);
@@ -335,9 +359,12 @@ class Expert final : public policy::Policy {
   Phase phase_ = Phase::kRaise;
   int steps_ = 0;  // in this phase
   int tries_ = 0;
+  std::vector<Pose> failed_;  // grasps, in the source's frame
   Scene last_;
   Recent recent_;
   std::optional<Pick> pick_;
+  std::optional<Shove> shove_;
+  Vec2 first_seen_ = Vec2::Zero();  // centre of the source at the start
   std::optional<PlannedPath> path_;
   int path_step_ = 0;            // of the path, asked for last
   Pose place_;                   // of the tool, where the path ends

@@ -97,15 +97,18 @@ Footprint footprint_of(std::span<const std::vector<Vec3>> parts, const Pose& pos
   double total = 0;
   for (const std::vector<Vec3>& part : parts) {
     std::vector<Vec2> flat;
+    double top = -std::numeric_limits<double>::infinity();
     for (const Vec3& vertex : part) {
       const Vec3 p = pose.apply(vertex);
       flat.emplace_back(p.x(), p.y());
       out.bottom = std::min(out.bottom, p.z());
-      out.top = std::max(out.top, p.z());
+      top = std::max(top, p.z());
     }
     if (flat.empty()) continue;
     all.insert(all.end(), flat.begin(), flat.end());
     out.parts.push_back(convex_outline(std::move(flat)));
+    out.part_tops.push_back(top);
+    out.top = std::max(out.top, top);
     const double weight = std::max(area(out.parts.back()), 1e-12);
     weighted += weight * center_of(out.parts.back());
     total += weight;
@@ -116,8 +119,36 @@ Footprint footprint_of(std::span<const std::vector<Vec3>> parts, const Pose& pos
     return out;
   }
   out.whole = convex_outline(std::move(all));
-  out.center = weighted / total;
-  for (const Vec2& p : out.whole) out.radius = std::max(out.radius, (p - out.center).norm());
+  recenter(out, weighted / total);
+  return out;
+}
+
+void recenter(Footprint& footprint, const Vec2& center) {
+  footprint.center = center;
+  footprint.radius = 0;
+  for (const Vec2& p : footprint.whole) {
+    footprint.radius = std::max(footprint.radius, (p - center).norm());
+  }
+}
+
+std::vector<Outline> section_above(std::span<const std::vector<Vec3>> parts, double height) {
+  std::vector<Outline> out;
+  for (const std::vector<Vec3>& part : parts) {
+    std::vector<Vec2> flat;
+    for (const Vec3& a : part) {
+      if (a.z() >= height) flat.emplace_back(a.x(), a.y());
+      // All pairs, for edges are not known; what is not an edge lies inside.
+      for (const Vec3& b : part) {
+        if (a.z() < height || b.z() >= height) continue;
+        const double t = (height - b.z()) / (a.z() - b.z());
+        const Vec3 cut = b + t * (a - b);
+        flat.emplace_back(cut.x(), cut.y());
+      }
+    }
+    if (Outline outline = convex_outline(std::move(flat)); outline.size() >= 3) {
+      out.push_back(std::move(outline));
+    }
+  }
   return out;
 }
 

@@ -14,18 +14,25 @@ using Outline = std::vector<Vec2>;  // convex, counter-clockwise
 
 struct Footprint {
   std::vector<Outline> parts;
-  Outline whole;               // around all parts
-  Vec2 center = Vec2::Zero();  // of area, parts weighted by theirs
-  double radius = 0;           // about `center`
-  double bottom = 0, top = 0;  // lowest and highest vertex
+  std::vector<double> part_tops;  // one a part
+  Outline whole;                  // around all parts
+  Vec2 center = Vec2::Zero();     // of area, parts weighted by theirs
+  double radius = 0;              // about `center`
+  double bottom = 0, top = 0;     // lowest and highest vertex
 };
 
 // `parts` are vertices in the model frame, `pose` places the model. An object without vertices has
 // an empty outline.
 Footprint footprint_of(std::span<const std::vector<Vec3>> parts, const Pose& pose);
 
+// Counts from another centre, such as that of mass.
+void recenter(Footprint& footprint, const Vec2& center);
+
 // The convex hull of points; collinear ones are dropped.
 Outline convex_outline(std::vector<Vec2> points);
+
+// Outlines of what convex parts (vertices) have at or above a height.
+std::vector<Outline> section_above(std::span<const std::vector<Vec3>> parts, double height);
 
 // Of an outline's part with |across . p - at| <= half, the extent along `along`. Empty if lower >
 // upper.

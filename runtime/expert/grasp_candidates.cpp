@@ -3,6 +3,7 @@
 #include "runtime/expert/grasp_candidates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -21,6 +22,9 @@ constexpr double kSideMargin = 0.0008;  // m, between each open finger and the o
 constexpr double kEasySide = 0.006;     // m, wider earns nothing more
 constexpr double kNearest = 0.002;      // m, to another object
 constexpr double kComfortable = 0.02;   // m, farther away earns nothing more
+constexpr std::array kRimHeights{0.0030, 0.0036, 0.006, 0.010, 0.020, 0.030};  // m, of fingertips
+constexpr double kRimDepth = 0.002;   // m, of a wall between the fingers at least
+constexpr double kThinnest = 0.0125;  // m; closed fingertips are 12 mm apart
 
 double wrapped(double angle) {
   while (angle > kPi) angle -= 2 * kPi;
@@ -82,6 +86,71 @@ double clearance_of(const GraspProblem& problem, const Directions& d, const Vec3
   return least;
 }
 
+// Stretches of the slab that outlines cover, merged.
+std::vector<Extent> covered(std::span<const Outline> outlines, const Slab& slab,
+                            const Vec2& along) {
+  std::vector<Extent> all;
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    const Extent e = extent_in_slab(outlines.subspan(i, 1), slab, along);
+    if (!e.empty()) all.push_back(e);
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Extent& a, const Extent& b) { return a.lower < b.lower; });
+  std::vector<Extent> out;
+  for (const Extent& e : all) {
+    if (!out.empty() && e.lower <= out.back().upper) {
+      out.back().upper = std::max(out.back().upper, e.upper);
+    } else {
+      out.push_back(e);
+    }
+  }
+  return out;
+}
+
+// Between a wall of the object, such as the rim of a plate: one finger stands inside the outline,
+// as low as what is below it allows.
+void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
+  const Footprint& source = *problem.source;
+  const GripperShape& g = problem.gripper;
+  for (const double height : kRimHeights) {
+    const double tips = problem.surface + height;
+    if (tips > source.top - kRimDepth) return;
+    const std::vector<Outline> walls = section_above(problem.parts, tips);
+    const double z = std::max(tips + g.tip_below, source.top - g.palm_above + 0.004);
+    for (int i = 0; i < kYaws; ++i) {
+      const double half_turn = kPi * i / kYaws;
+      const Directions d = directions_of(half_turn);
+      const Slab slab{d.across, d.across.dot(source.center), g.finger_half};
+      for (const Extent& wall : covered(walls, slab, d.close)) {
+        if (wall.width() < kThinnest || wall.width() > 2 * (g.opening_half - kSideMargin)) continue;
+        const Vec2 xy = 0.5 * (wall.lower + wall.upper) * d.close + slab.at * d.across;
+        const Outline left =
+            box(xy, d, g.opening_half, g.outside_half, -g.finger_half, g.finger_half);
+        const Outline right =
+            box(xy, d, -g.outside_half, -g.opening_half, -g.finger_half, g.finger_half);
+        const bool free = std::all_of(walls.begin(), walls.end(), [&](const Outline& o) {
+          return separation(left, o) > 0.001 && separation(right, o) > 0.001;
+        });
+        if (!free) continue;
+        for (const double turn : {0.0, kPi}) {
+          Grasp grasp;
+          grasp.rim = true;
+          grasp.yaw = wrapped(half_turn + turn);
+          grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
+          grasp.width = wall.width();
+          grasp.off_center = (xy - source.center).norm();
+          grasp.clearance = clearance_of(problem, directions_of(grasp.yaw), grasp.tcp.position);
+          if (grasp.clearance < kNearest) continue;
+          grasp.cost = 100 * height - 40 * std::min(grasp.width, 0.02) +
+                       0.5 * std::max(0.0, 1 - grasp.clearance / kComfortable) +
+                       0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now));
+          out.push_back(grasp);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Pose top_down(const Vec3& position, double yaw) {
@@ -110,8 +179,8 @@ std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
   const double lowest = problem.surface + g.tip_below + margin;
   const double z = std::max(lowest, source.top - g.palm_above + 0.004);
   std::vector<Grasp> out;
-  if (z - g.tip_below > source.top - 0.003) return out;  // the fingers would close above it
-  for (const double half_turn : yaws_for(source)) {
+  const bool too_high = z - g.tip_below > source.top - 0.003;  // the fingers would close above it
+  for (const double half_turn : too_high ? std::vector<double>{} : yaws_for(source)) {
     const Directions d = directions_of(half_turn);
     const double middle = d.across.dot(source.center);
     for (double along = -kAlongMost; along <= kAlongMost + 1e-9; along += kAlongStep) {
@@ -135,6 +204,7 @@ std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
       }
     }
   }
+  if (out.empty()) add_rim_grasps(problem, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Grasp& a, const Grasp& b) { return a.cost < b.cost; });
   return out;

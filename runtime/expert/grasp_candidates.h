@@ -35,6 +35,7 @@ struct Grasp {
 
 struct GraspProblem {
   const Footprint* source = nullptr;
+  std::span<const std::vector<Vec3>> parts;  // its vertices, for rims; may be empty
   std::vector<const Footprint*> others;
   double surface = 0;         // height the fingertips must stay above
   double tip_margin = 0.004;  // m above it, less for flat objects

@@ -16,14 +16,16 @@ constexpr double kRotation = 1.0 / 0.002;   // rad
 constexpr double kTilt = 1.0 / 0.05;        // rad
 constexpr double kInside = 1.0 / 0.003;     // m of clearance that lacks
 constexpr double kOutside = 1.0 / 0.01;     // rad beyond limits of positions and moves
-constexpr double kJerk = 1, kAcceleration = 0.3;
+constexpr double kJerk = 1, kAcceleration = 1;
 
 constexpr double kMargin = 0.012;       // m, wanted between what moves and obstacles
 constexpr double kMarginGrows = 0.006;  // m a step, from what there is at the ends
 constexpr double kLimitMargin = 0.03;   // rad
-constexpr double kMostMove = 0.45;      // rad a step and joint
+constexpr double kMostMove = 0.35;      // rad a step and joint
 
 constexpr double kMeanShift = 0.040, kMeanTurn = 0.24;  // of the tool a step, over a path
+constexpr double kCorner =
+    0.8;  // a smooth path's length to that of the straight lines it rounds off
 constexpr int kFewestSteps = 5, kMostSteps = 24;
 constexpr int kMoreSteps = 3;   // added where the clearance was not met
 constexpr double kBad = 0.003;  // m less than nothing
@@ -43,13 +45,13 @@ struct Move {
   Obstacles narrow;
   double narrow_margin = 0;
   bool straight_up = false;  // leaves its start upwards
+  double pace = 1;           // more: more steps
 };
 
-// The margin that can be had `from` steps after the start, `left` before the goal.
+// The margin that can be had `from` steps after the start, `left` before the goal. Prisms
+// over-estimate hollow things, so either may begin inside one.
 double margin_at(double from, double left, double at_start, double at_goal) {
-  const double rising = std::max(at_start, 0.0) + kMarginGrows * from;
-  const double falling = std::max(at_goal, 0.0) + kMarginGrows * left;
-  return std::min({kMargin, rising, falling});
+  return std::min({kMargin, at_start + kMarginGrows * from, at_goal + kMarginGrows * left});
 }
 
 void guess(const Move& move, Path& path) {
@@ -138,13 +140,17 @@ PlannedPath shaped(const Move& move, int steps) {
 }
 
 PlannedPath shaped(const Move& move) {
-  const Pose start = move.reach->chain().pose(span_of(move.recent->back()));
-  const robot::PoseError way = robot::pose_error(start, move.goal);
-  double length = way.position;
-  if (move.straight_up) length += 0.04;
-  const int steps = std::clamp(
-      static_cast<int>(std::ceil(std::max(length / kMeanShift, way.rotation / kMeanTurn))) + 2,
-      kFewestSteps, kMostSteps);
+  Pose at = move.reach->chain().pose(span_of(move.recent->back()));
+  double length = 0, turn = 0;
+  for (const JointVector& guide : move.guides) {
+    const Pose next = move.reach->chain().pose(span_of(guide));
+    const robot::PoseError way = robot::pose_error(at, next);
+    length += kCorner * way.position;
+    turn += way.rotation;
+    at = next;
+  }
+  const double even = move.pace * std::max(length / kMeanShift, turn / kMeanTurn);
+  const int steps = std::clamp(static_cast<int>(std::ceil(even)) + 2, kFewestSteps, kMostSteps);
   PlannedPath best = shaped(move, steps);
   if (best.clearance >= -kBad) return best;
   PlannedPath slower = shaped(move, steps + kMoreSteps);
@@ -177,27 +183,37 @@ std::vector<Ball> gripper_balls(const GripperShape& g, double parted) {
 
 std::vector<Ball> held_balls(const Scene& scene, const Pose& tool) {
   std::vector<Ball> out;
-  if (scene.source_points.empty()) return out;
+  std::vector<Vec3> points;
+  for (const std::vector<Vec3>& part : scene.source_parts) {
+    points.insert(points.end(), part.begin(), part.end());
+  }
+  if (points.empty()) return out;
   std::vector<std::size_t> chosen;
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        if (x == 0 && y == 0 && z == 0) continue;
-        const Vec3 direction = scene.source_pose.rotation * Vec3(x, y, z);
-        std::size_t best = 0;
-        for (std::size_t i = 1; i < scene.source_points.size(); ++i) {
-          if (direction.dot(scene.source_points[i] - scene.source_points[best]) > 1e-9) best = i;
-        }
-        chosen.push_back(best);
-      }
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 direction = scene.source_pose.rotation * Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      if (direction.dot(points[k] - points[best]) > 1e-9) best = k;
     }
+    chosen.push_back(best);
   }
   std::sort(chosen.begin(), chosen.end());
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   const Pose to_tool = tool.inverse();
-  for (const std::size_t i : chosen) out.push_back({to_tool.apply(scene.source_points[i]), 0});
+  for (const std::size_t i : chosen) out.push_back({to_tool.apply(points[i]), 0});
   return out;
 }
+
+namespace {
+
+// The source within a hollow target, whose walls then count one by one.
+bool inside_target(const Scene& scene) {
+  if (scene.target.whole.size() < 3 || scene.source.bottom > scene.target.top - 0.005) return false;
+  const Prism around = make_prism(scene.target.whole, -1, 1);
+  return distance_to(around, {scene.source.center.x(), scene.source.center.y(), 0}).value < 0;
+}
+
+}  // namespace
 
 Obstacles obstacles_of(const Scene& scene, bool with_target) {
   Obstacles out;
@@ -208,7 +224,17 @@ Obstacles obstacles_of(const Scene& scene, bool with_target) {
   };
   for (const Footprint& other : scene.others) add(other);
   for (const Footprint& part : scene.fixtures) add(part);
-  if (with_target) add(scene.target);
+  if (!with_target) return out;
+  if (inside_target(scene)) {
+    for (std::size_t i = 0; i < scene.target.parts.size(); ++i) {
+      const Outline& part = scene.target.parts[i];
+      if (part.size() >= 3) {
+        out.prisms.push_back(make_prism(part, below, scene.target.part_tops[i]));
+      }
+    }
+  } else {
+    add(scene.target);
+  }
   return out;
 }
 
@@ -234,7 +260,7 @@ std::optional<PlannedPath> plan_approach(const Scene& scene, const Reach& reach,
 }
 
 std::optional<PlannedPath> plan_transport(const Scene& scene, const Reach& reach, const Pose& place,
-                                          const Recent& recent) {
+                                          const Recent& recent, double pace) {
   const GripperShape gripper;
   const Pose tool = reach.chain().pose(span_of(recent.back()));
   const double hang = std::max(gripper.tip_below, tool.position.z() - scene.source.bottom);
@@ -253,6 +279,7 @@ std::optional<PlannedPath> plan_transport(const Scene& scene, const Reach& reach
   move.balls.insert(move.balls.end(), held.begin(), held.end());
   move.obstacles = obstacles_of(scene, true);
   move.straight_up = true;
+  move.pace = pace;
   return shaped(move);
 }
 

@@ -35,8 +35,9 @@ using Recent = std::vector<JointVector>;
 std::optional<PlannedPath> plan_approach(const Scene& scene, const Reach& reach, const Pick& pick,
                                          const Recent& recent);
 
-// From the grasp, straight up first, to `place`, straight down at last. The source is in the hand.
+// From the grasp, straight up first, to `place`, straight down at last. The source is in the hand;
+// `pace` times the usual steps, for holds that are poor.
 std::optional<PlannedPath> plan_transport(const Scene& scene, const Reach& reach, const Pose& place,
-                                          const Recent& recent);
+                                          const Recent& recent, double pace = 1);
 
 }  // namespace probe::expert

@@ -32,23 +32,17 @@ Pose at_height(Pose pose, double z) {
 GraspProblem problem_of(const Scene& scene, bool place) {
   GraspProblem problem;
   problem.source = &scene.source;
+  problem.parts = scene.source_parts;
   problem.others = others_of(scene, place);
   problem.surface = std::max(scene.surface, scene.source.bottom);
   problem.yaw_now = yaw_of(scene.tcp.rotation);
   return problem;
 }
 
-Pick pick_of(const Scene& scene, const Grasp& grasp) {
-  const GripperShape gripper;
-  Pick pick;
-  pick.grasp = grasp;
-  pick.source_pose = scene.source_pose;
-  const double z = grasp.tcp.position.z();
-  // Going there the fingers must also clear the object itself.
-  const double over = std::max({z + kAbove, travel_height(scene, gripper.tip_below),
-                                scene.source.top + gripper.tip_below + 0.01});
-  pick.above = at_height(grasp.tcp, over);
-  return pick;
+// Fingers on the same places, either way round.
+bool same_hold(const Pose& a, const Pose& b) {
+  const double along = (a.rotation * Vec3::UnitY()).dot(b.rotation * Vec3::UnitY());
+  return (a.position - b.position).norm() < 0.009 && std::abs(along) > 0.7;
 }
 
 bool reachable(const Scene& scene, const Reach& reach, const Pick& pick, bool place) {
@@ -70,11 +64,15 @@ Scene look(const policy::Observation& observation, const Roles& roles) {
     const policy::PrivilegedObject& object = seen.objects[i];
     const Pose pose = to_base * object.pose;
     Footprint footprint = footprint_of(object.parts, pose);
+    if (object.center_of_mass) {
+      recenter(footprint, pose.apply(*object.center_of_mass).head<2>());
+    }
     if (int(i) == roles.source) {
       scene.source = std::move(footprint);
       scene.source_pose = pose;
-      for (const std::vector<Vec3>& part : object.parts) {
-        for (const Vec3& vertex : part) scene.source_points.push_back(pose.apply(vertex));
+      scene.source_parts = object.parts;
+      for (std::vector<Vec3>& part : scene.source_parts) {
+        for (Vec3& vertex : part) vertex = pose.apply(vertex);
       }
       std::copy_n(object.finger_contact, 2, scene.fingers_on_source);
     } else if (int(i) == roles.target) {
@@ -112,19 +110,39 @@ double travel_height(const Scene& scene, double hang) {
   return top + hang + kTravelGap;
 }
 
-std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place) {
-  const std::vector<Grasp> grasps = grasp_candidates(problem_of(scene, place));
-  for (std::size_t i = 0; i < std::min(grasps.size(), kMostTried); ++i) {
-    const Pick pick = pick_of(scene, grasps[i]);
-    if (reachable(scene, reach, pick, place)) return pick;
-  }
+std::vector<Grasp> grasps_of(const Scene& scene) {
+  return grasp_candidates(problem_of(scene, true));
+}
+
+Pick pick_of(const Scene& scene, const Grasp& grasp) {
+  const GripperShape gripper;
+  Pick pick;
+  pick.grasp = grasp;
+  pick.source_pose = scene.source_pose;
+  const double z = grasp.tcp.position.z();
+  // Going there the fingers must also clear the object itself.
+  const double over = std::max({z + kAbove, travel_height(scene, gripper.tip_below),
+                                scene.source.top + gripper.tip_below + 0.01});
+  pick.above = at_height(grasp.tcp, over);
+  return pick;
+}
+
+std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place,
+                              std::span<const Pose> failed) {
+  GraspProblem problem = problem_of(scene, place);
   // Rather a doubtful way than none.
-  GraspProblem crowded = problem_of(scene, place);
-  crowded.others.clear();
-  const std::vector<Grasp> doubtful = grasp_candidates(crowded);
-  for (std::size_t i = 0; i < std::min(doubtful.size(), kMostTried); ++i) {
-    const Pick pick = pick_of(scene, doubtful[i]);
-    if (reachable(scene, reach, pick, false)) return pick;
+  for (const bool crowded : {true, false}) {
+    if (!crowded) problem.others.clear();
+    std::vector<Grasp> grasps = grasp_candidates(problem);
+    std::stable_partition(grasps.begin(), grasps.end(), [&](const Grasp& grasp) {
+      return std::none_of(failed.begin(), failed.end(), [&](const Pose& before) {
+        return same_hold(scene.source_pose * before, grasp.tcp);
+      });
+    });
+    for (std::size_t i = 0; i < std::min(grasps.size(), kMostTried); ++i) {
+      const Pick pick = pick_of(scene, grasps[i]);
+      if (reachable(scene, reach, pick, place && crowded)) return pick;
+    }
   }
   return std::nullopt;
 }
@@ -141,10 +159,10 @@ bool lies_on_target(const Scene& scene) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  const Vec3 apart = scene.source_pose.position - scene.target_pose.position;
-  return apart.head<2>().norm() < 0.5 * (high - low).norm() && apart.z() > 0 &&
+  // Heights by the shapes: a model's origin may be anywhere in it.
+  return (scene.source.center - scene.target.center).norm() < 0.5 * (high - low).norm() &&
          scene.source.bottom < scene.target.top + 0.02 &&
-         scene.source.bottom > scene.surface + 0.0005;
+         scene.source.bottom > scene.target.bottom + 0.0005;
 }
 
 }  // namespace probe::expert

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "runtime/expert/grasp_candidates.h"
@@ -15,10 +16,10 @@ namespace probe::expert {
 // An observation as the planner needs it.
 struct Scene {
   Footprint source, target;
-  std::vector<Footprint> others;    // neither source nor target
-  std::vector<Footprint> fixtures;  // a convex part each
-  std::vector<Vec3> source_points;
-  Pose source_pose, target_pose;  // model frames
+  std::vector<Footprint> others;                // neither source nor target
+  std::vector<Footprint> fixtures;              // a convex part each
+  std::vector<std::vector<Vec3>> source_parts;  // vertices, base frame
+  Pose source_pose, target_pose;                // model frames
   bool fingers_on_source[2] = {false, false};
   Pose tcp;
   std::vector<double> joints;
@@ -38,9 +39,16 @@ struct Pick {
   Pose source_pose;  // when planned
 };
 
+// All grasps of the source among everything else, best first.
+std::vector<Grasp> grasps_of(const Scene& scene);
+
+Pick pick_of(const Scene& scene, const Grasp& grasp);
+
 // The best grasp whose whole way the arm can follow, place included. Without any within the
-// margins, the best that fits at all; nullopt if the object cannot be gripped from above.
-std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place);
+// margins, the best that fits at all; nullopt if the object cannot be gripped from above. `failed`
+// are grasps tried before, tool poses in the source's frame: others come first.
+std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place,
+                              std::span<const Pose> failed = {});
 
 // The tool's height so that its tips and what hangs below them (`hang` m under the tool centre
 // point) clear everything but the source.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,10 +33,11 @@ struct Proprioception {
   std::vector<double> joints;  // rad and m, in the plan's drive order
 };
 
-// Points of an object's collision hull and how much it weighs; fixed in an episode.
+// An object's collision hulls and where it is; all but the last two are fixed in an episode.
 struct PrivilegedObject {
   std::string name;
   std::vector<std::vector<Vec3>> parts;  // convex parts' vertices, model frame
+  std::optional<Vec3> center_of_mass;  // model frame
   Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();
   Pose pose;                                // model frame in world, now
   bool finger_contact[2] = {false, false};  // over the last substep

@@ -119,6 +119,7 @@ Status EpisodeWorld::read_bodies() {
           view.parts.back().push_back(vertex + shape->center_of_mass);
         }
       }
+      view.center_of_mass = shape->center_of_mass;
       view.box_min = to_vec(object.box_min);
       view.box_max = to_vec(object.box_max);
       privileged_.objects.push_back(std::move(view));
