@@ -70,6 +70,10 @@ class Lowering {
 
  private:
   Value fail(const Span& span, std::string message) {
+  // Predicates that call others twice double at each level, also where the instructions are shared.
+  static constexpr std::size_t kMostVisited = std::size_t{1} << 22u;
+  std::size_t visited_ = 0;
+
     if (ok_) diagnostics_.report(Code::P0601, span, std::move(message));
     ok_ = false;
     return Value::of_truth(false);
@@ -81,6 +85,8 @@ class Lowering {
     if (!ok_ || builder_.is_full()) return Value::of_truth(false);
     const ExprNode& node = model_.exprs.nodes[ref];
     switch (node.op) {
+    if (++visited_ > kMostVisited)
+      return fail(node.span, "the predicates of this task call one another too often to unroll");
       case ExprOp::kPoison:
         return fail(node.span, "this has no value");
       case ExprOp::kConstant:

@@ -12,9 +12,11 @@ struct HoldFinder {
   const Model& model;
   std::uint64_t horizon;
   std::vector<ExprRef> too_long;
+  std::set<ExprRef> seen = {};  // a predicate that calls another twice is looked at once
 
   // Bounded: expressions by the parser's depth, calls because predicates do not contain themselves.
   void visit(ExprRef ref) {
+    if (!seen.insert(ref).second) return;
     const ExprNode& node = model.exprs.nodes[ref];
     if (node.op == ExprOp::kHold && node.a > horizon) too_long.push_back(ref);
     for (const ExprRef arg : node.args) visit(arg);

@@ -120,6 +120,7 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
   const auto found = context_.symbols.sets.find(set.name, *diagnostics_);
   if (!found) return {};
   define(static_cast<SetId>(*found));
+  if (set.name.text.empty()) return {};  // a syntax error, reported
   return context_.model.sets[static_cast<SetId>(*found)].members;
 }
 SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
