@@ -54,12 +54,13 @@ Compilation compile_text(const std::string& text) {
   const fs::path file =
       fs::temp_directory_path() / ("probe_reference_" + std::to_string(getpid()) + ".probe");
   const bool stands_alone = text.find("use \"") != std::string::npos;
-  std::ofstream(file, std::ios::binary) << (stands_alone ? "" : "use \"intact.probe\"\n") << text;
+  std::ofstream(file, std::ios::binary)
+      << (stands_alone ? "" : "use \"suite/intact.probe\"\n") << text;
   const std::string name = file.string();
   auto result = check(std::span<const std::string>(&name, 1),
                       {.asset_root = (kRoot / "assets").string(),
                        .suite = "",
-                       .library_folders = {(kRoot / "dsl").string(), (kRoot / "suite").string()}});
+                       .library_folders = {(kRoot / "dsl").string(), kRoot.string()}});
   fs::remove(file);
   REQUIRE_MESSAGE(result.ok(), to_text(result.failure()));
   return std::move(result).value();
@@ -116,7 +117,7 @@ TEST_CASE("the library compiles and shares no name with the suite") {
   }
   const Compilation alone = compile_text(all);
   CHECK_MESSAGE(alone.ok, render_text(alone.diagnostics, alone.sources));
-  const Compilation both = compile_text("use \"intact.probe\"\n" + all +
+  const Compilation both = compile_text("use \"suite/intact.probe\"\n" + all +
                                         "task with_library like carrot_on_plate { metrics placing; "
                                         "say place_on }\nvariant lifted_up of with_library { "
                                         "metrics lifting }\nvariant pushed of with_library { "
