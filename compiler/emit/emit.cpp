@@ -197,6 +197,7 @@ class Emitter {
     record.aim = static_cast<std::uint32_t>(camera.aim);
     record.width = camera.width;
     record.height = camera.height;
+    record.samples = camera.samples;
     record.position = camera.position;
     record.aim_values = camera.aim_values;
     record.fx = camera.fx;
@@ -212,6 +213,7 @@ class Emitter {
     plan::LightRecord record;
     record.name = writer_.text(light.name);
     record.ambient = light.ambient;
+    record.occlusion = light.occlusion;
     record.suns = plan::append(records().suns, std::span<const plan::SunRecord>(light.suns));
     records().lights.push_back(record);
   }

@@ -131,6 +131,7 @@ struct Camera {
   std::array<double, 3> position{};
   std::array<double, 4> aim_values{};
   std::uint32_t width = 0, height = 0;
+  std::uint32_t samples = 0;  // a pixel: 4 or 16, 0 for one
   double fx = 0, fy = 0, cx = 0, cy = 0;
   bool operator==(const Camera& other) const;  // what is seen through it; the name does not count
 };
@@ -139,6 +140,7 @@ struct Light {
   std::string name;
   Span span;
   double ambient = 0;
+  std::uint32_t occlusion = 0;  // rays a sample that find how open it is to ambient light
   std::vector<plan::SunRecord> suns;
   bool operator==(const Light& other) const;
 };

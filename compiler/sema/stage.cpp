@@ -255,6 +255,14 @@ struct CameraReader {
   void operator()(const syntax::ImageStmt& stmt) {
     camera.width = size(stmt.width);
     camera.height = size(stmt.height);
+    camera.samples = 0;
+    if (!stmt.samples) return;
+    const auto samples = stmt.samples->value;
+    if (samples != 1 && samples != 4 && samples != 16) {
+      context.report(Code::P0304, stmt.samples->span, "expected 1, 4 or 16 samples a pixel");
+      return;
+    }
+    if (samples > 1) camera.samples = static_cast<std::uint32_t>(samples);
   }
   void operator()(const syntax::LensStmt& stmt) {
     if (stmt.values.size() != 4) {
@@ -317,6 +325,13 @@ void define_lights(Context& context) {
         if (light.ambient < 0)
           context.report(Code::P0304, ambient->value.span,
                          "expected an ambient light of 0 or more");
+        if (!ambient->occlusion) continue;
+        if (ambient->occlusion->value < 1 || ambient->occlusion->value > plan::kMaxOcclusion) {
+          context.report(Code::P0304, ambient->occlusion->span,
+                         "expected 1 to 16 rays to find how open a place is");
+          continue;
+        }
+        light.occlusion = static_cast<std::uint32_t>(ambient->occlusion->value);
         continue;
       }
       const auto& written = std::get<syntax::SunStmt>(stmt);
@@ -491,12 +506,12 @@ void define_scenes(Context& context) {
 bool Camera::operator==(const Camera& other) const {
   return mount_link.text == other.mount_link.text && aim == other.aim &&
          position == other.position && aim_values == other.aim_values && width == other.width &&
-         height == other.height && fx == other.fx && fy == other.fy && cx == other.cx &&
+         height == other.height && samples == other.samples && fx == other.fx && fy == other.fy && cx == other.cx &&
          cy == other.cy;
 }
 
 bool Light::operator==(const Light& other) const {
-  if (ambient != other.ambient || suns.size() != other.suns.size()) return false;
+  if (ambient != other.ambient || occlusion != other.occlusion || suns.size() != other.suns.size()) return false;
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||
         suns[i].shadow != other.suns[i].shadow) {

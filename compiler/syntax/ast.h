@@ -443,6 +443,7 @@ struct MountStmt {
 struct ImageStmt {
   Span span;
   Int width, height;
+  std::optional<Int> samples;  // a pixel
 };
 struct LensStmt {
   Span span;
@@ -458,6 +459,7 @@ struct CameraDecl {
 struct AmbientStmt {
   Span span;
   Quantity value;
+  std::optional<Int> occlusion;  // rays a sample
 };
 struct SunStmt {
   Span span;

@@ -267,6 +267,7 @@ void Parser::camera_statement(std::vector<CameraStmt>& body) {
     image.width = integer();
     expect_word("x");
     image.height = integer();
+    if (accept_word("samples")) image.samples = integer();
     stmt = image;
   } else if (accept_word("lens")) {
     stmt = LensStmt{{}, comma_list([this] { return quantity(); })};
@@ -290,7 +291,10 @@ void Parser::light_statement(std::vector<LightStmt>& body) {
   const std::uint32_t begin = mark();
   LightStmt stmt;
   if (accept_word("ambient")) {
-    stmt = AmbientStmt{{}, quantity()};
+    AmbientStmt ambient;
+    ambient.value = quantity();
+    if (accept_word("occlusion")) ambient.occlusion = integer();
+    stmt = ambient;
   } else if (accept_word("sun")) {
     SunStmt sun;
     sun.direction = point();

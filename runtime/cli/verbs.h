@@ -29,6 +29,7 @@ void add_asset_option(CLI::App& verb, AssetOptions& options);
 // Each adds its verb; the callback stores the exit code.
 void add_check(CLI::App& app, int& exit);
 void add_build(CLI::App& app, int& exit);
+void add_doctor(CLI::App& app, int& exit);
 void add_explain(CLI::App& app, int& exit);
 void add_fmt(CLI::App& app, int& exit);
 void add_list(CLI::App& app, int& exit);

@@ -1,10 +1,8 @@
 #include "runtime/export/export.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <memory>
 
+#include "runtime/base/file.h"
 #include "runtime/run/glob.h"
 #include "runtime/run/stored_trace.h"
 
@@ -38,19 +36,11 @@ Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportO
 
 Result<ExportReport> export_run(const std::string& dir, const std::string& path,
                                 const ExportOptions& options) {
-  const std::string temporary = path + ".part";
-  PROBE_ASSIGN(auto sink, open_sink(path, temporary));
+  PendingFile pending(path);
+  PROBE_ASSIGN(auto sink, open_sink(path, pending.temporary()));
   auto report = write_all(*sink, dir, options);
   sink.reset();
-  if (!report) {
-    std::remove(temporary.c_str());
-    return report;
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
-    return Failure{"io", "cannot be renamed: " + reason, path};
-  }
+  if (report) PROBE_TRY(pending.keep());
   return report;
 }
 

@@ -148,7 +148,7 @@ struct CameraRecord {
   StringRef mount_link;
   std::uint32_t aim = 0;  // CameraAim
   std::uint32_t width = 0, height = 0;
-  std::uint32_t zero = 0;
+  std::uint32_t samples = 0;         // a pixel: 4 or 16; 0 is one
   std::array<double, 3> position{};  // in the mount link's frame
   std::array<double, 4>
       aim_values{};  // look: direction xyz and 0; quat: w x y z, columns forward left up
@@ -157,11 +157,15 @@ struct CameraRecord {
 };
 static_assert(sizeof(CameraRecord) == 128);
 
+inline constexpr std::uint32_t kMaxOcclusion = 16;
+
 struct LightRecord {
   StringRef name;
   double ambient = 0;
   Slice suns;  // kSuns
-  std::uint64_t zero[5] = {};
+  std::uint32_t occlusion = 0;  // rays a sample that find how open it is to ambient light
+  std::uint32_t zero = 0;
+  std::uint64_t zero2[4] = {};
 };
 static_assert(sizeof(LightRecord) == 64);
 

@@ -121,7 +121,9 @@ Sha256 IdHasher::camera(std::uint32_t index) {
   std::optional<Sha256>& known = cameras_[index];
   if (known) return *known;
   const CameraRecord& c = tables_.cameras[index];
-  Hasher h = tagged("vlaprobe.camera.1");
+  // What only some cameras have is part of a second version, so that the others keep their ids.
+  Hasher h = tagged(c.samples == 0 ? "vlaprobe.camera.1" : "vlaprobe.camera.2");
+  if (c.samples != 0) h.u32(c.samples);
   h.text(tables_.text(c.mount_link)).u32(c.aim).u32(c.width).u32(c.height);
   h.f64s(c.position).f64s(c.aim_values).f64(c.fx).f64(c.fy).f64(c.cx).f64(c.cy);
   known = h.finish();
@@ -132,7 +134,8 @@ Sha256 IdHasher::light(std::uint32_t index) {
   std::optional<Sha256>& known = lights_[index];
   if (known) return *known;
   const LightRecord& l = tables_.lights[index];
-  Hasher h = tagged("vlaprobe.light.1");
+  Hasher h = tagged(l.occlusion == 0 ? "vlaprobe.light.1" : "vlaprobe.light.2");
+  if (l.occlusion != 0) h.u32(l.occlusion);
   h.f64(l.ambient).u32(l.suns.count);
   for (const SunRecord& sun : slice_of(tables_.suns, l.suns)) {
     h.f64s(sun.direction).f64(sun.power).u32(sun.shadow);

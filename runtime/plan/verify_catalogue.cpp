@@ -152,7 +152,10 @@ class CatalogueCheck : FieldCheck {
                   fmt::format("an image has 1 to {} pixels a side, not {} x {}", kMaxPixels,
                               c.width, c.height));
     }
-    PROBE_TRY(check_zero(c.zero));
+    if (c.samples != 0 && c.samples != 4 && c.samples != 16) {
+      return fail(Rule::kCameraSamples, &c.samples,
+                  fmt::format("a pixel has 0 (one), 4 or 16 samples, not {}", c.samples));
+    }
     PROBE_TRY(check_positive(c.fx, "a focal length"));
     PROBE_TRY(check_positive(c.fy, "a focal length"));
     PROBE_TRY(check_finite({&c.cx, 1}));
@@ -180,7 +183,13 @@ class CatalogueCheck : FieldCheck {
       return fail(Rule::kSunCount, &l.suns,
                   fmt::format("a light has at most {} suns, not {}", kMaxSuns, l.suns.count));
     }
-    return check_zero(l.zero);
+    if (l.occlusion > kMaxOcclusion) {
+      return fail(Rule::kOcclusion, &l.occlusion,
+                  fmt::format("ambient light is traced by at most {} rays, not {}", kMaxOcclusion,
+                              l.occlusion));
+    }
+    PROBE_TRY(check_zero(l.zero));
+    return check_zero(l.zero2);
   }
 
   Status scene(const SceneRecord& s) const {

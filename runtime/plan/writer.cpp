@@ -1,10 +1,6 @@
 #include "runtime/plan/writer.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <tuple>
 
@@ -174,28 +170,6 @@ std::vector<std::byte> strip_sources(std::span<const std::byte> bytes) {
     parts.push_back(part);
   }
   return join(parts, header.minor);
-}
-
-Status write_file(const std::string& path, std::span<const std::byte> bytes) {
-  const std::string temporary = path + ".part" + std::to_string(::getpid());
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (file == nullptr)
-    return Failure{"io", std::string("cannot write: ") + std::strerror(errno), path};
-  bool ok = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-  ok = std::fflush(file) == 0 && ok;
-  ok = ::fsync(::fileno(file)) == 0 && ok;
-  int error = errno;
-  if (std::fclose(file) != 0 && ok) {
-    ok = false;
-    error = errno;
-  }
-  if (ok && std::rename(temporary.c_str(), path.c_str()) != 0) {
-    ok = false;
-    error = errno;
-  }
-  if (ok) return {};
-  std::remove(temporary.c_str());
-  return Failure{"io", std::string("cannot write: ") + std::strerror(error), path};
 }
 
 }  // namespace probe::plan

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "runtime/base/file.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/format.h"
 #include "runtime/plan/tables.h"
@@ -86,7 +87,6 @@ Slice append(std::vector<Record>& table, std::span<const Record> records) {
 // The same plan without its ignorable sections: same root, same ids. `bytes` is a verified plan.
 std::vector<std::byte> strip_sources(std::span<const std::byte> bytes);
 
-// Writes to a temporary file beside `path` and renames it, so that no reader ever sees half a plan.
-Status write_file(const std::string& path, std::span<const std::byte> bytes);
+using probe::write_file;  // whole or absent
 
 }  // namespace probe::plan

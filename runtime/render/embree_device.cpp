@@ -2,6 +2,8 @@
 
 #include <mutex>
 
+#include "runtime/render/renderer.h"
+
 namespace probe::render {
 namespace {
 
@@ -33,6 +35,21 @@ Result<std::shared_ptr<EmbreeDevice>> EmbreeDevice::shared() {
   std::shared_ptr<EmbreeDevice> device(new EmbreeDevice(handle));
   current = device;
   return device;
+}
+
+Result<std::string> describe_ray_engine() {
+  PROBE_ASSIGN(const auto device, EmbreeDevice::shared());
+  const auto property = [&device](RTCDeviceProperty which) {
+    return rtcGetDeviceProperty(device->get(), which);
+  };
+  const auto version = property(RTC_DEVICE_PROPERTY_VERSION);  // 31305 is 3.13.5
+  std::string text = "Embree " + std::to_string(version / 10000) + "." +
+                     std::to_string(version / 100 % 100) + "." + std::to_string(version % 100) +
+                     ", packets of";
+  if (property(RTC_DEVICE_PROPERTY_NATIVE_RAY4_SUPPORTED) != 0) text += " 4";
+  if (property(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) != 0) text += " 8";
+  if (property(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0) text += " 16";
+  return text;
 }
 
 EmbreeDevice::~EmbreeDevice() { rtcReleaseDevice(device_); }

@@ -83,4 +83,7 @@ class Renderer {
   virtual Result<FrameView> render_full(std::span<const Pose> poses) = 0;
 };
 
+// Embree's version and which packets of rays it traces natively here, for people.
+Result<std::string> describe_ray_engine();
+
 }  // namespace probe::render

@@ -2,14 +2,11 @@
 #include "runtime/run/episode_video.h"
 
 #include <cmath>
-#include <filesystem>
 
 namespace probe::run {
 
-namespace fs = std::filesystem;
-
 EpisodeVideo::EpisodeVideo(const TraceHeader& header, std::string path)
-    : path_(std::move(path)),
+    : file_(std::move(path)),
       instruction_(header.prompt),
       caption_(header.task + "  episode " + std::to_string(header.episode) + "  seed " +
                std::to_string(header.seed) + "  " + header.policy),
@@ -23,8 +20,8 @@ EpisodeVideo::~EpisodeVideo() {
 Status EpisodeVideo::frame(const render::FrameView& frame, int step,
                            std::span<const MetricValue> metrics) {
   if (!writer_) {
-    PROBE_ASSIGN(writer_,
-                 VideoWriter::create(temporary(), frame.width, frame.height, frames_per_second_));
+    PROBE_ASSIGN(writer_, VideoWriter::create(file_.temporary(), frame.width, frame.height,
+                                              frames_per_second_));
   }
   Picture picture = copy_picture(frame.width, frame.height, frame.rgb);
   draw_overlay(picture, {instruction_, caption_, step, horizon_, metrics});
@@ -35,17 +32,12 @@ Status EpisodeVideo::finish() {
   if (!writer_) return {};  // an episode without a picture
   PROBE_TRY(writer_->finish());
   writer_.reset();
-  std::error_code error;
-  fs::rename(temporary(), path_, error);
-  if (error) return Failure{"video", "cannot be renamed: " + error.message(), path_};
-  return {};
+  return file_.keep();
 }
 
 Status EpisodeVideo::discard() {
   writer_.reset();
-  std::error_code ignored;
-  fs::remove(temporary(), ignored);
-  return {};
+  return {};  // the unfinished file goes with us
 }
 
 }  // namespace probe::run

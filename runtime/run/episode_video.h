@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "runtime/base/file.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/overlay.h"
 #include "runtime/run/video.h"
@@ -21,9 +22,8 @@ class EpisodeVideo final : public FrameSink {
   Status discard();
 
  private:
-  std::string temporary() const { return path_ + ".tmp"; }
-
-  std::string path_, instruction_, caption_;
+  PendingFile file_;
+  std::string instruction_, caption_;
   int horizon_ = 0, frames_per_second_ = 5;
   std::unique_ptr<VideoWriter> writer_;
 };

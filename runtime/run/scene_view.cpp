@@ -21,8 +21,8 @@ bool is_fixed(const robot::RobotModel& model, int link) {
   return true;
 }
 
-Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRecord& record,
-                                   const Pose& mount) {
+// In the frame of its mount.
+Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRecord& record) {
   render::Camera camera;
   Mat3 axes;
   const auto& aim = record.aim_values;
@@ -36,14 +36,21 @@ Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRec
   } else {
     axes = Quat(aim[0], aim[1], aim[2], aim[3]).normalized().toRotationMatrix();
   }
-  camera.position = mount.apply(to_vec(record.position));
-  camera.forward_left_up = mount.rotation.toRotationMatrix() * axes;
+  camera.position = to_vec(record.position);
+  camera.forward_left_up = axes;
   camera.width = static_cast<int>(record.width);
   camera.height = static_cast<int>(record.height);
   camera.fx = record.fx;
   camera.fy = record.fy;
   camera.cx = record.cx;
   camera.cy = record.cy;
+  return camera;
+}
+
+render::Camera carried(const render::Camera& on_mount, const Pose& mount) {
+  render::Camera camera = on_mount;
+  camera.position = mount.apply(on_mount.position);
+  camera.forward_left_up = mount.rotation.toRotationMatrix() * on_mount.forward_left_up;
   return camera;
 }
 
@@ -148,22 +155,26 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   const int mount = parts->model.find_link(mount_name);
   const std::string where = "camera `" + std::string(plan.text(camera.name)) + "`";
   if (mount < 0) return Failure{"render", "the robot has no link `" + mount_name + "`", where};
-  if (!is_fixed(parts->model, mount)) {
-    return Failure{"render",
-                   "a camera on the moving link `" + mount_name + "` is not available yet", where};
-  }
+  if (!is_fixed(parts->model, mount)) view->moving_mount_ = mount;
   view->tree_.link_poses(plan.joints(scene), view->links_);
   const Pose mount_pose = view->base_ * view->links_[static_cast<std::size_t>(mount)];
-  PROBE_ASSIGN(spec.camera, make_camera(plan, camera, mount_pose));
-  resize(spec.camera, size);
-  spec.lights = make_lights(plan, plan.lights()[task.light]);
-  if (scene.photo != plan::kNone) spec.photo = assets->photo(scene.photo);
+  PROBE_ASSIGN(view->on_mount_, make_camera(plan, camera));
+  resize(view->on_mount_, size);
+  spec.camera = carried(view->on_mount_, mount_pose);
+  spec.samples = camera.samples == 0 ? 1 : camera.samples == 4 ? 2 : 4;  // a side
+  const plan::LightRecord& light = plan.lights()[task.light];
+  spec.lights = make_lights(plan, light);
+  spec.occlusion_rays = static_cast<int>(light.occlusion);
+  // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
+  if (scene.photo != plan::kNone && view->moving_mount_ < 0) {
+    spec.photo = assets->photo(scene.photo);
+  }
   PROBE_ASSIGN(view->renderer_, render::Renderer::create(std::move(spec)));
   return view;
 }
 
-Result<render::FrameView> SceneView::render(std::span<const double> q,
-                                            std::span<const Pose> objects) {
+// Fills links_ and poses_; returns the camera, which matters where it moves.
+render::Camera SceneView::place(std::span<const double> q, std::span<const Pose> objects) {
   PROBE_CHECK(objects.size() == objects_ && q.size() == tree_.joint_count(),
               "one pose an object and one position a driven joint");
   tree_.link_poses(q, links_);
@@ -171,7 +182,22 @@ Result<render::FrameView> SceneView::render(std::span<const double> q,
   for (const int link : visual_links_) {
     poses_.push_back(base_ * links_[static_cast<std::size_t>(link)]);
   }
+  if (moving_mount_ < 0) return on_mount_;
+  return carried(on_mount_, base_ * links_[static_cast<std::size_t>(moving_mount_)]);
+}
+
+Result<render::FrameView> SceneView::render(std::span<const double> q,
+                                            std::span<const Pose> objects) {
+  const render::Camera camera = place(q, objects);
+  if (moving_mount_ >= 0) return renderer_->render_from(camera, poses_);
   return renderer_->render(poses_);
+}
+
+Result<render::FrameView> SceneView::render_full(std::span<const double> q,
+                                                 std::span<const Pose> objects) {
+  const render::Camera camera = place(q, objects);
+  if (moving_mount_ >= 0) return renderer_->render_from(camera, poses_);
+  return renderer_->render_full(poses_);
 }
 
 }  // namespace probe::run

@@ -30,8 +30,11 @@ class SceneView {
   // `q` in drive order; `objects` are model poses in world, in the order source, target,
   // distractors.
   Result<render::FrameView> render(std::span<const double> q, std::span<const Pose> objects);
+  // Every pixel traced again: the same picture, for tests.
+  Result<render::FrameView> render_full(std::span<const double> q, std::span<const Pose> objects);
 
  private:
+  render::Camera place(std::span<const double> q, std::span<const Pose> objects);
   SceneView(std::shared_ptr<const SharedAssets> assets, robot::Tree tree)
       : assets_(std::move(assets)), tree_(std::move(tree)) {}
 
@@ -41,6 +44,9 @@ class SceneView {
   std::size_t objects_ = 0;
   std::vector<int> visual_links_;  // of the dynamic visuals after the objects
   std::vector<Pose> links_, poses_;
+  // A camera on a link that moves: its place in the link, its picture's size and lens.
+  int moving_mount_ = -1;
+  render::Camera on_mount_;
   std::unique_ptr<render::Renderer> renderer_;
 };
 

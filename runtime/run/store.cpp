@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "runtime/base/file.h"
 #include "runtime/run/stored_trace.h"
 
 namespace probe::run {
@@ -219,32 +220,6 @@ std::string difference(const RunIdentity& stored, const RunIdentity& asked) {
          asked.plan_root.substr(0, 12) + ")";
 }
 
-// Whole or absent, on the disk when it returns.
-Status write_whole(const fs::path& path, std::span<const std::byte> bytes) {
-  const std::string temporary = path.string() + ".tmp";
-  const auto fail = [&](const char* what) {
-    const std::string reason = std::strerror(errno);
-    ::unlink(temporary.c_str());
-    return failed(std::string(what) + ": " + reason, path.string());
-  };
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) return fail("cannot be made");
-  for (std::size_t at = 0; at < bytes.size();) {
-    const ssize_t written = ::write(file, bytes.data() + at, bytes.size() - at);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const auto failure = fail("cannot be written");
-      ::close(file);
-      return failure;
-    }
-    at += static_cast<std::size_t>(written);
-  }
-  const bool synced = ::fsync(file) == 0;
-  if (::close(file) != 0 || !synced) return fail("cannot be forced to the disk");
-  if (::rename(temporary.c_str(), path.c_str()) != 0) return fail("cannot be renamed");
-  return {};
-}
-
 void sync_folder(const fs::path& folder) {
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) return;
@@ -329,7 +304,7 @@ class FolderStore final : public Store {
       return {};
     }
     // The plan goes first: a folder with a record always has its plan.
-    PROBE_TRY(write_whole(plan_path(dir_), plan_bytes));
+    PROBE_TRY(write_file(plan_path(dir_), plan_bytes));
     sync_folder(dir_);
     Statement insert(database_.handle(), "insert into run values ('record', ?)", Access::kWrite);
     insert.bind(to_json(record).dump()).next();

@@ -1,7 +1,6 @@
 #include "runtime/scene/image.h"
 
 #include <png.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -17,6 +16,8 @@
 #define STBI_NO_HDR
 #define STBI_NO_LINEAR
 #include <stb/stb_image.h>
+
+#include "runtime/base/file.h"
 
 namespace probe::scene {
 namespace {
@@ -83,25 +84,16 @@ Status write_any(const std::string& path, int width, int height, const PngFormat
                               " bytes, got " + std::to_string(pixels.size()),
                    .where = path};
   }
-  const std::string temporary = path + ".tmp" + std::to_string(::getpid());
-  std::unique_ptr<std::FILE, FileCloser> file(std::fopen(temporary.c_str(), "wb"));
+  PendingFile pending(path);
+  std::unique_ptr<std::FILE, FileCloser> file(std::fopen(pending.temporary().c_str(), "wb"));
   if (!file) return io_failure("cannot create the file", path);
   errno = 0;
   // libpng hides short writes of stdio's buffer; flush and close tell of a full disk.
   bool fine = encode_png(file.get(), width, height, format, pixels.data());
   fine = fine && std::fflush(file.get()) == 0;
   fine = (std::fclose(file.release()) == 0) && fine;
-  if (!fine) {
-    const Failure failure = io_failure("cannot write the picture", path);
-    std::remove(temporary.c_str());
-    return failure;
-  }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-    const Failure failure = io_failure("cannot rename the finished picture", path);
-    std::remove(temporary.c_str());
-    return failure;
-  }
-  return {};
+  if (!fine) return io_failure("cannot write the picture", path);
+  return pending.keep();
 }
 
 }  // namespace

@@ -159,12 +159,14 @@ inline std::vector<Defect> catalogue_defects() {
        }},
       {"CAMR", "has length 1", [](Records& r, Writer&) { r.cameras[0].aim = 2; }},
       {"CAMR", "pixels a side", [](Records& r, Writer&) { r.cameras[0].width = 0; }},
+      {"CAMR", "samples", [](Records& r, Writer&) { r.cameras[0].samples = 9; }},
       {"CAMR", "focal", [](Records& r, Writer&) { r.cameras[0].fy = 0; }},
       {"SUNS", "other than zero",
        [](Records& r, Writer&) {
          r.suns[0].direction = {0, 0, 0};
        }},
       {"SUNS", "shadows", [](Records& r, Writer&) { r.suns[0].shadow = 2; }},
+      {"LITE", "traced", [](Records& r, Writer&) { r.lights[0].occlusion = 17; }},
       {"LITE", "of SUNS", [](Records& r, Writer&) { r.lights[0].suns.count = 2; }},
       {"SCNE", "of ROBT", [](Records& r, Writer&) { r.scenes[0].robot = 1; }},
       {"SCNE", "joint positions", [](Records& r, Writer&) { r.scenes[0].joints.count = 1; }},

@@ -2,6 +2,7 @@
 #include <xmmintrin.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -106,6 +107,63 @@ TEST_CASE("the depth of a sphere is the analytic one") {
         ++seen;
         worst = std::max(worst,
                          std::abs(frame.depth[static_cast<std::size_t>(j * 640 + i)] - t * d.x()));
+      }
+    }
+    CHECK(seen > 5000);
+    CHECK(worst < 1e-5);
+  }
+}
+
+// Where a ray from the origin enters the box of half sizes `half`, as its t; nothing on a miss.
+std::optional<double> enter_box(const Vec3& d, const Pose& box, const Vec3& half) {
+  const Vec3 from = box.rotation.conjugate() * -box.position, along = box.rotation.conjugate() * d;
+  double near = 0, far = 1e9;
+  for (int k = 0; k < 3; ++k) {
+    const double a = (-half[k] - from[k]) / along[k], b = (half[k] - from[k]) / along[k];
+    near = std::max(near, std::min(a, b));
+    far = std::min(far, std::max(a, b));
+  }
+  // A hair inside the silhouette, where one pixel more or less is rounding.
+  if (near + 1e-5 > far) return std::nullopt;
+  return near;
+}
+
+TEST_CASE("the depth of a turned box is the analytic one") {
+  const Vec3 half(0.06, 0.1, 0.03);
+  scene::MeshPart part;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 center = Vec3::Zero(), across = Vec3::Zero(), up = Vec3::Zero();
+      center[axis] = side * half[axis];
+      across[(axis + 1) % 3] = half[(axis + 1) % 3];
+      up[(axis + 2) % 3] = side * half[(axis + 2) % 3];
+      const scene::MeshPart face = quad_part(center, across, up);
+      const auto first = static_cast<std::uint32_t>(part.positions.size() / 3);
+      part.positions.insert(part.positions.end(), face.positions.begin(), face.positions.end());
+      part.normals.insert(part.normals.end(), face.normals.begin(), face.normals.end());
+      for (const std::uint32_t index : face.indices) part.indices.push_back(first + index);
+    }
+  }
+  SceneSpec spec;
+  spec.camera = plain_camera();
+  spec.lights = table_lights();
+  spec.dynamics = {visual(colored(std::move(part), 0.5f), 0, "box")};
+  const auto renderer = make(spec);
+  for (const Pose& box : {Pose{Vec3(0.7, 0, 0), Quat(0.9, 0.2, -0.3, 0.25).normalized()},
+                          Pose{Vec3(0.9, -0.2, 0.1), Quat(0.3, -0.5, 0.6, 0.1).normalized()}}) {
+    const FrameView frame = draw(*renderer, {box});
+    double worst = 0;
+    int seen = 0;
+    for (int j = 0; j < 480; ++j) {
+      for (int i = 0; i < 640; ++i) {
+        const Vec3 d = Vec3(1, -(i + 0.5 - spec.camera.cx) / spec.camera.fx,
+                            -(j + 0.5 - spec.camera.cy) / spec.camera.fy)
+                           .normalized();
+        const auto t = enter_box(d, box, half);
+        if (!t) continue;
+        ++seen;
+        worst = std::max(worst,
+                         std::abs(frame.depth[static_cast<std::size_t>(j * 640 + i)] - *t * d.x()));
       }
     }
     CHECK(seen > 5000);

@@ -1,0 +1,78 @@
+#include "runtime/base/file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace probe {
+namespace {
+
+Failure io_failure(const std::string& what, const std::string& path) {
+  return {.code = "io", .message = what + ": " + std::strerror(errno), .where = path};
+}
+
+// Two threads may write one file.
+std::string next_suffix() {
+  static std::atomic<unsigned> count{0};
+  return "." + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".tmp";
+}
+
+}  // namespace
+
+PendingFile::PendingFile(std::string path)
+    : path_(std::move(path)), temporary_(path_ + next_suffix()) {}
+
+PendingFile::~PendingFile() {
+  if (!kept_) std::remove(temporary_.c_str());
+}
+
+Status PendingFile::keep() {
+  const int file = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return io_failure("cannot be written", path_);
+  const bool synced = ::fsync(file) == 0;
+  const int error = errno;
+  ::close(file);
+  errno = error;
+  if (!synced) return io_failure("cannot be forced to the disk", path_);
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    return io_failure("cannot be renamed", path_);
+  }
+  kept_ = true;
+  return {};
+}
+
+Status write_file(const std::string& path, std::span<const std::byte> bytes) {
+  PendingFile pending(path);
+  std::FILE* file = std::fopen(pending.temporary().c_str(), "wb");
+  if (file == nullptr) return io_failure("cannot be created", path);
+  bool fine = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  fine = fine && std::fflush(file) == 0;
+  const int error = errno;
+  if (std::fclose(file) != 0 && fine) return io_failure("cannot be written", path);
+  errno = error;
+  if (!fine) return io_failure("cannot be written", path);
+  return pending.keep();
+}
+
+Result<std::string> read_file(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    return Failure{.code = "io", .message = "there is no such file", .where = path};
+  }
+  std::ifstream stream(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
+  if (size < 0) return Failure{.code = "io", .message = "cannot be opened", .where = path};
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  stream.seekg(0);
+  stream.read(bytes.data(), size);
+  if (!stream) return Failure{.code = "io", .message = "cannot be read", .where = path};
+  return bytes;
+}
+
+}  // namespace probe

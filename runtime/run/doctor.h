@@ -1,0 +1,35 @@
+// What is installed and whether it computes what it should: for `vlaprobe doctor`, and for anybody
+// who wonders why two machines disagree.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/run/golden_frames.h"
+
+namespace probe::run {
+
+struct DoctorReport {
+  Fingerprint fingerprint;            // of this process with the shipped assets' manifest
+  std::string ray_engine;             // Embree's version and packet sizes
+  std::vector<std::string> cpu_sets;  // instruction sets that libraries choose their code by
+  std::string code_level;             // of the hot loops: x86-64-v2, v3 or v4
+  std::string asset_root;
+  int asset_files = 0;                    // of the manifest
+  std::vector<std::string> asset_damage;  // "path: has other bytes"
+  std::string mesh_cache;                 // folder, empty: none
+  std::string settle_state;               // hash after the drop, hexadecimal
+  std::string golden_folder;              // empty: not here
+  std::optional<GoldenReport> golden;
+  bool fine() const;
+};
+
+// `assets` as find_asset_root. Fails when there is no asset folder or its objects cannot be drawn.
+Result<DoctorReport> examine(const std::string& assets);
+
+std::string to_json(const DoctorReport& report, const std::string& version);
+std::string to_text(const DoctorReport& report, const std::string& version);
+
+}  // namespace probe::run

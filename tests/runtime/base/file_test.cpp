@@ -1,0 +1,69 @@
+// Files whole or absent: with a full disk, a missing folder, an abandoned writer.
+#include "runtime/base/file.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace probe {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("probe_file_" + std::to_string(::getpid()));
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+  std::string file(const char* name) const { return (path / name).string(); }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+  }
+};
+
+std::span<const std::byte> bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text));
+}
+
+TEST_CASE("a file is written whole, replaces the one before and leaves nothing beside it") {
+  const Folder folder;
+  REQUIRE(write_file(folder.file("a"), bytes_of("one")).ok());
+  REQUIRE(write_file(folder.file("a"), bytes_of(std::string_view("t\0o", 3))).ok());
+  CHECK(read_file(folder.file("a")).value() == std::string("t\0o", 3));
+  CHECK(folder.entries() == 1);
+  REQUIRE(write_file(folder.file("empty"), {}).ok());
+  CHECK(read_file(folder.file("empty")).value().empty());
+}
+
+TEST_CASE("a writer that is given up leaves the old file and no other") {
+  const Folder folder;
+  REQUIRE(write_file(folder.file("a"), bytes_of("old")).ok());
+  {
+    const PendingFile pending(folder.file("a"));
+    std::ofstream(pending.temporary()) << "half";
+    CHECK(folder.entries() == 2);
+  }
+  CHECK(folder.entries() == 1);
+  CHECK(read_file(folder.file("a")).value() == "old");
+}
+
+TEST_CASE("what cannot be written or read is a failure with the path") {
+  const Folder folder;
+  const std::string inside = folder.file("no/such/place");
+  const Status status = write_file(inside, bytes_of("x"));
+  REQUIRE_FALSE(status.ok());
+  CHECK(status.failure().code == "io");
+  CHECK(to_text(status.failure()) == inside + ": cannot be created: No such file or directory");
+  fs::create_directories(folder.file("folder/full"));
+  CHECK_FALSE(write_file(folder.file("folder"), bytes_of("x")).ok());
+  CHECK_FALSE(read_file(folder.file("folder")).ok());
+  CHECK_FALSE(read_file(folder.file("nothing")).ok());
+  CHECK(folder.entries() == 1);
+  PendingFile never(folder.file("b"));
+  CHECK_FALSE(never.keep().ok());
+}
+
+}  // namespace
+}  // namespace probe
