@@ -91,24 +91,34 @@ struct Diagnostic {
   }
 };
 
+// What an @allow keeps quiet, with its reason; `about`: the declaration it is about.
+struct Silenced {
+  Diagnostic diagnostic;
+  Span about;
+  std::string reason;
+};
+
 class Diagnostics {
  public:
   // With the severity of the code's table line. The reference stays valid while the collector
   // lives.
   Diagnostic& report(Code code, const Span& primary, std::string message);
   Diagnostic& add(Diagnostic diagnostic);
+  void silence(Silenced silenced) { silenced_.push_back(std::move(silenced)); }
 
   std::size_t error_count() const;
   bool has_errors() const { return error_count() != 0; }
   bool empty() const { return items_.empty(); }
   std::size_t size() const { return items_.size(); }
   const std::deque<Diagnostic>& items() const { return items_; }
+  const std::vector<Silenced>& silenced() const { return silenced_; }
 
   // Files in the order they were loaded, then by place; errors and warnings mixed. For printing.
   std::vector<const Diagnostic*> in_source_order() const;
 
  private:
   std::deque<Diagnostic> items_;
+  std::vector<Silenced> silenced_;
 };
 
 // The candidate that `name` was probably meant to be, or none: Damerau-Levenshtein distance at most

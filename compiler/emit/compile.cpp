@@ -103,6 +103,8 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
   }
   out.model = sema::analyze(out.compilation.sources, trees, options.asset_root,
                             out.compilation.diagnostics, named);
+  for (const sema::Object& object : out.model.objects)
+    out.compilation.called.emplace(object.name, object.text.text);
   out.compilation.unused_phrases = unused_phrases(out.model);
   const auto behind_used = std::stable_partition(
       out.model.suites.begin(), out.model.suites.end(), [&](const sema::Suite& suite) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct Compilation {
   Diagnostics diagnostics;
   bool ok = false;              // no errors
   std::vector<std::byte> plan;  // empty unless ok and built
+  // What the objects are called when no phrase is chosen, by name.
+  std::map<std::string, std::string> called;
 };
 
 // Diagnoses the files and everything they use. Assets are looked for, not read. A Failure is only

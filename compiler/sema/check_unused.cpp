@@ -72,6 +72,18 @@ struct PhraseUse {
   bool all[2] = {false, false};
 };
 
+// So does one over a frame with its templates.
+bool is_in_bound_frame(const Context& context, const syntax::TemplateDecl& node) {
+  for (const auto& derive : context.symbols.derive_decls) {
+    for (const syntax::Binder& binder : derive.node->binders) {
+      const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over);
+      if (templates != nullptr && node.frame && templates->frame.text == node.frame->text)
+        return true;
+    }
+  }
+  return false;
+}
+
 PhraseUse phrase_use(const Context& context) {
   PhraseUse use;
   for (const auto& object : context.symbols.object_decls) {
@@ -115,7 +127,8 @@ void check_unused(Context& context, std::span<const FileId> roots) {
       if (const auto* tmpl = std::get_if<syntax::TemplateDecl>(&decl.node)) {
         // Its own frame may have the same word.
         const std::size_t own = tmpl->frame && tmpl->frame->text == tmpl->name.text ? 2 : 1;
-        if (words[tmpl->name.text] <= own) report("template", tmpl->name);
+        if (words[tmpl->name.text] <= own && !is_in_bound_frame(context, *tmpl))
+          report("template", tmpl->name);
       } else if (const auto* predicate = std::get_if<syntax::PredicateDecl>(&decl.node)) {
         if (words[predicate->name.text] <= 1) report("predicate", predicate->name);
       } else if (const auto* object = std::get_if<syntax::ObjectDecl>(&decl.node)) {

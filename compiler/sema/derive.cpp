@@ -2,6 +2,8 @@
 // variant of that member, named by the text of the derive.
 #include <algorithm>
 
+#include "compiler/sema/axes.h"
+#include "compiler/sema/language.h"
 #include "compiler/sema/sets.h"
 #include "compiler/sema/tasks.h"
 
@@ -57,6 +59,13 @@ class Derive {
         if (phrases->axis.text == "appearance" || phrases->axis.text == "commonsense") continue;
         report_unknown(context_.diagnostics, "axis", phrases->axis, {"appearance", "commonsense"});
         fits = false;
+      } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
+        fits = check_frame(templates->frame) && fits;
+      } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
+        for (const syntax::Name& object : objects->objects)
+          fits = context_.symbols.objects.find(object, context_.diagnostics).has_value() && fits;
+      } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
+        of_task_.push_back(&others->task);
       } else if (tasks_ == nullptr) {
         tasks_ = &binder;
       } else {
@@ -67,9 +76,26 @@ class Derive {
         fits = false;
       }
     }
+    for (const syntax::Name* task : of_task_) {
+      if (tasks_ == nullptr || task->text == tasks_->name.text) continue;
+      report_unknown(context_.diagnostics, "binder of tasks", *task, {tasks_->name.text});
+      fits = false;
+    }
     if (tasks_ != nullptr) return fits;
     context_.report(Code::P0206, node_.name.text.span, "this `derive` goes over no set of tasks")
         .help("add a binder such as `for t in tasks`");
+    return false;
+  }
+
+  bool check_frame(const syntax::Name& frame) {
+    std::vector<std::string_view> frames;
+    for (const Template& known : context_.model.templates) {
+      if (known.frame == frame.text) return true;
+      if (!known.name.empty() &&
+          std::find(frames.begin(), frames.end(), known.frame) == frames.end())
+        frames.push_back(known.frame);
+    }
+    report_unknown(context_.diagnostics, "frame", frame, frames);
     return false;
   }
 
@@ -106,16 +132,8 @@ class Derive {
     std::vector<std::vector<Binding>> rows = {{}};
     for (const syntax::Binder& binder : node_.binders) {
       std::vector<Binding> values;
-      if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
-        const ObjectId object = phrases->role == syntax::Role::kSource ? base.source : base.target;
-        const PhraseAxis axis =
-            phrases->axis.text == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense;
-        for (const Phrase& phrase : context_.model.objects[object].phrases) {
-          if (phrase.axis == axis) values.push_back({binder.name.text, phrase.name});
-        }
-      } else {
-        values.push_back({binder.name.text, name});
-      }
+      for (const std::string_view value : choices(binder, base, name))
+        values.push_back({binder.name.text, value});
       if (rows.size() * values.size() > kMaxTasks) return report_limit();
       std::vector<std::vector<Binding>> longer;
       for (const std::vector<Binding>& row : rows) {
@@ -130,6 +148,49 @@ class Derive {
       if (!add(id, std::move(row))) return false;
     }
     return true;
+  }
+
+  // What a binder stands for in the variants of one task. What the task has already is no choice:
+  // its own objects, and templates that say the same.
+  std::vector<std::string_view> choices(const syntax::Binder& binder, const Task& base,
+                                        std::string_view name) const {
+    const Model& model = context_.model;
+    const std::vector<ObjectId> present = base.objects();
+    std::vector<std::string_view> values;
+    if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
+      const ObjectId object = phrases->role == syntax::Role::kSource ? base.source : base.target;
+      const PhraseAxis axis =
+          phrases->axis.text == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense;
+      for (const Phrase& phrase : model.objects[object].phrases) {
+        if (phrase.axis != axis) continue;
+        const auto fits = [&](ObjectId id) {
+          return evaluate(phrase.means, model.objects[id]) ==
+                 (id == object ? Truth::kYes : Truth::kNo);
+        };
+        if (!phrases->clear || std::all_of(present.begin(), present.end(), fits))
+          values.push_back(phrase.name);
+      }
+    } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
+      const auto& declared = context_.symbols.templates.names();
+      Task other = base;
+      for (std::size_t i = 0; i < declared.size(); ++i) {
+        other.say = static_cast<TemplateId>(i);
+        if (model.templates[other.say].frame == templates->frame.text &&
+            axes_between(model, other, base) != 0)
+          values.push_back(declared[i].text);
+      }
+    } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
+      for (const syntax::Name& object : objects->objects) {
+        const auto id = static_cast<ObjectId>(*context_.symbols.objects.peek(object.text));
+        if (std::find(present.begin(), present.end(), id) == present.end())
+          values.push_back(object.text);
+      }
+    } else if (std::holds_alternative<syntax::BinderDistractors>(binder.over)) {
+      for (const ObjectId id : base.distractors) values.push_back(model.objects[id].name);
+    } else {
+      values.push_back(name);
+    }
+    return values;
   }
 
   bool add(TaskId base, std::vector<Binding> bindings) {
@@ -186,6 +247,7 @@ class Derive {
   const Declared<syntax::DeriveDecl>& declared_;
   const syntax::DeriveDecl& node_;
   const syntax::Binder* tasks_ = nullptr;
+  std::vector<const syntax::Name*> of_task_;  // what `distractors of` names
 };
 
 }  // namespace

@@ -30,19 +30,20 @@ std::vector<Allowed> collect_allows(const Context& context) {
   return allows;
 }
 
-bool is_silenced(const Context& context, const Diagnostic& diagnostic, std::size_t index,
-                 std::vector<Allowed>& allows) {
-  if (diagnostic.severity != Severity::kWarning) return false;
+// The @allow that keeps it quiet; null when it is said.
+const syntax::Allow* silencer(const Context& context, const Diagnostic& diagnostic,
+                              std::size_t index, std::vector<Allowed>& allows) {
+  if (diagnostic.severity != Severity::kWarning) return nullptr;
   const auto about = context.about.find(index);
-  bool silenced = false;
+  const syntax::Allow* found = nullptr;
   for (Allowed& allowed : allows) {
     if (allowed.code != diagnostic.code) continue;
     const bool here = is_within(diagnostic.primary, allowed.decl) ||
                       (about != context.about.end() && is_within(about->second, allowed.decl));
     allowed.used = allowed.used || here;
-    silenced = silenced || here;
+    if (here) found = allowed.allow;
   }
-  return silenced;
+  return found;
 }
 
 bool is_in_derive(const Context& context, const Span& span) {
@@ -63,7 +64,12 @@ void say(const Context& context, std::span<const FileId> roots, Diagnostics& out
   std::size_t index = 0;
   for (const Diagnostic& diagnostic : context.diagnostics.items()) {
     const std::size_t at = index++;
-    if (is_silenced(context, diagnostic, at, allows)) continue;
+    if (const syntax::Allow* allow = silencer(context, diagnostic, at, allows)) {
+      const auto about = context.about.find(at);
+      out.silence({diagnostic, about == context.about.end() ? Span{} : about->second,
+                   allow->reason.value});
+      continue;
+    }
     if (!context.about.contains(at)) {
       out.add(diagnostic);
       continue;

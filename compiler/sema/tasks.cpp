@@ -28,8 +28,15 @@ struct TaskReader {
       poisoned = true;
     }
   }
+  // A name that a `derive` binds stands for what it is bound to.
+  syntax::Name bound(const syntax::Name& name) const {
+    for (const Binding& binding : declared.bindings) {
+      if (binding.name == name.text) return {name.span, binding.value};
+    }
+    return name;
+  }
   void role(std::size_t index, const syntax::Name& name) {
-    field(index == 0 ? task.source : task.target, context.symbols.objects, name);
+    field(index == 0 ? task.source : task.target, context.symbols.objects, bound(name));
     task.refer[index].reset();
     task.role_span[index] = name.span;
   }
@@ -59,7 +66,7 @@ struct TaskReader {
     task.distractors_span = stmt.span;
     for (const syntax::Name& name : stmt.objects) {
       ObjectId object = ObjectId::kNone;
-      field(object, context.symbols.objects, name);
+      field(object, context.symbols.objects, bound(name));
       if (object == ObjectId::kNone) continue;
       if (std::find(task.distractors.begin(), task.distractors.end(), object) !=
           task.distractors.end()) {
@@ -73,18 +80,18 @@ struct TaskReader {
   void operator()(const syntax::SayStmt& stmt) {
     task.say_span = stmt.span;
     if (const auto* name = std::get_if<syntax::Name>(&stmt.what)) {
-      return field(task.say, context.symbols.templates, *name);
+      return field(task.say, context.symbols.templates, bound(*name));
     }
-    const auto& text = std::get<syntax::TemplateText>(stmt.what);
+    syntax::TemplateText text = std::get<syntax::TemplateText>(stmt.what);
+    for (syntax::TemplatePart& part : text.parts) {
+      if (auto* slot = std::get_if<syntax::Slot>(&part)) slot->name = bound(slot->name);
+    }
     task.say = add_template(context, text, {}, text.text.span, std::nullopt);
   }
   // After the roles: a new source or target drops what was said of the old one.
   void operator()(const syntax::ReferStmt& stmt) {
     const std::size_t index = stmt.role == syntax::Role::kSource ? 0 : 1;
-    task.refer[index] = spelled(stmt.phrase);
-    for (const Binding& binding : declared.bindings) {
-      if (binding.name == stmt.phrase.text) task.refer[index]->text = binding.value;
-    }
+    task.refer[index] = spelled(bound(stmt.phrase));
   }
   void operator()(const syntax::PoseStmt& stmt) {
     PoseOverride pose;

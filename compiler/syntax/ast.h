@@ -667,9 +667,19 @@ struct VariantsDecl {
   std::vector<VariantsMember> members;
 };
 
-struct BinderPhrases {  // `p in phrases appearance of source`
+struct BinderPhrases {  // `p in clear phrases appearance of source`
   Name axis;
   Role role = Role::kSource;
+  bool clear = false;  // only those that describe their object alone
+};
+struct BinderTemplates {  // `w in templates of put`
+  Name frame;
+};
+struct BinderObjects {  // `o in objects (carrot, spoon)`
+  std::vector<Name> objects;
+};
+struct BinderDistractors {  // `o in distractors of t`
+  Name task;
 };
 struct BinderTasks {  // `t in core`; a `where` belongs to the derive
   TaskSetId tasks;
@@ -677,7 +687,7 @@ struct BinderTasks {  // `t in core`; a `where` belongs to the derive
 struct Binder {
   Span span;
   Name name;
-  std::variant<BinderPhrases, BinderTasks> over;
+  std::variant<BinderPhrases, BinderTemplates, BinderObjects, BinderDistractors, BinderTasks> over;
 };
 struct DeriveDecl {
   TemplateText name;  // slots are binders

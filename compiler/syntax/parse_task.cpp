@@ -137,13 +137,29 @@ Binder Parser::binder() {
   const std::uint32_t begin = mark();
   out.name = name();
   expect_word("in");
-  if (at_word("phrases") && kind_ahead(1) == TokenKind::kIdent && text_ahead(2) == "of") {
+  const bool clear = at_word("clear") && text_ahead(1) == "phrases" && text_ahead(3) == "of";
+  if (clear || (at_word("phrases") && kind_ahead(1) == TokenKind::kIdent && text_ahead(2) == "of")) {
     advance();
+    if (clear) advance();
     BinderPhrases phrases;
+    phrases.clear = clear;
     phrases.axis = name();
     expect_word("of");
     phrases.role = role();
     out.over = phrases;
+  } else if (at_word("templates") && text_ahead(1) == "of") {
+    advance();
+    advance();
+    out.over = BinderTemplates{name()};
+  } else if (at_word("distractors") && text_ahead(1) == "of") {
+    advance();
+    advance();
+    out.over = BinderDistractors{name()};
+  } else if (at_word("objects") && kind_ahead(1) == TokenKind::kLeftParen) {
+    advance();
+    advance();
+    out.over = BinderObjects{names()};
+    expect(TokenKind::kRightParen);
   } else {
     out.over = BinderTasks{task_set_without_where()};
   }

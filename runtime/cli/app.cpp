@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   add_list(app, exit);
   add_show(app, exit);
   add_diff(app, exit);
+  add_audit(app, exit);
   add_coverage(app, exit);
   add_graph(app, exit);
   add_draw(app, exit);

@@ -27,6 +27,7 @@ struct AssetOptions {
 void add_asset_option(CLI::App& verb, AssetOptions& options);
 
 // Each adds its verb; the callback stores the exit code.
+void add_audit(CLI::App& app, int& exit);
 void add_check(CLI::App& app, int& exit);
 void add_build(CLI::App& app, int& exit);
 void add_doctor(CLI::App& app, int& exit);

@@ -47,6 +47,70 @@ set worded = tasks where uses appearance
   CHECK(a->task("late").axes == a->task("red_on_tray_as_by_color").axes);
 }
 
+TEST_CASE("a derive goes over objects, and leaves out those that are there already") {
+  const auto a = analyze_with_suite(R"(
+derive "{o}_on_tray_too" for t in { red_on_tray }, o in objects (red, blue, tray, pale) { source o }
+derive "{t}_beside_{o}" for t in { red_on_tray }, o in objects (blue, pale) { distractors o }
+set swapped = variants of { red_on_tray } where axis object.source
+set beside = variants of { red_on_tray } where axis distractors
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  CHECK(members(*a, "swapped") == "blue_on_tray_too pale_on_tray_too");
+  CHECK(members(*a, "beside") == "red_on_tray_beside_blue red_on_tray_beside_pale");
+  CHECK(a->task("blue_on_tray_too").prompt == "put blue block on the tray");
+}
+
+TEST_CASE("a derive goes over the templates of a frame that say it in other words") {
+  const auto a = analyze_with_suite(R"(
+template put_the frame put "put {the source} on {the target}"
+template set_on  frame put "set {the source} on {the target}"
+derive "{t}_{w}" for t in { red_on_tray }, w in templates of put { say w }
+set said = variants of { red_on_tray }
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  CHECK(members(*a, "said") == "red_on_tray_set_on");
+  CHECK(a->task("red_on_tray_set_on").prompt == "set the red block on the tray");
+}
+
+TEST_CASE("a derive goes over the distractors of its task, also in words on the spot") {
+  const auto a = analyze_with_suite(R"(
+variant crowd of red_on_tray { distractors blue, pale }
+derive "{t}_not_{o}" for t in { crowd }, o in distractors of t {
+  say "put {the source} on {the target}, not on {avoid the o}"
+}
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  CHECK(a->task("crowd_not_blue").prompt ==
+        "put the red block on the tray, not on the blue block");
+  CHECK(a->task("crowd_not_pale").prompt ==
+        "put the red block on the tray, not on the pale block");
+}
+
+TEST_CASE("clear phrases describe their object alone in the scene") {
+  const auto a = analyze_with_suite(R"(
+variant crowd of red_on_tray { distractors blue }
+variant doubt of red_on_tray { distractors pale }
+derive "{t}_{p}" for t in { red_on_tray, crowd, doubt }, p in clear phrases appearance of source {
+  refer source as p
+}
+set clear = tasks where uses appearance
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  // `toy` may be blue as well, and of pale no colour is known.
+  CHECK(members(*a, "clear") ==
+        "red_on_tray_by_color red_on_tray_toy crowd_by_color doubt_toy");
+}
+
+TEST_CASE("binders name what there is") {
+  CHECK(analyze_with_suite("derive \"{t}_{o}\" for t in tasks, o in objects (rad) { source o }")
+            ->codes() == "P0201");
+  CHECK(analyze_with_suite("derive \"{t}_{w}\" for t in tasks, w in templates of putt { say w }")
+            ->codes() == "P0201");
+  CHECK(analyze_with_suite(
+            "derive \"{t}_{o}\" for t in tasks, o in distractors of s { distractors o }")
+            ->codes() == "P0201");
+}
+
 TEST_CASE("a derive sees the tasks of the derives above it") {
   const auto a = analyze_with_suite(R"(
 derive "{t}_night" for t in { red_on_tray } { light night }

@@ -362,6 +362,24 @@ TEST_CASE("derive binds tasks and phrases and keeps its where") {
   CHECK(derive.body.size() == 1);
 }
 
+TEST_CASE("derive binds templates, objects and distractors, and sets of those names stay sets") {
+  const Parsed parsed(
+      "derive \"x\" for t in core, w in templates of put, o in objects (a, b), d in distractors of "
+      "t, p in clear phrases appearance of target { say w }\n"
+      "derive \"y\" for t in objects { say w }\n"
+      "derive \"z\" for t in templates, s in distractors, u in clear { say w }");
+  CHECK(parsed.messages() == "");
+  const auto& binders = parsed.get<DeriveDecl>().binders;
+  REQUIRE(binders.size() == 5);
+  CHECK(std::get<BinderTemplates>(binders[1].over).frame.text == "put");
+  CHECK(std::get<BinderObjects>(binders[2].over).objects.size() == 2);
+  CHECK(std::get<BinderDistractors>(binders[3].over).task.text == "t");
+  CHECK(std::get<BinderPhrases>(binders[4].over).clear);
+  CHECK(std::holds_alternative<BinderTasks>(parsed.get<DeriveDecl>(1).binders[0].over));
+  for (const Binder& binder : parsed.get<DeriveDecl>(2).binders)
+    CHECK(std::holds_alternative<BinderTasks>(binder.over));
+}
+
 TEST_CASE("sets of tasks group from the left and take a where") {
   const Parsed parsed(
       "set s = tasks - { a,\n b } & variants of core where axis language.action or not has "

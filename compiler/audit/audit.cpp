@@ -1,0 +1,356 @@
+#include "compiler/audit/audit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "compiler/audit/rules.h"
+#include "runtime/plan/axis_names.h"
+
+namespace probe::audit {
+namespace {
+
+// `what` of SpanRecord.
+constexpr std::uint32_t kTaskSpan = 2, kMetricSpan = 4;
+
+constexpr std::uint32_t bit(plan::Axis axis) { return static_cast<std::uint32_t>(axis); }
+
+struct KindName {
+  Kind kind;
+  std::string_view name, title;
+};
+constexpr std::array<KindName, 14> kKinds = {{
+    {Kind::kConfounded, "confounded", "comparisons that move more than one axis"},
+    {Kind::kAcrossScenes, "across_scenes", "comparisons across scenes"},
+    {Kind::kAcrossLayouts, "across_layouts", "comparisons across layouts"},
+    {Kind::kHorizon, "horizon", "comparisons of episodes of another length"},
+    {Kind::kSuccessRule, "success_rule", "compared tasks whose success is another rule"},
+    {Kind::kUnlisted, "unlisted", "comparisons that no suite holds"},
+    {Kind::kDuplicate, "duplicate", "tasks that are the same to policy and judge"},
+    {Kind::kSamePrompt, "same_prompt", "other words meant, the same words said"},
+    {Kind::kNamesake, "namesake", "two objects of one name"},
+    {Kind::kWrongCountsTarget, "wrong_counts_target", "wrong-object metrics that count the target"},
+    {Kind::kWrongAtEnd, "wrong_at_end",
+     "wrong-object metrics read at the last step, beside metrics that latch"},
+    {Kind::kEndsInGrasp, "ends_in_grasp",
+     "success that needs the gripper to hold at the last step"},
+    {Kind::kBeside, "beside", "success of an object that lies on the table beside the target"},
+    {Kind::kWarning, "warning", "warnings, said or silenced"},
+}};
+
+class Auditor {
+ public:
+  Auditor(const Compilation& compilation, const plan::Plan& plan, std::uint32_t suite,
+          std::span<const std::string> files)
+      : compilation_(compilation), plan_(plan), suite_(plan.suites()[suite]) {
+    for (const std::string& file : files)
+      roots_.insert(std::filesystem::path(file).lexically_normal().generic_string());
+    const auto members = plan.members(suite_);
+    scope_.assign(members.begin(), members.end());
+  }
+
+  Result<Audit> run() {
+    audit_.suite = std::string(plan_.text(suite_.name));
+    audit_.tasks = scope_.size();
+    for (const std::uint32_t task : scope_)
+      audit_.comparisons += plan_.tasks()[task].baseline != plan::kNone ? 1 : 0;
+    find_unlisted();
+    for (const std::uint32_t task : scope_) compare(task);
+    find_duplicates();
+    find_namesakes();
+    PROBE_TRY(find_rules());
+    find_warnings();
+    std::stable_sort(audit_.findings.begin(), audit_.findings.end(),
+                     [](const Finding& a, const Finding& b) { return a.kind < b.kind; });
+    return std::move(audit_);
+  }
+
+ private:
+  std::string name_of(std::uint32_t task) const {
+    return std::string(plan_.text(plan_.tasks()[task].name));
+  }
+
+  // A place of the plan as the compiler's messages name it.
+  Place place(const plan::SpanRecord* span) const {
+    if (span == nullptr) return {};
+    const std::string_view path = plan_.tables().path(plan_.texts()[span->text]);
+    for (std::uint32_t i = 0; i < compilation_.sources.size(); ++i) {
+      const SourceFile& file = compilation_.sources.file(FileId{i});
+      if (file.text() != plan_.tables().source(plan_.texts()[span->text])) continue;
+      const LineColumn at = file.line_column(span->begin);
+      return {file.name(), at.line, at.column};
+    }
+    return {std::string(path), 0, 0};
+  }
+  Place place(const Span& span) const {
+    if (span.is_none()) return {};
+    const SourceFile& file = compilation_.sources.file(span.file);
+    const LineColumn at = file.line_column(span.begin);
+    return {file.name(), at.line, at.column};
+  }
+  Place task_place(std::uint32_t task) const { return place(plan_.span_of(kTaskSpan, task)); }
+
+  void add(Finding finding) { audit_.findings.push_back(std::move(finding)); }
+
+  Finding comparison(Kind kind, std::uint32_t task, std::string message) const {
+    const plan::TaskRecord& record = plan_.tasks()[task];
+    Finding finding;
+    finding.kind = kind;
+    finding.tasks = {name_of(task)};
+    finding.baseline = name_of(record.baseline);
+    for (const auto& [axis, name] : plan::kAxisNames) {
+      if ((record.axes & bit(axis)) != 0) finding.axes.emplace_back(name);
+    }
+    finding.message = std::move(message);
+    finding.place = task_place(task);
+    if (record.allow.length != 0) finding.allowed = std::string(plan_.text(record.allow));
+    return finding;
+  }
+
+  // Declared in a named file and compared, and in no suite at all: from now on in the scope.
+  void find_unlisted() {
+    std::set<std::uint32_t> listed;
+    for (const plan::SuiteRecord& suite : plan_.suites()) {
+      for (const std::uint32_t task : plan_.members(suite)) listed.insert(task);
+    }
+    for (std::uint32_t task = 0; task < plan_.tasks().size(); ++task) {
+      const std::uint32_t baseline = plan_.tasks()[task].baseline;
+      if (baseline == plan::kNone || listed.contains(task)) continue;
+      const Place at = task_place(task);
+      if (!roots_.contains(std::filesystem::path(at.file).lexically_normal().generic_string()))
+        continue;
+      Finding finding = comparison(Kind::kUnlisted, task,
+                                   fmt::format("`{}` is compared with `{}` and is in no suite",
+                                               name_of(task), name_of(baseline)));
+      finding.allowed.reset();
+      add(std::move(finding));
+      scope_.push_back(task);
+    }
+  }
+
+  // Where a rule of the task is written.
+  const plan::SpanRecord* rule(const plan::TaskRecord& task, std::string_view metric) const {
+    const auto index = plan_.find_metric(task, metric);
+    if (!index) return nullptr;
+    return plan_.span_of(kMetricSpan, plan_.programs()[task.program].metrics.first + *index);
+  }
+
+  void compare(std::uint32_t index) {
+    const plan::TaskRecord& task = plan_.tasks()[index];
+    if (task.baseline == plan::kNone) return;
+    const plan::TaskRecord& baseline = plan_.tasks()[task.baseline];
+    const std::string pair =
+        fmt::format("`{}` against `{}`", name_of(index), name_of(task.baseline));
+    check_words(index, pair);
+    Finding all = comparison(Kind::kConfounded, index, "");
+    if (all.axes.size() < 2) return;
+    all.message = fmt::format("{} moves {}", pair, fmt::join(all.axes, ", "));
+    add(std::move(all));
+    if ((task.axes & bit(plan::Axis::kScene)) != 0) {
+      add(comparison(Kind::kAcrossScenes, index,
+                     fmt::format("{}: scene `{}` against `{}`", pair,
+                                 plan_.text(plan_.scenes()[task.scene].name),
+                                 plan_.text(plan_.scenes()[baseline.scene].name))));
+    }
+    if ((task.axes & bit(plan::Axis::kLayout)) != 0)
+      add(comparison(Kind::kAcrossLayouts, index, pair + ": the starts are other"));
+    if (task.horizon != baseline.horizon) {
+      add(comparison(Kind::kHorizon, index,
+                     fmt::format("{}: {} steps against {}", pair, task.horizon, baseline.horizon)));
+    }
+    const plan::SpanRecord* here = rule(task, "success");
+    const plan::SpanRecord* there = rule(baseline, "success");
+    if (here == nullptr || there == nullptr) return;
+    if (here->text == there->text && here->begin == there->begin) return;
+    const Place of_task = place(here), of_baseline = place(there);
+    add(comparison(Kind::kSuccessRule, index,
+                   fmt::format("{}: success of {}:{} against that of {}:{}", pair, of_task.file,
+                               of_task.line, of_baseline.file, of_baseline.line)));
+  }
+
+  // A comparison of words whose words are the same.
+  void check_words(std::uint32_t index, const std::string& pair) {
+    constexpr std::uint32_t kWords =
+        bit(plan::Axis::kLanguageAction) | bit(plan::Axis::kLanguageNegation) |
+        bit(plan::Axis::kLanguageAppearance) | bit(plan::Axis::kLanguageCommonsense) |
+        bit(plan::Axis::kLanguageParaphrase);
+    const plan::TaskRecord& task = plan_.tasks()[index];
+    if ((task.axes & kWords) == 0) return;
+    const std::string_view prompt = plan_.text(task.prompt);
+    if (prompt != plan_.text(plan_.tasks()[task.baseline].prompt)) return;
+    add(comparison(Kind::kSamePrompt, index, fmt::format("{}: both say \"{}\"", pair, prompt)));
+  }
+
+  // Equal episodes are equal starts, words and judges.
+  void find_duplicates() {
+    std::map<std::vector<std::array<std::uint8_t, 32>>, std::uint32_t> known;
+    for (const std::uint32_t task : scope_) {
+      std::vector<std::array<std::uint8_t, 32>> ids;
+      for (const plan::EpisodeRecord& episode : plan_.episodes(plan_.tasks()[task]))
+        ids.push_back(episode.episode_id);
+      const auto [at, is_new] = known.try_emplace(std::move(ids), task);
+      if (is_new) continue;
+      Finding finding;
+      finding.kind = Kind::kDuplicate;
+      finding.tasks = {name_of(at->second), name_of(task)};
+      finding.message = fmt::format("`{}` has the starts, the words and the judge of `{}`",
+                                    name_of(task), name_of(at->second));
+      finding.place = task_place(task);
+      add(std::move(finding));
+    }
+  }
+
+  // Objects of the suite that are called the same: a result about one is read as one about the
+  // other.
+  void find_namesakes() {
+    std::map<std::string, std::map<std::string, std::vector<std::uint32_t>>> users;
+    for (const std::uint32_t task : scope_) {
+      for (const plan::BodyRecord& body : plan_.bodies(plan_.tasks()[task])) {
+        if (static_cast<plan::BodyKind>(body.kind) != plan::BodyKind::kObject) continue;
+        const std::string object(plan_.text(plan_.objects()[body.index].name));
+        const auto words = compilation_.called.find(object);
+        if (words != compilation_.called.end()) users[words->second][object].push_back(task);
+      }
+    }
+    for (const auto& [words, objects] : users) {
+      if (objects.size() < 2) continue;
+      // The one that is used least is the stranger.
+      const auto odd = std::min_element(
+          objects.begin(), objects.end(),
+          [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+      std::string others;
+      for (const auto& [object, tasks] : objects) {
+        if (object != odd->first) others += (others.empty() ? "`" : ", `") + object + "`";
+      }
+      Finding finding;
+      finding.kind = Kind::kNamesake;
+      for (const std::uint32_t task : odd->second) finding.tasks.push_back(name_of(task));
+      finding.message =
+          fmt::format("\"{}\" is `{}` here and {} in other tasks", words, odd->first, others);
+      finding.place = task_place(odd->second.front());
+      add(std::move(finding));
+    }
+  }
+
+  // One finding for each place where such a rule is written.
+  struct Rule {
+    Kind kind;
+    std::string_view metric, message;
+    bool operator<(const Rule& other) const { return kind < other.kind; }
+  };
+  void add_rule(const Rule& rule_kind, std::uint32_t task) {
+    const plan::SpanRecord* span = rule(plan_.tasks()[task], rule_kind.metric);
+    const auto key =
+        std::pair(rule_kind.kind, span == nullptr ? std::pair(plan::kNone, plan::kNone)
+                                                  : std::pair(span->text, span->begin));
+    const auto [at, is_new] = rules_.try_emplace(key, audit_.findings.size());
+    if (is_new) {
+      Finding finding;
+      finding.kind = rule_kind.kind;
+      finding.message = std::string(rule_kind.message);
+      finding.place = place(span);
+      add(std::move(finding));
+    }
+    audit_.findings[at->second].tasks.push_back(name_of(task));
+  }
+
+  Status find_rules() {
+    constexpr Rule kTarget = {Kind::kWrongCountsTarget, "wrong",
+                              "`wrong` is true when nothing but the target was moved"};
+    constexpr Rule kAtEnd = {Kind::kWrongAtEnd, "wrong",
+                             "`wrong` forgets what was moved and put back; other metrics of the "
+                             "same judge remember"};
+    constexpr Rule kGrasp = {Kind::kEndsInGrasp, "success",
+                             "`success` counts steps of a grasp that have to include the last one"};
+    constexpr Rule kOnTable = {
+        Kind::kBeside, "success",
+        "`success` is true of a source that lies on the table, its box clear of the target's"};
+    std::map<std::uint32_t, bool> counts_target;  // by program
+    for (const std::uint32_t index : scope_) {
+      const plan::TaskRecord& task = plan_.tasks()[index];
+      const auto metrics = plan_.metrics(task);
+      if (const auto wrong = plan_.find_metric(task, "wrong")) {
+        const auto [known, is_new] = counts_target.try_emplace(task.program, false);
+        if (is_new) {
+          PROBE_ASSIGN(known->second, wrong_counts_target(plan_, index, *wrong));
+        }
+        if (known->second) add_rule(kTarget, index);
+        const auto latches = [](const plan::MetricRecord& metric) {
+          return metric.readout == static_cast<std::uint32_t>(plan::Readout::kOnce);
+        };
+        if (metrics[*wrong].readout == static_cast<std::uint32_t>(plan::Readout::kAtEnd) &&
+            std::any_of(metrics.begin(), metrics.end(), latches))
+          add_rule(kAtEnd, index);
+      }
+      if (const auto success = plan_.find_metric(task, "success")) {
+        const bool at_end =
+            metrics[*success].readout == static_cast<std::uint32_t>(plan::Readout::kAtEnd);
+        if (at_end && ends_in_grasp(plan_, index, *success)) add_rule(kGrasp, index);
+        PROBE_ASSIGN(const bool beside, passes_beside(plan_, index, *success));
+        if (beside) add_rule(kOnTable, index);
+      }
+    }
+    return {};
+  }
+
+  // What the compiler doubts, except for the axes, which the plan has.
+  void find_warnings() {
+    for (const Diagnostic& diagnostic : compilation_.diagnostics.items()) {
+      if (diagnostic.severity == Severity::kWarning && diagnostic.code != Code::P0701)
+        add_warning(diagnostic, Span{}, std::nullopt);
+    }
+    for (const Silenced& silenced : compilation_.diagnostics.silenced()) {
+      if (silenced.diagnostic.code != Code::P0701)
+        add_warning(silenced.diagnostic, silenced.about, silenced.reason);
+    }
+  }
+
+  void add_warning(const Diagnostic& diagnostic, const Span& about,
+                   std::optional<std::string> reason) {
+    Finding finding;
+    finding.kind = Kind::kWarning;
+    finding.code = std::string(info(diagnostic.code).slug);
+    finding.message = diagnostic.message;
+    finding.place = place(diagnostic.primary);
+    finding.allowed = std::move(reason);
+    if (!about.is_none()) {
+      // The task's own name is the last one before the place that was doubted.
+      const std::string& file = compilation_.sources.file(about.file).name();
+      std::uint32_t best = 0;
+      for (const std::uint32_t task : scope_) {
+        const plan::SpanRecord* span = plan_.span_of(kTaskSpan, task);
+        if (span == nullptr || task_place(task).file != file) continue;
+        if (span->begin < about.begin || span->begin > diagnostic.primary.begin ||
+            span->begin < best)
+          continue;
+        best = span->begin;
+        finding.tasks = {name_of(task)};
+      }
+    }
+    add(std::move(finding));
+  }
+
+  const Compilation& compilation_;
+  const plan::Plan& plan_;
+  const plan::SuiteRecord& suite_;
+  std::set<std::string> roots_;
+  std::vector<std::uint32_t> scope_;  // tasks: the suite's, then those that no suite holds
+  std::map<std::pair<Kind, std::pair<std::uint32_t, std::uint32_t>>, std::size_t> rules_;
+  Audit audit_;
+};
+
+}  // namespace
+
+std::string_view name(Kind kind) { return kKinds[static_cast<std::size_t>(kind)].name; }
+std::string_view title(Kind kind) { return kKinds[static_cast<std::size_t>(kind)].title; }
+
+Result<Audit> audit(const Compilation& compilation, const plan::Plan& plan, std::uint32_t suite,
+                    std::span<const std::string> files) {
+  return Auditor(compilation, plan, suite, files).run();
+}
+
+}  // namespace probe::audit

@@ -1,0 +1,79 @@
+// An audit as text and as JSON.
+#include <fmt/format.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "compiler/audit/audit.h"
+
+namespace probe::audit {
+namespace {
+
+constexpr std::size_t kNamed = 6;  // tasks of a rule that are named in the text; JSON has all
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kNamed; ++i)
+    text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kNamed) text += fmt::format(" and {} more", names.size() - kNamed);
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const Audit& audit) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  std::size_t allowed = 0;
+  const Finding* last = nullptr;
+  for (const Finding& finding : audit.findings) {
+    if (last == nullptr || last->kind != finding.kind) {
+      fmt::format_to(out, "{}{}\n", last == nullptr ? "" : "\n", title(finding.kind));
+    }
+    last = &finding;
+    fmt::format_to(out, "  {}\n", finding.message);
+    if (!finding.place.file.empty()) {
+      fmt::format_to(out, "    --> {}:{}:{}\n", finding.place.file, finding.place.line,
+                     finding.place.column);
+    }
+    if (finding.baseline.empty() && !finding.tasks.empty())
+      fmt::format_to(out, "    in {}\n", list(finding.tasks));
+    if (finding.allowed) fmt::format_to(out, "    allowed: {}\n", *finding.allowed);
+    allowed += finding.allowed ? 1 : 0;
+  }
+  fmt::format_to(out, "{}suite `{}`, {} tasks, {} comparisons: {}\n",
+                 audit.findings.empty() ? "" : "\n", audit.suite, audit.tasks, audit.comparisons,
+                 audit.findings.empty()
+                     ? "nothing irregular"
+                     : fmt::format("{} irregularities, {} of them allowed with a reason",
+                                   audit.findings.size(), allowed));
+  return text;
+}
+
+std::string to_json(const Audit& audit) {
+  nlohmann::ordered_json json = {{"suite", audit.suite},
+                                 {"tasks", audit.tasks},
+                                 {"comparisons", audit.comparisons},
+                                 {"findings", nlohmann::ordered_json::array()}};
+  for (const Finding& finding : audit.findings) {
+    nlohmann::ordered_json entry = {{"kind", name(finding.kind)}};
+    if (!finding.code.empty()) entry["code"] = finding.code;
+    entry["tasks"] = finding.tasks;
+    if (!finding.baseline.empty()) {
+      entry["baseline"] = finding.baseline;
+      entry["axes"] = finding.axes;
+    }
+    entry["message"] = finding.message;
+    if (!finding.place.file.empty()) {
+      entry["file"] = finding.place.file;
+      entry["line"] = finding.place.line;
+      entry["column"] = finding.place.column;
+    }
+    entry["allowed"] =
+        finding.allowed ? nlohmann::ordered_json(*finding.allowed) : nlohmann::ordered_json();
+    json["findings"].push_back(std::move(entry));
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace probe::audit

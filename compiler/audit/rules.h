@@ -1,0 +1,25 @@
+// A task's rules put to the test: the judge is run on worlds made up for the purpose, so that what
+// is found does not depend on how a rule is written.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+
+namespace probe::audit {
+
+// Whether metric `wrong` is true when the target alone was moved, by 10 cm.
+Result<bool> wrong_counts_target(const plan::Plan& plan, std::uint32_t task, std::uint32_t wrong);
+
+// Whether metric `success` is true of a source that lies on the surface beside the target, so that
+// their boxes do not overlap. Never of a scene with a fixture, where the surface is not what things
+// lie on.
+Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+
+// Whether metric `success` is false unless fingers touch for some steps on end, the last one
+// included: a condition held over steps that nothing latches.
+bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+
+}  // namespace probe::audit

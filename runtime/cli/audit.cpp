@@ -1,0 +1,62 @@
+// vlaprobe audit
+#include "compiler/audit/audit.h"
+
+#include <fmt/format.h>
+
+#include "compiler/diag/text.h"
+#include "runtime/cli/library.h"
+#include "runtime/cli/load.h"
+#include "runtime/run/assets.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::string file, suite;
+  bool json = false;
+  AssetOptions assets;
+};
+
+int audit_verb(const Arguments& arguments) {
+  const auto root = run::find_asset_root(arguments.assets.root);
+  if (!root) return report(root.failure());
+  const auto library = find_library_folders(arguments.assets.library);
+  if (!library) return report(library.failure());
+  const std::span<const std::string> files(&arguments.file, 1);
+  auto compiled = build(files, {.asset_root = *root, .library_folders = *library});
+  if (!compiled) return report(compiled.failure());
+  if (!compiled->ok) {
+    fmt::print(stderr, "{}", render_text(compiled->diagnostics, compiled->sources));
+    return kUser;
+  }
+  auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
+  if (!plan) return report(plan.failure());
+  if (plan->suites().empty())
+    return report({"usage", "no suite to audit: `suite` lists tasks", arguments.file});
+  int exit = kFine;
+  std::uint32_t suite = 0;
+  if (!arguments.suite.empty()) {
+    const auto found = find_suite(*plan, arguments.suite, exit);
+    if (!found) return exit;
+    suite = *found;
+  }
+  const auto audited = audit::audit(*compiled, *plan, suite, files);
+  if (!audited) return report(audited.failure());
+  fmt::print("{}", arguments.json ? audit::to_json(*audited) : audit::to_text(*audited));
+  return kFine;
+}
+
+}  // namespace
+
+void add_audit(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("audit", "what is irregular in a suite, allowed or not");
+  verb->add_option("F", arguments->file, ".probe text")->required();
+  verb->add_option("--suite", arguments->suite, "which suite (default: the first of the file)");
+  verb->add_flag("--json", arguments->json, "as a JSON object");
+  add_asset_option(*verb, arguments->assets);
+  verb->footer("example: vlaprobe audit suite/intact.probe");
+  verb->callback([arguments, &exit] { exit = audit_verb(*arguments); });
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,201 @@
+// What an audit finds: in the suite as published at least everything that is known to be irregular
+// there, in the repaired suite nothing.
+#include "compiler/audit/audit.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "compiler/diag/text.h"
+
+using namespace probe;
+using audit::Kind;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Audited {
+  audit::Audit audit;
+
+  // The finding of that kind about the task; null when there is none.
+  const audit::Finding* find(Kind kind, const std::string& task) const {
+    for (const audit::Finding& finding : audit.findings) {
+      if (finding.kind == kind &&
+          std::find(finding.tasks.begin(), finding.tasks.end(), task) != finding.tasks.end())
+        return &finding;
+    }
+    return nullptr;
+  }
+  std::vector<std::string> axes(Kind kind, const std::string& task) const {
+    const audit::Finding* finding = find(kind, task);
+    return finding == nullptr ? std::vector<std::string>{} : finding->axes;
+  }
+};
+
+Audited audit_file(const std::string& file) {
+  const std::span<const std::string> files(&file, 1);
+  auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets", .suite = ""});
+  REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
+  REQUIRE_MESSAGE(compiled->ok, render_text(compiled->diagnostics, compiled->sources));
+  auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
+  REQUIRE_MESSAGE(plan.ok(), to_text(plan.failure()));
+  auto audited = audit::audit(*compiled, *plan, 0, files);
+  REQUIRE_MESSAGE(audited.ok(), to_text(audited.failure()));
+  return {std::move(audited).value()};
+}
+
+const Audited& published() {
+  static const Audited audited = audit_file(VLAPROBE_SOURCE_DIR "/suite/intact.probe");
+  return audited;
+}
+
+// A text behind the suite, in a folder of its own.
+Audited audit_text(const std::string& text) {
+  const fs::path folder = fs::temp_directory_path() / ("probe_audit_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  for (const auto& entry : fs::directory_iterator(VLAPROBE_SOURCE_DIR "/suite"))
+    fs::copy_file(entry.path(), folder / entry.path().filename(),
+                  fs::copy_options::overwrite_existing);
+  std::ofstream(folder / "own.probe") << "use \"intact_clean.probe\"\n" << text;
+  Audited audited = audit_file((folder / "own.probe").string());
+  fs::remove_all(folder);
+  return audited;
+}
+
+}  // namespace
+
+TEST_CASE("the published suite: comparisons of several axes are found, with axes and reasons") {
+  const Audited& suite = published();
+  const std::vector<std::string> negation = {"distractors", "language.negation"};
+  for (const char* task : {"carrot_on_plate_lang_neg", "coke_can_on_plate_lang_neg",
+                           "orange_juice_on_plate_lang_neg"}) {
+    CAPTURE(task);
+    CHECK(suite.axes(Kind::kConfounded, task) == negation);
+    CHECK(suite.find(Kind::kConfounded, task)->allowed.has_value());
+  }
+  CHECK(suite.axes(Kind::kConfounded, "carrot_on_keyboard_lang_common") ==
+        std::vector<std::string>{"distractors", "language.commonsense"});
+  CHECK(suite.axes(Kind::kConfounded, "carrot_on_plate_lang_neg_action") ==
+        std::vector<std::string>{"distractors", "language.action", "language.negation", "goal"});
+  for (const char* task : {"eggplant_on_sponge_clean", "eggplant_on_keyboard_clean"}) {
+    CAPTURE(task);
+    CHECK(suite.find(Kind::kConfounded, task) != nullptr);
+    CHECK(suite.find(Kind::kAcrossScenes, task) != nullptr);
+    CHECK(suite.find(Kind::kAcrossLayouts, task) != nullptr);
+    CHECK(suite.find(Kind::kHorizon, task) != nullptr);
+    CHECK(suite.find(Kind::kSuccessRule, task) != nullptr);
+  }
+}
+
+TEST_CASE("the published suite: success by another rule than the canonical task's is found") {
+  for (const char* task : {"spoon_on_towel_distract", "spoon_on_towel_lang_common_distract"}) {
+    const audit::Finding* finding = published().find(Kind::kSuccessRule, task);
+    REQUIRE_MESSAGE(finding != nullptr, task);
+    CHECK(finding->place.file.ends_with("suite/intact.probe"));
+    CHECK(finding->place.line > 0);
+    CHECK(finding->allowed ==
+          "published with the contact condition that the canonical task does "
+          "not have");
+  }
+}
+
+TEST_CASE("the published suite: what is said of absent objects, and of two objects by one name") {
+  const audit::Finding* absent = published().find(Kind::kWarning, "spoon_on_towel_lang_neg");
+  REQUIRE(absent != nullptr);
+  CHECK(absent->code == "absent");
+  CHECK(absent->allowed.has_value());
+  const audit::Finding* small =
+      published().find(Kind::kNamesake, "spoon_on_towel_lang_common_distract");
+  REQUIRE(small != nullptr);
+  CHECK(small->message == "\"sponge\" is `sponge_small` here and `sponge` in other tasks");
+}
+
+TEST_CASE("the published suite: a comparison that no suite holds is found") {
+  const audit::Finding* finding =
+      published().find(Kind::kUnlisted, "carrot_on_plate_lang_neg_action");
+  REQUIRE(finding != nullptr);
+  CHECK(finding->baseline == "carrot_on_plate_distract");
+  CHECK(published().find(Kind::kEndsInGrasp, "carrot_on_plate_lang_neg_action") != nullptr);
+}
+
+TEST_CASE("the published suite: rules that pass or count what they should not are found") {
+  const audit::Finding* target = published().find(Kind::kWrongCountsTarget, "carrot_on_plate");
+  REQUIRE(target != nullptr);
+  CHECK(target->place.file.ends_with("suite/manipulation.probe"));
+  CHECK(target->tasks.size() == 51);
+  CHECK(published().find(Kind::kWrongAtEnd, "carrot_on_plate") != nullptr);
+  for (const char* task :
+       {"carrot_on_ramekin_clean", "carrot_on_wheel_clean", "coke_can_on_ramekin_clean",
+        "coke_can_on_wheel_clean", "nut_on_wheel_clean", "spoon_on_towel"}) {
+    CHECK_MESSAGE(published().find(Kind::kBeside, task) != nullptr, task);
+  }
+  for (const char* task :
+       {"carrot_on_plate", "stack_cube", "spoon_on_towel_distract", "put_eggplant_in_basket"}) {
+    CHECK_MESSAGE(published().find(Kind::kBeside, task) == nullptr, task);
+  }
+}
+
+TEST_CASE("the published suite: every @allow is in the audit with its reason") {
+  std::ifstream in(VLAPROBE_SOURCE_DIR "/suite/intact.probe");
+  std::size_t allows = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("@allow(")) continue;
+    ++allows;
+    const std::size_t from = line.find('"') + 1;
+    const std::string reason = line.substr(from, line.rfind('"') - from);
+    const auto& findings = published().audit.findings;
+    CHECK_MESSAGE(std::any_of(findings.begin(), findings.end(),
+                              [&](const audit::Finding& f) { return f.allowed == reason; }),
+                  reason);
+  }
+  CHECK(allows >= 10);
+}
+
+TEST_CASE("the repaired suite has nothing irregular") {
+  const Audited clean = audit_file(VLAPROBE_SOURCE_DIR "/suite/intact_clean.probe");
+  CHECK_MESSAGE(clean.audit.findings.empty(), audit::to_text(clean.audit));
+  CHECK(clean.audit.tasks == 52);
+  CHECK(clean.audit.comparisons == 48);
+  CHECK(audit::to_text(clean.audit) ==
+        "suite `intact_clean`, 52 tasks, 48 comparisons: nothing irregular\n");
+}
+
+TEST_CASE("the same words under another phrase, and the same task twice, are found") {
+  const Audited own = audit_text(
+      "object twin like carrot { phrase again appearance \"carrot\" means color orange }\n"
+      "variant twin_on_plate of carrot_on_plate { source twin }\n"
+      "variant said_again of twin_on_plate { refer source as again }\n"
+      "task copied like said_again {}\n"
+      "suite own { tasks { twin_on_plate, said_again, copied }; seeds 1 }\n");
+  REQUIRE(own.find(Kind::kSamePrompt, "said_again") != nullptr);
+  CHECK(own.find(Kind::kSamePrompt, "said_again")->message ==
+        "`said_again` against `twin_on_plate`: both say \"put carrot on plate\"");
+  CHECK(own.find(Kind::kDuplicate, "copied") != nullptr);
+}
+
+TEST_CASE("a variant that moves the goal alone is no irregularity") {
+  const Audited own = audit_text(
+      "metrics ever like put_clean { success = once resting_on(source, target) }\n"
+      "variant carrot_ever of carrot_on_plate { metrics ever }\n"
+      "suite own { tasks { carrot_on_plate, carrot_ever }; seeds 1 }\n");
+  CHECK(own.find(Kind::kSuccessRule, "carrot_ever") == nullptr);
+}
+
+TEST_CASE("the JSON names kind, tasks, axes, place and reason") {
+  const auto json = nlohmann::json::parse(audit::to_json(published().audit));
+  CHECK(json["suite"] == "intact");
+  CHECK(json["tasks"] == 50);
+  CHECK(json["comparisons"] == 46);
+  CHECK(json["findings"].size() == published().audit.findings.size());
+  const auto& first = json["findings"][0];
+  CHECK(first["kind"] == "confounded");
+  CHECK(first["tasks"].size() == 1);
+  CHECK(first["baseline"].is_string());
+  CHECK(first["axes"].size() >= 2);
+  CHECK(first["line"].get<int>() > 0);
+  CHECK(first["allowed"].is_string());
+}
