@@ -78,21 +78,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) { return spell
 
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates) {
-  constexpr std::size_t kLongestName =
-      128;  // a longer "name" is no typo, and the table is quadratic
-  if (name.size() > kLongestName) return std::nullopt;
-  const std::size_t limit = std::max<std::size_t>(1, name.size() / 3);
-  std::optional<std::string_view> best;
-  std::size_t best_distance = limit + 1;
-  for (const std::string_view candidate : candidates) {
-    if (candidate.size() > name.size() + limit || name.size() > candidate.size() + limit) continue;
-    const std::size_t distance = edit_distance(name, candidate);
-    // One letter is no likeness: `y` is not a slip of `x`.
-    if (distance >= best_distance || distance >= std::max(name.size(), candidate.size())) continue;
-    best = candidate;
-    best_distance = distance;
-  }
-  return best;
+  const std::string_view* near = nearest_spelling(name, candidates);
+  if (near == nullptr) return std::nullopt;
+  return *near;
 }
 
 }  // namespace probe

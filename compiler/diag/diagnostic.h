@@ -121,8 +121,7 @@ class Diagnostics {
   std::vector<Silenced> silenced_;
 };
 
-// The candidate that `name` was probably meant to be, or none: Damerau-Levenshtein distance at most
-// a third of the name's length (at least 1), the earlier candidate on a tie.
+// The candidate that `name` was probably meant to be, or none: the rule of runtime/base/spelling.h.
 std::optional<std::string_view> nearest(std::string_view name,
                                         std::span<const std::string_view> candidates);
 // Edits (insert, delete, replace, swap of neighbours) that turn one into the other.

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <optional>
 
+#include "runtime/base/asset_path.h"
+
 namespace probe::emit {
 namespace {
 
@@ -21,29 +23,45 @@ std::optional<std::vector<std::byte>> read_bytes(const std::filesystem::path& pa
 
 }  // namespace
 
-std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, const Span& span) {
+bool AssetTable::has(const std::string& path) const {
+  std::error_code error;
+  return std::filesystem::is_regular_file(std::filesystem::path(root_) / path, error);
+}
+
+std::string AssetTable::find(const std::string& stem,
+                             std::span<const std::string_view> extensions) const {
+  for (const std::string_view extension : extensions) {
+    std::string path = stem + std::string(extension);
+    if (has(path)) return path;
+  }
+  return stem + std::string(extensions.front());
+}
+
+std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, const Span& span,
+                              AssetOwner owner) {
   const auto [at, is_new] = known_.try_emplace({path, kind}, plan::kNone);
   if (!is_new) return at->second;
-  const std::filesystem::path file = std::filesystem::path(root_) / path;
-  const auto miss = [&](const char* why) {
-    diagnostics_.report(Code::P0202, span, "asset `" + path + "` " + why)
-        .note("looked for it in the assets folder `" + root_ + "`");
+  const auto miss = [&](std::string why) {
+    misses_.push_back({path, std::move(why), span, owner});
     return plan::kNone;
   };
   // A path leads below the root, so that a plan means the same files wherever the root lies.
-  const std::filesystem::path normal = std::filesystem::path(path).lexically_normal();
-  if (normal.is_absolute() || normal.begin() == normal.end() || *normal.begin() == "..") {
-    return miss("leads out of the assets folder");
+  const auto file = resolve_inside(root_, path, root_);
+  if (!file) {
+    const std::string& why = file.failure().message;
+    return miss(why == "there is no such file" ? "is not there" : why);
   }
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) return miss("is not there");
   Asset asset{path, kind, 0, {}};
   if (hashes_) {
-    const auto bytes = read_bytes(file);
+    const auto bytes = read_bytes(*file);
     if (!bytes) return miss("cannot be read");
     if (bytes->empty()) return miss("is empty");
     asset.byte_size = bytes->size();
     asset.hash = sha256(std::span<const std::byte>(*bytes));
+  }
+  if (inspect_) {
+    const Status good = inspect_(path, kind, hashes_ ? &asset.hash : nullptr);
+    if (!good) return miss(good.failure().message);
   }
   assets_.push_back(std::move(asset));
   return at->second = static_cast<std::uint32_t>(assets_.size() - 1);

@@ -4,9 +4,11 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
+#include "compiler/emit/compile.h"
 #include "compiler/source/source.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/format.h"
@@ -20,22 +22,42 @@ struct Asset {
   Sha256 hash;
 };
 
+// What a file is for, so that a missing one can be told with the tasks that need it.
+struct AssetOwner {
+  enum class Kind { kObject, kScene, kRobot } kind = Kind::kObject;
+  std::uint32_t id = 0;  // of the model
+};
+
+// A file that is not there or not good.
+struct AssetMiss {
+  std::string path, why;
+  Span span;
+  AssetOwner owner;
+};
+
 class AssetTable {
  public:
-  // `hashes` off: files are only looked for, which is enough to check a text.
-  AssetTable(std::string root, bool hashes, Diagnostics& diagnostics)
-      : root_(std::move(root)), hashes_(hashes), diagnostics_(diagnostics) {}
+  // `hashes` off: bytes are not read here, which is enough to check a text.
+  AssetTable(std::string root, bool hashes, AssetInspector inspect)
+      : root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)) {}
 
-  // The index of the file; kNone, and P0202 at `span`, when it is not there or not readable. A file
-  // is missed once.
-  std::uint32_t add(const std::string& path, plan::AssetKind kind, const Span& span);
+  // The index of the file; kNone, and a miss, when it is not there, not readable or not good. A
+  // file is missed once.
+  std::uint32_t add(const std::string& path, plan::AssetKind kind, const Span& span,
+                    AssetOwner owner);
 
+  bool has(const std::string& path) const;
+  // The first of `stem` + extension that is there, else with the first extension.
+  std::string find(const std::string& stem, std::span<const std::string_view> extensions) const;
+
+  const std::vector<AssetMiss>& misses() const { return misses_; }
   const std::vector<Asset>& assets() const { return assets_; }
 
  private:
   std::string root_;
   bool hashes_;
-  Diagnostics& diagnostics_;
+  AssetInspector inspect_;
+  std::vector<AssetMiss> misses_;
   std::vector<Asset> assets_;
   std::map<std::pair<std::string, plan::AssetKind>, std::uint32_t> known_;
 };

@@ -6,6 +6,7 @@
 
 #include "compiler/emit/emit.h"
 #include "compiler/sema/analyze.h"
+#include "compiler/sema/language.h"
 #include "compiler/syntax/parser.h"
 
 namespace probe {
@@ -84,6 +85,21 @@ std::vector<std::string> unused_phrases(const sema::Model& model) {
   return names;
 }
 
+// Roles that the instruction does not mention have no words in it.
+std::vector<ReferringWords> referring_words(const sema::Model& model) {
+  std::vector<ReferringWords> all;
+  for (const sema::Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
+      const sema::Referring said = sema::referring(model, task, role);
+      if (said.text == nullptr || task.prompt.find(*said.text) == std::string::npos) continue;
+      const sema::ObjectId object = role == syntax::Role::kSource ? task.source : task.target;
+      all.push_back({task.name, *said.text, model.objects[object].name, said.phrase != nullptr});
+    }
+  }
+  return all;
+}
+
 Status analyze(std::span<const std::string> files, const CompileOptions& options, Analyzed& out) {
   if (files.empty()) return Failure{"usage", "no file to compile", ""};
   for (const std::string& file : files) {
@@ -103,9 +119,10 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
   }
   out.model = sema::analyze(out.compilation.sources, trees, options.asset_root,
                             out.compilation.diagnostics, named);
+  out.compilation.unused_phrases = unused_phrases(out.model);
+  out.compilation.referring = referring_words(out.model);
   for (const sema::Object& object : out.model.objects)
     out.compilation.called.emplace(object.name, object.text.text);
-  out.compilation.unused_phrases = unused_phrases(out.model);
   const auto behind_used = std::stable_partition(
       out.model.suites.begin(), out.model.suites.end(), [&](const sema::Suite& suite) {
         return std::find(named.begin(), named.end(), suite.span.file) != named.end();
@@ -117,15 +134,21 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
   return {};
 }
 
+// `sources`: files that are known already.
 Result<Compilation> compile(std::span<const std::string> files, const CompileOptions& options,
-                            bool write) {
+                            bool write, SourceSet sources = {}) {
   Analyzed analyzed;
+  analyzed.compilation.sources = std::move(sources);
   PROBE_TRY(analyze(files, options, analyzed));
   Compilation& compilation = analyzed.compilation;
   if (compilation.ok) {
     const emit::EmitOptions emit_options{
-        options.asset_root, options.suite,
-        std::filesystem::path(analyzed.roots.front()).parent_path().string(), write};
+        options.asset_root,
+        options.suite,
+        std::filesystem::path(analyzed.roots.front()).parent_path().string(),
+        write,
+        options.inspect_asset,
+        options.wants_task};
     PROBE_ASSIGN(compilation.plan, emit::emit(analyzed.model, compilation.sources, analyzed.ids,
                                               emit_options, compilation.diagnostics));
   }
@@ -134,10 +157,62 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
   return std::move(compilation);
 }
 
+// The named files that no other named file uses: each begins a program of its own.
+Result<std::vector<std::string>> program_roots(std::span<const std::string> files,
+                                               const CompileOptions& options, SourceSet& sources) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    std::string name = std::filesystem::path(file).lexically_normal().string();
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(std::move(name));
+  }
+  std::set<std::string> used;
+  for (const std::string& name : names) {
+    Diagnostics again;  // what is wrong is said when the program is checked
+    PROBE_ASSIGN(const syntax::Program program,
+                 syntax::load_program(sources, name, options.library_folders, again));
+    for (const syntax::ParseResult& result : program.files) {
+      const std::string& reached = sources.file(result.file.id).name();
+      if (reached != name) used.insert(reached);
+    }
+  }
+  // Files that use each other have no first one; then all are one program's roots.
+  const auto unused = std::stable_partition(names.begin(), names.end(),
+                                            [&](const auto& name) { return !used.contains(name); });
+  if (unused != names.begin()) names.erase(unused, names.end());
+  return names;
+}
+
+void merge(Compilation&& program, Compilation& all) {
+  all.sources = std::move(program.sources);
+  for (const Diagnostic& said : program.diagnostics.items()) {
+    const bool known = std::any_of(
+        all.diagnostics.items().begin(), all.diagnostics.items().end(), [&](const Diagnostic& d) {
+          return d.code == said.code && d.primary == said.primary && d.message == said.message;
+        });
+    if (!known) all.diagnostics.add(said);
+  }
+  all.ok = all.ok && program.ok;
+  all.own_suites.insert(all.own_suites.end(), program.own_suites.begin(), program.own_suites.end());
+  all.unused_phrases.insert(all.unused_phrases.end(), program.unused_phrases.begin(),
+                            program.unused_phrases.end());
+  all.referring.insert(all.referring.end(), program.referring.begin(), program.referring.end());
+  all.called.merge(program.called);
+}
+
 }  // namespace
 
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options) {
-  return compile(files, options, false);
+  if (files.size() < 2) return compile(files, options, false);
+  Compilation all;
+  all.ok = true;
+  PROBE_ASSIGN(const std::vector<std::string> roots, program_roots(files, options, all.sources));
+  for (const std::string& root : roots) {
+    PROBE_ASSIGN(Compilation program,
+                 compile(std::span(&root, 1), options, false, std::move(all.sources)));
+    merge(std::move(program), all);
+  }
+  return all;
 }
 
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options) {

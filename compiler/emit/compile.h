@@ -2,22 +2,39 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
 #include "compiler/source/source.h"
 #include "runtime/base/result.h"
+#include "runtime/base/sha256.h"
+#include "runtime/plan/format.h"
 
 namespace probe {
 
+// Whether a file of the assets is good: `path` relative to their folder, its hash when it is known.
+using AssetInspector =
+    std::function<Status(const std::string& path, plan::AssetKind kind, const Sha256* hash)>;
+
 struct CompileOptions {
   std::string asset_root;
-  std::string suite;  // the one suite to compile; "" = all
+  std::string suite = {};  // the one suite to compile; "" = all
   // Where a `use` is looked up when the file is not beside its user: folders that hold `std/`.
   std::vector<std::string> library_folders = {};
+  AssetInspector inspect_asset = {};  // none: files are only looked for
+  // The tasks to keep, by name; none: all. For assets that do not serve every task.
+  std::function<bool(std::string_view)> wants_task = {};
+};
+
+// Words of a task's instruction and the object that they mean.
+struct ReferringWords {
+  std::string task, words, object;
+  bool is_phrase = false;  // a phrase of the object; else its name
 };
 
 struct Compilation {
@@ -25,13 +42,20 @@ struct Compilation {
   Diagnostics diagnostics;
   bool ok = false;              // no errors
   std::vector<std::byte> plan;  // empty unless ok and built
+  // Suites that the named files declare themselves, in the order of the text; those of used files
+  // stand behind them in the plan.
+  std::vector<std::string> own_suites = {};
+  // "object.phrase" of the objects of some task by which no concrete task refers.
+  std::vector<std::string> unused_phrases = {};
+  std::vector<ReferringWords> referring;  // of every concrete task, source before target
   // What the objects are called when no phrase is chosen, by name.
   std::map<std::string, std::string> called;
 };
 
-// Diagnoses the files and everything they use. Assets are looked for, not read. A Failure is only
-// for the outside: a root file that cannot be read (code "io"), a suite that no file declares (code
-// "usage").
+// Diagnoses the files and everything they use. Each file that no other named one uses is a program
+// of its own, so two of them may declare the same names. Assets are looked for and inspected, not
+// hashed. A Failure is only for the outside: a root file that cannot be read (code "io"), a suite
+// that no file declares (code "usage").
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options);
 
 // The same, and when nothing is wrong the verified plan. Same text and assets, same bytes, from any
@@ -39,11 +63,6 @@ Result<Compilation> check(std::span<const std::string> files, const CompileOptio
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options);
 
 // How large a suite is, without lowering or writing anything.
-  // Suites that the named files declare themselves, in the order of the text; those of used files
-  // stand behind them in the plan.
-  std::vector<std::string> own_suites;
-  // "object.phrase" of the objects of some task by which no concrete task refers.
-  std::vector<std::string> unused_phrases;
 struct Counts {
   std::size_t tasks = 0;  // concrete ones, or the members of the one suite asked for
   std::size_t episodes = 0;

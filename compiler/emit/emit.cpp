@@ -1,6 +1,9 @@
 #include "compiler/emit/emit.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -9,6 +12,7 @@
 #include "compiler/lower/intervals.h"
 #include "compiler/lower/lower.h"
 #include "compiler/sema/axes.h"
+#include "runtime/base/asset_path.h"
 #include "runtime/plan/writer.h"
 
 namespace probe::emit {
@@ -17,6 +21,10 @@ namespace {
 using sema::Model;
 using sema::ObjectId;
 using sema::TaskId;
+
+// OBJ first: that is how convex decompositions are stored.
+constexpr std::array<std::string_view, 5> kCollisionExtensions{".obj", ".stl", ".glb", ".gltf",
+                                                               ".dae"};
 
 constexpr std::uint32_t kCodeSpan = 1, kTaskSpan = 2, kObjectSpan = 3, kMetricSpan = 4;
 
@@ -50,7 +58,7 @@ class Emitter {
         sources_(sources),
         options_(options),
         diagnostics_(diagnostics),
-        assets_(options.asset_root, options.write, diagnostics),
+        assets_(options.asset_root, options.write, options.inspect_asset),
         objects_(model.objects.size()),
         robots_(model.robots.size()),
         cameras_(model.cameras.size()),
@@ -65,6 +73,7 @@ class Emitter {
       tasks_.add(chosen[i], static_cast<std::uint32_t>(i));
     for (const TaskId id : chosen) add_task(model_.tasks[id]);
     report_constants();
+    report_misses(chosen);
     if (diagnostics_.has_errors() || !options_.write) return std::vector<std::byte>{};
     add_assets();
     add_sets_and_suites();
@@ -99,7 +108,10 @@ class Emitter {
     std::vector<TaskId> chosen;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       const sema::Task& task = model_.tasks[static_cast<TaskId>(i)];
-      if (wanted[i] && !task.abstract && task.complete) chosen.push_back(static_cast<TaskId>(i));
+      const bool is_kept = !options_.wants_task || options_.wants_task(task.name);
+      if (wanted[i] && is_kept && !task.abstract && task.complete) {
+        chosen.push_back(static_cast<TaskId>(i));
+      }
     }
     return chosen;
   }
@@ -124,17 +136,31 @@ class Emitter {
   // ---- the world
   // ----------------------------------------------------------------------------------------------------
 
+  // A folder's picture mesh and what is felt: `collision`, or the picture mesh where there is none.
+  struct MeshPair {
+    std::string visual, collision;
+  };
+  MeshPair find_meshes(const std::string& folder) const {
+    MeshPair meshes{assets_.find(folder + "/visual", kMeshExtensions),
+                    assets_.find(folder + "/collision", kCollisionExtensions)};
+    if (!assets_.has(meshes.collision) && assets_.has(meshes.visual)) {
+      meshes.collision = meshes.visual;
+    }
+    return meshes;
+  }
+
   void add_object(ObjectId id) {
     if (!objects_.add(id, size32(records().objects))) return;
     const sema::Object& object = model_.objects[id];
     plan::ObjectRecord record;
     record.name = writer_.text(object.name);
     record.text = writer_.text(object.text.text);
-    const std::string folder = "objects/" + object.mesh.text + "/";
+    const AssetOwner owner{AssetOwner::Kind::kObject, static_cast<std::uint32_t>(id)};
+    const MeshPair meshes = find_meshes("objects/" + object.mesh.text);
     record.visual =
-        assets_.add(folder + "visual.glb", plan::AssetKind::kVisualMesh, object.mesh.span);
+        assets_.add(meshes.visual, plan::AssetKind::kVisualMesh, object.mesh.span, owner);
     record.collision =
-        assets_.add(folder + "collision.obj", plan::AssetKind::kCollisionMesh, object.mesh.span);
+        assets_.add(meshes.collision, plan::AssetKind::kCollisionMesh, object.mesh.span, owner);
     record.box_min = object.box_min;
     record.box_max = object.box_max;
     record.density = object.density;
@@ -149,7 +175,8 @@ class Emitter {
     plan::RobotRecord record;
     record.name = writer_.text(robot.name);
     record.tcp = writer_.text(robot.tcp.text);
-    record.urdf = assets_.add(robot.urdf.text, plan::AssetKind::kUrdf, robot.urdf.span);
+    const AssetOwner owner{AssetOwner::Kind::kRobot, static_cast<std::uint32_t>(id)};
+    record.urdf = assets_.add(robot.urdf.text, plan::AssetKind::kUrdf, robot.urdf.span, owner);
     record.control = static_cast<std::uint32_t>(plan::Control::kEeDeltaPose);
     record.control_hz = robot.control_hz;
     for (std::size_t i = 0; i < record.fingers.size(); ++i) {
@@ -168,17 +195,17 @@ class Emitter {
                         drive.limit.si()});
     }
     record.drives = plan::append(records().drives, std::span<const plan::DriveRecord>(drives));
-    record.meshes = writer_.list(robot_meshes(robot));
+    record.meshes = writer_.list(robot_meshes(robot, owner));
     records().robots.push_back(record);
   }
 
   // Every file the URDF names, each once, in its order.
-  std::vector<std::uint32_t> robot_meshes(const sema::Robot& robot) {
+  std::vector<std::uint32_t> robot_meshes(const sema::Robot& robot, AssetOwner owner) {
     std::vector<std::uint32_t> meshes;
     const std::filesystem::path folder = std::filesystem::path(robot.urdf.text).parent_path();
     const auto add = [&](const robot::MeshRef& mesh, plan::AssetKind kind) {
       const std::string path = (folder / mesh.path).lexically_normal().generic_string();
-      const std::uint32_t index = assets_.add(path, kind, robot.urdf.span);
+      const std::uint32_t index = assets_.add(path, kind, robot.urdf.span, owner);
       if (std::find(meshes.begin(), meshes.end(), index) == meshes.end()) meshes.push_back(index);
     };
     for (const robot::Link& link : robot.model->links) {
@@ -225,20 +252,33 @@ class Emitter {
     plan::SceneRecord record;
     record.name = writer_.text(scene.name);
     record.robot = robots_[scene.robot];
+    const AssetOwner owner{AssetOwner::Kind::kScene, static_cast<std::uint32_t>(id)};
     if (scene.overlay) {
       record.photo = assets_.add("scenes/" + scene.overlay->text, plan::AssetKind::kPhoto,
-                                 scene.overlay->span);
+                                 scene.overlay->span, owner);
     }
     if (scene.backdrop) {
-      record.backdrop = assets_.add("scenes/" + scene.backdrop->text + "/visual.glb",
-                                    plan::AssetKind::kVisualMesh, scene.backdrop->span);
+      const std::string folder = "scenes/" + scene.backdrop->text + "/";
+      const Span& span = scene.backdrop->span;
+      // A photo in the folder is what the camera saw there: it stands behind everything, and the
+      // mesh, where there is one, only for depth and for what hides what.
+      const std::string photo = assets_.find(folder + "photo", kPhotoExtensions);
+      const std::string visual = assets_.find(folder + "visual", kMeshExtensions);
+      const bool has_photo = assets_.has(photo);
+      if (has_photo && !scene.overlay) {
+        record.photo = assets_.add(photo, plan::AssetKind::kPhoto, span, owner);
+      }
+      if (!has_photo || assets_.has(visual)) {
+        record.backdrop = assets_.add(visual, plan::AssetKind::kVisualMesh, span, owner);
+      }
     }
     if (scene.fixture) {
-      const std::string folder = "fixtures/" + scene.fixture->text + "/";
+      const MeshPair meshes = find_meshes("fixtures/" + scene.fixture->text);
+      const Span& span = scene.fixture->span;
       record.fixture_visual =
-          assets_.add(folder + "visual.glb", plan::AssetKind::kVisualMesh, scene.fixture->span);
-      record.fixture_collision = assets_.add(folder + "collision.obj",
-                                             plan::AssetKind::kCollisionMesh, scene.fixture->span);
+          assets_.add(meshes.visual, plan::AssetKind::kVisualMesh, span, owner);
+      record.fixture_collision =
+          assets_.add(meshes.collision, plan::AssetKind::kCollisionMesh, span, owner);
       record.fixture_position = scene.fixture_position;
     }
     record.base_position = scene.base_position;
@@ -257,11 +297,11 @@ class Emitter {
   // --------------------------------------------------------------------------------------------------------
 
   // Tasks of one shape share one program.
-  std::uint32_t add_program(lower::Program program, std::uint64_t horizon) {
+  std::uint32_t add_program(lower::Program program, std::uint64_t horizon, double control_hz) {
     for (std::size_t i = 0; i < programs_.size(); ++i) {
       if (programs_[i].same_as(program)) return static_cast<std::uint32_t>(i);
     }
-    note_constants(program, horizon);
+    note_constants(program, horizon, control_hz);
     plan::ProgramRecord record;
     record.constants =
         plan::append(records().constants, std::span<const double>(program.constants));
@@ -285,8 +325,8 @@ class Emitter {
 
   // P0603 at once; P0602 when a metric is constant in every program that has it: over the
   // distractors of a task without any it may be.
-  void note_constants(const lower::Program& program, std::uint64_t horizon) {
-    const lower::Findings findings = lower::find_constants(program, horizon);
+  void note_constants(const lower::Program& program, std::uint64_t horizon, double control_hz) {
+    const lower::Findings findings = lower::find_constants(program, horizon, control_hz);
     for (const std::size_t at : findings.contradictions) {
       const Span& span = program.spans[at];
       if (!contradictions_.insert({span.file.value, span.begin}).second) continue;
@@ -302,17 +342,52 @@ class Emitter {
       if (known == findings.constants.end()) {
         constant.varies = true;
       } else {
-        (known->value ? constant.is_true : constant.is_false) = true;
+        const auto& number = known->number;
+        constant.values.insert(number         ? fmt::format("{:.6g}", *number)
+                               : known->value ? "true"
+                                              : "false");
       }
     }
   }
 
   void report_constants() {
     for (const auto& [place, constant] : constants_) {
-      if (constant.varies || constant.is_true == constant.is_false) continue;
-      diagnostics_.report(Code::P0602, constant.metric.span,
-                          "metric `" + constant.metric.name + "` is always " +
-                              (constant.is_true ? "true" : "false"));
+      if (constant.varies || constant.values.size() != 1) continue;
+      diagnostics_.report(
+          Code::P0602, constant.metric.span,
+          "metric `" + constant.metric.name + "` is always " + *constant.values.begin());
+    }
+  }
+
+  bool needs(const sema::Task& task, const AssetOwner& owner) const {
+    switch (owner.kind) {
+      case AssetOwner::Kind::kObject: {
+        const std::vector<ObjectId> objects = task.objects();
+        return std::find(objects.begin(), objects.end(), static_cast<ObjectId>(owner.id)) !=
+               objects.end();
+      }
+      case AssetOwner::Kind::kScene:
+        return task.scene == static_cast<sema::SceneId>(owner.id);
+      case AssetOwner::Kind::kRobot:
+        return model_.scenes[task.scene].robot == static_cast<sema::RobotId>(owner.id);
+    }
+    return false;
+  }
+
+  // Each with the tasks that cannot run without it.
+  void report_misses(const std::vector<TaskId>& chosen) {
+    constexpr std::size_t kNamed = 6;
+    for (const AssetMiss& miss : assets_.misses()) {
+      std::string names;
+      std::size_t count = 0;
+      for (const TaskId id : chosen) {
+        if (!needs(model_.tasks[id], miss.owner) || ++count > kNamed) continue;
+        names += (count == 1 ? "`" : ", `") + model_.tasks[id].name + "`";
+      }
+      if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+      diagnostics_.report(Code::P0202, miss.span, "asset `" + miss.path + "` " + miss.why)
+          .note("looked for it in the assets folder `" + options_.asset_root + "`")
+          .note("needed by " + names);
     }
   }
 
@@ -365,7 +440,8 @@ class Emitter {
     record.scene = scenes_[task.scene];
     record.camera = cameras_[camera_of(model_, task)];
     record.light = lights_[light_of(model_, task)];
-    record.program = add_program(std::move(*program), task.horizon);
+    record.program =
+        add_program(std::move(*program), task.horizon, model_.robots[scene.robot].control_hz);
     record.source = objects_[task.source];
     record.target = objects_[task.target];
     record.bodies = add_bodies(bodies);
@@ -435,7 +511,8 @@ class Emitter {
     constexpr auto kLanguage = static_cast<std::uint32_t>(plan::Axis::kLanguageAction) |
                                static_cast<std::uint32_t>(plan::Axis::kLanguageNegation) |
                                static_cast<std::uint32_t>(plan::Axis::kLanguageAppearance) |
-                               static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense);
+                               static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense) |
+                               static_cast<std::uint32_t>(plan::Axis::kLanguageParaphrase);
     bool ok = true;
     for (std::size_t i = 0; i < records().tasks.size(); ++i) {
       const plan::TaskRecord& task = records().tasks[i];
@@ -474,7 +551,8 @@ class Emitter {
   std::vector<lower::Program> programs_;
   struct Constant {
     lower::ProgramMetric metric;
-    bool varies = false, is_true = false, is_false = false;
+    bool varies = false;
+    std::set<std::string> values;
   };
   std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
   std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;

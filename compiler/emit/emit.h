@@ -2,10 +2,13 @@
 // hashes and ids are the plan library's.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
+#include "compiler/emit/compile.h"
 #include "compiler/sema/model.h"
 #include "runtime/base/result.h"
 
@@ -16,6 +19,8 @@ struct EmitOptions {
   std::string suite;          // the one suite to keep; "" keeps all tasks
   std::string source_folder;  // paths of sources are written relative to it
   bool write = true;          // off: diagnostics only, no bytes
+  AssetInspector inspect_asset = {};
+  std::function<bool(std::string_view)> wants_task = {};
 };
 
 // Empty when something was reported or nothing was to be written. `files`: the sources, in the

@@ -1,6 +1,8 @@
 #include "compiler/lower/intervals.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -13,6 +15,14 @@ namespace {
 using plan::Op;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// No body is ever farther from the world's origin on any axis (m): an arm of a metre or two at a
+// table that stands on an endless floor.
+constexpr double kRoom = 20;
+// No half extent is larger (m), no body faster (m/s).
+constexpr double kLargest = 10, kFastest = 1000;
+// Components of unit vectors, with room for their rounding.
+constexpr double kUnit = 1 + 1e-9;
 
 struct Interval {
   double low = -kInfinity, high = kInfinity;
@@ -28,9 +38,16 @@ Interval product(const Interval& a, const Interval& b) {
   return {*std::min_element(corners, corners + 4), *std::max_element(corners, corners + 4)};
 }
 
-// What is known of one result. Vectors keep one interval for all of their components.
+double least_of(const Interval& a) { return a.low > 0 ? a.low : a.high < 0 ? -a.high : 0; }
+double most_of(const Interval& a) { return std::max(std::abs(a.low), std::abs(a.high)); }
+
+Interval sum(const Interval& a, const Interval& b) { return {a.low + b.low, a.high + b.high}; }
+Interval negative(const Interval& a) { return {-a.high, -a.low}; }
+
+// What is known of one result.
 struct Known {
   Interval number;
+  std::array<Interval, 3> vector;
   std::optional<bool> truth;
   std::size_t instruction = 0;
   // The result is that of instruction `base` plus `offset`.
@@ -60,15 +77,17 @@ struct Limits {
 
 class Pass {
  public:
-  Pass(const Program& program, std::uint64_t horizon)
-      : program_(program), horizon_(static_cast<double>(horizon)) {}
+  Pass(const Program& program, std::uint64_t horizon, double control_hz)
+      : program_(program), horizon_(static_cast<double>(horizon)), control_hz_(control_hz) {}
 
   Findings run() {
     for (std::size_t i = 0; i < program_.code.size(); ++i) {
       const plan::Instruction& code = program_.code[i];
       const Op op = static_cast<Op>(code.op);
       if (op == Op::kEMITB && known_[code.a].truth)
-        findings_.constants.push_back({code.b, *known_[code.a].truth});
+        findings_.constants.push_back({code.b, *known_[code.a].truth, std::nullopt});
+      if (op == Op::kEMITR && known_[code.a].number.is_point())
+        findings_.constants.push_back({code.b, false, known_[code.a].number.low});
       if (op == Op::kEMITB || op == Op::kEMITR || op == Op::kEND) continue;
       known_.push_back(result(op, code, i));
       known_.back().instruction = i;
@@ -84,6 +103,36 @@ class Pass {
     known.number = interval;
     return known;
   }
+  // The same bounds on all three axes.
+  static Known vector(double low, double high) {
+    Known known;
+    known.vector = {{{low, high}, {low, high}, {low, high}}};
+    return known;
+  }
+  static Known vector(const std::array<Interval, 3>& axes) {
+    Known known;
+    known.vector = axes;
+    return known;
+  }
+  template <typename Combine>
+  static Known by_axis(const Known& a, const Known& b, Combine combine) {
+    Known known;
+    for (std::size_t i = 0; i < 3; ++i) known.vector[i] = combine(a.vector[i], b.vector[i]);
+    return known;
+  }
+  // Of the first `axes` axes.
+  static Interval length(const std::array<Interval, 3>& v, std::size_t axes) {
+    double least = 0, most = 0;
+    for (std::size_t i = 0; i < axes; ++i) {
+      least += least_of(v[i]) * least_of(v[i]);
+      most += most_of(v[i]) * most_of(v[i]);
+    }
+    return {std::sqrt(least), std::sqrt(most)};
+  }
+  static Interval inner(const std::array<Interval, 3>& a, const std::array<Interval, 3>& b) {
+    return sum(sum(product(a[0], b[0]), product(a[1], b[1])), product(a[2], b[2]));
+  }
+
   static Known truth(std::optional<bool> value) {
     Known known;
     known.truth = value;
@@ -113,31 +162,67 @@ class Pass {
         return number(program_.constants[code.a], program_.constants[code.a]);
       case Op::kKB:
         return truth(code.a != 0);
+      case Op::kKV: {
+        std::array<Interval, 3> axes;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const double value = program_.constants[code.a + i];
+          axes[i] = {value, value};
+        }
+        return vector(axes);
+      }
+      case Op::kPOS:
+      case Op::kSTART:
+      case Op::kORIGIN:
+      case Op::kTCP:
+        return vector(-kRoom, kRoom);
       case Op::kHALF:
+        return vector(0, kLargest);
+      case Op::kOPEN:
+      case Op::kAXIS:
+        return vector(-kUnit, kUnit);
+      case Op::kVEL:
+        return vector(-kFastest, kFastest);
+      case Op::kVADD:
+        return by_axis(a(), b(), sum);
+      case Op::kVSUB:
+        return by_axis(a(), b(),
+                       [](const Interval& p, const Interval& q) { return sum(p, negative(q)); });
+      case Op::kVSCALE: {
+        std::array<Interval, 3> axes;
+        for (std::size_t i = 0; i < 3; ++i) axes[i] = product(a().vector[i], b().number);
+        return vector(axes);
+      }
+      case Op::kVDOT:
+        return of(inner(a().vector, b().vector));
       case Op::kIMP:
-      case Op::kVLEN:
-      case Op::kVLENXY:
         return number(0, kInfinity);
+      case Op::kVLEN:
+        return of(length(a().vector, 3));
+      case Op::kVLENXY:
+        return of(length(a().vector, 2));
       case Op::kVX:
+        return of(a().vector[0]);
       case Op::kVY:
+        return of(a().vector[1]);
       case Op::kVZ:
-        return of(a().number);
+        return of(a().vector[2]);
       case Op::kGRIP:
         return number(0, 1);
       case Op::kSTEP:
         return number(1, horizon_);
       case Op::kTIME:
-        return number(0, kInfinity);
+        // With room for the rounding of a sum of steps.
+        return number(0, control_hz_ > 0 ? horizon_ / control_hz_ * kUnit : kInfinity);
       case Op::kADD:
-        return number(a().number.low + b().number.low, a().number.high + b().number.high);
+        return of(sum(a().number, b().number));
       case Op::kSUB:
-        return number(a().number.low - b().number.high, a().number.high - b().number.low);
+        return of(sum(a().number, negative(b().number)));
       case Op::kMUL:
         return of(product(a().number, b().number));
       case Op::kNEG:
-        return number(-a().number.high, -a().number.low);
+        return of(negative(a().number));
       case Op::kABS:
-        return absolute(a().number);
+        return number(least_of(a().number), most_of(a().number));
       case Op::kMIN:
         return number(std::min(a().number.low, b().number.low),
                       std::min(a().number.high, b().number.high));
@@ -151,7 +236,7 @@ class Pass {
       case Op::kAND:
         return both(at, a().truth, b().truth);
       case Op::kOR:
-        return truth(either(a().truth, b().truth));
+        return truth(either(code, a().truth, b().truth));
       case Op::kNOT:
         return truth(a().truth ? std::optional(!*a().truth) : std::nullopt);
       case Op::kONCE:
@@ -159,9 +244,12 @@ class Pass {
         return truth(a().truth);
       case Op::kHOLD:
         return truth(a().truth == std::optional(false) ? a().truth : std::nullopt);
+      // A read-out has one value, that of the last step.
       case Op::kCOUNT:
+        if (a().truth) return number(*a().truth ? horizon_ : 0, *a().truth ? horizon_ : 0);
         return number(0, horizon_);
       case Op::kFIRST:
+        if (a().truth) return number(*a().truth ? 1 : -1, *a().truth ? 1 : -1);
         return number(-1, horizon_);
       case Op::kMAXR:
       case Op::kMINR:
@@ -169,12 +257,6 @@ class Pass {
       default:
         return {};
     }
-  }
-
-  static Known absolute(const Interval& a) {
-    if (a.low >= 0) return number(a.low, a.high);
-    if (a.high <= 0) return number(-a.high, -a.low);
-    return number(0, std::max(-a.low, a.high));
   }
 
   static std::optional<bool> compare(const Known& left, const Known& right, bool or_equal) {
@@ -187,9 +269,14 @@ class Pass {
     return std::nullopt;
   }
 
-  static std::optional<bool> either(std::optional<bool> a, std::optional<bool> b) {
+  std::optional<bool> either(const plan::Instruction& code, std::optional<bool> a,
+                             std::optional<bool> b) {
     if (a == std::optional(true) || b == std::optional(true)) return true;
     if (a && b) return false;
+    // Nothing is left out by these when their opposites exclude one another.
+    Conjunction opposite;
+    if (collect_not(code.a, opposite) && collect_not(code.b, opposite) && opposite.impossible)
+      return true;
     return std::nullopt;
   }
 
@@ -206,6 +293,8 @@ class Pass {
 
   struct Conjunction {
     std::map<std::uint16_t, Limits> limits;
+    // Comparisons of two measurements, the smaller first: whether they must differ.
+    std::map<std::pair<std::uint16_t, std::uint16_t>, bool> orders;
     bool impossible = false;
   };
 
@@ -224,13 +313,29 @@ class Pass {
       case Op::kLE:
         note(code.a, code.b, false, out);
         break;
-      case Op::kNOT: {
-        // Not a < b is b <= a: a measurement that is no number ends the episode instead.
-        const plan::Instruction& inner = program_.code[known_[code.a].instruction];
-        if (static_cast<Op>(inner.op) == Op::kLT) note(inner.b, inner.a, false, out);
-        if (static_cast<Op>(inner.op) == Op::kLE) note(inner.b, inner.a, true, out);
+      case Op::kNOT:
+        return collect_not(code.a, out);
+      default:
         break;
-      }
+    }
+    return true;
+  }
+
+  // The comparisons that all hold when `reg` does not.
+  bool collect_not(std::uint16_t reg, Conjunction& out) {
+    const plan::Instruction& code = program_.code[known_[reg].instruction];
+    switch (static_cast<Op>(code.op)) {
+      case Op::kOR:
+        return collect_not(code.a, out) && collect_not(code.b, out);
+      case Op::kNOT:
+        return collect(code.a, out);
+      // Not a < b is b <= a: a measurement that is no number ends the episode instead.
+      case Op::kLT:
+        note(code.b, code.a, false, out);
+        break;
+      case Op::kLE:
+        note(code.b, code.a, true, out);
+        break;
       default:
         break;
     }
@@ -240,7 +345,14 @@ class Pass {
   void note(std::uint16_t less, std::uint16_t more, bool open, Conjunction& out) {
     const Interval& a = known_[less].number;
     const Interval& b = known_[more].number;
-    if (a.is_point() == b.is_point()) return;
+    if (!a.is_point() && !b.is_point()) {
+      bool& differ = out.orders.try_emplace({less, more}, false).first->second;
+      differ = differ || open;
+      const auto other = out.orders.find({more, less});
+      if (other != out.orders.end() && (differ || other->second)) out.impossible = true;
+      return;
+    }
+    if (a.is_point() && b.is_point()) return;
     const std::uint16_t reg = a.is_point() ? more : less;
     Limits& limits = out.limits.try_emplace(reg, Limits{known_[reg].number}).first->second;
     if (a.is_point()) {
@@ -252,15 +364,15 @@ class Pass {
   }
 
   const Program& program_;
-  double horizon_;
+  double horizon_, control_hz_;
   std::vector<Known> known_;
   Findings findings_;
 };
 
 }  // namespace
 
-Findings find_constants(const Program& program, std::uint64_t horizon) {
-  return Pass(program, horizon).run();
+Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz) {
+  return Pass(program, horizon, control_hz).run();
 }
 
 }  // namespace probe::lower

@@ -1,8 +1,10 @@
 // What can be known of a program without running it: intervals of every register, one pass over the
-// straight-line code. Measurements are only known by their kind: a distance is not negative.
+// straight-line code. Measurements are known by their kind: a distance is not negative, and nothing
+// leaves the room.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "compiler/lower/program.h"
@@ -12,6 +14,7 @@ namespace probe::lower {
 struct ConstantMetric {
   std::size_t metric = 0;
   bool value = false;
+  std::optional<double> number;  // of a metric that is no condition
 };
 
 struct Findings {
@@ -20,6 +23,7 @@ struct Findings {
   std::vector<std::size_t> contradictions;
 };
 
-Findings find_constants(const Program& program, std::uint64_t horizon);
+// `horizon` in control steps, `control_hz` of them a second.
+Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz);
 
 }  // namespace probe::lower

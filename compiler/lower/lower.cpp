@@ -1,6 +1,7 @@
 #include "compiler/lower/lower.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "compiler/lower/builder.h"
 #include "compiler/sema/judgement.h"
@@ -69,11 +70,11 @@ class Lowering {
   Program finish() { return builder_.finish(); }
 
  private:
-  Value fail(const Span& span, std::string message) {
   // Predicates that call others twice double at each level, also where the instructions are shared.
   static constexpr std::size_t kMostVisited = std::size_t{1} << 22u;
   std::size_t visited_ = 0;
 
+  Value fail(const Span& span, std::string message) {
     if (ok_) diagnostics_.report(Code::P0601, span, std::move(message));
     ok_ = false;
     return Value::of_truth(false);
@@ -84,9 +85,9 @@ class Lowering {
     // A program that is too long or wrong is not used: stop unrolling it.
     if (!ok_ || builder_.is_full()) return Value::of_truth(false);
     const ExprNode& node = model_.exprs.nodes[ref];
-    switch (node.op) {
     if (++visited_ > kMostVisited)
       return fail(node.span, "the predicates of this task call one another too often to unroll");
+    switch (node.op) {
       case ExprOp::kPoison:
         return fail(node.span, "this has no value");
       case ExprOp::kConstant:
@@ -294,6 +295,21 @@ class Lowering {
     const ExprNode& between = model_.exprs.nodes[node.args[angle_on_left ? 0 : 1]];
     const Value limit = eval(node.args[angle_on_left ? 1 : 0]);
     if (limit.kind != Value::kNumber) return fail(node.span, "`angle` is compared with a constant");
+    constexpr double kHalfTurn = std::numbers::pi;
+    if (!(limit.number >= 0 && limit.number <= kHalfTurn)) {
+      if (ok_)
+        diagnostics_
+            .report(Code::P0304, model_.exprs.nodes[node.args[angle_on_left ? 1 : 0]].span,
+                    "the angle between two vectors is 0deg to 180deg")
+            .label(between.span, "compared with this");
+      ok_ = false;
+      return Value::of_truth(false);
+    }
+    // At the ends the comparison says nothing, or nothing can pass it.
+    if (angle_on_left && limit.number == (or_equal ? kHalfTurn : 0))
+      return Value::of_truth(or_equal);
+    if (!angle_on_left && limit.number == (or_equal ? 0 : kHalfTurn))
+      return Value::of_truth(or_equal);
     const std::uint16_t u = eval(between.args[0]).index;
     const std::uint16_t v = eval(between.args[1]).index;
     builder_.at(node.span);
@@ -418,7 +434,7 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
     const bool is_finger =
         std::any_of(robot.fingers.begin(), robot.fingers.end(),
                     [&](const sema::Finger& finger) { return finger.link.text == known.name; });
-    if (is_finger || known.collisions.empty()) continue;
+    if (is_finger || !known.can_collide()) continue;
     bodies.push_back({plan::BodyKind::kLink, link++, known.name});
   }
   return bodies;

@@ -1,9 +1,27 @@
 #include "compiler/sema/analyze.h"
 
+#include <algorithm>
+
 #include "compiler/sema/passes.h"
 #include "compiler/sema/report.h"
 
 namespace probe::sema {
+namespace {
+
+// A mistake by which whole declarations are not known: in the name of a file, or outside of every
+// declaration that could be read.
+bool loses_names(const std::vector<const syntax::File*>& files, const Diagnostic& mistake) {
+  if (mistake.code == Code::P0202) return true;
+  if (mistake.severity != Severity::kError) return false;
+  for (const syntax::File* file : files) {
+    for (const syntax::Decl& decl : file->decls) {
+      if (is_within(mistake.primary, decl.span)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
 
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
               const std::string& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots) {
@@ -14,7 +32,8 @@ Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& 
                   .asset_root = asset_root,
                   .model = model,
                   .symbols = {},
-                  .files = files};
+                  .files = files,
+                  .was_broken = diagnostics.has_errors()};
   collect_names(context);
   define_catalog(context);
   define_stage(context);
@@ -30,11 +49,15 @@ Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& 
   define_suites(context);
   check_tags(context);
   check_magnitudes(context);
+  check_boxes(context);
   if (roots.empty()) {
     for (const syntax::File* file : files) roots.push_back(file->id);
   }
   check_unused(context, roots);
-  say(context, roots, diagnostics);
+  const bool lacks_names =
+      std::any_of(diagnostics.items().begin(), diagnostics.items().end(),
+                  [&](const Diagnostic& item) { return loses_names(files, item); });
+  say(context, roots, lacks_names, diagnostics);
   return model;
 }
 

@@ -104,6 +104,41 @@ bool same_goal(const Task& a, const Task& b) {
                                               });
 }
 
+// What is said apart from articles and from the words chosen for an object: the literal words with
+// the object that stands between them.
+std::vector<std::string> skeleton(const Model& model, const Task& task) {
+  std::vector<std::string> words;
+  for (const Template::Part& part : model.templates[task.say].parts) {
+    if (part.slot) {
+      const std::string& name = part.slot->name.text;
+      const bool is_role = name == "source" || name == "target";
+      const ObjectId role = name == "source" ? task.source : task.target;
+      // An object that fills a role is that role, however the text names it.
+      std::string object = is_role ? model.objects[role].name : name;
+      if (object == model.objects[task.source].name) object = "{source";
+      if (object == model.objects[task.target].name) object = "{target";
+      words.push_back(std::move(object));
+      continue;
+    }
+    const std::string& text = part.literal;
+    for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
+      const std::size_t end = std::min(text.find(' ', at), text.size());
+      std::string word = text.substr(at, end - at);
+      if (word != "the" && word != "a" && word != "an") words.push_back(std::move(word));
+      at = end;
+    }
+  }
+  return words;
+}
+
+// Another verb or a negation brings its own words; without them, other words are a paraphrase.
+bool says_otherwise(const Model& model, const Task& a, const Task& b) {
+  const Template& first = model.templates[a.say];
+  const Template& second = model.templates[b.say];
+  return first.frame == second.frame && has_negation(first) == has_negation(second) &&
+         skeleton(model, a) != skeleton(model, b);
+}
+
 bool is_seen(const Object& object) { return !object.seen_in.empty(); }
 
 }  // namespace
@@ -132,6 +167,7 @@ std::uint32_t axes_between(const Model& model, const Task& task, const Task& bas
   const Template& said = model.templates[baseline.say];
   if (say.frame != said.frame) move(plan::Axis::kLanguageAction);
   if (has_negation(say) != has_negation(said)) move(plan::Axis::kLanguageNegation);
+  if (says_otherwise(model, task, baseline)) move(plan::Axis::kLanguageParaphrase);
   for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
     const bool is_source = role == syntax::Role::kSource;
     const Phrase* now = referring(model, task, role).phrase;
@@ -200,12 +236,27 @@ std::uint32_t out_of_distribution(const Model& model, const Task& task) {
   return 4;
 }
 
-bool uses_action(const Model& model, const Task& task) {
+namespace {
+
+// What a task is compared with in the end; itself when it has no baseline.
+const Task& root_of(const Model& model, const Task& task) {
   const Task* root = &task;
   for (std::size_t hops = 0; root->baseline != TaskId::kNone && hops < model.tasks.size(); ++hops) {
     root = &model.tasks[root->baseline];
   }
-  return root->complete && model.templates[task.say].frame != model.templates[root->say].frame;
+  return *root;
+}
+
+}  // namespace
+
+bool uses_action(const Model& model, const Task& task) {
+  const Task& root = root_of(model, task);
+  return root.complete && model.templates[task.say].frame != model.templates[root.say].frame;
+}
+
+bool uses_paraphrase(const Model& model, const Task& task) {
+  const Task& root = root_of(model, task);
+  return root.complete && says_otherwise(model, task, root);
 }
 
 bool uses_phrase(const Model& model, const Task& task, PhraseAxis axis) {

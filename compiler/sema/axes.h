@@ -20,6 +20,8 @@ std::uint32_t out_of_distribution(const Model& model, const Task& task);
 
 // Whether the verb frame differs from that of the first task along the baselines.
 bool uses_action(const Model& model, const Task& task);
+// Whether other words than those of that first task are said, in the same verb frame.
+bool uses_paraphrase(const Model& model, const Task& task);
 bool uses_phrase(const Model& model, const Task& task, PhraseAxis axis);
 
 CameraId camera_of(const Model& model, const Task& task);

@@ -93,20 +93,29 @@ struct ObjectReader {
     }
   }
 
+  void begin_box(const Span& span) {
+    object.has_box = object.box_is_read = true;
+    object.box_span = span;
+  }
+
   void operator()(const syntax::MeshStmt& stmt) { object.mesh = spelled(stmt.path); }
   void operator()(const syntax::BoxSizeStmt& stmt) {
     const syntax::Quantity* sides[] = {&stmt.x, &stmt.y, &stmt.z};
-    object.has_box = true;
+    begin_box(stmt.span);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto side = read_positive(context, *sides[i], dim::kLength, "`box` takes lengths");
-      if (!side) continue;
+      if (!side) {
+        object.box_is_read = false;
+        continue;
+      }
       // Halving is exact in binary, so the corners are the nearest doubles to the exact ones.
       object.box_min[i] = -*side / 2;
       object.box_max[i] = *side / 2;
     }
   }
   void operator()(const syntax::BoxCornersStmt& stmt) {
-    object.has_box = true;
+    begin_box(stmt.span);
+    object.box_is_read = false;
     const auto low = read_point(context, stmt.low, 3, 3, dim::kLength, "`box` takes lengths");
     const auto high = read_point(context, stmt.high, 3, 3, dim::kLength, "`box` takes lengths");
     if (!low || !high) return;
@@ -118,6 +127,7 @@ struct ObjectReader {
                      "the second corner of a box lies above the first on every axis");
       return;
     }
+    object.box_is_read = true;
   }
   void operator()(const syntax::DensityStmt& stmt) {
     object.has_density = true;
@@ -208,6 +218,7 @@ void define_objects(Context& context) {
     object.values.resize(context.model.attributes.size());
     object.facts.resize(context.model.facts.size(), Truth::kNo);
     ObjectReader reader{context, *decls[i].file, object};
+    const auto errors = context.diagnostics.error_count();
     for (const syntax::ObjectStmt& stmt : node.body) std::visit(reader, stmt);
     broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
                 (parents[i] && broken[*parents[i]]);
@@ -218,6 +229,7 @@ void define_objects(Context& context) {
       require(context, object, object.has_friction, "friction");
       require(context, object, !object.text.span.is_none(), "name");
     }
+    object.broken = broken[i] = broken[i] || context.diagnostics.error_count() != errors;
     if (object.rest.empty()) object.rest.push_back({});
     context.model.objects[static_cast<ObjectId>(i)] = std::move(object);
   }

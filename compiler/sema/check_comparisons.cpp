@@ -61,6 +61,7 @@ void label_axes(const Context& context, const Task& task, const Task& baseline,
   mark(plan::Axis::kLayout, task.layout_span, "layout");
   mark(plan::Axis::kLanguageAction, task.say_span, "language.action");
   mark(plan::Axis::kLanguageNegation, task.say_span, "language.negation");
+  mark(plan::Axis::kLanguageParaphrase, task.say_span, "language.paraphrase");
 }
 
 void check_edge(Context& context, const Task& task) {

@@ -2,10 +2,14 @@
 // instruction must be a sentence that a policy can be given.
 #include <utf8proc.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include "compiler/sema/language.h"
 #include "compiler/sema/passes.h"
+#include "compiler/sema/report.h"
+#include "compiler/sema/tasks.h"
 
 namespace probe::sema {
 namespace {
@@ -21,6 +25,13 @@ struct TaskLanguage {
     return task.refer[role]          ? task.refer[role]->span
            : task.say_span.is_none() ? task.span
                                      : task.say_span;
+  }
+
+  // What made `other` a rival of the words for a role: the newcomer when the words were there
+  // before it, else the words.
+  Span rivalry(std::size_t role, ObjectId other) const {
+    if (is_within(place(role), task.decl_span)) return place(role);
+    return entry_of(task, other).value_or(task.span);
   }
 
   // An attribute or fact that would tell the two apart: a hint that certainly helps.
@@ -50,25 +61,33 @@ struct TaskLanguage {
           .label(phrase.text.span, "means `" + phrase.means_text + "`");
       return;
     }
+    std::vector<ObjectId> sure, perhaps;
     for (const ObjectId id : task.objects()) {
       if (id == wanted_id) continue;
-      const Object& other = model().objects[id];
-      const Truth truth = evaluate(phrase.means, other);
-      if (truth == Truth::kNo) continue;
-      const std::string hint = discriminator(wanted, other);
-      Diagnostic& diagnostic =
-          truth == Truth::kYes
-              ? context.report(Code::P0402, place(role),
-                               quoted + " denotes 2 objects in `" + task.name + "`")
-              : context.report(
-                    Code::P0403, place(role),
-                    quoted + " may also denote `" + other.name + "` in `" + task.name + "`");
-      diagnostic.point("also `" + phrase.means_text + "`: `" + other.name + "`")
-          .label(phrase.text.span, "meant for `" + wanted.name + "`");
-      if (!hint.empty()) {
-        diagnostic.help("`" + hint + "` holds for `" + wanted.name + "` and not for `" +
-                        other.name + "`");
-      }
+      const Truth truth = evaluate(phrase.means, model().objects[id]);
+      if (truth == Truth::kYes) sure.push_back(id);
+      if (truth == Truth::kUnknown) perhaps.push_back(id);
+    }
+    const std::vector<ObjectId>& rivals = sure.empty() ? perhaps : sure;
+    if (rivals.empty()) return;
+    std::string names;
+    for (const ObjectId id : rivals)
+      names += (names.empty() ? "`" : ", `") + model().objects[id].name + "`";
+    const Object& first = model().objects[rivals.front()];
+    Diagnostic& diagnostic =
+        sure.empty()
+            ? context.report(Code::P0403, rivalry(role, rivals.front()),
+                             quoted + " may also denote " + names + " in `" + task.name + "`")
+            : context.report(Code::P0402, rivalry(role, rivals.front()),
+                             quoted + " denotes " + std::to_string(sure.size() + 1) +
+                                 " objects in `" + task.name + "`");
+    diagnostic.point("also `" + phrase.means_text + "`: " + names)
+        .label(phrase.text.span, "meant for `" + wanted.name + "`");
+    if (diagnostic.primary != place(role)) diagnostic.label(place(role), "said here");
+    const std::string hint = discriminator(wanted, first);
+    if (!hint.empty()) {
+      diagnostic.help("`" + hint + "` holds for `" + wanted.name + "` and not for `" + first.name +
+                      "`");
     }
   }
 
@@ -83,7 +102,7 @@ struct TaskLanguage {
                         (other.starts_with(name + " ") || other.ends_with(" " + name));
       if (!same && !part) continue;
       context.report(
-          Code::P0405, place(role),
+          Code::P0405, rivalry(role, id),
           same ? "two objects of `" + task.name + "` are called \"" + name + "\""
                : "\"" + name + "\" is part of the name \"" + other + "\" in `" + task.name + "`");
     }
@@ -130,16 +149,34 @@ struct TaskLanguage {
       if (object.name == slot.name.text) return check_category(slot, object);
       scene += (scene.empty() ? "" : ", ") + object.name;
     }
+    const auto missing = context.symbols.objects.peek(slot.name.text);
+    if (!missing) return;  // no object at all, which was reported
     if (task.keeps_absent && !task.allow_absent) return;
-    Diagnostic& diagnostic =
-        context
-            .report(
-                Code::P0404, slot.span,
-                "`" + slot.name.text + "` is named in `" + task.name + "` and is not in the scene")
-            .point("the scene has " + scene)
-            .help("add `distractors " + slot.name.text + "`");
+    const Object& object = model().objects[static_cast<ObjectId>(*missing)];
+    const std::string words = (slot.avoid ? "not " : "") +
+                              std::string(slot.the && !object.bare ? "the " : "") +
+                              object.text.text;
+    Diagnostic& diagnostic = context.report(
+        Code::P0404, slot.span,
+        "\"" + words + "\" names an object that is not in the scene of `" + task.name + "`");
+    const std::string other = task_with(static_cast<ObjectId>(*missing));
+    diagnostic.point("the scene has " + scene)
+        .help("add `distractors " + slot.name.text + "`" +
+              (other.empty() ? "" : ", or derive from `" + other + "`"));
     // Only a warning can be silenced: a suite that was published like this says so.
     if (task.allow_absent) diagnostic.severity = Severity::kWarning;
+  }
+
+  // A task like this one in which the object is there as well; empty when there is none.
+  std::string task_with(ObjectId wanted) const {
+    for (const Task& other : model().tasks) {
+      if (other.abstract || !other.complete || other.source != task.source ||
+          other.target != task.target || other.scene != task.scene)
+        continue;
+      const std::vector<ObjectId> objects = other.objects();
+      if (std::find(objects.begin(), objects.end(), wanted) != objects.end()) return other.name;
+    }
+    return {};
   }
 
   void check_sentence() const {
@@ -175,8 +212,9 @@ void check_language(Context& context) {
     if (task.abstract || !task.complete) continue;
     const About about(context, task.decl_span);
     const TaskLanguage check{context, task};
+    std::set<std::string> checked;  // a second slot of one name says nothing new
     for (const Template::Part& part : context.model.templates[task.say].parts) {
-      if (part.slot) check.check_slot(*part.slot);
+      if (part.slot && checked.insert(part.slot->name.text).second) check.check_slot(*part.slot);
     }
     check.check_sentence();
   }

@@ -57,7 +57,7 @@ struct LatchLint {
       context
           .report(Code::P0605, metric.readout_span, name + " reads a contact at the last step only")
           .help("a contact comes and goes: `once` keeps it");
-    } else if (once && top.op == ExprOp::kNot) {
+    } else if (once && top.op == ExprOp::kNot && node(top.args[0]).span != top.span) {  // not `!=`
       context
           .report(Code::P0605, metric.readout_span,
                   name + " is true as soon as one step lacks its condition")
@@ -69,6 +69,28 @@ struct LatchLint {
     }
   }
 };
+
+// `success` is what an episode is scored by: a condition, in every task.
+void check_success(Context& context, const Task& task,
+                   std::set<std::pair<std::uint32_t, std::uint32_t>>& reported) {
+  const auto success = std::find_if(task.judged.begin(), task.judged.end(),
+                                    [](const Metric& metric) { return metric.name == "success"; });
+  const Metrics& metrics = context.model.metrics[task.metrics];
+  const Span& place = success == task.judged.end() ? metrics.span : success->span;
+  const bool is_condition =
+      success != task.judged.end() &&
+      (success->readout == plan::Readout::kAtEnd || success->readout == plan::Readout::kOnce ||
+       success->readout == plan::Readout::kAlways);
+  if (is_condition || !reported.insert({place.file.value, place.begin}).second) return;
+  if (success == task.judged.end()) {
+    context.report(Code::P0206, place, "metrics `" + metrics.name + "` have no `success`")
+        .label(task.span, "judged by them")
+        .help("an episode is scored by `success = at end ...`");
+  } else {
+    context.report(Code::P0601, success->readout_span, "expected `success` to be true or false")
+        .help("an episode is scored by it: `at end`, `once` or `always` a condition");
+  }
+}
 
 }  // namespace
 
@@ -86,9 +108,11 @@ void check_metrics(Context& context) {
     for (const Metric& metric : task.overrides) lint(metric);
   }
   std::set<std::pair<ExprRef, std::uint64_t>> reported;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> without_success;
   for (const Task& task : context.model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(context, task.decl_span);
+    check_success(context, task, without_success);
     for (const Metric& metric : task.judged) {
       HoldFinder finder{context.model, task.horizon, {}};
       finder.visit(metric.expr);

@@ -11,6 +11,7 @@
 #include "compiler/sema/layouts.h"
 #include "compiler/sema/passes.h"
 #include "compiler/sema/reachable.h"
+#include "compiler/sema/report.h"
 #include "compiler/sema/tasks.h"
 
 namespace probe::sema {
@@ -115,11 +116,19 @@ struct StartCheck {
   const Task& task;
   const Layout& layout;
   std::map<SceneId, std::optional<Arm>>& arms;
+  bool like_is_fine = false;  // the task that this one copies starts well
 
   const Object& object(const Start::Placed& placed) const {
     return context.model.objects[placed.object];
   }
-  const Span& place() const { return task.layout_span; }
+  // The layout, unless it is fine for the task that this one copies: then what came in here.
+  Span place(std::initializer_list<ObjectId> objects) const {
+    if (!like_is_fine || is_within(task.layout_span, task.decl_span)) return task.layout_span;
+    for (const ObjectId id : objects) {
+      if (const auto span = entry_of(task, id)) return *span;
+    }
+    return task.span;
+  }
 
   void overlaps() const {
     std::size_t pairs = 0, bad = 0, first_episode = 0;
@@ -145,7 +154,7 @@ struct StartCheck {
     if (bad == 0) return;
     Diagnostic& said =
         context
-            .report(Code::P0501, place(),
+            .report(Code::P0501, place({first[0]->object, first[1]->object}),
                     "`" + object(*first[0]).name + "` and `" + object(*first[1]).name +
                         "` overlap by " + centimetres(depth) + " in `" + task.name + "`; " +
                         std::to_string(bad) + " of " + std::to_string(pairs) +
@@ -233,7 +242,7 @@ struct StartCheck {
                                       " pixels outside the image of"
                                 : "lies behind";
     Diagnostic& said =
-        context.report(Code::P0505, place(),
+        context.report(Code::P0505, place({worst->object}),
                        "`" + object(*worst).name + "` " + how + " `" + camera.name + "` in `" +
                            task.name + "`; " + std::to_string(bad) + " of " + std::to_string(all) +
                            " objects are mostly out of view in this task");
@@ -243,7 +252,8 @@ struct StartCheck {
         .label(layout.span, "the layout");
   }
 
-  void surface() const {
+  // False when something was reported.
+  bool surface() const {
     const Scene& scene = context.model.scenes[task.scene];
     for (std::size_t e = 0; e < task.starts.size(); ++e) {
       for (const Start::Placed& placed : task.starts[e].placed) {
@@ -255,19 +265,21 @@ struct StartCheck {
             shape.centre.y - ry >= scene.area[1] && shape.centre.y + ry <= scene.area[3];
         if (inside) continue;
         context
-            .report(Code::P0505, place(),
+            .report(Code::P0505, place({placed.object}),
                     "`" + object(placed).name + "` stands over the edge of `" + scene.name +
                         "` in `" + task.name + "`")
             .point("episode " + std::to_string(e) + ": " + at(object(placed), placed))
             .label(layout.span, "the layout");
-        return;
+        return false;
       }
     }
+    return true;
   }
 
-  void reach() const {
+  // False when something was reported.
+  bool reach() const {
     const Scene& scene = context.model.scenes[task.scene];
-    if (scene.robot == RobotId::kNone) return;
+    if (scene.robot == RobotId::kNone) return true;
     const Robot& robot = context.model.robots[scene.robot];
     for (std::size_t e = 0; robot.reach_max != 0 && e < task.starts.size(); ++e) {
       for (const Start::Placed& placed : task.starts[e].placed) {
@@ -276,24 +288,24 @@ struct StartCheck {
         const double away = std::sqrt(dx * dx + dy * dy);
         if (away >= robot.reach_min && away <= robot.reach_max) continue;
         context
-            .report(Code::P0502, place(),
+            .report(Code::P0502, place({placed.object}),
                     "`" + object(placed).name + "` is " + centimetres(away) +
                         " from the base of `" + robot.name + "` in `" + task.name +
                         "`, which reaches " + centimetres(robot.reach_min) + " to " +
                         centimetres(robot.reach_max))
             .point("episode " + std::to_string(e) + ": " + at(object(placed), placed))
             .label(layout.span, "the layout");
-        return;
+        return false;
       }
     }
-    grasps(scene, robot);
+    return grasps(scene, robot);
   }
 
   // A pose over the middle of the source, and one over the target with the source in hand.
-  void grasps(const Scene& scene, const Robot& robot) const {
+  bool grasps(const Scene& scene, const Robot& robot) const {
     auto found = arms.find(task.scene);
     if (found == arms.end()) found = arms.emplace(task.scene, Arm::of(context.model, scene)).first;
-    if (!found->second) return;
+    if (!found->second) return true;
     constexpr double kAboveTarget = 0.02;  // m
     for (std::size_t e = 0; e < task.starts.size(); ++e) {
       const auto& placed = task.starts[e].placed;
@@ -306,7 +318,7 @@ struct StartCheck {
         char degrees[32];
         std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / 3.14159265358979);
         context
-            .report(Code::P0502, place(),
+            .report(Code::P0502, place({placed[i].object, placed[0].object}),
                     "`" + robot.name + "` cannot " +
                         (i == 0 ? "grasp `" + object(placed[0]).name + "` from above"
                                 : "place `" + object(placed[0]).name + "` on `" +
@@ -315,9 +327,10 @@ struct StartCheck {
                         " and " + degrees + "deg away")
             .point("episode " + std::to_string(e) + ": " + at(object(placed[i]), placed[i]))
             .label(layout.span, "the layout");
-        return;
+        return false;
       }
     }
+    return true;
   }
 };
 
@@ -344,9 +357,13 @@ struct StartCache {
 void check_starts(Context& context) {
   std::map<std::vector<double>, StartCache> known;
   std::map<SceneId, std::optional<Arm>> arms;
-  std::size_t episodes = 0;
+  std::vector<bool> fine(context.model.tasks.size(), false);
+  std::size_t at = 0, episodes = 0;
   for (Task& task : context.model.tasks) {
+    const std::size_t index = at++;
     if (task.abstract || !task.complete) continue;
+    const bool like_is_fine =
+        task.like != TaskId::kNone && fine[static_cast<std::size_t>(task.like)];
     const About about(context, task.decl_span);
     const Layout& layout = context.model.layouts[task.layout];
     StartCache& cache = known[starts_key(task)];
@@ -359,7 +376,10 @@ void check_starts(Context& context) {
                           : problem->kind == LayoutProblem::kNotPlaced ? Code::P0206
                           : problem->kind == LayoutProblem::kTooMany   ? Code::P0210
                                                                        : Code::P0304;
-        context.report(code, task.layout_span, problem->message + " in `" + task.name + "`")
+        const bool is_newcomer = like_is_fine && is_within(task.distractors_span, task.decl_span);
+        context
+            .report(code, is_newcomer ? task.distractors_span : task.layout_span,
+                    problem->message + " in `" + task.name + "`")
             .label(problem->span, "the layout");
         task.complete = false;
         continue;
@@ -382,14 +402,17 @@ void check_starts(Context& context) {
           .label(task.layout_span, "used here");
     }
     const std::pair where{task.scene, camera_of(context.model, task)};
-    if (cache.fine_in.contains(where)) continue;
+    if (cache.fine_in.contains(where)) {
+      fine[index] = true;
+      continue;
+    }
     const std::size_t before = context.diagnostics.size();
-    const StartCheck check{context, task, layout, arms};
+    const StartCheck check{context, task, layout, arms, like_is_fine};
     check.overlaps();
-    check.surface();
-    check.frame();
-    check.reach();
-    if (context.diagnostics.size() == before) cache.fine_in.insert(where);
+    // What lies beside the table is out of reach and out of view as well.
+    if (check.surface() && check.reach()) check.frame();
+    fine[index] = context.diagnostics.size() == before;
+    if (fine[index]) cache.fine_in.insert(where);
   }
 }
 

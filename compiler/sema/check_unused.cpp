@@ -105,7 +105,7 @@ PhraseUse phrase_use(const Context& context) {
 
 void check_unused(Context& context, std::span<const FileId> roots) {
   // A misspelt name would be found twice.
-  if (context.diagnostics.has_errors()) return;
+  if (context.has_errors()) return;
   std::vector<const syntax::File*> files;
   for (const syntax::File* file : context.files) {
     const bool is_root = std::any_of(roots.begin(), roots.end(),

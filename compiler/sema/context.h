@@ -103,7 +103,9 @@ struct Context {
   Symbols symbols;
   std::vector<const syntax::File*> files;  // a file after the files it uses
   std::map<std::size_t, Span> about = {};  // by diagnostic: the declaration it is about
+  bool was_broken = false;  // the text had errors before: what lacks now may follow from them
 
+  bool has_errors() const { return was_broken || diagnostics.has_errors(); }
   Diagnostic& report(Code code, const Span& span, std::string message) {
     return diagnostics.report(code, span, std::move(message));
   }

@@ -31,16 +31,24 @@ class Derive {
     const auto& over = std::get<syntax::BinderTasks>(tasks_->over);
     const std::vector<TaskId> members = reader.read(*declared_.file, over.tasks);
     if (node_.where && !reader.check_condition(*declared_.file, *node_.where)) return true;
+    const std::size_t errors = context_.diagnostics.error_count();
+    const std::size_t before = context_.symbols.task_decls.size();
+    bool any_fits = false, any_broken = false;
     for (const TaskId id : members) {
       if (!table_.is_defined(id)) {
         report_undefined(context_.symbols.tasks.names()[static_cast<std::size_t>(id)].text);
         return true;
       }
       const Task& base = context_.model.tasks[id];
+      any_broken = any_broken || !base.complete;
       if (!base.complete) continue;  // reported
       if (node_.where && !reader.holds(*declared_.file, *node_.where, base)) continue;
+      any_fits = true;
       if (!expand_phrases(id)) return false;
     }
+    if (context_.symbols.task_decls.size() == before && !any_broken &&
+        context_.diagnostics.error_count() == errors && !context_.has_errors())
+      report_empty(members.empty(), any_fits);
     return true;
   }
 
@@ -115,6 +123,23 @@ class Derive {
       }
     }
     return fits;
+  }
+
+  void report_empty(bool no_members, bool any_fits) {
+    Diagnostic& empty =
+        context_.report(Code::P0211, node_.name.text.span, "this `derive` makes no task");
+    if (no_members) {
+      empty.label(tasks_->span, "no task is in this set");
+    } else if (!any_fits) {
+      empty.label((*declared_.file)[*node_.where].span, "no task of the set fits this");
+    } else {
+      for (const syntax::Binder& binder : node_.binders) {
+        if (&binder == tasks_) continue;
+        empty.label(binder.span, std::holds_alternative<syntax::BinderPhrases>(binder.over)
+                                     ? "nothing is left to choose here"
+                                     : "nothing here is new to a task of the set");
+      }
+    }
   }
 
   void report_undefined(std::string_view task) {

@@ -119,6 +119,7 @@ struct Metric {
 };
 struct Metrics {
   std::string name;
+  bool broken = false;  // something was reported: what follows from that is not said
   Span span;
   std::vector<Metric> items;
 };

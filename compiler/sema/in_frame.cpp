@@ -21,7 +21,7 @@ Quat looking_along(const std::array<double, 4>& direction) {
 }  // namespace
 
 std::optional<View> View::of(const Model& model, const Scene& scene, const Camera& camera) {
-  if (scene.robot == RobotId::kNone || camera.mount_robot != scene.robot || camera.fx == 0)
+  if (scene.robot == RobotId::kNone || camera.mount_robot != scene.robot || camera.broken)
     return std::nullopt;
   const Robot& robot = model.robots[scene.robot];
   if (!robot.model) return std::nullopt;

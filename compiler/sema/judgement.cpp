@@ -672,6 +672,10 @@ void define_judgement(Context& context) {
       metrics.items = context.model.metrics[static_cast<MetricsId>(*parents[i])].items;
     metrics.name = std::string(node.name.text);
     metrics.span = node.name.span;
+    metrics.broken =
+        !decls[i].decl->complete || (node.like && !parents[i]) ||
+        (parents[i] && context.model.metrics[static_cast<MetricsId>(*parents[i])].broken);
+    const auto errors = context.diagnostics.error_count();
     std::vector<std::string_view> here;
     for (const syntax::MetricStmt& stmt : node.body) {
       Metric metric = analyze_metric(context, *decls[i].file, stmt);
@@ -689,6 +693,12 @@ void define_judgement(Context& context) {
         metrics.items.push_back(std::move(metric));
       }
     }
+    // A metric of a predicate that was reported has no meaning either.
+    const auto is_poison = [&](const Metric& metric) {
+      return metric.type.kind == TypeKind::kPoison;
+    };
+    metrics.broken = metrics.broken || context.diagnostics.error_count() != errors ||
+                     std::any_of(metrics.items.begin(), metrics.items.end(), is_poison);
     context.model.metrics[static_cast<MetricsId>(i)] = std::move(metrics);
   }
 }

@@ -38,7 +38,8 @@ TemplateId add_template(Context& context, const syntax::TemplateText& text, std:
     }
     const auto& slot = std::get<syntax::Slot>(part);
     const bool is_role = slot.name.text == "source" || slot.name.text == "target";
-    if (!is_role) (void)context.symbols.objects.find(slot.name, context.diagnostics);
+    if (!is_role && !context.symbols.objects.find(slot.name, context.diagnostics))
+      record.broken = true;
     SlotRef ref{slot.avoid, slot.the, spelled(slot.name), std::nullopt, slot.span};
     if (slot.category) ref.category = spelled(*slot.category);
     record.parts.push_back({{}, std::move(ref)});
@@ -116,7 +117,9 @@ bool has_negation(const Template& say) {
 void define_templates(Context& context) {
   for (const auto& declared : context.symbols.template_decls) {
     const syntax::TemplateDecl& node = *declared.node;
-    add_template(context, node.text, std::string(node.name.text), node.text.text.span, node.frame);
+    const TemplateId id = add_template(context, node.text, std::string(node.name.text),
+                                       node.text.text.span, node.frame);
+    if (!declared.decl->complete) context.model.templates[id].broken = true;
   }
 }
 

@@ -139,6 +139,7 @@ struct LayoutReader {
     layout.jitter = 0;
   }
   void operator()(const syntax::DropStmt& stmt) {
+    layout.has_drop = true;
     layout.drop = read_si(context, stmt.height, dim::kLength, "`drop` takes a height").value_or(0);
     if (layout.drop < 0)
       context.report(Code::P0304, stmt.height.span, "objects are dropped from above the surface");
@@ -403,9 +404,25 @@ std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, co
   return starts;
 }
 
+namespace {
+
+// Objects are put down before an episode and judged when they lie still.
+void require_rest(Context& context, const Layout& layout) {
+  if (!layout.has_drop) {
+    context.report(Code::P0206, layout.span, "layout `" + layout.name + "` has no `drop`")
+        .help("write how objects are put down, such as `drop 50cm settle 0.5s`");
+  } else if (layout.settle == 0) {
+    context.report(Code::P0206, layout.span, "layout `" + layout.name + "` has no `settle`")
+        .help("without time to come to rest, such as `settle 0.5s`, objects are judged in the air");
+  }
+}
+
+}  // namespace
+
 void define_layouts(Context& context) {
   const auto& decls = context.symbols.layout_decls;
   std::vector<std::optional<std::uint32_t>> parents(decls.size());
+  std::vector<bool> broken(decls.size(), false);  // reported; what it lacks follows from that
   for (std::size_t i = 0; i < decls.size(); ++i) {
     context.model.layouts.add({});
     if (decls[i].node->like)
@@ -417,6 +434,7 @@ void define_layouts(Context& context) {
     if (parents[i]) layout = context.model.layouts[static_cast<LayoutId>(*parents[i])];
     layout.name = std::string(node.name.text);
     layout.span = node.name.span;
+    const auto errors = context.diagnostics.error_count();
     LayoutReader reader{context, layout};
     for (const syntax::LayoutStmt& stmt : node.body) std::visit(reader, stmt);
     // A grid that could not be read has been reported; one cell keeps the enumeration going.
@@ -425,6 +443,10 @@ void define_layouts(Context& context) {
       cells.grids.push_back({{}});
       cells.spreads.push_back({});
     }
+    broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
+                (parents[i] && broken[*parents[i]]);
+    if (!broken[i]) require_rest(context, layout);
+    layout.broken = broken[i] = broken[i] || context.diagnostics.error_count() != errors;
     context.model.layouts[static_cast<LayoutId>(i)] = std::move(layout);
   }
 }

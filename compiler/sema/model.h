@@ -75,12 +75,15 @@ struct Turn {
 
 struct Object {
   std::string name;
-  Span span;  // of its name
+  bool broken = false;  // something was reported: what follows from that is not said
+  Span span;            // of its name
   Spelled mesh;
   Spelled text;  // in instructions
   bool bare = false;
   bool has_box = false, has_density = false, has_friction = false;
   std::array<double, 3> box_min{}, box_max{};
+  Span box_span;             // of the statement
+  bool box_is_read = false;  // else something was wrong with it, and was reported
   double density = 0;
   double friction = 0;
   std::vector<std::vector<std::uint32_t>> values;  // by attribute; empty: unknown
@@ -108,6 +111,7 @@ struct Drive {
 
 struct Robot {
   std::string name;
+  bool broken = false;  // as of an object
   Span span;
   Spelled urdf;
   Spelled tcp;
@@ -124,6 +128,7 @@ struct Robot {
 
 struct Camera {
   std::string name;
+  bool broken = false;  // as of an object
   Span span;
   Spelled mount_link;
   RobotId mount_robot = RobotId::kNone;
@@ -198,6 +203,7 @@ struct Orient {
 };
 struct Layout {
   std::string name;
+  bool broken = false;  // as of an object
   Span span;
   std::vector<Cells> cells;
   std::vector<Place> places;
@@ -205,6 +211,7 @@ struct Layout {
   std::vector<Orient> orients;
   double jitter = 0;
   Span jitter_span;
+  bool has_drop = false;
   double drop = 0;
   double settle = 0;
   std::optional<std::uint64_t> expect;
@@ -222,7 +229,8 @@ struct SlotRef {
   Span span;
 };
 struct Template {
-  std::string name;  // empty for words on the spot
+  std::string name;     // empty for words on the spot
+  bool broken = false;  // as of an object
   Span span;
   std::string frame;  // the verb frame
   struct Part {
@@ -275,9 +283,11 @@ struct Task {
   std::vector<Metric> overrides;  // `set`
 
   Span layout_span, say_span, distractors_span, horizon_span;
+  std::vector<Span> distractor_spans;  // by distractor
   std::array<Span, 2> role_span;
   std::optional<std::string> allow_confounded;
   bool allow_absent = false;  // its text may tell of an object that is not in the scene
+  bool keeps_absent = false;  // it keeps the text of a task that may
 
   // Computed.
   bool complete = false;  // every field is there and means something
@@ -289,7 +299,6 @@ struct Task {
 
   // source, target, distractors
   std::vector<ObjectId> objects() const;
-  bool keeps_absent = false;  // it keeps the text of a task that may
 };
 
 struct TaskSet {

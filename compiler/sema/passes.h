@@ -24,6 +24,7 @@ void check_metrics(Context& context);
 void check_comparisons(Context& context);
 void check_tags(Context& context);  // after the suites
 void check_magnitudes(Context& context);
+void check_boxes(Context& context);
 // `roots`: the files named by the user rather than by `use`.
 void check_unused(Context& context, std::span<const FileId> roots);
 

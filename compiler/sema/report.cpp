@@ -53,7 +53,8 @@ bool is_in_derive(const Context& context, const Span& span) {
 
 }  // namespace
 
-void say(const Context& context, std::span<const FileId> roots, Diagnostics& out) {
+void say(const Context& context, std::span<const FileId> roots, bool lacks_names,
+         Diagnostics& out) {
   std::vector<Allowed> allows = collect_allows(context);
   struct Said {
     std::size_t count = 0;
@@ -61,13 +62,23 @@ void say(const Context& context, std::span<const FileId> roots, Diagnostics& out
     Diagnostic* last = nullptr;
   };
   std::map<std::tuple<Code, std::uint32_t, std::uint32_t, std::uint32_t>, Said> places;
+  // A name that is declared nowhere is missed once, however often it is used.
+  std::map<std::string, Said> unknown;
   std::size_t index = 0;
   for (const Diagnostic& diagnostic : context.diagnostics.items()) {
     const std::size_t at = index++;
     if (const syntax::Allow* allow = silencer(context, diagnostic, at, allows)) {
       const auto about = context.about.find(at);
-      out.silence({diagnostic, about == context.about.end() ? Span{} : about->second,
-                   allow->reason.value});
+      out.silence(
+          {diagnostic, about == context.about.end() ? Span{} : about->second, allow->reason.value});
+      continue;
+    }
+    // What could not be read may declare it; a near spelling is a mistake all the same.
+    const bool is_unknown = diagnostic.code == Code::P0201 || diagnostic.code == Code::P0204;
+    if (lacks_names && is_unknown && !diagnostic.fix) continue;
+    if (is_unknown) {
+      Said& name = unknown[diagnostic.message];
+      if (name.count++ == 0) name.last = &out.add(diagnostic);
       continue;
     }
     if (!context.about.contains(at)) {
@@ -84,8 +95,13 @@ void say(const Context& context, std::span<const FileId> roots, Diagnostics& out
       place.last->note("the same holds for " + std::to_string(place.count - place.limit) +
                        " more tasks");
   }
+  for (auto& [message, name] : unknown) {
+    if (name.count > 1)
+      name.last->note("so it is named at " + std::to_string(name.count - 1) + " more place" +
+                      (name.count > 2 ? "s" : ""));
+  }
   // A mistake elsewhere may be why there is nothing to silence.
-  if (context.diagnostics.has_errors()) return;
+  if (context.has_errors()) return;
   for (const Allowed& allowed : allows) {
     const bool is_root = std::any_of(roots.begin(), roots.end(), [&](FileId id) {
       return id.value == allowed.allow->span.file.value;

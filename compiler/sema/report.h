@@ -7,8 +7,8 @@
 namespace probe::sema {
 
 // Moves the diagnostics of `context` to `out`. `roots`: the files in which an idle @allow is worth
-// a word.
-void say(const Context& context, std::span<const FileId> roots, Diagnostics& out);
+// a word. `lacks_names`: some declarations could not be read, so their names are not known.
+void say(const Context& context, std::span<const FileId> roots, bool lacks_names, Diagnostics& out);
 
 // Whether `inner` lies within `outer`.
 inline bool is_within(const Span& inner, const Span& outer) {

@@ -80,6 +80,11 @@ void SetReader::define(SetId id) {
   if (preview_) diagnostics_ = &unheard_;
   std::vector<TaskId> members = read(*declared.file, declared.node->tasks);
   diagnostics_ = heard;
+  // A mistake anywhere may be why nothing is in it.
+  if (!preview_ && members.empty() && declared.decl->complete && !context_.has_errors()) {
+    diagnostics_->report(Code::P0211, declared.node->name.span,
+                         "no task is in set `" + std::string(declared.node->name.text) + "`");
+  }
   context_.model.sets[id] = {std::string(declared.node->name.text), declared.node->name.span,
                              std::move(members)};
   state = kDone;
@@ -100,6 +105,14 @@ SetReader::Members SetReader::read_node(const syntax::File&, const Span&,
     if (!found) continue;
     const auto id = static_cast<TaskId>(*found);
     if (seen.has(id)) continue;
+    if (context_.symbols.task_decls[*found].abstract) {
+      diagnostics_
+          ->report(Code::P0703, name.span,
+                   "`" + std::string(name.text) + "` is abstract: it is copied, never run")
+          .label(context_.symbols.task_decls[*found].name.span, "declared here")
+          .help("name the tasks that are `like " + std::string(name.text) + "`");
+      continue;
+    }
     seen.add(id);
     members.push_back(id);
   }
@@ -107,6 +120,7 @@ SetReader::Members SetReader::read_node(const syntax::File&, const Span&,
 }
 SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
                                         const syntax::TaskSetName& set) {
+  if (set.name.text.empty()) return {};  // a syntax error, reported
   if (set.name.text == "tasks") {
     const std::set<std::uint32_t> visible = visible_files(context_, file);
     Members members;
@@ -120,7 +134,6 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
   const auto found = context_.symbols.sets.find(set.name, *diagnostics_);
   if (!found) return {};
   define(static_cast<SetId>(*found));
-  if (set.name.text.empty()) return {};  // a syntax error, reported
   return context_.model.sets[static_cast<SetId>(*found)].members;
 }
 SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
@@ -136,6 +149,7 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
 }
 SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
                                         const syntax::TaskSetSample& sample) {
+  if (sample.of.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
   Members members = read(file, sample.of);
   if (sample.count.value > members.size()) {
     diagnostics_
@@ -149,7 +163,6 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
   std::vector<std::pair<Sha256, TaskId>> draws;
   for (const TaskId id : members) {
     Hasher hasher;
-  if (sample.of.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
     hasher.text("sample").u64(sample.seed.value).text(context_.model.tasks[id].name);
     draws.emplace_back(hasher.finish(), id);
   }
@@ -208,7 +221,7 @@ bool SetReader::check_condition(const syntax::File& file, syntax::CondId id) {
       break;
     case syntax::CondKind::kUses:
       kind = "use of language";
-      words = {"action", "negation", "appearance", "commonsense"};
+      words = {"action", "negation", "appearance", "commonsense", "paraphrase"};
       break;
     case syntax::CondKind::kOod:
       kind = "kind of novelty";
@@ -261,6 +274,7 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
       return false;
     case syntax::CondKind::kUses:
       if (word == "action") return uses_action(model, task);
+      if (word == "paraphrase") return uses_paraphrase(model, task);
       if (word == "negation") return has_negation(model.templates[task.say]);
       return uses_phrase(model, task,
                          word == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense);
@@ -270,17 +284,21 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
       return word == "distractors" ? !task.distractors.empty() : task.baseline != TaskId::kNone;
     case syntax::CondKind::kScene:
       return model.scenes[task.scene].name == word;
-  }
     case syntax::CondKind::kMetrics:
       return model.metrics[task.metrics].name == word;
+  }
   return false;
 }
 namespace {
 
 void expect_suite(Context& context, const Suite& suite, const syntax::ExpectTasksStmt& expect) {
+  // A mistake may be why a set misses a task or more.
+  if (context.was_broken) return;
+  for (const Task& task : context.model.tasks) {
+    if (!task.complete && !task.abstract) return;
+  }
   std::uint64_t episodes = 0;
   for (const TaskId id : suite.members) {
-    if (!context.model.tasks[id].complete) return;  // reported; its episodes are not known
     episodes += context.model.tasks[id].starts.size();
   }
   if (expect.tasks.value == suite.members.size() && expect.episodes.value == episodes) return;
@@ -308,7 +326,7 @@ void define_suites(Context& context) {
       const auto dataset = context.symbols.datasets.find(*node.trained_on, context.diagnostics);
       if (dataset) suite.trained_on = static_cast<DatasetId>(*dataset);
     }
-    bool has_tasks = false;
+    bool has_tasks = false, has_seeds = false;
     const syntax::ExpectTasksStmt* expect = nullptr;
     for (const syntax::SuiteStmt& stmt : node.body) {
       if (const auto* tasks = std::get_if<syntax::SuiteTasksStmt>(&stmt)) {
@@ -317,27 +335,38 @@ void define_suites(Context& context) {
       } else if (const auto* prefix = std::get_if<syntax::PrefixStmt>(&stmt)) {
         suite.prefix = prefix->prefix.value;
       } else if (const auto* seeds = std::get_if<syntax::SeedsStmt>(&stmt)) {
+        has_seeds = true;
         for (const syntax::Int& seed : seeds->seeds) {
+          const auto value = static_cast<std::uint32_t>(seed.value);
+          const auto& known = suite.seeds;
           if (seed.value > 0xfffffffeu) {
             context.report(Code::P0304, seed.span, "a seed is below 4294967295");
+          } else if (std::find(known.begin(), known.end(), value) != known.end()) {
+            context
+                .report(Code::P0203, seed.span,
+                        "seed `" + std::to_string(value) + "` is listed twice")
+                .help("the same seed repeats the same episodes");
           } else {
-            suite.seeds.push_back(static_cast<std::uint32_t>(seed.value));
+            suite.seeds.push_back(value);
           }
         }
       } else {
         expect = &std::get<syntax::ExpectTasksStmt>(stmt);
       }
     }
-    if (!has_tasks && declared.decl->complete) {
-      context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `tasks`");
+    if (declared.decl->complete) {
+      if (!has_tasks) {
+        context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `tasks`");
+      } else if (suite.members.empty() && !context.has_errors()) {
+        context.report(Code::P0211, suite.span, "no task is in suite `" + suite.name + "`")
+            .severity = Severity::kError;
+      }
+      if (!has_seeds) {
+        context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `seeds`")
+            .help("each seed runs every episode once: `seeds 42`");
+      }
     }
     if (suite.seeds.empty()) suite.seeds.push_back(0);
-    for (const TaskId id : suite.members) {
-      if (!context.model.tasks[id].abstract) continue;
-      context.report(
-          Code::P0703, suite.span,
-          "abstract task `" + context.model.tasks[id].name + "` is in suite `" + suite.name + "`");
-    }
     if (expect != nullptr) expect_suite(context, suite, *expect);
     context.model.suites.add(std::move(suite));
   }

@@ -2,6 +2,7 @@
 // URDF, and every drive's units must fit the kind of its joint.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -75,6 +76,10 @@ struct RobotReader {
         read_si(context, stmt.least, dim::kLength, "`reach` takes lengths").value_or(0);
     robot.reach_max =
         read_positive(context, stmt.most, dim::kLength, "`reach` takes lengths").value_or(1);
+    if (robot.reach_min >= 0 && robot.reach_min < robot.reach_max) return;
+    context.report(Code::P0304, stmt.span,
+                   "expected the nearest reach below the farthest, both from 0, found `" +
+                       std::string(context.sources.text(stmt.span)) + "`");
   }
   void operator()(const syntax::DriveStmt& stmt) {
     has_drive = true;
@@ -167,6 +172,38 @@ void check_drive(Context& context, const Drive& drive, const Robot& robot) {
       .label(drive.joint.span, "this joint");
 }
 
+// A gripper opens as its fingers' joints go up: each must then move the way it is said to open, and
+// two that open in one direction hold nothing.
+void check_fingers(Context& context, const Robot& robot) {
+  if (robot.fingers.size() != 2 || robot.fingers[0].link.text == robot.fingers[1].link.text) return;
+  std::vector<Vec3> ways;  // in the frame of the link both hang on
+  int parent = -1;
+  for (const Finger& finger : robot.fingers) {
+    const int link = robot.model->find_link(finger.link.text);
+    const Vec3 opens(finger.opens[0], finger.opens[1], finger.opens[2]);
+    const int above =
+        link < 0 ? -1 : robot.model->links[static_cast<std::size_t>(link)].parent_joint;
+    if (above < 0 || opens.isZero()) return;
+    const robot::Joint& joint = robot.model->joints[static_cast<std::size_t>(above)];
+    if (joint.kind == robot::JointKind::kPrismatic && joint.axis.dot(opens) < 0) {
+      context
+          .report(Code::P0304, finger.link.span,
+                  "finger `" + finger.link.text + "` is said to open against its joint's motion")
+          .point("`" + joint.name + "` moves it the other way as its position grows")
+          .label(robot.urdf.span, "the joint is described here");
+      return;
+    }
+    if (!ways.empty() && joint.parent_link != parent) return;
+    parent = joint.parent_link;
+    ways.push_back(joint.origin.rotation * opens);
+  }
+  if (ways.size() != 2 || ways[0].dot(ways[1]) < 0.9) return;
+  context
+      .report(Code::P0304, robot.fingers[1].link.span,
+              "expected fingers that open apart, found both opening in one direction")
+      .label(robot.fingers[0].link.span, "opens the same way");
+}
+
 void load_model(Context& context, Robot& robot) {
   const std::string path = (std::filesystem::path(context.asset_root) / robot.urdf.text).string();
   auto model = robot::load_urdf(path);
@@ -181,6 +218,7 @@ void load_model(Context& context, Robot& robot) {
   check_link(context, robot.tcp, robot);
   for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);
   for (const Drive& drive : robot.drives) check_drive(context, drive, robot);
+  check_fingers(context, robot);
 }
 
 void define_robots(Context& context) {
@@ -189,6 +227,7 @@ void define_robots(Context& context) {
     Robot robot;
     robot.name = std::string(node.name.text);
     robot.span = node.name.span;
+    const auto errors = context.diagnostics.error_count();
     RobotReader reader{context, robot};
     for (const syntax::RobotStmt& stmt : node.body) std::visit(reader, stmt);
     if (declared.decl->complete) {
@@ -200,6 +239,7 @@ void define_robots(Context& context) {
       if (!reader.has_drive) missing(context, "robot", robot.name, robot.span, "drive");
     }
     if (!robot.urdf.span.is_none()) load_model(context, robot);
+    robot.broken = !declared.decl->complete || context.diagnostics.error_count() != errors;
     context.model.robots.add(std::move(robot));
   }
 }
@@ -232,7 +272,13 @@ struct CameraReader {
         context, stmt.direction, count, count, dim::kNumber,
         looks ? "`look` takes a direction of plain numbers" : "`quat` takes plain numbers");
     assign(camera.aim_values, aim);
-    if (aim && looks && camera.aim_values[0] == 0 && camera.aim_values[1] == 0) {
+    const auto& values = camera.aim_values;
+    const auto is_zero = [](double value) { return value == 0; };
+    if (aim && looks && std::all_of(values.begin(), values.end(), is_zero)) {
+      context
+          .report(Code::P0304, stmt.direction.span, "a camera looks along a direction, found none")
+          .help("a direction is a vector, such as `look (1, 0, -1)`");
+    } else if (aim && looks && values[0] == 0 && values[1] == 0) {
       context
           .report(Code::P0304, stmt.direction.span,
                   "the view is vertical, which leaves its roll open")
@@ -299,6 +345,7 @@ void define_cameras(Context& context) {
     if (parents[i]) camera = context.model.cameras[static_cast<CameraId>(*parents[i])];
     camera.name = std::string(node.name.text);
     camera.span = node.name.span;
+    const auto errors = context.diagnostics.error_count();
     for (const syntax::CameraStmt& stmt : node.body)
       std::visit(CameraReader{context, camera}, stmt);
     broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
@@ -309,6 +356,7 @@ void define_cameras(Context& context) {
       if (camera.width == 0) missing(context, "camera", camera.name, camera.span, "image");
       if (camera.fx == 0) missing(context, "camera", camera.name, camera.span, "lens");
     }
+    camera.broken = broken[i] = broken[i] || context.diagnostics.error_count() != errors;
     context.model.cameras[static_cast<CameraId>(i)] = std::move(camera);
   }
 }
@@ -424,6 +472,26 @@ struct SceneReader {
   }
 };
 
+// A world refuses joints that begin farther beyond a limit than rounding explains.
+void check_joint_limits(Context& context, const Scene& scene, const Robot& robot) {
+  if (!robot.model) return;
+  constexpr double kRounding = 1e-3;  // m or rad, as in runtime/world
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const int index = robot.model->find_joint(robot.drives[i].joint.text);
+    if (index < 0) continue;
+    const robot::Joint& joint = robot.model->joints[static_cast<std::size_t>(index)];
+    if (joint.kind == robot::JointKind::kContinuous || joint.kind == robot::JointKind::kFixed)
+      continue;
+    const double q = scene.joints[i].si();
+    if (q >= joint.lower - kRounding && q <= joint.upper + kRounding) continue;
+    context
+        .report(Code::P0304, scene.joints_span,
+                fmt::format("joint `{}` starts at {:.6g}, beyond its limits of {:.6g} and {:.6g}",
+                            joint.name, q, joint.lower, joint.upper))
+        .point("number " + std::to_string(i + 1));
+  }
+}
+
 void check_joints(Context& context, const Scene& scene) {
   if (scene.robot == RobotId::kNone || scene.joints_span.is_none()) return;
   const Robot& robot = context.model.robots[scene.robot];
@@ -444,6 +512,7 @@ void check_joints(Context& context, const Scene& scene) {
                     "`, found " + name_of(scene.joints[i].dimension))
         .point("number " + std::to_string(i + 1));
   }
+  check_joint_limits(context, scene, robot);
 }
 
 // A control step is a whole number of physics steps.
@@ -495,7 +564,8 @@ void define_scenes(Context& context) {
       check_joints(context, scene);
       check_rates(context, scene);
     }
-    scene.complete = !broken[i] && context.diagnostics.error_count() == errors;
+    scene.complete = !broken[i] && context.diagnostics.error_count() == errors &&
+                     scene.robot != RobotId::kNone && !context.model.robots[scene.robot].broken;
     broken[i] = !scene.complete;
     context.model.scenes[static_cast<SceneId>(i)] = std::move(scene);
   }
@@ -506,12 +576,13 @@ void define_scenes(Context& context) {
 bool Camera::operator==(const Camera& other) const {
   return mount_link.text == other.mount_link.text && aim == other.aim &&
          position == other.position && aim_values == other.aim_values && width == other.width &&
-         height == other.height && samples == other.samples && fx == other.fx && fy == other.fy && cx == other.cx &&
-         cy == other.cy;
+         height == other.height && samples == other.samples && fx == other.fx && fy == other.fy &&
+         cx == other.cx && cy == other.cy;
 }
 
 bool Light::operator==(const Light& other) const {
-  if (ambient != other.ambient || occlusion != other.occlusion || suns.size() != other.suns.size()) return false;
+  if (ambient != other.ambient || occlusion != other.occlusion || suns.size() != other.suns.size())
+    return false;
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||
         suns[i].shadow != other.suns[i].shadow) {

@@ -9,6 +9,7 @@
 #include "compiler/sema/language.h"
 #include "compiler/sema/layouts.h"
 #include "compiler/sema/passes.h"
+#include "compiler/sema/report.h"
 
 namespace probe::sema {
 namespace {
@@ -63,6 +64,7 @@ struct TaskReader {
   }
   void operator()(const syntax::DistractorsStmt& stmt) {
     task.distractors.clear();
+    task.distractor_spans.clear();
     task.distractors_span = stmt.span;
     for (const syntax::Name& name : stmt.objects) {
       ObjectId object = ObjectId::kNone;
@@ -75,6 +77,7 @@ struct TaskReader {
         continue;
       }
       task.distractors.push_back(object);
+      task.distractor_spans.push_back(name.span);
     }
   }
   void operator()(const syntax::SayStmt& stmt) {
@@ -114,6 +117,7 @@ struct TaskReader {
   }
   void operator()(const syntax::MetricStmt& stmt) {
     Metric metric = analyze_metric(context, *declared.file, stmt);
+    poisoned = poisoned || metric.type.kind == TypeKind::kPoison;
     std::erase_if(task.overrides, [&](const Metric& old) { return old.name == metric.name; });
     task.overrides.push_back(std::move(metric));
   }
@@ -130,6 +134,19 @@ void check_refer(Context& context, Task& task, std::size_t role, bool& poisoned)
                  {task.refer[role]->span, task.refer[role]->text}, candidates)
       .label(object.span, "the object");
   poisoned = true;
+}
+
+// A record with a mistake of its own: what it does to the task is not said.
+bool has_broken_part(const Model& model, const Task& task) {
+  const auto is_broken = [](const auto& table, auto id) {
+    return id != decltype(id)::kNone && table[id].broken;
+  };
+  if (is_broken(model.layouts, task.layout) || is_broken(model.metrics, task.metrics) ||
+      is_broken(model.templates, task.say) || is_broken(model.cameras, task.camera))
+    return true;
+  const std::vector<ObjectId> objects = task.objects();
+  return std::any_of(objects.begin(), objects.end(),
+                     [&](ObjectId id) { return is_broken(model.objects, id); });
 }
 
 // One object in one place: a scene with two of a kind needs a second declaration with `like`.
@@ -194,6 +211,11 @@ std::vector<Metric> judged_metrics(const Model& model, const Task& task) {
 void read_allows(Context& context, const syntax::Decl& decl,
                  const std::vector<syntax::TaskStmt>& body, Task& task) {
   task.allow_confounded.reset();
+  const auto says = [](const syntax::TaskStmt& stmt) {
+    return std::holds_alternative<syntax::SayStmt>(stmt);
+  };
+  task.keeps_absent =
+      (task.allow_absent || task.keeps_absent) && std::none_of(body.begin(), body.end(), says);
   task.allow_absent = false;
   for (const syntax::Allow& allow : decl.allows) {
     const auto code = code_from_slug(allow.what.text);
@@ -216,13 +238,21 @@ std::vector<ObjectId> Task::objects() const {
   return all;
 }
 
+std::optional<Span> entry_of(const Task& task, ObjectId object) {
+  const auto own = [&](const Span& span) {
+    return !span.is_none() && is_within(span, task.decl_span);
+  };
+  if (object == task.source && own(task.role_span[0])) return task.role_span[0];
+  if (object == task.target && own(task.role_span[1])) return task.role_span[1];
+  for (std::size_t i = 0; i < task.distractors.size() && i < task.distractor_spans.size(); ++i) {
+    if (task.distractors[i] == object && own(task.distractor_spans[i]))
+      return task.distractor_spans[i];
+  }
+  return std::nullopt;
+}
+
 TaskTable::TaskTable(Context& context) : context_(context) {
   for (std::size_t i = 0; i < context.symbols.task_decls.size(); ++i) add_row();
-  const auto says = [](const syntax::TaskStmt& stmt) {
-    return std::holds_alternative<syntax::SayStmt>(stmt);
-  };
-  task.keeps_absent =
-      (task.allow_absent || task.keeps_absent) && std::none_of(body.begin(), body.end(), says);
 }
 
 void TaskTable::add_row() {
@@ -258,8 +288,9 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   for (const syntax::TaskStmt& stmt : *declared.body) {
     if (std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
   }
-  check_refer(context_, task, 0, poisoned);
-  check_refer(context_, task, 1, poisoned);
+  poisoned = poisoned || has_broken_part(model, task);
+  if (!poisoned) check_refer(context_, task, 0, poisoned);
+  if (!poisoned) check_refer(context_, task, 1, poisoned);
   const std::string missing = missing_statements(task);
   if (task.scene != SceneId::kNone) poisoned = poisoned || !model.scenes[task.scene].complete;
   task.complete = missing.empty() && !poisoned;

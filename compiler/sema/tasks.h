@@ -35,4 +35,7 @@ class TaskTable {
 // out and those of the derives above it.
 void expand_derives(Context& context, TaskTable& table);
 
+// Where an object came into a task: its name in the task's own declaration, when it stands there.
+std::optional<Span> entry_of(const Task& task, ObjectId object);
+
 }  // namespace probe::sema

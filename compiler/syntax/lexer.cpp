@@ -1,6 +1,8 @@
 // One pass over the bytes; every byte ends up in exactly one token.
 #include "compiler/syntax/lexer.h"
 
+#include <charconv>
+#include <cstdio>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -291,6 +293,7 @@ class Lexer {
     }
     if (with_unit(begin, end, word_end)) return;
     if (times_without_blanks(begin, end)) return;
+    if (foreign_unit(begin, end)) return;
     const std::string seen(text_.substr(end, word_end - end));
     Diagnostic* error = errors_.report(Code::P0301, span(begin, word_end),
                                        "unknown unit `" + shortened(seen) + "`");
@@ -307,6 +310,47 @@ class Lexer {
     token.unit = unit;
     token.unit_size = static_cast<std::uint16_t>(unit_end - end);
     return true;
+  }
+
+  // Units that others use, with what to write here instead: one report, with the converted value.
+  bool foreign_unit(std::size_t begin, std::size_t end) {
+    struct Foreign {
+      std::string_view spelling;
+      double factor;
+      std::string_view ours;
+    };
+    static constexpr Foreign kForeign[] = {
+        {"g/cm3", 1e3, "kg/m3"}, {"g/cm^3", 1e3, "kg/m3"}, {"kg/m^3", 1, "kg/m3"},
+        {"inches", 2.54, "cm"},  {"inch", 2.54, "cm"},     {"in", 2.54, "cm"},
+        {"ft", 30.48, "cm"},     {"feet", 30.48, "cm"},    {"um", 1e-3, "mm"},
+        {"meters", 1, "m"},      {"meter", 1, "m"},        {"metres", 1, "m"},
+        {"metre", 1, "m"},       {"CM", 1, "cm"},          {"MM", 1, "mm"},
+        {"M", 1, "m"},           {"degrees", 1, "deg"},    {"degree", 1, "deg"},
+        {"radians", 1, "rad"},   {"radian", 1, "rad"},     {"seconds", 1, "s"},
+        {"second", 1, "s"},      {"secs", 1, "s"},         {"sec", 1, "s"},
+        {"us", 1e-3, "ms"},      {"min", 60, "s"},         {"hz", 1, "Hz"},
+        {"HZ", 1, "Hz"},         {"kHz", 1e3, "Hz"},       {"pixels", 1, "px"},
+        {"pixel", 1, "px"},
+    };
+    const std::string_view rest = text_.substr(end);
+    for (const Foreign& unit : kForeign) {
+      const std::size_t size = unit.spelling.size();
+      if (!rest.starts_with(unit.spelling) || (rest.size() > size && is_word(rest[size]))) continue;
+      double value = 0;
+      std::from_chars(text_.data() + begin, text_.data() + end, value);
+      char digits[32];
+      std::snprintf(digits, sizeof digits, "%.9g", value * unit.factor);
+      const std::string ours = digits + std::string(unit.ours);
+      const Span place = span(begin, end + size);
+      Diagnostic* error =
+          errors_.report(Code::P0301, place, "unknown unit `" + std::string(unit.spelling) + "`");
+      if (error != nullptr) error->fix_by("write `" + ours + "`", place, ours);
+      Token& token = push(TokenKind::kNumber, end + size - begin);
+      token.unit = Unit::kUnknown;
+      token.unit_size = static_cast<std::uint16_t>(size);
+      return true;
+    }
+    return false;
   }
 
   // `2x2`, `3cmx3cm`: one report for the whole product, then its pieces as if they had been written

@@ -67,7 +67,7 @@ class Loader {
     program_.ok = false;
     Diagnostic& error =
         diagnostics_.report(Code::P0202, use.path.span, "cannot use `" + use.path.value + "`");
-    error.point(reason);
+    error.point(reason).note("the names that it declares are unknown; they are not listed");
     if (!tried.empty()) {
       std::string places = "looked for";
       for (const std::string& path : tried)

@@ -138,7 +138,8 @@ Binder Parser::binder() {
   out.name = name();
   expect_word("in");
   const bool clear = at_word("clear") && text_ahead(1) == "phrases" && text_ahead(3) == "of";
-  if (clear || (at_word("phrases") && kind_ahead(1) == TokenKind::kIdent && text_ahead(2) == "of")) {
+  if (clear ||
+      (at_word("phrases") && kind_ahead(1) == TokenKind::kIdent && text_ahead(2) == "of")) {
     advance();
     if (clear) advance();
     BinderPhrases phrases;

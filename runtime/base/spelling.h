@@ -30,19 +30,31 @@ inline std::size_t spelling_edits(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-// ", did you mean `NAME`?" with the nearest of `known`, the earlier on a tie; empty when none is
-// within two edits: further away is no misspelling.
-inline std::string did_you_mean(std::string_view name, std::span<const std::string> known) {
-  const std::string* nearest = nullptr;
-  std::size_t distance = 3;
-  for (const std::string& candidate : known) {
-    const std::size_t edits = spelling_edits(name, candidate);
-    if (edits < distance && edits < candidate.size()) {
-      distance = edits;
-      nearest = &candidate;
-    }
+// The one rule for the nearest of `known`: within a third of the name's length, at least one edit
+// and at most three; the earlier on a tie. Null when nothing is near.
+template <typename Name>
+const Name* nearest_spelling(std::string_view name, std::span<const Name> known) {
+  constexpr std::size_t kLongestName = 128;  // a longer "name" is no slip, and edits are quadratic
+  if (name.size() > kLongestName) return nullptr;
+  const std::size_t limit = std::clamp<std::size_t>(name.size() / 3, 1, 3);
+  const Name* best = nullptr;
+  std::size_t least = limit + 1;
+  for (const Name& candidate : known) {
+    const std::string_view text(candidate);
+    if (text.size() > name.size() + limit || name.size() > text.size() + limit) continue;
+    const std::size_t edits = spelling_edits(name, text);
+    // One letter is no likeness: `y` is not a slip of `x`.
+    if (edits >= least || edits >= std::max(name.size(), text.size())) continue;
+    best = &candidate;
+    least = edits;
   }
-  return nearest == nullptr ? std::string() : ", did you mean `" + *nearest + "`?";
+  return best;
+}
+
+// ", did you mean `NAME`?" with the nearest of `known`, else empty.
+inline std::string did_you_mean(std::string_view name, std::span<const std::string> known) {
+  const std::string* near = nearest_spelling(name, known);
+  return near == nullptr ? std::string() : ", did you mean `" + *near + "`?";
 }
 
 }  // namespace probe

@@ -20,7 +20,8 @@ inline constexpr std::uint32_t kLanguageAxes =
     static_cast<std::uint32_t>(plan::Axis::kLanguageAction) |
     static_cast<std::uint32_t>(plan::Axis::kLanguageNegation) |
     static_cast<std::uint32_t>(plan::Axis::kLanguageAppearance) |
-    static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense);
+    static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense) |
+    static_cast<std::uint32_t>(plan::Axis::kLanguageParaphrase);
 
 // The bits of a task's `ood`: what was not seen in training.
 inline constexpr std::array<std::string_view, 3> kNovelty = {"source", "target", "relation"};

@@ -13,7 +13,7 @@ struct AxisName {
   std::string_view name;
 };
 
-inline constexpr std::array<AxisName, 12> kAxisNames = {{
+inline constexpr std::array<AxisName, 13> kAxisNames = {{
     {Axis::kObjectSource, "object.source"},
     {Axis::kObjectTarget, "object.target"},
     {Axis::kDistractors, "distractors"},
@@ -21,6 +21,7 @@ inline constexpr std::array<AxisName, 12> kAxisNames = {{
     {Axis::kLanguageNegation, "language.negation"},
     {Axis::kLanguageAppearance, "language.appearance"},
     {Axis::kLanguageCommonsense, "language.commonsense"},
+    {Axis::kLanguageParaphrase, "language.paraphrase"},
     {Axis::kLayout, "layout"},
     {Axis::kScene, "scene"},
     {Axis::kLight, "light"},

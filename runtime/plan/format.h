@@ -162,7 +162,7 @@ inline constexpr std::uint32_t kMaxOcclusion = 16;
 struct LightRecord {
   StringRef name;
   double ambient = 0;
-  Slice suns;  // kSuns
+  Slice suns;                   // kSuns
   std::uint32_t occlusion = 0;  // rays a sample that find how open it is to ambient light
   std::uint32_t zero = 0;
   std::uint64_t zero2[4] = {};
@@ -299,7 +299,8 @@ enum class Axis : std::uint32_t {
   kScene = 1u << 8,
   kLight = 1u << 9,
   kCamera = 1u << 10,
-  kGoal = 1u << 11
+  kGoal = 1u << 11,
+  kLanguageParaphrase = 1u << 12
 };
 
 struct EpisodeRecord {

@@ -15,7 +15,7 @@
 namespace probe::plan {
 namespace {
 
-constexpr std::uint32_t kAllAxes = (static_cast<std::uint32_t>(Axis::kGoal) << 1) - 1;
+constexpr std::uint32_t kAllAxes = (static_cast<std::uint32_t>(Axis::kLanguageParaphrase) << 1) - 1;
 constexpr std::uint32_t kAllOod = 7;
 // A day at 5 Hz is 432,000 steps; more is a unit slip.
 constexpr std::uint32_t kMaxHorizon = 1'000'000;

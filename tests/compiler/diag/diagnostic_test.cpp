@@ -1,4 +1,5 @@
 #include "compiler/diag/diagnostic.h"
+#include "runtime/base/spelling.h"
 
 #include <doctest/doctest.h>
 
@@ -57,4 +58,17 @@ TEST_CASE("the nearest spelling is offered only when it is near") {
   CHECK(!nearest(std::string(100000, 'a'), kNames));
   constexpr std::array<std::string_view, 1> kOne = {"y"};
   CHECK(!nearest("x", kOne));
+}
+
+TEST_CASE("the compiler and the runtime's messages choose the same nearest name") {
+  const std::vector<std::string> known = {"carrot_on_plate", "carrot_on_plate_lang_color", "ever"};
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  // Three edits of a long name, two of a short one, one too many, and a tie.
+  for (const char* name : {"carrot_on_late", "carot_on_plate_lang_colour", "eevre", "evxyz", "e"}) {
+    const auto near = nearest(name, views);
+    CHECK(did_you_mean(name, known) ==
+          (near ? ", did you mean `" + std::string(*near) + "`?" : std::string()));
+  }
+  CHECK(did_you_mean("carrot_plate", known) == ", did you mean `carrot_on_plate`?");
+  CHECK(did_you_mean("carrot", known).empty());
 }

@@ -35,7 +35,7 @@ variants of red_on_tray { take_it { say take }
  new { source blue } }
 set worded = tasks where uses action
 suite one trained on lab { tasks { red_on_tray }; prefix "lab_"; seeds 42, 7; expect 1 tasks, 24 episodes }
-suite all trained on lab { tasks tasks }
+suite all trained on lab { tasks tasks; seeds 1 }
 )";
 
 Compilation build_ok(const std::string& file, const std::string& suite = "") {
@@ -127,8 +127,8 @@ TEST_CASE("the same text gives the same bytes twice and from any folder") {
 
 TEST_CASE("one suite keeps its tasks and the baselines they are compared with") {
   const Folder folder("suite");
-  const std::string file =
-      folder.write("x.probe", test::kSmallSuite + kVariants + "suite late { tasks { new } }\n");
+  const std::string file = folder.write(
+      "x.probe", test::kSmallSuite + kVariants + "suite late { tasks { new }; seeds 1 }\n");
   const auto one = plan::Plan::from_bytes(build_ok(file, "one").plan);
   REQUIRE(one.ok());
   CHECK(one->tasks().size() == 1);
@@ -147,7 +147,7 @@ TEST_CASE("a missing asset is reported at its name in the text, once") {
   const Folder assets("assets");
   fs::copy(test::asset_root(), assets.path,
            fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-  fs::remove(assets.path / "objects/tray/collision.obj");
+  fs::remove(assets.path / "objects/tray/visual.glb");
   CHECK(codes(test::kSmallSuite + kVariants, assets.path.string()) == "P0202 ");
   fs::remove(assets.path / "arm/part.obj");
   CHECK(codes(test::kSmallSuite + kVariants, assets.path.string()) == "P0202 P0202 ");
@@ -188,4 +188,22 @@ TEST_CASE("files that two roots share are read once") {
   REQUIRE(plan.ok());
   CHECK(plan->tasks().size() == 3);
   CHECK(plan->texts().size() == 3);
+}
+
+TEST_CASE(
+    "two programs checked in one command may declare the same names, and what they share is said "
+    "once") {
+  const Folder folder("programs");
+  folder.write("base.probe", test::kSmallSuite);
+  const std::string text = "use \"base.probe\"\nvariant mine of red_on_tray { say no_such }\n";
+  const std::vector<std::string> files = {folder.write("one.probe", text),
+                                          folder.write("two.probe", text),
+                                          (folder.path / "base.probe").string()};
+  const auto checked = check(files, {test::asset_root(), ""});
+  REQUIRE(checked.ok());
+  REQUIRE(checked->diagnostics.size() == 2);
+  CHECK(info(checked->diagnostics.items()[0].code).text ==
+        info(checked->diagnostics.items()[1].code).text);
+  CHECK(checked->diagnostics.items()[0].primary.file !=
+        checked->diagnostics.items()[1].primary.file);
 }

@@ -10,7 +10,7 @@ namespace {
 
 // The codes for one metric of the small suite's task, after lowering.
 std::string codes(const std::string& metric, const std::string& more = "") {
-  auto a = test::analyze_with_suite(more + "\nmetrics m { x = " + metric +
+  auto a = test::analyze_with_suite(more + "\nmetrics m like plain { x = " + metric +
                                     " }\ntask t like red_on_tray { metrics m }");
   if (!a->diagnostics.has_errors()) {
     const auto bytes = emit::emit(a->model, a->sources, {a->files[0].file.id},
@@ -33,7 +33,62 @@ TEST_CASE("a metric that no measurement can change is constant") {
   CHECK(codes("once height(source) < 1m") == "");
 }
 
+TEST_CASE("every read-out of a constant is constant") {
+  CHECK(codes("max 3") == "P0602");
+  CHECK(codes("min 3cm") == "P0602");
+  CHECK(codes("final 3") == "P0602");
+  CHECK(codes("max max(2cm, 3cm)") == "P0602");
+  CHECK(codes("count grip > 1.5") == "P0602");
+  CHECK(codes("count grip <= 1") == "P0602");
+  CHECK(codes("first grip > 1.5") == "P0602");
+  CHECK(codes("always grip >= 0") == "P0602");
+  CHECK(codes("max height(source)") == "");
+  CHECK(codes("count grip > 0.5") == "");
+  CHECK(codes("first grip > 0.5") == "");
+}
+
+TEST_CASE("what no room holds is never true, by every comparison") {
+  CHECK(codes("once height(source) > 100m") == "P0602");
+  CHECK(codes("once height(source) >= 100m") == "P0602");
+  CHECK(codes("once height(source) < -100m") == "P0602");
+  CHECK(codes("once height(source) <= -100m") == "P0602");
+  CHECK(codes("once 100m < height(source)") == "P0602");
+  CHECK(codes("always height(source) < 100m") == "P0602");
+  CHECK(codes("once distance(source, target) > 100m") == "P0602");
+  CHECK(codes("once distance_xy(source, target) > 100m") == "P0602");
+  CHECK(codes("once moved_xy(source) > 100m") == "P0602");
+  CHECK(codes("once half_height(source) > 100m") == "P0602");
+  CHECK(codes("once height(source) - height(target) > 100m") == "P0602");
+  CHECK(codes("once time > 13s") == "P0602");
+  CHECK(codes("once time > 11s") == "");
+  CHECK(codes("once height(source) > 10m") == "");
+  CHECK(codes("once distance(source, target) > 10m") == "");
+  CHECK(codes("once distance(tcp, source) == 100m") == "P0606 P0602");
+  CHECK(codes("once distance(tcp, source) != 100m") == "P0606 P0602");
+  CHECK(codes("once impulse(source, target) > 1000Ns") == "");
+}
+
+TEST_CASE("an angle between two vectors is at most half a turn") {
+  CHECK(codes("once angle(axis_z(source), up) <= 200deg") == "P0304");
+  CHECK(codes("once angle(axis_z(source), up) > -20deg") == "P0304");
+  CHECK(codes("once angle(axis_z(source), up) <= 180deg") == "P0602");
+  CHECK(codes("once angle(axis_z(source), up) < 0deg") == "P0602");
+  CHECK(codes("once angle(axis_z(source), up) > 180deg") == "P0602");
+  CHECK(codes("once angle(axis_z(source), up) <= 20deg") == "");
+}
+
+TEST_CASE("alternatives that leave nothing out are always true") {
+  CHECK(codes("once (grip < 0.5 or grip > 0.3)") == "P0602");
+  CHECK(codes("once (grip <= 0.5 or grip > 0.5)") == "P0602");
+  CHECK(codes("once (grip < 0.5 or not grip < 0.5)") == "P0602");
+  CHECK(codes("once (grip < 0.3 or grip > 0.5)") == "");
+}
+
 TEST_CASE("conditions that exclude one another are a contradiction") {
+  CHECK(codes("once (height(source) < height(target) and height(source) > height(target))") ==
+        "P0603");
+  CHECK(codes("once (height(source) <= height(target) and height(source) >= height(target))") ==
+        "");
   CHECK(codes("once (distance(tcp, source) < 5cm and distance(tcp, source) > 10cm)") == "P0603");
   CHECK(codes("once (height(source) < 5cm and grip > 0.5 and height(source) >= 5cm)") == "P0603");
   CHECK(codes("once (height(source) <= 5cm and height(source) >= 5cm)") == "");

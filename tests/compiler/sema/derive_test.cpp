@@ -80,10 +80,8 @@ derive "{t}_not_{o}" for t in { crowd }, o in distractors of t {
 }
 )");
   CHECK_MESSAGE(a->codes() == "", a->said());
-  CHECK(a->task("crowd_not_blue").prompt ==
-        "put the red block on the tray, not on the blue block");
-  CHECK(a->task("crowd_not_pale").prompt ==
-        "put the red block on the tray, not on the pale block");
+  CHECK(a->task("crowd_not_blue").prompt == "put the red block on the tray, not on the blue block");
+  CHECK(a->task("crowd_not_pale").prompt == "put the red block on the tray, not on the pale block");
 }
 
 TEST_CASE("clear phrases describe their object alone in the scene") {
@@ -97,8 +95,7 @@ set clear = tasks where uses appearance
 )");
   CHECK_MESSAGE(a->codes() == "", a->said());
   // `toy` may be blue as well, and of pale no colour is known.
-  CHECK(members(*a, "clear") ==
-        "red_on_tray_by_color red_on_tray_toy crowd_by_color doubt_toy");
+  CHECK(members(*a, "clear") == "red_on_tray_by_color red_on_tray_toy crowd_by_color doubt_toy");
 }
 
 TEST_CASE("binders name what there is") {

@@ -105,3 +105,33 @@ TEST_CASE("two objects of one name are a warning") {
                            "{ distractors twin }")
             ->codes() == "P0405");
 }
+
+TEST_CASE("an unknown fact is doubted, a known one is an error, and all rivals are said at once") {
+  const std::string objects =
+      "object plain like pale { name \"b\" }\n"
+      "object perhaps like blue { maybe favorite; name \"p\" }\n"
+      "object too like blue { is favorite; name \"t\" }\n"
+      "object third like blue { is favorite; name \"u\" }\n";
+  const auto with = [&](const std::string& distractors) {
+    return analyze_with_suite(objects + "variant v of red_on_tray { refer source as loved }\n" +
+                              "variant w of v { distractors " + distractors + " }");
+  };
+  CHECK(with("plain")->codes() == "");
+  CHECK(with("perhaps")->codes() == "P0403");
+  const auto sure = with("too, third");
+  CHECK_MESSAGE(sure->codes() == "P0402", sure->said());
+  CHECK(sure->diagnostics.items().front().message ==
+        "\"everybody's darling\" denotes 3 objects in `w`");
+  // The words were fine where they were chosen: what came in here is pointed at.
+  CHECK(sure->underlined() == "too");
+}
+
+TEST_CASE("an absent object is named as it is said, with a task that has it") {
+  const auto a = analyze_with_suite(
+      "variant among of red_on_tray { distractors blue }\n"
+      "variant v of red_on_tray { say \"put {source} on {target}, not {avoid the blue}\" }");
+  CHECK_MESSAGE(a->codes() == "P0404", a->said());
+  const Diagnostic& absent = a->diagnostics.items().front();
+  CHECK(absent.message == "\"not the blue block\" names an object that is not in the scene of `v`");
+  CHECK(absent.helps.front() == "add `distractors blue`, or derive from `among`");
+}

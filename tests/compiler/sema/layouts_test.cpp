@@ -66,7 +66,8 @@ TEST_CASE("a grid of four steps has the thirds of a spread, rounded once") {
   const auto a = analyze_with_suite(
       "layout l { cells patch = grid 2 x 4 at (-10.5cm, 20.6cm) spread (1cm, 1.5cm); place source "
       "in distinct patch\n"
-      "place target at (-12.5cm, 2.5cm); orient source yaw 0deg, yaw 45deg, yaw -45deg; drop 50cm; "
+      "place target at (-12.5cm, 2.5cm); orient source yaw 0deg, yaw 45deg, yaw -45deg; drop 50cm "
+      "settle 1s; "
       "expect 24 episodes }\n"
       "task t like red_on_tray { layout l }");
   CHECK_MESSAGE(a->codes() == "", a->said());
@@ -105,10 +106,9 @@ TEST_CASE("more objects than cells, unmet expectations and unplaced objects are 
   CHECK(analyze_with_suite(
             "layout l like pairs { expect 23 episodes }\ntask t like red_on_tray { layout l }")
             ->codes() == "P0504");
-  CHECK(
-      analyze_with_suite(
-          "layout l { place source at (0cm, 0cm); drop 1cm }\ntask t like red_on_tray { layout l }")
-          ->codes() == "P0206");
+  CHECK(analyze_with_suite("layout l { place source at (0cm, 0cm); drop 1cm settle 1s }\ntask t "
+                           "like red_on_tray { layout l }")
+            ->codes() == "P0206");
   CHECK(analyze_with_suite("object o like red { rest yaw 0deg, yaw 1deg, yaw 2deg }\ntask t like "
                            "red_on_tray { source o }")
             ->codes() == "P0304");
@@ -139,7 +139,7 @@ TEST_CASE("the advised spread keeps the shape of the grid, and there is none for
   const std::string advice = a->diagnostics.items().front().labels.front().text;
   CHECK(advice == "(5cm, 2.5cm) is the least that fits these objects");
   const auto fixed = analyze_with_suite(
-      "layout l { place source at (0cm, 0cm); place target at (1cm, 0cm); drop 1cm }\n"
+      "layout l { place source at (0cm, 0cm); place target at (1cm, 0cm); drop 1cm settle 1s }\n"
       "variant v of red_on_tray { layout l }");
   REQUIRE(fixed->codes() == "P0501");
   CHECK(fixed->diagnostics.items().front().labels.front().text == "the layout");

@@ -39,7 +39,7 @@ TEST_CASE("every kind of reference is checked") {
       {"set s = { red_on_tary }", "red_on_tary"},
       {"set s = tsks", "tsks"},
       {"set s = tasks where uses acton", "acton"},
-      {"suite s trained on lob { tasks tasks }", "lob"},
+      {"suite s trained on lob { tasks tasks; seeds 1 }", "lob"},
       {"object o like red { colour red }", "colour"},
       {"scene s like bench { camera eyes }", "eyes"},
       {"layout l like pairs { place target in distinct spot }", "spot"},

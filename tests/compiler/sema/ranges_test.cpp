@@ -57,6 +57,34 @@ TEST_CASE("two fingers are two links, and closed is nearer than open") {
   CHECK(refused(robot(kFingers + kDrives + "grip 4cm .. 1cm")) == "grip 4cm .. 1cm");
 }
 
+TEST_CASE("fingers open apart, each as its joint moves it") {
+  CHECK(refused(robot("fingers left opens -y, right opens -y\n" + kGrip + kDrives)) == "left");
+  CHECK(refused(robot("fingers left opens +y, right opens +y\n" + kGrip + kDrives)) == "right");
+  // A description whose second finger follows the first instead of meeting it.
+  std::string urdf = probe::test::arm_urdf();
+  const auto axis = urdf.find("0 -1 0");
+  REQUIRE(axis != std::string::npos);
+  urdf.replace(axis, 6, "0 1 0");
+  probe::test::write_text(probe::test::asset_root() + "/arm/same.urdf", urdf);
+  const std::string same =
+      "robot other { urdf \"arm/same.urdf\"; tcp tool; control ee_delta_pose 5Hz\n" + kGrip +
+      kDrives;
+  const auto a = analyze_with_suite(same + "fingers left opens +y, right opens +y }");
+  CHECK(a->said().find("expected fingers that open apart, found both opening in one direction") !=
+        std::string::npos);
+  CHECK(refused(same + "fingers left opens +y, right opens -y }") == "right");
+}
+
+TEST_CASE("joints start within their limits") {
+  CHECK(refused("scene s like bench { robot arm at (50cm, 0cm) yaw 180deg; joints (1rad, 2cm, "
+                "2cm) }") == "");
+  const auto a = analyze_with_suite(
+      "scene s like bench { robot arm at (50cm, 0cm) yaw 180deg; joints (1.2rad, 2cm, 2cm) }");
+  CHECK(a->underlined() == "joints (1.2rad, 2cm, 2cm)");
+  CHECK(a->said().find("joint `waist` starts at 1.2, beyond its limits of -1 and 1") !=
+        std::string::npos);
+}
+
 TEST_CASE("light has a direction and is not negative") {
   CHECK(refused("light l { ambient 0.3; sun (0, 0, 0) power 1 }") == "(0, 0, 0)");
   CHECK(refused("light l { ambient -3 }") == "-3");

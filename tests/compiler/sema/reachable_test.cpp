@@ -31,7 +31,7 @@ std::string gantry_urdf() {
          joint("pitch", "revolute", "side", "tilt", "0 1 0", turn) +
          joint("roll", "revolute", "tilt", "hand", "1 0 0", turn) +
          joint("l", "prismatic", "hand", "left", "0 1 0", slide) +
-         joint("r", "prismatic", "hand", "right", "0 1 0", slide) + "</robot>";
+         joint("r", "prismatic", "hand", "right", "0 -1 0", slide) + "</robot>";
 }
 
 std::unique_ptr<test::Analysis> with_gantry(const std::string& layout) {
@@ -60,8 +60,8 @@ TEST_CASE("an arm that can point its tool down over every cell is left alone") {
 }
 
 TEST_CASE("a grasp out of reach names object, episode, cell and how far off the tool stays") {
-  const auto a =
-      with_gantry("layout l { place source at (42cm, 0cm); place target at (0cm, 0cm); drop 9cm }");
+  const auto a = with_gantry(
+      "layout l { place source at (42cm, 0cm); place target at (0cm, 0cm); drop 9cm settle 1s }");
   REQUIRE_MESSAGE(a->codes() == "P0502", a->said());
   const Diagnostic& said = a->diagnostics.items().front();
   CHECK(said.message.find("`gantry` cannot grasp `red` from above in `t`: the tool stays 12") == 0);
@@ -69,8 +69,8 @@ TEST_CASE("a grasp out of reach names object, episode, cell and how far off the 
 }
 
 TEST_CASE("a place pose out of reach is one over the target") {
-  const auto a =
-      with_gantry("layout l { place source at (0cm, 0cm); place target at (0cm, 40cm); drop 9cm }");
+  const auto a = with_gantry(
+      "layout l { place source at (0cm, 0cm); place target at (0cm, 40cm); drop 9cm settle 1s }");
   REQUIRE_MESSAGE(a->codes() == "P0502", a->said());
   const Diagnostic& said = a->diagnostics.items().front();
   CHECK(said.message.find("cannot place `red` on `tray` in `t`: the tool stays 10") !=

@@ -32,15 +32,16 @@ inline std::string arm_urdf() {
     return "<link name=\"" + name + "\">" + inertial + (touches ? mesh : "") + "</link>";
   };
   const auto joint = [](const std::string& name, const std::string& type, const std::string& parent,
-                        const std::string& child) {
+                        const std::string& child, const std::string& axis = "0 1 0") {
     return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
-           "\"/><child link=\"" + child +
-           "\"/><axis xyz=\"0 1 0\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" "
+           "\"/><child link=\"" + child + "\"/><axis xyz=\"" + axis +
+           "\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" "
            "velocity=\"1\"/></joint>";
   };
   return "<robot name=\"arm\">" + link("base", true) + link("wrist", true) + link("left", true) +
          link("right", true) + link("tool", false) + joint("waist", "revolute", "base", "wrist") +
-         joint("l", "prismatic", "wrist", "left") + joint("r", "prismatic", "wrist", "right") +
+         joint("l", "prismatic", "wrist", "left") +
+         joint("r", "prismatic", "wrist", "right", "0 -1 0") +
          joint("t", "fixed", "wrist", "tool") + "</robot>";
 }
 

@@ -56,6 +56,36 @@ variant article of red_on_tray { say "put {the source} on {target}"; light night
   CHECK(axes(a->task("article")) == "light");
 }
 
+TEST_CASE("other words in the same verb frame are a paraphrase, articles and named roles are not") {
+  const auto a = analyze_with_suite(R"(
+template gently frame put "put {the source} down on top of {the target}"
+template set_down frame put "set {the source} down on {the target}"
+variants of red_on_tray {
+  gentle { say gently }
+  down { say set_down }
+  down_by_color { say set_down; refer source as by_color }
+}
+variant same of red_on_tray { say "put the {source} on a {target}"; light night }
+variant named of red_on_tray { say "put {red} on {the tray}"; light night }
+variant other of gentle { source blue }
+derive "{t}_softly" for t in { red_on_tray, other } { say "put {the source} softly on {the target}" }
+set reworded = tasks where uses paraphrase
+set moved = tasks where axis language.paraphrase
+)");
+  CHECK_MESSAGE(a->codes() == "P0701", a->said());
+  CHECK(axes(a->task("gentle")) == "language.paraphrase");
+  CHECK(axes(a->task("down")) == "language.paraphrase");
+  CHECK(axes(a->task("down_by_color")) == "language.appearance language.paraphrase");
+  CHECK(axes(a->task("same")) == "light");
+  CHECK(axes(a->task("named")) == "light");
+  CHECK(axes(a->task("other")) == "object.source");
+  CHECK(axes(a->task("red_on_tray_softly")) == "language.paraphrase");
+  CHECK(axes(a->task("other_softly")) == "language.paraphrase");
+  CHECK(members(*a, "reworded") ==
+        "gentle down down_by_color other red_on_tray_softly other_softly");
+  CHECK(members(*a, "moved") == "gentle down down_by_color red_on_tray_softly other_softly");
+}
+
 TEST_CASE("a new object drops the phrase that was chosen for the old one") {
   const auto a = analyze_with_suite(
       "task t like red_on_tray { refer source as loved }\ntask u like t { source blue }");
@@ -83,7 +113,7 @@ TEST_CASE("baselines in a circle and abstract tasks in a suite are errors") {
   CHECK(analyze_with_suite("task a like red_on_tray against b { source blue }\ntask b like "
                            "red_on_tray against a { say take }")
             ->codes() == "P0703");
-  CHECK(analyze_with_suite("suite s { tasks { base } }")->codes() == "P0703");
+  CHECK(analyze_with_suite("suite s { tasks { base }; seeds 1 }")->codes() == "P0703");
 }
 
 TEST_CASE("what was not seen in training is out of distribution") {
@@ -104,11 +134,14 @@ set rest = tasks - late - { red_on_tray }
 set wordy = tasks where uses appearance and not has distractors
 set moved = variants of { red_on_tray } where axis light or axis distractors
 set fresh = tasks where ood source
+set lenient = tasks where metrics ever
+metrics ever { success = once height(source) > height(target) }
 variants of red_on_tray {
   v_take { say take }
   v_dark { light night }
   v_color { refer source as by_color }
   v_new { source pale }
+  v_ever { metrics ever }
 }
 variant v_take_dark of v_take { light night }
 )");
@@ -133,11 +166,9 @@ TEST_CASE("a suite that expects other numbers is told the real ones") {
 
 TEST_CASE("a hold that is longer than the horizon can never become true") {
   const auto a = analyze_with_suite(
-      "metrics m { steady = once (speed(source) < 1e-3 * speed(target) for 80 steps) }\ntask t "
+      "metrics m like plain { steady = once (speed(source) < 1e-3 * speed(target) for 80 steps) "
+      "}\ntask t "
       "like red_on_tray { metrics m }");
-set lenient = tasks where metrics ever
-metrics ever { success = once height(source) > height(target) }
   CHECK_MESSAGE(a->codes() == "P0604", a->said());
   CHECK(a->underlined() == "for 80 steps");
 }
-  v_ever { metrics ever }
