@@ -360,7 +360,7 @@ TEST_CASE("pressing closed fingers into objects: no blow, no overlap, no drive b
       MESSAGE(std::string(carrot ? "carrot" : "cube"), std::string(jump ? ", jump" : ", slowly"),
               ": fastest ", fastest, " m/s, overlap with the table ", overlap * 1e3, " mm, drive ",
               force, " of its limit");
-      CHECK(fastest < 2.5);
+      CHECK(fastest < 1.5);
       CHECK(overlap < 1e-3);
       CHECK(force <= 1.01);
     }

@@ -126,6 +126,18 @@ TEST_CASE("the other engine's scene: grasped, held, carried, released, at rest")
     const auto in_gripper = [&] {
       return world.frame_pose("gripper_link").inverse() * world.body(held).pose;
     };
+    // Where the hand would be if the arm stood at its targets: what a rigid grasp follows.
+    std::vector<std::string> names;
+    for (const Drive& drive : spec.arm.drives) names.push_back(drive.joint);
+    auto tree = robot::Tree::create(robot.value()->model, names);
+    REQUIRE(tree.ok());
+    const auto hand = static_cast<std::size_t>(robot.value()->model.find_link("gripper_link"));
+    const auto commanded = [&](const std::vector<double>& targets) {
+      std::vector<Pose> poses(robot.value()->model.links.size());
+      tree->link_poses(targets, poses);
+      return poses[hand];
+    };
+    Pose in_commanded;  // the body when the fingers have closed
     Pose hold_start;
     std::vector<Vec3> rest_start;
     double slip = 0, drift = 0, lifted = 0;
@@ -148,6 +160,16 @@ TEST_CASE("the other engine's scene: grasped, held, carried, released, at rest")
       }
       if (i + 1 < commands.size() && commands[i + 1].phase == commands[i].phase) continue;
       const Vec3 c = world.body(held).center;
+      const int phase = commands[i].phase;
+      if (phase == 2)
+        in_commanded = commanded(commands[i].targets).inverse() * world.body(held).pose;
+      if (phase >= 3 && phase <= 5) {
+        const Vec3 rigid = (commanded(commands[i].targets) * in_commanded).position;
+        const double off = (world.body(held).pose.position - rigid).norm();
+        MESSAGE(spec.bodies[held].name, " after phase ", phase, ": ", off * 1e3,
+                " mm from where a rigid grasp on the commanded hand would have it");
+        CHECK(off < (phase == 4 ? 3e-4 : 1e-3));
+      }
       MESSAGE(spec.bodies[held].name, " after phase ", commands[i].phase, ": ", c.x(), " ", c.y(),
               " ", c.z());
     }
