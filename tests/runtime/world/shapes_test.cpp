@@ -134,6 +134,33 @@ TEST_CASE("primitives have the textbook volume and inertia") {
         cylinder.parts[0].edges.size() + 2);
 }
 
+TEST_CASE("joined shapes have the mass of their sum, and each part lies where it was put") {
+  const double r = 0.02, pi = 3.14159265358979;
+  const Quat flat(std::sqrt(0.5), 0, std::sqrt(0.5), 0);  // z to x
+  // Two balls on a bar that was made along z and turned along x.
+  const CollisionShape bar = scene::make_box_shape({0.005, 0.01, 0.05});
+  const CollisionShape joined = scene::join_shapes({{bar, Pose{{0.3, 0, 0}, flat}},
+                                                    {scene::make_sphere_shape(r), at(0.23, 0, 0)},
+                                                    {scene::make_sphere_shape(r), at(0.37, 0, 0)}});
+  const double ball = 4 * pi / 3 * r * r * r, box = 8 * 0.005 * 0.01 * 0.05;
+  CHECK(joined.volume == doctest::Approx(2 * ball + box));
+  CHECK((joined.center_of_mass - Vec3(0.3, 0, 0)).norm() < 1e-12);
+  // About x: bar of 1 cm by 2 cm, and the balls; about z also their distance of 7 cm.
+  const double about_x = box / 3 * (0.005 * 0.005 + 0.01 * 0.01) + 2 * ball * 0.4 * r * r;
+  const double about_z =
+      box / 3 * (0.05 * 0.05 + 0.01 * 0.01) + 2 * ball * (0.4 * r * r + 0.07 * 0.07);
+  CHECK(joined.unit_inertia(0, 0) == doctest::Approx(about_x));
+  CHECK(joined.unit_inertia(2, 2) == doctest::Approx(about_z));
+  CHECK(joined.bounding_radius == doctest::Approx(0.07 + r));
+  // It lies on its balls, the bar in the air.
+  WorldSpec spec = quiet();
+  spec.bodies.push_back({"dumbbell", shared(joined), 1000, 0.5, at(-0.3, 0, r + 0.01)});
+  const auto world = make(spec);
+  run(world.get(), 500);
+  CHECK(world->body(0).center.z() == doctest::Approx(r).epsilon(5e-3));
+  CHECK(world->body(0).velocity.norm() < 1e-6);
+}
+
 TEST_CASE("a ball rolls down an incline as the formula says, on the surface and on a fixture") {
   const double angle = 20;
   const SinCos a = portable_sincos_deg(angle);
