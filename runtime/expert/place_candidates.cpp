@@ -60,7 +60,7 @@ std::vector<Place> place_candidates(const Scene& scene, const Pose& tool) {
       place.lift = lift;
       place.tcp.position = {at.x(), at.y(), tool.position.z() + rise + lift};
       place.clearance = least_clearance(place.tcp, balls, obstacles, kComfortable);
-      place.cost = 0.3 * std::abs(place.turn) + 0.3 * place.overhang + 20 * lift +
+      place.cost = 0.3 * std::abs(place.turn) + 0.4 * place.overhang + 20 * lift +
                    100 * (kComfortable - place.clearance);
       out.push_back(place);
       if (place.clearance >= kComfortable) break;

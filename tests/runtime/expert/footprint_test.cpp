@@ -47,5 +47,25 @@ TEST_CASE("an object without a hull is a point") {
   CHECK(print.top == 3);
 }
 
+TEST_CASE("another centre has its own radius") {
+  Footprint print;
+  print.whole = convex_outline({{0, 0}, {2, 0}, {2, 1}, {0, 1}});
+  recenter(print, {0, 0});
+  CHECK(print.center == Vec2(0, 0));
+  CHECK(print.radius == doctest::Approx(std::sqrt(5.0)));
+}
+
+TEST_CASE("a section is what lies above a height") {
+  // A pyramid of base 2 and height 1: half-way up it is 1 wide.
+  const std::vector<std::vector<Vec3>> pyramid{
+      {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 1}}};
+  const auto section = section_above(pyramid, 0.5);
+  REQUIRE(section.size() == 1);
+  const Extent extent = extent_in_slab(section, {Vec2(0, 1), 0, 2}, Vec2(1, 0));
+  CHECK(extent.lower == doctest::Approx(-0.5));
+  CHECK(extent.upper == doctest::Approx(0.5));
+  CHECK(section_above(pyramid, 1.5).empty());
+}
+
 }  // namespace
 }  // namespace probe::expert

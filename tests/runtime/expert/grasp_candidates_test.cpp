@@ -78,5 +78,35 @@ TEST_CASE("a neighbour on the fingers' way makes the grasp move or turn") {
         0.3);
 }
 
+TEST_CASE("a wide bowl is taken by its wall, one finger inside") {
+  // A square bowl of 12 cm with walls of 1.5 cm, 3 cm high, on a floor of 5 mm.
+  const auto bowl = test::object("bowl",
+                                 {test::block({-0.06, -0.06, 0}, {0.06, 0.06, 0.005}),
+                                  test::block({-0.06, -0.06, 0.005}, {-0.045, 0.06, 0.03}),
+                                  test::block({0.045, -0.06, 0.005}, {0.06, 0.06, 0.03}),
+                                  test::block({-0.045, -0.06, 0.005}, {0.045, -0.045, 0.03}),
+                                  test::block({-0.045, 0.045, 0.005}, {0.045, 0.06, 0.03})},
+                                 {0, 0, test::kSurface}, 0);
+  const Footprint source = footprint(bowl);
+  GraspProblem problem;
+  problem.source = &source;
+  problem.surface = test::kSurface;
+  CHECK(grasp_candidates(problem).empty());
+  std::vector<std::vector<Vec3>> parts = bowl.parts;
+  for (auto& part : parts) {
+    for (Vec3& vertex : part) vertex = bowl.pose.apply(vertex);
+  }
+  problem.parts = parts;
+  const auto grasps = grasp_candidates(problem);
+  REQUIRE(!grasps.empty());
+  for (const Grasp& grasp : grasps) {
+    CHECK(grasp.rim);
+    CHECK(grasp.width > 0.0145);
+    CHECK(grasp.off_center > 0.045);
+    // Fingertips above the floor of the bowl.
+    CHECK(grasp.tcp.position.z() - problem.gripper.tip_below > test::kSurface + 0.005);
+  }
+}
+
 }  // namespace
 }  // namespace probe::expert

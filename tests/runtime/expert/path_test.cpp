@@ -195,7 +195,6 @@ TEST_CASE("a wall in the way is passed above, and costs nothing where it is not"
     }
     end_at(residuals, chain, path, goal);
     const Fit result = fit(path, residuals, {.iterations = 60});
-    MESSAGE(result.iterations, " iterations");
     CHECK(result.converged);
     double least = 1;
     for (int k = 0; k < 4 * path.steps(); ++k) {
