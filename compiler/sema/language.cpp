@@ -7,12 +7,6 @@
 namespace probe::sema {
 namespace {
 
-std::string first_word(const std::vector<Template::Part>& parts) {
-  if (parts.empty() || parts[0].slot) return {};
-  const std::string& text = parts[0].literal;
-  return text.substr(0, text.find(' '));
-}
-
 Truth negate(Truth value) {
   if (value == Truth::kUnknown) return value;
   return value == Truth::kYes ? Truth::kNo : Truth::kYes;
@@ -25,6 +19,12 @@ Truth has_value(const Object& object, std::uint32_t attribute, std::uint32_t val
 }
 
 }  // namespace
+
+std::string first_word(const std::vector<Template::Part>& parts) {
+  if (parts.empty() || parts[0].slot) return {};
+  const std::string& text = parts[0].literal;
+  return text.substr(0, text.find(' '));
+}
 
 TemplateId add_template(Context& context, const syntax::TemplateText& text, std::string name,
                         const Span& span, const std::optional<syntax::Name>& frame) {

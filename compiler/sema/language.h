@@ -12,6 +12,9 @@ namespace probe::sema {
 TemplateId add_template(Context& context, const syntax::TemplateText& text, std::string name,
                         const Span& span, const std::optional<syntax::Name>& frame);
 
+// Empty when a slot stands first.
+std::string first_word(const std::vector<Template::Part>& parts);
+
 // The words for one role in one task: the chosen phrase, or the object's name.
 struct Referring {
   const std::string* text = nullptr;

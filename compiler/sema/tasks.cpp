@@ -89,7 +89,13 @@ struct TaskReader {
     for (syntax::TemplatePart& part : text.parts) {
       if (auto* slot = std::get_if<syntax::Slot>(&part)) slot->name = bound(slot->name);
     }
+    const TemplateId copied = task.say;
     task.say = add_template(context, text, {}, text.text.span, std::nullopt);
+    if (copied == TemplateId::kNone) return;
+    // The same first word is the same verb, whatever its frame is called.
+    const Template& before = context.model.templates[copied];
+    Template& now = context.model.templates[task.say];
+    if (now.frame == first_word(before.parts)) now.frame = before.frame;
   }
   // After the roles: a new source or target drops what was said of the old one.
   void operator()(const syntax::ReferStmt& stmt) {

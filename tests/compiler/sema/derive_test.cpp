@@ -84,6 +84,17 @@ derive "{t}_not_{o}" for t in { crowd }, o in distractors of t {
   CHECK(a->task("crowd_not_pale").prompt == "put the red block on the tray, not on the pale block");
 }
 
+TEST_CASE("words on the spot that begin like the copied instruction keep its frame") {
+  const auto a = analyze_with_suite(R"(
+template lay frame lay "put {the source} on {the target}"
+task laid like red_on_tray { distractors blue; say lay }
+variant again of laid { say "put {the source} on {the target}, not on {avoid the blue}" }
+variant other of laid { say "take {the source} to {the target}, not on {avoid the blue}" }
+)");
+  CHECK(a->task("again").axes == static_cast<std::uint32_t>(plan::Axis::kLanguageNegation));
+  CHECK((a->task("other").axes & static_cast<std::uint32_t>(plan::Axis::kLanguageAction)) != 0);
+}
+
 TEST_CASE("clear phrases describe their object alone in the scene") {
   const auto a = analyze_with_suite(R"(
 variant crowd of red_on_tray { distractors blue }
