@@ -149,7 +149,7 @@ class Import {
 
   // A speck that no ray meets, for what is only felt.
   static Result<VisualFile> unseen_visual() {
-    constexpr float kSpeck = 1e-6f;
+    constexpr float kSpeck = 1e-4f;
     scene::GlbDocument document{std::string(kUnseenModel), kGenerator, {}, {{}}, {}};
     document.parts.push_back(
         {{0, 0, 0, kSpeck, 0, 0, 0, kSpeck, 0}, {0, 0, 1, 0, 0, 1, 0, 0, 1}, {}, {0, 1, 2}, 0});

@@ -83,6 +83,7 @@ int main(int argc, char** argv) {
   add_judge(app, exit);
   add_why(app, exit);
   add_export(app, exit);
+  add_assets(app, exit);
   add_doctor(app, exit);
 
   if (argc > 1 && argv[1][0] != '-') {

@@ -1,6 +1,7 @@
 // vlaprobe build
 #include <fmt/format.h>
 
+#include "runtime/base/file.h"
 #include "runtime/cli/compile.h"
 #include "runtime/plan/plan.h"
 #include "runtime/plan/writer.h"
@@ -21,12 +22,14 @@ void add_build(CLI::App& app, int& exit) {
   verb->add_option("F", arguments->files, ".probe texts")->required();
   verb->add_option("-o,--out", arguments->out, "plan file to write")->required();
   verb->add_option("--suite", arguments->suite, "only this suite's tasks");
+  verb->add_option("--tasks", arguments->assets.tasks,
+                   "glob: only these tasks, where the assets lack what others need");
   add_asset_option(*verb, arguments->assets);
   verb->callback([arguments, &exit] {
     CompiledText text = compile_text(arguments->files, arguments->assets, arguments->suite, true);
     exit = text.exit;
     if (exit != kFine) return;
-    if (auto written = plan::write_file(arguments->out, text.plan); !written) {
+    if (auto written = write_file(arguments->out, text.plan); !written) {
       exit = report(written.failure());
       return;
     }

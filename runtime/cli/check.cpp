@@ -94,6 +94,8 @@ void add_check(CLI::App& app, int& exit) {
   verb->add_flag("--watch", arguments->watch,
                  "again whenever one of them, or what it uses, changes");
   verb->add_flag("--json", arguments->json, "diagnostics as a JSON array on stdout");
+  verb->add_option("--tasks", arguments->assets.tasks,
+                   "glob: only these tasks, where the assets lack what others need");
   add_asset_option(*verb, arguments->assets);
   verb->callback([arguments, &exit] {
     exit = arguments->watch ? watch_verb(*arguments) : check_verb(*arguments);

@@ -3,18 +3,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "compiler/diag/json.h"
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/assets/asset_check.h"
 #include "runtime/cli/library.h"
 #include "runtime/run/assets.h"
+#include "runtime/run/glob.h"
 
 namespace probe::cli {
 
 CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,
-                             const std::string& suite, bool want_plan, bool json) {
+                             const std::string& suite, bool want_plan, bool json,
+                             bool chosen_only) {
   CompiledText text;
   auto root = run::find_asset_root(assets.root);
   if (!root) {
@@ -26,7 +30,21 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
     text.exit = report(library.failure());
     return text;
   }
-  const CompileOptions options{.asset_root = *root, .suite = suite, .library_folders = *library};
+  auto inspect = assets::AssetCheck::open(*root);
+  if (!inspect) {
+    text.exit = report(inspect.failure());
+    return text;
+  }
+  CompileOptions options{.asset_root = *root,
+                         .suite = suite,
+                         .library_folders = *library,
+                         .inspect_asset = *std::move(inspect)};
+  if (chosen_only) {
+    options.wants_task = [glob = assets.tasks](std::string_view name) {
+      // A task may be asked for with its suite's prefix before it.
+      return run::matches_glob(glob, name) || glob.ends_with("_" + std::string(name));
+    };
+  }
   auto compiled = want_plan ? build(files, options) : check(files, options);
   if (!compiled) {
     text.exit = report(compiled.failure());
@@ -35,6 +53,12 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
   const Diagnostics& diagnostics = compiled->diagnostics;
   text.errors = diagnostics.error_count();
   text.warnings = diagnostics.size() - text.errors;
+  text.only_assets_missing =
+      text.errors > 0 && std::all_of(diagnostics.items().begin(), diagnostics.items().end(),
+                                     [](const Diagnostic& said) {
+                                       return said.severity != Severity::kError ||
+                                              said.code == Code::P0202;
+                                     });
   for (std::size_t i = 0; i < compiled->sources.size(); ++i) {
     text.files.push_back(compiled->sources.file(FileId{static_cast<std::uint32_t>(i)}).name());
   }
@@ -46,6 +70,9 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
   }
   text.exit = compiled->ok ? kFine : kUser;
   text.plan = std::move(compiled->plan);
+  text.unused_phrases = std::move(compiled->unused_phrases);
+  text.referring = std::move(compiled->referring);
+  text.own_suites = std::move(compiled->own_suites);
   return text;
 }
 
@@ -58,10 +85,17 @@ void print_diagnostics(const CompiledText& text, bool json) {
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
                           const std::string& suite, bool want_plan, bool json) {
   CompiledText text = compile_quietly(files, assets, suite, want_plan, json);
+  if (text.only_assets_missing && !assets.tasks.empty() && assets.tasks != "*") {
+    CompiledText chosen = compile_quietly(files, assets, suite, want_plan, json, true);
+    if (chosen.exit == kFine) {
+      fmt::print(stderr,
+                 "note: the assets lack what other tasks need; compiled are only the tasks `{}`\n",
+                 assets.tasks);
+      text = std::move(chosen);
+    }
+  }
   print_diagnostics(text, json);
   return text;
 }
 
 }  // namespace probe::cli
-  text.unused_phrases = std::move(compiled->unused_phrases);
-  text.own_suites = std::move(compiled->own_suites);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/emit/compile.h"
 #include "runtime/cli/verbs.h"
 
 namespace probe::cli {
@@ -14,17 +15,23 @@ struct CompiledText {
   std::size_t errors = 0, warnings = 0;
   int exit = kFine;                // kUser when there were errors
   std::string said;                // the diagnostics, as text or as JSON
+  bool only_assets_missing = false;  // every error is a P0202
   std::vector<std::string> files;  // every file that was read, as it was found
-};
   std::vector<std::string> unused_phrases;
+  std::vector<ReferringWords> referring;
   std::vector<std::string> own_suites;  // declared by the named files, not by those they use
+};
 
 // The same in two steps: nothing is printed but a Failure of the outside, and then what was said.
+// `chosen_only`: just the tasks of AssetOptions::tasks.
 CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,
-                             const std::string& suite, bool want_plan, bool json = false);
+                             const std::string& suite, bool want_plan, bool json = false,
+                             bool chosen_only = false);
 void print_diagnostics(const CompiledText& text, bool json);
 
-// Diagnostics go to stderr as text, or to stdout as JSON with `json`.
+// Diagnostics go to stderr as text, or to stdout as JSON with `json`. When nothing but assets is
+// missing and AssetOptions::tasks says which tasks are wanted, those alone are compiled, with a
+// note.
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
                           const std::string& suite, bool want_plan, bool json = false);
 

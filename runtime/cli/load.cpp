@@ -18,6 +18,20 @@ void report_unknown(const char* kind, const std::string& name,
                  ""});
 }
 
+// Abstract tasks are no part of a plan, but the texts that it was made from are.
+bool is_abstract(const plan::Plan& plan, const std::string& name) {
+  const std::string head = "abstract task " + name;
+  for (const plan::TextRecord& record : plan.texts()) {
+    const std::string_view text = plan.tables().source(record);
+    for (std::size_t at = text.find(head); at != std::string_view::npos;
+         at = text.find(head, at + 1)) {
+      const char after = at + head.size() < text.size() ? text[at + head.size()] : ' ';
+      if (after == ' ' || after == '{' || after == '\n') return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
@@ -33,6 +47,7 @@ LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
     plan = plan::Plan::from_bytes(std::move(text.plan));
     loaded.is_text = true;
     loaded.unused_phrases = std::move(text.unused_phrases);
+    loaded.referring = std::move(text.referring);
     loaded.only_used_suites = plan && !plan->suites().empty() && text.own_suites.empty();
   } else {
     plan = plan::Plan::open(path);
@@ -48,6 +63,12 @@ LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
 std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string& name, int& exit) {
   const auto index = plan.find_task(name);
   if (index) return index;
+  if (is_abstract(plan, name)) {
+    exit = report({"usage",
+                   "task `" + name + "` is abstract: it is copied with `like` and has no episodes",
+                   ""});
+    return std::nullopt;
+  }
   std::vector<std::string_view> known;
   for (const plan::TaskRecord& task : plan.tasks()) known.push_back(plan.text(task.name));
   report_unknown("task", name, known, exit);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "compiler/emit/compile.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/plan/plan.h"
 
@@ -15,6 +16,7 @@ struct LoadedPlan {
   std::optional<plan::Plan> plan;
   int exit = kFine;
   bool is_text = false;                     // compiled just now
+  std::vector<ReferringWords> referring;    // of a text
   std::vector<std::string> unused_phrases;  // of a text: "object.phrase" that no task refers by
   bool only_used_suites = false;  // a text that declares no suite, while files that it uses do
 };

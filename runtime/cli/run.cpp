@@ -135,12 +135,14 @@ int run_verb(const Arguments& arguments) {
   if (!options) return report(options.failure());
   if (auto traits = policy::policy_traits(arguments.policy); !traits)
     return report(traits.failure());
-  LoadedPlan loaded = load_plan(arguments.file, arguments.assets);
+  AssetOptions assets = arguments.assets;
+  assets.tasks = arguments.tasks;
+  LoadedPlan loaded = load_plan(arguments.file, assets);
   if (!loaded.plan) return loaded.exit;
-
-  ProgressPrinter printer;
   if (loaded.only_used_suites && arguments.suite.empty())
     return report(no_own_suite(*loaded.plan, arguments.file));
+
+  ProgressPrinter printer;
   options->progress = [&](const run::RunProgress& progress) { printer(progress); };
   auto summary = run::run(*loaded.plan, *options);
   printer.clear();

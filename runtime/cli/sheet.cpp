@@ -1,6 +1,8 @@
 // vlaprobe sheet, vlaprobe preview: pictures of many episodes on one page.
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "runtime/cli/filled.h"
 #include "runtime/cli/load.h"
 #include "runtime/run/preview.h"
@@ -11,6 +13,7 @@ namespace {
 
 struct Arguments {
   std::string input, task, out;
+  std::optional<std::uint32_t> start;
   run::SheetOptions options;
   AssetOptions assets;
 };
@@ -47,6 +50,8 @@ void add_preview(CLI::App& app, int& exit) {
   CLI::App* verb =
       app.add_subcommand("preview", "the first picture of every start of a task, as one PNG");
   verb->footer("example: vlaprobe preview suite/intact.probe carrot_on_plate -o starts.png");
+  verb->add_option("--start", arguments->start,
+                   "one start, counted from 0, in the camera's own size");
   verb->add_option("F", arguments->input, ".probe text or .plan file")->required();
   verb->add_option("TASK", arguments->task, "task name")->required();
   verb->add_option("-o,--out", arguments->out, "PNG to write")->required();
@@ -55,12 +60,19 @@ void add_preview(CLI::App& app, int& exit) {
   add_asset_option(*verb, arguments->assets);
   refuse_empty_values(*verb);
   verb->callback([arguments, &exit] {
+    arguments->assets.tasks = arguments->task;
     LoadedPlan loaded = load_plan(arguments->input, arguments->assets);
     exit = loaded.exit;
     if (!loaded.plan) return;
     const auto task = find_task(*loaded.plan, arguments->task, exit);
     if (!task) return;
     arguments->options.assets = arguments->assets.root;
+    if (arguments->start) {
+      exit = written(run::write_start(*loaded.plan, *task, *arguments->start, arguments->out,
+                                      arguments->options.assets),
+                     arguments->out);
+      return;
+    }
     exit = written(run::write_preview(*loaded.plan, *task, arguments->out, arguments->options),
                    arguments->out);
   });

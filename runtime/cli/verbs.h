@@ -23,10 +23,14 @@ int report(const Failure& failure);
 struct AssetOptions {
   std::string root;     // empty: found by itself
   std::string library;  // the folder that holds std/; empty: found by itself
+  // Glob over the tasks that are wanted. Where the assets lack what others need, only these are
+  // compiled; empty: all.
+  std::string tasks;
 };
 void add_asset_option(CLI::App& verb, AssetOptions& options);
 
 // Each adds its verb; the callback stores the exit code.
+void add_assets(CLI::App& app, int& exit);
 void add_audit(CLI::App& app, int& exit);
 void add_check(CLI::App& app, int& exit);
 void add_build(CLI::App& app, int& exit);

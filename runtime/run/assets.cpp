@@ -9,9 +9,10 @@
 #include <sstream>
 
 #include "runtime/plan/plan.h"
+#include "runtime/scene/collision_mesh.h"
 #include "runtime/scene/hull.h"
 #include "runtime/scene/image.h"
-#include "runtime/scene/mesh_import.h"
+#include "runtime/scene/mesh_cache.h"
 
 namespace probe::run {
 namespace {
@@ -37,17 +38,40 @@ std::string folder_of_program() {
   return error ? std::string() : program.parent_path().string();
 }
 
-// The points of each collision mesh of a link, in the link's frame: one convex part a mesh.
+scene::CollisionShape make_primitive(const robot::Primitive& primitive) {
+  switch (primitive.kind) {
+    case robot::Primitive::Kind::kSphere:
+      return scene::make_sphere_shape(primitive.half.x());
+    case robot::Primitive::Kind::kCylinder:
+      return scene::make_cylinder_shape(primitive.half.x(), primitive.half.z());
+    case robot::Primitive::Kind::kBox:
+      break;
+  }
+  return scene::make_box_shape(primitive.half);
+}
+
+// Each collision mesh of a link, one convex part a mesh, and its primitives, in the link's frame.
 Result<std::shared_ptr<const scene::CollisionShape>> load_link_shape(
-    const robot::Link& link, const std::string& urdf_folder) {
+    const robot::Link& link, const std::string& urdf_folder, const scene::MeshLimits& limits) {
   std::vector<std::vector<Vec3>> components;
   for (const robot::MeshRef& ref : link.collisions) {
     PROBE_ASSIGN(scene::TriangleSoup soup,
-                 scene::load_obj_triangles(urdf_folder + ref.path, ref.scale));
+                 scene::load_triangles(urdf_folder + ref.path, ref.scale, limits));
     for (Vec3& point : soup.vertices) point = ref.origin.apply(point);
     components.push_back(std::move(soup.vertices));
   }
-  PROBE_ASSIGN(scene::CollisionShape shape, scene::make_collision_shape(components, link.name));
+  scene::CollisionShape shape;
+  if (!components.empty()) {
+    PROBE_ASSIGN(shape, scene::make_collision_shape(components, link.name));
+  }
+  if (!link.primitives.empty()) {
+    std::vector<scene::PlacedShape> all;
+    if (!components.empty()) all.push_back({std::move(shape), Pose{}});
+    for (const robot::Primitive& primitive : link.primitives) {
+      all.push_back({make_primitive(primitive), primitive.origin});
+    }
+    shape = scene::join_shapes(std::move(all));
+  }
   return std::shared_ptr<const scene::CollisionShape>(
       std::make_shared<scene::CollisionShape>(std::move(shape)));
 }
@@ -124,14 +148,15 @@ class SharedAssets::Loader {
   Status mesh(std::uint32_t asset) {
     if (assets_.meshes_.contains(asset)) return {};
     PROBE_TRY(verify(asset));
-    PROBE_ASSIGN(assets_.meshes_[asset], scene::load_mesh(path_of(asset), {1, 1, 1}, limits()));
+    PROBE_ASSIGN(assets_.meshes_[asset], scene::shared_mesh(path_of(asset), {1, 1, 1}, limits()));
     return {};
   }
 
   Status shape(std::uint32_t asset) {
     if (assets_.shapes_.contains(asset)) return {};
     PROBE_TRY(verify(asset));
-    PROBE_ASSIGN(scene::CollisionShape shape, scene::load_collision_obj(path_of(asset), {1, 1, 1}));
+    PROBE_ASSIGN(scene::CollisionShape shape,
+                 scene::load_collision_mesh(path_of(asset), {1, 1, 1}, limits()));
     assets_.shapes_[asset] = std::make_shared<scene::CollisionShape>(std::move(shape));
     return {};
   }
@@ -172,12 +197,12 @@ class SharedAssets::Loader {
         RobotParts::LinkVisual visual;
         visual.link = static_cast<int>(i);
         visual.origin = ref.origin;
-        PROBE_ASSIGN(visual.mesh, scene::load_mesh(prefix + ref.path, ref.scale, limits()));
+        PROBE_ASSIGN(visual.mesh, scene::shared_mesh(prefix + ref.path, ref.scale, limits()));
         parts->visuals.push_back(std::move(visual));
       }
       parts->shapes.emplace_back();
-      if (!link.collisions.empty()) {
-        PROBE_ASSIGN(parts->shapes.back(), load_link_shape(link, prefix));
+      if (link.can_collide()) {
+        PROBE_ASSIGN(parts->shapes.back(), load_link_shape(link, prefix, limits()));
       }
     }
     assets_.robots_[record.urdf] = std::move(parts);
@@ -187,6 +212,7 @@ class SharedAssets::Loader {
   scene::MeshLimits limits() const {
     scene::MeshLimits limits;
     limits.asset_root = assets_.root_;
+    limits.self_contained = true;
     return limits;
   }
 

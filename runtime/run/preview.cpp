@@ -33,4 +33,24 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
   return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
 }
 
+Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t index,
+                   const std::string& png_path, const std::string& assets_folder) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  const std::size_t count = plan.episodes(record).size();
+  if (index >= count) {
+    return Failure{"usage",
+                   "task `" + std::string(plan.text(record.name)) + "` has " +
+                       std::to_string(count) + " starts, counted from 0",
+                   ""};
+  }
+  PROBE_ASSIGN(const std::string root, find_asset_root(assets_folder));
+  const std::uint32_t tasks[] = {task};
+  PROBE_ASSIGN(const auto assets, SharedAssets::load(plan, root, tasks));
+  PROBE_ASSIGN(auto world, EpisodeWorld::create(plan, task, assets));
+  PROBE_ASSIGN(auto view, SceneView::create(plan, task, assets));
+  PROBE_TRY(world->reset(index));
+  PROBE_ASSIGN(const render::FrameView frame, view->render(world->q(), world->objects()));
+  return scene::write_png(png_path, frame.width, frame.height, frame.rgb);
+}
+
 }  // namespace probe::run

@@ -15,4 +15,8 @@ namespace probe::run {
 Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::string& png_path,
                      const SheetOptions& options = {});
 
+// One start's first picture in the camera's own size, as a policy gets it.
+Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t index,
+                   const std::string& png_path, const std::string& assets = {});
+
 }  // namespace probe::run

@@ -59,7 +59,7 @@ Result<TriangleSoup> load_triangles(const std::string& path, const Vec3& scale,
 Result<CollisionShape> load_collision_mesh(const std::string& path, const Vec3& scale,
                                            const MeshLimits& limits) {
   PROBE_ASSIGN(const TriangleSoup soup, load_triangles(path, scale, limits));
-  PROBE_ASSIGN(CollisionShape shape, make_mesh_shape(soup, path));
+  PROBE_ASSIGN(CollisionShape shape, make_mesh_shape(soup, path, {.max_vertices = 64}));
   if (shape.parts.size() > kMaxCollisionParts) {
     return Failure{"asset",
                    "falls into " + std::to_string(shape.parts.size()) +

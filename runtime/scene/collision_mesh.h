@@ -12,7 +12,7 @@
 namespace probe::scene {
 
 // More separate pieces make a slow world and mostly mean a picture mesh: they are refused.
-inline constexpr std::size_t kMaxCollisionParts = 64;
+inline constexpr std::size_t kMaxCollisionParts = 256;
 
 // The triangles of a file. In an OBJ whose name has "collision" in it a component is what shares
 // vertex indices, as convex decompositions are stored; everywhere else vertices are split at seams,

@@ -1,0 +1,59 @@
+// vlaprobe assets import
+#include <fmt/format.h>
+
+#include "runtime/assets/import.h"
+#include "runtime/cli/filled.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/run/assets.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  assets::ImportOptions options;
+  bool fill = false;
+};
+
+int import_verb(Arguments& arguments) {
+  if (arguments.fill) {
+    auto own = run::find_asset_root();
+    if (!own) return report(own.failure());
+    arguments.options.fill_from = *own;
+  }
+  auto imported = assets::import_data(arguments.options);
+  if (!imported) return report(imported.failure());
+  std::size_t counts[4] = {};
+  for (const assets::ImportLine& line : imported->lines) {
+    ++counts[static_cast<std::size_t>(line.verdict)];
+    fmt::print("{:<8} {}  {}\n", assets::to_word(line.verdict), line.name, line.text);
+  }
+  fmt::print(stderr, "{}: {} taken, {} odd, {} missing, {} filled in; {} files, {:.1f} MB\n",
+             arguments.options.to, counts[0], counts[1], counts[2], counts[3], imported->files,
+             static_cast<double>(imported->bytes) / 1e6);
+  fmt::print(stderr, "next: vlaprobe check suite/intact.probe --assets {}\n", arguments.options.to);
+  return kFine;
+}
+
+}  // namespace
+
+void add_assets(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("assets", "asset folders of your own");
+  verb->require_subcommand(1);
+  CLI::App* import = verb->add_subcommand(
+      "import", "a SimplerEnv / ManiSkill2_real2sim data folder as an asset folder");
+  import->footer(
+      "one line a model: taken, odd (taken, with a remark) or missing; every verb takes the result "
+      "with --assets\n"
+      "example: vlaprobe assets import SimplerEnv/ManiSkill2_real2sim -o simpler");
+  import->add_option("DIR", arguments->options.from, "the repository, its data folder, or above")
+      ->required();
+  import->add_option("-o,--out", arguments->options.to, "folder to make")->required();
+  import->add_flag("--fill", arguments->fill,
+                   "take what the suite needs and DIR lacks from vlaprobe's own assets");
+  refuse_empty_values(*import);
+  import->callback([arguments, &exit] { exit = import_verb(*arguments);
+});
+}  // namespace probe::cli
+
+}  // namespace probe::cli
