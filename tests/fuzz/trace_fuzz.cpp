@@ -1,12 +1,12 @@
 // Any bytes as a trace file: the reader refuses, or gives whole steps. The input is taken as the
 // file itself and, compressed, as its content with fresh check words.
 // links: probe_run zstd
+#include <sys/mman.h>
 #include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <span>
@@ -25,16 +25,19 @@ void need(bool truth) {
   if (!truth) std::abort();
 }
 
+// A file in memory: the reader opens it by its name in /proc.
+int memory_file() {
+  static const int file = memfd_create("trace", MFD_CLOEXEC);
+  return file;
+}
 const std::string& path() {
-  static const std::string name = "/tmp/vlaprobe-fuzz-" + std::to_string(getpid()) + ".trace";
+  static const std::string name = "/proc/self/fd/" + std::to_string(memory_file());
   return name;
 }
 
 void read(const void* data, std::size_t size) {
-  std::FILE* file = std::fopen(path().c_str(), "wb");
-  need(file != nullptr);
-  need(size == 0 || std::fwrite(data, 1, size, file) == size);
-  std::fclose(file);
+  need(ftruncate(memory_file(), 0) == 0);
+  need(size == 0 || pwrite(memory_file(), data, size, 0) == static_cast<ssize_t>(size));
   const auto whole = run::read_trace(path());
   const auto prefix = run::read_trace_prefix(path());
   if (whole.ok()) {

@@ -94,7 +94,8 @@ TEST_CASE("several rules are read at once: a line for each, or task by task for 
   const Outcome all = sandbox().vlaprobe(judge + "--suite '*' --json");
   REQUIRE_MESSAGE(all.exit == 0, all.err);
   std::size_t suites = 0;
-  for (const json& reading : parsed(all.out)["suites"]) {
+  const json report = parsed(all.out);
+  for (const json& reading : report["suites"]) {
     const Outcome one =
         sandbox().vlaprobe(judge + "--suite " + reading["suite"].get<std::string>() + " --json");
     REQUIRE_MESSAGE(one.exit == 0, one.err);
