@@ -1,6 +1,8 @@
 // vlaprobe diff
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "runtime/cli/load.h"
 #include "runtime/inspect/plan_diff.h"
 #include "runtime/inspect/task_diff.h"
@@ -29,6 +31,11 @@ int diff_two_tasks(const Arguments& arguments) {
 int diff_two_plans(const Arguments& arguments) {
   LoadedPlan a = load_plan(arguments.file, arguments.assets);
   if (!a.plan) return a.exit;
+  if (!std::filesystem::exists(arguments.a) && a.plan->find_task(arguments.a)) {
+    return report({"usage",
+                   "`" + arguments.a + "` is one task of it; name another one to compare it with",
+                   arguments.file});
+  }
   LoadedPlan b = load_plan(arguments.a, arguments.assets);
   if (!b.plan) return b.exit;
   const auto diff = inspect::diff_plans(*a.plan, *b.plan);

@@ -9,8 +9,8 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/format/format.h"
+#include "runtime/base/file.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/plan/writer.h"
 
 namespace probe::cli {
 namespace {
@@ -23,7 +23,7 @@ Status rewrite(const std::string& path, const std::string& text) {
   const fs::path real = fs::canonical(path, error);
   const std::string target = error ? path : real.string();
   const fs::perms permissions = fs::status(target, error).permissions();
-  PROBE_TRY(plan::write_file(target, std::as_bytes(std::span(text))));
+  PROBE_TRY(write_file(target, std::as_bytes(std::span(text))));
   if (!error) fs::permissions(target, permissions, error);
   return {};
 }
@@ -79,7 +79,7 @@ void add_fmt(CLI::App& app, int& exit) {
     for (const std::string& file : tally.changed) fmt::print("{}\n", file);
     if (!tally.changed.empty()) {
       fmt::print(stderr, "{} of {} files {}\n", tally.changed.size(), arguments->files.size(),
-                 arguments->check ? "are not in canonical layout" : "laid out anew");
+                 arguments->check ? "not in canonical layout" : "laid out anew");
     }
   });
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "runtime/base/trig.h"
 #include "runtime/plan/source_line.h"
@@ -293,6 +294,8 @@ Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t tas
 
 Result<EpisodeWhy> why(const std::string& dir, const std::string& task, int episode,
                        std::optional<int> seed, const std::string& metric) {
+  if (!std::filesystem::exists(run::plan_path(dir)))
+    return Failure{"store", "no run here: its plan is absent", dir};
   PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(run::plan_path(dir)));
   // Names with a suite's prefix are understood here too.
   const auto index = plan.find_task(task);

@@ -20,11 +20,14 @@ Result<const plan::SuiteRecord*> choose_suite(const plan::Plan& plan, const std:
   if (name.empty()) return suites.empty() ? nullptr : suites.data();
   if (const auto index = plan.find_suite(name)) return &suites[*index];
   std::string known;
+  std::vector<std::string> names;
   for (const plan::SuiteRecord& suite : suites) {
-    if (!known.empty()) known += ", ";
-    known += plan.text(suite.name);
+    names.emplace_back(plan.text(suite.name));
+    known += (known.empty() ? "" : ", ") + names.back();
   }
-  return usage("no suite `" + name + "`; the plan has " + (known.empty() ? "none" : known),
+  const std::string near = did_you_mean(name, names);
+  return usage("no suite `" + name + "`" +
+                   (near.empty() ? "; the plan has " + (known.empty() ? "none" : known) : near),
                "--suite");
 }
 
