@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 
@@ -16,7 +15,7 @@
 #include "runtime/assets/output_folder.h"
 #include "runtime/assets/robot_files.h"
 #include "runtime/base/asset_path.h"
-#include "runtime/robot/urdf.h"
+#include "runtime/base/file.h"
 #include "runtime/scene/glb_writer.h"
 #include "runtime/scene/image.h"
 
@@ -28,13 +27,6 @@ namespace fs = std::filesystem;
 constexpr double kBoxSlack = 0.005;  // m that a mesh may differ from its database entry
 constexpr int kLargeTexture = 2048;
 constexpr std::size_t kManyTriangles = 20'000;
-
-Result<std::string> read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!file || bytes.empty()) return Failure{"asset", "cannot be read or is empty", path.string()};
-  return bytes;
-}
 
 // What a failure says, with the file's path relative to the data.
 std::string short_text(const Failure& failure, const std::string& from) {
@@ -212,7 +204,7 @@ class Import {
     const auto stage = data_.stages.find(std::string(scene.stage));
     std::vector<std::string> taken, odd;
     if (photo != data_.photos.end()) {
-      auto bytes = read_file(photo->second);
+      auto bytes = read_file(photo->second.string());
       auto texture =
           bytes ? scene::decode_image(std::as_bytes(std::span(*bytes)), photo->second.string())
                 : Result<scene::Texture>(bytes.failure());
@@ -252,50 +244,15 @@ class Import {
   Status add_robot() {
     const std::string name = "robots/widowx";
     if (!data_.urdf) return miss(name, "no wx250s.urdf in the data");
-    std::map<std::string, std::string> files;  // what is written, by path below `name`
-    std::map<std::string, std::string> sources;
-    const auto text = convert_robot(*data_.urdf, files, sources);
-    if (!text) return miss(name, short_text(text.failure(), options_.from));
-    for (const auto& [path, bytes] : files) {
-      PROBE_TRY(write(name + "/" + path, bytes, sources[path]));
+    const auto robot = convert_robot(data_.urdf->string(), limits_);
+    if (!robot) return miss(name, short_text(robot.failure(), options_.from));
+    for (const RobotFiles::File& file : robot->meshes) {
+      PROBE_TRY(write(name + "/" + file.path, file.bytes, relative(file.source)));
     }
-    PROBE_TRY(write(name + "/wx250s.urdf", *text, relative(*data_.urdf)));
+    PROBE_TRY(write(name + "/wx250s.urdf", robot->urdf, relative(*data_.urdf)));
     say(Verdict::kTaken, name,
-        fmt::format("{}: {} mesh files", data_.urdf->filename().string(), files.size()));
+        fmt::format("{}: {} mesh files", data_.urdf->filename().string(), robot->meshes.size()));
     return {};
-  }
-
-  Result<std::string> convert_robot(const fs::path& urdf, std::map<std::string, std::string>& files,
-                                    std::map<std::string, std::string>& sources) {
-    PROBE_TRY(robot::load_urdf(urdf.string()));
-    PROBE_ASSIGN(const std::string text, read_file(urdf));
-    std::map<std::string, std::string> names;  // by file, scale and use
-    return replace_meshes(text, [&](const MeshElement& element) -> Result<std::string> {
-      std::string& name =
-          names[element.file + "|" + element.scale + (element.is_collision ? "|felt" : "|seen")];
-      if (!name.empty()) return name;
-      PROBE_ASSIGN(const std::string path, resolve_urdf_file(urdf.parent_path().string(),
-                                                             element.file, limits_.asset_root));
-      Vec3 scale(1, 1, 1);
-      if (!element.scale.empty() &&
-          std::sscanf(element.scale.c_str(), "%lf %lf %lf", &scale[0], &scale[1], &scale[2]) != 3) {
-        return Failure{"urdf", "a mesh has the scale `" + element.scale + "`", urdf.string()};
-      }
-      const std::string stem = "meshes/" + fs::path(path).stem().string();
-      name = stem + (element.is_collision ? "_collision.obj" : ".glb");
-      for (int i = 2; files.contains(name); ++i) {  // the same file at another scale
-        name = fmt::format("{}_{}{}", stem, i, element.is_collision ? "_collision.obj" : ".glb");
-      }
-      if (element.is_collision) {
-        PROBE_ASSIGN(CollisionFile file, convert_collision(path, scale, limits_, false));
-        files[name] = std::move(file.obj);
-      } else {
-        PROBE_ASSIGN(VisualFile file, convert_visual(path, scale, limits_, stem));
-        files[name] = std::move(file.glb);
-      }
-      sources[name] = relative(path);
-      return name;
-    });
   }
 
   // ---- what is not there
@@ -314,7 +271,7 @@ class Import {
     }
     std::sort(paths.begin(), paths.end());
     for (const fs::path& path : paths) {
-      PROBE_ASSIGN(const std::string bytes, read_file(path));
+      PROBE_ASSIGN(const std::string bytes, read_file(path.string()));
       const std::string below = path.lexically_relative(options_.fill_from).generic_string();
       PROBE_TRY(out_.write(below, bytes, "vlaprobe's own " + below));
     }

@@ -55,12 +55,13 @@ std::uint64_t OutputFolder::bytes() const {
   return sum;
 }
 
-Status OutputFolder::finish() {
-  const std::string json = manifest_.to_json();
-  std::ofstream out(fs::path(temporary_) / "manifest.json", std::ios::binary);
-  out << json;
-  out.close();
-  if (!out) return Failure{"io", "cannot write the manifest", temporary_};
+Status OutputFolder::finish(bool with_manifest) {
+  if (with_manifest) {
+    std::ofstream out(fs::path(temporary_) / "manifest.json", std::ios::binary);
+    out << manifest_.to_json();
+    out.close();
+    if (!out) return Failure{"io", "cannot write the manifest", temporary_};
+  }
   std::error_code error;
   fs::remove(target_, error);  // an empty folder of that name
   fs::rename(temporary_, target_, error);

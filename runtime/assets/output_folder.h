@@ -22,8 +22,8 @@ class OutputFolder {
   bool has(std::string_view path) const { return manifest_.find(path) != nullptr; }
   std::uint64_t bytes() const;
 
-  // Writes manifest.json and gives the folder its name.
-  Status finish();
+  // Gives the folder its name; `with_manifest` writes manifest.json first.
+  Status finish(bool with_manifest = true);
 
  private:
   OutputFolder(std::string target, std::string temporary)

@@ -1,9 +1,18 @@
 #include "runtime/assets/robot_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
+#include <map>
+#include <set>
+
+#include "runtime/assets/model_files.h"
 
 #include "runtime/base/asset_path.h"
+#include "runtime/base/file.h"
+#include "runtime/robot/urdf.h"
 
 namespace probe::assets {
 namespace {
@@ -65,6 +74,44 @@ Result<std::string> resolve_urdf_file(const std::string& folder, const std::stri
     return resolve_inside(above.parent_path(), inside, root);
   }
   return Failure{"asset", "no folder above the description is called `" + package + "`", written};
+}
+
+Result<RobotFiles> convert_robot(const std::string& urdf, const scene::MeshLimits& limits) {
+  PROBE_TRY(robot::load_urdf(urdf));
+  PROBE_ASSIGN(const std::string text, read_file(urdf));
+  const std::string folder = fs::absolute(urdf).lexically_normal().parent_path().string();
+  RobotFiles robot;
+  std::map<std::string, std::string> names;  // by file, scale and use
+  std::set<std::string> taken;
+  auto replaced = replace_meshes(text, [&](const MeshElement& element) -> Result<std::string> {
+    const char* use = element.is_collision ? "_collision.obj" : ".glb";
+    std::string& name = names[element.file + "|" + element.scale + "|" + use];
+    if (!name.empty()) return name;
+    PROBE_ASSIGN(const std::string path,
+                 resolve_urdf_file(folder, element.file, limits.asset_root));
+    Vec3 scale(1, 1, 1);
+    if (!element.scale.empty() &&
+        std::sscanf(element.scale.c_str(), "%lf %lf %lf", &scale[0], &scale[1], &scale[2]) != 3) {
+      return Failure{"urdf", "a mesh has the scale `" + element.scale + "`", urdf};
+    }
+    const std::string stem = "meshes/" + fs::path(path).stem().string();
+    name = stem + use;
+    // The same file at another scale, or another of the same name.
+    for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}{}", stem, i, use);
+    RobotFiles::File file{name, "", path};
+    if (element.is_collision) {
+      PROBE_ASSIGN(CollisionFile felt, convert_collision(path, scale, limits, false));
+      file.bytes = std::move(felt.obj);
+    } else {
+      PROBE_ASSIGN(VisualFile seen, convert_visual(path, scale, limits, stem));
+      file.bytes = std::move(seen.glb);
+    }
+    robot.meshes.push_back(std::move(file));
+    return name;
+  });
+  if (!replaced) return replaced.failure();
+  robot.urdf = *std::move(replaced);
+  return robot;
 }
 
 }  // namespace probe::assets

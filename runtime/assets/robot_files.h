@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/scene/mesh_import.h"
 
 namespace probe::assets {
 
@@ -24,5 +26,19 @@ Result<std::string> replace_meshes(
 // above it. Nothing outside `root`.
 Result<std::string> resolve_urdf_file(const std::string& folder, const std::string& written,
                                       const std::string& root);
+
+struct RobotFiles {
+  struct File {
+    std::string path;  // below the description's folder
+    std::string bytes;
+    std::string source;
+  };
+  std::string urdf;
+  std::vector<File> meshes;
+};
+
+// Reads and checks the description and converts every mesh it names, scales baked in. Fails as
+// robot::load_urdf and the mesh readers do. Files may stand anywhere below limits.asset_root.
+Result<RobotFiles> convert_robot(const std::string& urdf, const scene::MeshLimits& limits);
 
 }  // namespace probe::assets

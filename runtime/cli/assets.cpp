@@ -1,7 +1,8 @@
-// vlaprobe assets import
+// vlaprobe assets import, vlaprobe assets pack
 #include <fmt/format.h>
 
 #include "runtime/assets/import.h"
+#include "runtime/assets/pack.h"
 #include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/run/assets.h"
@@ -34,6 +35,29 @@ int import_verb(Arguments& arguments) {
   return kFine;
 }
 
+void add_pack(CLI::App& assets, int& exit) {
+  auto options = std::make_shared<assets::PackOptions>();
+  CLI::App* pack = assets.add_subcommand("pack", "a mesh or a robot of yours as one asset");
+  pack->footer(
+      "reads glb, gltf, dae, obj, stl, urdf; z is up in the result; prints the box to write\n"
+      "example: vlaprobe assets pack mug/mug.obj -o my_assets/objects/mug --scale 0.001");
+  pack->add_option("FILE", options->from, "mesh or URDF")->required();
+  pack->add_option("-o,--out", options->to, "folder to make")->required();
+  pack->add_option("--scale", options->scale, "metres a unit of the file (default: 1)");
+  pack->add_option("--collision", options->collision,
+                   "mesh of convex parts (default: collision.* beside FILE, else FILE itself)");
+  refuse_empty_values(*pack);
+  pack->callback([options, &exit] {
+    const auto packed = assets::pack_asset(*options);
+    if (!packed) {
+      exit = report(packed.failure());
+      return;
+    }
+    fmt::print("{}: {}\n", options->to, *packed);
+    exit = kFine;
+  });
+}
+
 }  // namespace
 
 void add_assets(CLI::App& app, int& exit) {
@@ -54,6 +78,7 @@ void add_assets(CLI::App& app, int& exit) {
   refuse_empty_values(*import);
   import->callback([arguments, &exit] { exit = import_verb(*arguments);
 });
+add_pack(*verb, exit);
 }  // namespace probe::cli
 
 }  // namespace probe::cli

@@ -47,14 +47,20 @@ class NamedFiles : public Assimp::DefaultIOSystem {
     }
   }
 
-  bool Exists(const char* path) const override {
-    return allowed_.contains(key(path)) && DefaultIOSystem::Exists(path);
-  }
+  bool Exists(const char* path) const override { return !find(path).empty(); }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
-    return allowed_.contains(key(path)) ? DefaultIOSystem::Open(path, mode) : nullptr;
+    const std::string file = find(path);
+    return file.empty() ? nullptr : DefaultIOSystem::Open(file.c_str(), mode);
   }
 
  private:
+  // assimp asks for buffers of glTF by their URI as it stands.
+  std::string find(const std::string& path) const {
+    for (const std::string& name : {path, percent_decoded(path)}) {
+      if (allowed_.contains(key(name))) return name;
+    }
+    return "";
+  }
   static std::string key(const std::string& path) {
     return fs::absolute(path).lexically_normal().string();
   }

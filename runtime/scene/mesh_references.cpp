@@ -33,26 +33,6 @@ Result<std::string> read_text(const std::string& path) {
   return text;
 }
 
-// "a%20b" is "a b".
-std::string percent_decoded(std::string_view text) {
-  const auto digit = [](char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    const int lower = c | 0x20;
-    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
-  };
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 &&
-        digit(text[i + 2]) >= 0) {
-      out += static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
-      i += 2;
-    } else {
-      out += text[i];
-    }
-  }
-  return out;
-}
-
 std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
@@ -87,6 +67,10 @@ std::vector<std::string> named_by_gltf(std::string_view json) {
 std::vector<std::string> named_by_collada(std::string_view text) {
   constexpr std::string_view kOpen = "<init_from", kClose = "</init_from>";
   std::vector<std::string> names;
+  // Surfaces have an <init_from> too, which names an image of this library.
+  const std::size_t library = text.find("<library_images");
+  if (library == text.npos) return names;
+  text = text.substr(library, text.find("</library_images>", library) - library);
   for (std::size_t at = text.find(kOpen); at != text.npos; at = text.find(kOpen, at + 1)) {
     const std::size_t from = text.find('>', at), to = text.find(kClose, at);
     if (from == text.npos || to == text.npos || from + 1 > to) continue;
@@ -178,6 +162,25 @@ class Scan {
 };
 
 }  // namespace
+
+std::string percent_decoded(std::string_view text) {
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    const int lower = c | 0x20;
+    return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+  };
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && digit(text[i + 1]) >= 0 &&
+        digit(text[i + 2]) >= 0) {
+      out += static_cast<char>(16 * digit(text[i + 1]) + digit(text[i + 2]));
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
 
 std::string reference_root(const std::string& path, const std::string& asset_root) {
   if (!asset_root.empty()) return asset_root;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -21,6 +22,9 @@ struct MeshReference {
 // than kMaxMeshBytes. `root` as MeshLimits::asset_root.
 Result<std::vector<MeshReference>> mesh_references(const std::string& path,
                                                    const std::string& root);
+
+// "a%20b" is "a b", as URIs of glTF and Collada write it.
+std::string percent_decoded(std::string_view text);
 
 inline constexpr std::size_t kMaxMeshBytes = std::size_t{512} << 20;
 

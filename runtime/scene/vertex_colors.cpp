@@ -6,6 +6,8 @@
 namespace probe::scene {
 namespace {
 
+constexpr int kSide = 4;  // texels of a triangle's square
+
 bool all_equal(std::span<const LinearRgb> colors) {
   return std::all_of(colors.begin(), colors.end(), [&](const LinearRgb& c) {
     return c.r == colors[0].r && c.g == colors[0].g && c.b == colors[0].b;
@@ -42,21 +44,26 @@ void bake_vertex_colors(std::span<const LinearRgb> colors, MeshPart& part, Mater
   }
   const std::size_t triangles = part.indices.size() / 3;
   const int across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(triangles))));
-  Texture texture{2 * across, 2 * across, {}};
-  texture.rgba.assign(static_cast<std::size_t>(16) * static_cast<std::size_t>(across) *
-                          static_cast<std::size_t>(across),
-                      255);
+  Texture texture{kSide * across, kSide * across, {}};
+  texture.rgba.resize(4 * static_cast<std::size_t>(texture.width) *
+                      static_cast<std::size_t>(texture.height));
   MeshPart split;
   split.material = part.material;
   for (std::size_t t = 0; t < triangles; ++t) {
-    const int x = 2 * static_cast<int>(t % static_cast<std::size_t>(across));
-    const int y = 2 * static_cast<int>(t / static_cast<std::size_t>(across));
+    const int x = kSide * static_cast<int>(t % static_cast<std::size_t>(across));
+    const int y = kSide * static_cast<int>(t / static_cast<std::size_t>(across));
     const std::uint32_t* corner = part.indices.data() + 3 * t;
     const LinearRgb a = colors[corner[0]], b = colors[corner[1]], c = colors[corner[2]];
-    put(texture, x, y, a);
-    put(texture, x + 1, y, b);
-    put(texture, x, y + 1, c);
-    put(texture, x + 1, y + 1, {b.r + c.r - a.r, b.g + c.g - a.g, b.b + c.b - a.b});
+    for (int j = 0; j < kSide; ++j) {
+      for (int i = 0; i < kSide; ++i) {
+        const float u = static_cast<float>(i) / (kSide - 1),
+                    v = static_cast<float>(j) / (kSide - 1);
+        const float w = 1 - u - v;
+        put(texture, x + i, y + j,
+            {w * a.r + u * b.r + v * c.r, w * a.g + u * b.g + v * c.g,
+             w * a.b + u * b.b + v * c.b});
+      }
+    }
     for (int k = 0; k < 3; ++k) {
       const std::size_t from = 3 * std::size_t{corner[k]};
       for (std::size_t j = 0; j < 3; ++j) {
@@ -64,8 +71,8 @@ void bake_vertex_colors(std::span<const LinearRgb> colors, MeshPart& part, Mater
         split.normals.push_back(part.normals[from + j]);
       }
       const float side = static_cast<float>(texture.width);
-      split.uv.push_back((static_cast<float>(x + (k == 1 ? 1 : 0)) + 0.5f) / side);
-      split.uv.push_back((static_cast<float>(y + (k == 2 ? 1 : 0)) + 0.5f) / side);
+      split.uv.push_back((static_cast<float>(x + (k == 1 ? kSide - 1 : 0)) + 0.5f) / side);
+      split.uv.push_back((static_cast<float>(y + (k == 2 ? kSide - 1 : 0)) + 0.5f) / side);
       split.indices.push_back(static_cast<std::uint32_t>(3 * t) + static_cast<std::uint32_t>(k));
     }
   }

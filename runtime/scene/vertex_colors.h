@@ -9,8 +9,9 @@
 
 namespace probe::scene {
 
-// Gives `part` (one linear colour a vertex, in [0, 1]) a texture with 2 x 2 texels a triangle, the
-// three corners at texel centres: bilinear reading between them is the linear mix of the corners.
+// Gives `part` (one linear colour a vertex, in [0, 1]) a texture with 4 x 4 texels a triangle, the
+// three corners at texel centres: bilinear reading between them is the linear mix of the corners,
+// but along the side between the second and the third, where it may be off by a few levels.
 // Vertices are no longer shared afterwards. Colours that are all equal become `material`'s factor.
 void bake_vertex_colors(std::span<const LinearRgb> colors, MeshPart& part, Material& material,
                         std::vector<Texture>& textures);
