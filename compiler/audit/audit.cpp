@@ -318,20 +318,26 @@ class Auditor {
     finding.place = place(diagnostic.primary);
     finding.allowed = std::move(reason);
     if (!about.is_none()) {
-      // The task's own name is the last one before the place that was doubted.
-      const std::string& file = compilation_.sources.file(about.file).name();
-      std::uint32_t best = 0;
-      for (const std::uint32_t task : scope_) {
-        const plan::SpanRecord* span = plan_.span_of(kTaskSpan, task);
-        if (span == nullptr || task_place(task).file != file) continue;
-        if (span->begin < about.begin || span->begin > diagnostic.primary.begin ||
-            span->begin < best)
-          continue;
-        best = span->begin;
-        finding.tasks = {name_of(task)};
-      }
+      const auto task = task_before(about, diagnostic.primary);
+      if (task && std::find(scope_.begin(), scope_.end(), *task) == scope_.end()) return;
+      if (task) finding.tasks = {name_of(*task)};
     }
     add(std::move(finding));
+  }
+
+  // The task whose name is the last one before a place in its declaration.
+  std::optional<std::uint32_t> task_before(const Span& declaration, const Span& at) const {
+    const std::string& file = compilation_.sources.file(declaration.file).name();
+    std::optional<std::uint32_t> best;
+    std::uint32_t begin = declaration.begin;
+    for (std::uint32_t task = 0; task < plan_.tasks().size(); ++task) {
+      const plan::SpanRecord* span = plan_.span_of(kTaskSpan, task);
+      if (span == nullptr || span->begin < begin || span->begin > at.begin) continue;
+      if (task_place(task).file != file) continue;
+      begin = span->begin;
+      best = task;
+    }
+    return best;
   }
 
   const Compilation& compilation_;

@@ -77,7 +77,7 @@ TEST_CASE("each verb has twenty other forms or more, none of them a published in
   for (const char* base :
        {"carrot_to_plate", "stack_cube", "eggplant_into_basket", "carrot_carried"}) {
     CHECK_MESSAGE(forms[base].size() >= 20, base);
-    MESSAGE(base << ": " << forms[base].size() << " forms");
+    MESSAGE(std::string(base) << ": " << forms[base].size() << " forms");
   }
 }
 

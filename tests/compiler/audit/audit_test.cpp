@@ -177,6 +177,18 @@ TEST_CASE("the same words under another phrase, and the same task twice, are fou
   CHECK(own.find(Kind::kDuplicate, "copied") != nullptr);
 }
 
+TEST_CASE("a warning about a task of another suite is no finding of this one") {
+  const std::string text =
+      "@allow(absent, \"a test\")\nvariant odd of carrot_on_plate {\n"
+      "  say \"put {the source} on {the target}, not on {avoid the towel}\"\n}\n"
+      "suite own { tasks { carrot_on_plate }; seeds 1 }\nsuite odd_one { tasks { odd }; seeds 1 "
+      "}\n";
+  CHECK(audit_text(text).audit.findings.empty());
+  const std::string first = text.substr(0, text.find("suite own"));
+  CHECK(audit_text(first + "suite odd_one { tasks { odd }; seeds 1 }\n")
+            .find(Kind::kWarning, "odd") != nullptr);
+}
+
 TEST_CASE("a variant that moves the goal alone is no irregularity") {
   const Audited own = audit_text(
       "metrics ever like put_clean { success = once resting_on(source, target) }\n"
