@@ -119,7 +119,8 @@ class Explainer {
     PROBE_TRY(judge_.begin(trace.start->starts));
     for (std::size_t i = 0; i < steps; ++i) {
       PROBE_TRY(judge_.step(trace.steps[i].sample));
-      const auto distances = view_.distances(judge_);
+      count_runs();
+      const auto distances = view_.distances(judge_, run_lengths_);
       for (std::size_t k = 0; k < chosen.size(); ++k) {
         History& h = histories[k];
         note(h, static_cast<int>(i) + 1, judge_.register_value(h.core).x(), judge_.value(chosen[k]),
@@ -132,6 +133,7 @@ class Explainer {
     }
     // Once more, because registers are only known while the judge stands at their step.
     PROBE_TRY(judge_.begin(trace.start->starts));
+    std::ranges::fill(run_lengths_, 0);
     for (std::size_t i = 0; i < steps; ++i) {
       PROBE_TRY(judge_.step(trace.steps[i].sample));
       count_runs();

@@ -110,7 +110,8 @@ std::vector<std::uint16_t> ProgramView::conditions(std::uint16_t reg) const {
   return found;
 }
 
-std::vector<std::uint32_t> ProgramView::distances(const vm::Judge& judge) const {
+std::vector<std::uint32_t> ProgramView::distances(const vm::Judge& judge,
+                                                  const std::vector<int>& held) const {
   std::vector<std::uint32_t> to_true(registers(), 0), to_false(registers(), 0);
   for (std::size_t i = 0; i < registers(); ++i) {
     const plan::Instruction& in = at(static_cast<std::uint16_t>(i));
@@ -129,6 +130,12 @@ std::vector<std::uint32_t> ProgramView::distances(const vm::Judge& judge) const 
         to_true[i] = to_false[in.a];
         to_false[i] = to_true[in.a];
         break;
+      case Op::kHOLD: {
+        const auto reg = static_cast<std::uint16_t>(i);
+        to_true[i] = value ? 0 : to_true[in.a] + hold(reg) - static_cast<std::uint32_t>(held[i]);
+        to_false[i] = value ? 1 : 0;
+        break;
+      }
       default: {
         const std::uint32_t step = static_cast<Op>(in.op) == Op::kKB ? kFar : 1;
         to_true[i] = value ? 0 : step;

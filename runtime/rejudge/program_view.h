@@ -35,8 +35,9 @@ class ProgramView {
   std::vector<std::uint16_t> conditions(std::uint16_t reg) const;
 
   // How many conditions must change until each truth is `true`, after the judge's last step: 0 for
-  // those that are. An infinite distance is never less.
-  std::vector<std::uint32_t> distances(const vm::Judge& judge) const;
+  // those that are. A HOLD also lacks the steps that it has not been held: `held` says by register
+  // for how many its operand has been true. An infinite distance is never less.
+  std::vector<std::uint32_t> distances(const vm::Judge& judge, const std::vector<int>& held) const;
   // The conditions below a truth that make it what it is.
   std::vector<bool> deciding(std::uint16_t reg, const vm::Judge& judge) const;
 

@@ -6,6 +6,7 @@
 #include "runtime/rejudge/dimension.h"
 #include "runtime/rejudge/explain.h"
 #include "runtime/rejudge/match.h"
+#include "runtime/rejudge/program_view.h"
 #include "runtime/rejudge/rescore.h"
 #include "tests/runtime/rejudge/made_trace.h"
 
@@ -144,6 +145,24 @@ TEST_CASE("an explanation names the deciding step and the numbers measured there
   CHECK((*never)[0].when.starts_with("never, nearest at step"));
   CHECK(!(*never)[0].conditions[0].truth);
   CHECK(explain(plan, 0, far, "nearly").failure().code == "usage");
+}
+
+TEST_CASE("what must be held is nearer to true the longer it has been held") {
+  const plan::Plan plan = small();
+  const ProgramView view(plan, plan.tasks()[0]);
+  std::uint16_t hold = 0;
+  while (view.op(hold) != plan::Op::kHOLD) ++hold;
+  vm::Judge judge(plan, 0);
+  const run::Trace trace = made_trace(plan, 0);  // touched from step 10 on
+  REQUIRE(judge.begin(trace.start->starts).ok());
+  std::vector<int> held(view.registers());
+  std::vector<std::uint32_t> distances;
+  for (std::size_t step = 1; step <= 15; ++step) {
+    REQUIRE(judge.step(trace.steps[step - 1].sample).ok());
+    held[hold] = step < 10 ? 0 : static_cast<int>(step) - 9;
+    distances.push_back(view.distances(judge, held)[hold]);
+  }
+  CHECK(distances == std::vector<std::uint32_t>{6, 6, 6, 6, 6, 6, 6, 6, 6, 4, 3, 2, 1, 0, 0});
 }
 
 TEST_CASE("numbers are written in people's units, with the digits that tell them apart") {
