@@ -1,0 +1,273 @@
+// Predicates and metrics, judged over worlds made by hand. Each case begins with the productions it
+// holds.
+#include <doctest/doctest.h>
+
+#include "runtime/vm/judge.h"
+#include "tests/dsl/built.h"
+
+using namespace probe;
+using namespace probe::test;
+
+namespace {
+
+// The bodies of `red_on_tray`, in the order of the plan.
+enum Body : std::uint16_t { kSource, kTarget, kSurface, kLeft, kRight, kBase, kWrist, kBodies };
+
+// One control step: everything stands still where it settled, nothing touches.
+struct World {
+  std::vector<vm::BodyStart> starts;
+  vm::StepSample sample;
+
+  World() : starts(kBodies) {
+    sample.bodies.resize(kBodies);
+    at(kSource, {0.3, 0.4, 0.9});
+    at(kTarget, {0.3, 0.1, 0.85});
+    at(kSurface, {0, 0, 0.8});
+    for (std::uint16_t i = 0; i < kBodies; ++i) starts[i].position = sample.bodies[i].position;
+    starts[kSource].half = {0.02, 0.01, 0.01};
+    starts[kTarget].half = {0.03, 0.04, 0.005};
+    starts[kLeft].opening = {0, 1, 0};
+    starts[kRight].opening = {0, -1, 0};
+    sample.tcp = {0.3, 0.4, 1};
+    sample.grip = 0.5;
+  }
+  void at(Body body, const Vec3& position) {
+    sample.bodies[body].position = sample.bodies[body].origin = position;
+  }
+  // `a` pushes `b`, a < b.
+  World& touch(Body a, Body b, const Vec3& push) {
+    sample.contacts.push_back({a, b, push});
+    return *this;
+  }
+};
+
+// The values of metrics `m0`, `m1` ... of a text, step by step through `worlds`; after the last
+// one.
+std::vector<double> judged(const std::vector<std::string>& readouts, std::vector<World> worlds,
+                           const std::string& more = "") {
+  std::string text = more + "\nmetrics probe like plain {\n";
+  for (std::size_t i = 0; i < readouts.size(); ++i)
+    text += "m" + std::to_string(i) + " = " + readouts[i] + "\n";
+  const Built built(text + "}\nvariant v of red_on_tray { metrics probe }\n");
+  vm::Judge judge(built.plan(), built.index("v"));
+  REQUIRE(judge.begin(worlds[0].starts).ok());
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    worlds[i].sample.step = static_cast<double>(i + 1);
+    worlds[i].sample.time = 0.2 * static_cast<double>(i + 1);
+    const Status done = judge.step(worlds[i].sample);
+    REQUIRE_MESSAGE(done.ok(), to_text(done.failure()));
+  }
+  std::vector<double> values;
+  for (std::size_t i = 0; i < readouts.size(); ++i)
+    values.push_back(judge.value(*judge.find_metric("m" + std::to_string(i))));
+  return values;
+}
+
+void check_values(const std::vector<std::pair<std::string, double>>& wanted, const World& world,
+                  const std::string& more = "") {
+  std::vector<std::string> readouts;
+  for (const auto& [text, value] : wanted) readouts.push_back(text);
+  const auto found = judged(readouts, {world}, more);
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    CHECK_MESSAGE(found[i] == doctest::Approx(wanted[i].second).epsilon(1e-12), wanted[i].first);
+}
+
+// The source stands at these heights (m), one a control step.
+std::vector<World> heights(const std::vector<double>& list) {
+  std::vector<World> worlds;
+  for (const double height : list) {
+    worlds.emplace_back();
+    worlds.back().at(kSource, {0.3, 0.4, height});
+  }
+  return worlds;
+}
+
+}  // namespace
+
+TEST_CASE("e_sum, e_mul, e_un: numbers with dimensions, in the usual order") {
+  check_values({{"final height(source) + height(target) * 2 - 10cm", 0.9 + 1.7 - 0.1},
+                {"final (height(source) + height(target)) * 2", 3.5},
+                {"final -height(source) * 2", -1.8},
+                {"final 2 - grip - grip * 0.5", 1.25},
+                {"final height(source) * (1 / 8)", 0.9 / 8},
+                {"final height(position(source) - position(target) * 2)", 0.9 - 1.7},
+                {"final height(source) + 1m / 4", 1.15},
+                {"final max(height(source), height(target)) - min(1m, 2m)", -0.1},
+                {"final abs(height(target) - height(source))", 0.05}},
+               World());
+}
+
+TEST_CASE("e_mul: the judge has no division, but constants are divided when compiled") {
+  const auto a = [](const char* expr) {
+    const std::string file = std::string("metrics m like plain { x = final ") + expr +
+                             " }\nvariant v of red_on_tray { metrics m }\n";
+    return failed_build(file);
+  };
+  CHECK(a("grip / step").find("the judge has no division") != std::string::npos);
+  check_values({{"final height(source) + 3m / 4", 1.65}}, World());
+}
+
+TEST_CASE("e_cmp: six comparisons") {
+  check_values({{"at end height(source) < 90.1cm", 1},
+                {"at end height(source) <= 0.9m", 1},
+                {"at end height(source) > 90cm", 0},
+                {"at end height(source) >= 90cm", 1},
+                {"at end step == 1", 1},
+                {"at end step != 1", 0},
+                {"at end angle(velocity(source), up) <= 60deg", 0},
+                {"at end angle(velocity(source), up) > 90deg", 1}},
+               [] {
+                 World world;
+                 world.sample.bodies[kSource].velocity = {0.5, 0, -0.1};
+                 return world;
+               }());
+}
+
+TEST_CASE("expr, e_and, e_not: `not` before `and` before `or`; blocks hold a condition a line") {
+  const std::string yes = "height(source) > height(target)", no = "height(source) > 95cm",
+                    other = "grip > 0.6";
+  check_values({{"at end (" + yes + " or " + no + " and " + other + ")", 1},
+                {"at end ((" + yes + " or " + no + ") and " + other + ")", 0},
+                {"at end (not " + no + " and " + yes + ")", 1},
+                {"at end not (" + no + " or " + yes + ")", 0},
+                {"at end all {\n " + yes + "\n not " + no + "\n}", 1},
+                {"at end all {\n " + yes + "\n " + no + "\n}", 0},
+                {"at end any { " + no + "; " + yes + " }", 1},
+                {"at end not any { " + no + "; " + other + " }", 1}},
+               World());
+}
+
+TEST_CASE("readout, metric: what is kept of a signal over the steps") {
+  // above 0.95 m at steps 2, 3 and 5 of 6
+  const auto worlds = heights({0.9, 0.96, 0.97, 0.93, 0.99, 0.91});
+  const std::string up = " height(source) > 95cm";
+  const auto found =
+      judged({"at end" + up, "once" + up, "always" + up, "count" + up, "first" + up,
+              "first height(source) > 2m", "final height(source)", "max height(source)",
+              "min height(source)", "always height(source) > 80cm"},
+             worlds);
+  const double wanted[] = {0, 1, 0, 3, 2, -1, 0.91, 0.99, 0.9, 1};
+  for (std::size_t i = 0; i < std::size(wanted); ++i) {
+    CAPTURE(i);
+    CHECK(found[i] == wanted[i]);
+  }
+}
+
+TEST_CASE("e_cmp, e_not: `for n steps` is true while the last n were; `once` and `always` latch") {
+  const auto worlds = heights({0.9, 0.96, 0.97, 0.93, 0.99, 0.99});
+  const std::string up = "height(source) > 95cm";
+  CHECK(judged({"at end (" + up + " for 2 steps)", "at end (" + up + " for 3 steps)",
+                "once (" + up + " for 3 steps)", "count (" + up + " for 2 steps)",
+                "at end (once height(source) > 98cm and once height(source) < 92cm)",
+                "count once height(source) > 96.5cm", "count always height(source) < 96.5cm",
+                "at end (not once height(source) > 1m)"},
+               worlds) == std::vector<double>{1, 0, 0, 2, 1, 4, 2, 1});
+}
+
+TEST_CASE("metrics: `like` keeps the order and replaces by name; a task may set one of its own") {
+  const Built built(
+      "metrics a { success = at end height(source) > 1m; top = max height(source) }\n"
+      "metrics b like a { low = min height(source); success = once height(source) > 1m }\n"
+      "variant v of red_on_tray { metrics b; set top = final height(source); set extra = count "
+      "height(source) > 1m }\n");
+  std::string names;
+  for (const plan::MetricRecord& metric : built.plan().metrics(built.task("v"))) {
+    names += std::string(built.plan().text(metric.name)) + ":" + std::to_string(metric.readout) +
+             ":" + std::to_string(metric.type) + " ";
+  }
+  CHECK(names == "success:2:1 top:6:2 low:8:2 extra:4:2 ");
+}
+
+TEST_CASE("predicate, param, type: arguments by place and by name, defaults, any order of text") {
+  const std::string more =
+      "predicate near(a: body, b: object, gap: length = 2 * 10cm) = distance(a, b) < gap\n"
+      "predicate slow(o: object, pace: number, span: time = 1s) = speed(o) * span < pace * 1cm\n"
+      "predicate flat(o: object, tilt: angle) = angle(axis_z(o), up) <= tilt\n"
+      "predicate hit(a: body, least: impulse) = impulse(a, source) >= least\n"
+      "predicate gap(a: object, b: object) = distance_xy(a, b)\n";
+  World world;
+  world.touch(kSource, kSurface, {0, 0, -0.25});
+  check_values({{"at end near(source, target)", 0},
+                {"at end near(source, target, 31cm)", 1},
+                {"at end near(gap: 31cm, b: target, a: source)", 1},
+                {"at end near(surface, target, gap: 40cm)", 1},
+                {"at end slow(source, 5)", 1},
+                {"at end flat(source, 1deg)", 1},
+                {"at end hit(surface, 0.2Ns)", 1},
+                {"at end hit(surface, least: 0.3Ns)", 0},
+                // A predicate may be a number.
+                {"final gap(source, target) + 1m", 1.3}},
+               world, more);
+  CHECK(analyze_with_suite("predicate p(a: object) = q(a)\npredicate q(a: object) = p(a)\n")
+            ->codes()
+            .find("P0601") != std::string::npos);
+}
+
+TEST_CASE("arg: what a parameter does not take is said at the argument") {
+  const std::string p = "predicate p(a: object, d: length = 1cm) = height(a) > d\n";
+  const auto wrong = [&](const std::string& call) {
+    const auto a = analyze_with_suite(p + "metrics m like plain { x = at end " + call +
+                                      " }\nvariant v of red_on_tray { metrics m }");
+    return a->codes() + " " + a->underlined();
+  };
+  CHECK(wrong("p(surface)") == "P0601 surface");
+  CHECK(wrong("p(source, 3s)") == "P0302 3s");
+  CHECK(wrong("p(source, e: 3cm)") == "P0201 e");
+  CHECK(wrong("p()") == "P0601 p()");
+  CHECK(wrong("p(source, 1cm, 2cm)") == "P0601 2cm");
+}
+
+TEST_CASE(
+    "setexpr, set1: quantifiers over fingers, links, objects, others, bodies and their algebra") {
+  World world;
+  world.at(kSource, {0.4, 0.4, 0.9});  // moved 10 cm
+  world.touch(kSource, kLeft, {0, 0.5, 0}).touch(kSource, kRight, {0.1, -0.5, 0});
+  world.touch(kTarget, kSurface, {0, 0, -1});
+  check_values(
+      {{"at end all f in fingers: impulse(f, source) > 1e-6Ns", 1},
+       {"at end all f in fingers: angle(opening(f), push(source, f)) <= 10deg", 0},
+       {"at end any f in fingers: angle(opening(f), push(source, f)) <= 10deg", 1},
+       {"at end any l in links - fingers: impulse(l, source) > 1e-6Ns", 0},
+       {"at end no x in bodies - {source, target} - links: impulse(source, x) > 1e-6Ns", 1},
+       {"at end no x in bodies - links: impulse(target, x) > 1e-6Ns", 0},
+       {"at end all x in objects - {source}: moved_xy(x) < moved_xy(source)", 1},
+       {"at end any x in others: moved_xy(x) > 1cm", 0},
+       {"at end any x in objects | {surface}: height(x) < 81cm", 1},
+       {"at end all x in objects & others: height(x) < 86cm", 1},
+       {"at end any x in {source, target}: height(x) > 87cm", 1},
+       {"at end all x in (objects | links) & objects: height(x) > 84cm", 1},
+       {"at end no l in links: impulse(l, target) > 1e-6Ns", 1}},
+      world);
+}
+
+TEST_CASE("e_un: every measure") {
+  World world;
+  vm::BodySample& source = world.sample.bodies[kSource];
+  source.velocity = {0.3, 0.4, 0};
+  source.spin = {0, 0, 2};
+  source.rotation = Quat(Eigen::AngleAxisd(3.14159265358979323846 / 2, Vec3::UnitX()));
+  source.origin = {0.31, 0.4, 0.9};
+  world.at(kTarget, {0.3, 0.4, 0.85});
+  world.touch(kSource, kTarget, {0, 0, -0.5});
+  world.starts[kTarget].position = {0, 0, 0.85};
+  check_values({{"final impulse(source, target)", 0.5},
+                {"final impulse(target, source)", 0.5},
+                {"at end angle(push(source, target), up) > 170deg", 1},
+                {"at end angle(push(target, source), up) < 10deg", 1},
+                {"final distance(tcp, source)", 0.1},
+                {"final distance_xy(origin(source), target)", 0.01},
+                {"final height(position(source))", 0.9},
+                {"final height(start(target))", 0.85},
+                {"at end angle(velocity(source), spin(source)) > 89deg", 1},
+                {"final speed(source)", 0.5},
+                {"final half_height(target)", 0.005},
+                {"final half_diagonal(target)", 0.05},
+                {"final moved_xy(target)", 0.5},
+                {"at end angle(axis_x(source), up) < 89deg", 0},
+                {"at end angle(axis_y(source), up) < 1deg", 1},
+                {"at end angle(axis_z(source), up) < 89deg", 0},
+                {"final grip", 0.5},
+                {"final step", 1},
+                {"final time", 0.2}},
+               world);
+}

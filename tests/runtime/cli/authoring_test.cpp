@@ -1,0 +1,101 @@
+// The verbs of authors on a file of their own: which suite runs, what is printed fits a screen,
+// wrong arguments are named.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/runtime/cli/program.h"
+
+using probe::test::contains;
+using probe::test::Outcome;
+using probe::test::Sandbox;
+using probe::test::write_file;
+
+namespace {
+
+std::size_t widest(const std::string& text) {
+  std::size_t most = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) most = std::max(most, line.size());
+  return most;
+}
+
+const char* const kMine =
+    "use \"suite/intact.probe\"\n"
+    "metrics measured like put_strict {\n"
+    "  highest = max height(source)\n"
+    "  touched = first finger_contact(source)\n"
+    "  never   = first height(source) > 2m\n"
+    "}\n"
+    "variant mine of carrot_on_plate { metrics measured }\n";
+
+}  // namespace
+
+TEST_CASE("run takes a suite of the file itself, never one of a file that it uses") {
+  Sandbox box;
+  write_file(box / "mine.probe", kMine);
+  const Outcome none = box.vlaprobe("run mine.probe --policy null -o out");
+  CHECK(none.exit == 1);
+  CHECK(contains(none.err, "mine.probe: declares no suite"));
+  CHECK(contains(none.err, "--suite: "));
+  write_file(box / "own.probe", std::string(kMine) +
+                                    "suite second_mine { tasks { mine }; seeds 3 }\n"
+                                    "suite other { tasks { carrot_on_plate }; seeds 1 }\n");
+  REQUIRE(box.vlaprobe("run own.probe --policy null -o own --episodes 0-0").exit == 0);
+  const auto rows = nlohmann::json::parse(box.vlaprobe("results own --json").out);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0]["task"] == "mine");
+  CHECK(rows[0]["seed"] == 3);
+
+  // Numbers have their units, in words for people as in `why`.
+  const Outcome text = box.vlaprobe("results own");
+  CHECK(contains(text.out, "highest      mean 89"));
+  CHECK(contains(text.out, "cm, 89"));
+  CHECK(contains(text.out, "never        never in 1"));
+  const Outcome why = box.vlaprobe("why own mine 0 --metric highest");
+  CHECK_MESSAGE(contains(why.out, "highest = 89"), why.out, why.err);
+  CHECK(contains(why.out, "cm at step "));
+}
+
+TEST_CASE("tables of the whole suite fit a screen of 100 columns") {
+  Sandbox box;
+  for (const char* verb :
+       {"coverage $SUITE", "diff $SUITE carrot_on_plate carrot_on_plate_lang_neg",
+        "diff $SUITE orange_juice_on_plate_lang_common_distractv2 put_eggplant_in_basket",
+        "explain"}) {
+    const Outcome outcome = box.vlaprobe(verb);
+    CHECK_MESSAGE(outcome.exit == 0, outcome.err);
+    CHECK_MESSAGE(widest(outcome.out) <= 100, verb, ": ", widest(outcome.out));
+  }
+}
+
+TEST_CASE(
+    "coverage tells of each base what was not seen in training and which phrases nobody uses") {
+  Sandbox box;
+  write_file(box / "mine.probe",
+             std::string("use \"suite/intact.probe\"\n") +
+                 "object bright like carrot { name \"bright carrot\"; unseen\n"
+                 "  phrase glow appearance \"glowing thing\" means color orange }\n"
+                 "task lone like carrot_on_plate { source bright }\n"
+                 "suite one { tasks { lone }; seeds 1 }\n");
+  const auto json =
+      nlohmann::json::parse(box.vlaprobe("coverage mine.probe --suite one --json").out);
+  REQUIRE(json["bases"].size() == 1);
+  CHECK(json["bases"][0]["ood"]["source"] == 1);
+  CHECK(json["bases"][0]["tasks"] == 1);
+  bool found = false;
+  for (const auto& phrase : json["unused_phrases"]) found = found || phrase == "bright.glow";
+  CHECK(found);
+}
+
+TEST_CASE("the suite is found from any folder, and a named library folder is the only one") {
+  Sandbox box;
+  write_file(box / "deep/mine.probe",
+             "use \"suite/catalog.probe\"\nuse \"std/place.probe\"\nset none = tasks\n");
+  CHECK(box.vlaprobe("check deep/mine.probe").exit == 0);
+  const Outcome nowhere = box.vlaprobe("check deep/mine.probe --std deep");
+  CHECK(nowhere.exit == 1);
+  CHECK(contains(nowhere.err, "holds no std/"));
+}
