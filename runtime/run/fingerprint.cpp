@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "runtime/world/arm_dynamics.h"
+
 namespace probe::run {
 namespace {
 
@@ -107,6 +109,8 @@ Fingerprint take_fingerprint(const Sha256& assets) {
   std::map<std::string, std::string> entries;
   dl_iterate_phdr(visit_object, &entries);
   if (entries["program"].empty()) entries["program"] = program_hash();
+  // Linked statically it is part of the program, whose build id tells builds apart.
+  entries.try_emplace("simbody", "static " + world::multibody_build().version);
   entries["compiler"] = __VERSION__;
   entries["cpu"] = cpu_family();
   entries["assets"] = to_hex(assets);
