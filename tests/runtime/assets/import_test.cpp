@@ -1,0 +1,234 @@
+// Import of a made-up data folder: what is taken, what is odd, what is missing, and that the result
+// is an asset folder.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "runtime/assets/asset_check.h"
+#include "runtime/assets/catalogue_text.h"
+#include "runtime/assets/import.h"
+#include "runtime/assets/pack.h"
+#include "runtime/assets/robot_files.h"
+#include "runtime/base/file.h"
+#include "runtime/robot/urdf.h"
+#include "runtime/scene/collision_mesh.h"
+#include "runtime/scene/image.h"
+#include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/scene/tiny_meshes.h"
+
+namespace probe::assets {
+namespace {
+
+using namespace scene::test;
+using run::TemporaryFolder;
+namespace fs = std::filesystem;
+
+constexpr char kBoxInfo[] =
+    R"("bbox":{"min":[-0.01,-0.02,-0.03],"max":[0.01,0.02,0.03]},"scales":[1.0],"density":700)";
+
+// data/custom with a carrot as it should be, a plate without collision mesh, a can that is cut off,
+// a model of the user's and one photo.
+void make_data(const std::string& root) {
+  const std::string models = root + "/data/custom/models/";
+  write_text(models + "bridge_carrot_generated_modified/textured.dae", dae_box("Z_UP"));
+  write_text(models + "bridge_carrot_generated_modified/collision.stl", binary_stl_box());
+  write_text(models + "bridge_plate_objaverse_larger/textured.obj", obj_box());
+  write_text(models + "coke_can/textured.dae", dae_box("Z_UP").substr(0, 900));
+  write_text(models + "coke_can/collision.obj", obj_box());
+  write_text(models + "mug 2/textured.glb", glb_file(gltf_box("")));
+  write_text(root + "/data/custom/info_bridge_custom_v0.json",
+             std::string("{\"bridge_carrot_generated_modified\":{") + kBoxInfo +
+                 "},\"bridge_plate_objaverse_larger\":{" + kBoxInfo +
+                 "},\"flat\":{\"bbox\":{\"min\":[0,0,0],\"max\":[1,1,0]}}}");
+  write_text(root + "/data/custom/info_broken.json", "{\"cut\":");
+  fs::create_directories(root + "/data/real_inpainting");
+  REQUIRE(scene::write_png(root + "/data/real_inpainting/bridge_real_eval_1.png", 4, 3,
+                           std::vector<std::uint8_t>(36, 50))
+              .ok());
+}
+
+std::string line_of(const ImportReport& report, const std::string& name) {
+  for (const ImportLine& line : report.lines) {
+    if (line.name == name) return std::string(to_word(line.verdict)) + " " + line.text;
+  }
+  return "no line";
+}
+
+bool says(const std::string& text, const std::string& what) {
+  INFO(text);
+  return text.find(what) != std::string::npos;
+}
+
+TEST_CASE("a data folder becomes an asset folder with a line on everything") {
+  TemporaryFolder folder;
+  make_data(folder / "repo");
+  const auto report = import_data({folder / "repo", folder / "out", ""});
+  REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : to_text(report.failure())));
+
+  CHECK(says(line_of(*report, "objects/carrot"), "taken bridge_carrot_generated_modified: 12"));
+  CHECK(says(line_of(*report, "objects/plate"), "odd "));
+  CHECK(says(line_of(*report, "objects/plate"), "no collision mesh"));
+  CHECK(says(line_of(*report, "objects/coke_can"),
+             "missing data/custom/models/coke_can/textured.dae: "));
+  CHECK(says(line_of(*report, "objects/nut"), "missing no model `nut` in the data"));
+  CHECK(says(line_of(*report, "objects/mug 2"), "in no model database"));
+  CHECK(says(line_of(*report, "scenes/table"), "photo bridge_real_eval_1.png, 4 x 3"));
+  CHECK(says(line_of(*report, "scenes/table"), "the photo is scaled"));
+  CHECK(says(line_of(*report, "robots/widowx"), "missing no wx250s.urdf"));
+  CHECK(says(line_of(*report, "database"), "`flat` has a box without size"));
+
+  // Whole, hashed, readable; ours were not filled in.
+  const auto manifest = read_manifest(folder / "out");
+  REQUIRE(manifest.ok());
+  CHECK(manifest->find("objects/carrot/visual.glb")->source ==
+        "data/custom/models/bridge_carrot_generated_modified/textured.dae");
+  for (const auto& [path, entry] : manifest->files) {
+    const auto bytes = read_file((folder / "out/") + path);
+    REQUIRE(bytes.ok());
+    CHECK(bytes->size() == entry.bytes);
+    CHECK(to_hex(sha256(*bytes)) == entry.sha256);
+  }
+  CHECK_FALSE(fs::exists(folder / "out/objects/nut"));
+  const auto shape =
+      scene::load_collision_mesh(folder / "out/objects/carrot/collision.obj", {1, 1, 1});
+  REQUIRE(shape.ok());
+  CHECK(shape->parts.size() == 1);
+  CHECK(says(*read_file(folder / "out/objects.probe"),
+             "mesh \"carrot\"; box 2cm x 4cm x 6cm; density 700kg/m3"));
+  CHECK(says(*read_file(folder / "out/objects.probe"), "object mug_2 {"));
+
+  // Nothing is left of the making, and what is there is not written over.
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 2);
+  const auto again = import_data({folder / "repo", folder / "out", ""});
+  REQUIRE_FALSE(again.ok());
+  CHECK(says(to_text(again.failure()), "is there already"));
+}
+
+TEST_CASE("what is missing is taken from elsewhere only when that was asked for, and said") {
+  TemporaryFolder folder;
+  make_data(folder / "repo");
+  const std::string own = VLAPROBE_SOURCE_DIR "/assets";
+  const auto report = import_data({folder / "repo", folder / "out", own});
+  REQUIRE(report.ok());
+  CHECK(says(line_of(*report, "objects/nut"), "filled "));
+  CHECK(says(line_of(*report, "objects/nut"), "vlaprobe's own"));
+  CHECK(*read_file(folder / "out/objects/nut/visual.glb") ==
+        *read_file(own + "/objects/nut/visual.glb"));
+  CHECK(fs::exists(folder / "out/robots/widowx/wx250s.urdf"));
+}
+
+TEST_CASE("a folder without such data, or that is none, says what was looked for") {
+  TemporaryFolder folder;
+  fs::create_directories(folder / "empty");
+  CHECK(says(to_text(import_data({folder / "empty", folder / "out", ""}).failure()),
+             "no SimplerEnv data in it"));
+  CHECK(says(to_text(import_data({folder / "none", folder / "out", ""}).failure()),
+             "is not a folder"));
+  CHECK_FALSE(fs::exists(folder / "out"));
+}
+
+TEST_CASE("the mesh elements of a description are replaced and nothing else") {
+  const std::string text =
+      "<robot><!-- <mesh filename='old.stl'/> --><link name=\"a\"><visual><geometry>"
+      "<mesh scale='0.001 0.001 0.001' filename = \"m/a.dae\"/></geometry></visual>"
+      "<collision><geometry><mesh "
+      "filename=\"m/a.stl\"></mesh></geometry></collision></link></robot>";
+  std::vector<MeshElement> seen;
+  const auto out = replace_meshes(text, [&](const MeshElement& element) -> Result<std::string> {
+    seen.push_back(element);
+    return std::string("new") + std::to_string(seen.size());
+  });
+  REQUIRE(out.ok());
+  REQUIRE(seen.size() == 2);
+  CHECK(seen[0].file == "m/a.dae");
+  CHECK(seen[0].scale == "0.001 0.001 0.001");
+  CHECK_FALSE(seen[0].is_collision);
+  CHECK(seen[1].is_collision);
+  CHECK(says(*out, "<!-- <mesh filename='old.stl'/> -->"));
+  CHECK(says(*out, "<mesh filename=\"new1\"/>"));
+  CHECK(says(*out, "<mesh filename=\"new2\"></mesh>"));
+  CHECK_FALSE(replace_meshes("<robot", [](const MeshElement&) -> Result<std::string> {
+                return std::string();
+              }).ok());
+}
+
+TEST_CASE("a robot with package paths, collada and stl is packed into one that is read as it was") {
+  TemporaryFolder folder;
+  const std::string package = folder / "arm_description/";
+  write_text(package + "meshes/arm.dae", dae_box("Z_UP"));
+  write_text(package + "meshes/arm.stl", binary_stl_box());
+  const std::string urdf = write_text(
+      package + "urdf/arm.urdf",
+      "<robot name=\"arm\"><link name=\"base\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" "
+      "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial><visual><geometry><mesh "
+      "filename=\"package://arm_description/meshes/arm.dae\" scale=\"2 2 2\"/></geometry></visual>"
+      "<collision><geometry><mesh filename=\"../meshes/arm.stl\"/></geometry></collision></link>"
+      "</robot>");
+  const auto packed = pack_asset({urdf, folder / "out", "", 1});
+  REQUIRE_MESSAGE(packed.ok(), (packed.ok() ? "" : to_text(packed.failure())));
+  const auto model = robot::load_urdf(folder / "out/arm.urdf");
+  REQUIRE(model.ok());
+  REQUIRE(model->links[0].visuals.size() == 1);
+  CHECK(model->links[0].visuals[0].path == "meshes/arm.glb");
+  CHECK(model->links[0].visuals[0].scale == Vec3(1, 1, 1));
+  const auto mesh = scene::load_mesh(folder / "out/meshes/arm.glb");
+  REQUIRE(mesh.ok());
+  float widest = 0;
+  for (const float x : (*mesh)->parts[0].positions) widest = std::max(widest, x);
+  CHECK(widest == doctest::Approx(2 * kHalf[2]));
+  CHECK(fs::exists(folder / "out/meshes/arm_collision.obj"));
+
+  fs::remove(package + "meshes/arm.stl");
+  CHECK(says(to_text(pack_asset({urdf, folder / "out2", "", 1}).failure()), "arm.stl"));
+}
+
+TEST_CASE("a mesh is packed with its scale, its texture and a collision shape of its own") {
+  TemporaryFolder folder;
+  fs::create_directories(folder / "mug");
+  REQUIRE(scene::write_png(folder / "mug/wood.png", 2, 2, std::vector<std::uint8_t>(12, 90)).ok());
+  const std::string dae = write_text(folder / "mug/mug.dae", dae_box("Z_UP", 1, "wood.png"));
+  const auto packed = pack_asset({dae, folder / "my/objects/mug", "", 0.5});
+  REQUIRE_MESSAGE(packed.ok(), (packed.ok() ? "" : to_text(packed.failure())));
+  CHECK(says(*packed,
+             "1 convex part, 1 x 2 x 3 cm; box (-0.5cm, -1cm, -1.5cm) .. (0.5cm, 1cm, 1.5cm)"));
+  const auto check = AssetCheck::open(folder / "my");
+  REQUIRE(check.ok());
+  CHECK((*check)("objects/mug/visual.glb", plan::AssetKind::kVisualMesh, nullptr).ok());
+  CHECK((*check)("objects/mug/collision.obj", plan::AssetKind::kCollisionMesh, nullptr).ok());
+  CHECK_FALSE(pack_asset({dae, folder / "my/objects/other", "", 0}).ok());
+  fs::remove(folder / "mug/wood.png");
+  CHECK(says(to_text(pack_asset({dae, folder / "my/objects/cup", "", 1}).failure()), "wood.png"));
+}
+
+TEST_CASE("what the manifest vouches for is not read again, whatever else is") {
+  TemporaryFolder folder;
+  const std::string path = "objects/box/visual.obj";
+  write_text((folder / "a/") + path, "not a mesh");
+  auto check = AssetCheck::open(folder / "a");
+  REQUIRE(check.ok());
+  const Status bad = (*check)(path, plan::AssetKind::kVisualMesh, nullptr);
+  REQUIRE_FALSE(bad.ok());
+  CHECK(bad.failure().where == path);
+
+  Manifest manifest;
+  manifest.files[path] = {10, to_hex(sha256(std::string_view("not a mesh"))), ""};
+  write_text(folder / "a/manifest.json", manifest.to_json());
+  check = AssetCheck::open(folder / "a");
+  REQUIRE(check.ok());
+  CHECK((*check)(path, plan::AssetKind::kVisualMesh, nullptr).ok());
+  const Sha256 other = sha256(std::string_view("not a mask"));
+  CHECK_FALSE((*check)(path, plan::AssetKind::kVisualMesh, &other).ok());
+
+  write_text(folder / "a/manifest.json", "{\"files\":[{\"path\":3}]}");
+  CHECK_FALSE(AssetCheck::open(folder / "a").ok());
+}
+
+TEST_CASE("names that the language cannot have are made so") {
+  const std::string text = catalogue_text({{"7up can", {-1, -1, 0}, {1, 1, 2}, 50}});
+  CHECK(says(text, "object model_7up_can {"));
+  CHECK(says(text, "box (-100cm, -100cm, 0cm) .. (100cm, 100cm, 200cm); density 50kg/m3"));
+  CHECK(says(text, "name \"7up can\""));
+}
+
+}  // namespace
+}  // namespace probe::assets
