@@ -16,6 +16,7 @@ namespace {
 constexpr int kTurns = 12;             // over a full turn
 constexpr double kTouch = 0.004;       // m, where the smooth path ends and feeling begins
 constexpr double kComfortable = 0.01;  // m of clearance; more earns nothing
+constexpr double kFeet = 0.004;        // m
 constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};
 constexpr std::size_t kMostTried = 10;
 
@@ -26,16 +27,27 @@ Eigen::Matrix2d turn_by(double angle) {
   return m;
 }
 
-double overhang_of(const Scene& scene, const Eigen::Matrix2d& turn) {
-  const Outline& over = scene.source.whole;
-  if (over.empty() || scene.target.whole.size() < 3) return 0;
+// What the source stands on: the outline of its lowest few millimetres.
+std::vector<Vec2> feet_of(const Scene& scene) {
+  std::vector<Vec2> feet;
+  for (const std::vector<Vec3>& part : scene.source_parts) {
+    for (const Vec3& p : part) {
+      if (p.z() < scene.source.bottom + kFeet) feet.emplace_back(p.x(), p.y());
+    }
+  }
+  return convex_outline(std::move(feet));
+}
+
+double share_outside(std::span<const Vec2> points, const Scene& scene,
+                     const Eigen::Matrix2d& turn) {
+  if (points.empty() || scene.target.whole.size() < 3) return 0;
   const Prism target = make_prism(scene.target.whole, -1, 1);
   int outside = 0;
-  for (const Vec2& p : over) {
+  for (const Vec2& p : points) {
     const Vec2 at = scene.target.center + turn * (p - scene.source.center);
     outside += distance_to(target, {at.x(), at.y(), 0}).value > 0;
   }
-  return static_cast<double>(outside) / static_cast<double>(over.size());
+  return static_cast<double>(outside) / static_cast<double>(points.size());
 }
 
 }  // namespace
@@ -46,6 +58,7 @@ std::vector<Place> place_candidates(const Scene& scene, const Pose& tool) {
   const std::vector<Ball> held = held_balls(scene, tool);
   balls.insert(balls.end(), held.begin(), held.end());
   const Obstacles obstacles = obstacles_of(scene, false);
+  const std::vector<Vec2> feet = feet_of(scene);
   const double rise = scene.target.top + kTouch - scene.source.bottom;
   std::vector<Place> out;
   for (int i = 0; i < kTurns; ++i) {
@@ -55,12 +68,13 @@ std::vector<Place> place_candidates(const Scene& scene, const Pose& tool) {
     const Vec2 arm = tool.position.head<2>() - scene.source.center;
     const Vec2 at = scene.target.center + flat * arm;
     place.tcp.rotation = robot::from_rotation_vector({0, 0, place.turn}) * tool.rotation;
-    place.overhang = overhang_of(scene, flat);
+    place.overhang = share_outside(scene.source.whole, scene, flat);
+    const double unsupported = share_outside(feet, scene, flat);
     for (const double lift : kLifts) {
       place.lift = lift;
       place.tcp.position = {at.x(), at.y(), tool.position.z() + rise + lift};
       place.clearance = least_clearance(place.tcp, balls, obstacles, kComfortable);
-      place.cost = 0.3 * std::abs(place.turn) + 0.4 * place.overhang + 20 * lift +
+      place.cost = 0.3 * std::abs(place.turn) + 0.4 * place.overhang + unsupported + 20 * lift +
                    100 * (kComfortable - place.clearance);
       out.push_back(place);
       if (place.clearance >= kComfortable) break;

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "runtime/base/check.h"
+#include "runtime/expert/obstacles.h"
 #include "runtime/expert/place_candidates.h"
 #include "runtime/robot/rotation.h"
 
@@ -29,12 +30,32 @@ Pose at_height(Pose pose, double z) {
   return pose;
 }
 
+// Whether the middle is lower than the rim.
+bool hollow(const Footprint& print) {
+  for (std::size_t i = 0; i < print.parts.size(); ++i) {
+    if (print.part_tops[i] < print.top - 0.003 || print.parts[i].size() < 3) continue;
+    const Prism part = make_prism(print.parts[i], -1, 1);
+    if (distance_to(part, {print.center.x(), print.center.y(), 0}).value < 0) return false;
+  }
+  return true;
+}
+
 GraspProblem problem_of(const Scene& scene, bool place) {
   GraspProblem problem;
   problem.source = &scene.source;
   problem.parts = scene.source_parts;
   problem.others = others_of(scene, place);
   problem.surface = std::max(scene.surface, scene.source.bottom);
+  // What leans on the target is taken above it.
+  if (place && scene.target.whole.size() >= 3 && scene.source.top > scene.target.top + 0.008) {
+    const Prism around = make_prism(scene.target.whole, -1, 1);
+    const Vec2& at = scene.source.center;
+    if (distance_to(around, {at.x(), at.y(), 0}).value < 0 &&
+        scene.source.bottom > scene.target.bottom - 0.001 &&
+        scene.source.bottom < scene.target.top && !hollow(scene.target)) {
+      problem.surface = scene.target.top;
+    }
+  }
   problem.yaw_now = yaw_of(scene.tcp.rotation);
   return problem;
 }

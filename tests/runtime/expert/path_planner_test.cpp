@@ -91,5 +91,21 @@ TEST_CASE("what failed is not tried again while there is something else") {
   CHECK((second->grasp.tcp.position - first->grasp.tcp.position).norm() > 0.008);
 }
 
+TEST_CASE("a source that leans on the target is taken above it") {
+  const Reach reach = widowx();
+  policy::PrivilegedObject stick =
+      test::object("stick", {test::block({-0.06, -0.01, 0}, {0.06, 0.01, 0.02})},
+                   {-0.1, 0.1, test::kSurface + 0.008}, 0);
+  stick.pose.rotation = robot::from_rotation_vector({0, 0.12, 0});
+  const test::FakeTable table(stick, test::plate(-0.1, 0.1));
+  const Scene scene = scene_of(table);
+  REQUIRE(scene.source.bottom < scene.target.top);
+  const auto pick = plan_pick(scene, reach, true);
+  REQUIRE(pick.has_value());
+  CHECK(!pick->grasp.rim);
+  const GripperShape gripper;
+  CHECK(pick->grasp.tcp.position.z() - gripper.tip_below > scene.target.top);
+}
+
 }  // namespace
 }  // namespace probe::expert

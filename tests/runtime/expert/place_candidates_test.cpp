@@ -82,6 +82,20 @@ TEST_CASE("a long source is laid along a long target if the turn is short") {
   CHECK(std::abs(best.turn) == doctest::Approx(0.5236).epsilon(0.01));
 }
 
+TEST_CASE("what stands on two feet is turned until both are on the target") {
+  // A bridge of 12 cm, 5 mm above the ground between its ends, over a rail of 13 cm by 4 cm that
+  // lies across.
+  const auto bridge = test::object("bridge",
+                                   {test::block({-0.06, -0.008, 0}, {-0.05, 0.008, 0.02}),
+                                    test::block({-0.05, -0.008, 0.005}, {0.05, 0.008, 0.02}),
+                                    test::block({0.05, -0.008, 0}, {0.06, 0.008, 0.02})},
+                                   {-0.2, 0, test::kSurface}, 90);
+  const Held h = held(bridge, slab("rail", {0.065, 0.02, 0.005}, {-0.1, 0.1}));
+  const Place best = place_candidates(h.scene, h.tool).front();
+  CHECK(std::abs(best.turn) == doctest::Approx(1.5708).epsilon(0.01));
+  CHECK(best.overhang == 0);
+}
+
 TEST_CASE("held points turn with the tool and lie on the source") {
   const Held h = held(slab("block", {0.02, 0.015, 0.01}, {-0.2, 0}),
                       slab("plate", {0.05, 0.05, 0.003}, {-0.1, 0.1}));
