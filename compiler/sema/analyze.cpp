@@ -1,12 +1,31 @@
 #include "compiler/sema/analyze.h"
 
 #include <algorithm>
+#include <string_view>
+#include <type_traits>
 
 #include "compiler/sema/passes.h"
 #include "compiler/sema/report.h"
 
 namespace probe::sema {
 namespace {
+
+// Whether all names that it declares were read; of the members of a list not even then.
+bool has_names(const syntax::Decl& decl) {
+  if (decl.complete) return true;
+  return std::visit(
+      [](const auto& node) {
+        using Node = std::decay_t<decltype(node)>;
+        if constexpr (std::is_same_v<Node, syntax::FactsDecl> ||
+                      std::is_same_v<Node, syntax::AttributeDecl> ||
+                      std::is_same_v<Node, syntax::VariantsDecl>)
+          return false;
+        if constexpr (requires { std::string_view(node.name.text); })
+          return !std::string_view(node.name.text).empty();
+        return true;
+      },
+      decl.node);
+}
 
 // A mistake by which whole declarations are not known: in the name of a file, or outside of every
 // declaration that could be read.
@@ -15,7 +34,7 @@ bool loses_names(const std::vector<const syntax::File*>& files, const Diagnostic
   if (mistake.severity != Severity::kError) return false;
   for (const syntax::File* file : files) {
     for (const syntax::Decl& decl : file->decls) {
-      if (is_within(mistake.primary, decl.span)) return false;
+      if (is_within(mistake.primary, decl.span)) return !has_names(decl);
     }
   }
   return true;

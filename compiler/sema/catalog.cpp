@@ -218,7 +218,7 @@ void define_objects(Context& context) {
     object.values.resize(context.model.attributes.size());
     object.facts.resize(context.model.facts.size(), Truth::kNo);
     ObjectReader reader{context, *decls[i].file, object};
-    const auto errors = context.diagnostics.error_count();
+    const auto errors = context.mistakes();
     for (const syntax::ObjectStmt& stmt : node.body) std::visit(reader, stmt);
     broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
                 (parents[i] && broken[*parents[i]]);
@@ -229,7 +229,7 @@ void define_objects(Context& context) {
       require(context, object, object.has_friction, "friction");
       require(context, object, !object.text.span.is_none(), "name");
     }
-    object.broken = broken[i] = broken[i] || context.diagnostics.error_count() != errors;
+    object.broken = broken[i] = broken[i] || context.mistakes() != errors;
     if (object.rest.empty()) object.rest.push_back({});
     context.model.objects[static_cast<ObjectId>(i)] = std::move(object);
   }

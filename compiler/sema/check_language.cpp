@@ -16,9 +16,13 @@ namespace {
 
 constexpr std::size_t kMaxPromptBytes = 1000;
 
+// Phrases that do not fit their own object, whatever else is in the scene.
+using Unfit = std::set<std::pair<const Phrase*, ObjectId>>;
+
 struct TaskLanguage {
   Context& context;
   const Task& task;
+  Unfit& unfit;
 
   const Model& model() const { return context.model; }
   const Span& place(std::size_t role) const {
@@ -55,6 +59,7 @@ struct TaskLanguage {
     const Object& wanted = model().objects[wanted_id];
     const std::string quoted = "\"" + phrase.text.text + "\"";
     if (evaluate(phrase.means, wanted) != Truth::kYes) {
+      if (!unfit.insert({&phrase, wanted_id}).second) return;
       context
           .report(Code::P0401, place(role),
                   quoted + " does not denote `" + wanted.name + "` in `" + task.name + "`")
@@ -208,10 +213,11 @@ struct TaskLanguage {
 }  // namespace
 
 void check_language(Context& context) {
+  Unfit unfit;
   for (const Task& task : context.model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(context, task.decl_span);
-    const TaskLanguage check{context, task};
+    const TaskLanguage check{context, task, unfit};
     std::set<std::string> checked;  // a second slot of one name says nothing new
     for (const Template::Part& part : context.model.templates[task.say].parts) {
       if (part.slot && checked.insert(part.slot->name.text).second) check.check_slot(*part.slot);

@@ -75,7 +75,18 @@ void check_success(Context& context, const Task& task,
                    std::set<std::pair<std::uint32_t, std::uint32_t>>& reported) {
   const auto success = std::find_if(task.judged.begin(), task.judged.end(),
                                     [](const Metric& metric) { return metric.name == "success"; });
-  const Metrics& metrics = context.model.metrics[task.metrics];
+  // What a copy lacks, the original lacks.
+  MetricsId id = task.metrics;
+  const auto lacks_success = [&](MetricsId at) {
+    const auto& items = context.model.metrics[at].items;
+    return std::none_of(items.begin(), items.end(),
+                        [](const Metric& metric) { return metric.name == "success"; });
+  };
+  for (MetricsId like = context.model.metrics[id].like; like != MetricsId::kNone;
+       like = context.model.metrics[like].like) {
+    if (lacks_success(like)) id = like;
+  }
+  const Metrics& metrics = context.model.metrics[id];
   const Span& place = success == task.judged.end() ? metrics.span : success->span;
   const bool is_condition =
       success != task.judged.end() &&

@@ -357,6 +357,7 @@ struct StartCache {
 void check_starts(Context& context) {
   std::map<std::vector<double>, StartCache> known;
   std::map<SceneId, std::optional<Arm>> arms;
+  std::set<LayoutId> incomplete_layouts;  // that lack a place: said once
   std::vector<bool> fine(context.model.tasks.size(), false);
   std::size_t at = 0, episodes = 0;
   for (Task& task : context.model.tasks) {
@@ -372,6 +373,11 @@ void check_starts(Context& context) {
       std::vector<Start> starts =
           enumerate_starts(context.model, layout, task, kMaxEpisodes - episodes, problem);
       if (problem) {
+        task.complete = false;
+        const bool is_layout = problem->kind == LayoutProblem::kNotPlaced;
+        // What a layout lacks, its copies lack.
+        const bool is_known = incomplete_layouts.contains(layout.like);
+        if (is_layout && (!incomplete_layouts.insert(task.layout).second || is_known)) continue;
         const Code code = problem->kind == LayoutProblem::kTooFewCells ? Code::P0503
                           : problem->kind == LayoutProblem::kNotPlaced ? Code::P0206
                           : problem->kind == LayoutProblem::kTooMany   ? Code::P0210
@@ -381,7 +387,6 @@ void check_starts(Context& context) {
             .report(code, is_newcomer ? task.distractors_span : task.layout_span,
                     problem->message + " in `" + task.name + "`")
             .label(problem->span, "the layout");
-        task.complete = false;
         continue;
       }
       cache.starts = &context.model.start_lists.emplace_back(std::move(starts));

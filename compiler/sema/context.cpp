@@ -147,7 +147,10 @@ void collect_names(Context& context) {
 
 std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& written,
                                       const Dimension& wanted, std::string_view takes) {
-  if (written.unit == syntax::Unit::kUnknown) return std::nullopt;
+  if (written.unit == syntax::Unit::kUnknown) {
+    ++context.unread;
+    return std::nullopt;
+  }
   const std::string digits = (written.negative ? "-" : "") + std::string(written.digits);
   const auto quantity = make_quantity(digits, to_text(written.unit));
   if (!quantity) {

@@ -105,6 +105,10 @@ struct Context {
   std::map<std::size_t, Span> about = {};  // by diagnostic: the declaration it is about
   bool was_broken = false;  // the text had errors before: what lacks now may follow from them
 
+  std::size_t unread = 0;  // quantities of unknown units, which the lexer reported
+
+  // Grows with every mistake: whether something was wrong between two calls.
+  std::size_t mistakes() const { return diagnostics.error_count() + unread; }
   bool has_errors() const { return was_broken || diagnostics.has_errors(); }
   Diagnostic& report(Code code, const Span& span, std::string message) {
     return diagnostics.report(code, span, std::move(message));

@@ -36,7 +36,7 @@ class Derive {
     bool any_fits = false, any_broken = false;
     for (const TaskId id : members) {
       if (!table_.is_defined(id)) {
-        report_undefined(context_.symbols.tasks.names()[static_cast<std::size_t>(id)].text);
+        report_undefined(static_cast<std::uint32_t>(id));
         return true;
       }
       const Task& base = context_.model.tasks[id];
@@ -142,11 +142,37 @@ class Derive {
     }
   }
 
-  void report_undefined(std::string_view task) {
+  void report_undefined(std::uint32_t task_index) {
+    const std::string_view task = context_.symbols.tasks.names()[task_index].text;
+    // What it copies in the end; a name that no `derive` makes is unknown, which is said later.
+    std::optional<std::uint32_t> at = task_index;
+    std::string_view copied = task;
+    for (std::size_t hops = 0; at && hops <= context_.symbols.task_decls.size(); ++hops) {
+      const auto& like = context_.symbols.task_decls[*at].like;
+      if (!like) break;
+      copied = like->text;
+      at = context_.symbols.tasks.peek(copied);
+    }
+    if (!at && !may_be_derived(copied)) return;
     context_
         .report(Code::P0207, tasks_->span,
                 "task `" + std::string(task) + "` is made from tasks of a `derive` below")
         .help("move this `derive` behind it");
+  }
+
+  // Whether the name has the literal parts of some `derive` in their order.
+  bool may_be_derived(std::string_view name) const {
+    for (const auto& derive : context_.symbols.derive_decls) {
+      std::size_t at = 0;
+      for (const syntax::TemplatePart& part : derive.node->name.parts) {
+        const auto* literal = std::get_if<std::string>(&part);
+        if (literal == nullptr || at == std::string_view::npos) continue;
+        at = name.find(*literal, at);
+        if (at != std::string_view::npos) at += literal->size();
+      }
+      if (at != std::string_view::npos) return true;
+    }
+    return false;
   }
 
   // All choices of phrases for one task: the first binder slowest.

@@ -101,6 +101,7 @@ struct Parameter {
 };
 struct Predicate {
   std::string name;
+  bool broken = false;  // something was reported: what follows from that is not said
   Span span;
   std::vector<Parameter> parameters;
   std::uint32_t variables = 0;  // parameters and quantifier variables
@@ -120,6 +121,7 @@ struct Metric {
 struct Metrics {
   std::string name;
   bool broken = false;  // something was reported: what follows from that is not said
+  MetricsId like = MetricsId::kNone;
   Span span;
   std::vector<Metric> items;
 };

@@ -503,6 +503,7 @@ void read_body(Context& context, PredicateId id) {
     predicate.name = std::string(node.name.text);
     predicate.span = node.name.span;
   }
+  const auto errors = context.mistakes();
   ExprReader reader(context, *declared.file);
   std::vector<Parameter> parameters;
   for (const syntax::Param& param : node.params) {
@@ -530,6 +531,7 @@ void read_body(Context& context, PredicateId id) {
   predicate.body = body;
   predicate.variables = reader.variables();
   predicate.type = context.model.exprs.nodes[body].type;
+  predicate.broken = !declared.decl->complete || context.mistakes() != errors;
 }
 
 ExprRef ExprReader::read_predicate(const Span& span, const syntax::ExprCall& call, PredicateId id) {
@@ -542,6 +544,7 @@ ExprRef ExprReader::read_predicate(const Span& span, const syntax::ExprCall& cal
         .label(predicate.span, "declared here");
     return poison(span);
   }
+  if (predicate.broken) return poison(span);
   std::vector<ExprRef> args(predicate.parameters.size(), kNoExpr);
   std::size_t next = 0;
   bool fits = predicate.type.kind != TypeKind::kPoison;
@@ -668,6 +671,7 @@ void define_judgement(Context& context) {
   for (const std::uint32_t i : parents_first(context, parents, symbols.metrics.names())) {
     const syntax::MetricsDecl& node = *decls[i].node;
     Metrics metrics;
+    if (parents[i]) metrics.like = static_cast<MetricsId>(*parents[i]);
     if (parents[i])
       metrics.items = context.model.metrics[static_cast<MetricsId>(*parents[i])].items;
     metrics.name = std::string(node.name.text);
@@ -675,7 +679,7 @@ void define_judgement(Context& context) {
     metrics.broken =
         !decls[i].decl->complete || (node.like && !parents[i]) ||
         (parents[i] && context.model.metrics[static_cast<MetricsId>(*parents[i])].broken);
-    const auto errors = context.diagnostics.error_count();
+    const auto errors = context.mistakes();
     std::vector<std::string_view> here;
     for (const syntax::MetricStmt& stmt : node.body) {
       Metric metric = analyze_metric(context, *decls[i].file, stmt);
@@ -697,7 +701,7 @@ void define_judgement(Context& context) {
     const auto is_poison = [&](const Metric& metric) {
       return metric.type.kind == TypeKind::kPoison;
     };
-    metrics.broken = metrics.broken || context.diagnostics.error_count() != errors ||
+    metrics.broken = metrics.broken || context.mistakes() != errors ||
                      std::any_of(metrics.items.begin(), metrics.items.end(), is_poison);
     context.model.metrics[static_cast<MetricsId>(i)] = std::move(metrics);
   }

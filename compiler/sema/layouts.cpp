@@ -432,9 +432,10 @@ void define_layouts(Context& context) {
     const syntax::LayoutDecl& node = *decls[i].node;
     Layout layout;
     if (parents[i]) layout = context.model.layouts[static_cast<LayoutId>(*parents[i])];
+    if (parents[i]) layout.like = static_cast<LayoutId>(*parents[i]);
     layout.name = std::string(node.name.text);
     layout.span = node.name.span;
-    const auto errors = context.diagnostics.error_count();
+    const auto errors = context.mistakes();
     LayoutReader reader{context, layout};
     for (const syntax::LayoutStmt& stmt : node.body) std::visit(reader, stmt);
     // A grid that could not be read has been reported; one cell keeps the enumeration going.
@@ -446,7 +447,7 @@ void define_layouts(Context& context) {
     broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
                 (parents[i] && broken[*parents[i]]);
     if (!broken[i]) require_rest(context, layout);
-    layout.broken = broken[i] = broken[i] || context.diagnostics.error_count() != errors;
+    layout.broken = broken[i] = broken[i] || context.mistakes() != errors;
     context.model.layouts[static_cast<LayoutId>(i)] = std::move(layout);
   }
 }

@@ -203,6 +203,7 @@ struct Orient {
 };
 struct Layout {
   std::string name;
+  LayoutId like = LayoutId::kNone;
   bool broken = false;  // as of an object
   Span span;
   std::vector<Cells> cells;

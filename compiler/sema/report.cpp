@@ -46,6 +46,17 @@ const syntax::Allow* silencer(const Context& context, const Diagnostic& diagnost
   return found;
 }
 
+// Within a declaration that could only be read in part: what is found there is found of a torso.
+bool is_in_torso(const Context& context, const Span& span) {
+  for (const syntax::File* file : context.files) {
+    if (file->id != span.file) continue;
+    for (const syntax::Decl& decl : file->decls) {
+      if (!decl.complete && is_within(span, decl.span)) return true;
+    }
+  }
+  return false;
+}
+
 bool is_in_derive(const Context& context, const Span& span) {
   return std::any_of(context.symbols.derive_decls.begin(), context.symbols.derive_decls.end(),
                      [&](const auto& declared) { return is_within(span, declared.decl->span); });
@@ -74,11 +85,18 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
       continue;
     }
     // What could not be read may declare it; a near spelling is a mistake all the same.
+    if (context.was_broken && is_in_torso(context, diagnostic.primary)) continue;
     const bool is_unknown = diagnostic.code == Code::P0201 || diagnostic.code == Code::P0204;
     if (lacks_names && is_unknown && !diagnostic.fix) continue;
     if (is_unknown) {
       Said& name = unknown[diagnostic.message];
-      if (name.count++ == 0) name.last = &out.add(diagnostic);
+      if (name.count++ == 0) {
+        name.last = &out.add(diagnostic);
+      } else if (name.last->fix && diagnostic.fix) {
+        const auto& more = diagnostic.fix->replacements;
+        name.last->fix->replacements.insert(name.last->fix->replacements.end(), more.begin(),
+                                            more.end());
+      }
       continue;
     }
     if (!context.about.contains(at)) {

@@ -227,7 +227,7 @@ void define_robots(Context& context) {
     Robot robot;
     robot.name = std::string(node.name.text);
     robot.span = node.name.span;
-    const auto errors = context.diagnostics.error_count();
+    const auto errors = context.mistakes();
     RobotReader reader{context, robot};
     for (const syntax::RobotStmt& stmt : node.body) std::visit(reader, stmt);
     if (declared.decl->complete) {
@@ -239,7 +239,7 @@ void define_robots(Context& context) {
       if (!reader.has_drive) missing(context, "robot", robot.name, robot.span, "drive");
     }
     if (!robot.urdf.span.is_none()) load_model(context, robot);
-    robot.broken = !declared.decl->complete || context.diagnostics.error_count() != errors;
+    robot.broken = !declared.decl->complete || context.mistakes() != errors;
     context.model.robots.add(std::move(robot));
   }
 }
@@ -345,7 +345,7 @@ void define_cameras(Context& context) {
     if (parents[i]) camera = context.model.cameras[static_cast<CameraId>(*parents[i])];
     camera.name = std::string(node.name.text);
     camera.span = node.name.span;
-    const auto errors = context.diagnostics.error_count();
+    const auto errors = context.mistakes();
     for (const syntax::CameraStmt& stmt : node.body)
       std::visit(CameraReader{context, camera}, stmt);
     broken[i] = !decls[i].decl->complete || (node.like && !parents[i]) ||
@@ -356,7 +356,7 @@ void define_cameras(Context& context) {
       if (camera.width == 0) missing(context, "camera", camera.name, camera.span, "image");
       if (camera.fx == 0) missing(context, "camera", camera.name, camera.span, "lens");
     }
-    camera.broken = broken[i] = broken[i] || context.diagnostics.error_count() != errors;
+    camera.broken = broken[i] = broken[i] || context.mistakes() != errors;
     context.model.cameras[static_cast<CameraId>(i)] = std::move(camera);
   }
 }
@@ -547,10 +547,10 @@ void define_scenes(Context& context) {
     scene.name = std::string(node.name.text);
     scene.span = node.name.span;
     SceneReader reader{context, scene};
-    const auto errors = context.diagnostics.error_count();
+    const auto errors = context.mistakes();
     for (const syntax::SceneStmt& stmt : node.body) std::visit(reader, stmt);
     if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
-    broken[i] = !decls[i].decl->complete || context.diagnostics.error_count() != errors ||
+    broken[i] = !decls[i].decl->complete || context.mistakes() != errors ||
                 (node.like && !parents[i]) || (parents[i] && broken[*parents[i]]);
     if (!broken[i]) {
       if (scene.robot == RobotId::kNone) missing(context, "scene", scene.name, scene.span, "robot");
@@ -561,11 +561,13 @@ void define_scenes(Context& context) {
         missing(context, "scene", scene.name, scene.span, "camera");
       if (scene.light == LightId::kNone) missing(context, "scene", scene.name, scene.span, "light");
       if (scene.physics_hz == 0) missing(context, "scene", scene.name, scene.span, "physics");
-      check_joints(context, scene);
+      const bool has_robot =
+          scene.robot != RobotId::kNone && !context.model.robots[scene.robot].broken;
+      if (has_robot) check_joints(context, scene);
       check_rates(context, scene);
     }
-    scene.complete = !broken[i] && context.diagnostics.error_count() == errors &&
-                     scene.robot != RobotId::kNone && !context.model.robots[scene.robot].broken;
+    scene.complete = !broken[i] && context.mistakes() == errors && scene.robot != RobotId::kNone &&
+                     !context.model.robots[scene.robot].broken;
     broken[i] = !scene.complete;
     context.model.scenes[static_cast<SceneId>(i)] = std::move(scene);
   }

@@ -150,6 +150,7 @@ bool has_broken_part(const Model& model, const Task& task) {
   if (is_broken(model.layouts, task.layout) || is_broken(model.metrics, task.metrics) ||
       is_broken(model.templates, task.say) || is_broken(model.cameras, task.camera))
     return true;
+  if (task.scene != SceneId::kNone && is_broken(model.cameras, camera_of(model, task))) return true;
   const std::vector<ObjectId> objects = task.objects();
   return std::any_of(objects.begin(), objects.end(),
                      [&](ObjectId id) { return is_broken(model.objects, id); });
@@ -302,9 +303,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   task.complete = missing.empty() && !poisoned;
   if (task.complete) check_roles(context_, task, poisoned);
   if (task.complete) check_camera(context_, task, poisoned);
-  if (!missing.empty() && !poisoned && !task.abstract) {
-    context_.report(Code::P0206, task.span, "task `" + task.name + "` has no " + missing);
-  }
+  if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
   task.complete = task.complete && !poisoned;
   poison_[index] = poisoned;
   defined_[index] = true;
@@ -314,6 +313,23 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
     task.ood = out_of_distribution(model, task);
   }
   model.tasks[static_cast<TaskId>(index)] = std::move(task);
+}
+
+// What a task lacks, its copies lack: said of the first, and once for the copies of an abstract
+// one.
+void TaskTable::report_missing(const Task& task, const std::string& missing) {
+  const bool is_copy = task.like != TaskId::kNone;
+  if (is_copy && !context_.model.tasks[task.like].abstract &&
+      !context_.model.tasks[task.like].complete)
+    return;
+  const auto [first, is_new] = missing_.try_emplace({task.like, missing}, nullptr);
+  if (is_new || !is_copy) {
+    first->second =
+        &context_.report(Code::P0206, task.span, "task `" + task.name + "` has no " + missing);
+  } else if (first->second->notes.empty()) {
+    first->second->note("nor has any other task that lacks it and is `like " +
+                        context_.model.tasks[task.like].name + "`");
+  }
 }
 
 void TaskTable::compare(std::uint32_t index, bool last_chance) {

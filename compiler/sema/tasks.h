@@ -1,7 +1,10 @@
 // The table of tasks while it is being filled: written tasks first, then those of every `derive`.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/sema/context.h"
@@ -26,7 +29,10 @@ class TaskTable {
   bool is_defined(TaskId id) const { return defined_[static_cast<std::size_t>(id)]; }
 
  private:
+  void report_missing(const Task& task, const std::string& missing);
+
   Context& context_;
+  std::map<std::pair<TaskId, std::string>, Diagnostic*> missing_;  // by what is copied
   std::vector<bool> poison_;  // has a statement that was reported
   std::vector<bool> defined_;
 };

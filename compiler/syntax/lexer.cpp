@@ -294,6 +294,11 @@ class Lexer {
     if (with_unit(begin, end, word_end)) return;
     if (times_without_blanks(begin, end)) return;
     if (foreign_unit(begin, end)) return;
+    // `kg/m4` is one unknown unit, not one that is divided.
+    if (at(word_end) == '/' && is_letter(at(word_end + 1))) {
+      ++word_end;
+      while (is_word(at(word_end))) ++word_end;
+    }
     const std::string seen(text_.substr(end, word_end - end));
     Diagnostic* error = errors_.report(Code::P0301, span(begin, word_end),
                                        "unknown unit `" + shortened(seen) + "`");
