@@ -126,6 +126,13 @@ TEST_CASE("an unknown task or suite suggests the nearest in every verb") {
   }
 }
 
+TEST_CASE("a task that is only copied is said to be abstract") {
+  Sandbox box;
+  const Outcome outcome = box.vlaprobe("show $SUITE on_table");
+  CHECK(outcome.exit == 1);
+  CHECK(contains(outcome.err, "task `on_table` is abstract"));
+}
+
 TEST_CASE("two tasks and two plans are compared") {
   Sandbox box;
   const auto tasks =
