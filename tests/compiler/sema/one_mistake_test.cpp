@@ -16,9 +16,9 @@ const char* const kMore = R"(
 layout close like pairs { drop 5cm }
 layout turned like pairs { orient source yaw 0deg, yaw 90deg; jitter 1mm; expect 24 episodes }
 template shove frame shove "shove {the source: toy} to {the target: dish}"
-predicate near(o: object, by: length = 2cm) = distance(tcp, o) < by
+predicate near(o: object, gap: length = 2cm) = distance(tcp, o) < gap
 predicate apart(a: object, b: object) = all {
-  near(a, by: 1cm)
+  near(a, gap: 1cm)
   not distance_xy(a, b) < 1cm
 }
 metrics more like plain { near = once near(source); apart = count apart(source, target) }
