@@ -42,6 +42,9 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
   const auto [at, is_new] = known_.try_emplace({path, kind}, plan::kNone);
   if (!is_new) return at->second;
   const auto miss = [&](std::string why) {
+    for (const AssetMiss& known : misses_) {
+      if (known.path == path) return plan::kNone;  // for another use
+    }
     misses_.push_back({path, std::move(why), span, owner});
     return plan::kNone;
   };

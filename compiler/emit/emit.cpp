@@ -143,9 +143,8 @@ class Emitter {
   MeshPair find_meshes(const std::string& folder) const {
     MeshPair meshes{assets_.find(folder + "/visual", kMeshExtensions),
                     assets_.find(folder + "/collision", kCollisionExtensions)};
-    if (!assets_.has(meshes.collision) && assets_.has(meshes.visual)) {
-      meshes.collision = meshes.visual;
-    }
+    // Where neither is there, one message is enough: that about the picture mesh.
+    if (!assets_.has(meshes.collision)) meshes.collision = meshes.visual;
     return meshes;
   }
 

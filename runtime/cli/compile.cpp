@@ -91,10 +91,13 @@ CompiledText compile_text(const std::vector<std::string>& files, const AssetOpti
       fmt::print(stderr,
                  "note: the assets lack what other tasks need; compiled are only the tasks `{}`\n",
                  assets.tasks);
-      text = std::move(chosen);
     }
+    text = std::move(chosen);
   }
   print_diagnostics(text, json);
+  if (text.only_assets_missing) {
+    fmt::print(stderr, "note: --tasks GLOB takes only tasks that do not need these files\n");
+  }
   return text;
 }
 

@@ -137,7 +137,11 @@ class SharedAssets::Loader {
       return Failure{"asset", "the plan names a file outside the asset folder", name};
     }
     const Read file = read_bytes(path_of(asset));
-    if (!file.ok) return Failure{"asset", "this file of the plan is not in " + assets_.root_, name};
+    if (!file.ok)
+      return Failure{
+          "asset",
+          "this file of the plan is not in " + assets_.root_ + "; --assets names another folder",
+          name};
     const Sha256 hash = sha256(std::string_view(file.bytes));
     if (file.bytes.size() != record.byte_size || hash.bytes != record.sha256) {
       return Failure{"asset", "its bytes are not the ones the plan was built with", name};
