@@ -1,6 +1,8 @@
 // vlaprobe build
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "runtime/base/file.h"
 #include "runtime/cli/compile.h"
 #include "runtime/plan/plan.h"
@@ -12,6 +14,7 @@ void add_build(CLI::App& app, int& exit) {
   struct Arguments {
     std::vector<std::string> files;
     std::string out, suite;
+    bool json = false;
     AssetOptions assets;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -24,6 +27,7 @@ void add_build(CLI::App& app, int& exit) {
   verb->add_option("--suite", arguments->suite, "only this suite's tasks");
   verb->add_option("--tasks", arguments->assets.tasks,
                    "glob: only these tasks, where the assets lack what others need");
+  verb->add_flag("--json", arguments->json, "root and sizes as a JSON object");
   add_asset_option(*verb, arguments->assets);
   verb->callback([arguments, &exit] {
     CompiledText text = compile_text(arguments->files, arguments->assets, arguments->suite, true);
@@ -36,6 +40,14 @@ void add_build(CLI::App& app, int& exit) {
     auto plan = plan::Plan::open(arguments->out);
     if (!plan) {
       exit = report(plan.failure());
+      return;
+    }
+    if (arguments->json) {
+      const nlohmann::ordered_json json = {{"root", to_hex(plan->root())},
+                                           {"tasks", plan->tasks().size()},
+                                           {"episodes", plan->episodes().size()},
+                                           {"bytes", plan->bytes().size()}};
+      fmt::print("{}\n", json.dump(2));
       return;
     }
     fmt::print("{}\n", to_hex(plan->root()));

@@ -68,9 +68,11 @@ Compilation compile_text(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("every example of the reference compiles") {
-  const std::vector<Example> examples = examples_of(kRoot / "dsl/reference.md");
-  CHECK(examples.size() >= 12);
+TEST_CASE("every example of the reference and of the library's page compiles") {
+  std::vector<Example> examples = examples_of(kRoot / "dsl/reference.md");
+  CHECK(examples.size() >= 15);
+  for (Example& example : examples_of(kRoot / "dsl/std/README.md"))
+    examples.push_back(std::move(example));
   for (const Example& example : examples) {
     const Compilation compilation = compile_text(example.text);
     CHECK_MESSAGE(compilation.ok, example.heading, "\n",
@@ -117,10 +119,13 @@ TEST_CASE("the library compiles and shares no name with the suite") {
   }
   const Compilation alone = compile_text(all);
   CHECK_MESSAGE(alone.ok, render_text(alone.diagnostics, alone.sources));
-  const Compilation both = compile_text("use \"suite/intact.probe\"\n" + all +
-                                        "task with_library like carrot_on_plate { metrics placing; "
-                                        "say place_on }\nvariant lifted_up of with_library { "
-                                        "metrics lifting }\nvariant pushed of with_library { "
-                                        "metrics pushing }\n");
+  const Compilation both =
+      compile_text("use \"suite/intact.probe\"\n" + all +
+                   "task with_library like carrot_on_plate { metrics placing; "
+                   "say place_on }\nvariant lifted_up of with_library { "
+                   "metrics lifting }\nvariant pushed of with_library { "
+                   "metrics pushing }\nvariants of with_library {\n"
+                   "stacked { metrics stacking }\nfilled { metrics filling }\n"
+                   "cleared { metrics clearing }\ngone { metrics reaching } }\n");
   CHECK_MESSAGE(both.ok, render_text(both.diagnostics, both.sources));
 }

@@ -1,0 +1,39 @@
+#include "runtime/rejudge/tally.h"
+
+#include <doctest/doctest.h>
+
+using namespace probe;
+
+namespace {
+
+run::ResultRow row(const char* task, int episode, double success, double top) {
+  run::ResultRow row;
+  row.task = task;
+  row.episode = episode;
+  row.metrics = {{"success", true, success}, {"top", false, top}};
+  return row;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "conditions are counted, numbers have mean and extremes, invalid episodes count nowhere") {
+  std::vector<run::ResultRow> rows = {row("a", 0, 1, 0.5), row("a", 1, 0, 1.5), row("b", 0, 1, 2)};
+  rows.push_back(row("a", 2, 1, 100));
+  rows.back().invalid = "the policy went away";
+  rows.back().seed = 7;
+  CHECK(rejudge::tally_text(rows, nullptr) ==
+        "a: 3 episodes, 1 invalid (episode 2 seed 7: the policy went away)\n"
+        "  success         1 of 2\n"
+        "  top          mean 1, 0.5 .. 1.5\n"
+        "b: 1 episodes\n"
+        "  success         1 of 1\n"
+        "  top          mean 2, 2 .. 2\n");
+}
+
+TEST_CASE("a run without a valid episode says only that") {
+  run::ResultRow only = row("a", 0, 1, 1);
+  only.invalid = "no";
+  CHECK(rejudge::tally_text(std::span(&only, 1), nullptr) ==
+        "a: 1 episodes, 1 invalid (episode 0 seed 0: no)\n");
+}
