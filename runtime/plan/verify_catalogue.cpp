@@ -59,7 +59,7 @@ class CatalogueCheck : FieldCheck {
   }
 
   Status object(const ObjectRecord& o) const {
-    PROBE_TRY(check_name(o.name, "the name of an object"));
+    PROBE_TRY(check_word(o.name, "the name of an object"));
     PROBE_TRY(check_text(o.text));
     PROBE_TRY(check_asset(o.visual, AssetKind::kVisualMesh, true));
     PROBE_TRY(check_asset(o.collision, AssetKind::kCollisionMesh, true));
@@ -82,7 +82,7 @@ class CatalogueCheck : FieldCheck {
   }
 
   Status robot(const RobotRecord& r) {
-    PROBE_TRY(check_name(r.name, "the name of a robot"));
+    PROBE_TRY(check_word(r.name, "the name of a robot"));
     PROBE_TRY(check_name(r.tcp, "the tool centre point"));
     PROBE_TRY(check_asset(r.urdf, AssetKind::kUrdf, false));
     if (r.control != static_cast<std::uint32_t>(Control::kEeDeltaPose)) {
@@ -129,7 +129,7 @@ class CatalogueCheck : FieldCheck {
   }
 
   Status camera(const CameraRecord& c) const {
-    PROBE_TRY(check_name(c.name, "the name of a camera"));
+    PROBE_TRY(check_word(c.name, "the name of a camera"));
     PROBE_TRY(check_name(c.mount_link, "the mount of a camera"));
     PROBE_TRY(check_finite(c.position));
     PROBE_TRY(check_finite(c.aim_values));
@@ -176,7 +176,7 @@ class CatalogueCheck : FieldCheck {
   }
 
   Status light(const LightRecord& l) const {
-    PROBE_TRY(check_name(l.name, "the name of a light"));
+    PROBE_TRY(check_word(l.name, "the name of a light"));
     PROBE_TRY(check_not_negative(l.ambient, "ambient light"));
     PROBE_TRY(check_slice(l.suns, t.suns.size(), "SUNS"));
     if (l.suns.count > kMaxSuns) {
@@ -193,7 +193,7 @@ class CatalogueCheck : FieldCheck {
   }
 
   Status scene(const SceneRecord& s) const {
-    PROBE_TRY(check_name(s.name, "the name of a scene"));
+    PROBE_TRY(check_word(s.name, "the name of a scene"));
     PROBE_TRY(check_index(s.robot, t.robots.size(), "ROBT"));
     PROBE_TRY(check_asset(s.photo, AssetKind::kPhoto, true));
     PROBE_TRY(check_asset(s.backdrop, AssetKind::kVisualMesh, true));

@@ -59,6 +59,18 @@ Status FieldCheck::check_name(const StringRef& ref, const char* what) const {
   return {};
 }
 
+Status FieldCheck::check_word(const StringRef& ref, const char* what) const {
+  PROBE_TRY(check_name(ref, what));
+  const std::string_view name = t.text(ref);
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  const auto is_part = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
+  if (is_letter(name[0]) && std::ranges::all_of(name, is_part)) return {};
+  return fail(Rule::kWord, &ref,
+              fmt::format("{} is letters, digits and _, a letter first, not `{}`", what, name));
+}
+
 Status FieldCheck::check_slice(const Slice& slice, std::size_t size, const char* table) const {
   if (std::uint64_t{slice.first} + slice.count > size) {
     return fail(Rule::kSlice, &slice,

@@ -31,6 +31,8 @@ class FieldCheck {
   // In range, of good text; `name` must not be empty either.
   Status check_text(const StringRef& ref) const;
   Status check_name(const StringRef& ref, const char* what) const;
+  // A name that the language can declare: it stands in paths, columns and groups of results.
+  Status check_word(const StringRef& ref, const char* what) const;
   // [first, first + count) inside a table of `size` records.
   Status check_slice(const Slice& slice, std::size_t size, const char* table) const;
   Status check_index(const std::uint32_t& index, std::size_t size, const char* table) const;

@@ -51,7 +51,7 @@ class TaskCheck : FieldCheck {
   }
 
   Status metric(const MetricRecord& m) const {
-    PROBE_TRY(check_name(m.name, "the name of a metric"));
+    PROBE_TRY(check_word(m.name, "the name of a metric"));
     if (m.type != static_cast<std::uint32_t>(MetricType::kBool) &&
         m.type != static_cast<std::uint32_t>(MetricType::kReal)) {
       return fail(Rule::kMetricType, &m.type, fmt::format("metric type {} is not known", m.type));
@@ -144,7 +144,7 @@ class TaskCheck : FieldCheck {
   }
 
   Status task(const TaskRecord& k) const {
-    PROBE_TRY(check_name(k.name, "the name of a task"));
+    PROBE_TRY(check_word(k.name, "the name of a task"));
     PROBE_TRY(check_name(k.prompt, "an instruction"));
     PROBE_TRY(check_index(k.scene, t.scenes.size(), "SCNE"));
     PROBE_TRY(check_index(k.camera, t.cameras.size(), "CAMR"));
@@ -297,11 +297,11 @@ class TaskCheck : FieldCheck {
   Status lists() {
     for (const RobotRecord& r : t.robots) PROBE_TRY(count_list(r.meshes));
     for (const SetRecord& s : t.sets) {
-      PROBE_TRY(check_name(s.name, "the name of a set"));
+      PROBE_TRY(check_word(s.name, "the name of a set"));
       PROBE_TRY(members(s.members));
     }
     for (const SuiteRecord& s : t.suites) {
-      PROBE_TRY(check_name(s.name, "the name of a suite"));
+      PROBE_TRY(check_word(s.name, "the name of a suite"));
       PROBE_TRY(check_text(s.prefix));
       PROBE_TRY(check_text(s.trained_on));
       PROBE_TRY(members(s.members));
