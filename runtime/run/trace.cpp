@@ -215,6 +215,29 @@ bool is_known(Tag tag) {
   return is_hashed(tag) || tag == Tag::kFingerprint || tag == Tag::kTime || tag == Tag::kHash;
 }
 
+// What a record must have of what its header names: nobody behind the reader counts again.
+bool fits(const TraceHeader& header, const vm::StepSample& sample) {
+  const std::size_t bodies = header.bodies.size();
+  return sample.bodies.size() == bodies &&
+         std::ranges::all_of(sample.contacts, [&](const vm::ContactSample& contact) {
+           return contact.a < contact.b && contact.b < bodies;
+         });
+}
+bool fits(const TraceHeader& header, const TraceStart& start) {
+  return start.starts.size() == header.bodies.size() && start.q.size() == header.joints.size() &&
+         fits(header, start.sample);
+}
+bool fits(const TraceHeader& header, const TraceStep& step) {
+  return step.q.size() == header.joints.size() && step.u.size() == header.joints.size() &&
+         step.metrics.size() == header.metrics.size() && fits(header, step.sample);
+}
+bool fits(const TraceHeader& header, const TraceEnd& end) {
+  const auto is_same = [](const MetricValue& value, const TraceHeader::Metric& metric) {
+    return value.name == metric.name && value.is_bool == metric.is_bool;
+  };
+  return end.invalid || std::ranges::equal(end.metrics, header.metrics, is_same);
+}
+
 // One chunk into the trace; what is wrong with it, if anything is.
 std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing, Tag tag,
                    std::span<const std::byte> payload) {
@@ -236,16 +259,21 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
     case Tag::kFingerprint:
       trace.header.fingerprint = from.text();
       return from.ok() && from.left() == 0 ? "" : "a fingerprint of another form";
-    case Tag::kSettled:
+    case Tag::kSettled: {
       if (trace.start) return "a second settled start";
-      trace.start = codec::get_start(payload);
-      return trace.start ? "" : "a settled start of another form";
+      auto start = codec::get_start(payload);
+      if (!start) return "a settled start of another form";
+      if (!fits(trace.header, *start)) return "a settled start of other things than its header's";
+      trace.start = std::move(start);
+      return {};
+    }
     case Tag::kTime:
       for (double& seconds : timing) seconds = from.f64();
       return from.ok() && from.left() == 0 ? "" : "a timing of another form";
     case Tag::kStep: {
       auto step = codec::get_step(payload);
       if (!step) return "a step of another form";
+      if (!fits(trace.header, *step)) return "a step of other things than its header's";
       step->render_s = timing[0];
       step->policy_s = timing[1];
       step->physics_s = timing[2];
@@ -255,6 +283,7 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
     case Tag::kDone:
       trace.end = codec::get_end(payload);
       if (!trace.end) return "an end of another form";
+      if (!fits(trace.header, *trace.end)) return "an end with other metrics than its header's";
       return trace.end->steps == trace.steps.size() ? ""
                                                     : "another number of steps than its end says";
     case Tag::kHash:

@@ -33,6 +33,7 @@ inline run::Trace made_trace(const plan::Plan& plan, std::uint32_t task) {
   const std::size_t bodies = trace.header.bodies.size();
   trace.start.emplace();
   trace.start->starts.resize(bodies);
+  trace.start->sample.bodies.resize(bodies);
   trace.start->starts[3].opening = {0, 1, 0};
   for (std::uint32_t i = 1; i <= record.horizon; ++i) {
     run::TraceStep step;

@@ -30,6 +30,8 @@ Stored stored(const plan::Plan& plan, const std::string& path,
   REQUIRE(score.ok());
   for (std::size_t i = 0; i < trace.steps.size(); ++i) trace.steps[i].metrics = score->steps[i];
   trace.end = run::TraceEnd{task.horizon, score->metrics, std::nullopt};
+  for (const run::MetricValue& metric : score->metrics)
+    trace.header.metrics.push_back({metric.name, metric.is_bool});
   if (change) change(trace);
   auto writer = run::TraceWriter::create(path, trace.header);
   REQUIRE(writer.ok());

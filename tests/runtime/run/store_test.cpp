@@ -46,9 +46,13 @@ Status store_episode(Store& store, ResultRow row) {
   header.task = row.task;
   header.episode = row.episode;
   header.seed = row.seed;
-  PROBE_ASSIGN(
-      const Sha256 hash,
-      write_sample_trace(store.temporary_trace(row.task, row.episode, row.seed), 1, 0.006, header));
+  row.start_id = to_hex(header.start_id);
+  row.episode_id = to_hex(header.episode_id);
+  PROBE_ASSIGN(auto trace,
+               TraceWriter::create(store.temporary_trace(row.task, row.episode, row.seed), header));
+  PROBE_TRY(trace->start(sample_start()));
+  PROBE_TRY(trace->step(sample_step(1)));
+  PROBE_ASSIGN(const Sha256 hash, trace->finish({1, row.metrics, row.invalid}));
   row.trace_sha256 = to_hex(hash);
   return store.commit(row, 0);
 }

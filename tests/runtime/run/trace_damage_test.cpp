@@ -174,6 +174,43 @@ TEST_CASE("chunks out of order are refused, with good check words too") {
   CHECK_FALSE(reads({0, 1, 2, 3, 4, 5, 6, 8, 7}));
 }
 
+TEST_CASE("records of other things than the header names are refused where they stand") {
+  TemporaryFolder folder;
+  const auto message = [&](auto&& change) {
+    TraceHeader header = sample_header();
+    TraceStart start = sample_start();
+    TraceStep step = sample_step(1);
+    TraceEnd end{1, {{"success", true, 0}, {"height", false, 0.125}}, std::nullopt};
+    change(header, start, step, end);
+    auto writer = TraceWriter::create(folder / "a.trace", header);
+    REQUIRE(writer.ok());
+    REQUIRE((*writer)->start(start).ok());
+    REQUIRE((*writer)->step(step).ok());
+    REQUIRE((*writer)->finish(end).ok());
+    const auto trace = read_trace(folder / "a.trace");
+    return trace.ok() ? std::string() : trace.failure().message;
+  };
+  using H = TraceHeader&;
+  using S = TraceStart&;
+  using T = TraceStep&;
+  using E = TraceEnd&;
+  CHECK(message([](H, S, T, E) {}).empty());
+  const std::string bad_start = "a settled start of other things than its header's, at the start";
+  const std::string bad_step = "a step of other things than its header's, after the settled start";
+  CHECK(message([](H h, S, T, E) { h.bodies.pop_back(); }) == bad_start);
+  CHECK(message([](H h, S, T, E) { h.joints.emplace_back("elbow"); }) == bad_start);
+  CHECK(message([](H, S s, T, E) { s.starts.pop_back(); }) == bad_start);
+  CHECK(message([](H h, S, T, E) { h.metrics.pop_back(); }) == bad_step);
+  CHECK(message([](H, S, T t, E) { t.sample.bodies.pop_back(); }) == bad_step);
+  CHECK(message([](H, S, T t, E) { t.sample.contacts[0].b = 2; }) == bad_step);
+  CHECK(message([](H, S, T t, E) { t.sample.contacts[0].b = 0; }) == bad_step);
+  CHECK(message([](H, S, T t, E) { t.u.clear(); }) == bad_step);
+  CHECK(message([](H, S, T, E e) {
+          e.metrics[1].name = "depth";
+        }).starts_with("an end with other metrics"));
+  CHECK(message([](H, S, T, E e) { e.metrics.clear(), e.invalid = "the policy left"; }).empty());
+}
+
 TEST_CASE("another version and unknown chunks are refused") {
   TemporaryFolder folder;
   REQUIRE(write_sample_trace(folder / "a.trace", 1).ok());
