@@ -13,7 +13,8 @@
 namespace probe::sema {
 namespace {
 
-// Files by what they use, so that `tasks` can mean the tasks of a file and of what it uses.
+// Files by what they use, so that `tasks` and `variants of` can mean those of a file and of what it
+// uses.
 std::set<std::uint32_t> visible_files(const Context& context, const syntax::File& file) {
   std::set<std::uint32_t> visible;
   std::vector<const syntax::File*> open = {&file};
@@ -139,10 +140,13 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
 SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
                                         const syntax::TaskSetVariants& variants) {
   const Mask of(context_.model.tasks.size(), read(file, variants.of));
+  // A file that uses this one may add variants; the set here does not grow by them.
+  const std::set<std::uint32_t> visible = visible_files(context_, file);
   Members members;
   for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
     const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
-    if (!task.abstract && task.baseline != TaskId::kNone && of.has(task.baseline))
+    if (!task.abstract && task.baseline != TaskId::kNone && of.has(task.baseline) &&
+        visible.contains(task.file.value))
       members.push_back(static_cast<TaskId>(i));
   }
   return members;

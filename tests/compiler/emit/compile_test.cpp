@@ -207,3 +207,19 @@ TEST_CASE(
   CHECK(checked->diagnostics.items()[0].primary.file !=
         checked->diagnostics.items()[1].primary.file);
 }
+
+TEST_CASE("a file that uses another does not change the suites of that other") {
+  const Folder folder("grows");
+  folder.write("base.probe", std::string(test::kSmallSuite) + R"(
+variant worded of red_on_tray { say take }
+suite mine trained on lab { tasks { red_on_tray } | variants of { red_on_tray }; seeds 42; expect 2 tasks, 48 episodes }
+)");
+  const std::string more = folder.write("more.probe", R"(use "base.probe"
+variant other of red_on_tray { source blue }
+suite all trained on lab { tasks variants of { red_on_tray }; seeds 42; expect 2 tasks, 48 episodes }
+)");
+  const auto built = build_ok(more);
+  const auto plan = plan::Plan::from_bytes(built.plan);
+  REQUIRE(plan.ok());
+  CHECK(plan->tasks().size() == 3);
+}
