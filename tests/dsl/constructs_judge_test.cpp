@@ -2,6 +2,8 @@
 // holds.
 #include <doctest/doctest.h>
 
+#include <fstream>
+
 #include "runtime/vm/judge.h"
 #include "tests/dsl/built.h"
 
@@ -270,4 +272,37 @@ TEST_CASE("e_un: every measure") {
                 {"final step", 1},
                 {"final time", 0.2}},
                world);
+}
+
+// `predicate` of the library's page of places, judged in worlds made by hand.
+TEST_CASE("the library's beside is on the ground and on_top_of is not") {
+  std::string library;
+  for (const char* page : {"contact.probe", "place.probe"}) {
+    std::ifstream file(std::string(VLAPROBE_SOURCE_DIR) + "/dsl/std/" + page);
+    for (std::string line; std::getline(file, line);)
+      library += (line.starts_with("use ") ? "" : line) + "\n";
+  }
+  const auto says = [&](const World& world, double beside, double on_top_of) {
+    check_values({{"at end beside(source, target)", beside},
+                  {"at end on_top_of(source, target)", on_top_of}},
+                 world, library);
+  };
+  const Vec3 push = {0, 0, 0.01};
+  World on_it;  // lies on the target, which lies on the surface
+  on_it.at(kSource, {0.3, 0.1, 0.865});
+  on_it.touch(kSource, kTarget, push).touch(kTarget, kSurface, push);
+  says(on_it, 0, 1);
+  World next_to_it;  // higher than the low target, its centre within the target's diagonal
+  next_to_it.at(kSource, {0.3, 0.148, 0.856});
+  next_to_it.touch(kSource, kSurface, push).touch(kTarget, kSurface, push);
+  says(next_to_it, 1, 0);
+  World leaning = next_to_it;
+  leaning.sample.contacts.insert(leaning.sample.contacts.begin(), {kSource, kTarget, push});
+  says(leaning, 1, 0);
+  World above = on_it;  // held over it
+  above.sample.contacts = {{kTarget, kSurface, push}};
+  says(above, 0, 0);
+  World away = next_to_it;
+  away.at(kSource, {0.3, 0.2, 0.856});
+  says(away, 0, 0);
 }
