@@ -34,7 +34,8 @@ void print_json(const rejudge::EpisodeWhy& why) {
                                      {"text", c.text},
                                      {"bodies", c.bodies},
                                      {"measured", c.measured},
-                                     {"truth", c.truth},
+                                     {"truth", c.is_number ? nlohmann::ordered_json(nullptr)
+                                                           : nlohmann::ordered_json(c.truth)},
                                      {"decides", c.decides},
                                      {"alike", c.alike}});
     }
@@ -60,7 +61,7 @@ void print_metric(const rejudge::MetricWhy& metric) {
     // What did not decide stands without the mark.
     fmt::print("{:>6} {} {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "",
                c.decides ? '>' : '|', left(c), text_width, c.measured, measured_width,
-               c.truth ? "true" : "false",
+               c.is_number ? "" : (c.truth ? "true" : "false"),
                c.alike > 0 ? fmt::format("  and {} alike", c.alike) : "");
   }
 }

@@ -72,6 +72,18 @@ void note(History& h, int step, double core, double value, std::uint32_t distanc
   h.value = value;
 }
 
+// The rest of a one-line statement from `begin` on: `highest = max height(o)`.
+std::string statement_at(std::string_view source, std::size_t begin) {
+  std::size_t end = begin;
+  for (int depth = 0; end < source.size(); ++end) {
+    const char c = source[end];
+    depth += c == '{' ? 1 : (c == '}' ? -1 : 0);
+    if (depth < 0 || c == '\n' || c == '\r' || c == ';' || c == '#') break;
+  }
+  while (end > begin && source[end - 1] == ' ') --end;
+  return std::string(source.substr(begin, end - begin));
+}
+
 // The step that decides and how to say so.
 std::pair<int, std::string> decision(const History& h, int last) {
   if (last == 0) return {0, "no step was made"};
@@ -161,6 +173,7 @@ class Explainer {
       why.file = plan_.tables().path(text);
       why.line = line.number;
       why.text = line.text;
+      why.statement = statement_at(plan_.tables().source(text), span->begin);
     }
     return why;
   }
@@ -181,7 +194,14 @@ class Explainer {
       view_.locate(h.core, value);
       value.bodies = view_.bodies(h.core);
       value.measured = quantity(judge_.register_value(h.core).x(), dimensions_[h.core]);
-      value.truth = true;
+      value.is_number = true;
+      // Where the metric is declared: equal subexpressions of several metrics are computed once,
+      // at the first one's place.
+      if (!why.file.empty()) {
+        value.file = why.file;
+        value.line = why.line;
+        value.text = why.statement;
+      }
       why.conditions.push_back(std::move(value));
       return;
     }
@@ -257,7 +277,9 @@ class Explainer {
     const double limit = portable_acos(judge_.register_value(inner.a).x());
     const char* relation = dot_right ? (is_strict ? "<" : "<=") : (is_strict ? ">" : ">=");
     if (!(lengths > 0)) {
-      return fmt::format("no direction {} {}", relation, angle_text(limit));
+      // Of a zero vector: both sides of the comparison are 0.
+      return fmt::format("zero vector, {} angle {} {}", is_strict ? "no" : "any", relation,
+                         angle_text(limit));
     }
     const double cosine = std::clamp(judge_.register_value(dot).x() / lengths, -1.0, 1.0);
     return fmt::format("{} {} {}", angle_text(portable_acos(cosine)), relation, angle_text(limit));

@@ -21,8 +21,9 @@ struct Condition {
   std::string bodies;    // whose measurements it compares: "carrot, surface"
   std::string measured;  // "3.1cm <= 2cm"
   bool truth = false;
-  bool decides = true;  // the predicate is what it is because of this one, perhaps with others
-  int alike = 0;        // further ones of the same text and truth that are not listed
+  bool is_number = false;  // no condition but the value of a metric: `truth` says nothing
+  bool decides = true;     // the predicate is what it is because of this one, perhaps with others
+  int alike = 0;           // further ones of the same text and truth that are not listed
 };
 
 struct MetricWhy {
@@ -36,6 +37,7 @@ struct MetricWhy {
   std::string file;     // of the metric's line, as above
   std::size_t line = 0;
   std::string text;
+  std::string statement;  // of that line, the metric's own part: "highest = max height(o)"
   std::vector<Condition> conditions;
 };
 

@@ -147,6 +147,22 @@ TEST_CASE("an explanation names the deciding step and the numbers measured there
   CHECK(explain(plan, 0, far, "nearly").failure().code == "usage");
 }
 
+TEST_CASE("a number stands at the line that declares its metric, and is neither true nor false") {
+  plan::Writer w = plan::small_writer();
+  const std::uint32_t text =
+      w.source("mine.probe", "metrics m {\n  spread = final y; z = once x }\n");
+  w.records.spans.push_back({4, 1, text, 14, 20});
+  const plan::Plan plan = opened(w);
+  const auto why = explain(plan, 0, made_trace(plan, 0), "spread");
+  REQUIRE_MESSAGE(why.ok(), to_text(why.failure()));
+  REQUIRE(why->front().conditions.size() == 1);
+  const Condition& number = why->front().conditions[0];
+  CHECK(number.is_number);
+  CHECK(number.file == "mine.probe");
+  CHECK(number.line == 2);
+  CHECK(number.text == "spread = final y");
+}
+
 TEST_CASE("what must be held is nearer to true the longer it has been held") {
   const plan::Plan plan = small();
   const ProgramView view(plan, plan.tasks()[0]);
