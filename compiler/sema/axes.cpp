@@ -141,6 +141,46 @@ bool says_otherwise(const Model& model, const Task& a, const Task& b) {
 
 bool is_seen(const Object& object) { return !object.seen_in.empty(); }
 
+// Nothing but words and tags tells the two apart.
+bool is_same_body(const Object& a, const Object& b) {
+  return a.mesh.text == b.mesh.text && a.box_min == b.box_min && a.box_max == b.box_max &&
+         a.density == b.density && a.friction == b.friction;
+}
+
+// Whether a policy hears, sees and is judged by the same, whatever declarations say it.
+bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
+  const Layout& layout = model.layouts[a.layout];
+  if (!same_goal(a, b) || !same_layout(layout, model.layouts[b.layout]) ||
+      (a.scene != b.scene && !same_scene(model.scenes[a.scene], model.scenes[b.scene])) ||
+      !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
+      !(model.cameras[camera_of(model, a)] == model.cameras[camera_of(model, b)]) ||
+      a.distractors.size() != b.distractors.size())
+    return false;
+  // The order of distractors that both have is no difference.
+  std::vector<ObjectId> here = a.objects(), there = b.objects();
+  std::sort(here.begin() + 2, here.end());
+  std::sort(there.begin() + 2, there.end());
+  const bool by_name =
+      std::any_of(layout.places.begin(), layout.places.end(),
+                  [](const Place& p) {
+                    return std::any_of(p.what.begin(), p.what.end(), [](const Spelled& word) {
+                      return word.text != "source" && word.text != "target" &&
+                             word.text != "distractors";
+                    });
+                  }) ||
+      std::any_of(layout.orients.begin(), layout.orients.end(), [](const Orient& o) {
+        return o.what.text != "source" && o.what.text != "target" && o.what.text != "distractors";
+      });
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    if (rest_of(model, a, here[i]) != rest_of(model, b, there[i])) return false;
+    // A layout that jitters, or that names objects, puts a twin elsewhere.
+    if (here[i] != there[i] && (by_name || layout.jitter > 0 ||
+                                !is_same_body(model.objects[here[i]], model.objects[there[i]])))
+      return false;
+  }
+  return render_prompt(model, a) == render_prompt(model, b);
+}
+
 }  // namespace
 
 CameraId camera_of(const Model& model, const Task& task) {
@@ -152,6 +192,7 @@ LightId light_of(const Model& model, const Task& task) {
 }
 
 std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline) {
+  if (is_same_experiment(model, task, baseline)) return 0;
   std::uint32_t mask = 0;
   const auto move = [&mask](plan::Axis axis) { mask |= static_cast<std::uint32_t>(axis); };
   if (task.source != baseline.source) move(plan::Axis::kObjectSource);

@@ -172,3 +172,20 @@ TEST_CASE("a hold that is longer than the horizon can never become true") {
   CHECK_MESSAGE(a->codes() == "P0604", a->said());
   CHECK(a->underlined() == "for 80 steps");
 }
+
+TEST_CASE("what is heard, seen and judged alike is one experiment, whatever declares it") {
+  const char* const slots = "variant v of red_on_tray { say \"put red block on the tray\" }";
+  const auto base = analyze_with_suite("");
+  REQUIRE(base->task("red_on_tray").prompt == "put red block on the tray");
+  CHECK(analyze_with_suite(slots)->codes() == "P0702");
+  CHECK(analyze_with_suite("template lift frame pick \"put {source} on {the target}\"\n"
+                           "variant v of red_on_tray { say lift }")
+            ->codes() == "P0702");
+  CHECK(analyze_with_suite("object twin like red { phrase odd appearance \"red block\" bare "
+                           "means color red; name \"else\" }\n"
+                           "variant v of red_on_tray { source twin; refer source as odd }")
+            ->codes() == "P0702");
+  CHECK(analyze_with_suite("object twin like red { density 400kg/m3 }\n"
+                           "variant v of red_on_tray { source twin }")
+            ->codes() == "");
+}
