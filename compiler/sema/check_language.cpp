@@ -102,9 +102,11 @@ struct TaskLanguage {
       if (id == wanted_id) continue;
       const std::string& other = model().objects[id].text.text;
       const std::string& name = wanted.text.text;
-      const bool same = other == name;
-      const bool part = other.size() > name.size() &&
-                        (other.starts_with(name + " ") || other.ends_with(" " + name));
+      // Words that differ in case alone are the same words.
+      const std::string folded = fold_case(other), mine = fold_case(name);
+      const bool same = folded == mine;
+      const bool part = folded.size() > mine.size() &&
+                        (folded.starts_with(mine + " ") || folded.ends_with(" " + mine));
       if (!same && !part) continue;
       context.report(
           Code::P0405, rivalry(role, id),
@@ -133,16 +135,35 @@ struct TaskLanguage {
         .label(slot.span, "this slot wants one");
   }
 
+  // The source is what is to be moved, and the target is avoided only where the goal moves with it.
+  bool check_avoided(const SlotRef& slot) const {
+    const auto is = [&](const char* role, ObjectId id) {
+      return slot.name.text == role || slot.name.text == model().objects[id].name;
+    };
+    if (is("source", task.source)) {
+      context.report(Code::P0404, slot.span, "the source cannot be the object to avoid");
+      return false;
+    }
+    if (!is("target", task.target) || task.baseline == TaskId::kNone) return true;
+    const Task& baseline = model().tasks[task.baseline];
+    if (!baseline.complete || baseline.abstract || has_negation(model().templates[baseline.say]) ||
+        (task.axes & static_cast<std::uint32_t>(plan::Axis::kGoal)) != 0)
+      return true;
+    context
+        .report(Code::P0404, slot.span,
+                "`" + task.name + "` says to avoid the target and is judged as `" + baseline.name +
+                    "` is")
+        .help("change the goal with the words, or avoid a distractor");
+    return false;
+  }
+
   void check_slot(const SlotRef& slot) const {
+    if (slot.avoid && !check_avoided(slot)) return;
     const bool is_source = slot.name.text == "source";
     if (is_source || slot.name.text == "target") {
       const ObjectId id = is_source ? task.source : task.target;
       const std::size_t role = is_source ? 0 : 1;
       check_category(slot, model().objects[id]);
-      if (slot.avoid && is_source) {
-        context.report(Code::P0404, slot.span, "the source cannot be the object to avoid");
-        return;
-      }
       const Referring words =
           referring(model(), task, is_source ? syntax::Role::kSource : syntax::Role::kTarget);
       if (words.phrase != nullptr) return check_phrase(role, *words.phrase, id);
@@ -201,6 +222,17 @@ struct TaskLanguage {
     }
   }
 
+  static std::string fold_case(const std::string& text) {
+    utf8proc_uint8_t* folded = nullptr;
+    const auto size = utf8proc_map(
+        reinterpret_cast<const utf8proc_uint8_t*>(text.data()),
+        static_cast<utf8proc_ssize_t>(text.size()), &folded,
+        static_cast<utf8proc_option_t>(UTF8PROC_CASEFOLD | UTF8PROC_COMPOSE | UTF8PROC_STABLE));
+    if (size < 0) return text;
+    const std::string result(reinterpret_cast<const char*>(folded), static_cast<std::size_t>(size));
+    std::free(folded);
+    return result;
+  }
   static bool is_nfc(const std::string& text) {
     utf8proc_uint8_t* normal =
         utf8proc_NFC(reinterpret_cast<const utf8proc_uint8_t*>(text.c_str()));
@@ -218,9 +250,10 @@ void check_language(Context& context) {
     if (task.abstract || !task.complete) continue;
     const About about(context, task.decl_span);
     const TaskLanguage check{context, task, unfit};
-    std::set<std::string> checked;  // a second slot of one name says nothing new
+    std::set<std::pair<std::string, bool>> checked;  // a second slot of one name says nothing new
     for (const Template::Part& part : context.model.templates[task.say].parts) {
-      if (part.slot && checked.insert(part.slot->name.text).second) check.check_slot(*part.slot);
+      if (part.slot && checked.insert({part.slot->name.text, part.slot->avoid}).second)
+        check.check_slot(*part.slot);
     }
     check.check_sentence();
   }

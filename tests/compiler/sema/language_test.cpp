@@ -135,3 +135,27 @@ TEST_CASE("an absent object is named as it is said, with a task that has it") {
   CHECK(absent.message == "\"not the blue block\" names an object that is not in the scene of `v`");
   CHECK(absent.helps.front() == "add `distractors blue`, or derive from `among`");
 }
+
+TEST_CASE("the source is never avoided, the target only with another goal") {
+  const auto codes = [](const std::string& body) {
+    return analyze_with_suite("variant v of red_on_tray { " + body + " }")->codes();
+  };
+  CHECK(codes("say \"put {source} on {the target}, not {avoid the source}\"") == "P0404");
+  CHECK(codes("say \"put {source} on {the target}, not {avoid the red}\"") == "P0404");
+  CHECK(codes("say \"put {source} on {the target}, not {avoid the target}\"") == "P0404");
+  CHECK(codes("say \"put {source} down, not on {avoid the tray}\"") == "P0404");
+  const auto other = analyze_with_suite(
+      "@allow(confounded, \"the goal follows the words\")\n"
+      "variant v of red_on_tray { say \"put {source} down, not on {avoid the target}\"\n"
+      "  set success = at end (height(source) < height(target)) }");
+  CHECK_MESSAGE(other->codes() == "", other->said());
+}
+
+TEST_CASE("names that differ in case alone are the same words") {
+  CHECK(analyze_with_suite("object other like pale { name \"Red Block\" }\n"
+                           "task t like red_on_tray { distractors other }")
+            ->codes() == "P0405");
+  CHECK(analyze_with_suite("object other like pale { name \"small Red block\" }\n"
+                           "task t like red_on_tray { distractors other }")
+            ->codes() == "P0405");
+}
