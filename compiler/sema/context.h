@@ -105,6 +105,8 @@ struct Context {
   std::map<std::size_t, Span> about = {};  // by diagnostic: the declaration it is about
   bool was_broken = false;  // the text had errors before: what lacks now may follow from them
 
+  std::size_t levels = 0;  // open in one another, through predicates or sets: see Level
+
   std::size_t unread = 0;  // quantities of unknown units, which the lexer reported
 
   // Grows with every mistake: whether something was wrong between two calls.
@@ -133,6 +135,25 @@ class About {
   Span decl_;
   std::size_t first_;
 };
+
+// The parser bounds the levels of one expression; names that stand for further expressions add up
+// to at most this many, in whatever order they are declared.
+inline constexpr std::size_t kMaxLevels = 1000;
+
+// One level, while it lives.
+class Level {
+ public:
+  explicit Level(Context& context) : context_(context) { ++context_.levels; }
+  ~Level() { --context_.levels; }
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+
+ private:
+  Context& context_;
+};
+
+// P0103 at the name behind which the levels are too many.
+void report_levels(Diagnostics& diagnostics, const Span& name);
 
 // Fills the symbols; P0203.
 void collect_names(Context& context);

@@ -27,7 +27,7 @@ class Derive {
   // False when the limit is reached.
   bool expand() {
     if (!declared_.decl->complete || !check_binders() || !check_name()) return true;
-    SetReader reader(context_, true);
+    SetReader reader(context_, SetReader::Mode::kPreview);
     const auto& over = std::get<syntax::BinderTasks>(tasks_->over);
     const std::vector<TaskId> members = reader.read(*declared_.file, over.tasks);
     if (node_.where && !reader.check_condition(*declared_.file, *node_.where)) return true;

@@ -64,6 +64,7 @@ struct ExprNode {
   Type type;
   Span span;
   std::uint32_t a = 0;
+  std::uint32_t height = 1;  // levels below and with it, through the predicates it calls
   PredicateId predicate = PredicateId::kNone;
   SetRef set = 0;
   std::vector<ExprRef> args;

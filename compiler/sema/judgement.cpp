@@ -60,7 +60,8 @@ Type type_of(const syntax::Param& param) {
   return kPoisonType;
 }
 
-// Reads the expressions of one predicate or metric. Recursion is bounded by the parser's depth.
+// Reads the expressions of one predicate or metric. Recursion is bounded by the parser's depth, and
+// through the predicates that are called by kMaxLevels.
 class ExprReader {
  public:
   struct Variable {
@@ -83,6 +84,7 @@ class ExprReader {
     // Left out by a syntax error, which has been reported.
     if (id.value == syntax::ExprId::kNone) return poison({});
     const syntax::Expr& expr = file_[id];
+    const Level level(context_);
     return std::visit([&](const auto& node) { return read_node(expr.span, node); }, expr.node);
   }
 
@@ -92,6 +94,8 @@ class ExprReader {
   ExprArena& arena() { return context_.model.exprs; }
 
   ExprRef add(ExprNode node) {
+    for (const ExprRef arg : node.args)
+      node.height = std::max(node.height, arena().nodes[arg].height + 1);
     arena().nodes.push_back(std::move(node));
     return static_cast<ExprRef>(arena().nodes.size() - 1);
   }
@@ -535,6 +539,10 @@ void read_body(Context& context, PredicateId id) {
 }
 
 ExprRef ExprReader::read_predicate(const Span& span, const syntax::ExprCall& call, PredicateId id) {
+  if (context_.levels > kMaxLevels && context_.model.predicates[id].name.empty()) {
+    report_levels(context_.diagnostics, call.callee.span);
+    return poison(span);
+  }
   read_body(context_, id);
   const Predicate& predicate = context_.model.predicates[id];
   if (predicate.body == kNoExpr) {
@@ -600,8 +608,14 @@ ExprRef ExprReader::read_predicate(const Span& span, const syntax::ExprCall& cal
     return poison(span);
   }
   if (!fits) return poison(span);
+  const std::uint32_t height = node(predicate.body).height + 1;
+  if (height > kMaxLevels) {
+    report_levels(context_.diagnostics, call.callee.span);
+    return poison(span);
+  }
   const ExprRef ref = add(ExprOp::kCall, predicate.type, span, std::move(args));
   arena().nodes[ref].predicate = id;
+  arena().nodes[ref].height = std::max(node(ref).height, height);
   return ref;
 }
 

@@ -61,11 +61,11 @@ std::string path_text(const syntax::Path& path) {
 
 }  // namespace
 
-SetReader::SetReader(Context& context, bool preview)
+SetReader::SetReader(Context& context, Mode mode)
     : context_(context),
-      preview_(preview),
+      preview_(mode == Mode::kPreview),
       diagnostics_(&context.diagnostics),
-      states_(context.symbols.set_decls.size(), kNew) {}
+      states_(context.symbols.set_decls.size(), mode == Mode::kDefined ? kDone : kNew) {}
 
 void SetReader::define(SetId id) {
   State& state = states_[static_cast<std::size_t>(id)];
@@ -93,6 +93,7 @@ void SetReader::define(SetId id) {
 
 std::vector<TaskId> SetReader::read(const syntax::File& file, syntax::TaskSetId id) {
   if (id.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
+  const Level level(context_);
   return std::visit([&](const auto& node) { return read_node(file, file[id].span, node); },
                     file[id].node);
 }
@@ -134,6 +135,10 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
   }
   const auto found = context_.symbols.sets.find(set.name, *diagnostics_);
   if (!found) return {};
+  if (context_.levels > kMaxLevels && states_[*found] == kNew) {
+    report_levels(*diagnostics_, set.name.span);
+    return {};
+  }
   define(static_cast<SetId>(*found));
   return context_.model.sets[static_cast<SetId>(*found)].members;
 }
@@ -315,12 +320,12 @@ void expect_suite(Context& context, const Suite& suite, const syntax::ExpectTask
 
 void define_sets(Context& context) {
   const std::size_t count = context.symbols.set_decls.size();
-  SetReader reader(context);
+  SetReader reader(context, SetReader::Mode::kDefine);
   for (std::size_t i = 0; i < count; ++i) reader.define(static_cast<SetId>(i));
 }
 
 void define_suites(Context& context) {
-  SetReader reader(context);
+  SetReader reader(context, SetReader::Mode::kDefined);
   for (const auto& declared : context.symbols.suite_decls) {
     const syntax::SuiteDecl& node = *declared.node;
     Suite suite;

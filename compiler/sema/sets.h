@@ -12,9 +12,10 @@ namespace probe::sema {
 
 class SetReader {
  public:
-  // `preview`: while tasks are still being made. Sets are then read without a word, since
-  // define_sets() will read them again.
-  explicit SetReader(Context& context, bool preview = false);
+  // kPreview: while tasks are still being made. Sets are then read without a word, since
+  // define_sets() will read them again. kDefined: it has.
+  enum class Mode : std::uint8_t { kPreview, kDefine, kDefined };
+  SetReader(Context& context, Mode mode);
 
   void define(SetId id);
   std::vector<TaskId> read(const syntax::File& file, syntax::TaskSetId id);
