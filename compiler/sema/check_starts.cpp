@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <set>
+#include <span>
 
 #include "compiler/sema/axes.h"
 #include "compiler/sema/in_frame.h"
@@ -269,7 +270,11 @@ struct StartCheck {
                     "`" + object(placed).name + "` stands over the edge of `" + scene.name +
                         "` in `" + task.name + "`")
             .point("episode " + std::to_string(e) + ": " + at(object(placed), placed))
-            .label(layout.span, "the layout");
+            .label(layout.span, "the layout")
+            .label(scene.span, "the surface is x " + centimetres(scene.area[0]) + " .. " +
+                                   centimetres(scene.area[2]) + ", y " +
+                                   centimetres(scene.area[1]) + " .. " +
+                                   centimetres(scene.area[3]));
         return false;
       }
     }
@@ -333,6 +338,23 @@ struct StartCheck {
     return true;
   }
 };
+
+// " (12 placements x 2 turns)", where that is what they are made of.
+std::string factors(std::span<const Start> starts) {
+  std::set<std::vector<double>> placements, turns;
+  for (const Start& start : starts) {
+    std::vector<double> at, turned;
+    for (const Start::Placed& placed : start.placed) {
+      at.insert(at.end(), {placed.x, placed.y});
+      turned.insert(turned.end(), placed.turn.rotation.begin(), placed.turn.rotation.end());
+    }
+    placements.insert(std::move(at));
+    turns.insert(std::move(turned));
+  }
+  if (placements.size() * turns.size() != starts.size()) return "";
+  return " (" + std::to_string(placements.size()) + " placements x " +
+         std::to_string(turns.size()) + " turns)";
+}
 
 // What the starts of a task depend on.
 std::vector<double> starts_key(const Task& task) {
@@ -402,8 +424,8 @@ void check_starts(Context& context) {
     if (layout.expect && *layout.expect != task.starts.size()) {
       context
           .report(Code::P0504, layout.expect_span,
-                  "`" + task.name + "` has " + std::to_string(task.starts.size()) +
-                      " episodes, not " + std::to_string(*layout.expect))
+                  "`" + task.name + "` has " + std::to_string(task.starts.size()) + " episodes" +
+                      factors(task.starts) + ", not " + std::to_string(*layout.expect))
           .label(task.layout_span, "used here");
     }
     const std::pair where{task.scene, camera_of(context.model, task)};

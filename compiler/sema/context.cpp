@@ -40,7 +40,16 @@ Diagnostic& report_unknown(Diagnostics& diagnostics, std::string_view kind,
                            const std::vector<std::string_view>& candidates) {
   Diagnostic& diagnostic = diagnostics.report(
       Code::P0201, name.span, "unknown " + std::string(kind) + " `" + std::string(name.text) + "`");
-  if (const auto near = nearest(name.text, candidates)) {
+  auto near = nearest(name.text, candidates);
+  if (!near && name.text.size() > 2) {
+    // `bridge` for `bridge_v2`: the only one that begins so.
+    const auto begins = [&](std::string_view known) {
+      return known.starts_with(std::string(name.text) + "_");
+    };
+    if (std::count_if(candidates.begin(), candidates.end(), begins) == 1)
+      near = *std::find_if(candidates.begin(), candidates.end(), begins);
+  }
+  if (near) {
     const std::string text(*near);
     diagnostic.point("did you mean `" + text + "`?")
         .fix_by("write `" + text + "`", name.span, text);

@@ -186,3 +186,17 @@ TEST_CASE("an object over the edge or out of reach is reported") {
       "task t like red_on_tray { scene s }");
   CHECK_MESSAGE(far->codes() == "P0502", far->said());
 }
+
+TEST_CASE("a start over the edge says where the surface ends, unmet starts say their factors") {
+  const auto edge = analyze_with_suite(
+      "scene s like bench { surface 80cm area (-10cm, -12cm) .. (10cm, 10cm) }\n"
+      "task t like red_on_tray { scene s }");
+  REQUIRE(edge->codes() == "P0505");
+  CHECK(edge->diagnostics.items().front().labels.back().text ==
+        "the surface is x -10cm .. 10cm, y -12cm .. 10cm");
+  const auto unmet = analyze_with_suite(
+      "layout l like pairs { expect 23 episodes }\ntask t like red_on_tray { layout l }");
+  REQUIRE(unmet->codes() == "P0504");
+  CHECK(unmet->diagnostics.items().front().message ==
+        "`t` has 24 episodes (12 placements x 2 turns), not 23");
+}

@@ -107,3 +107,11 @@ TEST_CASE("what a syntax error leaves out is not looked at") {
     CHECK(a->codes().substr(0, 5) == "P0101");
   }
 }
+
+TEST_CASE("the beginning of one name alone is taken for it") {
+  const auto dataset = analyze_with_suite(
+      "dataset bridge_v2 \"Bridge\" { relations red on tray }\n"
+      "suite s trained on bridge { tasks { red_on_tray }; seeds 1 }");
+  REQUIRE(dataset->diagnostics.items().front().fix.has_value());
+  CHECK(dataset->diagnostics.items().front().fix->replacements.at(0).text == "bridge_v2");
+}
