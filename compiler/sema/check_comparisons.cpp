@@ -111,11 +111,17 @@ void check_tags(Context& context) {
       if (!task.complete) continue;
       for (const ObjectId object_id : task.objects()) {
         const Object& object = context.model.objects[object_id];
-        if (object.unseen || !object.seen_in.empty() || !reported.insert(object_id).second)
-          continue;
+        // What another data set holds tells nothing of this one.
+        const bool is_tagged =
+            object.unseen || std::find(object.seen_in.begin(), object.seen_in.end(),
+                                       suite.trained_on) != object.seen_in.end();
+        if (is_tagged || !reported.insert(object_id).second) continue;
         context
             .report(Code::P0705, object.span,
-                    "object `" + object.name + "` does not say whether it was seen in training")
+                    "object `" + object.name + "` does not say whether it was seen in " +
+                        (object.seen_in.empty()
+                             ? std::string("training")
+                             : "`" + context.model.datasets[suite.trained_on].name + "`"))
             .help("write `seen in " + context.model.datasets[suite.trained_on].name +
                   "` or `unseen`");
       }

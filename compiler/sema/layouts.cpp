@@ -45,6 +45,14 @@ struct LayoutReader {
     for (const syntax::Point& point : stmt.spreads) {
       const auto spread = read_point(context, point, 2, 2, dim::kLength, "`spread` takes lengths");
       if (!spread || !at || !fits) continue;
+      const auto is_flat = [&](std::size_t axis, std::uint64_t side) {
+        return side > 1 && (*spread)[axis].si() == 0;
+      };
+      if (is_flat(0, stmt.nx.value) || is_flat(1, stmt.ny.value)) {
+        context.report(Code::P0304, point.span, "cells of one row lie in the same place")
+            .help("a side of more than one cell needs a spread");
+        continue;
+      }
       std::vector<Cell> grid;
       for (std::uint64_t i = 0; i < stmt.nx.value; ++i) {
         for (std::uint64_t j = 0; j < stmt.ny.value; ++j) {

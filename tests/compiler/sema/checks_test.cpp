@@ -149,3 +149,20 @@ TEST_CASE("what is wrong with a start is said of what came in, when the layout w
   CHECK_MESSAGE(cells->codes() == "P0503", cells->said());
   CHECK(cells->underlined() == "distractors blue, b1, b2");
 }
+
+TEST_CASE("a tag for another data set does not answer for the suite's own") {
+  const auto a = analyze_with_suite(
+      "dataset other \"Other\"\nsuite s trained on other { tasks { red_on_tray }; seeds 1 }");
+  CHECK_MESSAGE(a->codes() == "P0705 P0705", a->said());
+  CHECK(says(*a, "does not say whether it was seen in `other`"));
+}
+
+TEST_CASE("cells in the same place are an error where the spread stands") {
+  const auto a = analyze_with_suite(
+      "layout l like pairs { cells spots = grid 3 x 1 at (0cm, 0cm) spread (0cm, 0cm) }");
+  CHECK(a->codes() == "P0304");
+  CHECK(a->underlined() == "(0cm, 0cm)");
+  CHECK(analyze_with_suite(
+            "layout l like pairs { cells spots = grid 3 x 1 at (0cm, 0cm) spread (9cm, 0cm) }")
+            ->codes() == "");
+}
