@@ -159,6 +159,8 @@ struct ObjectReader {
   }
   void operator()(const syntax::NameStmt& stmt) {
     object.text = spelled(stmt.text);
+    if (object.text.text.find_first_not_of(' ') == std::string::npos)
+      context.report(Code::P0406, object.text.span, "an object's name has no words");
     object.bare = stmt.bare;
   }
   void operator()(const syntax::PhraseStmt& stmt) {

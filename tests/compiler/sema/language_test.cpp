@@ -159,3 +159,9 @@ TEST_CASE("names that differ in case alone are the same words") {
                            "task t like red_on_tray { distractors other }")
             ->codes() == "P0405");
 }
+
+TEST_CASE("a name without words is no name") {
+  const auto a = analyze_with_suite("object other like pale { name \"\" }");
+  CHECK(a->codes() == "P0406");
+  CHECK(a->underlined() == "\"\"");
+}
