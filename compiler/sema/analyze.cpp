@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "compiler/sema/passes.h"
+#include "compiler/sema/repeats.h"
 #include "compiler/sema/report.h"
 
 namespace probe::sema {
@@ -54,6 +55,7 @@ Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& 
                   .files = files,
                   .was_broken = diagnostics.has_errors()};
   collect_names(context);
+  check_repeats(context);
   define_catalog(context);
   define_stage(context);
   define_layouts(context);
