@@ -22,7 +22,11 @@ for source in "$root"/tests/fuzz/*_fuzz.cpp; do
   corpus="$build/corpus/$name"
   mkdir -p "$corpus"
   case $name in
-    source_fuzz) cp "$root"/suite/*.probe "$root"/examples/*.probe "$root"/dsl/std/*.probe "$root"/tests/golden/*.probe "$corpus" ;;
+    source_fuzz)
+      # Two folders may have a file of the same name.
+      for seed in "$root"/{suite,examples,dsl/std,tests/golden}/*.probe; do
+        cp "$seed" "$corpus/$(basename "$(dirname "$seed")")_$(basename "$seed")"
+      done ;;
     *) if [ -d "$root/tests/fuzz/$name" ]; then cp "$root/tests/fuzz/$name"/* "$corpus"; fi ;;
   esac
   targets=$((targets + 1))
