@@ -164,16 +164,12 @@ TEST_CASE("the repaired suite has nothing irregular") {
         "suite `intact_clean`, 52 tasks, 48 comparisons: nothing irregular\n");
 }
 
-TEST_CASE("the same words under another phrase, and the same task twice, are found") {
+TEST_CASE("the same task twice is found") {
   const Audited own = audit_text(
-      "object twin like carrot { phrase again appearance \"carrot\" means color orange }\n"
+      "object twin like carrot { density 650kg/m3 }\n"
       "variant twin_on_plate of carrot_on_plate { source twin }\n"
-      "variant said_again of twin_on_plate { refer source as again }\n"
-      "task copied like said_again {}\n"
-      "suite own { tasks { twin_on_plate, said_again, copied }; seeds 1 }\n");
-  REQUIRE(own.find(Kind::kSamePrompt, "said_again") != nullptr);
-  CHECK(own.find(Kind::kSamePrompt, "said_again")->message ==
-        "`said_again` against `twin_on_plate`: both say \"put carrot on plate\"");
+      "task copied like twin_on_plate {}\n"
+      "suite own { tasks { twin_on_plate, copied }; seeds 1 }\n");
   CHECK(own.find(Kind::kDuplicate, "copied") != nullptr);
 }
 
