@@ -37,7 +37,7 @@ struct Proprioception {
 struct PrivilegedObject {
   std::string name;
   std::vector<std::vector<Vec3>> parts;  // convex parts' vertices, model frame
-  std::optional<Vec3> center_of_mass;  // model frame
+  std::optional<Vec3> center_of_mass;    // model frame
   Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();
   Pose pose;                                // model frame in world, now
   bool finger_contact[2] = {false, false};  // over the last substep
@@ -47,12 +47,19 @@ struct PrivilegedObject {
 struct Privileged {
   std::vector<PrivilegedObject> objects;
   std::vector<std::vector<Vec3>> fixtures;  // convex parts of what stands fixed, world frame
-  Pose base;  // robot base in world
+  Pose base;                                // robot base in world
   double surface_z = 0;
 };
 
-struct Observation {
+// A scene's camera and what it shows now.
+struct CameraImage {
+  std::string_view camera;
   Image image;
+};
+
+struct Observation {
+  Image image;                           // of the scene's first camera
+  std::span<const CameraImage> cameras;  // all of the scene's cameras, the first included
   std::string_view prompt;
   Proprioception proprioception;
   const Privileged* privileged = nullptr;
