@@ -79,11 +79,32 @@ struct EpisodeStart {
   std::string_view tcp_link;
 };
 
+// How an episode ended, for policies that tell their server.
+struct EpisodeEnd {
+  bool completed = false;  // every control step was done; else something failed
+  bool success = false;    // the metric of that name after the last step; false where there is none
+  int steps = 0;           // control steps done
+};
+
+// What the first request of an episode carried to a policy server: hex SHA-256 of the prompt's
+// bytes and of the pictures' pixel bytes, one picture after the other, after every change the
+// profile asks for (case, resizing).
+struct Delivery {
+  std::string prompt_sha256;
+  std::string image_sha256;
+  bool operator==(const Delivery&) const = default;
+};
+
 class Policy {
  public:
   virtual ~Policy() = default;
   virtual Status begin(const EpisodeStart& start) = 0;
   virtual Result<Action> act(const Observation& observation) = 0;
+  // Once after each begin(), however the episode went and also when begin() failed.
+  virtual void end(const EpisodeEnd& /*end*/) {}
+  // Of the episode that was begun last; nothing of a policy in this process, or before the first
+  // request.
+  virtual std::optional<Delivery> delivery() const { return std::nullopt; }
   // Whether act() reads Observation::image; a run without video may then skip rendering... never by
   // default.
   virtual bool wants_image() const { return true; }
