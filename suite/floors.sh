@@ -9,10 +9,8 @@ mkdir -p "$folder"
 table=$folder/floors.csv
 : >"$table"
 for policy in expert null random reach wrong; do
-  text=$here/intact.probe suite=intact
-  if [ "$policy" = wrong ]; then text=$here/crowded.probe suite=crowded; fi
-  # One seed: the starts are the same for all three, and only `random` draws.
-  "$vlaprobe" run "$text" --suite "$suite" --policy "$policy" --seeds 42 --jobs "$(nproc)" -o "$folder/$policy"
+  # One seed: the starts are the same for all three, and only `random` draws. `wrong` stays still where no distractor is.
+  "$vlaprobe" run "$here/intact.probe" --suite intact --policy "$policy" --seeds 42 --jobs "$(nproc)" -o "$folder/$policy"
   if [ "$policy" = expert ]; then
     root=$("$vlaprobe" verify "$folder/expert/suite.plan" --json | sed -n 's/^ *"root": "\([0-9a-f]*\)".*/\1/p')
     printf '# plan %s\ntask,policy,episodes,intention,grasp,success,wrong\n' "$root" >"$table"

@@ -29,7 +29,11 @@ constexpr std::array kPolicies = {
     Entry{"null", "", Kind::kNull, {}, "stays where it is, gripper open"},
     Entry{"random", "", Kind::kRandom, {true, false, false}, "uniform actions"},
     Entry{"reach", "", Kind::kReach, {}, "goes to the source and never closes"},
-    Entry{"wrong", "", Kind::kWrong, {false, false, true}, "the expert on the first distractor"},
+    Entry{"wrong",
+          "",
+          Kind::kWrong,
+          {false, false, true},
+          "takes the first distractor, or stays still"},
     Entry{"noisy",
           "SIGMA",
           Kind::kNoisy,
@@ -110,8 +114,10 @@ constexpr int kDistractor = 2;
 Result<std::unique_ptr<Policy>> make_scripted(Kind kind) {
   expert::ExpertOptions options;
   if (kind == Kind::kReach) options.close = false;
-  if (kind == Kind::kWrong) options.source = kDistractor;
-  return expert::make_expert(options);
+  if (kind != Kind::kWrong) return expert::make_expert(options);
+  options.source = kDistractor;
+  PROBE_ASSIGN(std::unique_ptr<Policy> expert, expert::make_expert(options));
+  return make_still_without(kDistractor, std::move(expert));
 }
 
 }  // namespace

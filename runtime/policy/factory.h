@@ -14,7 +14,7 @@ namespace probe::policy {
 struct PolicyTraits {
   bool draws = false;             // whether two seeds can give two different episodes
   bool recorded = false;          // wants PolicyContext::recorded_actions of its argument
-  bool wants_distractor = false;  // has nothing to do in a task without one
+  bool wants_distractor = false;  // stays still in a task without one
 };
 
 // What a policy may need from outside. `recorded_actions` gives the actions of a stored episode

@@ -1,4 +1,4 @@
-// Null, random, replayed and noisy policies.
+// Null, random, replayed and noisy policies, and one that may have nothing to do.
 #include "runtime/policy/simple.h"
 
 #include <utility>
@@ -7,10 +7,12 @@
 namespace probe::policy {
 namespace {
 
+constexpr Action kStill{0, 0, 0, 0, 0, 0, 1};
+
 class NullPolicy final : public Policy {
  public:
   Status begin(const EpisodeStart&) override { return {}; }
-  Result<Action> act(const Observation&) override { return Action{0, 0, 0, 0, 0, 0, 1}; }
+  Result<Action> act(const Observation&) override { return kStill; }
   bool wants_image() const override { return false; }
 };
 
@@ -63,6 +65,24 @@ class RecordedPolicy final : public Policy {
   std::vector<Action> actions_;
 };
 
+class StillWithoutPolicy final : public Policy {
+ public:
+  StillWithoutPolicy(int role, std::unique_ptr<Policy> inner)
+      : role_(static_cast<std::size_t>(role)), inner_(std::move(inner)) {}
+
+  Status begin(const EpisodeStart& start) override { return inner_->begin(start); }
+  Result<Action> act(const Observation& observation) override {
+    const Privileged* view = observation.privileged;
+    if (view != nullptr && view->objects.size() <= role_) return kStill;
+    return inner_->act(observation);
+  }
+  bool wants_image() const override { return inner_->wants_image(); }
+
+ private:
+  std::size_t role_;
+  std::unique_ptr<Policy> inner_;
+};
+
 class NoisyPolicy final : public Policy {
  public:
   NoisyPolicy(std::unique_ptr<Policy> inner, double sigma)
@@ -101,6 +121,10 @@ std::unique_ptr<Policy> make_random() { return std::make_unique<RandomPolicy>();
 
 std::unique_ptr<Policy> make_recorded(std::string dir, PolicyContext context) {
   return std::make_unique<RecordedPolicy>(std::move(dir), std::move(context));
+}
+
+std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inner) {
+  return std::make_unique<StillWithoutPolicy>(role, std::move(inner));
 }
 
 std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma) {

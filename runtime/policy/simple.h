@@ -20,6 +20,9 @@ std::unique_ptr<Policy> make_random();
 // end.
 std::unique_ptr<Policy> make_recorded(std::string dir, PolicyContext context);
 
+// `inner` where the episode has role `role` (of Privileged::objects); else stays where it is.
+std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inner);
+
 // `inner` with normal noise on the first six numbers: standard deviation `sigma` metres on each
 // translation, 2 `sigma` rad on each component of the rotation vector (10 mm and 1.1 degrees for
 // 0.01). The gripper stays as it is.

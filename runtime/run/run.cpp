@@ -1,6 +1,7 @@
 // Puts the parts together: selection, assets, store, workers.
 #include "runtime/run/run.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -132,17 +133,17 @@ Result<std::vector<ResultRow>> recorded_rows(const std::string& dir) {
   return rows;
 }
 
-Status check_distractors(const plan::Plan& plan, const Selection& selection,
-                         const std::string& policy) {
-  for (const std::uint32_t task : tasks_of(selection.jobs)) {
-    if (plan.tasks()[task].distractors > 0) continue;
-    return Failure{"usage",
-                   "policy `" + policy + "` goes for a distractor, and task `" +
-                       std::string(plan.text(plan.tasks()[task].name)) +
-                       "` has none; --tasks chooses tasks that have one",
-                   "--policy"};
-  }
-  return {};
+// A policy that goes for a distractor stays still where there is none.
+void note_idle_tasks(const plan::Plan& plan, const Selection& selection, const std::string& policy,
+                     RunSummary& summary) {
+  const std::vector<std::uint32_t> tasks = tasks_of(selection.jobs);
+  const auto idle = std::count_if(tasks.begin(), tasks.end(), [&](std::uint32_t task) {
+    return plan.tasks()[task].distractors == 0;
+  });
+  if (idle == 0) return;
+  summary.notes.push_back("policy `" + policy + "` goes for a distractor and stays still in the " +
+                          std::to_string(idle) + " of " + std::to_string(tasks.size()) +
+                          " tasks that have none");
 }
 
 using EpisodeKey = std::tuple<std::string, int, int>;
@@ -220,12 +221,12 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
   }
   PROBE_ASSIGN(Selection selection,
                select_jobs(plan, options, traits.draws, traits.recorded ? &recorded : nullptr));
-  if (traits.wants_distractor) PROBE_TRY(check_distractors(plan, selection, options.policy));
   PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
 
   RunSummary summary;
   summary.notes = selection.notes;
   summary.total = static_cast<int>(selection.jobs.size());
+  if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
   if (selection.jobs.empty()) {
     summary.notes.push_back("shard " + std::to_string(options.shard) + "/" +
                             std::to_string(options.shards) + " holds no episode: nothing to do");

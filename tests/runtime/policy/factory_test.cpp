@@ -73,6 +73,18 @@ TEST_CASE("the null policy holds still with an open gripper") {
   CHECK(*policy->act({}) == Action{0, 0, 0, 0, 0, 0, 1});
 }
 
+TEST_CASE("who wants a distractor holds still where there is none") {
+  auto policy = make_still_without(2, make_random());
+  REQUIRE(policy->begin(start_with(0)).ok());
+  Privileged view;
+  view.objects.resize(2);
+  Observation observation;
+  observation.privileged = &view;
+  CHECK(*policy->act(observation) == Action{0, 0, 0, 0, 0, 0, 1});
+  view.objects.resize(3);
+  CHECK(*policy->act(observation) != Action{0, 0, 0, 0, 0, 0, 1});
+}
+
 TEST_CASE("a replay gives the stored actions and fails past their end") {
   PolicyContext context;
   context.recorded_actions = [](const std::string& dir, std::string_view task, int,
