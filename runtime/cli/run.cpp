@@ -17,8 +17,9 @@ namespace {
 
 struct Arguments {
   std::string file;
-  std::string policy, out, suite, tasks = "*", episodes, seeds, shard = "1/1", video = "none";
-  int jobs = 1;
+  std::string policy, name, out, suite, tasks = "*", episodes, seeds, shard = "1/1";
+  std::string video = "none", if_changed = "refuse";
+  int jobs = 1, retries = 2, give_up_after = 5;
   AssetOptions assets;
 };
 
@@ -70,6 +71,7 @@ Result<std::pair<int, int>> parse_shard(const std::string& text) {
 Result<run::RunOptions> to_options(const Arguments& arguments) {
   run::RunOptions options;
   options.policy = arguments.policy;
+  options.name = arguments.name;
   options.out = arguments.out;
   options.suite = arguments.suite;
   options.tasks = arguments.tasks;
@@ -89,6 +91,13 @@ Result<run::RunOptions> to_options(const Arguments& arguments) {
       {"failures", run::VideoChoice::kFailures},
       {"all", run::VideoChoice::kAll}};
   options.video = kVideo.at(arguments.video);
+  options.retries = arguments.retries;
+  options.give_up_after = arguments.give_up_after;
+  static const std::map<std::string, run::IfChanged> kIfChanged = {
+      {"refuse", run::IfChanged::kRefuse},
+      {"fork", run::IfChanged::kFork},
+      {"continue", run::IfChanged::kContinue}};
+  options.if_changed = kIfChanged.at(arguments.if_changed);
   return options;
 }
 
@@ -150,7 +159,8 @@ int run_verb(const Arguments& arguments) {
   for (const std::string& note : summary->notes) fmt::print(stderr, "note: {}\n", note);
   if (summary->total == 0) return kFine;
   fmt::print(stderr, "{} episodes in {}: {} run now, {} were there, {} invalid\n", summary->total,
-             arguments.out, summary->done, summary->skipped, summary->invalid);
+             summary->out, summary->done, summary->skipped, summary->invalid);
+  if (summary->done > 0) fmt::print(stderr, "{}\n", run::to_text(summary->call));
   return summary->invalid ? kOutside : kFine;
 }
 
@@ -164,6 +174,8 @@ void add_run(CLI::App& app, int& exit) {
       "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
   verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
   verb->add_option("--policy", arguments->policy, "who acts")->required();
+  verb->add_option("--name", arguments->name,
+                   "what the rows call the policy (default: P); stays when its server moves");
   verb->add_option("-o,--out", arguments->out, "results folder")->required();
   verb->add_option("--suite", arguments->suite,
                    "which suite (default: the first that F itself declares)");
@@ -171,7 +183,16 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--episodes", arguments->episodes, "A-B, first and last start of each task");
   verb->add_option("--seeds", arguments->seeds, "A,B,... instead of the suite's");
   verb->add_option("--jobs", arguments->jobs, "worlds in parallel")->check(CLI::Range(1, 1024));
-  verb->add_option("--shard", arguments->shard, "I/N: this call's share");
+  verb->add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them");
+  verb->add_option("--retries", arguments->retries,
+                   "how often an episode that the server failed is tried again at once")
+      ->check(CLI::Range(0, 1000));
+  verb->add_option("--give-up-after", arguments->give_up_after,
+                   "stop when the server failed that many episodes in a row; 0: never")
+      ->check(CLI::Range(0, 1000000));
+  verb->add_option("--if-changed", arguments->if_changed,
+                   "refuse, fork (into DIR-2) or continue over another build or profile")
+      ->check(CLI::IsMember({"refuse", "fork", "continue"}));
   verb->add_option("--video", arguments->video, "none, failures or all")
       ->check(CLI::IsMember({"none", "failures", "all"}));
   add_asset_option(*verb, arguments->assets);

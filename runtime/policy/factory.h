@@ -15,7 +15,12 @@ struct PolicyTraits {
   bool draws = false;             // whether two seeds can give two different episodes
   bool recorded = false;          // wants PolicyContext::recorded_actions of its argument
   bool wants_distractor = false;  // stays still in a task without one
+  // Of a policy server what its name alone does not say: "profile NAME sha256 ..."; two runs of one
+  // name and other content are not one run. Empty for a policy in this process.
+  std::string content = {};
 };
+
+class QueryMeter;
 
 // What a policy may need from outside. `recorded_actions` gives the actions of a stored episode
 // (for replay:DIR).
@@ -23,6 +28,7 @@ struct PolicyContext {
   std::function<Result<std::vector<Action>>(const std::string& dir, std::string_view task,
                                             int episode, int seed)>
       recorded_actions;
+  QueryMeter* queries = nullptr;  // of the run; told of each query to a server; may be null
 };
 
 // Fail (code "usage") on an unknown policy, with the known ones and the nearest spelling, and on a

@@ -29,7 +29,9 @@ struct ResultRow {
   std::string prompt_sha256;           // of the instruction's bytes
   std::string image_sha256;            // of the first picture's RGB bytes
   std::string frames_sha256;  // of the concatenated hashes of all pictures shown to the policy
-  std::string trace_sha256;   // of the trace's content without timing
+  // Of what the first request to a policy server carried; none for a policy in this process.
+  std::optional<std::string> sent_prompt_sha256, sent_image_sha256;
+  std::string trace_sha256;  // of the trace's content without timing
   std::string episode_id, start_id;
   std::string trace;  // path of the trace; read_results gives an absolute one
   bool operator==(const ResultRow&) const = default;

@@ -2,6 +2,7 @@
 #include "runtime/run/run.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <mutex>
 #include <set>
@@ -29,10 +30,27 @@ struct Shared {
   std::shared_ptr<const SharedAssets> assets;
   std::string fingerprint;
   std::vector<EpisodeJob> jobs;
-  std::mutex mutex;  // store, summary and progress
   Store& store;
   RunSummary& summary;
+  policy::QueryMeter& queries;
+  bool asks_server = false;
+  std::mutex mutex = {};  // store, summary, progress and the counts below
+  int lost_in_a_row = 0;  // episodes that a policy server's failures spoiled for good
+  std::atomic<bool> given_up = false;
 };
+
+policy::PolicyContext context_with(policy::QueryMeter* queries) {
+  policy::PolicyContext context = policy_context();
+  context.queries = queries;
+  return context;
+}
+
+Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
+                                                    policy::QueryMeter* queries) {
+  const policy::PolicyContext context = context_with(queries);
+  return options.own_policy ? options.own_policy->make(context)
+                            : policy::make_policy(options.policy, context);
+}
 
 bool has_failed(const ResultRow& row) {
   if (row.invalid) return true;
@@ -52,7 +70,7 @@ class EpisodeWorker {
   explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
 
   Status begin() {
-    PROBE_ASSIGN(policy_, policy::make_policy(shared_.options.policy, policy_context()));
+    PROBE_ASSIGN(policy_, make_policy(shared_.options, &shared_.queries));
     return {};
   }
 
@@ -63,16 +81,23 @@ class EpisodeWorker {
       PROBE_ASSIGN(stage_, TaskStage::create(shared_.plan, job.task, shared_.assets));
     }
     const TraceHeader header =
-        make_trace_header(shared_.plan, job, shared_.options.policy, shared_.fingerprint);
+        make_trace_header(shared_.plan, job, shared_.options.name, shared_.fingerprint);
     const std::string path =
         shared_.store.temporary_trace(header.task, header.episode, header.seed);
-    auto row = write(job, header, path);
-    if (!row) {
-      std::error_code ignored;
-      fs::remove(path, ignored);
-      return row.failure();
+    for (int attempt = 0;; ++attempt) {
+      auto row = write(job, header, path);
+      if (!row) {
+        std::error_code ignored;
+        fs::remove(path, ignored);
+        return row.failure();
+      }
+      if (!is_spoiled(*row) || attempt >= shared_.options.retries || shared_.given_up) {
+        return commit(*row, static_cast<int>(job.task));
+      }
+      const std::lock_guard lock(shared_.mutex);
+      ++shared_.summary.call.retried;
+      shared_.summary.call.observations += row->steps;
     }
-    return commit(*row, static_cast<int>(job.task));
   }
 
  private:
@@ -87,7 +112,7 @@ class EpisodeWorker {
       fs::create_directories(file.parent_path(), ignored);
       video.emplace(header, file.string());
     }
-    PROBE_ASSIGN(ResultRow row, run_episode(*stage_, shared_.plan, job, shared_.options.policy,
+    PROBE_ASSIGN(ResultRow row, run_episode(*stage_, shared_.plan, job, shared_.options.name,
                                             *policy_, *trace, video ? &*video : nullptr));
     if (video) {
       const bool keep = shared_.options.video == VideoChoice::kAll || has_failed(row);
@@ -96,16 +121,41 @@ class EpisodeWorker {
     return row;
   }
 
+  // Whether a policy server kept the episode from its end. Other failures, and those of policies in
+  // this process, would only repeat themselves.
+  bool is_spoiled(const ResultRow& row) const {
+    return shared_.asks_server && row.invalid && row.invalid->starts_with("policy: ");
+  }
+
   Status commit(const ResultRow& row, int task_order) {
     const std::lock_guard lock(shared_.mutex);
     PROBE_TRY(shared_.store.commit(row, task_order));
     ++shared_.summary.done;
+    shared_.summary.call.observations += row.steps;
     if (row.invalid) ++shared_.summary.invalid;
     if (shared_.options.progress) {
       shared_.options.progress(
           {shared_.summary.done, shared_.summary.skipped, shared_.summary.total, &row});
     }
-    return {};
+    if (!is_spoiled(row)) {
+      if (!row.invalid) shared_.lost_in_a_row = 0;
+      return {};
+    }
+    const int bound = shared_.options.give_up_after;
+    if (bound == 0 || ++shared_.lost_in_a_row < bound) return {};
+    shared_.given_up = true;
+    return give_up(*row.invalid);
+  }
+
+  Failure give_up(const std::string& last) const {
+    const RunSummary& summary = shared_.summary;
+    const int stored = summary.skipped + summary.done - summary.invalid;
+    return {"policy",
+            "the policy failed in " + std::to_string(shared_.lost_in_a_row) +
+                " episodes in a row, the last time so: " + last + "\n  " + std::to_string(stored) +
+                " of " + std::to_string(summary.total) + " episodes are stored in " + summary.out +
+                "; when the server answers again, the same command continues",
+            shared_.options.name};
   }
 
   Shared& shared_;
@@ -207,14 +257,54 @@ Status note_missing_videos(const RunOptions& options, const std::set<EpisodeKey>
   return {};
 }
 
+// The folder to write into, by `options.if_changed`; what is written in spite of a change becomes
+// part of `record`.
+Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
+                                  std::vector<std::string>& notes) {
+  const fs::path asked = fs::path(options.out).lexically_normal();
+  const std::string base = (asked.has_filename() ? asked : asked.parent_path()).string();
+  for (int copy = 1;; ++copy) {
+    const std::string dir = copy == 1 ? options.out : base + "-" + std::to_string(copy);
+    PROBE_ASSIGN(const auto stored, find_run_record(dir));
+    if (!stored) return dir;
+    const RunChanges changes = changes_between(*stored, record);
+    if (!changes.any()) return dir;
+    std::string said;
+    for (const std::string& change : {changes.identity, changes.policy_content, changes.build}) {
+      if (!change.empty()) said += (said.empty() ? "" : ", and ") + change;
+    }
+    if (options.if_changed == IfChanged::kFork) {
+      notes.push_back(dir + " " + said + ": left as it is");
+      continue;
+    }
+    const bool may_continue = changes.identity.empty();
+    if (options.if_changed == IfChanged::kContinue && may_continue) {
+      notes.push_back(dir + " " + said + ": continued all the same");
+      record.identity.policy_content = stored->identity.policy_content;
+      return dir;
+    }
+    return Failure{
+        "store",
+        said + "; take another folder, or --if-changed fork, which starts one beside it" +
+            (may_continue ? ", or --if-changed continue, which mixes them in this one" : ""),
+        dir};
+  }
+}
+
 }  // namespace
 
-Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
-  PROBE_ASSIGN(const auto traits, policy::policy_traits(options.policy));
+Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
+  RunOptions options = asked;
+  if (options.name.empty()) options.name = options.policy;
+  policy::PolicyTraits traits;
+  if (options.own_policy) {
+    traits = options.own_policy->traits;
+  } else {
+    PROBE_ASSIGN(traits, policy::policy_traits(options.policy));
+  }
   // Made once before anything else, so that a policy that cannot be had is told before the folder
   // exists.
-  if (auto made = policy::make_policy(options.policy, policy_context()); !made)
-    return made.failure();
+  if (auto made = make_policy(options, nullptr); !made) return made.failure();
   std::vector<ResultRow> recorded;
   if (traits.recorded) {
     PROBE_ASSIGN(recorded, recorded_rows(policy::policy_argument(options.policy)));
@@ -226,38 +316,55 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options) {
   RunSummary summary;
   summary.notes = selection.notes;
   summary.total = static_cast<int>(selection.jobs.size());
-  if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
   if (selection.jobs.empty()) {
     summary.notes.push_back("shard " + std::to_string(options.shard) + "/" +
                             std::to_string(options.shards) + " holds no episode: nothing to do");
     return summary;
   }
+  if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
   // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
   PROBE_ASSIGN(auto assets, SharedAssets::load(plan, root, tasks_of(selection.jobs)));
   const Fingerprint fingerprint = take_fingerprint(asset_digest(plan));
-  PROBE_ASSIGN(
-      auto store,
-      Store::open(
-          options.out,
-          {{to_hex(plan.root()), options.policy}, selection.suite, selection.seeds, fingerprint},
-          plan.bytes()));
-  for (const std::string& line : differences(store->record().fingerprint, fingerprint)) {
-    summary.notes.push_back("this folder was begun by another build or machine: " + line);
-  }
+  RunRecord record{{to_hex(plan.root()), options.name, traits.content},
+                   selection.suite,
+                   selection.seeds,
+                   fingerprint};
+  PROBE_ASSIGN(options.out, choose_folder(options, record, summary.notes));
+  PROBE_ASSIGN(auto store, Store::open(options.out, record, plan.bytes()));
+  summary.out = options.out;
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
   summary.skipped = static_cast<int>(stored.size());
   PROBE_TRY(note_missing_videos(options, stored, summary));
   if (options.progress) options.progress({0, summary.skipped, summary.total, nullptr});
+  if (selection.jobs.empty()) return summary;
 
-  Shared shared{
-      plan,   options, std::move(assets), to_json(fingerprint), std::move(selection.jobs), {},
-      *store, summary};
+  summary.call.fingerprint = fingerprint;
+  summary.call.worlds =
+      static_cast<int>(std::min(selection.jobs.size(), static_cast<std::size_t>(options.jobs)));
+  PROBE_TRY(store->write_call(summary.call));
+  policy::QueryMeter queries;
+  Shared shared{.plan = plan,
+                .options = options,
+                .assets = std::move(assets),
+                .fingerprint = to_json(fingerprint),
+                .jobs = std::move(selection.jobs),
+                .store = *store,
+                .summary = summary,
+                .queries = queries,
+                .asks_server = !traits.content.empty()};
   const auto make_worker = [&shared]() -> Result<Worker> {
     auto worker = std::make_shared<EpisodeWorker>(shared);
     PROBE_TRY(worker->begin());
     return Worker([worker](std::size_t index) { return worker->run(index); });
   };
-  PROBE_TRY(run_jobs(shared.jobs.size(), options.jobs, make_worker));
+  const Status ran = run_jobs(shared.jobs.size(), options.jobs, make_worker);
+  summary.call.ended = true;
+  summary.call.episodes = summary.done;
+  summary.call.queries = queries.figures();
+  summary.call.elapsed_s = summary.call.queries.elapsed_s;
+  const Status written = store->write_call(summary.call);
+  PROBE_TRY(ran);
+  PROBE_TRY(written);
   return summary;
 }
 

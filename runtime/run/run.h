@@ -5,13 +5,16 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/policy/factory.h"
 #include "runtime/run/results.h"
+#include "runtime/run/run_record.h"
 
 namespace probe::plan {
 class Plan;
@@ -20,6 +23,19 @@ class Plan;
 namespace probe::run {
 
 enum class VideoChoice { kNone, kFailures, kAll };
+
+// What to do with a folder that was begun with another plan, policy, profile or build.
+enum class IfChanged {
+  kRefuse,    // fail and say what differs
+  kFork,      // write into the folder of the same name with -2, -3, ... that fits or is free
+  kContinue,  // mix builds and profiles; another plan or policy is refused all the same
+};
+
+// A policy that is not in the factory's table; for tests and benches.
+struct OwnPolicy {
+  policy::PolicyTraits traits;
+  std::function<Result<std::unique_ptr<policy::Policy>>(const policy::PolicyContext&)> make;
+};
 
 struct RunProgress {
   int done = 0;                    // episodes finished by this call
@@ -30,26 +46,37 @@ struct RunProgress {
 
 struct RunOptions {
   std::string policy;       // "expert", "noisy:0.01", ...
+  std::string name;         // what folder and rows call it; empty: as `policy`
   std::string out;          // folder, made if absent
   std::string suite;        // empty: the plan's first suite, or all tasks if it has none
   std::string tasks = "*";  // glob over task names, with or without the suite's prefix: * and ?
+  bool originals = false;   // of these only tasks that are no variant of another
   std::optional<std::pair<int, int>> episodes;  // first and last index, both included
   // Empty: the suite's seeds; and if the policy draws nothing (every seed would repeat the same
   // episode), only the first of them. Seeds given here are always run.
   std::vector<int> seeds;
   int jobs = 1;               // worlds in parallel, one thread each
-  int shard = 1, shards = 1;  // this call's share: every shards-th episode from the shard-th
+  int shard = 1, shards = 1;  // this call's share, see shard_of()
+  // A policy server's failures: an episode they spoil is tried that often again in this call, and
+  // the call stops when that many episodes in a row were lost all the same (0: never).
+  int retries = 2;
+  int give_up_after = 5;
+  IfChanged if_changed = IfChanged::kRefuse;
   VideoChoice video = VideoChoice::kNone;  // DIR/videos/TASK/EPISODE-SEED.mp4
   std::string assets;                      // asset root, see find_asset_root
   // Called from worker threads, one call at a time.
   std::function<void(const RunProgress&)> progress;
+  std::optional<OwnPolicy> own_policy;  // acts in place of `policy`, which then is only a name
 };
 
 struct RunSummary {
   int total = 0, done = 0, skipped = 0, invalid = 0;
   std::vector<std::string> notes;  // sentences for stderr, such as why seeds were dropped
+  std::string out;                 // the folder that was written
+  RunCall call;                    // speed, and how busy server and simulators were
 };
 
+// Fails with code "policy" when it gave up on a policy server; what was done until then is stored.
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options);
 
 }  // namespace probe::run

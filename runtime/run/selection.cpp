@@ -53,6 +53,17 @@ std::set<EpisodeKey> keys_of(const std::vector<ResultRow>* rows) {
 
 }  // namespace
 
+int shard_of(const Sha256& episode_id, int seed, int shards) {
+  const Sha256 hash = Hasher()
+                          .text("shard")
+                          .hash(episode_id)
+                          .u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(seed)))
+                          .finish();
+  std::uint64_t value = 0;
+  for (std::size_t i = 8; i-- > 0;) value = value << 8 | hash.bytes[i];
+  return 1 + static_cast<int>(value % static_cast<std::uint64_t>(shards));
+}
+
 Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,
                               const std::vector<ResultRow>* recorded) {
   if (options.shards < 1 || options.shard < 1 || options.shard > options.shards) {
@@ -83,6 +94,14 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
     names.push_back(name);
     return !matches_glob(options.tasks, name) && !matches_glob(options.tasks, prefix + name);
   });
+  if (options.originals) {
+    if (tasks.empty()) return no_task(options.tasks, names);
+    std::erase_if(tasks,
+                  [&](std::uint32_t task) { return plan.tasks()[task].baseline != plan::kNone; });
+    if (tasks.empty()) {
+      return usage("every chosen task is a variant of another, none is an original", "--tasks");
+    }
+  }
   std::sort(tasks.begin(), tasks.end());
   tasks.erase(std::unique(tasks.begin(), tasks.end()), tasks.end());
   if (tasks.empty()) return no_task(options.tasks, names);
@@ -109,7 +128,6 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
   selection.seeds.erase(std::unique(selection.seeds.begin(), selection.seeds.end()),
                         selection.seeds.end());
 
-  std::size_t place = 0;
   bool any = false, any_held = recorded == nullptr;
   for (const std::uint32_t task : tasks) {
     const auto count = static_cast<std::uint32_t>(plan.episodes(plan.tasks()[task]).size());
@@ -125,9 +143,10 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
           if (!held.contains({name, static_cast<int>(index), seed})) continue;
           any_held = true;
         }
-        const bool ours = place++ % static_cast<std::size_t>(options.shards) ==
-                          static_cast<std::size_t>(options.shard - 1);
-        if (ours) selection.jobs.push_back({task, index, seed});
+        const Sha256 id{plan.episodes(plan.tasks()[task])[index].episode_id};
+        if (shard_of(id, seed, options.shards) == options.shard) {
+          selection.jobs.push_back({task, index, seed});
+        }
       }
     }
   }

@@ -19,6 +19,10 @@ struct Selection {
   std::vector<std::string> notes;
 };
 
+// Which of 1 .. shards an episode belongs to: by a hash of its id and seed, whatever else is
+// chosen, so that a changed selection moves no episode to another shard's folder.
+int shard_of(const Sha256& episode_id, int seed, int shards);
+
 // `draws`: whether the policy can do two different things with two seeds. `recorded`: rows of the
 // run whose actions are repeated; then only episodes and seeds that it holds are chosen, with
 // `options.seeds` only narrowing them. Fails (code "usage") on an unknown suite, a glob that no

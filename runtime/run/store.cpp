@@ -1,9 +1,8 @@
-// SQLite and file names. The database is small: one row a finished episode, in one transaction each
+// Tables and file names. The database is small: one row a finished episode, in one transaction each
 // with full sync.
 #include "runtime/run/store.h"
 
 #include <fcntl.h>
-#include <sqlite3.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -15,6 +14,7 @@
 #include <sstream>
 
 #include "runtime/base/file.h"
+#include "runtime/run/database.h"
 #include "runtime/run/stored_trace.h"
 
 namespace probe::run {
@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Raised when the tables change; another number is refused.
-constexpr const char* kSchemaVersion = "1";
 constexpr const char* kSchema = R"(
 create table if not exists run (name text primary key, value text not null) without rowid;
 create table if not exists episodes (
@@ -32,117 +30,21 @@ create table if not exists episodes (
   policy text not null, metrics text not null, steps integer not null, invalid text,
   prompt_sha256 text not null, image_sha256 text not null, frames_sha256 text not null,
   trace_sha256 text not null, trace text not null,
+  sent_prompt_sha256 text, sent_image_sha256 text,
   primary key (task, episode, seed)) without rowid;
+create table if not exists calls (number integer primary key, value text not null);
+)";
+// Of version 1.
+constexpr const char* kRaiseSchema = R"(
+alter table episodes add column sent_prompt_sha256 text;
+alter table episodes add column sent_image_sha256 text;
 )";
 
 Failure failed(const std::string& message, const std::string& where) {
   return {"store", message, where};
 }
 
-enum class Access { kRead, kWrite };
-
-// What SQLite said, with what to do about it: the traces do not depend on the database.
-Failure sqlite_failure(sqlite3* database, Access access, const std::string& where) {
-  const int code = sqlite3_errcode(database);
-  const std::string said = sqlite3_errmsg(database);
-  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
-    return failed("results.sqlite cannot be read (" + said +
-                      "); the traces are intact: move this file away and run again",
-                  where);
-  }
-  return failed(std::string("the results cannot be ") +
-                    (access == Access::kRead ? "read: " : "stored: ") + said,
-                where);
-}
-
-// A prepared statement; every failure becomes ours, with the folder's name.
-class Statement {
- public:
-  Statement(sqlite3* database, const char* sql, Access access = Access::kRead)
-      : database_(database), access_(access) {
-    code_ = sqlite3_prepare_v2(database, sql, -1, &statement_, nullptr);
-  }
-  ~Statement() { sqlite3_finalize(statement_); }
-  Statement(const Statement&) = delete;
-  Statement& operator=(const Statement&) = delete;
-
-  Statement& bind(const std::string& value) {
-    if (code_ == SQLITE_OK) {
-      code_ = sqlite3_bind_text(statement_, ++bound_, value.data(), static_cast<int>(value.size()),
-                                SQLITE_TRANSIENT);
-    }
-    return *this;
-  }
-  Statement& bind(int value) {
-    if (code_ == SQLITE_OK) code_ = sqlite3_bind_int(statement_, ++bound_, value);
-    return *this;
-  }
-  Statement& bind(const std::optional<std::string>& value) {
-    if (value) return bind(*value);
-    if (code_ == SQLITE_OK) code_ = sqlite3_bind_null(statement_, ++bound_);
-    return *this;
-  }
-  // True while there is a row.
-  bool next() {
-    if (code_ == SQLITE_OK || code_ == SQLITE_ROW) code_ = sqlite3_step(statement_);
-    return code_ == SQLITE_ROW;
-  }
-  std::string text(int column) const {
-    const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
-    return bytes == nullptr
-               ? std::string()
-               : std::string(bytes,
-                             static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)));
-  }
-  int number(int column) const { return sqlite3_column_int(statement_, column); }
-  bool is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
-
-  // After the last next().
-  Status done(const std::string& where) const {
-    if (code_ == SQLITE_DONE || code_ == SQLITE_OK || code_ == SQLITE_ROW) return {};
-    return sqlite_failure(database_, access_, where);
-  }
-
- private:
-  sqlite3* database_;
-  Access access_;
-  sqlite3_stmt* statement_ = nullptr;
-  int code_ = SQLITE_OK;
-  int bound_ = 0;
-};
-
-class Database {
- public:
-  ~Database() { sqlite3_close(handle_); }
-  Database() = default;
-  Database(Database&& other) noexcept
-      : handle_(std::exchange(other.handle_, nullptr)), path_(std::move(other.path_)) {}
-  Database& operator=(Database&&) = delete;
-
-  static Result<Database> open(const std::string& path, bool write) {
-    Database database;
-    database.path_ = path;
-    // Readers too may have to roll back what a killed writer left; SQLite falls back to read-only
-    // by itself.
-    const int flags = SQLITE_OPEN_READWRITE | (write ? SQLITE_OPEN_CREATE : 0);
-    if (sqlite3_open_v2(path.c_str(), &database.handle_, flags, nullptr) != SQLITE_OK) {
-      return failed(std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_), path);
-    }
-    sqlite3_busy_timeout(database.handle_, 10000);
-    if (write) PROBE_TRY(database.execute("pragma synchronous = full"));
-    return database;
-  }
-  Status execute(const char* sql) {
-    if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) == SQLITE_OK) return {};
-    return sqlite_failure(handle_, Access::kWrite, path_);
-  }
-  sqlite3* handle() const { return handle_; }
-  const std::string& path() const { return path_; }
-
- private:
-  sqlite3* handle_ = nullptr;
-  std::string path_;
-};
+using Access = Database::Access;
 
 std::string database_path(const std::string& dir) {
   return (fs::path(dir) / "results.sqlite").string();
@@ -152,72 +54,19 @@ std::string relative_trace(const std::string& task, int episode, int seed) {
   return "traces/" + task + "/" + std::to_string(episode) + "-" + std::to_string(seed) + ".trace";
 }
 
-nlohmann::json to_json(const RunRecord& record) {
-  return {{"schema", kSchemaVersion},
-          {"plan_root", record.identity.plan_root},
-          {"policy", record.identity.policy},
-          {"suite", record.suite},
-          {"seeds", record.seeds},
-          {"fingerprint", to_json(record.fingerprint)}};
-}
-
-Failure bad_record(const std::string& key, const char* wanted, const std::string& where) {
-  return failed(
-      "`" + key + "` of its run record is not " + wanted + "; move this file away and run again",
-      where);
-}
-
-Result<std::string> record_text(const nlohmann::json& json, const char* key,
-                                const std::string& where) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_string()) return bad_record(key, "a text", where);
-  return found->get<std::string>();
-}
-
 // Nothing when the database has no run yet.
 Result<std::optional<RunRecord>> load_record(Database& database) {
-  Statement select(database.handle(), "select value from run where name = 'record'");
+  Statement table(database, "select 1 from sqlite_master where name = 'run'");
+  const bool begun = table.next();
+  PROBE_TRY(table.done());
+  if (!begun) return std::optional<RunRecord>();
+  Statement select(database, "select value from run where name = 'record'");
   if (!select.next()) {
-    PROBE_TRY(select.done(database.path()));
+    PROBE_TRY(select.done());
     return std::optional<RunRecord>();
   }
-  const auto json = nlohmann::json::parse(select.text(0), nullptr, false);
-  if (!json.is_object()) {
-    return failed("its run record is no JSON object; move this file away and run again",
-                  database.path());
-  }
-  PROBE_ASSIGN(const std::string schema, record_text(json, "schema", database.path()));
-  if (schema != kSchemaVersion) {
-    return failed("was written by a program with another layout of results", database.path());
-  }
-  RunRecord record;
-  PROBE_ASSIGN(record.identity.plan_root, record_text(json, "plan_root", database.path()));
-  PROBE_ASSIGN(record.identity.policy, record_text(json, "policy", database.path()));
-  PROBE_ASSIGN(record.suite, record_text(json, "suite", database.path()));
-  const auto seeds = json.find("seeds");
-  if (seeds == json.end() || !seeds->is_array()) {
-    return bad_record("seeds", "a list of whole numbers", database.path());
-  }
-  for (const auto& seed : *seeds) {
-    if (!seed.is_number_integer()) {
-      return bad_record("seeds", "a list of whole numbers", database.path());
-    }
-    record.seeds.push_back(seed.get<int>());
-  }
-  PROBE_ASSIGN(const std::string fingerprint, record_text(json, "fingerprint", database.path()));
-  auto read = fingerprint_from_json(fingerprint);
-  if (!read) return bad_record("fingerprint", "an object of texts", database.path());
-  record.fingerprint = std::move(*read);
+  PROBE_ASSIGN(RunRecord record, record_from_text(select.text(0), database.path()));
   return std::optional(std::move(record));
-}
-
-// The first thing that differs, for people.
-std::string difference(const RunIdentity& stored, const RunIdentity& asked) {
-  if (stored.policy != asked.policy) {
-    return "holds a run of policy `" + stored.policy + "`, not `" + asked.policy + "`";
-  }
-  return "holds a run of another plan (root " + stored.plan_root.substr(0, 12) + ", this one is " +
-         asked.plan_root.substr(0, 12) + ")";
 }
 
 void sync_folder(const fs::path& folder) {
@@ -251,10 +100,14 @@ std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& tex
 }
 
 Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
-  Statement select(database.handle(),
-                   "select task, episode, seed, policy, metrics, steps, invalid, prompt_sha256, "
-                   "image_sha256, frames_sha256, trace_sha256, episode_id, start_id, trace "
-                   "from episodes order by task_order, task, episode, seed");
+  PROBE_ASSIGN(const auto record, load_record(database));
+  if (!record) return failed("no run here: results.sqlite is empty", dir);
+  std::string sql =
+      "select task, episode, seed, policy, metrics, steps, invalid, prompt_sha256, image_sha256, "
+      "frames_sha256, trace_sha256, episode_id, start_id, trace, ";
+  sql += record->schema == 1 ? "null, null" : "sent_prompt_sha256, sent_image_sha256";
+  sql += " from episodes order by task_order, task, episode, seed";
+  Statement select(database, sql.c_str());
   std::vector<ResultRow> rows;
   while (select.next()) {
     ResultRow row;
@@ -265,9 +118,8 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
     auto metrics = metrics_from_text(select.text(4));
     if (metrics) row.metrics = std::move(*metrics);
     row.steps = select.number(5);
-    if (!select.is_null(6)) {
-      row.invalid = select.text(6);
-    } else if (!metrics) {
+    row.invalid = select.optional_text(6);
+    if (!row.invalid && !metrics) {
       // One damaged row must not hide the others; the next run makes it anew.
       row.invalid = "store: its metrics in results.sqlite cannot be read";
     }
@@ -278,9 +130,11 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
     row.episode_id = select.text(11);
     row.start_id = select.text(12);
     row.trace = fs::absolute(fs::path(dir) / select.text(13)).lexically_normal().string();
+    row.sent_prompt_sha256 = select.optional_text(14);
+    row.sent_image_sha256 = select.optional_text(15);
     rows.push_back(std::move(row));
   }
-  PROBE_TRY(select.done(database.path()));
+  PROBE_TRY(select.done());
   return rows;
 }
 
@@ -293,24 +147,24 @@ class FolderStore final : public Store {
   Status begin(const RunRecord& record, std::span<const std::byte> plan_bytes) {
     PROBE_TRY(database_.execute(kSchema));
     PROBE_ASSIGN(auto stored, load_record(database_));
-    if (stored && stored->identity != record.identity) {
-      return failed(difference(stored->identity, record.identity) +
-                        "; take another folder or remove this one",
-                    dir_);
+    if (stored) {
+      const RunChanges changes = changes_between(*stored, record);
+      for (const std::string& change : {changes.identity, changes.policy_content}) {
+        if (change.empty()) continue;
+        return failed(change + "; take another folder or remove this one", dir_);
+      }
     }
     remove_leftovers();
     if (stored) {
       record_ = std::move(*stored);
-      return {};
+      return record_.schema < kSchemaVersion ? raise_schema() : Status();
     }
     // The plan goes first: a folder with a record always has its plan.
     PROBE_TRY(write_file(plan_path(dir_), plan_bytes));
     sync_folder(dir_);
-    Statement insert(database_.handle(), "insert into run values ('record', ?)", Access::kWrite);
-    insert.bind(to_json(record).dump()).next();
-    PROBE_TRY(insert.done(dir_));
     record_ = record;
-    return {};
+    record_.schema = kSchemaVersion;
+    return write_record("insert into run values ('record', ?)");
   }
 
   const RunRecord& record() const override { return record_; }
@@ -345,19 +199,48 @@ class FolderStore final : public Store {
       return failed(std::string("cannot be renamed: ") + std::strerror(errno), trace + ".tmp");
     }
     sync_folder(fs::path(trace).parent_path());
-    Statement insert(database_.handle(),
-                     "insert or replace into episodes values (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
+    Statement insert(database_,
+                     "insert or replace into episodes (task, episode, seed, task_order, "
+                     "episode_id, start_id, policy, metrics, steps, invalid, prompt_sha256, "
+                     "image_sha256, frames_sha256, trace_sha256, trace, sent_prompt_sha256, "
+                     "sent_image_sha256) values (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
                      Access::kWrite);
     insert.bind(row.task).bind(row.episode).bind(row.seed).bind(task_order);
     insert.bind(row.episode_id).bind(row.start_id).bind(row.policy);
     insert.bind(metrics_to_text(row.metrics)).bind(row.steps).bind(row.invalid);
     insert.bind(row.prompt_sha256).bind(row.image_sha256).bind(row.frames_sha256);
     insert.bind(row.trace_sha256).bind(relative_trace(row.task, row.episode, row.seed));
+    insert.bind(row.sent_prompt_sha256).bind(row.sent_image_sha256);
     insert.next();
-    return insert.done(dir_);
+    return insert.done();
+  }
+
+  Status write_call(const RunCall& call) override {
+    if (call_ == 0) {
+      Statement last(database_, "select coalesce(max(number), 0) from calls");
+      if (last.next()) call_ = last.number(0) + 1;
+      PROBE_TRY(last.done());
+    }
+    Statement insert(database_, "insert or replace into calls values (?, ?)", Access::kWrite);
+    insert.bind(call_).bind(call_to_json(call)).next();
+    return insert.done();
   }
 
  private:
+  Status write_record(const char* sql) {
+    Statement write(database_, sql, Access::kWrite);
+    write.bind(record_to_text(record_)).next();
+    return write.done();
+  }
+
+  Status raise_schema() {
+    record_.schema = kSchemaVersion;
+    PROBE_TRY(database_.execute("begin immediate"));
+    PROBE_TRY(database_.execute(kRaiseSchema));
+    PROBE_TRY(write_record("update run set value = ? where name = 'record'"));
+    return database_.execute("commit");
+  }
+
   // Traces and videos that a killed process did not finish.
   void remove_leftovers() const {
     for (const char* folder : {"traces", "videos"}) {
@@ -374,6 +257,7 @@ class FolderStore final : public Store {
   int lock_;
   Database database_;
   RunRecord record_;
+  int call_ = 0;  // of this object in the table of calls; 0: not written yet
 };
 
 }  // namespace
@@ -400,7 +284,7 @@ Result<std::unique_ptr<Store>> Store::open(const std::string& dir, const RunReco
     ::close(lock);
     return failed("another run is writing into this folder", dir);
   }
-  auto database = Database::open(database_path(dir), true);
+  auto database = Database::open(database_path(dir), Access::kWrite);
   if (!database) {
     ::close(lock);
     return database.failure();
@@ -410,17 +294,36 @@ Result<std::unique_ptr<Store>> Store::open(const std::string& dir, const RunReco
   return std::unique_ptr<Store>(std::move(store));
 }
 
+Result<std::optional<RunRecord>> find_run_record(const std::string& dir) {
+  if (!fs::exists(database_path(dir))) return std::optional<RunRecord>();
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  return load_record(database);
+}
+
 Result<RunRecord> read_run_record(const std::string& dir) {
   if (!fs::exists(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
-  PROBE_ASSIGN(Database database, Database::open(database_path(dir), false));
-  PROBE_ASSIGN(auto record, load_record(database));
+  PROBE_ASSIGN(auto record, find_run_record(dir));
   if (!record) return failed("no run here: results.sqlite is empty", dir);
   return std::move(*record);
 }
 
+Result<std::vector<RunCall>> read_run_calls(const std::string& dir) {
+  PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
+  std::vector<RunCall> calls;
+  if (record.schema < 2) return calls;
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  Statement select(database, "select value from calls order by number");
+  while (select.next()) {
+    PROBE_ASSIGN(RunCall call, call_from_json(select.text(0), database.path()));
+    calls.push_back(std::move(call));
+  }
+  PROBE_TRY(select.done());
+  return calls;
+}
+
 Result<std::vector<ResultRow>> read_results(const std::string& dir) {
   if (!fs::exists(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
-  PROBE_ASSIGN(Database database, Database::open(database_path(dir), false));
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
   return load_rows(database, dir);
 }
 

@@ -1,6 +1,6 @@
 // A run's folder: results.sqlite, traces/, suite.plan, lock. Rows and traces are committed
 // together: a trace gets its final name before its row is written, and a row without its own trace
-// counts as absent. store.cpp is the only file that includes SQLite.
+// counts as absent.
 #pragma once
 
 #include <memory>
@@ -9,24 +9,10 @@
 #include <vector>
 
 #include "runtime/base/result.h"
-#include "runtime/run/fingerprint.h"
 #include "runtime/run/results.h"
+#include "runtime/run/run_record.h"
 
 namespace probe::run {
-
-// What must not change between two calls that write into one folder.
-struct RunIdentity {
-  std::string plan_root;  // hex
-  std::string policy;
-  bool operator==(const RunIdentity&) const = default;
-};
-
-struct RunRecord {
-  RunIdentity identity;
-  std::string suite;
-  std::vector<int> seeds;
-  Fingerprint fingerprint;  // of the call that made the folder
-};
 
 // What has been stored of an episode.
 struct StoredEpisode {
@@ -39,9 +25,9 @@ struct StoredEpisode {
 // One process writes a folder at a time; the methods may be called from any thread, one at a time.
 class Store {
  public:
-  // Makes the folder or continues it. Fails (code "store") when the folder cannot be written,
-  // another process writes it, or it holds a run of another identity; the message says which part
-  // differs.
+  // Makes the folder or continues it, whatever the build. Fails (code "store") when the folder
+  // cannot be written, another process writes it, or it holds a run of another identity; the
+  // message says which part differs.
   static Result<std::unique_ptr<Store>> open(const std::string& dir, const RunRecord& record,
                                              std::span<const std::byte> plan_bytes);
   virtual ~Store() = default;
@@ -56,8 +42,15 @@ class Store {
   // Renames the temporary trace and writes the row, replacing an invalid one. `task_order` sorts
   // rows.
   virtual Status commit(const ResultRow& row, int task_order) = 0;
+
+  // What this call of `run` has done so far; each write replaces the one before.
+  virtual Status write_call(const RunCall& call) = 0;
 };
 
+// Nothing when no run was begun in `dir`; fails (code "store") on one that cannot be read.
+Result<std::optional<RunRecord>> find_run_record(const std::string& dir);
+// All calls that wrote into `dir`, oldest first.
+Result<std::vector<RunCall>> read_run_calls(const std::string& dir);
 // The run in `dir`, for readers; fails (code "store") if there is none.
 Result<RunRecord> read_run_record(const std::string& dir);
 std::string plan_path(const std::string& dir);

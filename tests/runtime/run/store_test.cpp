@@ -198,6 +198,66 @@ TEST_CASE("another plan or policy is refused, and so is a second writer") {
   CHECK(Store::open(dir, record_of(), plan_bytes()).ok());
 }
 
+TEST_CASE("a folder of the first schema is read, and raised when it is written") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    REQUIRE(store_episode(**store, row_of(0)).ok());
+  }
+  // As a program of that time left it.
+  change_database(dir, "alter table episodes drop column sent_prompt_sha256");
+  change_database(dir, "alter table episodes drop column sent_image_sha256");
+  change_database(dir, "drop table calls");
+  const nlohmann::json old = {{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
+                              {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
+  change_database(dir, "update run set value = '" + old.dump() + "'");
+  REQUIRE_MESSAGE(read_results(dir).ok(), to_text(read_results(dir).failure()));
+  CHECK(read_results(dir)->size() == 1);
+  CHECK(read_run_calls(dir)->empty());
+  CHECK(read_run_record(dir)->schema == 1);
+
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
+  ResultRow row = row_of(1);
+  row.sent_prompt_sha256 = "p";
+  REQUIRE(store_episode(**store, row).ok());
+  CHECK(read_run_record(dir)->schema == 2);
+  const auto rows = read_results(dir);
+  CHECK_FALSE(rows->at(0).sent_prompt_sha256);
+  CHECK(rows->at(1).sent_prompt_sha256 == "p");
+  CHECK_FALSE(rows->at(1).sent_image_sha256);
+}
+
+TEST_CASE("each call leaves its figures, the last state of each") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  RunCall call;
+  call.fingerprint = {{{"cpu", "test"}}};
+  call.worlds = 8;
+  for (int i = 0; i < 2; ++i) {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    call.ended = false;
+    REQUIRE((*store)->write_call(call).ok());
+    call.ended = true;
+    call.observations = 100 + i;
+    call.elapsed_s = 10;
+    call.queries = {25, 10, 9, 60, 8};
+    REQUIRE((*store)->write_call(call).ok());
+  }
+  const auto calls = read_run_calls(dir);
+  REQUIRE_MESSAGE(calls.ok(), to_text(calls.failure()));
+  REQUIRE(calls->size() == 2);
+  CHECK(calls->at(0).observations == 100);
+  CHECK(calls->at(1).ended);
+  CHECK(calls->at(1).queries.most_at_once == 8);
+  CHECK(to_text(calls->at(0)) ==
+        "10.0 observations/s, 2.5 queries/s; server busy 90.0 % of the time, simulators waiting "
+        "for it 75.0 % of theirs");
+}
+
 TEST_CASE("a folder that cannot be written is named") {
   TemporaryFolder folder;
   std::ofstream(folder / "file") << "x";
