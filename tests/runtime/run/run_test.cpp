@@ -34,6 +34,13 @@ RunOptions options_for(const std::string& out, const std::string& policy = "rand
   return options;
 }
 
+SheetOptions sheet_of(const RunOptions& options) {
+  SheetOptions sheet;
+  sheet.cell_width = 160;
+  sheet.assets = options.assets;
+  return sheet;
+}
+
 std::vector<std::string> hashes(const std::string& dir) {
   std::vector<std::string> all;
   const auto rows = read_results(dir);
@@ -136,8 +143,7 @@ TEST_CASE("a stored episode repeats bit for bit, and a changed one is told") {
   const auto b = read_trace(read_results(folder / "copy")->at(0).trace);
   CHECK(a->steps.back().state_hash == b->steps.back().state_hash);
 
-  CHECK(write_contact_sheet(folder / "run", folder / "sheet.png", {"*", 6, 160, options.assets})
-            .ok());
+  CHECK(write_contact_sheet(folder / "run", folder / "sheet.png", sheet_of(options)).ok());
   CHECK(scene::load_image(folder / "sheet.png")->width > 320);
 }
 
@@ -237,7 +243,7 @@ TEST_CASE("a damaged trace is run again with a note, and videos that were not ma
   replaying.assets = options.assets;
   const auto replayed = replay(folder / "run", "carrot_on_plate", 1, 42, replaying);
   CHECK(replayed.failure().where == rows->at(1).trace);
-  CHECK(write_contact_sheet(folder / "run", folder / "sheet.png", {"*", 6, 160, options.assets})
+  CHECK(write_contact_sheet(folder / "run", folder / "sheet.png", sheet_of(options))
             .failure()
             .where == rows->at(1).trace);
   CHECK(replay(folder / "run", "carot_on_plate", 0, 42, replaying)
