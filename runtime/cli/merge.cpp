@@ -1,0 +1,35 @@
+// vlaprobe merge
+#include "runtime/run/merge.h"
+
+#include <fmt/format.h>
+
+#include "runtime/cli/filled.h"
+#include "runtime/cli/verbs.h"
+
+namespace probe::cli {
+namespace {
+
+int merge_verb(const run::MergeOptions& options) {
+  const auto summary = run::merge(options);
+  if (!summary) return report(summary.failure());
+  for (const std::string& note : summary->notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print(stderr, "{} episodes in {}: {} added now, {} duplicates dropped, {} invalid\n",
+             summary->rows, options.out, summary->added, summary->duplicates, summary->invalid);
+  return kFine;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, int& exit) {
+  auto options = std::make_shared<run::MergeOptions>();
+  CLI::App* verb = app.add_subcommand("merge", "join the folders of a run's shards, exactly once");
+  verb->footer("example: vlaprobe merge runs/shard-1 runs/shard-2 -o runs/all");
+  verb->add_option("DIR", options->dirs, "results folders")->required();
+  verb->add_option("-o,--out", options->out, "results folder; what it holds stays")->required();
+  verb->add_flag("--mixed-builds", options->mixed_builds,
+                 "also join what other builds and machines made");
+  refuse_empty_values(*verb);
+  verb->callback([options, &exit] { exit = merge_verb(*options); });
+}
+
+}  // namespace probe::cli
