@@ -23,7 +23,7 @@ struct KindName {
   Kind kind;
   std::string_view name, title;
 };
-constexpr std::array<KindName, 14> kKinds = {{
+constexpr std::array<KindName, 16> kKinds = {{
     {Kind::kConfounded, "confounded", "comparisons that move more than one axis"},
     {Kind::kAcrossScenes, "across_scenes", "comparisons across scenes"},
     {Kind::kAcrossLayouts, "across_layouts", "comparisons across layouts"},
@@ -39,6 +39,9 @@ constexpr std::array<KindName, 14> kKinds = {{
     {Kind::kEndsInGrasp, "ends_in_grasp",
      "success that needs the gripper to hold at the last step"},
     {Kind::kBeside, "beside", "success of an object that lies on the table beside the target"},
+    {Kind::kOnFixture, "on_fixture",
+     "success of an object that lies on a fixture beside the target"},
+    {Kind::kHeld, "held", "success of an object that is still held above the target"},
     {Kind::kWarning, "warning", "warnings, said or silenced"},
 }};
 
@@ -269,6 +272,12 @@ class Auditor {
     constexpr Rule kOnTable = {
         Kind::kBeside, "success",
         "`success` is true of a source that lies on the table, its box clear of the target's"};
+    constexpr Rule kOnFixture = {Kind::kOnFixture, "success",
+                                 "`success` is true of a source that a fixture alone holds up, its "
+                                 "box clear of the target's"};
+    constexpr Rule kHeld = {Kind::kHeld, "success",
+                            "`success` is true of a source that both fingers hold above the "
+                            "target and nothing else touches"};
     std::map<std::uint32_t, bool> counts_target;  // by program
     for (const std::uint32_t index : scope_) {
       const plan::TaskRecord& task = plan_.tasks()[index];
@@ -292,6 +301,10 @@ class Auditor {
         if (at_end && ends_in_grasp(plan_, index, *success)) add_rule(kGrasp, index);
         PROBE_ASSIGN(const bool beside, passes_beside(plan_, index, *success));
         if (beside) add_rule(kOnTable, index);
+        PROBE_ASSIGN(const bool on_fixture, passes_on_fixture(plan_, index, *success));
+        if (on_fixture) add_rule(kOnFixture, index);
+        PROBE_ASSIGN(const bool held, passes_held(plan_, index, *success));
+        if (held) add_rule(kHeld, index);
       }
     }
     return {};

@@ -30,6 +30,8 @@ enum class Kind : std::uint8_t {
   kWrongAtEnd,
   kEndsInGrasp,
   kBeside,
+  kOnFixture,
+  kHeld,
   kWarning
 };
 // As in JSON ("success_rule"), and the heading of the report.

@@ -16,6 +16,9 @@ constexpr int kSteps = 8;          // more than any published rule counts
 constexpr double kContact = 0.01;  // N s: what a light object at rest presses in a substep
 constexpr double kFar = 0.5;       // m: where objects stand that do not matter
 constexpr double kGap = 0.001;     // m: between two boxes side by side
+constexpr double kHeldGap = 5e-4;  // m: between what is held and what is below
+constexpr double kHighest = 0.1;   // m: of a fixture's ledge above the target's lower side
+constexpr double kLedge = 0.01;    // m: from one height of it to the next
 
 // Half extents with z the axis that is nearest the vertical in the pose, as a world gives them.
 Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>& rotation) {
@@ -34,7 +37,8 @@ Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>&
 struct World {
   std::vector<vm::BodyStart> starts;
   vm::StepSample sample;
-  std::uint16_t surface = 0;
+  std::uint16_t surface = 0, fixture = 0;
+  std::vector<std::uint16_t> fingers;
 
   void put(std::size_t body, const Vec3& at) {
     sample.bodies[body].position = sample.bodies[body].origin = at;
@@ -62,11 +66,23 @@ World at_rest(const plan::Plan& plan, const plan::TaskRecord& task) {
       at = {kFar * static_cast<double>(i), 0, table + world.starts[i].half.z()};
     } else if (kind == plan::BodyKind::kLink) {
       world.starts[i].opening = {0, 1, 0};
+      if (bodies[i].index < 2) world.fingers.push_back(static_cast<std::uint16_t>(i));
+    } else if (kind == plan::BodyKind::kFixture) {
+      world.fixture = static_cast<std::uint16_t>(i);
     }
     world.starts[i].position = at;
     world.put(i, at);
   }
   return world;
+}
+
+// Where the source's box is beside the target's, its thin side against the target's: as near as the
+// two can be without standing in one another. At the target's height.
+Vec3 beside(const World& world) {
+  const Vec3 source = world.starts[0].half, target = world.starts[1].half;
+  const double apart = std::min(source.x(), source.y()) + std::min(target.x(), target.y()) + kGap;
+  const bool along_x = target.x() <= target.y();
+  return world.sample.bodies[1].position + (along_x ? Vec3(apart, 0, 0) : Vec3(0, apart, 0));
 }
 
 // What the metric says of a world that stays as it is.
@@ -93,15 +109,37 @@ Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint
   const plan::TaskRecord& record = plan.tasks()[task];
   if (plan.scenes()[record.scene].fixture_collision != plan::kNone) return false;
   World world = at_rest(plan, record);
-  const Vec3 source = world.starts[0].half, target = world.starts[1].half;
-  // Its thin side against the target's: as near as the two can be without standing in one another.
-  const double apart = std::min(source.x(), source.y()) + std::min(target.x(), target.y()) + kGap;
-  const bool along_x = target.x() <= target.y();
-  const Vec3 at =
-      world.sample.bodies[1].position + (along_x ? Vec3(apart, 0, 0) : Vec3(0, apart, 0));
-  world.put(0, {at.x(), at.y(), world.sample.bodies[0].position.z()});
+  Vec3 at = beside(world);
+  at.z() = world.sample.bodies[0].position.z();
+  world.put(0, at);
   for (const std::uint16_t body : {std::uint16_t{0}, std::uint16_t{1}})
     world.sample.contacts.push_back({body, world.surface, {0, 0, -kContact}});
+  return judged(plan, task, success, std::move(world));
+}
+
+Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  if (plan.scenes()[record.scene].fixture_collision == plan::kNone) return false;
+  for (double height = 0; height <= kHighest; height += kLedge) {
+    World world = at_rest(plan, record);
+    Vec3 at = beside(world);
+    at.z() += height - world.starts[1].half.z() + world.starts[0].half.z();
+    world.put(0, at);
+    for (const std::uint16_t body : {std::uint16_t{0}, std::uint16_t{1}})
+      world.sample.contacts.push_back({body, world.fixture, {0, 0, -kContact}});
+    PROBE_ASSIGN(const bool passes, judged(plan, task, success, std::move(world)));
+    if (passes) return true;
+  }
+  return false;
+}
+
+Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  World world = at_rest(plan, plan.tasks()[task]);
+  const double above = world.starts[0].half.z() + world.starts[1].half.z() + kHeldGap;
+  world.put(0, world.sample.bodies[1].position + Vec3(0, 0, above));
+  world.sample.tcp = world.sample.bodies[0].position;
+  for (const std::uint16_t finger : world.fingers)
+    world.sample.contacts.push_back({0, finger, {0, kContact, 0}});
   return judged(plan, task, success, std::move(world));
 }
 

@@ -18,6 +18,14 @@ Result<bool> wrong_counts_target(const plan::Plan& plan, std::uint32_t task, std
 // lie on.
 Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 
+// The same of a source that nothing but the scene's fixture holds up, at a height up to 10 cm above
+// the target's lower side. Never of a scene without a fixture.
+Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+
+// Whether metric `success` is true of a source that was brought over the target and is still held
+// there: both fingers press it, half a millimetre above the target, and nothing else touches it.
+Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+
 // Whether metric `success` is false unless fingers touch for some steps on end, the last one
 // included: a condition held over steps that nothing latches.
 bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);

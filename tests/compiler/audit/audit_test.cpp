@@ -139,6 +139,19 @@ TEST_CASE("the published suite: rules that pass or count what they should not ar
   }
 }
 
+TEST_CASE("the published suite: what lies on the sink's wall passes, and what is still held") {
+  const audit::Finding* wall = published().find(Kind::kOnFixture, "put_eggplant_in_basket");
+  REQUIRE(wall != nullptr);
+  CHECK(wall->place.file.ends_with("suite/manipulation.probe"));
+  CHECK(wall->tasks.size() == 4);  // all in the sink
+  CHECK(published().find(Kind::kOnFixture, "carrot_on_plate") == nullptr);
+  std::size_t held = 0;
+  for (const audit::Finding& finding : published().audit.findings)
+    if (finding.kind == Kind::kHeld) held += finding.tasks.size();
+  CHECK(held == 50);  // not the 51st, which asks for the opposite
+  CHECK(published().find(Kind::kHeld, "carrot_on_plate_lang_neg_action") == nullptr);
+}
+
 TEST_CASE("the published suite: every @allow is in the audit with its reason") {
   std::ifstream in(VLAPROBE_SOURCE_DIR "/suite/intact.probe");
   std::size_t allows = 0;
