@@ -1,0 +1,144 @@
+// Options to RunOptions, and sentences about runs.
+#include "runtime/cli/run_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <map>
+
+#include "runtime/policy/factory.h"
+
+namespace probe::cli {
+namespace {
+
+Failure usage(std::string message) { return Failure{"usage", std::move(message), ""}; }
+
+// "A-B" or "A".
+Result<std::pair<int, int>> parse_range(const std::string& text) {
+  const std::size_t dash = text.find('-');
+  const auto first = to_int(std::string_view(text).substr(0, dash));
+  const auto last =
+      dash == std::string::npos ? first : to_int(std::string_view(text).substr(dash + 1));
+  if (!first || !last || *first < 0 || *last < *first) {
+    return usage(fmt::format("--episodes `{}` is not of the form A-B, as in 0-23", text));
+  }
+  return std::pair(*first, *last);
+}
+
+Result<std::vector<int>> parse_seeds(const std::string& text) {
+  std::vector<int> seeds;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', begin), text.size());
+    const auto seed = to_int(std::string_view(text).substr(begin, comma - begin));
+    if (!seed || *seed < 0) {
+      return usage(fmt::format("--seeds `{}` is not a list of whole numbers, as in 42,7", text));
+    }
+    seeds.push_back(*seed);
+    begin = comma + 1;
+  }
+  return seeds;
+}
+
+// The suites of a file that is only used are not what the user asked for.
+Failure no_own_suite(const plan::Plan& plan, const std::string& file) {
+  std::string names;
+  for (const plan::SuiteRecord& suite : plan.suites())
+    names += (names.empty() ? "" : ", ") + std::string(plan.text(suite.name));
+  return {"usage",
+          "declares no suite; add `suite mine { tasks { ... }; seeds 42 }`, or take one of a used "
+          "file with "
+          "--suite: " +
+              names,
+          file};
+}
+
+}  // namespace
+
+std::optional<int> to_int(std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+Result<run::RunOptions> to_options(const RunArguments& arguments) {
+  run::RunOptions options;
+  options.policy = arguments.policy;
+  options.name = arguments.name;
+  options.out = arguments.out;
+  options.suite = arguments.suite;
+  options.tasks = arguments.tasks;
+  options.assets = arguments.assets.root;
+  options.jobs = arguments.jobs;
+  if (!arguments.episodes.empty()) {
+    PROBE_ASSIGN(options.episodes, parse_range(arguments.episodes));
+  }
+  if (!arguments.seeds.empty()) {
+    PROBE_ASSIGN(options.seeds, parse_seeds(arguments.seeds));
+  }
+  static const std::map<std::string, run::VideoChoice> kVideo = {
+      {"none", run::VideoChoice::kNone},
+      {"failures", run::VideoChoice::kFailures},
+      {"all", run::VideoChoice::kAll}};
+  options.video = kVideo.at(arguments.video);
+  options.retries = arguments.retries;
+  options.give_up_after = arguments.give_up_after;
+  static const std::map<std::string, run::IfChanged> kIfChanged = {
+      {"refuse", run::IfChanged::kRefuse},
+      {"fork", run::IfChanged::kFork},
+      {"continue", run::IfChanged::kContinue}};
+  options.if_changed = kIfChanged.at(arguments.if_changed);
+  return options;
+}
+
+LoadedPlan load_runnable(const RunArguments& arguments) {
+  AssetOptions assets = arguments.assets;
+  assets.tasks = arguments.tasks;
+  LoadedPlan loaded = load_plan(arguments.file, assets);
+  if (loaded.plan && loaded.only_used_suites && arguments.suite.empty()) {
+    loaded.exit = report(no_own_suite(*loaded.plan, arguments.file));
+    loaded.plan.reset();
+  }
+  return loaded;
+}
+
+void print_invalid(const run::ResultRow& row) {
+  fmt::print(stderr, "invalid: {} episode {} seed {}: {}\n", row.task, row.episode, row.seed,
+             *row.invalid);
+}
+
+void print_summary(const run::RunSummary& summary) {
+  for (const std::string& note : summary.notes) fmt::print(stderr, "note: {}\n", note);
+  if (summary.total == 0) return;
+  fmt::print(stderr, "{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total,
+             summary.out, summary.done, summary.skipped, summary.invalid);
+  if (summary.done > 0) fmt::print(stderr, "{}\n", run::to_text(summary.call));
+}
+
+void add_run_options(CLI::App& verb, RunArguments& arguments) {
+  verb.add_option("F", arguments.file, ".probe text or .plan file")->required();
+  verb.add_option("--policy", arguments.policy, "who acts")->required();
+  verb.add_option("--name", arguments.name,
+                  "what the rows call the policy (default: P); stays when its server moves");
+  verb.add_option("-o,--out", arguments.out, "results folder")->required();
+  verb.add_option("--suite", arguments.suite,
+                  "which suite (default: the first that F itself declares)");
+  verb.add_option("--tasks", arguments.tasks, "glob over task names");
+  verb.add_option("--episodes", arguments.episodes, "A-B, first and last start of each task");
+  verb.add_option("--seeds", arguments.seeds, "A,B,... instead of the suite's");
+  verb.add_option("--jobs", arguments.jobs, "worlds in parallel")->check(CLI::Range(1, 1024));
+  verb.add_option("--retries", arguments.retries,
+                  "how often an episode that the server failed is tried again at once")
+      ->check(CLI::Range(0, 1000));
+  verb.add_option("--give-up-after", arguments.give_up_after,
+                  "stop when the server failed that many episodes in a row; 0: never")
+      ->check(CLI::Range(0, 1000000));
+  verb.add_option("--if-changed", arguments.if_changed,
+                  "refuse, fork (into DIR-2) or continue over another build or profile")
+      ->check(CLI::IsMember({"refuse", "fork", "continue"}));
+  verb.add_option("--video", arguments.video, "none, failures or all")
+      ->check(CLI::IsMember({"none", "failures", "all"}));
+  add_asset_option(verb, arguments.assets);
+}
+
+}  // namespace probe::cli

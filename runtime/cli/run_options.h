@@ -1,0 +1,37 @@
+// The options that all verbs have which evaluate a policy, and what they read and say in common.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "runtime/cli/load.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/run/run.h"
+
+namespace probe::cli {
+
+struct RunArguments {
+  std::string file;
+  std::string policy, name, out, suite, tasks = "*", episodes, seeds;
+  std::string video = "none", if_changed = "refuse";
+  int jobs = 1, retries = 2, give_up_after = 5;
+  AssetOptions assets;
+};
+
+void add_run_options(CLI::App& verb, RunArguments& arguments);
+
+// All but shard and progress.
+Result<run::RunOptions> to_options(const RunArguments& arguments);
+
+// The plan to run, or the exit code to leave with after the reason was printed.
+LoadedPlan load_runnable(const RunArguments& arguments);
+
+// "invalid: TASK episode E seed S: why" on its own line.
+void print_invalid(const run::ResultRow& row);
+// Notes, counts and speed of a call, for stderr.
+void print_summary(const run::RunSummary& summary);
+
+// A whole number and nothing else.
+std::optional<int> to_int(std::string_view text);
+
+}  // namespace probe::cli
