@@ -79,6 +79,7 @@ int main(int argc, char** argv) {
   add_sheet(app, exit);
   add_run(app, exit);
   add_merge(app, exit);
+  add_slurm(app, exit);
   add_results(app, exit);
   add_replay(app, exit);
   add_judge(app, exit);

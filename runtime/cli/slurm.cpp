@@ -1,0 +1,86 @@
+// vlaprobe slurm
+#include "runtime/cluster/slurm.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "runtime/cli/filled.h"
+#include "runtime/cli/run_options.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  RunArguments run;
+  cluster::JobScript script;
+  int array = 0, nodes = 0;
+  bool submit = false;
+};
+
+int slurm_verb(const Arguments& arguments) {
+  if ((arguments.array > 0) == (arguments.nodes > 0)) {
+    return report({"usage", "one of --array N and --nodes N says how many tasks there are", ""});
+  }
+  auto run_options = to_options(arguments.run);
+  if (!run_options) return report(run_options.failure());
+  const LoadedPlan loaded = load_runnable(arguments.run);
+  if (!loaded.plan) return loaded.exit;
+  cluster::SlurmOptions options;
+  options.run = std::move(*run_options);
+  options.script = arguments.script;
+  options.script.tasks = arguments.array + arguments.nodes;
+  options.script.whole_nodes = arguments.nodes > 0;
+  if (options.script.program.empty()) {
+    std::error_code error;
+    options.script.program = std::filesystem::read_symlink("/proc/self/exe", error).string();
+  }
+  options.submit = arguments.submit;
+  options.tell = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
+  const auto done = cluster::run_on_slurm(*loaded.plan, options);
+  if (!done) return report(done.failure());
+  if (!options.submit) {
+    fmt::print(stderr,
+               "{}: an array of {} tasks for {} episodes; read it, then run sbatch with it, or "
+               "this command with --submit\n",
+               done->script, options.script.tasks, done->total);
+    return kFine;
+  }
+  for (const std::string& note : done->merged.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : done->notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print(stderr, "{} of {} episodes are stored in {}\n", done->stored, done->total,
+             options.run.out);
+  if (done->stored == done->total) return kFine;
+  fmt::print(stderr, "the same command runs what is missing\n");
+  return kOutside;
+}
+
+}  // namespace
+
+void add_slurm(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("slurm", "`run` as an array job of Slurm, merged at the end");
+  verb->footer(
+      "-o holds shards/, slurm/job.sh, its logs and, at the end, the merged run.\n"
+      "example: vlaprobe slurm suite/intact.probe --array 8 --jobs 8 -o runs/pi0 --submit \\\n"
+      "           --policy 'openpi://127.0.0.1:{port}' --server-command 'serve --port {port}'");
+  add_run_options(*verb, arguments->run);
+  verb->add_option("--array", arguments->array, "N tasks, each with one shard")
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--nodes", arguments->nodes,
+                   "N tasks, each with one shard and a node of its own")
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--server-command", arguments->script.server_command,
+                   "shell line that starts each task's server; {port} is its port, here and in P");
+  verb->add_option("--server-wait", arguments->script.server_wait_s,
+                   "seconds until a server answers (600)")
+      ->check(CLI::Range(1, 86400));
+  verb->add_option("--sbatch", arguments->script.sbatch,
+                   "an option of sbatch, as --sbatch=--gres=gpu:1; may be repeated");
+  verb->add_option("--program", arguments->script.program, "path of vlaprobe on the nodes");
+  verb->add_flag("--submit", arguments->submit, "submit it, wait and merge");
+  refuse_empty_values(*verb);
+  verb->callback([arguments, &exit] { exit = slurm_verb(*arguments); });
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,158 @@
+// The script is for people too: they read it before they submit it.
+#include "runtime/cluster/job_script.h"
+
+namespace probe::cluster {
+namespace {
+
+constexpr std::string_view kPort = "{port}";
+
+Failure usage(const std::string& message, const char* where) { return {"usage", message, where}; }
+
+// Output goes to a log by the script itself: file names in #SBATCH lines have a quoting of their
+// own.
+constexpr const char* kHead = R"sh(#SBATCH --nodes=1
+#SBATCH --ntasks=1
+#SBATCH --requeue
+#SBATCH --output=/dev/null
+)sh";
+
+constexpr const char* kLog = R"sh(
+shard=$SLURM_ARRAY_TASK_ID
+exec >>"$out/slurm/log/$shard.txt" 2>&1
+echo "shard $shard of $shards: job $SLURM_JOB_ID on $(hostname), $(date '+%F %T')"
+)sh";
+
+// A task without a server of its own needs no second try: `run` has its own.
+constexpr const char* kWorldsOnly = R"sh(
+exec "${run[@]}" -o "$out/shards/$shard-of-$shards" --shard "$shard/$shards" --policy "$policy"
+)sh";
+
+constexpr const char* kServer = R"sh(
+is_open() { (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }
+
+# A port that nobody listens on; tasks on one machine begin to look at different places.
+find_port() {
+  port=$((20000 + (SLURM_JOB_ID * 97 + $1 * 7) % 20000))
+  while is_open "$port"; do port=$((port + 1)); done
+}
+
+# The server gets a process group of its own, so that all of it can be ended.
+server=
+stop_server() {
+  [ -z "$server" ] && return
+  kill -TERM -- "-$server" 2>/dev/null
+  for _ in {1..50}; do kill -0 -- "-$server" 2>/dev/null || break; sleep 0.1; done
+  kill -KILL -- "-$server" 2>/dev/null
+  wait "$server" 2>/dev/null
+  server=
+}
+trap stop_server EXIT
+trap 'exit 143' TERM INT
+
+start_server() {
+  echo "server on port $port: ${server_command//\{port\}/$port}"
+  PORT=$port setsid bash -c "${server_command//\{port\}/$port}" &
+  server=$!
+  local from=$SECONDS
+  until is_open "$port"; do
+    if ! kill -0 "$server" 2>/dev/null; then
+      echo "the server ended before it answered"
+      return 1
+    fi
+    if ((SECONDS - from > server_wait)); then
+      echo "the server did not answer within $server_wait s"
+      return 1
+    fi
+    sleep 0.5
+  done
+}
+
+# Exit code 2 is the outside, such as a server that died: what is stored stays, the rest is tried
+# again with a new server.
+status=2
+for attempt in 1 2 3; do
+  find_port "$attempt"
+  if start_server; then
+    "${run[@]}" -o "$out/shards/$shard-of-$shards" --shard "$shard/$shards" \
+      --policy "${policy//\{port\}/$port}"
+    status=$?
+    [ "$status" -ne 2 ] && break
+  fi
+  stop_server
+done
+exit "$status"
+)sh";
+
+bool has_line_break(std::string_view text) {
+  return text.find_first_of("\n\r") != std::string_view::npos;
+}
+
+}  // namespace
+
+std::string shell_word(std::string_view text) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) {
+    return std::string(text);
+  }
+  std::string word = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      word += "'\\''";
+    } else {
+      word.push_back(c);
+    }
+  }
+  return word + "'";
+}
+
+std::string shard_folder(int shard, int shards) {
+  return "shards/" + std::to_string(shard) + "-of-" + std::to_string(shards);
+}
+
+Result<std::string> to_text(const JobScript& script) {
+  const bool has_server = !script.server_command.empty();
+  if (!has_server && script.policy.find(kPort) != std::string::npos) {
+    return usage("`{port}` is the port of a server that --server-command starts, and there is none",
+                 "--policy");
+  }
+  if (has_line_break(script.server_command)) {
+    return usage("the command is one line", "--server-command");
+  }
+  if (has_line_break(script.out) || has_line_break(script.program)) {
+    return usage("a path with a line break cannot be written into a job", "-o");
+  }
+  std::string text = "#!/bin/bash\n";
+  text += "# Evaluates shard I of " + std::to_string(script.tasks) +
+          " in task I of an array job; a task that runs again continues its shard.\n";
+  text += "#   submit: sbatch " + shell_word(script.out + "/slurm/job.sh") + "\n";
+  text += "#   join:   " + shell_word(script.program) + " merge " + shell_word(script.out) +
+          "/shards/* -o " + shell_word(script.out) + "\n";
+  text += "#SBATCH --job-name=vlaprobe\n";
+  text += "#SBATCH --array=1-" + std::to_string(script.tasks) + "\n";
+  text += "#SBATCH --cpus-per-task=" + std::to_string(script.worlds) + "\n";
+  text += kHead;
+  if (script.whole_nodes) text += "#SBATCH --exclusive\n";
+  for (const std::string& option : script.sbatch) {
+    if (has_line_break(option) || !option.starts_with("-")) {
+      return usage("`" + option + "` is not one option, as --partition=gpu is", "--sbatch");
+    }
+    text += "#SBATCH " + option + "\n";
+  }
+  text += "\nout=" + shell_word(script.out) + "\n";
+  text += "shards=" + std::to_string(script.tasks) + "\n";
+  text += "policy=" + shell_word(script.policy) + "\n";
+  if (has_server) {
+    text += "server_command=" + shell_word(script.server_command) + "\n";
+    text += "server_wait=" + std::to_string(script.server_wait_s) + "  # seconds\n";
+  }
+  text += "run=(" + shell_word(script.program) + " run " + shell_word(script.plan) + " --name " +
+          shell_word(script.name) + " --jobs " + std::to_string(script.worlds);
+  for (const std::string& word : script.run_arguments) text += " " + shell_word(word);
+  text += ")\n";
+  text += kLog;
+  text += has_server ? kServer : kWorldsOnly;
+  return text;
+}
+
+}  // namespace probe::cluster

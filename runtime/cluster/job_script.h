@@ -1,0 +1,38 @@
+// The text of a Slurm array job: one task a shard, each with its own server if there is a command
+// for one. Texts in, text out; submits nothing.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::cluster {
+
+struct JobScript {
+  std::string program;                     // absolute path of vlaprobe on the nodes
+  std::string plan;                        // absolute path of the plan file
+  std::string out;                         // absolute path of the folder of all shards
+  int tasks = 1;                           // of the array: shards
+  int worlds = 1;                          // of each task, one CPU each
+  bool whole_nodes = false;                // a node is not shared with other jobs
+  std::string policy;                      // `{port}` stands for the port of the task's own server
+  std::string name;                        // what the rows call the policy
+  std::string server_command;              // a line of shell, `{port}` as above; empty: worlds only
+  int server_wait_s = 600;                 // until the server answers
+  std::vector<std::string> run_arguments;  // further words for `vlaprobe run`
+  std::vector<std::string> sbatch;         // further options of sbatch, "--partition=gpu"
+};
+
+// Fails (code "usage") on what cannot be written down: line breaks in an sbatch option or the
+// server's command, `{port}` in the policy without a server's command.
+Result<std::string> to_text(const JobScript& script);
+
+// The folder of one shard's run below `out`: "shards/2-of-4".
+std::string shard_folder(int shard, int shards);
+
+// One word of a shell, whatever it holds: 'it'\''s'. Plain words stay as they are.
+std::string shell_word(std::string_view text);
+
+}  // namespace probe::cluster

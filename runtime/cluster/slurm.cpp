@@ -1,0 +1,266 @@
+// Talks to Slurm by its programs sbatch and squeue.
+#include "runtime/cluster/slurm.h"
+
+#include <cctype>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <span>
+#include <sstream>
+#include <thread>
+#include <tuple>
+
+#include "runtime/base/file.h"
+#include "runtime/cluster/program.h"
+#include "runtime/run/selection.h"
+#include "runtime/run/store.h"
+
+namespace probe::cluster {
+namespace {
+
+namespace fs = std::filesystem;
+
+Failure failed(const std::string& message, const std::string& where) {
+  return {"cluster", message, where};
+}
+
+std::string trimmed(std::string text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  return text;
+}
+
+// The words of `vlaprobe run` for what the options choose, but plan, policy, name, folder, jobs and
+// shard.
+std::vector<std::string> run_words(const run::RunOptions& options) {
+  std::vector<std::string> words;
+  const auto add = [&](const char* flag, const std::string& value) {
+    words.insert(words.end(), {flag, value});
+  };
+  if (!options.suite.empty()) add("--suite", options.suite);
+  if (options.tasks != "*") add("--tasks", options.tasks);
+  if (options.episodes) {
+    add("--episodes",
+        std::to_string(options.episodes->first) + "-" + std::to_string(options.episodes->second));
+  }
+  if (!options.seeds.empty()) {
+    std::string seeds;
+    for (const int seed : options.seeds) seeds += (seeds.empty() ? "" : ",") + std::to_string(seed);
+    add("--seeds", seeds);
+  }
+  if (options.video != run::VideoChoice::kNone) {
+    add("--video", options.video == run::VideoChoice::kAll ? "all" : "failures");
+  }
+  if (!options.assets.empty()) add("--assets", fs::absolute(options.assets).string());
+  add("--retries", std::to_string(options.retries));
+  add("--give-up-after", std::to_string(options.give_up_after));
+  if (options.if_changed == run::IfChanged::kContinue) add("--if-changed", "continue");
+  return words;
+}
+
+using EpisodeKey = std::tuple<std::string, int, int>;
+
+Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
+                                             const run::RunOptions& options) {
+  std::string policy = options.policy;  // its port does not matter for what it draws
+  if (const auto at = policy.find("{port}"); at != std::string::npos) policy.replace(at, 6, "1");
+  PROBE_ASSIGN(const auto traits, policy::policy_traits(policy));
+  if (traits.recorded) {
+    return Failure{"usage", "a replay needs no cluster; `vlaprobe run` does it", "--policy"};
+  }
+  run::RunOptions whole = options;
+  whole.shard = whole.shards = 1;
+  PROBE_ASSIGN(const run::Selection selection, run::select_jobs(plan, whole, traits.draws));
+  std::set<EpisodeKey> chosen;
+  for (const run::EpisodeJob& job : selection.jobs) {
+    chosen.emplace(plan.text(plan.tasks()[job.task].name), static_cast<int>(job.index), job.seed);
+  }
+  return chosen;
+}
+
+// Chosen episodes that the folder does not hold as valid rows.
+Result<std::set<EpisodeKey>> missing_in(const std::string& dir, std::set<EpisodeKey> chosen) {
+  PROBE_ASSIGN(const auto record, run::find_run_record(dir));
+  if (!record) return chosen;
+  PROBE_ASSIGN(const auto rows, run::read_results(dir));
+  for (const run::ResultRow& row : rows) {
+    if (!row.invalid) chosen.erase({row.task, row.episode, row.seed});
+  }
+  return chosen;
+}
+
+Status write_plan(const fs::path& path, const plan::Plan& plan) {
+  if (fs::exists(path)) {
+    PROBE_ASSIGN(const plan::Plan there, plan::Plan::open(path.string()));
+    if (there.root() == plan.root()) return {};
+    return Failure{"store",
+                   "was begun with another plan (root " + to_hex(there.root()).substr(0, 12) +
+                       ", this one is " + to_hex(plan.root()).substr(0, 12) +
+                       "); take another folder or remove this one",
+                   path.parent_path().parent_path().string()};
+  }
+  return write_file(path.string(), plan.bytes());
+}
+
+// What merging would refuse at the end is refused before the first task.
+Status check_same_run(const std::string& out, const plan::Plan& plan, const std::string& name) {
+  PROBE_ASSIGN(const auto record, run::find_run_record(out));
+  if (!record) return {};
+  run::RunRecord asked = *record;
+  asked.identity.plan_root = to_hex(plan.root());
+  asked.identity.policy = name;
+  const std::string change = run::changes_between(*record, asked).identity;
+  if (change.empty()) return {};
+  return Failure{"store", change + "; take another folder or remove this one", out};
+}
+
+// "3 RUNNING, 1 PENDING" of a job's tasks, or nothing when it is over.
+Result<std::string> ask_queue(const std::string& job) {
+  std::string last;
+  // A controller that restarts does not answer for a while.
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    if (attempt > 0) std::this_thread::sleep_for(std::chrono::seconds(attempt));
+    PROBE_ASSIGN(const ProgramOutput asked,
+                 run_program({"squeue", "--noheader", "--array", "--jobs", job, "--format=%T"}));
+    if (asked.status == 0) {
+      std::map<std::string, int> states;
+      std::istringstream lines(asked.out);
+      for (std::string state; lines >> state;) ++states[state];
+      std::string text;
+      for (const auto& [state, count] : states) {
+        text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + state;
+      }
+      return text;
+    }
+    // Slurm forgets jobs some minutes after their end.
+    if (asked.err.find("Invalid job id") != std::string::npos) return std::string();
+    last = trimmed(asked.err);
+  }
+  return failed("does not answer any more: " + last + "\n  job " + job +
+                    " goes on if it can; the same command waits for it again",
+                "squeue");
+}
+
+Status wait_for(const std::string& job, const SlurmOptions& options) {
+  std::string told;
+  for (;;) {
+    PROBE_ASSIGN(const std::string states, ask_queue(job));
+    if (states.empty()) return {};
+    if (states != told && options.tell) options.tell("job " + job + ": " + states);
+    told = states;
+    std::this_thread::sleep_for(std::chrono::duration<double>(options.poll_s));
+  }
+}
+
+Result<std::string> submit(const fs::path& script) {
+  PROBE_ASSIGN(const ProgramOutput sent, run_program({"sbatch", "--parsable", script.string()}));
+  if (sent.status != 0) return failed("refused the job: " + trimmed(sent.err), script.string());
+  const std::string answer = trimmed(sent.out);  // "17" or "17;cluster"
+  const std::string job = answer.substr(0, answer.find(';'));
+  if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos) {
+    return failed("answered `" + answer + "` instead of a job's number", "sbatch");
+  }
+  return job;
+}
+
+// The job of an earlier call that has not ended; empty: none.
+Result<std::string> job_under_way(const fs::path& file) {
+  if (!fs::exists(file)) return std::string();
+  PROBE_ASSIGN(const std::string text, read_file(file.string()));
+  const std::string job = trimmed(text);
+  if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos) return std::string();
+  PROBE_ASSIGN(const std::string states, ask_queue(job));
+  return states.empty() ? std::string() : job;
+}
+
+std::string last_line(const fs::path& file) {
+  std::ifstream lines(file);
+  std::string last;
+  for (std::string line; std::getline(lines, line);) {
+    if (!trimmed(line).empty()) last = trimmed(line);
+  }
+  return last;
+}
+
+// The shards that exist, joined into `out`.
+Status join(const SlurmOptions& options, const std::string& out, SlurmReport& report) {
+  run::MergeOptions merging;
+  merging.out = out;
+  merging.mixed_builds = options.run.if_changed == run::IfChanged::kContinue;
+  for (int shard = 1; shard <= options.script.tasks; ++shard) {
+    const std::string dir = out + "/" + shard_folder(shard, options.script.tasks);
+    PROBE_ASSIGN(const auto record, run::find_run_record(dir));
+    if (record) merging.dirs.push_back(dir);
+  }
+  if (merging.dirs.empty()) return {};
+  PROBE_ASSIGN(report.merged, run::merge(merging));
+  return {};
+}
+
+void note_unfinished(const plan::Plan& plan, const std::set<EpisodeKey>& missing,
+                     const SlurmOptions& options, const std::string& out, SlurmReport& report) {
+  std::map<int, int> lacking;
+  for (const auto& [task, episode, seed] : missing) {
+    const auto index = plan.find_task(task);
+    if (!index) continue;
+    const auto episodes = plan.episodes(plan.tasks()[*index]);
+    const Sha256 id{episodes[static_cast<std::size_t>(episode)].episode_id};
+    ++lacking[run::shard_of(id, seed, options.script.tasks)];
+  }
+  for (const auto& [shard, count] : lacking) {
+    const fs::path log = fs::path(out) / "slurm/log" / (std::to_string(shard) + ".txt");
+    const std::string said = last_line(log);
+    report.notes.push_back(std::to_string(count) + " episodes of shard " + std::to_string(shard) +
+                           " are missing; " + log.string() +
+                           (said.empty() ? " is not there" : " ends with: " + said));
+  }
+}
+
+}  // namespace
+
+Result<SlurmReport> run_on_slurm(const plan::Plan& plan, const SlurmOptions& options) {
+  PROBE_ASSIGN(const auto chosen, chosen_episodes(plan, options.run));
+  const std::string out = fs::absolute(options.run.out).lexically_normal().string();
+  const fs::path folder = fs::path(out) / "slurm";
+  SlurmReport report;
+  report.script = (folder / "job.sh").string();
+  report.total = static_cast<int>(chosen.size());
+
+  JobScript script = options.script;
+  script.out = out;
+  script.plan = (folder / "suite.plan").string();
+  script.policy = options.run.policy;
+  script.name = options.run.name.empty() ? options.run.policy : options.run.name;
+  script.worlds = options.run.jobs;
+  script.run_arguments = run_words(options.run);
+  PROBE_ASSIGN(const std::string text, to_text(script));
+  PROBE_TRY(check_same_run(out, plan, script.name));
+  std::error_code error;
+  fs::create_directories(folder / "log", error);
+  if (error) return Failure{"io", "cannot be made: " + error.message(), folder.string()};
+  PROBE_TRY(write_plan(folder / "suite.plan", plan));
+  PROBE_TRY(write_file(report.script, std::as_bytes(std::span(text))));
+  fs::permissions(report.script, fs::perms::owner_exec, fs::perm_options::add, error);
+  if (!options.submit) return report;
+
+  // A job that ended while nobody waited has shards that are not merged yet.
+  PROBE_ASSIGN(report.job, job_under_way(folder / "job"));
+  if (report.job.empty()) PROBE_TRY(join(options, out, report));
+  PROBE_ASSIGN(auto missing, missing_in(out, chosen));
+  if (report.job.empty() && !missing.empty()) {
+    PROBE_ASSIGN(report.job, submit(report.script));
+    PROBE_TRY(write_file((folder / "job").string(), std::as_bytes(std::span(report.job))));
+    if (options.tell) options.tell("job " + report.job + " submitted");
+  }
+  if (!report.job.empty()) {
+    PROBE_TRY(wait_for(report.job, options));
+    PROBE_TRY(join(options, out, report));
+    PROBE_ASSIGN(missing, missing_in(out, chosen));
+  }
+  report.stored = report.total - static_cast<int>(missing.size());
+  note_unfinished(plan, missing, options, out, report);
+  return report;
+}
+
+}  // namespace probe::cluster

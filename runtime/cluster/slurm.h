@@ -1,0 +1,43 @@
+// `vlaprobe slurm`: a run as an array job of Slurm. Writes the job, and if asked submits it, waits
+// for it and merges its shards. What a task stored is never run again.
+//
+// OUT/suite.plan, results.sqlite, traces/   the merged run, as `vlaprobe run` leaves it
+// OUT/shards/I-of-N/                        each task's run
+// OUT/slurm/{job.sh, suite.plan, job, log/I.txt}
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/cluster/job_script.h"
+#include "runtime/run/merge.h"
+#include "runtime/run/run.h"
+
+namespace probe::cluster {
+
+struct SlurmOptions {
+  run::RunOptions run;  // policy, name, out, what to choose; `jobs` are each task's worlds
+  JobScript script;     // program, tasks, whole_nodes, server_command, server_wait_s, sbatch
+  bool submit = false;
+  double poll_s = 5;  // between two questions to the queue
+  // Sentences as things happen: "job 17 has 3 tasks running and 1 waiting".
+  std::function<void(const std::string&)> tell;
+};
+
+struct SlurmReport {
+  std::string script;  // path of the job
+  std::string job;     // Slurm's number of it; empty: nothing was submitted
+  int total = 0;       // chosen episodes
+  int stored = 0;      // of them valid in the merged run
+  run::MergeSummary merged;
+  std::vector<std::string> notes;  // what each unfinished shard said last
+};
+
+// Fails (code "usage") on arguments that no task could run with, (code "store") when the folder is
+// of another plan or policy, (code "cluster") when Slurm refuses the job or does not answer. A job
+// that was submitted into this folder before and has not ended is waited for, not submitted again.
+Result<SlurmReport> run_on_slurm(const plan::Plan& plan, const SlurmOptions& options);
+
+}  // namespace probe::cluster
