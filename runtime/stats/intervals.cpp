@@ -2,6 +2,7 @@
 
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
@@ -32,17 +33,25 @@ double normal_two_sided(double confidence) {
   return boost::math::quantile(boost::math::normal_distribution<>(), 0.5 + confidence / 2);
 }
 
+double student_two_sided(double confidence, double freedom) {
+  return boost::math::quantile(boost::math::students_t_distribution<>(freedom),
+                               0.5 + confidence / 2);
+}
+
 Interval wilson(Count count, double confidence) {
   check(count, confidence);
   if (count.n == 0) return kUnknown;
-  const double n = static_cast<double>(count.n);
-  const double p = count.rate();
+  return wilson_effective(count.rate(), static_cast<double>(count.n), confidence);
+}
+
+Interval wilson_effective(double p, double n, double confidence) {
+  PROBE_CHECK(p >= 0 && p <= 1 && n > 0, "a rate lies in 0..1 and some episode was seen");
   const double z = normal_two_sided(confidence);
   const double scale = 1 / (1 + z * z / n);
   const double centre = scale * (p + z * z / (2 * n));
   const double half = scale * z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
-  // At k = 0 and k = n one end is exactly 0 or 1; rounding must not say otherwise.
-  return {count.k == 0 ? 0 : centre - half, count.k == count.n ? 1 : centre + half};
+  // At 0 and 1 one end is exactly the rate; rounding must not say otherwise.
+  return {p == 0 ? 0 : centre - half, p == 1 ? 1 : centre + half};
 }
 
 Interval clopper_pearson(Count count, double confidence) {

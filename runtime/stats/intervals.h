@@ -24,10 +24,16 @@ struct Count {
 // The upper quantile of the standard normal distribution that a two-sided interval of `confidence`
 // (0.95 gives 1.959964) is made with. `confidence` lies strictly between 0 and 1 everywhere here.
 double normal_two_sided(double confidence);
+// The same of Student's distribution with `freedom` degrees of freedom, > 0.
+double student_two_sided(double confidence, double freedom);
 
 // Wilson's score interval (Wilson 1927, JASA 22:209): the roots of the score test. Near its nominal
 // coverage for every n; what tables show. With n = 0 all three give [0, 1]: nothing is known.
 Interval wilson(Count count, double confidence = 0.95);
+
+// Wilson's interval of a rate that is worth `n` independent episodes, n > 0 and not always whole:
+// what a survey's design effect leaves of them.
+Interval wilson_effective(double rate, double n, double confidence = 0.95);
 
 // Clopper and Pearson's interval (Biometrika 1934, 26:404), from quantiles of the beta
 // distribution: never covers less than `confidence`, and is the widest.

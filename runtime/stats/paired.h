@@ -18,6 +18,11 @@ struct PairTable {
   std::int64_t neither = 0;
 
   std::int64_t pairs() const { return both + only_a + only_b + neither; }
+  std::int64_t net() const { return only_a - only_b; }  // successes of A less those of B
+  PairTable operator+(const PairTable& other) const {
+    return {both + other.both, only_a + other.only_a, only_b + other.only_b,
+            neither + other.neither};
+  }
 };
 
 // One start under A and B: how many of its `pairs` (seeds) each of the four outcomes had.
@@ -43,15 +48,15 @@ struct Difference {
 };
 Difference newcombe_paired(const PairTable& table, double confidence = 0.95);
 
-// Newcombe's interval with the pairs of one cluster counted as what they are worth: the table is
-// divided by the design effect (variance of the difference by clusters over that by pairs; Rao and
-// Scott 1992, Biometrics 48:577), which is at least 1 and at most the mean cluster size; where no
-// pair differs there is no variance to compare and the clusters count once each.
-Difference clustered_difference(std::span<const Cluster> clusters, double confidence = 0.95);
+// The same with the table's proportions, but counted as `n` independent pairs, n > 0 and not always
+// whole: what a design effect leaves of them.
+Difference newcombe_effective(const PairTable& table, double n, double confidence = 0.95);
 
 // rate(A) - rate(B) of two unpaired samples: Newcombe's method 10 for independent proportions
 // (Statistics in Medicine 1998, 17:873).
 Difference newcombe_unpaired(Count a, Count b, double confidence = 0.95);
+// The same from two rates and their intervals.
+Difference unpaired_from(double a, const Interval& of_a, double b, const Interval& of_b);
 
 // All clusters' pairs in one table.
 PairTable pooled(std::span<const Cluster> clusters);

@@ -60,29 +60,4 @@ TEST_CASE("swapping the policies mirrors the difference") {
   CHECK(ab.interval.high == doctest::Approx(-ba.interval.low));
 }
 
-TEST_CASE("equal seeds of a start count as one pair, independent ones as many") {
-  std::vector<Cluster> same, one;
-  for (int i = 0; i < 24; ++i) {
-    const bool a = i < 8;
-    const bool b = i >= 20;
-    same.push_back({.only_a = a ? 3 : 0, .only_b = b ? 3 : 0, .neither = a || b ? 0 : 3});
-    one.push_back({.only_a = a ? 1 : 0, .only_b = b ? 1 : 0, .neither = a || b ? 0 : 1});
-  }
-  const Difference wide = clustered_difference(same);
-  const Difference as_one = newcombe_paired(pooled(one));
-  CHECK(wide.interval.low == doctest::Approx(as_one.interval.low));
-  CHECK(wide.interval.high == doctest::Approx(as_one.interval.high));
-  // One of three seeds differs in every start: less variance between starts than between pairs.
-  const std::vector<Cluster> spread(24, Cluster{.only_a = 1, .neither = 2});
-  CHECK(clustered_difference(spread).interval.low ==
-        doctest::Approx(newcombe_paired(pooled(spread)).interval.low));
-}
-
-TEST_CASE("no pair leaves the difference open") {
-  const Difference d = clustered_difference({});
-  CHECK(d.interval.low == -1);
-  CHECK(d.interval.high == 1);
-  CHECK(clustered_exact({}) == 1);
-}
-
 }  // namespace probe::stats

@@ -1,0 +1,226 @@
+#include "runtime/stats/clustered.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include "runtime/stats/exact_sum.h"
+
+namespace probe::stats {
+namespace {
+
+// How many episodes of the pooled rate a task's rate is mixed with before tasks are compared.
+constexpr double kShrink = 2;
+
+// However unlike the tasks, some variance is within them.
+constexpr double kMostBetween = 0.99;
+
+// Sums of one stratum or cluster: of x, and how many.
+struct Sum {
+  double total = 0, n = 0;
+};
+
+template <typename Rows, typename Id>
+std::size_t ids(const Rows& rows, Id id) {
+  std::size_t count = 0;
+  for (const auto& row : rows) count = std::max(count, std::size_t{id(row)} + 1);
+  return count;
+}
+
+// The share of the variance `variance` of one observation that lies between strata.
+double between_share(const std::vector<Sum>& strata, double mean, double variance) {
+  double between = 0, n = 0;
+  for (const Sum& s : strata) {
+    if (s.n == 0) continue;
+    const double shrunk = (s.total + kShrink * mean) / (s.n + kShrink);
+    between += s.n * (shrunk - mean) * (shrunk - mean);
+    n += s.n;
+  }
+  return variance <= 0 ? 0 : std::clamp(between / (n * variance), 0.0, kMostBetween);
+}
+
+// What one row adds: its count, its sum and the sum of squares of its observations.
+struct Row {
+  double n = 0, total = 0, squares = 0;
+  std::uint32_t task = 0, cluster = 0;
+};
+
+// By what factor the rows' observations are worth less than as many independent ones.
+double design_effect(const std::vector<Row>& rows, double confidence) {
+  std::vector<Sum> tasks(ids(rows, [](const Row& r) { return r.task; }));
+  std::vector<Sum> clusters(ids(rows, [](const Row& r) { return r.cluster; }));
+  Sum all;
+  double squares = 0;
+  for (const Row& row : rows) {
+    for (Sum* sum : {&tasks[row.task], &all}) {
+      sum->total += row.total;
+      sum->n += row.n;
+    }
+    squares += row.squares;
+  }
+  for (const Row& row : rows) {
+    if (row.n == 0) continue;
+    const Sum& task = tasks[row.task];
+    clusters[row.cluster].total += row.total - row.n * task.total / task.n;
+    clusters[row.cluster].n += row.n;
+  }
+  double within = squares, by_clusters = 0, used = 0, used_tasks = 0;
+  for (const Sum& t : tasks) {
+    if (t.n == 0) continue;
+    within -= t.total * t.total / t.n;
+    ++used_tasks;
+  }
+  for (const Sum& c : clusters) {
+    by_clusters += c.total * c.total;
+    used += c.n > 0 ? 1 : 0;
+  }
+  const double mean_size = all.n / used;
+  const double mean = all.total / all.n;
+  double effect = mean_size;
+  if (mean_size > 1 && used > 1 && within > 1e-9) {
+    by_clusters *= used / (used - 1);
+    const double quantile = student_two_sided(confidence, used - 1) / normal_two_sided(confidence);
+    effect = std::clamp(by_clusters / within, 1.0, mean_size) * quantile * quantile;
+  }
+  // A mean is estimated for every task, not for all together.
+  if (all.n > used_tasks) effect *= (all.n - 1) / (all.n - used_tasks);
+  return effect * (1 - between_share(tasks, mean, squares / all.n - mean * mean));
+}
+
+// A number that every count's n divides, so that rates become whole numbers; past 420 seeds a
+// start, rates are rounded to that grid.
+std::int64_t common_size(std::int64_t so_far, Count count) {
+  constexpr std::int64_t kFinest = 420;
+  return std::min(kFinest, count.n > 0 ? std::lcm(so_far, count.n) : so_far);
+}
+
+std::int64_t scaled(Count count, std::int64_t size) {
+  return std::llround(static_cast<double>(count.k * size) / static_cast<double>(count.n));
+}
+
+Count pooled(std::span<const StartCount> starts) {
+  Count all;
+  for (const StartCount& start : starts) {
+    all.k += start.count.k;
+    all.n += start.count.n;
+  }
+  return all;
+}
+
+}  // namespace
+
+Interval clustered_rate(std::span<const StartCount> starts, double confidence) {
+  const Count all = pooled(starts);
+  if (all.n == 0) return wilson(all, confidence);
+  std::vector<Row> rows;
+  for (const StartCount& s : starts) {
+    const double k = static_cast<double>(s.count.k);
+    rows.push_back({static_cast<double>(s.count.n), k, k, s.task, s.cluster});
+  }
+  const double n = static_cast<double>(all.n);
+  return wilson_effective(all.rate(), n / design_effect(rows, confidence), confidence);
+}
+
+Difference clustered_difference(std::span<const StartPairs> pairs, double confidence) {
+  PairTable all;
+  std::vector<Row> rows;
+  for (const StartPairs& p : pairs) {
+    all = all + p.pairs;
+    rows.push_back({static_cast<double>(p.pairs.pairs()), static_cast<double>(p.pairs.net()),
+                    static_cast<double>(p.pairs.only_a + p.pairs.only_b), p.task, p.cluster});
+  }
+  if (all.pairs() == 0) return newcombe_paired(all, confidence);
+  const double n = static_cast<double>(all.pairs());
+  return newcombe_effective(all, n / design_effect(rows, confidence), confidence);
+}
+
+Difference unpaired_difference(std::span<const StartCount> a, std::span<const StartCount> b,
+                               double confidence) {
+  const Count of_a = pooled(a);
+  const Count of_b = pooled(b);
+  if (of_a.n == 0 || of_b.n == 0) return {0, {-1, 1}};
+  return unpaired_from(of_a.rate(), clustered_rate(a, confidence), of_b.rate(),
+                       clustered_rate(b, confidence));
+}
+
+double shared_baseline_exact(std::span<const StartArms> starts) {
+  std::int64_t size = 1;
+  for (const StartArms& arms : starts) {
+    for (const Count& arm : arms) size = common_size(size, arm);
+  }
+  std::vector<std::vector<std::int64_t>> choices;
+  std::int64_t observed = 0, reach = 0;
+  for (const StartArms& arms : starts) {
+    std::int64_t total = 0;
+    std::vector<std::int64_t> values;
+    for (const Count& arm : arms) {
+      if (arm.n == 0) continue;
+      values.push_back(scaled(arm, size));
+      total += values.back();
+    }
+    if (values.size() < 2 || arms[0].n == 0) continue;
+    const auto count = static_cast<std::int64_t>(values.size());
+    // Were arm v the baseline, the others would exceed it by total - count v together.
+    for (std::int64_t& v : values) v = total - count * v;
+    observed += values[0];
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (*low == *high) continue;
+    reach += std::max(std::abs(*low), std::abs(*high));
+    choices.push_back(std::move(values));
+  }
+  if (reach == 0) return 1;
+  ExactSum sum(reach);
+  for (const auto& values : choices) sum.add(values);
+  return sum.tail(observed);
+}
+
+double unpaired_exact(std::span<const Count> a, std::span<const Count> b) {
+  std::int64_t size = 1;
+  std::vector<std::int64_t> values;
+  std::int64_t in_a = 0, total_a = 0;
+  for (const auto& sample : {a, b}) {
+    for (const Count& count : sample) size = common_size(size, count);
+  }
+  for (const Count& count : a) {
+    if (count.n == 0) continue;
+    values.push_back(scaled(count, size));
+    total_a += values.back();
+    ++in_a;
+  }
+  for (const Count& count : b) {
+    if (count.n > 0) values.push_back(scaled(count, size));
+  }
+  const auto m = static_cast<std::int64_t>(values.size());
+  if (in_a == 0 || in_a == m) return 1;
+  const std::int64_t total = std::accumulate(values.begin(), values.end(), std::int64_t{0});
+  // weight[c][s]: the chance that fair coins choose c of the values so far, with sum s. Given c =
+  // in_a every choice is as likely.
+  const auto width = static_cast<std::size_t>(total + 1);
+  std::vector<double> weight(static_cast<std::size_t>(in_a + 1) * width, 0.0);
+  weight[0] = 1;
+  std::int64_t chosen = 0, sum = 0;
+  for (const std::int64_t value : values) {
+    chosen = std::min(chosen + 1, in_a);
+    sum += value;
+    for (std::int64_t c = chosen; c >= 0; --c) {
+      double* const row = weight.data() + static_cast<std::size_t>(c) * width;
+      for (std::int64_t s = sum; s >= 0; --s) {
+        double from = row[s] / 2;
+        if (c > 0 && s >= value) from += (row - width)[s - value] / 2;
+        row[s] = from;
+      }
+    }
+  }
+  // m (sum of the chosen) - in_a total is the difference of means, times what does not change.
+  const std::int64_t observed = std::abs(m * total_a - in_a * total);
+  double tail = 0, all = 0;
+  const double* const row = weight.data() + static_cast<std::size_t>(in_a) * width;
+  for (std::int64_t s = 0; s <= total; ++s) {
+    all += row[s];
+    if (std::abs(m * s - in_a * total) >= observed) tail += row[s];
+  }
+  return std::min(1.0, tail / all);
+}
+
+}  // namespace probe::stats
