@@ -1,0 +1,111 @@
+// The stored table of floors and ceilings against what holds by construction: these are tests of
+// the metrics.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "tests/parity/published.h"
+
+using namespace probe;
+
+namespace {
+
+struct Counts {
+  int episodes = 0, intention = 0, grasp = 0, success = 0, wrong = 0;
+};
+// By policy, then by task.
+using Table = std::map<std::string, std::map<std::string, Counts>>;
+
+Table read_floors() {
+  std::ifstream in(std::string(VLAPROBE_SOURCE_DIR) + "/suite/floors.csv");
+  REQUIRE(in.good());
+  Table table;
+  std::string line;
+  std::getline(in, line);  // the plan
+  std::getline(in, line);
+  REQUIRE(line == "task,policy,episodes,intention,grasp,success,wrong");
+  while (std::getline(in, line)) {
+    std::stringstream cells(line);
+    std::string task, policy;
+    std::getline(cells, task, ',');
+    std::getline(cells, policy, ',');
+    std::array<int, 5> numbers{};
+    for (int& number : numbers) {
+      std::string cell;
+      std::getline(cells, cell, ',');
+      number = std::stoi(cell);
+    }
+    table[policy][task] = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4]};
+  }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("every task of the suite has its floors and its ceiling over all 24 starts") {
+  const Table table = read_floors();
+  for (const char* policy : {"expert", "null", "random", "reach", "wrong"}) {
+    CAPTURE(policy);
+    REQUIRE(table.contains(policy));
+    CHECK(table.at(policy).size() == 50);
+    for (const auto& [task, counts] : table.at(policy)) {
+      CAPTURE(task);
+      CHECK(counts.episodes == 24);
+    }
+  }
+}
+
+TEST_CASE("the table is of the suite as it is now") {
+  std::ifstream in(VLAPROBE_SOURCE_DIR "/suite/floors.csv");
+  std::string line;
+  REQUIRE(std::getline(in, line));
+  CHECK(line == "# plan " + to_hex(test::suite_plan().root()));
+}
+
+TEST_CASE("who stays where he is intends nothing and succeeds nowhere") {
+  for (const auto& [task, counts] : read_floors()["null"]) {
+    CAPTURE(task);
+    CHECK(counts.intention + counts.grasp + counts.success + counts.wrong == 0);
+  }
+}
+
+TEST_CASE("who goes to the source and never closes intends always and grasps never") {
+  for (const auto& [task, counts] : read_floors()["reach"]) {
+    CAPTURE(task);
+    CHECK(counts.intention == counts.episodes);
+    CHECK(counts.grasp == 0);
+    CHECK(counts.success == 0);
+  }
+}
+
+TEST_CASE("who takes a distractor touches the wrong object always, and stays still where none is") {
+  const plan::Plan& plan = test::suite_plan();
+  std::size_t crowded = 0;
+  for (const auto& [task, counts] : read_floors()["wrong"]) {
+    CAPTURE(task);
+    const auto index = plan.find_task(task);
+    REQUIRE(index);
+    const bool has_distractor = plan.tasks()[*index].distractors > 0;
+    crowded += has_distractor;
+    CHECK(counts.wrong == (has_distractor ? counts.episodes : 0));
+    CHECK(counts.intention + counts.grasp + counts.success == 0);
+  }
+  CHECK(crowded == 15);
+}
+
+TEST_CASE("every start can be solved") {
+  int episodes = 0, successes = 0;
+  for (const auto& [task, counts] : read_floors()["expert"]) {
+    CAPTURE(task);
+    CHECK(counts.success * 5 >= counts.episodes * 4);
+    episodes += counts.episodes;
+    successes += counts.success;
+  }
+  MESSAGE("expert: " << successes << " of " << episodes);
+  CHECK(successes * 100 >= episodes * 97);
+}
