@@ -9,6 +9,7 @@
 
 #include "runtime/base/spelling.h"
 #include "runtime/expert/expert.h"
+#include "runtime/policy/servers.h"
 #include "runtime/policy/simple.h"
 
 namespace probe::policy {
@@ -22,6 +23,7 @@ struct Entry {
   Kind kind;
   PolicyTraits traits;
   std::string_view meaning;
+  Protocol protocol = Protocol::kOpenpi;  // of a server
 };
 
 constexpr std::array kPolicies = {
@@ -45,15 +47,38 @@ constexpr std::array kPolicies = {
           "//HOST:PORT?profile=NAME",
           Kind::kServer,
           {true, false, false},
-          "an openpi server"},
+          "an openpi server",
+          Protocol::kOpenpi},
     Entry{"intact",
           "//HOST:PORT?model=PATH",
           Kind::kServer,
           {true, false, false},
-          "an INT-ACT server"},
-    Entry{"vlaeval", "//HOST:PORT", Kind::kServer, {true, false, false}, "a vla-eval server"},
-    Entry{"gr00t", "//HOST:PORT", Kind::kServer, {true, false, false}, "a GR00T server"},
-    Entry{"openvla", "//HOST:PORT", Kind::kServer, {true, false, false}, "an OpenVLA server"},
+          "an INT-ACT server",
+          Protocol::kIntact},
+    Entry{"roboarena",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "a RoboArena server",
+          Protocol::kRoboArena},
+    Entry{"vlaeval",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "a vla-eval server",
+          Protocol::kVlaEval},
+    Entry{"gr00t",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "a GR00T server",
+          Protocol::kGr00t},
+    Entry{"openvla",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "an OpenVLA server",
+          Protocol::kOpenVla},
 };
 
 std::string form(const Entry& entry) {
@@ -128,6 +153,12 @@ Result<PolicyTraits> policy_traits(std::string_view text) {
     PROBE_ASSIGN(const double sigma, read_sigma(choice.argument));
     return PolicyTraits{sigma > 0, false, false};
   }
+  if (choice.entry->kind == Kind::kServer) {
+    PROBE_ASSIGN(const ServerChoice server, choose_server(choice.entry->protocol, choice.argument));
+    PolicyTraits traits = choice.entry->traits;
+    traits.content = describe(server);
+    return traits;
+  }
   return choice.entry->traits;
 }
 
@@ -152,8 +183,7 @@ Result<std::unique_ptr<Policy>> make_policy(std::string_view text, const PolicyC
     case Kind::kServer:
       break;
   }
-  return Failure{"usage", "policy servers are not available yet: `" + std::string(text) + "`",
-                 "--policy"};
+  return make_server(choice.entry->protocol, choice.argument, context.queries);
 }
 
 std::string policy_argument(std::string_view text) {

@@ -1,0 +1,638 @@
+// The table of fields, and the reading and writing of a profile by it.
+#include "runtime/policy/profile.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <span>
+#include <type_traits>
+#include <variant>
+
+#include "runtime/base/sha256.h"
+#include "runtime/base/spelling.h"
+
+namespace probe::policy {
+namespace {
+
+template <typename E>
+struct Word {
+  std::string_view text;
+  E value;
+};
+
+constexpr std::array kProtocols = {
+    Word<Protocol>{"openpi", Protocol::kOpenpi},
+    Word<Protocol>{"intact", Protocol::kIntact},
+    Word<Protocol>{"roboarena", Protocol::kRoboArena},
+    Word<Protocol>{"vlaeval", Protocol::kVlaEval},
+    Word<Protocol>{"gr00t", Protocol::kGr00t},
+    Word<Protocol>{"openvla", Protocol::kOpenVla},
+};
+constexpr std::array kResizes = {
+    Word<Resize>{"none", Resize::kNone},
+    Word<Resize>{"stretch", Resize::kStretch},
+    Word<Resize>{"pad", Resize::kPad},
+    Word<Resize>{"crop", Resize::kCrop},
+};
+constexpr std::array kPixelLayouts = {
+    Word<PixelLayout>{"hwc_u8", PixelLayout::kHwcU8},
+    Word<PixelLayout>{"chw_f32", PixelLayout::kChwF32},
+};
+constexpr std::array kStateLayouts = {
+    Word<StateLayout>{"none", StateLayout::kNone},
+    Word<StateLayout>{"xyz_wxyz_openness", StateLayout::kXyzWxyzOpenness},
+    Word<StateLayout>{"xyz_rpy_openness", StateLayout::kXyzRpyOpenness},
+    Word<StateLayout>{"xyz_rpy_pad_openness", StateLayout::kXyzRpyPadOpenness},
+    Word<StateLayout>{"xyz_rotvec_openness", StateLayout::kXyzRotvecOpenness},
+    Word<StateLayout>{"xyz_rotvec_fingers", StateLayout::kXyzRotvecFingers},
+    Word<StateLayout>{"joints", StateLayout::kJoints},
+    Word<StateLayout>{"joints_openness", StateLayout::kJointsOpenness},
+};
+constexpr std::array kStateFrames = {
+    Word<StateFrame>{"base", StateFrame::kBase},
+    Word<StateFrame>{"top_down", StateFrame::kTopDown},
+};
+constexpr std::array kNumberTypes = {
+    Word<NumberType>{"f32", NumberType::kF32},
+    Word<NumberType>{"f64", NumberType::kF64},
+};
+constexpr std::array kNormalisations = {
+    Word<Normalisation>{"none", Normalisation::kNone},
+    Word<Normalisation>{"bound", Normalisation::kBound},
+    Word<Normalisation>{"gaussian", Normalisation::kGaussian},
+};
+constexpr std::array kRotations = {
+    Word<RotationForm>{"vector", RotationForm::kVector},
+    Word<RotationForm>{"euler", RotationForm::kEuler},
+};
+constexpr std::array kGrippers = {
+    Word<GripperRange>{"signed", GripperRange::kSigned},
+    Word<GripperRange>{"unit", GripperRange::kUnit},
+    Word<GripperRange>{"signed_inverted", GripperRange::kSignedInverted},
+    Word<GripperRange>{"unit_inverted", GripperRange::kUnitInverted},
+};
+constexpr std::array kCases = {
+    Word<PromptCase>{"as_is", PromptCase::kAsIs},
+    Word<PromptCase>{"lower", PromptCase::kLower},
+};
+constexpr std::array kFullStops = {
+    Word<FullStop>{"as_is", FullStop::kAsIs},
+    Word<FullStop>{"without", FullStop::kWithout},
+    Word<FullStop>{"with", FullStop::kWith},
+};
+constexpr std::array kEnsembles = {
+    Word<Ensemble>{"none", Ensemble::kNone},
+    Word<Ensemble>{"temporal", Ensemble::kTemporal},
+};
+
+constexpr std::array kConnections = {
+    Word<ConnectionUse>{"kept", ConnectionUse::kKept},
+    Word<ConnectionUse>{"per_episode", ConnectionUse::kPerEpisode},
+};
+
+constexpr std::span<const Word<Protocol>> words_of(Protocol) { return kProtocols; }
+constexpr std::span<const Word<Resize>> words_of(Resize) { return kResizes; }
+constexpr std::span<const Word<PixelLayout>> words_of(PixelLayout) { return kPixelLayouts; }
+constexpr std::span<const Word<StateLayout>> words_of(StateLayout) { return kStateLayouts; }
+constexpr std::span<const Word<StateFrame>> words_of(StateFrame) { return kStateFrames; }
+constexpr std::span<const Word<NumberType>> words_of(NumberType) { return kNumberTypes; }
+constexpr std::span<const Word<Normalisation>> words_of(Normalisation) { return kNormalisations; }
+constexpr std::span<const Word<RotationForm>> words_of(RotationForm) { return kRotations; }
+constexpr std::span<const Word<GripperRange>> words_of(GripperRange) { return kGrippers; }
+constexpr std::span<const Word<PromptCase>> words_of(PromptCase) { return kCases; }
+constexpr std::span<const Word<FullStop>> words_of(FullStop) { return kFullStops; }
+constexpr std::span<const Word<Ensemble>> words_of(Ensemble) { return kEnsembles; }
+constexpr std::span<const Word<ConnectionUse>> words_of(ConnectionUse) { return kConnections; }
+
+template <typename E>
+std::string_view word_of(E value) {
+  for (const auto& word : words_of(E{})) {
+    if (word.value == value) return word.text;
+  }
+  return "";
+}
+
+// What a field is stored in, and so how it is read and written.
+struct Count {
+  int* value;
+  int most;
+  std::string_view zero;  // how 0 is written; empty: it may not be
+};
+struct Number {
+  double* value;
+  double most;  // and more than 0
+};
+using Slot = std::variant<std::string*, Count, Number, std::optional<double>*, std::vector<double>*,
+                          std::vector<ImageRule>*, Protocol*, StateLayout*, StateFrame*,
+                          NumberType*, Normalisation*, RotationForm*, GripperRange*, PromptCase*,
+                          FullStop*, Ensemble*, ConnectionUse*>;
+
+struct Field {
+  std::string_view name;
+  Slot (*slot)(Profile&);
+  std::string_view meaning;
+};
+
+constexpr int kMostActions = 1000;   // of a chunk
+constexpr double kLongest = 86'400;  // seconds
+constexpr std::size_t kMostNumbers = 64;
+constexpr int kLargestSide = 4096;
+
+// The order is that of to_text and of the help.
+constexpr Field kFields[] = {
+    {"protocol", [](Profile& p) -> Slot { return &p.protocol; }, "what the server speaks"},
+    {"about", [](Profile& p) -> Slot { return &p.about; }, "a sentence for people"},
+    {"image", [](Profile& p) -> Slot { return &p.images; },
+     "CAMERA -> KEY [WIDTHxHEIGHT none|stretch|pad|crop] [hwc_u8|chw_f32]; CAMERA `first` is the "
+     "scene's first; one line each"},
+    {"prompt.key", [](Profile& p) -> Slot { return &p.prompt_key; }, "the instruction's key"},
+    {"prompt.case", [](Profile& p) -> Slot { return &p.prompt_case; }, ""},
+    {"prompt.full_stop", [](Profile& p) -> Slot { return &p.prompt_full_stop; },
+     "at the instruction's end"},
+    {"state.key", [](Profile& p) -> Slot { return &p.state_key; }, "the state's key"},
+    {"state.layout", [](Profile& p) -> Slot { return &p.state_layout; },
+     "of the end effector in the base frame; wxyz a quaternion, rpy fixed axes, m and rad"},
+    {"state.frame", [](Profile& p) -> Slot { return &p.state_frame; },
+     "rotations relative to the base, or to the tool pointing down (BridgeData)"},
+    {"state.type", [](Profile& p) -> Slot { return &p.state_type; }, ""},
+    {"state.normalise", [](Profile& p) -> Slot { return &p.state_statistics.kind; },
+     "what the client does before it sends; servers usually do it themselves"},
+    {"state.low", [](Profile& p) -> Slot { return &p.state_statistics.low; },
+     "bound: is sent as -1"},
+    {"state.high", [](Profile& p) -> Slot { return &p.state_statistics.high; },
+     "bound: is sent as 1"},
+    {"state.mean", [](Profile& p) -> Slot { return &p.state_statistics.mean; }, "gaussian"},
+    {"state.std", [](Profile& p) -> Slot { return &p.state_statistics.std; }, "gaussian"},
+    {"state.mask", [](Profile& p) -> Slot { return &p.state_statistics.mask; },
+     "1 for a number that is normalised, 0 for one that is not"},
+    {"action.rotation", [](Profile& p) -> Slot { return &p.action_rotation; },
+     "numbers 4 to 6 of an action, rad: axis times angle, or roll pitch yaw"},
+    {"action.gripper", [](Profile& p) -> Slot { return &p.action_gripper; },
+     "number 7: -1 closed 1 open, 0 closed 1 open, or the other way round"},
+    {"action.threshold", [](Profile& p) -> Slot { return &p.action_threshold; },
+     "above it number 7 is 1, else the least; none: kept as it is"},
+    {"action.normalised", [](Profile& p) -> Slot { return &p.action_statistics.kind; },
+     "how raw answers are to be taken back; servers usually do it themselves"},
+    {"action.low", [](Profile& p) -> Slot { return &p.action_statistics.low; },
+     "bound: what -1 stands for, 7 numbers"},
+    {"action.high", [](Profile& p) -> Slot { return &p.action_statistics.high; },
+     "bound: what 1 stands for"},
+    {"action.mean", [](Profile& p) -> Slot { return &p.action_statistics.mean; }, "gaussian"},
+    {"action.std", [](Profile& p) -> Slot { return &p.action_statistics.std; }, "gaussian"},
+    {"action.mask", [](Profile& p) -> Slot { return &p.action_statistics.mask; },
+     "1 for a number that is normalised, 0 for one that is not"},
+    {"action.limit_m",
+     [](Profile& p) -> Slot {
+       return Number{&p.action_limit_m, 100};
+     },
+     "a longer shift in one step is refused"},
+    {"action.limit_rad",
+     [](Profile& p) -> Slot {
+       return Number{&p.action_limit_rad, 1000};
+     },
+     "a larger turn in one step is refused"},
+    {"chunk.length",
+     [](Profile& p) -> Slot {
+       return Count{&p.chunk_length, kMostActions, "any"};
+     },
+     "actions of an answer"},
+    {"chunk.use",
+     [](Profile& p) -> Slot {
+       return Count{&p.chunk_use, kMostActions, "all"};
+     },
+     "of them that are done before the next question"},
+    {"ensemble", [](Profile& p) -> Slot { return &p.ensemble; },
+     "temporal: a question every step, the mean over all answers"},
+    {"ensemble.ratio",
+     [](Profile& p) -> Slot {
+       return Number{&p.ensemble_ratio, 1000};
+     },
+     "weight of an answer over that of the one before it"},
+    {"connection", [](Profile& p) -> Slot { return &p.connection; },
+     "whether a new one is made for each episode"},
+    {"timeout.wait_s",
+     [](Profile& p) -> Slot {
+       return Number{&p.wait_s, kLongest};
+     },
+     "for a server that is not there, trying again"},
+    {"timeout.connect_s",
+     [](Profile& p) -> Slot {
+       return Number{&p.connect_s, kLongest};
+     },
+     "one attempt"},
+    {"timeout.first_s",
+     [](Profile& p) -> Slot {
+       return Number{&p.first_s, kLongest};
+     },
+     "a connection's first answer: the server may still compile"},
+    {"timeout.answer_s",
+     [](Profile& p) -> Slot {
+       return Number{&p.answer_s, kLongest};
+     },
+     "any other answer"},
+    {"answer.largest_mib",
+     [](Profile& p) -> Slot {
+       return Count{&p.largest_answer, 1024, ""};
+     },
+     "a larger answer is refused"},
+    {"dialect", [](Profile& p) -> Slot { return &p.dialect; },
+     "gr00t: n1.5, n1.6 or nested; see the protocol"},
+    {"unnorm_key", [](Profile& p) -> Slot { return &p.unnorm_key; },
+     "openvla: the data set whose statistics the server uses"},
+};
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+// Words between blanks and commas.
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (true) {
+    const std::size_t first = text.find_first_not_of(" \t,");
+    if (first == std::string_view::npos) return words;
+    text.remove_prefix(first);
+    const std::size_t size = std::min(text.find_first_of(" \t,"), text.size());
+    words.push_back(text.substr(0, size));
+    text.remove_prefix(size);
+  }
+}
+
+template <typename T>
+std::optional<T> to_number(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if constexpr (std::is_floating_point_v<T>) {
+    if (!std::isfinite(value)) return std::nullopt;
+  }
+  return value;
+}
+
+std::string shortest(double value) {
+  char text[40];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
+}
+
+Failure bad(std::string message) { return {"usage", std::move(message), ""}; }
+
+std::string found(std::string_view value) { return ", found `" + std::string(value) + "`"; }
+
+// Reads what a slot holds.
+struct Reader {
+  std::string_view field, value;
+
+  Status operator()(std::string* text) const {
+    if (value.empty()) return bad("`" + std::string(field) + "` has no text");
+    *text = value;
+    return {};
+  }
+  Status operator()(const Count& count) const {
+    if (!count.zero.empty() && value == count.zero) {
+      *count.value = 0;
+      return {};
+    }
+    const auto number = to_number<int>(value);
+    if (!number || *number < 1 || *number > count.most) {
+      const std::string zero = count.zero.empty() ? "" : ", or `" + std::string(count.zero) + "`";
+      return bad("`" + std::string(field) + "` is a whole number from 1 to " +
+                 std::to_string(count.most) + zero + found(value));
+    }
+    *count.value = *number;
+    return {};
+  }
+  Status operator()(const Number& slot) const {
+    const auto number = to_number<double>(value);
+    if (!number || *number <= 0 || *number > slot.most) {
+      return bad("`" + std::string(field) + "` is a number above 0, up to " + shortest(slot.most) +
+                 found(value));
+    }
+    *slot.value = *number;
+    return {};
+  }
+  Status operator()(std::optional<double>* slot) const {
+    if (value == "none") {
+      slot->reset();
+      return {};
+    }
+    const auto number = to_number<double>(value);
+    if (!number) return bad("`" + std::string(field) + "` is a number or `none`" + found(value));
+    *slot = *number;
+    return {};
+  }
+  Status operator()(std::vector<double>* slot) const {
+    slot->clear();
+    for (const std::string_view word : split(value)) {
+      const auto number = to_number<double>(word);
+      if (!number) return bad("`" + std::string(field) + "` is made of numbers" + found(word));
+      slot->push_back(*number);
+    }
+    if (slot->empty() || slot->size() > kMostNumbers) {
+      return bad("`" + std::string(field) + "` has " + std::to_string(slot->size()) +
+                 " numbers, not 1 to " + std::to_string(kMostNumbers));
+    }
+    return {};
+  }
+  Status operator()(std::vector<ImageRule>* slot) const {
+    PROBE_ASSIGN(ImageRule rule, read_image());
+    for (const ImageRule& other : *slot) {
+      if (other.key == rule.key) return bad("two images have the key `" + rule.key + "`");
+    }
+    slot->push_back(std::move(rule));
+    return {};
+  }
+  template <typename E>
+  Status operator()(E* slot) const {
+    return read_word(value, field, slot);
+  }
+
+ private:
+  template <typename E>
+  static Status read_word(std::string_view text, std::string_view field, E* slot) {
+    std::vector<std::string> known;
+    for (const auto& word : words_of(E{})) {
+      if (word.text == text) {
+        *slot = word.value;
+        return {};
+      }
+      known.emplace_back(word.text);
+    }
+    std::string list;
+    for (const std::string& word : known) list += (list.empty() ? "" : ", ") + word;
+    return bad("`" + std::string(field) + "` is one of " + list + found(text) +
+               did_you_mean(text, known));
+  }
+
+  Result<ImageRule> read_image() const {
+    const std::vector<std::string_view> words = split(value);
+    if (words.size() < 3 || words[1] != "->") {
+      return bad("an image is written `CAMERA -> KEY [WIDTHxHEIGHT RULE] [LAYOUT]`" + found(value));
+    }
+    ImageRule rule;
+    if (words[0] != "first") rule.camera = words[0];
+    rule.key = words[2];
+    bool has_rule = false;
+    for (const std::string_view word : std::span(words).subspan(3)) {
+      const std::size_t cross = word.find('x');
+      if (word.front() >= '0' && word.front() <= '9') {
+        const auto width = to_number<int>(word.substr(0, cross));
+        const auto height =
+            cross == std::string_view::npos ? std::nullopt : to_number<int>(word.substr(cross + 1));
+        if (!width || !height || *width < 1 || *height < 1 || *width > kLargestSide ||
+            *height > kLargestSide) {
+          return bad("a size is written WIDTHxHEIGHT, each from 1 to " +
+                     std::to_string(kLargestSide) + found(word));
+        }
+        rule.width = *width;
+        rule.height = *height;
+      } else if (word == "hwc_u8" || word == "chw_f32") {
+        PROBE_TRY(read_word(word, "image", &rule.layout));
+      } else {
+        PROBE_TRY(read_word(word, "image", &rule.resize));
+        has_rule = true;
+      }
+    }
+    if (rule.width > 0 && (!has_rule || rule.resize == Resize::kNone)) {
+      return bad("an image of a given size needs one of stretch, pad, crop" + found(value));
+    }
+    if (rule.width == 0 && has_rule && rule.resize != Resize::kNone) {
+      return bad("`" + std::string(word_of(rule.resize)) + "` needs a size, as in 224x224");
+    }
+    return rule;
+  }
+};
+
+// Texts that read back equal; an image slot gives a line each.
+struct Writer {
+  std::vector<std::string> operator()(const std::string* text) const { return {*text}; }
+  std::vector<std::string> operator()(const Count& count) const {
+    return {*count.value == 0 ? std::string(count.zero) : std::to_string(*count.value)};
+  }
+  std::vector<std::string> operator()(const Number& number) const {
+    return {shortest(*number.value)};
+  }
+  std::vector<std::string> operator()(const std::optional<double>* number) const {
+    return {*number ? shortest(**number) : "none"};
+  }
+  std::vector<std::string> operator()(const std::vector<double>* numbers) const {
+    std::string text;
+    for (const double value : *numbers) text += (text.empty() ? "" : " ") + shortest(value);
+    return {text};
+  }
+  std::vector<std::string> operator()(const std::vector<ImageRule>* rules) const {
+    std::vector<std::string> lines;
+    for (const ImageRule& rule : *rules) {
+      std::string line = (rule.camera.empty() ? "first" : rule.camera) + " -> " + rule.key;
+      if (rule.width > 0) {
+        line += " " + std::to_string(rule.width) + "x" + std::to_string(rule.height) + " " +
+                std::string(word_of(rule.resize));
+      }
+      if (rule.layout != PixelLayout::kHwcU8) line += " " + std::string(word_of(rule.layout));
+      lines.push_back(std::move(line));
+    }
+    return lines;
+  }
+  template <typename E>
+  std::vector<std::string> operator()(const E* word) const {
+    return {std::string(word_of(*word))};
+  }
+};
+
+// What a field takes, for the help.
+struct Takes {
+  std::string operator()(std::string*) const { return "text"; }
+  std::string operator()(const Count& count) const {
+    return "1 .. " + std::to_string(count.most) +
+           (count.zero.empty() ? "" : " | " + std::string(count.zero));
+  }
+  std::string operator()(const Number&) const { return "number"; }
+  std::string operator()(std::optional<double>*) const { return "number | none"; }
+  std::string operator()(std::vector<double>*) const { return "numbers"; }
+  std::string operator()(std::vector<ImageRule>*) const { return "rule"; }
+  template <typename E>
+  std::string operator()(E*) const {
+    std::string text;
+    for (const auto& word : words_of(E{})) {
+      text += (text.empty() ? "" : " | ") + std::string(word.text);
+    }
+    return text;
+  }
+};
+
+const Field* find_field(std::string_view name) {
+  for (const Field& field : kFields) {
+    if (field.name == name) return &field;
+  }
+  return nullptr;
+}
+
+Status check_statistics(const Statistics& statistics, const std::string& prefix, std::size_t size) {
+  const auto check_size = [&](const std::vector<double>& numbers, const char* name) -> Status {
+    if (numbers.empty() || size == 0 || numbers.size() == size) return {};
+    return bad("`" + prefix + name + "` has " + std::to_string(numbers.size()) +
+               " numbers, there are " + std::to_string(size));
+  };
+  PROBE_TRY(check_size(statistics.low, "low"));
+  PROBE_TRY(check_size(statistics.high, "high"));
+  PROBE_TRY(check_size(statistics.mean, "mean"));
+  PROBE_TRY(check_size(statistics.std, "std"));
+  PROBE_TRY(check_size(statistics.mask, "mask"));
+  if (statistics.kind == Normalisation::kBound) {
+    if (statistics.low.empty() || statistics.high.size() != statistics.low.size()) {
+      return bad("bound needs `" + prefix + "low` and `" + prefix + "high`, as many of each");
+    }
+    for (std::size_t i = 0; i < statistics.low.size(); ++i) {
+      if (statistics.low[i] < statistics.high[i]) continue;
+      if (i < statistics.mask.size() && statistics.mask[i] == 0) continue;
+      return bad("number " + std::to_string(i + 1) + " of `" + prefix +
+                 "low` is not below that of `" + prefix + "high`");
+    }
+  }
+  if (statistics.kind == Normalisation::kGaussian) {
+    if (statistics.mean.empty() || statistics.std.size() != statistics.mean.size()) {
+      return bad("gaussian needs `" + prefix + "mean` and `" + prefix + "std`, as many of each");
+    }
+    for (const double value : statistics.std) {
+      if (value <= 0) return bad("a number of `" + prefix + "std` is not above 0");
+    }
+  }
+  return {};
+}
+
+std::size_t size_of(StateLayout layout) {
+  switch (layout) {
+    case StateLayout::kXyzWxyzOpenness:
+    case StateLayout::kXyzRpyPadOpenness:
+    case StateLayout::kXyzRotvecFingers:
+      return 8;
+    case StateLayout::kXyzRpyOpenness:
+    case StateLayout::kXyzRotvecOpenness:
+      return 7;
+    case StateLayout::kNone:
+    case StateLayout::kJoints:
+    case StateLayout::kJointsOpenness:
+      break;
+  }
+  return 0;  // depends on the robot
+}
+
+// A text in quotes without them; `#` begins a comment outside of them.
+std::string_view value_of(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('"')) {
+    const std::size_t end = text.find('"', 1);
+    if (end != std::string_view::npos) return text.substr(1, end - 1);
+  }
+  return trimmed(text.substr(0, text.find('#')));
+}
+
+Failure at(Failure failure, std::string_view where, std::size_t line, std::size_t column) {
+  failure.where =
+      std::string(where) + ":" + std::to_string(line) + ":" + std::to_string(column + 1);
+  return failure;
+}
+
+}  // namespace
+
+Status set_field(Profile& profile, std::string_view field, std::string_view value) {
+  const Field* known = find_field(field);
+  if (known == nullptr) {
+    std::vector<std::string> names;
+    for (const Field& entry : kFields) names.emplace_back(entry.name);
+    return bad("a profile has no field `" + std::string(field) + "`" + did_you_mean(field, names));
+  }
+  return std::visit(Reader{field, value}, known->slot(profile));
+}
+
+Status check_profile(const Profile& profile) {
+  constexpr std::size_t kActionSize = 7;
+  PROBE_TRY(check_statistics(profile.action_statistics, "action.", kActionSize));
+  PROBE_TRY(check_statistics(profile.state_statistics, "state.", size_of(profile.state_layout)));
+  if (profile.ensemble == Ensemble::kTemporal && profile.chunk_use > 1) {
+    return bad("`ensemble = temporal` asks at every step; `chunk.use` is then 1 or absent");
+  }
+  if (profile.chunk_length > 0 && profile.chunk_use > profile.chunk_length) {
+    return bad("`chunk.use` is more than `chunk.length`");
+  }
+  if (profile.images.empty()) return bad("a profile has at least one line `image = ...`");
+  return {};
+}
+
+Result<Profile> parse_profile(std::string_view text, std::string_view where) {
+  Profile profile;
+  std::set<std::string_view> seen;
+  std::size_t number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos || line[first] == '#') continue;
+    const std::size_t equals = line.find('=');
+    if (equals == std::string_view::npos) {
+      return at(bad("a line is written `field = value`" + found(trimmed(line))), where, number,
+                first);
+    }
+    const std::string_view field = trimmed(line.substr(0, equals));
+    if (field != "image" && !seen.insert(field).second) {
+      return at(bad("`" + std::string(field) + "` is set twice"), where, number, first);
+    }
+    const std::string_view value = value_of(line.substr(equals + 1));
+    if (auto set = set_field(profile, field, value); !set) {
+      const bool names_value = find_field(field) != nullptr && !value.empty();
+      const std::size_t column =
+          names_value ? static_cast<std::size_t>(value.data() - line.data()) : first;
+      return at(set.failure(), where, number, column);
+    }
+  }
+  if (!seen.contains("protocol")) {
+    return at(bad("a profile needs a line `protocol = ...`"), where, 1, 0);
+  }
+  if (auto whole = check_profile(profile); !whole) {
+    Failure failure = whole.failure();
+    failure.where = where;
+    return failure;
+  }
+  return profile;
+}
+
+std::string to_text(const Profile& profile) {
+  Profile shown = profile, plain;
+  std::string text;
+  for (const Field& field : kFields) {
+    const auto lines = std::visit(Writer{}, field.slot(shown));
+    if (field.name != "protocol" && lines == std::visit(Writer{}, field.slot(plain))) continue;
+    for (const std::string& line : lines) {
+      const bool quote = line.find('#') != std::string::npos;
+      text += std::string(field.name) + " = " + (quote ? "\"" + line + "\"" : line) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string profile_sha256(const Profile& profile) {
+  Profile bare = profile;
+  bare.about.clear();
+  return to_hex(sha256(to_text(bare)));
+}
+
+std::string profile_help() {
+  Profile profile;
+  std::string text;
+  for (const Field& field : kFields) {
+    std::string name = "  " + std::string(field.name);
+    name.resize(std::max<std::size_t>(name.size() + 2, 22), ' ');
+    text += name + std::visit(Takes{}, field.slot(profile)) + "\n";
+    if (!field.meaning.empty()) text += std::string(22, ' ') + std::string(field.meaning) + "\n";
+  }
+  return text;
+}
+
+std::string_view to_word(Protocol protocol) { return word_of(protocol); }
+
+}  // namespace probe::policy
