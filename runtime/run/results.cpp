@@ -45,6 +45,10 @@ std::string cell(const ResultRow& row, const std::string& metric) {
   return "";
 }
 
+nlohmann::ordered_json or_null(const std::optional<std::string>& text) {
+  return text ? nlohmann::ordered_json(*text) : nullptr;
+}
+
 // Every metric that some row has, in order of first use.
 std::vector<std::string> metric_names(std::span<const ResultRow> rows) {
   std::vector<std::string> names;
@@ -79,10 +83,12 @@ std::string results_to_json(std::span<const ResultRow> rows) {
       }
     }
     json["steps"] = row.steps;
-    json["invalid"] = row.invalid ? nlohmann::ordered_json(*row.invalid) : nullptr;
+    json["invalid"] = or_null(row.invalid);
     json["prompt_sha256"] = row.prompt_sha256;
     json["image_sha256"] = row.image_sha256;
     json["frames_sha256"] = row.frames_sha256;
+    json["sent_prompt_sha256"] = or_null(row.sent_prompt_sha256);
+    json["sent_image_sha256"] = or_null(row.sent_image_sha256);
     json["trace_sha256"] = row.trace_sha256;
     json["episode_id"] = row.episode_id;
     json["start_id"] = row.start_id;
@@ -97,8 +103,9 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
   const std::vector<std::string> names = metric_names(rows);
   std::vector<std::string> header = {"task", "episode", "seed", "policy"};
   header.insert(header.end(), names.begin(), names.end());
-  for (const char* name : {"steps", "invalid", "prompt_sha256", "image_sha256", "frames_sha256",
-                           "trace_sha256", "episode_id", "start_id", "trace"}) {
+  for (const char* name :
+       {"steps", "invalid", "prompt_sha256", "image_sha256", "frames_sha256", "sent_prompt_sha256",
+        "sent_image_sha256", "trace_sha256", "episode_id", "start_id", "trace"}) {
     header.emplace_back(name);
   }
   std::string text = line_of(header);
@@ -109,7 +116,8 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
     cells.push_back(std::to_string(row.steps));
     for (const std::string& value :
          {row.invalid.value_or(""), row.prompt_sha256, row.image_sha256, row.frames_sha256,
-          row.trace_sha256, row.episode_id, row.start_id, row.trace}) {
+          row.sent_prompt_sha256.value_or(""), row.sent_image_sha256.value_or(""), row.trace_sha256,
+          row.episode_id, row.start_id, row.trace}) {
       cells.push_back(value);
     }
     text += line_of(cells);
