@@ -1,7 +1,5 @@
 #include "runtime/wire/websocket.h"
 
-#include <boost/asio.hpp>
-#include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <condition_variable>
 #include <deque>
@@ -9,16 +7,19 @@
 #include <optional>
 #include <thread>
 
+#include "runtime/wire/beast_io.h"
+
 namespace probe::wire {
 namespace {
 
 namespace beast = boost::beast;
 namespace asio = boost::asio;
 namespace websocket = beast::websocket;
-using boost::system::error_code;
-using tcp = asio::ip::tcp;
+using beast_io::error_code;
 
 constexpr Duration kCloseTimeout{500};
+// Messages that nobody has asked for yet; a server that floods must not fill the memory.
+constexpr std::size_t kLargestInbox = 16;
 
 }  // namespace
 
@@ -44,23 +45,9 @@ class WebSocket::Connection {
   }
 
   Status open(const Endpoint& server) {
-    const auto deadline = std::chrono::steady_clock::now() + options_.connect_timeout;
-    tcp::resolver resolver(io_);
-    tcp::resolver::results_type addresses;
-    PROBE_TRY(finish(deadline, "looking up the host", [&](auto done) {
-      resolver.async_resolve(server.host, server.port, [&, done](error_code error, auto found) {
-        addresses = std::move(found);
-        done(error);
-      });
-    }));
+    const auto deadline = beast_io::Deadline::in(options_.connect_timeout);
     auto& stream = beast::get_lowest_layer(socket_);
-    PROBE_TRY(finish(deadline, "connecting", [&](auto done) {
-      stream.async_connect(addresses,
-                           [done](error_code error, const tcp::endpoint&) { done(error); });
-    }));
-    error_code ignored;
-    stream.socket().set_option(tcp::no_delay(true), ignored);
-    stream.expires_never();
+    PROBE_TRY(beast_io::connect_tcp(io_, stream, server, deadline));
     socket_.set_option(websocket::stream_base::timeout{options_.connect_timeout,
                                                        websocket::stream_base::none(), false});
     socket_.set_option(websocket::stream_base::decorator([this](websocket::request_type& request) {
@@ -70,7 +57,7 @@ class WebSocket::Connection {
     socket_.auto_fragment(false);
     socket_.write_buffer_bytes(std::size_t{1} << 16);
     socket_.binary(true);
-    PROBE_TRY(finish(deadline, "opening a WebSocket", [&](auto done) {
+    PROBE_TRY(beast_io::finish(io_, stream, deadline, name_, "opening a WebSocket", [&](auto done) {
       socket_.async_handshake(name_, server.path, [done](error_code error) { done(error); });
     }));
     io_.restart();
@@ -97,7 +84,7 @@ class WebSocket::Connection {
     if (changed_.wait_for(lock, timeout, [this] { return sent_; })) {
       return broken_ ? Status(*broken_) : Status();
     }
-    break_off("took no message for " + seconds(timeout));
+    break_off("took no message for " + seconds_text(timeout));
     lock.unlock();
     asio::post(io_, [this] { beast::get_lowest_layer(socket_).cancel(); });
     lock.lock();
@@ -108,7 +95,7 @@ class WebSocket::Connection {
   Result<Message> receive(Duration timeout) {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, timeout, [this] { return !inbox_.empty() || broken_; })) {
-      return Failure{"policy", "no answer in " + seconds(timeout), name_};
+      return Failure{"policy", "no answer in " + seconds_text(timeout), name_};
     }
     if (inbox_.empty()) return *broken_;
     Message message = std::move(inbox_.front());
@@ -117,33 +104,6 @@ class WebSocket::Connection {
   }
 
  private:
-  static std::string seconds(Duration time) {
-    std::string text = std::to_string(static_cast<double>(time.count()) / 1000);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.ends_with('.')) text.pop_back();
-    return text + " s";
-  }
-
-  // Starts an operation and runs it here until it ends or `deadline` passes.
-  template <typename Start>
-  Status finish(std::chrono::steady_clock::time_point deadline, const std::string& doing,
-                Start start) {
-    std::optional<error_code> result;
-    start([&result](error_code error) { result = error; });
-    io_.restart();
-    io_.run_until(deadline);
-    if (!result) {
-      // What is under way refers to this frame: it must end before this returns.
-      error_code ignored;
-      beast::get_lowest_layer(socket_).socket().close(ignored);
-      io_.stop();
-      return Failure{"policy", doing + " took more than " + seconds(options_.connect_timeout),
-                     name_};
-    }
-    if (*result) return Failure{"policy", doing + ": " + result->message(), name_};
-    return {};
-  }
-
   void read_next() {
     socket_.async_read(buffer_, [this](error_code error, std::size_t) {
       std::lock_guard guard(mutex_);
@@ -159,8 +119,12 @@ class WebSocket::Connection {
       message.bytes.assign(bytes, bytes + data.size());
       buffer_.consume(buffer_.size());
       inbox_.push_back(std::move(message));
+      if (inbox_.size() > kLargestInbox) {
+        inbox_.clear();
+        break_off("the server sends messages that nothing asked for");
+      }
       changed_.notify_all();
-      read_next();
+      if (!broken_) read_next();
     });
   }
 

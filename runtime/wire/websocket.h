@@ -1,9 +1,8 @@
 // One WebSocket connection (RFC 6455, plain ws://). An own thread reads, so that a server's pings
 // are answered while the simulator works; the client itself never pings, because policy servers
-// cannot answer during inference. The only file that includes Boost.Beast is websocket.cpp.
+// cannot answer during inference.
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -12,12 +11,11 @@
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/wire/duration.h"
 #include "runtime/wire/endpoint.h"
 #include "runtime/wire/value.h"
 
 namespace probe::wire {
-
-using Duration = std::chrono::milliseconds;
 
 struct WebSocketOptions {
   Duration connect_timeout{10'000};

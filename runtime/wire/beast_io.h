@@ -1,0 +1,78 @@
+// What WebSocket and HTTP connections share of Boost.Beast: operations that end in time, and the
+// TCP connection. Private to websocket.cpp and http.cpp, the only files that include Boost.Beast.
+#pragma once
+
+#include <boost/asio.hpp>
+#include <boost/beast/core.hpp>
+#include <optional>
+#include <string>
+
+#include "runtime/base/result.h"
+#include "runtime/wire/duration.h"
+#include "runtime/wire/endpoint.h"
+
+namespace probe::wire::beast_io {
+
+using boost::system::error_code;
+using tcp = boost::asio::ip::tcp;
+using Clock = std::chrono::steady_clock;
+
+// Starts an operation and runs it here until it ends or `deadline` passes. Nothing on the latter:
+// the stream is then closed and of no further use, and `io` must not run again, because what is
+// under way may refer to the caller's frame.
+template <typename Start>
+std::optional<error_code> run_until(boost::asio::io_context& io, boost::beast::tcp_stream& stream,
+                                    Clock::time_point deadline, Start start) {
+  std::optional<error_code> result;
+  start([&result](error_code error) { result = error; });
+  io.restart();
+  io.run_until(deadline);
+  if (!result) {
+    error_code ignored;
+    stream.socket().close(ignored);
+    io.stop();
+  }
+  return result;
+}
+
+struct Deadline {
+  Clock::time_point at;
+  Duration stated;  // for messages
+  static Deadline in(Duration time) { return {Clock::now() + time, time}; }
+};
+
+// The same, as a failure that says what was being done: "connecting: Connection refused".
+template <typename Start>
+Status finish(boost::asio::io_context& io, boost::beast::tcp_stream& stream,
+              const Deadline& deadline, const std::string& server, const std::string& doing,
+              Start start) {
+  const auto result = run_until(io, stream, deadline.at, std::move(start));
+  if (!result) {
+    return Failure{"policy", doing + " took more than " + seconds_text(deadline.stated), server};
+  }
+  if (*result) return Failure{"policy", doing + ": " + result->message(), server};
+  return {};
+}
+
+inline Status connect_tcp(boost::asio::io_context& io, boost::beast::tcp_stream& stream,
+                          const Endpoint& server, const Deadline& deadline) {
+  tcp::resolver resolver(io);
+  tcp::resolver::results_type addresses;
+  PROBE_TRY(finish(io, stream, deadline, server.name(), "looking up the host", [&](auto done) {
+    resolver.async_resolve(server.host, server.port,
+                           [&addresses, done](error_code error, auto found) {
+                             addresses = std::move(found);
+                             done(error);
+                           });
+  }));
+  PROBE_TRY(finish(io, stream, deadline, server.name(), "connecting", [&](auto done) {
+    stream.async_connect(addresses,
+                         [done](error_code error, const tcp::endpoint&) { done(error); });
+  }));
+  error_code ignored;
+  stream.socket().set_option(tcp::no_delay(true), ignored);
+  stream.expires_never();
+  return {};
+}
+
+}  // namespace probe::wire::beast_io

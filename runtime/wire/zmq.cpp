@@ -1,0 +1,181 @@
+#include "runtime/wire/zmq.h"
+
+#include <cstring>
+#include <optional>
+#include <string>
+#include <zmq.hpp>
+
+namespace probe::wire {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Duration left_until(Clock::time_point deadline) {
+  const auto left = std::chrono::ceil<Duration>(deadline - Clock::now());
+  return std::max(left, Duration::zero());
+}
+
+}  // namespace
+
+// A REQ socket and the socket that tells what happens to its connection. Without the latter a
+// server that is gone would look like one that is slow.
+class ZmqRequester::Sockets {
+ public:
+  Sockets(const Endpoint& server, const ZmqOptions& options)
+      : server_(server), options_(options), context_(1) {}
+
+  Result<Bytes> ask(std::span<const std::uint8_t> message, Duration timeout) {
+    if (!request_) open();
+    Result<Bytes> answer = exchange(message, timeout);
+    if (!answer) close();
+    return answer;
+  }
+
+  std::string server() const { return server_.name(); }
+
+  void close() {
+    monitor_.reset();
+    request_.reset();
+  }
+
+ private:
+  void open() {
+    reached_ = Reached::kNothing;
+    lost_ = false;
+    request_.emplace(context_, zmq::socket_type::req);
+    request_->set(zmq::sockopt::linger, 0);
+    // Messages wait for a connection here, where it is noticed, and not in a queue.
+    request_->set(zmq::sockopt::immediate, true);
+    request_->set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(options_.largest_message));
+    request_->set(zmq::sockopt::handshake_ivl, static_cast<int>(options_.connect_timeout.count()));
+    const bool is_ipv6 = server_.host.find(':') != std::string::npos;
+    request_->set(zmq::sockopt::ipv6, is_ipv6);
+    // A closed socket keeps its name for a moment: each has another one.
+    const std::string monitor = "inproc://monitor" + std::to_string(++opened_);
+    if (zmq_socket_monitor(request_->handle(), monitor.c_str(), ZMQ_EVENT_ALL) != 0) {
+      throw zmq::error_t();
+    }
+    monitor_.emplace(context_, zmq::socket_type::pair);
+    monitor_->set(zmq::sockopt::linger, 0);
+    monitor_->connect(monitor);
+    const std::string host = is_ipv6 ? "[" + server_.host + "]" : server_.host;
+    request_->connect("tcp://" + host + ":" + server_.port);
+  }
+
+  Result<Bytes> exchange(std::span<const std::uint8_t> message, Duration timeout) {
+    if (!wait(ZMQ_POLLOUT, Clock::now() + options_.connect_timeout)) return failed(unconnected());
+    // What happened to earlier connections is no news of this one.
+    while (has_news()) note_event();
+    lost_ = false;
+    if (!request_->send(zmq::buffer(message.data(), message.size()), zmq::send_flags::dontwait)) {
+      return failed(unconnected());
+    }
+    if (!wait(ZMQ_POLLIN, Clock::now() + timeout)) {
+      if (!lost_) return failed("no answer in " + seconds_text(timeout));
+      return failed(
+          "the server closed the connection before it answered: it went away, or its "
+          "answer has more than " +
+          std::to_string(options_.largest_message >> 20) + " MiB");
+    }
+    zmq::message_t answer;
+    if (!request_->recv(answer, zmq::recv_flags::dontwait)) return failed("no answer");
+    if (answer.more()) return failed("an answer in several parts, where one was expected");
+    const auto* data = answer.data<std::uint8_t>();
+    return Bytes(data, data + answer.size());
+  }
+
+  // Until the socket is ready for `events`; false when it cannot be any more, or at the deadline.
+  bool wait(short events, Clock::time_point deadline) {
+    while (true) {
+      zmq::pollitem_t items[] = {{request_->handle(), 0, events, 0},
+                                 {monitor_->handle(), 0, ZMQ_POLLIN, 0}};
+      const Duration left = left_until(deadline);
+      zmq::poll(items, 2, left);
+      if ((items[0].revents & events) != 0) return true;
+      if ((items[1].revents & ZMQ_POLLIN) != 0) {
+        note_event();
+        if (lost_) return false;
+        continue;
+      }
+      if (left == Duration::zero()) return false;
+    }
+  }
+
+  bool has_news() {
+    zmq::pollitem_t items[] = {{monitor_->handle(), 0, ZMQ_POLLIN, 0}};
+    return zmq::poll(items, 1, Duration::zero()) > 0;
+  }
+
+  // How far the connection has ever come.
+  enum class Reached { kNothing, kTcp, kZeroMq };
+
+  void note_event() {
+    zmq::message_t event, address;
+    if (!monitor_->recv(event) || !monitor_->recv(address)) return;
+    std::uint16_t kind = 0;
+    if (event.size() < sizeof kind) return;
+    std::memcpy(&kind, event.data(), sizeof kind);
+    switch (kind) {
+      case ZMQ_EVENT_CONNECTED:
+        if (reached_ == Reached::kNothing) reached_ = Reached::kTcp;
+        break;
+      case ZMQ_EVENT_HANDSHAKE_SUCCEEDED:
+        reached_ = Reached::kZeroMq;
+        break;
+      // Each is the end of one attempt; ZeroMQ would go on for ever, callers have their own pauses.
+      case ZMQ_EVENT_CLOSED:
+      case ZMQ_EVENT_CONNECT_RETRIED:
+      case ZMQ_EVENT_DISCONNECTED:
+      case ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL:
+      case ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL:
+      case ZMQ_EVENT_HANDSHAKE_FAILED_AUTH:
+        lost_ = true;
+        break;
+      default:
+        break;
+    }
+  }
+
+  std::string unconnected() const {
+    if (reached_ == Reached::kNothing) {
+      return lost_ ? "connecting: nobody listens there, or there is no such host"
+                   : "connecting took more than " + seconds_text(options_.connect_timeout);
+    }
+    if (reached_ == Reached::kTcp) return "something listens there that does not speak ZeroMQ";
+    return "the server went away";
+  }
+
+  Failure failed(const std::string& message) const { return {"policy", message, server_.name()}; }
+
+  Endpoint server_;
+  ZmqOptions options_;
+  zmq::context_t context_;
+  std::optional<zmq::socket_t> request_, monitor_;
+  int opened_ = 0;
+  Reached reached_ = Reached::kNothing;
+  bool lost_ = false;  // the connection ended since the last send
+};
+
+ZmqRequester::ZmqRequester(std::unique_ptr<Sockets> sockets) : sockets_(std::move(sockets)) {}
+ZmqRequester::~ZmqRequester() = default;
+
+Result<std::unique_ptr<ZmqRequester>> ZmqRequester::create(const Endpoint& server,
+                                                           const ZmqOptions& options) {
+  try {
+    return std::unique_ptr<ZmqRequester>(
+        new ZmqRequester(std::make_unique<Sockets>(server, options)));
+  } catch (const std::exception& error) {
+    return Failure{"policy", error.what(), server.name()};
+  }
+}
+
+Result<Bytes> ZmqRequester::ask(std::span<const std::uint8_t> message, Duration timeout) {
+  try {
+    return sockets_->ask(message, timeout);
+  } catch (const std::exception& error) {
+    sockets_->close();
+    return Failure{"policy", error.what(), sockets_->server()};
+  }
+}
+
+}  // namespace probe::wire

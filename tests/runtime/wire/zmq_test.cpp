@@ -1,0 +1,78 @@
+#include "runtime/wire/zmq.h"
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <string_view>
+
+#include "tests/servers/python_server.h"
+
+namespace probe::wire {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+std::unique_ptr<ZmqRequester> requester(const std::string& port, std::size_t largest = 64 << 20) {
+  auto made = ZmqRequester::create({"127.0.0.1", port, "/", {}}, {500ms, largest});
+  REQUIRE(made.ok());
+  return std::move(made).value();
+}
+
+std::string failure_of(ZmqRequester& server, std::string_view message, Duration timeout) {
+  const auto answer = server.ask(bytes_of(message), timeout);
+  REQUIRE_FALSE(answer.ok());
+  return answer.failure().message;
+}
+
+}  // namespace
+
+TEST_CASE("a picture's worth of bytes comes back over ZeroMQ") {
+  const test::PythonServer server("zmq_server.py");
+  REQUIRE_MESSAGE(!server.port().empty(), "python3-zmq is installed");
+  const auto socket = requester(server.port());
+  for (const std::size_t size : {5U, 255U, 256U, 921600U}) {
+    const std::string text = "echo:" + std::string(size, 'x');
+    const auto answer = socket->ask(bytes_of(text), 5s);
+    REQUIRE_MESSAGE(answer.ok(), to_text(answer.failure()));
+    CHECK(std::string(answer->begin(), answer->end()) == text);
+  }
+}
+
+TEST_CASE("after a late answer the next question has its own") {
+  const test::PythonServer server("zmq_server.py");
+  const auto socket = requester(server.port());
+  CHECK(failure_of(*socket, "slow", 200ms) == "no answer in 0.2 s");
+  const auto answer = socket->ask(bytes_of("echo:two"), 5s);
+  REQUIRE_MESSAGE(answer.ok(), to_text(answer.failure()));
+  CHECK(std::string(answer->begin(), answer->end()) == "echo:two");
+}
+
+TEST_CASE("a ZeroMQ server that dies or floods is told from one that is slow") {
+  test::PythonServer server("zmq_server.py");
+  const auto socket = requester(server.port(), 1 << 20);
+  CHECK(failure_of(*socket, "huge", 5s) ==
+        "the server closed the connection before it answered: it went away, or its answer has "
+        "more than 1 MiB");
+  CHECK(failure_of(*socket, "parts", 5s) == "an answer in several parts, where one was expected");
+  REQUIRE(socket->ask(bytes_of("echo"), 5s).ok());
+  server.stop();
+  const std::string gone = failure_of(*socket, "echo", 5s);
+  CHECK(gone.starts_with("the server "));
+  CHECK(failure_of(*socket, "echo", 5s) ==
+        "connecting: nobody listens there, or there is no such host");
+}
+
+TEST_CASE("what listens without speaking ZeroMQ is named") {
+  for (const char* mode : {"raw", "silent"}) {
+    const test::PythonServer server("zmq_server.py", {mode});
+    const auto socket = requester(server.port());
+    const std::string message = failure_of(*socket, "echo", 500ms);
+    CHECK_MESSAGE(message == "something listens there that does not speak ZeroMQ", mode);
+  }
+}
+
+}  // namespace probe::wire
