@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
   add_preview(app, exit);
   add_sheet(app, exit);
   add_run(app, exit);
+  add_sweep(app, exit);
   add_merge(app, exit);
   add_slurm(app, exit);
   add_results(app, exit);

@@ -50,6 +50,7 @@ void add_sheet(CLI::App& app, int& exit);
 void add_run(CLI::App& app, int& exit);
 void add_merge(CLI::App& app, int& exit);
 void add_slurm(CLI::App& app, int& exit);
+void add_sweep(CLI::App& app, int& exit);
 void add_results(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);
 void add_judge(CLI::App& app, int& exit);

@@ -2,9 +2,12 @@
 // hash, trace, store.
 #include <benchmark/benchmark.h>
 
+#include <chrono>
 #include <filesystem>
+#include <string>
 
 #include "runtime/run/run.h"
+#include "tests/bench/openpi_server.h"
 #include "tests/bench/plan_fixture.h"
 
 namespace {
@@ -12,10 +15,11 @@ namespace {
 using probe::bench::need;
 namespace fs = std::filesystem;
 
-void loop(benchmark::State& state, const char* policy, int jobs) {
+void loop(benchmark::State& state, const std::string& policy, int jobs) {
   const probe::plan::Plan& plan = probe::bench::suite_plan();
   const fs::path dir = fs::temp_directory_path() / "vlaprobe-bench";
   const int episodes = 24;
+  probe::run::RunCall call;
   for (auto _ : state) {
     state.PauseTiming();
     fs::remove_all(dir);
@@ -26,7 +30,9 @@ void loop(benchmark::State& state, const char* policy, int jobs) {
     options.suite = "intact";
     options.jobs = jobs;
     options.assets = probe::bench::asset_root();
+    options.tasks = "carrot_on_plate";
     const auto summary = need(probe::run::run(plan, options));
+    call = summary.call;
     if (summary.done != episodes || summary.invalid != 0)
       state.SkipWithError("an episode was not valid");
   }
@@ -34,13 +40,33 @@ void loop(benchmark::State& state, const char* policy, int jobs) {
   const double steps = plan.tasks()[probe::bench::bench_task()].horizon;
   state.counters["rate"] = benchmark::Counter(
       static_cast<double>(state.iterations()) * episodes * steps, benchmark::Counter::kIsRate);
+  if (call.queries.queries == 0) return;
+  state.counters["server_busy_percent"] = 100 * call.queries.busy_s / call.elapsed_s;
+  state.counters["worlds_waiting_percent"] =
+      100 * call.queries.waiting_s / (call.elapsed_s * call.worlds);
 }
+
+// Over a real connection, pictures and all; `milliseconds` is the server's time an answer, which
+// has four actions.
+void served(benchmark::State& state, int milliseconds, int jobs) {
+  const probe::bench::OpenpiServer server{std::chrono::milliseconds(milliseconds)};
+  loop(state, server.policy(), jobs);
+}
+
 BENCHMARK_CAPTURE(loop, one, "expert", 1)
     ->Name("loop/one_core")
     ->UseRealTime()
     ->Unit(benchmark::kSecond);
 BENCHMARK_CAPTURE(loop, two, "expert", 2)
     ->Name("loop/two_cores")
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(served, instant, 0, 2)
+    ->Name("loop/served")
+    ->UseRealTime()
+    ->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(served, slow, 100, 8)
+    ->Name("loop/slow_server")
     ->UseRealTime()
     ->Unit(benchmark::kSecond);
 

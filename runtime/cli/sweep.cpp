@@ -1,0 +1,56 @@
+// vlaprobe sweep
+#include "runtime/run/sweep.h"
+
+#include <fmt/format.h>
+
+#include "runtime/cli/filled.h"
+#include "runtime/cli/run_options.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  RunArguments run;
+  std::vector<std::string> checkpoints;
+};
+
+int sweep_verb(const Arguments& arguments) {
+  auto options = to_options(arguments.run);
+  if (!options) return report(options.failure());
+  const LoadedPlan loaded = load_runnable(arguments.run);
+  if (!loaded.plan) return loaded.exit;
+  options->progress = [](const run::RunProgress& progress) {
+    if (progress.row != nullptr && progress.row->invalid) print_invalid(*progress.row);
+  };
+  run::SweepOptions sweeping;
+  sweeping.run = std::move(*options);
+  sweeping.checkpoints = arguments.checkpoints;
+  sweeping.tell = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
+  const auto swept = run::sweep(*loaded.plan, sweeping);
+  if (!swept) return report(swept.failure());
+  print_summary(swept->whole);
+  fmt::print("{}\n", swept->scores[swept->best].checkpoint);
+  return swept->whole.invalid ? kOutside : kFine;
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("sweep", "the best of several checkpoints, then the whole suite with it");
+  verb->footer(
+      "Each checkpoint runs the suite's original tasks in its own folder below -o. The best has "
+      "the\n"
+      "highest mean success over these tasks, then intention, then comes first. Prints its name.\n"
+      "example: vlaprobe sweep suite/intact.probe --policy 'intact://127.0.0.1:8000?model={}' \\\n"
+      "           --checkpoints /ckpt/10000,/ckpt/20000 --jobs 8 -o runs/pi0");
+  add_run_options(*verb, arguments->run);
+  verb->add_option("--checkpoints", arguments->checkpoints, "A,B,...: each stands for {} in P")
+      ->delimiter(',')
+      ->required();
+  refuse_empty_values(*verb);
+  verb->callback([arguments, &exit] { exit = sweep_verb(*arguments); });
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,200 @@
+// Run, score, choose, run.
+#include "runtime/run/sweep.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <tuple>
+
+#include "runtime/base/file.h"
+#include "runtime/plan/plan.h"
+#include "runtime/run/selection.h"
+
+namespace probe::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPlace = "{}";
+constexpr const char* kRule =
+    "highest mean over the original tasks of the share of successes; of equals the one with the "
+    "higher mean share of intentions; of these the first named";
+
+Failure usage(const std::string& message, const char* where) { return {"usage", message, where}; }
+
+std::string with_checkpoint(std::string text, const std::string& checkpoint) {
+  for (std::size_t at = 0; (at = text.find(kPlace, at)) != std::string::npos;) {
+    text.replace(at, kPlace.size(), checkpoint);
+    at += checkpoint.size();
+  }
+  return text;
+}
+
+Status check(const SweepOptions& options) {
+  if (options.run.policy.find(kPlace) == std::string::npos) {
+    return usage("`" + options.run.policy +
+                     "` has no {} for a checkpoint, as in intact://HOST:PORT?model={}",
+                 "--policy");
+  }
+  if (!options.run.name.empty() && options.run.name.find(kPlace) == std::string::npos) {
+    return usage("`" + options.run.name + "` has no {}: all checkpoints would have one name",
+                 "--name");
+  }
+  if (options.checkpoints.empty()) return usage("no checkpoint is named", "--checkpoints");
+  std::set<std::string> known;
+  for (const std::string& checkpoint : options.checkpoints) {
+    if (checkpoint.empty()) return usage("a checkpoint's text is empty", "--checkpoints");
+    if (!known.insert(checkpoint).second) {
+      return usage("`" + checkpoint + "` is named twice", "--checkpoints");
+    }
+  }
+  return {};
+}
+
+RunOptions run_of(const SweepOptions& options, const std::string& checkpoint) {
+  RunOptions run = options.run;
+  run.policy = with_checkpoint(run.policy, checkpoint);
+  run.name = with_checkpoint(run.name, checkpoint);
+  run.out = (fs::path(options.run.out) / checkpoint_folder(checkpoint)).string();
+  return run;
+}
+
+double value_of(const ResultRow& row, const char* metric) {
+  for (const MetricValue& value : row.metrics) {
+    if (value.name == metric) return value.value;
+  }
+  return 0;
+}
+
+// Of the rows of the original tasks that `run` chose; its folder may hold more.
+Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
+                                 const std::string& checkpoint) {
+  PROBE_ASSIGN(const auto traits, policy::policy_traits(run.policy));
+  PROBE_ASSIGN(const Selection selection, select_jobs(plan, run, traits.draws));
+  std::set<std::tuple<std::string, int, int>> chosen;
+  for (const EpisodeJob& job : selection.jobs) {
+    chosen.emplace(plan.text(plan.tasks()[job.task].name), static_cast<int>(job.index), job.seed);
+  }
+  PROBE_ASSIGN(const auto rows, read_results(run.out));
+  struct Sums {
+    double episodes = 0, success = 0, intention = 0;
+  };
+  std::map<std::string, Sums> tasks;
+  CheckpointScore score;
+  score.checkpoint = checkpoint;
+  score.dir = run.out;
+  for (const ResultRow& row : rows) {
+    if (row.invalid || !chosen.contains({row.task, row.episode, row.seed})) continue;
+    Sums& sums = tasks[row.task];
+    ++sums.episodes;
+    sums.success += value_of(row, "success");
+    sums.intention += value_of(row, "intention");
+    ++score.episodes;
+  }
+  if (static_cast<std::size_t>(score.episodes) != chosen.size()) {
+    return Failure{"policy",
+                   std::to_string(chosen.size() - static_cast<std::size_t>(score.episodes)) +
+                       " of " + std::to_string(chosen.size()) +
+                       " episodes are invalid, so no checkpoint is chosen; the same command runs "
+                       "them again",
+                   run.out};
+  }
+  score.tasks = static_cast<int>(tasks.size());
+  for (const auto& [name, sums] : tasks) {
+    score.success += sums.success / sums.episodes / score.tasks;
+    score.intention += sums.intention / sums.episodes / score.tasks;
+  }
+  return score;
+}
+
+bool is_better(const CheckpointScore& a, const CheckpointScore& b) {
+  return a.success != b.success ? a.success > b.success : a.intention > b.intention;
+}
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", 100 * share);
+  return text;
+}
+
+std::string sentence(const CheckpointScore& score) {
+  return score.checkpoint + ": success " + percent(score.success) + ", intention " +
+         percent(score.intention) + " over " + std::to_string(score.tasks) + " original tasks, " +
+         std::to_string(score.episodes) + " episodes";
+}
+
+Status write_choice(const plan::Plan& plan, const SweepOptions& options,
+                    const SweepSummary& summary) {
+  nlohmann::ordered_json json;
+  json["plan_root"] = to_hex(plan.root());
+  json["policy"] = options.run.policy;
+  json["rule"] = kRule;
+  json["best"] = summary.scores[summary.best].checkpoint;
+  json["checkpoints"] = nlohmann::ordered_json::array();
+  for (const CheckpointScore& score : summary.scores) {
+    json["checkpoints"].push_back({{"checkpoint", score.checkpoint},
+                                   {"folder", fs::path(score.dir).filename().string()},
+                                   {"tasks", score.tasks},
+                                   {"episodes", score.episodes},
+                                   {"success", score.success},
+                                   {"intention", score.intention}});
+  }
+  const std::string text =
+      json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return write_file((fs::path(options.run.out) / "sweep.json").string(),
+                    std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+std::string checkpoint_folder(const std::string& checkpoint) {
+  constexpr std::size_t kLongest = 40;
+  std::string name;
+  for (const char c : checkpoint) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '-' || c == '_' || c == '.';
+    name.push_back(plain ? c : '_');
+  }
+  if (name == checkpoint && name.size() <= kLongest && !name.starts_with(".")) return name;
+  if (name.size() > kLongest) name = name.substr(name.size() - kLongest);
+  while (name.starts_with(".") || name.starts_with("_")) name.erase(0, 1);
+  return name + (name.empty() ? "" : "-") +
+         to_hex(sha256(std::string_view(checkpoint))).substr(0, 8);
+}
+
+Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options) {
+  PROBE_TRY(check(options));
+  // What none of them could run with is told before the first is run.
+  for (const std::string& checkpoint : options.checkpoints) {
+    PROBE_TRY(policy::policy_traits(with_checkpoint(options.run.policy, checkpoint)));
+  }
+  const auto tell = [&](const std::string& text) {
+    if (options.tell) options.tell(text);
+  };
+  SweepSummary summary;
+  for (const std::string& checkpoint : options.checkpoints) {
+    RunOptions originals = run_of(options, checkpoint);
+    originals.originals = true;
+    tell("checkpoint " + checkpoint + " on the original tasks");
+    PROBE_ASSIGN(const RunSummary ran, run(plan, originals));
+    originals.out = ran.out;  // a fork, perhaps
+    PROBE_ASSIGN(CheckpointScore score, score_of(plan, originals, checkpoint));
+    tell(sentence(score));
+    summary.scores.push_back(std::move(score));
+  }
+  for (std::size_t i = 1; i < summary.scores.size(); ++i) {
+    if (is_better(summary.scores[i], summary.scores[summary.best])) summary.best = i;
+  }
+  PROBE_TRY(write_choice(plan, options, summary));
+  const CheckpointScore& best = summary.scores[summary.best];
+  tell("best: " + best.checkpoint + "; now the whole suite");
+  RunOptions whole = run_of(options, best.checkpoint);
+  whole.out = best.dir;
+  PROBE_ASSIGN(summary.whole, run(plan, whole));
+  return summary;
+}
+
+}  // namespace probe::run

@@ -1,0 +1,193 @@
+// A run on a real Slurm of this machine, with a task that is killed and requeued.
+#include "runtime/cluster/slurm.h"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <thread>
+
+#include "runtime/base/file.h"
+#include "runtime/cluster/program.h"
+#include "runtime/run/store.h"
+#include "tests/runtime/run/table_plan.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::cluster {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Lives as long as this object, and ends with this process however that ends.
+class Cluster {
+ public:
+  explicit Cluster(const std::string& dir) {
+    int in[2], out[2];
+    REQUIRE(::pipe2(in, O_CLOEXEC) == 0);
+    REQUIRE(::pipe2(out, O_CLOEXEC) == 0);
+    process_ = ::fork();
+    REQUIRE(process_ >= 0);
+    if (process_ == 0) {
+      ::dup2(in[0], STDIN_FILENO);
+      ::dup2(out[1], STDOUT_FILENO);
+      const std::string script = VLAPROBE_SOURCE_DIR "/tests/servers/slurm_cluster.sh";
+      ::execl("/bin/bash", "bash", script.c_str(), dir.c_str(), nullptr);
+      ::_exit(127);
+    }
+    ::close(in[0]);
+    ::close(out[1]);
+    input_ = in[1];
+    for (char c = 0; ::read(out[0], &c, 1) == 1 && c != '\n';) said_.push_back(c);
+    ::close(out[0]);
+    ::setenv("SLURM_CONF", (dir + "/slurm.conf").c_str(), 1);
+  }
+  ~Cluster() {
+    ::close(input_);
+    ::waitpid(process_, nullptr, 0);
+    ::unsetenv("SLURM_CONF");
+  }
+  bool ready() const { return said_ == "ready"; }
+  const std::string& said() const { return said_; }
+
+ private:
+  pid_t process_ = -1;
+  int input_ = -1;
+  std::string said_;
+};
+
+SlurmOptions options_for(const std::string& out) {
+  SlurmOptions options;
+  options.run.policy = "random";
+  options.run.out = out;
+  options.script.program = VLAPROBE_BINARY_DIR "/vlaprobe";
+  options.script.tasks = 4;
+  options.submit = true;
+  options.poll_s = 0.2;
+  return options;
+}
+
+std::vector<run::ResultRow> rows_of(const std::string& dir) {
+  const auto rows = run::read_results(dir);
+  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
+  std::vector<run::ResultRow> all = *rows;
+  for (run::ResultRow& row : all) row.trace = "";
+  return all;
+}
+
+bool waited_for(const std::function<bool()>& true_at_last) {
+  for (int i = 0; i < 600; ++i) {
+    if (true_at_last()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
+TEST_CASE("four array tasks, one killed and requeued, merged: the rows of a single run") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = run::table_plan(16, 40);
+  const Cluster cluster(folder / "cluster");
+  if (!cluster.ready()) {
+    MESSAGE("skipped: ", cluster.said());
+    return;
+  }
+  REQUIRE(fs::exists(options_for("").script.program));
+  const std::string out = folder / "it's a run";
+  const std::string second = out + "/" + shard_folder(2, 4);
+  // While the job runs: the second task is killed in the middle of its shard and queued again.
+  std::atomic<int> rows_when_killed = -1;
+  std::thread killer([&] {
+    const auto some_rows = [&] {
+      const auto rows = run::read_results(second);
+      if (rows.ok()) rows_when_killed = static_cast<int>(rows->size());
+      return rows_when_killed > 0;
+    };
+    if (!waited_for(some_rows)) return;
+    const std::string job = read_file(out + "/slurm/job").value();
+    CHECK(run_program({"scontrol", "requeue", job + "_2"})->status == 0);
+    // Slurm lets a requeued task wait for two minutes.
+    waited_for([&] {
+      return run_program({"scontrol", "update", "JobId=" + job + "_2", "StartTime=now"})->status ==
+             0;
+    });
+  });
+  std::vector<std::string> told;
+  SlurmOptions options = options_for(out);
+  options.tell = [&](const std::string& sentence) { told.push_back(sentence); };
+  const auto report = run_on_slurm(plan, options);
+  killer.join();
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  for (const std::string& note : report->notes) MESSAGE(note);
+  CHECK(report->total == 32);
+  CHECK(report->stored == 32);
+  CHECK(report->merged.added == 32);
+  CHECK(told.size() > 1);
+  CHECK(told.at(0) == "job " + report->job + " submitted");
+  const std::string log = read_file(out + "/slurm/log/2.txt").value();
+  CHECK_MESSAGE(log.find("shard 2 of 4", log.find("shard 2 of 4") + 1) != std::string::npos, log);
+  CHECK(rows_when_killed < 8);
+
+  run::RunOptions single = options.run;
+  single.out = folder / "single";
+  single.jobs = 2;
+  const auto summary = run::run(plan, single);
+  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+  CHECK(rows_of(out) == rows_of(folder / "single"));
+
+  // Again: nothing is submitted.
+  const auto again = run_on_slurm(plan, options);
+  REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
+  CHECK(again->job.empty());
+  CHECK(again->stored == 32);
+}
+
+TEST_CASE("a job that cannot work is told with its log, and stays to be continued") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = run::table_plan(2, 2);
+  const Cluster cluster(folder / "cluster");
+  if (!cluster.ready()) {
+    MESSAGE("skipped: ", cluster.said());
+    return;
+  }
+  SlurmOptions options = options_for(folder / "run");
+  options.script.tasks = 2;
+  options.script.program = "/no/such/vlaprobe";
+  const auto report = run_on_slurm(plan, options);
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(report->total == 4);
+  CHECK(report->stored == 0);
+  REQUIRE_FALSE(report->notes.empty());
+  CHECK(report->notes[0].find("No such file or directory") != std::string::npos);
+  options.script.program = VLAPROBE_BINARY_DIR "/vlaprobe";
+  CHECK(run_on_slurm(plan, options)->stored == 4);
+  options.script.sbatch = {"--partition=nowhere"};
+  options.run.out = folder / "other";
+  const auto refused = run_on_slurm(plan, options);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().code == "cluster");
+  CHECK(refused.failure().message.find("partition") != std::string::npos);
+}
+
+TEST_CASE("without --submit the job is written, and needs no Slurm") {
+  run::TemporaryFolder folder;
+  SlurmOptions options = options_for(folder / "run");
+  options.submit = false;
+  const auto report = run_on_slurm(run::table_plan(2, 2), options);
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(report->total == 4);
+  CHECK(fs::exists(report->script));
+  CHECK(fs::exists(folder / "run/slurm/suite.plan"));
+  const auto other = run_on_slurm(run::table_plan(2, 3), options);
+  REQUIRE_FALSE(other.ok());
+  CHECK(other.failure().message.starts_with("was begun with another plan (root "));
+  options.run.policy = "replay:" + (folder / "run");
+  CHECK_FALSE(run_on_slurm(run::table_plan(2, 2), options).ok());
+}
+
+}  // namespace
+}  // namespace probe::cluster

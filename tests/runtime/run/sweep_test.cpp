@@ -1,0 +1,118 @@
+// Checkpoints compared on the original tasks, and the whole suite with the best.
+#include "runtime/run/sweep.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "compiler/emit/compile.h"
+#include "runtime/base/file.h"
+#include "runtime/run/store.h"
+#include "tests/runtime/run/table_plan.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::run {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One original task of the suite and one variant of it.
+plan::Plan two_tasks(const TemporaryFolder& folder) {
+  const std::string path = folder / "two.probe";
+  std::ofstream(path) << "use \"" VLAPROBE_SOURCE_DIR
+                         "/suite/intact.probe\"\n"
+                         "suite two trained on bridge_v2 {\n"
+                         "  tasks { carrot_on_plate, carrot_on_plate_lang_action }; seeds 42\n}\n";
+  const std::string files[] = {path};
+  auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
+                                .suite = "two",
+                                .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
+  REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
+  REQUIRE_FALSE(compiled->plan.empty());
+  auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
+  REQUIRE_MESSAGE(plan.ok(), to_text(plan.failure()));
+  return std::move(*plan);
+}
+
+SweepOptions options_for(const std::string& out) {
+  SweepOptions options;
+  options.run.policy = "noisy:{}";
+  options.run.out = out;
+  options.run.assets = VLAPROBE_SOURCE_DIR "/assets";
+  options.run.episodes = {0, 1};
+  options.run.jobs = 2;
+  options.checkpoints = {"0.2", "0.0", "0"};
+  return options;
+}
+
+TEST_CASE("the best checkpoint on the original tasks runs the whole suite; of equals the first") {
+  TemporaryFolder folder;
+  const plan::Plan plan = two_tasks(folder);
+  SweepOptions options = options_for(folder / "sweep");
+  std::vector<std::string> told;
+  options.tell = [&](const std::string& sentence) { told.push_back(sentence); };
+  const auto swept = sweep(plan, options);
+  REQUIRE_MESSAGE(swept.ok(), to_text(swept.failure()));
+  REQUIRE(swept->scores.size() == 3);
+  CHECK(swept->scores[0].success < 1);
+  CHECK(swept->scores[1].success == 1);
+  CHECK(swept->scores[2].success == 1);
+  CHECK(swept->best == 1);
+  CHECK(swept->scores[1].tasks == 1);
+  CHECK(swept->scores[1].episodes == 2);
+  CHECK(swept->whole.total == 4);
+  CHECK(swept->whole.skipped == 2);
+  CHECK(read_results(folder / "sweep/0.0")->size() == 4);
+  CHECK(read_results(folder / "sweep/0")->size() == 2);
+  CHECK(read_run_record(folder / "sweep/0.2")->identity.policy == "noisy:0.2");
+  CHECK(told.back() == "best: 0.0; now the whole suite");
+  const auto json = nlohmann::json::parse(read_file(folder / "sweep/sweep.json").value());
+  CHECK(json["best"] == "0.0");
+  CHECK(json["checkpoints"].size() == 3);
+  CHECK(json["checkpoints"][2]["folder"] == "0");
+
+  const auto again = sweep(plan, options);
+  REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
+  CHECK(again->best == 1);
+  CHECK(again->whole.done == 0);
+}
+
+TEST_CASE("what cannot be swept is told before anything runs") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 2);
+  const auto refusal = [&](const SweepOptions& options) {
+    const auto swept = sweep(plan, options);
+    REQUIRE_FALSE(swept.ok());
+    CHECK_FALSE(fs::exists(options.run.out));
+    return to_text(swept.failure());
+  };
+  SweepOptions options = options_for(folder / "sweep");
+  options.run.policy = "noisy:0.1";
+  CHECK(refusal(options).starts_with("--policy: `noisy:0.1` has no {} for a checkpoint"));
+  options = options_for(folder / "sweep");
+  options.checkpoints = {"0", "0.1", "0"};
+  CHECK(refusal(options) == "--checkpoints: `0` is named twice");
+  options.checkpoints = {"0", "heavy"};
+  CHECK(refusal(options).find("found `heavy`") != std::string::npos);
+  options.checkpoints = {};
+  CHECK(refusal(options) == "--checkpoints: no checkpoint is named");
+  options = options_for(folder / "sweep");
+  options.run.name = "mine";
+  CHECK(refusal(options).starts_with("--name: `mine` has no {}"));
+}
+
+TEST_CASE(
+    "a checkpoint's folder is its text where that is a name, else tells apart what is alike") {
+  CHECK(checkpoint_folder("step-20000.pt") == "step-20000.pt");
+  const std::string a = checkpoint_folder("/ckpt/a/20000"), b = checkpoint_folder("/ckpt/a_20000");
+  CHECK(a.starts_with("ckpt_a_20000-"));
+  CHECK(b.starts_with("ckpt_a_20000-"));
+  CHECK(a != b);
+  CHECK(checkpoint_folder("..").size() == 8);
+  CHECK(checkpoint_folder(std::string(500, 'x')).size() == 40 + 9);
+}
+
+}  // namespace
+}  // namespace probe::run
