@@ -257,6 +257,21 @@ Status note_missing_videos(const RunOptions& options, const std::set<EpisodeKey>
   return {};
 }
 
+// "openpi://HOST:PORT?profile=a" without the address.
+std::string without_address(const std::string& policy) {
+  const std::size_t scheme = policy.find("://");
+  if (scheme == std::string::npos) return policy;
+  const std::size_t end = std::min(policy.find_first_of("/?", scheme + 3), policy.size());
+  return policy.substr(0, scheme) + policy.substr(end);
+}
+
+// A server may move during a run: its rows keep the name that they began with.
+bool has_only_moved(const RunIdentity& there, const RunIdentity& here) {
+  return !there.policy_content.empty() && there.policy_content == here.policy_content &&
+         there.policy != here.policy &&
+         without_address(there.policy) == without_address(here.policy);
+}
+
 // The folder to write into, by `options.if_changed`; what is written in spite of a change becomes
 // part of `record`.
 Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
@@ -267,8 +282,15 @@ Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
     const std::string dir = copy == 1 ? options.out : base + "-" + std::to_string(copy);
     PROBE_ASSIGN(const auto stored, find_run_record(dir));
     if (!stored) return dir;
-    const RunChanges changes = changes_between(*stored, record);
-    if (!changes.any()) return dir;
+    const bool moved = options.name.empty() && has_only_moved(stored->identity, record.identity);
+    RunRecord here = record;
+    if (moved) here.identity.policy = stored->identity.policy;
+    const RunChanges changes = changes_between(*stored, here);
+    if (!changes.any()) {
+      if (moved) notes.push_back("the rows keep the policy's name `" + here.identity.policy + "`");
+      record = std::move(here);
+      return dir;
+    }
     std::string said;
     for (const std::string& change : {changes.identity, changes.policy_content, changes.build}) {
       if (!change.empty()) said += (said.empty() ? "" : ", and ") + change;
@@ -280,7 +302,7 @@ Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
     const bool may_continue = changes.identity.empty();
     if (options.if_changed == IfChanged::kContinue && may_continue) {
       notes.push_back(dir + " " + said + ": continued all the same");
-      record.identity.policy_content = stored->identity.policy_content;
+      record.identity = stored->identity;
       return dir;
     }
     return Failure{
@@ -295,7 +317,6 @@ Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
 
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   RunOptions options = asked;
-  if (options.name.empty()) options.name = options.policy;
   policy::PolicyTraits traits;
   if (options.own_policy) {
     traits = options.own_policy->traits;
@@ -325,11 +346,13 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
   PROBE_ASSIGN(auto assets, SharedAssets::load(plan, root, tasks_of(selection.jobs)));
   const Fingerprint fingerprint = take_fingerprint(asset_digest(plan));
-  RunRecord record{{to_hex(plan.root()), options.name, traits.content},
-                   selection.suite,
-                   selection.seeds,
-                   fingerprint};
+  RunRecord record{
+      {to_hex(plan.root()), options.name.empty() ? options.policy : options.name, traits.content},
+      selection.suite,
+      selection.seeds,
+      fingerprint};
   PROBE_ASSIGN(options.out, choose_folder(options, record, summary.notes));
+  options.name = record.identity.policy;
   PROBE_ASSIGN(auto store, Store::open(options.out, record, plan.bytes()));
   summary.out = options.out;
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));

@@ -233,6 +233,26 @@ TEST_CASE("shards hold each episode once, and what else is chosen moves none") {
   }
 }
 
+TEST_CASE("a server that moves continues its run, and the rows keep the first name") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  Server server;
+  RunOptions options = server.options(folder / "run", never);
+  options.policy = "served://one:8000?profile=a";
+  options.episodes = {0, 0};
+  must_run(plan, options);
+  options.policy = "served://two:9000?profile=a";
+  options.episodes = std::nullopt;
+  const RunSummary moved = must_run(plan, options);
+  CHECK(moved.skipped == 1);
+  CHECK(moved.notes.back() == "the rows keep the policy's name `served://one:8000?profile=a`");
+  for (const ResultRow& row : *read_results(folder / "run")) {
+    CHECK(row.policy == "served://one:8000?profile=a");
+  }
+  options.policy = "served://two:9000?profile=b";
+  CHECK_FALSE(run(plan, options).ok());
+}
+
 TEST_CASE("rows carry the name that the user gives the policy") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(1, 2);
