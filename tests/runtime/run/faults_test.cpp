@@ -246,7 +246,9 @@ TEST_CASE("a server that moves continues its run, and the rows keep the first na
   const RunSummary moved = must_run(plan, options);
   CHECK(moved.skipped == 1);
   CHECK(moved.notes.back() == "the rows keep the policy's name `served://one:8000?profile=a`");
-  for (const ResultRow& row : *read_results(folder / "run")) {
+  const auto rows = read_results(folder / "run");
+  REQUIRE(rows->size() == 2);
+  for (const ResultRow& row : *rows) {
     CHECK(row.policy == "served://one:8000?profile=a");
   }
   options.policy = "served://two:9000?profile=b";

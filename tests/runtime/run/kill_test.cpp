@@ -1,6 +1,8 @@
-// A run that is killed again and again; tests/kills.sh does the same with a server, 200 times.
+// A run that is killed again and again, and one whose disk is full; tests/kills.sh does the same
+// with a server, 200 times.
 #include <doctest/doctest.h>
 #include <signal.h>
+#include <sys/mount.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -9,6 +11,7 @@
 #include "runtime/policy/policy.h"
 #include "runtime/run/run.h"
 #include "runtime/run/store.h"
+#include "runtime/run/stored_trace.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -60,6 +63,61 @@ TEST_CASE("ten kills at random moments: each episode once, with the undisturbed 
   for (const auto& entry : fs::recursive_directory_iterator(folder / "killed")) {
     CHECK_MESSAGE(entry.path().extension() != ".tmp", entry.path().string());
   }
+}
+
+// A file system of its own, as small as wanted.
+class SmallDisk {
+ public:
+  SmallDisk(const std::string& path, const std::string& size) : path_(path) {
+    fs::create_directories(path);
+    mounted_ = ::mount("none", path.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
+  }
+  ~SmallDisk() {
+    if (mounted_) ::umount(path_.c_str());
+  }
+  bool mounted() const { return mounted_; }
+  void grow(const std::string& size) {
+    CHECK(::mount("none", path_.c_str(), "tmpfs", MS_REMOUNT, ("size=" + size).c_str()) == 0);
+  }
+
+ private:
+  std::string path_;
+  bool mounted_ = false;
+};
+
+TEST_CASE("a full disk ends the run with its reason and loses nothing that was stored") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(24, 20);
+  SmallDisk disk(folder / "disk", "500k");
+  if (!disk.mounted()) {
+    MESSAGE("skipped: only root may mount a small disk");
+    return;
+  }
+  const RunOptions options = options_for(folder / "disk/run");
+  std::size_t stored = 0;
+  for (const char* size : {"500k", "600k", "700k"}) {
+    disk.grow(size);
+    const auto full = run(plan, options);
+    REQUIRE_FALSE(full.ok());
+    CHECK_MESSAGE(full.failure().code == "store", to_text(full.failure()));
+    const auto rows = read_results(options.out);
+    REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
+    CHECK(rows->size() >= stored);
+    stored = rows->size();
+    for (const ResultRow& row : *rows) {
+      CHECK(read_stored_trace(row).ok());
+      CHECK_FALSE(row.invalid);
+    }
+  }
+  CHECK(stored > 0);
+  CHECK(stored < 48);
+  disk.grow("64m");
+  const auto summary = run(plan, options);
+  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+  CHECK(summary->skipped == static_cast<int>(stored));
+  const auto undisturbed = run(plan, options_for(folder / "calm"));
+  REQUIRE_MESSAGE(undisturbed.ok(), to_text(undisturbed.failure()));
+  CHECK(rows_of(options.out) == rows_of(folder / "calm"));
 }
 
 }  // namespace
