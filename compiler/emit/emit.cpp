@@ -244,6 +244,11 @@ class Emitter {
     records().lights.push_back(record);
   }
 
+  std::uint32_t add_photo(const std::optional<sema::Spelled>& overlay, AssetOwner owner) {
+    if (!overlay) return plan::kNone;
+    return assets_.add("scenes/" + overlay->text, plan::AssetKind::kPhoto, overlay->span, owner);
+  }
+
   void add_scene(sema::SceneId id) {
     if (!scenes_.add(id, size32(records().scenes))) return;
     const sema::Scene& scene = model_.scenes[id];
@@ -252,10 +257,8 @@ class Emitter {
     record.name = writer_.text(scene.name);
     record.robot = robots_[scene.robot];
     const AssetOwner owner{AssetOwner::Kind::kScene, static_cast<std::uint32_t>(id)};
-    if (scene.overlay) {
-      record.photo = assets_.add("scenes/" + scene.overlay->text, plan::AssetKind::kPhoto,
-                                 scene.overlay->span, owner);
-    }
+    const std::optional<sema::Spelled>& overlay = scene.views.front().overlay;
+    record.photo = add_photo(overlay, owner);
     if (scene.backdrop) {
       const std::string folder = "scenes/" + scene.backdrop->text + "/";
       const Span& span = scene.backdrop->span;
@@ -264,7 +267,7 @@ class Emitter {
       const std::string photo = assets_.find(folder + "photo", kPhotoExtensions);
       const std::string visual = assets_.find(folder + "visual", kMeshExtensions);
       const bool has_photo = assets_.has(photo);
-      if (has_photo && !scene.overlay) {
+      if (has_photo && !overlay) {
         record.photo = assets_.add(photo, plan::AssetKind::kPhoto, span, owner);
       }
       if (!has_photo || assets_.has(visual)) {
@@ -274,8 +277,7 @@ class Emitter {
     if (scene.fixture) {
       const MeshPair meshes = find_meshes("fixtures/" + scene.fixture->text);
       const Span& span = scene.fixture->span;
-      record.fixture_visual =
-          assets_.add(meshes.visual, plan::AssetKind::kVisualMesh, span, owner);
+      record.fixture_visual = assets_.add(meshes.visual, plan::AssetKind::kVisualMesh, span, owner);
       record.fixture_collision =
           assets_.add(meshes.collision, plan::AssetKind::kCollisionMesh, span, owner);
       record.fixture_position = scene.fixture_position;
@@ -421,12 +423,30 @@ class Emitter {
     return at->second;
   }
 
+  // Tasks of one scene share them.
+  plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene) {
+    const AssetOwner owner{AssetOwner::Kind::kScene, static_cast<std::uint32_t>(scene)};
+    std::vector<plan::ViewRecord> rows;
+    std::vector<std::uint32_t> key;
+    for (const sema::View& view : views) {
+      const std::uint32_t photo =
+          rows.empty() ? records().scenes[scenes_[scene]].photo : add_photo(view.overlay, owner);
+      const plan::ViewRecord& row =
+          rows.emplace_back(writer_.text(view.name), cameras_[view.camera], photo);
+      key.insert(key.end(), {row.name.offset, row.name.length, row.camera, row.photo});
+    }
+    const auto [at, is_new] = views_.try_emplace(std::move(key), plan::Slice{});
+    if (is_new) at->second = plan::append(records().views, std::span<const plan::ViewRecord>(rows));
+    return at->second;
+  }
+
   void add_task(const sema::Task& task) {
     const sema::Scene& scene = model_.scenes[task.scene];
     if (!model_.robots[scene.robot].model || model_.robots[scene.robot].fingers.size() != 2) return;
     for (const ObjectId id : task.objects()) add_object(id);
     add_scene(task.scene);
-    add_camera(camera_of(model_, task));
+    const std::vector<sema::View> views = views_of(model_, task);
+    for (const sema::View& view : views) add_camera(view.camera);
     add_light(light_of(model_, task));
     const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
     auto program = lower::lower_task(model_, task, bodies, diagnostics_);
@@ -437,7 +457,8 @@ class Emitter {
     record.name = writer_.text(task.name);
     record.prompt = writer_.text(task.prompt);
     record.scene = scenes_[task.scene];
-    record.camera = cameras_[camera_of(model_, task)];
+    record.camera = cameras_[views.front().camera];
+    if (has_names(views)) record.views = add_views(views, task.scene);
     record.light = lights_[light_of(model_, task)];
     record.program =
         add_program(std::move(*program), task.horizon, model_.robots[scene.robot].control_hz);
@@ -556,6 +577,7 @@ class Emitter {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
   std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
   std::map<std::vector<double>, plan::Slice> placements_;
+  std::map<std::vector<std::uint32_t>, plan::Slice> views_;
 };
 
 }  // namespace

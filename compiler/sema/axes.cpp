@@ -82,6 +82,23 @@ std::string text_of(const std::optional<Spelled>& value) {
   return value ? value->text : std::string();
 }
 
+std::optional<Spelled> main_photo(const Scene& scene) {
+  return scene.views.empty() ? std::nullopt : scene.views.front().overlay;
+}
+
+// Whether policies get the same pictures under the same names. The photo behind the first is the
+// scene's; alone it needs no name.
+bool same_cameras(const Model& model, const Task& a, const Task& b) {
+  const std::vector<View> here = views_of(model, a), there = views_of(model, b);
+  if (here.size() != there.size()) return false;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    if (!(model.cameras[here[i].camera] == model.cameras[there[i].camera])) return false;
+    if (has_names(here) && here[i].name != there[i].name) return false;
+    if (i > 0 && text_of(here[i].overlay) != text_of(there[i].overlay)) return false;
+  }
+  return has_names(here) == has_names(there);
+}
+
 // Camera and light are axes of their own.
 bool same_scene(const Scene& a, const Scene& b) {
   const auto joints = [](const Scene& scene) {
@@ -92,8 +109,9 @@ bool same_scene(const Scene& a, const Scene& b) {
   return a.robot == b.robot && a.base_position == b.base_position && a.base_turn == b.base_turn &&
          joints(a) == joints(b) && a.surface_z == b.surface_z && a.area == b.area &&
          text_of(a.fixture) == text_of(b.fixture) && a.fixture_position == b.fixture_position &&
-         text_of(a.backdrop) == text_of(b.backdrop) && text_of(a.overlay) == text_of(b.overlay) &&
-         a.physics_hz == b.physics_hz && a.friction == b.friction;
+         text_of(a.backdrop) == text_of(b.backdrop) &&
+         text_of(main_photo(a)) == text_of(main_photo(b)) && a.physics_hz == b.physics_hz &&
+         a.friction == b.friction;
 }
 
 bool same_goal(const Task& a, const Task& b) {
@@ -153,8 +171,7 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
   if (!same_goal(a, b) || !same_layout(layout, model.layouts[b.layout]) ||
       (a.scene != b.scene && !same_scene(model.scenes[a.scene], model.scenes[b.scene])) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
-      !(model.cameras[camera_of(model, a)] == model.cameras[camera_of(model, b)]) ||
-      a.distractors.size() != b.distractors.size())
+      !same_cameras(model, a, b) || a.distractors.size() != b.distractors.size())
     return false;
   // The order of distractors that both have is no difference.
   std::vector<ObjectId> here = a.objects(), there = b.objects();
@@ -183,8 +200,27 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
 
 }  // namespace
 
-CameraId camera_of(const Model& model, const Task& task) {
-  return task.camera != CameraId::kNone ? task.camera : model.scenes[task.scene].camera;
+const View* view_named(const Scene& scene, std::string_view name) {
+  const auto found = std::find_if(scene.views.begin(), scene.views.end(),
+                                  [&](const View& view) { return view.name == name; });
+  return found == scene.views.end() ? nullptr : &*found;
+}
+
+std::vector<View> views_of(const Model& model, const Task& task) {
+  const Scene& scene = model.scenes[task.scene];
+  std::vector<View> views = scene.views;
+  for (const Task::OtherCamera& other : task.cameras) {
+    const View* named = other.as ? view_named(scene, other.as->text) : nullptr;
+    if (views.empty() || (other.as && named == nullptr)) continue;  // reported
+    View& view = views[named == nullptr ? 0 : static_cast<std::size_t>(named - scene.views.data())];
+    view.camera = other.camera;
+    view.is_named = view.is_named || other.as.has_value();
+  }
+  return views;
+}
+
+bool has_names(const std::vector<View>& views) {
+  return views.size() > 1 || (views.size() == 1 && views.front().is_named);
 }
 
 LightId light_of(const Model& model, const Task& task) {
@@ -234,16 +270,12 @@ std::uint32_t axes_between(const Model& model, const Task& task, const Task& bas
   // their own.
   const bool light_counts =
       !scene_moves || task.light != LightId::kNone || baseline.light != LightId::kNone;
-  const bool camera_counts =
-      !scene_moves || task.camera != CameraId::kNone || baseline.camera != CameraId::kNone;
+  const bool camera_counts = !scene_moves || !task.cameras.empty() || !baseline.cameras.empty();
   if (light_counts &&
       !(model.lights[light_of(model, task)] == model.lights[light_of(model, baseline)])) {
     move(plan::Axis::kLight);
   }
-  if (camera_counts &&
-      !(model.cameras[camera_of(model, task)] == model.cameras[camera_of(model, baseline)])) {
-    move(plan::Axis::kCamera);
-  }
+  if (camera_counts && !same_cameras(model, task, baseline)) move(plan::Axis::kCamera);
   if (!same_goal(task, baseline)) move(plan::Axis::kGoal);
   return mask;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/sema/model.h"
@@ -24,7 +25,12 @@ bool uses_action(const Model& model, const Task& task);
 bool uses_paraphrase(const Model& model, const Task& task);
 bool uses_phrase(const Model& model, const Task& task, PhraseAxis axis);
 
-CameraId camera_of(const Model& model, const Task& task);
+// The scene's views with the task's own cameras in their places; the first is the main one.
+std::vector<View> views_of(const Model& model, const Task& task);
+// Whether the plan keeps their names: a scene's only camera has its own, unless `as` gave one.
+bool has_names(const std::vector<View>& views);
+// Null when there is none.
+const View* view_named(const Scene& scene, std::string_view name);
 LightId light_of(const Model& model, const Task& task);
 
 }  // namespace probe::sema

@@ -213,14 +213,21 @@ struct StartCheck {
     return nullptr;
   }
 
-  // One warning for the task, of the object that is the farthest out.
+  // One warning for the task, of the object that is the farthest out of every camera that does not
+  // move.
   void frame() const {
     const Scene& scene = context.model.scenes[task.scene];
-    const CameraId id = camera_of(context.model, task);
-    if (id == CameraId::kNone) return;
-    const Camera& camera = context.model.cameras[id];
-    const auto view = View::of(context.model, scene, camera);
-    if (!view) return;
+    std::vector<Frustum> fixed;
+    const Camera* first = nullptr;
+    for (const View& view : views_of(context.model, task)) {
+      const Camera& camera = context.model.cameras[view.camera];
+      const auto frustum = Frustum::of(context.model, scene, camera);
+      if (!frustum) continue;
+      if (fixed.empty()) first = &camera;
+      fixed.push_back(*frustum);
+    }
+    if (fixed.empty()) return;
+    const Camera& camera = *first;
     constexpr double kBehind = 1e9;  // px
     double most = 0;
     std::size_t bad = 0, all = 0, episode = 0;
@@ -228,7 +235,9 @@ struct StartCheck {
     for (std::size_t e = 0; e < task.starts.size(); ++e) {
       for (const Start::Placed& placed : task.starts[e].placed) {
         ++all;
-        const double out = std::min(kBehind, view->outside(object(placed), placed).value_or(1e10));
+        double out = kBehind;
+        for (const Frustum& frustum : fixed)
+          out = std::min(out, frustum.outside(object(placed), placed).value_or(1e10));
         if (out < 1) continue;  // part of a pixel is no loss
         ++bad;
         if (out <= most) continue;
@@ -371,7 +380,7 @@ std::vector<double> starts_key(const Task& task) {
 
 struct StartCache {
   const std::vector<Start>* starts = nullptr;
-  std::set<std::pair<SceneId, CameraId>> fine_in;  // where nothing is wrong with them
+  std::set<std::pair<SceneId, std::vector<CameraId>>> fine_in;  // where nothing is wrong with them
 };
 
 }  // namespace
@@ -428,7 +437,8 @@ void check_starts(Context& context) {
                       factors(task.starts) + ", not " + std::to_string(*layout.expect))
           .label(task.layout_span, "used here");
     }
-    const std::pair where{task.scene, camera_of(context.model, task)};
+    std::pair where{task.scene, std::vector<CameraId>()};
+    for (const View& view : views_of(context.model, task)) where.second.push_back(view.camera);
     if (cache.fine_in.contains(where)) {
       fine[index] = true;
       continue;

@@ -20,7 +20,7 @@ Quat looking_along(const std::array<double, 4>& direction) {
 
 }  // namespace
 
-std::optional<View> View::of(const Model& model, const Scene& scene, const Camera& camera) {
+std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const Camera& camera) {
   if (scene.robot == RobotId::kNone || camera.mount_robot != scene.robot || camera.broken)
     return std::nullopt;
   const Robot& robot = model.robots[scene.robot];
@@ -38,7 +38,7 @@ std::optional<View> View::of(const Model& model, const Scene& scene, const Camer
   Pose aim = pose_of(camera.position, {1, 0, 0, 0});
   const auto& a = camera.aim_values;
   aim.rotation = camera.aim == plan::CameraAim::kLook ? looking_along(a) : pose_of({}, a).rotation;
-  View view;
+  Frustum view;
   view.camera_ = &camera;
   view.surface_z_ = scene.surface_z;
   view.from_world_ =
@@ -46,7 +46,7 @@ std::optional<View> View::of(const Model& model, const Scene& scene, const Camer
   return view;
 }
 
-std::optional<double> View::outside(const Object& object, const Start::Placed& placed) const {
+std::optional<double> Frustum::outside(const Object& object, const Start::Placed& placed) const {
   const Quat turn = pose_of({}, placed.turn.rotation).rotation;
   std::array<Vec3, 8> corners;
   double lowest = 1e9;

@@ -10,10 +10,10 @@
 
 namespace probe::sema {
 
-class View {
+class Frustum {
  public:
   // Nothing when the camera moves with the arm or its robot is not known.
-  static std::optional<View> of(const Model& model, const Scene& scene, const Camera& camera);
+  static std::optional<Frustum> of(const Model& model, const Scene& scene, const Camera& camera);
 
   // How far the farthest corner lies outside the image (px) when more than half of them do, else 0;
   // nothing when a corner is behind the camera. Half may be cut off: the box of a round object has

@@ -150,6 +150,15 @@ struct Light {
   bool operator==(const Light& other) const;
 };
 
+// A camera under the name that policies know: it stays when a variant puts another in its place.
+struct View {
+  std::string name;
+  Span span;
+  CameraId camera = CameraId::kNone;
+  std::optional<Spelled> overlay;  // a photo behind its picture
+  bool is_named = false;           // by `as`; else the name is that of the scene's camera
+};
+
 struct Scene {
   std::string name;
   Span span;
@@ -165,8 +174,7 @@ struct Scene {
   std::optional<Spelled> fixture;
   std::array<double, 3> fixture_position{};
   std::optional<Spelled> backdrop;
-  CameraId camera = CameraId::kNone;
-  std::optional<Spelled> overlay;
+  std::vector<View> views;  // the first is what a policy with one picture sees
   LightId light = LightId::kNone;
   double physics_hz = 0;
   Span physics_span;
@@ -273,8 +281,12 @@ struct Task {
   SceneId scene = SceneId::kNone;
   LayoutId layout = LayoutId::kNone;
   MetricsId metrics = MetricsId::kNone;
-  LightId light = LightId::kNone;     // overrides the scene's
-  CameraId camera = CameraId::kNone;  // overrides the scene's
+  LightId light = LightId::kNone;  // overrides the scene's
+  struct OtherCamera {
+    CameraId camera = CameraId::kNone;
+    std::optional<Spelled> as;  // the scene's view it takes the place of; else the first
+  };
+  std::vector<OtherCamera> cameras;  // in place of the scene's; a later one wins
   ObjectId source = ObjectId::kNone, target = ObjectId::kNone;
   std::vector<ObjectId> distractors;
   TemplateId say = TemplateId::kNone;

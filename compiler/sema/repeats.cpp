@@ -45,9 +45,12 @@ struct KeyOf {
   Key operator()(const syntax::ExpectEpisodesStmt&) const { return "expect"; }
   // Tasks and suites.
   Key operator()(const syntax::FieldStmt& stmt) const {
-    static constexpr const char* kWords[] = {"scene",   "layout", "source", "target",
-                                             "metrics", "light",  "camera"};
+    static constexpr const char* kWords[] = {"scene",  "layout",  "source",
+                                             "target", "metrics", "light"};
     return kWords[static_cast<std::size_t>(stmt.field)];
+  }
+  Key operator()(const syntax::TaskCameraStmt& stmt) const {
+    return stmt.as ? named("camera as", *stmt.as) : "camera";
   }
   Key operator()(const syntax::DistractorsStmt&) const { return "distractors"; }
   Key operator()(const syntax::SayStmt&) const { return "say"; }

@@ -450,10 +450,36 @@ struct SceneReader {
   }
   void operator()(const syntax::BackdropStmt& stmt) { scene.backdrop = spelled(stmt.mesh); }
   void operator()(const syntax::SceneCameraStmt& stmt) {
-    const auto camera = context.symbols.cameras.find(stmt.camera, context.diagnostics);
-    if (camera) scene.camera = static_cast<CameraId>(*camera);
-    scene.overlay.reset();
-    if (stmt.overlay) scene.overlay = spelled(*stmt.overlay);
+    scene.views.clear();
+    for (const syntax::SceneCamera& written : stmt.cameras) {
+      const auto camera = context.symbols.cameras.find(written.camera, context.diagnostics);
+      if (!camera) continue;
+      View view;
+      const syntax::Name& name = written.as ? *written.as : written.camera;
+      view.name = std::string(name.text);
+      view.span = name.span;
+      view.camera = static_cast<CameraId>(*camera);
+      view.is_named = written.as.has_value();
+      if (written.overlay) view.overlay = spelled(*written.overlay);
+      add_view(std::move(view));
+    }
+    if (scene.views.size() > plan::kMaxViews) {
+      context.report(Code::P0304, stmt.span,
+                     "expected at most " + std::to_string(plan::kMaxViews) +
+                         " cameras in a scene, found " + std::to_string(scene.views.size()));
+    }
+  }
+  void add_view(View view) {
+    for (const View& known : scene.views) {
+      if (known.name != view.name) continue;
+      context
+          .report(Code::P0203, view.span,
+                  "two cameras of scene `" + scene.name + "` are called `" + view.name + "`")
+          .label(known.span, "first called so here")
+          .help("`as NAME` gives a camera another name in its scene");
+      return;
+    }
+    scene.views.push_back(std::move(view));
   }
   void operator()(const syntax::UseLightStmt& stmt) {
     const auto light = context.symbols.lights.find(stmt.light, context.diagnostics);
@@ -557,8 +583,7 @@ void define_scenes(Context& context) {
       if (scene.joints_span.is_none()) missing(context, "scene", scene.name, scene.span, "joints");
       if (scene.area[0] == scene.area[2])
         missing(context, "scene", scene.name, scene.span, "surface");
-      if (scene.camera == CameraId::kNone)
-        missing(context, "scene", scene.name, scene.span, "camera");
+      if (scene.views.empty()) missing(context, "scene", scene.name, scene.span, "camera");
       if (scene.light == LightId::kNone) missing(context, "scene", scene.name, scene.span, "light");
       if (scene.physics_hz == 0) missing(context, "scene", scene.name, scene.span, "physics");
       const bool has_robot =

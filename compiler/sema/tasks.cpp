@@ -58,9 +58,14 @@ struct TaskReader {
         return field(task.metrics, symbols.metrics, stmt.value);
       case syntax::TaskField::kLight:
         return field(task.light, symbols.lights, stmt.value);
-      case syntax::TaskField::kCamera:
-        return field(task.camera, symbols.cameras, stmt.value);
     }
+  }
+  void operator()(const syntax::TaskCameraStmt& stmt) {
+    Task::OtherCamera other;
+    field(other.camera, context.symbols.cameras, stmt.camera);
+    if (other.camera == CameraId::kNone) return;
+    if (stmt.as) other.as = spelled(*stmt.as);
+    task.cameras.push_back(std::move(other));
   }
   void operator()(const syntax::DistractorsStmt& stmt) {
     task.distractors.clear();
@@ -148,9 +153,16 @@ bool has_broken_part(const Model& model, const Task& task) {
     return id != decltype(id)::kNone && table[id].broken;
   };
   if (is_broken(model.layouts, task.layout) || is_broken(model.metrics, task.metrics) ||
-      is_broken(model.templates, task.say) || is_broken(model.cameras, task.camera))
+      is_broken(model.templates, task.say))
     return true;
-  if (task.scene != SceneId::kNone && is_broken(model.cameras, camera_of(model, task))) return true;
+  for (const Task::OtherCamera& other : task.cameras) {
+    if (is_broken(model.cameras, other.camera)) return true;
+  }
+  if (task.scene != SceneId::kNone) {
+    for (const View& view : model.scenes[task.scene].views) {
+      if (is_broken(model.cameras, view.camera)) return true;
+    }
+  }
   const std::vector<ObjectId> objects = task.objects();
   return std::any_of(objects.begin(), objects.end(),
                      [&](ObjectId id) { return is_broken(model.objects, id); });
@@ -170,17 +182,28 @@ void check_roles(Context& context, const Task& task, bool& poisoned) {
   }
 }
 
-// The camera moves with a link, so that link must be in the scene.
-void check_camera(Context& context, const Task& task, bool& poisoned) {
+// What a task's camera takes the place of must be there, and a camera moves with a link, so that
+// link must be in the scene.
+void check_cameras(Context& context, const Task& task, bool& poisoned) {
   const Scene& scene = context.model.scenes[task.scene];
-  const Camera& camera = context.model.cameras[camera_of(context.model, task)];
-  if (camera.mount_robot == scene.robot) return;
-  context
-      .report(Code::P0201, task.span,
-              "camera `" + camera.name + "` of `" + task.name +
-                  "` is mounted on a robot that is not in scene `" + scene.name + "`")
-      .label(camera.mount_link.span, "this link");
-  poisoned = true;
+  for (const Task::OtherCamera& other : task.cameras) {
+    if (!other.as || view_named(scene, other.as->text) != nullptr) continue;
+    std::vector<std::string_view> names;
+    for (const View& view : scene.views) names.push_back(view.name);
+    report_unknown(context.diagnostics, "view", {other.as->span, other.as->text}, names)
+        .label(scene.span, "the scene of `" + task.name + "`");
+    poisoned = true;
+  }
+  for (const View& view : views_of(context.model, task)) {
+    const Camera& camera = context.model.cameras[view.camera];
+    if (camera.mount_robot == scene.robot) continue;
+    context
+        .report(Code::P0201, task.span,
+                "camera `" + camera.name + "` of `" + task.name +
+                    "` is mounted on a robot that is not in scene `" + scene.name + "`")
+        .label(camera.mount_link.span, "this link");
+    poisoned = true;
+  }
 }
 
 std::string missing_statements(const Task& task) {
@@ -302,7 +325,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   if (task.scene != SceneId::kNone) poisoned = poisoned || !model.scenes[task.scene].complete;
   task.complete = missing.empty() && !poisoned;
   if (task.complete) check_roles(context_, task, poisoned);
-  if (task.complete) check_camera(context_, task, poisoned);
+  if (task.complete) check_cameras(context_, task, poisoned);
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
   task.complete = task.complete && !poisoned;
   poison_[index] = poisoned;

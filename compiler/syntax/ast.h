@@ -497,10 +497,14 @@ struct BackdropStmt {  // a mesh that is seen and not touched
   Span span;
   Text mesh;
 };
+struct SceneCamera {  // `third_view as outside overlay "photo.png"`
+  Name camera;
+  std::optional<Name> as;  // what policies call it; else the camera's name
+  std::optional<Text> overlay;
+};
 struct SceneCameraStmt {
   Span span;
-  Name camera;
-  std::optional<Text> overlay;
+  std::vector<SceneCamera> cameras;
 };
 struct UseLightStmt {
   Span span;
@@ -605,19 +609,17 @@ struct MetricsDecl {
 // ---- tasks, variants, suites
 // ----------------------------------------------------------------------------------------
 
-enum class TaskField : std::uint8_t {
-  kScene,
-  kLayout,
-  kSource,
-  kTarget,
-  kMetrics,
-  kLight,
-  kCamera
-};
+enum class TaskField : std::uint8_t { kScene, kLayout, kSource, kTarget, kMetrics, kLight };
 struct FieldStmt {  // `scene table`
   Span span;
   TaskField field = TaskField::kScene;
   Name value;
+};
+struct TaskCameraStmt {  // `camera near_wrist as wrist`: in place of the scene's camera of that
+                         // name
+  Span span;
+  Name camera;
+  std::optional<Name> as;  // else in place of the first
 };
 struct DistractorsStmt {  // `none` is the empty list
   Span span;
@@ -641,8 +643,8 @@ struct HorizonStmt {
   Span span;
   Int steps;
 };
-using TaskStmt =
-    std::variant<FieldStmt, DistractorsStmt, SayStmt, ReferStmt, PoseStmt, HorizonStmt, MetricStmt>;
+using TaskStmt = std::variant<FieldStmt, TaskCameraStmt, DistractorsStmt, SayStmt, ReferStmt,
+                              PoseStmt, HorizonStmt, MetricStmt>;
 
 struct TaskDecl {
   bool abstract = false;

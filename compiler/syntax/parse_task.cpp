@@ -10,8 +10,7 @@ struct FieldWord {
 };
 constexpr FieldWord kFields[] = {{"scene", TaskField::kScene},     {"layout", TaskField::kLayout},
                                  {"source", TaskField::kSource},   {"target", TaskField::kTarget},
-                                 {"metrics", TaskField::kMetrics}, {"light", TaskField::kLight},
-                                 {"camera", TaskField::kCamera}};
+                                 {"metrics", TaskField::kMetrics}, {"light", TaskField::kLight}};
 
 struct CondWord {
   std::string_view word;
@@ -81,6 +80,11 @@ void Parser::task_statement(std::vector<TaskStmt>& body) {
     return false;
   };
   if (field()) {
+  } else if (accept_word("camera")) {
+    TaskCameraStmt camera;
+    camera.camera = name();
+    camera.as = optional_name_after("as");
+    stmt = camera;
   } else if (accept_word("distractors")) {
     DistractorsStmt distractors;
     distractors.objects = names();

@@ -353,10 +353,15 @@ void Parser::scene_statement(std::vector<SceneStmt>& body) {
   } else if (accept_word("backdrop")) {
     stmt = BackdropStmt{{}, string()};
   } else if (accept_word("camera")) {
-    SceneCameraStmt camera;
-    camera.camera = name();
-    if (accept_word("overlay")) camera.overlay = string();
-    stmt = std::move(camera);
+    SceneCameraStmt seen;
+    seen.cameras = comma_list([this] {
+      SceneCamera camera;
+      camera.camera = name();
+      camera.as = optional_name_after("as");
+      if (accept_word("overlay")) camera.overlay = string();
+      return camera;
+    });
+    stmt = std::move(seen);
   } else if (accept_word("light")) {
     stmt = UseLightStmt{{}, name()};
   } else if (accept_word("physics")) {

@@ -56,6 +56,8 @@ void add_replay(CLI::App& app, int& exit) {
   verb->add_option("--png", arguments->options.png, "write the picture at --step");
   verb->add_option("--step", arguments->options.png_step,
                    "control step of --png, 0 is the first picture");
+  verb->add_option("--camera", arguments->options.camera,
+                   "of several cameras, the one to show (default: all, side by side)");
   add_asset_option(*verb, arguments->assets);
   refuse_empty_values(*verb);
   verb->callback([arguments, &exit] { exit = replay_verb(*arguments); });

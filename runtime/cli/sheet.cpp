@@ -18,6 +18,11 @@ struct Arguments {
   AssetOptions assets;
 };
 
+void add_camera_option(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("--camera", arguments.options.camera,
+                  "of several cameras, the one to show (default: all, side by side)");
+}
+
 int written(const Status& status, const std::string& path) {
   if (!status) return report(status.failure());
   fmt::print("{}\n", path);
@@ -36,6 +41,7 @@ void add_sheet(CLI::App& app, int& exit) {
   verb->add_option("--tasks", arguments->options.tasks, "glob over task names");
   verb->add_option("--columns", arguments->options.columns, "episodes in a row")
       ->check(CLI::Range(1, 64));
+  add_camera_option(*verb, *arguments);
   add_asset_option(*verb, arguments->assets);
   refuse_empty_values(*verb);
   verb->callback([arguments, &exit] {
@@ -57,6 +63,7 @@ void add_preview(CLI::App& app, int& exit) {
   verb->add_option("-o,--out", arguments->out, "PNG to write")->required();
   verb->add_option("--columns", arguments->options.columns, "starts in a row")
       ->check(CLI::Range(1, 64));
+  add_camera_option(*verb, *arguments);
   add_asset_option(*verb, arguments->assets);
   refuse_empty_values(*verb);
   verb->callback([arguments, &exit] {
@@ -69,7 +76,7 @@ void add_preview(CLI::App& app, int& exit) {
     arguments->options.assets = arguments->assets.root;
     if (arguments->start) {
       exit = written(run::write_start(*loaded.plan, *task, *arguments->start, arguments->out,
-                                      arguments->options.assets),
+                                      arguments->options.assets, arguments->options.camera),
                      arguments->out);
       return;
     }

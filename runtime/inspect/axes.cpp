@@ -111,21 +111,23 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   move(plan::Axis::kLayout, !same_layout(plan, a, b, same_distractors));
   // Scenes, cameras and lights are compared by content: as the starts of a task without objects.
   plan::IdHasher hasher(plan.tables());
-  const auto content = [&hasher](std::uint32_t scene, std::uint32_t camera, std::uint32_t light) {
+  const auto content = [&hasher](std::uint32_t scene, const plan::TaskRecord& cameras,
+                                 std::uint32_t light) {
     plan::TaskRecord task;
     task.scene = scene;
-    task.camera = camera;
+    task.camera = cameras.camera;
+    task.views = cameras.views;
     task.light = light;
     return hasher.start(task, {});
   };
-  const Sha256 ours = content(a.scene, a.camera, a.light);
-  const bool scene_moves = ours != content(b.scene, a.camera, a.light);
+  const Sha256 ours = content(a.scene, a, a.light);
+  const bool scene_moves = ours != content(b.scene, a, a.light);
   move(plan::Axis::kScene, scene_moves);
   // Another scene comes with its own camera and light; whether one was chosen on top of that is
   // not in the records.
   if (!scene_moves) {
-    move(plan::Axis::kLight, ours != content(a.scene, a.camera, b.light));
-    move(plan::Axis::kCamera, ours != content(a.scene, b.camera, a.light));
+    move(plan::Axis::kLight, ours != content(a.scene, a, b.light));
+    move(plan::Axis::kCamera, ours != content(a.scene, b, a.light));
   }
   move(plan::Axis::kGoal, !same_goal(plan, a, b));
   return found;

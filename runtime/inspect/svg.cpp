@@ -129,7 +129,7 @@ class Page {
     put("<g clip-path=\"url(#plot)\">\n");
     table();
     reach();
-    image();
+    images();
     for (const Role role : {Role::kTarget, Role::kDistractor, Role::kSource}) footprints(role);
     cells();
     markers();
@@ -208,11 +208,13 @@ class Page {
         circle(view_.reach_max), inner, kReach);
   }
 
-  void image() {
-    if (view_.image.empty()) return;
-    put("<polygon points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" "
-        "stroke-dasharray=\"8 5\"/>\n",
-        points(view_.image), kCamera);
+  void images() {
+    for (const TopCamera& camera : view_.cameras) {
+      if (camera.image.empty()) continue;
+      put("<polygon points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" "
+          "stroke-dasharray=\"8 5\"/>\n",
+          points(camera.image), kCamera);
+    }
   }
 
   void cells() {
@@ -259,7 +261,7 @@ class Page {
     put("<path d=\"M{} {}L{} {}\" stroke=\"{}\" stroke-width=\"3\"/>\n", px(x(view_.base.x)),
         px(y(view_.base.y)), px(x(view_.base.x) + 24 * cos), px(y(view_.base.y) - 24 * sin), kInk);
     base_mark(x(view_.base.x), y(view_.base.y));
-    eye_mark(x(view_.eye.x), y(view_.eye.y));
+    for (const TopCamera& camera : view_.cameras) eye_mark(x(camera.eye.x), y(camera.eye.y));
   }
   void base_mark(double at_x, double at_y) {
     put("<circle cx=\"{}\" cy=\"{}\" r=\"9\" fill=\"{}\"/>\n", px(at_x), px(at_y), kInk);
@@ -329,14 +331,17 @@ class Page {
     stroke("h24", " stroke-width=\"1.5\"", kReach);
     say(fmt::format("reach of {}: {} to {} cm from its base; shaded: outside", view_.robot,
                     cm(view_.reach_min), cm(view_.reach_max)));
-    if (!view_.image.empty()) {
+    for (const TopCamera& camera : view_.cameras) {
+      if (camera.image.empty()) continue;
       stroke("h24", " stroke-width=\"1.5\" stroke-dasharray=\"8 5\"", kCamera);
-      say(fmt::format("what {} sees of the table's plane", view_.camera));
+      say(fmt::format("what {} sees of the table's plane", camera.name));
     }
     base_mark(left + 12, line - 5);
     say("base of the robot, turned as it stands");
-    eye_mark(left + 12, line - 5);
-    say(fmt::format("camera {}", view_.camera));
+    for (const TopCamera& camera : view_.cameras) {
+      eye_mark(left + 12, line - 5);
+      say(fmt::format("camera {}", camera.name));
+    }
     line += 4;
     for (const std::string& part : wrapped("Every different way in which an object stands is drawn "
                                            "once; point at it for its starts.",

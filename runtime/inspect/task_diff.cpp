@@ -26,7 +26,10 @@ Json side(const plan::Plan& plan, const plan::TaskRecord& task) {
   json["baseline"] =
       task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
   json["scene"] = plan.text(plan.scenes()[task.scene].name);
-  json["camera"] = plan.text(plan.cameras()[task.camera].name);
+  std::string cameras;
+  for (const plan::ViewRecord& view : plan.views(task))
+    cameras.append(cameras.empty() ? "" : ", ").append(plan.text(plan.cameras()[view.camera].name));
+  json["camera"] = cameras;
   json["light"] = plan.text(plan.lights()[task.light].name);
   json["horizon"] = task.horizon;
   json["metrics"] = Json::array();

@@ -137,6 +137,11 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   json["starts"] = Json::array();
   json["scene"] = plan.text(plan.scenes()[task.scene].name);
   json["camera"] = plan.text(plan.cameras()[task.camera].name);
+  json["cameras"] = Json::array();
+  for (const plan::ViewRecord& view : plan.views(task)) {
+    json["cameras"].push_back(
+        {{"name", plan.text(view.name)}, {"camera", plan.text(plan.cameras()[view.camera].name)}});
+  }
   json["light"] = plan.text(plan.lights()[task.light].name);
   json["ood"] = Json::array();
   for (std::size_t i = 0; i < kNovelty.size(); ++i) {
@@ -247,7 +252,12 @@ std::string describe_text(const Json& task) {
   line("unseen", joined(task["ood"], "nothing"));
   line("categories", joined(task["categories"], "none"));
   word("scene");
-  word("camera");
+  std::string cameras;
+  for (const Json& view : task["cameras"]) {
+    const auto name = view["name"].get<std::string>(), camera = view["camera"].get<std::string>();
+    cameras += (cameras.empty() ? "" : ", ") + (name == camera ? name : camera + " as " + name);
+  }
+  line(task["cameras"].size() == 1 ? "camera" : "cameras", cameras);
   word("light");
   line("layout",
        fmt::format("{} starts, dropped from {} cm, settled for {} s", task["starts"].size(),

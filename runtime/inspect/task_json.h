@@ -21,8 +21,10 @@ Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
 // An array of {task, baseline, axes[], categories[], prompt, episodes}.
 Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
 // One task: the same and {source, target, distractors[], horizon, metrics[], starts[][], scene,
-// camera, light, ood[], drop_m, settle_s, allow, distances_m[], ids{prompt, judge, starts[],
-// episodes[]}}. A distance is from source to target, horizontal, in the order of the starts.
+// camera, cameras[]{name, camera}, light, ood[], drop_m, settle_s, allow, distances_m[],
+// ids{prompt, judge, starts[], episodes[]}}. `camera` is the first of `cameras`, whose `name` is
+// what policies know it by. A distance is from source to target, horizontal, in the order of the
+// starts.
 Json describe(const plan::Plan& plan, std::uint32_t task);
 
 // A line a task: name, episodes, instruction; at most 100 columns.

@@ -71,6 +71,26 @@ void add_starts(const plan::Plan& plan, const plan::TaskRecord& task, TopView& v
   view.cells.erase(std::unique(view.cells.begin(), view.cells.end()), view.cells.end());
 }
 
+Pinhole pinhole_of(const plan::CameraRecord& camera, const Pose& mount) {
+  const auto& aim = camera.aim_values;
+  Mat3 axes;
+  if (camera.aim == static_cast<std::uint32_t>(plan::CameraAim::kLook)) {
+    const Vec3 forward = Vec3(aim[0], aim[1], aim[2]).normalized();
+    const Vec3 left = Vec3::UnitZ().cross(forward).normalized();
+    axes << forward, left, forward.cross(left);
+  } else {
+    axes = to_quat(aim).normalized().toRotationMatrix();
+  }
+  return Pinhole{mount.apply(to_vec(camera.position)),
+                 mount.rotation.toRotationMatrix() * axes,
+                 static_cast<double>(camera.width),
+                 static_cast<double>(camera.height),
+                 camera.fx,
+                 camera.fy,
+                 camera.cx,
+                 camera.cy};
+}
+
 Status check_urdf(const plan::AssetRecord& asset, const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -79,12 +99,11 @@ Status check_urdf(const plan::AssetRecord& asset, const std::string& path) {
   return Failure{"asset", "has other bytes than when the plan was built", path};
 }
 
-// The camera as it stands when the robot is in its initial position.
-Result<Pinhole> camera_of(const plan::Plan& plan, const plan::TaskRecord& task,
-                          const std::string& asset_root) {
+// The cameras as they stand when the robot is in its initial position.
+Result<std::vector<Pinhole>> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task,
+                                        const std::string& asset_root) {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const plan::RobotRecord& record = plan.robots()[scene.robot];
-  const plan::CameraRecord& camera = plan.cameras()[task.camera];
   const plan::AssetRecord& urdf = plan.assets()[record.urdf];
   const std::string path = asset_root + "/" + std::string(plan.text(urdf.path));
   PROBE_TRY(check_urdf(urdf, path));
@@ -95,32 +114,20 @@ Result<Pinhole> camera_of(const plan::Plan& plan, const plan::TaskRecord& task,
   PROBE_ASSIGN(const robot::Tree tree, robot::Tree::create(model, joints));
   std::vector<Pose> links(tree.link_count());
   tree.link_poses(plan.joints(scene), links);
-  const std::string mount(plan.text(camera.mount_link));
-  const int link = model.find_link(mount);
-  if (link < 0) {
-    return Failure{
-        "urdf", "no link `" + mount + "` for camera `" + std::string(plan.text(camera.name)) + "`",
-        path};
-  }
   const Pose base{to_vec(scene.base_position), to_quat(scene.base_rotation)};
-  const Pose pose = base * links[static_cast<std::size_t>(link)];
-  const auto& aim = camera.aim_values;
-  Mat3 axes;
-  if (camera.aim == static_cast<std::uint32_t>(plan::CameraAim::kLook)) {
-    const Vec3 forward = Vec3(aim[0], aim[1], aim[2]).normalized();
-    const Vec3 left = Vec3::UnitZ().cross(forward).normalized();
-    axes << forward, left, forward.cross(left);
-  } else {
-    axes = to_quat(aim).normalized().toRotationMatrix();
+  std::vector<Pinhole> cameras;
+  for (const plan::ViewRecord& view : plan.views(task)) {
+    const plan::CameraRecord& camera = plan.cameras()[view.camera];
+    const std::string mount(plan.text(camera.mount_link));
+    const int link = model.find_link(mount);
+    if (link < 0) {
+      return Failure{
+          "urdf",
+          "no link `" + mount + "` for camera `" + std::string(plan.text(camera.name)) + "`", path};
+    }
+    cameras.push_back(pinhole_of(camera, base * links[static_cast<std::size_t>(link)]));
   }
-  return Pinhole{pose.apply(to_vec(camera.position)),
-                 pose.rotation.toRotationMatrix() * axes,
-                 static_cast<double>(camera.width),
-                 static_cast<double>(camera.height),
-                 camera.fx,
-                 camera.fy,
-                 camera.cx,
-                 camera.cy};
+  return cameras;
 }
 
 }  // namespace
@@ -173,11 +180,15 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
   view.base_yaw_deg = yaw_deg(to_quat(scene.base_rotation));
   view.reach_min = robot.reach_min;
   view.reach_max = robot.reach_max;
-  view.camera = plan.text(plan.cameras()[task.camera].name);
-  PROBE_ASSIGN(const Pinhole camera, camera_of(plan, task, asset_root));
-  view.eye = {camera.eye.x(), camera.eye.y()};
-  for (const Vec3& corner : frame_on_plane(camera, scene.surface_z, kFar))
-    view.image.push_back({corner.x(), corner.y()});
+  PROBE_ASSIGN(const std::vector<Pinhole> cameras, cameras_of(plan, task, asset_root));
+  const auto names = plan.views(task);
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    TopCamera& camera = view.cameras.emplace_back();
+    camera.name = plan.text(plan.cameras()[names[i].camera].name);
+    camera.eye = {cameras[i].eye.x(), cameras[i].eye.y()};
+    for (const Vec3& corner : frame_on_plane(cameras[i], scene.surface_z, kFar))
+      camera.image.push_back({corner.x(), corner.y()});
+  }
   return view;
 }
 

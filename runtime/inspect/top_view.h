@@ -1,6 +1,6 @@
 // A task seen from above, as data: where things may stand, what the robot reaches and what the
-// camera sees of the table. Metres in world, x and y. Needs no simulator and no meshes; of the
-// assets it reads only the URDF, for the link that carries the camera.
+// cameras see of the table. Metres in world, x and y. Needs no simulator and no meshes; of the
+// assets it reads only the URDF, for the links that carry the cameras.
 #pragma once
 
 #include <array>
@@ -30,6 +30,13 @@ struct Footprint {
   std::vector<std::uint32_t> starts;
 };
 
+// As it stands when the robot is in its initial position.
+struct TopCamera {
+  std::string name;
+  Point eye;
+  std::vector<Point> image;  // the picture's frame on the surface; empty: it shows none of it
+};
+
 struct TopView {
   std::string task, prompt;
   std::size_t starts = 0;
@@ -40,9 +47,8 @@ struct TopView {
   Point base;
   double base_yaw_deg = 0;
   double reach_min = 0, reach_max = 0;
-  std::string robot, camera;
-  Point eye;
-  std::vector<Point> image;  // the picture's frame on the surface; empty: it shows none of it
+  std::string robot;
+  std::vector<TopCamera> cameras;  // in the scene's order
 };
 
 // `asset_root` as the plan's paths are relative to. Fails (code "asset") when the URDF is not the

@@ -40,6 +40,7 @@ enum class Section : std::uint32_t {
   kEpisodes = 20,    // EpisodeRecord
   kSets = 21,        // SetRecord: named categories of tasks
   kSuites = 22,      // SuiteRecord
+  kViews = 23,       // ViewRecord: the cameras of tasks that have several
   kSpans = 100,      // SpanRecord, ignorable
   kTexts = 101,      // TextRecord, ignorable; the bytes of texts stand in kTextBytes
   kTextBytes = 102,  // source text, ignorable
@@ -283,9 +284,20 @@ struct TaskRecord {
   double drop = 0;    // m above the surface; placements contain it
   double settle = 0;  // s, per phase of the drop
   std::array<std::uint8_t, 32> judge_id{};
-  std::uint64_t zero2[7] = {};
+  Slice views;  // kViews, the first shows `camera`; empty: that camera alone, under its own name
+  std::uint64_t zero2[6] = {};
 };
 static_assert(sizeof(TaskRecord) == 192);
+
+// A camera as a policy knows it: the name stays when a variant puts another camera in its place.
+struct ViewRecord {
+  StringRef name;
+  std::uint32_t camera = kNone;  // kCameras
+  std::uint32_t photo = kNone;   // kAssets; behind this camera's picture
+};
+static_assert(sizeof(ViewRecord) == 16);
+
+inline constexpr std::uint32_t kMaxViews = 16;
 
 enum class Axis : std::uint32_t {
   kObjectSource = 1u << 0,

@@ -130,6 +130,18 @@ Sha256 IdHasher::camera(std::uint32_t index) {
   return *known;
 }
 
+// A task with one camera is known by that camera alone. Among several, a policy tells them apart by
+// name, so names count.
+Sha256 IdHasher::cameras(const TaskRecord& task) {
+  if (task.views.count == 0) return camera(task.camera);
+  Hasher h = tagged("vlaprobe.cameras.1");
+  h.u32(task.views.count);
+  for (const ViewRecord& view : slice_of(tables_.views, task.views)) {
+    h.text(tables_.text(view.name)).hash(camera(view.camera)).hash(asset(view.photo));
+  }
+  return h.finish();
+}
+
 Sha256 IdHasher::light(std::uint32_t index) {
   std::optional<Sha256>& known = lights_[index];
   if (known) return *known;
@@ -152,7 +164,7 @@ Sha256 IdHasher::judge(const TaskRecord& task) {
 
 Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
   Hasher h = tagged("vlaprobe.start.1");
-  h.hash(scene(task.scene)).hash(camera(task.camera)).hash(light(task.light));
+  h.hash(scene(task.scene)).hash(cameras(task)).hash(light(task.light));
   h.f64(task.drop).f64(task.settle).u32(episode.placements.count);
   for (const PlacementRecord& p : slice_of(tables_.placements, episode.placements)) {
     h.hash(object(p.object)).f64s(p.position).f64s(p.rotation);
@@ -169,7 +181,7 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
   drop.f64(task.drop).f64(task.settle);
   std::vector<StartPart> parts = {{"robot", robot(tables_.robots[s.robot])},
                                   {"scene", surroundings.finish()},
-                                  {"camera", camera(task.camera)},
+                                  {"camera", cameras(task)},
                                   {"light", light(task.light)},
                                   {"drop", drop.finish()}};
   std::uint32_t number = 0;

@@ -149,6 +149,12 @@ std::span<const std::uint32_t> Plan::seeds(const SuiteRecord& s) const {
   return slice_of(tables_.list, s.seeds);
 }
 
+std::vector<ViewRecord> Plan::views(const TaskRecord& t) const {
+  const auto stored = slice_of(tables_.views, t.views);
+  if (!stored.empty()) return {stored.begin(), stored.end()};
+  return {{tables_.cameras[t.camera].name, t.camera, tables_.scenes[t.scene].photo}};
+}
+
 std::optional<std::uint32_t> Plan::find_task(std::string_view name) const {
   if (const auto found = find_name(tables_, tables_.tasks, name)) return found;
   for (const SuiteRecord& suite : suites()) {

@@ -70,6 +70,8 @@ class Plan {
   std::span<const std::uint32_t> members(const SetRecord& set) const;      // indices of tasks()
   std::span<const std::uint32_t> members(const SuiteRecord& suite) const;  // indices of tasks()
   std::span<const std::uint32_t> seeds(const SuiteRecord& suite) const;
+  // Every camera of the task, at least one, the first first: also where the plan stores no views.
+  std::vector<ViewRecord> views(const TaskRecord& task) const;
 
   // Index of the task called `name`, or called so after the prefix of some suite
   // ("widowx_carrot_on_plate").

@@ -28,6 +28,7 @@ constexpr std::array kSections = {
     SectionInfo{Section::kEpisodes, "EPIS", sizeof(EpisodeRecord), false},
     SectionInfo{Section::kSets, "SETS", sizeof(SetRecord), false},
     SectionInfo{Section::kSuites, "SUIT", sizeof(SuiteRecord), false},
+    SectionInfo{Section::kViews, "VIEW", sizeof(ViewRecord), false},
     SectionInfo{Section::kSpans, "SPAN", sizeof(SpanRecord), true},
     SectionInfo{Section::kTexts, "TEXT", sizeof(TextRecord), true},
     SectionInfo{Section::kTextBytes, "TXTB", 1, true},

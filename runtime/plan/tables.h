@@ -33,6 +33,7 @@ struct Tables {
   std::span<const EpisodeRecord> episodes;
   std::span<const SetRecord> sets;
   std::span<const SuiteRecord> suites;
+  std::span<const ViewRecord> views;
   std::span<const SpanRecord> spans;
   std::span<const TextRecord> texts;
   std::string_view text_bytes;
@@ -92,6 +93,7 @@ void for_each_table(AnyTables& t, Visit&& visit) {
   visit(Section::kEpisodes, t.episodes);
   visit(Section::kSets, t.sets);
   visit(Section::kSuites, t.suites);
+  visit(Section::kViews, t.views);
   visit(Section::kSpans, t.spans);
   visit(Section::kTexts, t.texts);
   visit(Section::kTextBytes, t.text_bytes);

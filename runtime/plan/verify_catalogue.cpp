@@ -1,4 +1,5 @@
-// Stage 2, first half: assets, objects, robots, cameras, lights, scenes.
+// Stage 2, first half: assets, objects, robots, cameras, lights, scenes,
+// views.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,6 +39,7 @@ class CatalogueCheck : FieldCheck {
     for (const SunRecord& record : t.suns) PROBE_TRY(sun(record));
     for (const LightRecord& record : t.lights) PROBE_TRY(light(record));
     for (const SceneRecord& record : t.scenes) PROBE_TRY(scene(record));
+    for (const ViewRecord& record : t.views) PROBE_TRY(view(record));
     return check_unique_names(t.objects, "objects");
   }
 
@@ -224,6 +226,12 @@ class CatalogueCheck : FieldCheck {
     }
     PROBE_TRY(check_not_negative(s.friction, "a friction"));
     return check_zero(s.zero2);
+  }
+
+  Status view(const ViewRecord& v) const {
+    PROBE_TRY(check_word(v.name, "the name of a camera in its scene"));
+    PROBE_TRY(check_index(v.camera, t.cameras.size(), "CAMR"));
+    return check_asset(v.photo, AssetKind::kPhoto, true);
   }
 };
 

@@ -131,6 +131,7 @@ class TaskCheck : FieldCheck {
     std::uint64_t episodes = 0;
     for (std::uint32_t i = 0; i < t.tasks.size(); ++i) {
       PROBE_TRY(task(t.tasks[i]));
+      PROBE_TRY(task_views(t.tasks[i]));
       PROBE_TRY(task_bodies(t.tasks[i]));
       PROBE_TRY(task_episodes(i));
       episodes += t.tasks[i].episodes.count;
@@ -171,6 +172,31 @@ class TaskCheck : FieldCheck {
       return fail(Rule::kSettle, &k.settle,
                   fmt::format("a settling time is at most {} s, not {}", kMaxSettle, k.settle));
     return check_zero(k.zero2);
+  }
+
+  Status task_views(const TaskRecord& k) const {
+    PROBE_TRY(check_slice(k.views, t.views.size(), "VIEW"));
+    if (k.views.count == 0) return {};
+    if (k.views.count > kMaxViews) {
+      return fail(Rule::kViewCount, &k.views,
+                  fmt::format("a task has at most {} cameras, not {}", kMaxViews, k.views.count));
+    }
+    const auto views = slice_of(t.views, k.views);
+    if (views[0].camera != k.camera || views[0].photo != t.scenes[k.scene].photo) {
+      return fail(
+          Rule::kViewFirst, &k.views,
+          fmt::format("the first camera of task `{}` is not its own before its scene's photo",
+                      t.text(k.name)));
+    }
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (t.text(views[i].name) != t.text(views[j].name)) continue;
+        return fail(Rule::kViewName, &k.views,
+                    fmt::format("two cameras of task `{}` are called `{}`", t.text(k.name),
+                                t.text(views[i].name)));
+      }
+    }
+    return {};
   }
 
   // Source, target, distractors, surface, fixture, fingers, other links: the order the judge's code

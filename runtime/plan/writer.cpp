@@ -56,7 +56,7 @@ std::uint32_t to_u32(std::size_t size) {
 
 }  // namespace
 
-Tables Records::views() const {
+Tables Records::tables() const {
   Tables out;
   out.strings = strings;
   out.list = list;
@@ -80,6 +80,7 @@ Tables Records::views() const {
   out.episodes = episodes;
   out.sets = sets;
   out.suites = suites;
+  out.views = views;
   out.spans = spans;
   out.texts = texts;
   out.text_bytes = text_bytes;
@@ -112,7 +113,7 @@ std::uint32_t Writer::source(std::string_view path, std::string_view bytes) {
 }
 
 void Writer::fill_ids() {
-  const Tables tables = records.views();
+  const Tables tables = records.tables();
   for (ProgramRecord& program : records.programs)
     program.hash = program_hash(tables, program).bytes;
   IdHasher ids(tables);
@@ -125,7 +126,7 @@ void Writer::fill_ids() {
 }
 
 std::vector<std::byte> Writer::lay_out() const {
-  const Tables tables = records.views();
+  const Tables tables = records.tables();
   std::vector<Part> parts;
   for_each_table(tables, [&](Section kind, const auto& table) {
     if (table.empty()) return;  // a section without records is left out

@@ -41,11 +41,12 @@ struct Records {
   std::vector<EpisodeRecord> episodes;
   std::vector<SetRecord> sets;
   std::vector<SuiteRecord> suites;
+  std::vector<ViewRecord> views;
   std::vector<SpanRecord> spans;
   std::vector<TextRecord> texts;  // only through Writer::source
   std::string text_bytes;
 
-  Tables views() const;  // valid until the next change
+  Tables tables() const;  // valid until the next change
 };
 
 class Writer {

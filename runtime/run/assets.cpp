@@ -112,7 +112,9 @@ class SharedAssets::Loader {
       if (visual != plan::kNone) PROBE_TRY(mesh(visual));
     }
     if (scene.fixture_collision != plan::kNone) PROBE_TRY(shape(scene.fixture_collision));
-    if (scene.photo != plan::kNone) PROBE_TRY(photo(scene.photo));
+    for (const plan::ViewRecord& view : plan_.views(task)) {
+      if (view.photo != plan::kNone) PROBE_TRY(photo(view.photo));
+    }
     for (const plan::BodyRecord& body : plan_.bodies(task)) {
       if (body.kind != static_cast<std::uint32_t>(plan::BodyKind::kObject)) continue;
       const plan::ObjectRecord& object = plan_.objects()[body.index];

@@ -17,13 +17,14 @@ namespace {
 constexpr std::array<std::uint8_t, 3> kGood = {110, 230, 120}, kBad = {255, 150, 110};
 
 Result<Picture> draw(SceneView& view, std::span<const double> q, const vm::StepSample& sample,
-                     std::size_t objects, int width) {
+                     std::size_t objects, const SheetOptions& options) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < std::min(objects, sample.bodies.size()); ++i) {
     poses.push_back({sample.bodies[i].origin, sample.bodies[i].rotation});
   }
-  PROBE_ASSIGN(const render::FrameView frame, view.render(q, poses));
-  return shrink_frame(frame.width, frame.height, frame.rgb, width);
+  PROBE_ASSIGN(const auto frames, view.render_all(q, poses));
+  PROBE_ASSIGN(const Picture shown, show_frames(frames, options.camera));
+  return shrink_to(shown, options.cell_width);
 }
 
 std::string caption(const ResultRow& row) {
@@ -75,12 +76,11 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
     GridCell cell;
     cell.caption = caption(row);
     cell.color = succeeded(row) ? kGood : kBad;
-    PROBE_ASSIGN(Picture first,
-                 draw(*view, trace.start->q, trace.start->sample, objects, options.cell_width));
+    PROBE_ASSIGN(Picture first, draw(*view, trace.start->q, trace.start->sample, objects, options));
     cell.pictures.assign(2, std::move(first));
     if (!trace.steps.empty()) {
       const TraceStep& last = trace.steps.back();
-      PROBE_ASSIGN(cell.pictures[1], draw(*view, last.q, last.sample, objects, options.cell_width));
+      PROBE_ASSIGN(cell.pictures[1], draw(*view, last.q, last.sample, objects, options));
     }
     cells.push_back(std::move(cell));
   }

@@ -24,6 +24,18 @@ struct Outcome {
   std::optional<Failure> broken;
 };
 
+// Of what the policy sees: a picture's bytes; of several pictures, the hash of their hashes.
+Sha256 hash_of(std::span<const CameraFrame> frames) {
+  if (frames.size() == 1) return sha256(std::as_bytes(frames[0].frame.rgb));
+  Hasher all;
+  for (const CameraFrame& seen : frames) all.hash(sha256(std::as_bytes(seen.frame.rgb)));
+  return all.finish();
+}
+
+policy::Image image_of(const render::FrameView& frame) {
+  return {frame.width, frame.height, frame.rgb};
+}
+
 class Loop {
  public:
   Loop(TaskStage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
@@ -56,6 +68,20 @@ class Loop {
     return outcome;
   }
 
+  // After run(), however it went: the policy hears of it and says what left for a server.
+  void leave(const Outcome& outcome) {
+    if (!policy_begun_) return;
+    policy::EpisodeEnd end{!outcome.invalid && !outcome.broken, false, row_.steps};
+    for (const MetricValue& metric : row_.metrics) {
+      if (metric.name == "success") end.success = end.completed && metric.value != 0;
+    }
+    policy_.end(end);
+    if (const auto delivery = policy_.delivery()) {
+      row_.sent_prompt_sha256 = delivery->prompt_sha256;
+      row_.sent_image_sha256 = delivery->image_sha256;
+    }
+  }
+
  private:
   Outcome begin() {
     EpisodeWorld& world = stage_.world();
@@ -79,6 +105,7 @@ class Loop {
     first.horizon = static_cast<int>(task_.horizon);
     first.robot_urdf = world.urdf_path();
     first.tcp_link = world.tcp_link();
+    policy_begun_ = true;
     if (auto begun = policy_.begin(first); !begun) return {reason("policy", begun.failure()), {}};
     return {};
   }
@@ -87,20 +114,23 @@ class Loop {
     EpisodeWorld& world = stage_.world();
     TraceStep record;
     auto clock = Clock::now();
-    const auto frame = stage_.view().render(world.q(), world.objects());
-    if (!frame) return {reason("picture", frame.failure()), {}};
-    record.image_hash = sha256(std::as_bytes(frame->rgb));
+    const auto frames = stage_.view().render_all(world.q(), world.objects());
+    if (!frames) return {reason("picture", frames.failure()), {}};
+    record.image_hash = hash_of(*frames);
     record.prompt_hash = prompt_hash_;
     record.render_s = seconds_since(clock);
     if (number == 0) row_.image_sha256 = to_hex(record.image_hash);
     if (frames_ != nullptr) {
-      if (auto shown = frames_->frame(*frame, number, row_.metrics); !shown)
+      if (auto shown = frames_->frame(*frames, number, row_.metrics); !shown)
         return {{}, shown.failure()};
     }
 
     clock = Clock::now();
     policy::Observation observation;
-    observation.image = {frame->width, frame->height, frame->rgb};
+    images_.clear();
+    for (const CameraFrame& seen : *frames) images_.push_back({seen.camera, image_of(seen.frame)});
+    observation.image = images_.front().image;
+    observation.cameras = images_;
     observation.prompt = prompt_;
     observation.proprioception = world.proprioception();
     observation.privileged = &world.privileged();
@@ -134,9 +164,9 @@ class Loop {
   }
 
   Outcome last_frame(int number) {
-    const auto frame = stage_.view().render(stage_.world().q(), stage_.world().objects());
-    if (!frame) return {reason("picture", frame.failure()), {}};
-    if (auto shown = frames_->frame(*frame, number, row_.metrics); !shown)
+    const auto frames = stage_.view().render_all(stage_.world().q(), stage_.world().objects());
+    if (!frames) return {reason("picture", frames.failure()), {}};
+    if (auto shown = frames_->frame(*frames, number, row_.metrics); !shown)
       return {{}, shown.failure()};
     return {};
   }
@@ -149,7 +179,9 @@ class Loop {
   policy::Policy& policy_;
   TraceWriter& trace_;
   FrameSink* frames_;
+  std::vector<policy::CameraImage> images_;  // of the observation in hand
   ResultRow& row_;
+  bool policy_begun_ = false;
   std::string_view prompt_;
   Sha256 prompt_hash_;
   Hasher frames_hash_;
@@ -158,13 +190,19 @@ class Loop {
 // Adapters catch what libraries throw; this is for what they missed, so that one episode cannot end
 // a run of thousands.
 Outcome run_guarded(Loop& loop, int steps) {
+  Outcome outcome;
   try {
-    return loop.run(steps);
+    outcome = loop.run(steps);
   } catch (const std::exception& error) {
-    return {std::string("exception: ") + error.what(), {}};
+    outcome = {std::string("exception: ") + error.what(), {}};
   } catch (...) {
-    return {"exception of unknown type", {}};
+    outcome = {"exception of unknown type", {}};
   }
+  try {
+    loop.leave(outcome);
+  } catch (...) {  // the episode is over; the policy's next begin() starts anew
+  }
+  return outcome;
 }
 
 }  // namespace

@@ -40,11 +40,12 @@ struct EpisodeJob {
   bool operator==(const EpisodeJob&) const = default;
 };
 
-// Watches the pictures of an episode: the horizon's observations and the one after the last step.
+// Watches the pictures of an episode, every camera's: the horizon's observations and the one after
+// the last step.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  virtual Status frame(const render::FrameView& frame, int step,
+  virtual Status frame(std::span<const CameraFrame> frames, int step,
                        std::span<const MetricValue> metrics) = 0;
 };
 

@@ -3,13 +3,16 @@
 
 #include <cmath>
 
+#include "runtime/run/picture_grid.h"
+
 namespace probe::run {
 
-EpisodeVideo::EpisodeVideo(const TraceHeader& header, std::string path)
+EpisodeVideo::EpisodeVideo(const TraceHeader& header, std::string path, std::string camera)
     : file_(std::move(path)),
       instruction_(header.prompt),
       caption_(header.task + "  episode " + std::to_string(header.episode) + "  seed " +
                std::to_string(header.seed) + "  " + header.policy),
+      camera_(std::move(camera)),
       horizon_(static_cast<int>(header.horizon)),
       frames_per_second_(std::max(1, static_cast<int>(std::lround(header.control_hz)))) {}
 
@@ -17,13 +20,19 @@ EpisodeVideo::~EpisodeVideo() {
   if (writer_) static_cast<void>(discard());
 }
 
-Status EpisodeVideo::frame(const render::FrameView& frame, int step,
+Status EpisodeVideo::frame(std::span<const CameraFrame> frames, int step,
                            std::span<const MetricValue> metrics) {
+  PROBE_ASSIGN(Picture picture, show_frames(frames, camera_));
+  if (picture.width % 2 != 0 || picture.height % 2 != 0) {  // the encoder takes even sides
+    Picture even = make_picture(picture.width + picture.width % 2,
+                                picture.height + picture.height % 2, {0, 0, 0});
+    paste(even, picture, 0, 0);
+    picture = std::move(even);
+  }
   if (!writer_) {
-    PROBE_ASSIGN(writer_, VideoWriter::create(file_.temporary(), frame.width, frame.height,
+    PROBE_ASSIGN(writer_, VideoWriter::create(file_.temporary(), picture.width, picture.height,
                                               frames_per_second_));
   }
-  Picture picture = copy_picture(frame.width, frame.height, frame.rgb);
   draw_overlay(picture, {instruction_, caption_, step, horizon_, metrics});
   return writer_->add(picture.rgb);
 }

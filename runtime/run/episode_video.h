@@ -1,4 +1,5 @@
-// A video of one episode as it runs, with its words; whole under its final name or absent.
+// A video of one episode as it runs, with its words, several cameras side by side; whole under its
+// final name or absent.
 #pragma once
 
 #include <memory>
@@ -14,16 +15,17 @@ namespace probe::run {
 class EpisodeVideo final : public FrameSink {
  public:
   // The file is begun with the first frame; `path`'s folder is there.
-  EpisodeVideo(const TraceHeader& header, std::string path);
+  // `camera`: that one alone.
+  EpisodeVideo(const TraceHeader& header, std::string path, std::string camera = {});
   ~EpisodeVideo() override;
-  Status frame(const render::FrameView& frame, int step,
+  Status frame(std::span<const CameraFrame> frames, int step,
                std::span<const MetricValue> metrics) override;
   Status finish();
   Status discard();
 
  private:
   PendingFile file_;
-  std::string instruction_, caption_;
+  std::string instruction_, caption_, camera_;
   int horizon_ = 0, frames_per_second_ = 5;
   std::unique_ptr<VideoWriter> writer_;
 };

@@ -96,9 +96,13 @@ Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
                          std::string(plan.text(plan.tasks()[row.task].name)) + "`",
                      ""};
     }
-    PROBE_ASSIGN(const render::FrameView frame, view->render(world->q(), world->objects()));
-    const auto square = square_round(frame, static_cast<std::uint16_t>(*body + 1));
-    if (square) paste(sheet, crop(frame, *square), kMargin, y);
+    // In the first camera's picture that shows it.
+    PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
+    std::optional<Square> square;
+    for (std::size_t i = 0; i < frames.size() && !square; ++i) {
+      square = square_round(frames[i].frame, static_cast<std::uint16_t>(*body + 1));
+      if (square) paste(sheet, crop(frames[i].frame, *square), kMargin, y);
+    }
     const int x = kCrop + 2 * kMargin;
     draw_text(sheet, x, y + kCrop / 2 - 20, fit_text(row.words, kWordsWidth, 2), kWords, 2);
     draw_text(sheet, x, y + kCrop / 2 + 6,

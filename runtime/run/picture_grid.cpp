@@ -32,10 +32,37 @@ Picture lay_out_grid(const std::vector<GridCell>& cells, int columns) {
   return sheet;
 }
 
-Picture shrink_frame(int width, int height, std::span<const std::uint8_t> rgb, int cell_width) {
-  cell_width = std::clamp(cell_width, 1, width);
-  return shrink(copy_picture(width, height, rgb), cell_width,
-                std::max(1, cell_width * height / width));
+Picture shrink_to(const Picture& picture, int cell_width) {
+  cell_width = std::clamp(cell_width, 1, picture.width);
+  return shrink(picture, cell_width, std::max(1, cell_width * picture.height / picture.width));
+}
+
+Picture join_frames(std::span<const CameraFrame> frames) {
+  PROBE_CHECK(!frames.empty(), "a task has a camera");
+  constexpr int kGap = 2;
+  int width = -kGap, height = 0;
+  for (const CameraFrame& seen : frames) {
+    width += kGap + seen.frame.width;
+    height = std::max(height, seen.frame.height);
+  }
+  Picture all = make_picture(width, height, {0, 0, 0});
+  int x = 0;
+  for (const CameraFrame& seen : frames) {
+    paste(all, copy_picture(seen.frame.width, seen.frame.height, seen.frame.rgb), x, 0);
+    x += seen.frame.width + kGap;
+  }
+  return all;
+}
+
+Result<Picture> show_frames(std::span<const CameraFrame> frames, const std::string& camera) {
+  if (camera.empty()) return join_frames(frames);
+  std::string names;
+  for (const CameraFrame& seen : frames) {
+    if (seen.camera == camera)
+      return copy_picture(seen.frame.width, seen.frame.height, seen.frame.rgb);
+    names.append(names.empty() ? "`" : ", `").append(seen.camera).append("`");
+  }
+  return Failure{"usage", "the task has no camera `" + camera + "`, it has " + names, "--camera"};
 }
 
 }  // namespace probe::run

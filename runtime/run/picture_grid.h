@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "runtime/base/result.h"
 #include "runtime/run/overlay.h"
+#include "runtime/run/scene_view.h"
 
 namespace probe::run {
 
@@ -18,7 +21,12 @@ struct GridCell {
 // `cells` is not empty.
 Picture lay_out_grid(const std::vector<GridCell>& cells, int columns);
 
-// A frame as wide as a cell's picture.
-Picture shrink_frame(int width, int height, std::span<const std::uint8_t> rgb, int cell_width);
+// A picture as wide as a cell's.
+Picture shrink_to(const Picture& picture, int cell_width);
+
+// What people are shown of the cameras of a task: their pictures side by side, or the one called
+// `camera` if that is not empty.
+Picture join_frames(std::span<const CameraFrame> frames);
+Result<Picture> show_frames(std::span<const CameraFrame> frames, const std::string& camera);
 
 }  // namespace probe::run

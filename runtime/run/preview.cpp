@@ -19,9 +19,10 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
   std::vector<GridCell> cells;
   for (std::uint32_t index = 0; index < plan.episodes(record).size(); ++index) {
     PROBE_TRY(world->reset(index));
-    PROBE_ASSIGN(const render::FrameView frame, view->render(world->q(), world->objects()));
+    PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
+    PROBE_ASSIGN(const Picture shown, show_frames(frames, options.camera));
     GridCell cell;
-    cell.pictures.push_back(shrink_frame(frame.width, frame.height, frame.rgb, options.cell_width));
+    cell.pictures.push_back(shrink_to(shown, options.cell_width));
     cell.caption = std::to_string(index);
     if (index == 0) cell.caption.append("  ").append(plan.text(record.prompt));
     cells.push_back(std::move(cell));
@@ -34,7 +35,8 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
 }
 
 Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t index,
-                   const std::string& png_path, const std::string& assets_folder) {
+                   const std::string& png_path, const std::string& assets_folder,
+                   const std::string& camera) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const std::size_t count = plan.episodes(record).size();
   if (index >= count) {
@@ -49,8 +51,9 @@ Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t ind
   PROBE_ASSIGN(auto world, EpisodeWorld::create(plan, task, assets));
   PROBE_ASSIGN(auto view, SceneView::create(plan, task, assets));
   PROBE_TRY(world->reset(index));
-  PROBE_ASSIGN(const render::FrameView frame, view->render(world->q(), world->objects()));
-  return scene::write_png(png_path, frame.width, frame.height, frame.rgb);
+  PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
+  PROBE_ASSIGN(const Picture shown, show_frames(frames, camera));
+  return scene::write_png(png_path, shown.width, shown.height, shown.rgb);
 }
 
 }  // namespace probe::run

@@ -15,8 +15,10 @@ namespace probe::run {
 Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::string& png_path,
                      const SheetOptions& options = {});
 
-// One start's first picture in the camera's own size, as a policy gets it.
+// One start's first picture in the camera's own size, as a policy gets it. `camera` as in
+// ReplayOptions.
 Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t index,
-                   const std::string& png_path, const std::string& assets = {});
+                   const std::string& png_path, const std::string& assets = {},
+                   const std::string& camera = {});
 
 }  // namespace probe::run

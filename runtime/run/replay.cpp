@@ -6,6 +6,7 @@
 #include "runtime/run/episode.h"
 #include "runtime/run/episode_video.h"
 #include "runtime/run/fingerprint.h"
+#include "runtime/run/picture_grid.h"
 #include "runtime/run/recorded.h"
 #include "runtime/run/store.h"
 #include "runtime/run/trace_compare.h"
@@ -30,14 +31,15 @@ class TraceActions final : public policy::Policy {
 class ReplayPictures final : public FrameSink {
  public:
   ReplayPictures(const TraceHeader& header, const ReplayOptions& options) : options_(options) {
-    if (!options.video.empty()) video_.emplace(header, options.video);
+    if (!options.video.empty()) video_.emplace(header, options.video, options.camera);
   }
-  Status frame(const render::FrameView& frame, int step,
+  Status frame(std::span<const CameraFrame> frames, int step,
                std::span<const MetricValue> metrics) override {
     if (!options_.png.empty() && step == options_.png_step) {
-      PROBE_TRY(scene::write_png(options_.png, frame.width, frame.height, frame.rgb));
+      PROBE_ASSIGN(const Picture picture, show_frames(frames, options_.camera));
+      PROBE_TRY(scene::write_png(options_.png, picture.width, picture.height, picture.rgb));
     }
-    return video_ ? video_->frame(frame, step, metrics) : Status();
+    return video_ ? video_->frame(frames, step, metrics) : Status();
   }
   Status finish() { return video_ ? video_->finish() : Status(); }
 

@@ -15,6 +15,7 @@ struct ReplayOptions {
   std::string video;    // path of an mp4 to write; empty: none
   std::string png;      // path of a picture to write; empty: none
   int png_step = 0;     // the observation at this step: 0 is the first, the trace's length the last
+  std::string camera;   // of several, the one that is shown; empty: all, side by side
   std::string assets;   // asset root, see find_asset_root
 };
 
@@ -35,6 +36,7 @@ struct SheetOptions {
   std::string tasks = "*";  // glob over task names
   int columns = 6;
   int cell_width = 213;  // pixels of one picture; a cell shows the first and the last
+  std::string camera;    // as in ReplayOptions
   std::string assets;
 };
 

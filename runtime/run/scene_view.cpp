@@ -150,31 +150,46 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
     view->visual_links_.push_back(visual.link);
   }
 
-  const plan::CameraRecord& camera = plan.cameras()[task.camera];
-  const std::string mount_name(plan.text(camera.mount_link));
-  const int mount = parts->model.find_link(mount_name);
-  const std::string where = "camera `" + std::string(plan.text(camera.name)) + "`";
-  if (mount < 0) return Failure{"render", "the robot has no link `" + mount_name + "`", where};
-  if (!is_fixed(parts->model, mount)) view->moving_mount_ = mount;
-  view->tree_.link_poses(plan.joints(scene), view->links_);
-  const Pose mount_pose = view->base_ * view->links_[static_cast<std::size_t>(mount)];
-  PROBE_ASSIGN(view->on_mount_, make_camera(plan, camera));
-  resize(view->on_mount_, size);
-  spec.camera = carried(view->on_mount_, mount_pose);
-  spec.samples = camera.samples == 0 ? 1 : camera.samples == 4 ? 2 : 4;  // a side
   const plan::LightRecord& light = plan.lights()[task.light];
   spec.lights = make_lights(plan, light);
   spec.occlusion_rays = static_cast<int>(light.occlusion);
-  // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
-  if (scene.photo != plan::kNone && view->moving_mount_ < 0) {
-    spec.photo = assets->photo(scene.photo);
+  for (const plan::ViewRecord& record : plan.views(task)) {
+    PROBE_ASSIGN(Eye eye, view->open_eye(plan, scene, record, spec, size));
+    view->eyes_.push_back(std::move(eye));
   }
-  PROBE_ASSIGN(view->renderer_, render::Renderer::create(std::move(spec)));
   return view;
 }
 
-// Fills links_ and poses_; returns the camera, which matters where it moves.
-render::Camera SceneView::place(std::span<const double> q, std::span<const Pose> objects) {
+// `seen` is the scene as every camera sees it.
+Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
+                                           const plan::ViewRecord& record,
+                                           const render::SceneSpec& seen, ImageSize size) {
+  const robot::RobotModel& model = assets_->robot(plan.robots()[scene.robot].urdf)->model;
+  const plan::CameraRecord& camera = plan.cameras()[record.camera];
+  Eye eye;
+  eye.name = std::string(plan.text(record.name));
+  const std::string mount_name(plan.text(camera.mount_link));
+  const int mount = model.find_link(mount_name);
+  const std::string where = "camera `" + std::string(plan.text(camera.name)) + "`";
+  if (mount < 0) return Failure{"render", "the robot has no link `" + mount_name + "`", where};
+  if (!is_fixed(model, mount)) eye.moving_mount = mount;
+  tree_.link_poses(plan.joints(scene), links_);
+  const Pose mount_pose = base_ * links_[static_cast<std::size_t>(mount)];
+  PROBE_ASSIGN(eye.on_mount, make_camera(plan, camera));
+  resize(eye.on_mount, size);
+  render::SceneSpec spec = seen;
+  spec.camera = carried(eye.on_mount, mount_pose);
+  spec.samples = camera.samples == 0 ? 1 : camera.samples == 4 ? 2 : 4;  // a side
+  // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
+  if (record.photo != plan::kNone && eye.moving_mount < 0) {
+    spec.photo = assets_->photo(record.photo);
+  }
+  PROBE_ASSIGN(eye.renderer, render::Renderer::create(std::move(spec)));
+  return eye;
+}
+
+// Fills links_ and poses_.
+void SceneView::place(std::span<const double> q, std::span<const Pose> objects) {
   PROBE_CHECK(objects.size() == objects_ && q.size() == tree_.joint_count(),
               "one pose an object and one position a driven joint");
   tree_.link_poses(q, links_);
@@ -182,22 +197,38 @@ render::Camera SceneView::place(std::span<const double> q, std::span<const Pose>
   for (const int link : visual_links_) {
     poses_.push_back(base_ * links_[static_cast<std::size_t>(link)]);
   }
-  if (moving_mount_ < 0) return on_mount_;
-  return carried(on_mount_, base_ * links_[static_cast<std::size_t>(moving_mount_)]);
+}
+
+Result<render::FrameView> SceneView::look(Eye& eye, bool full) {
+  if (eye.moving_mount >= 0) {
+    const Pose mount = base_ * links_[static_cast<std::size_t>(eye.moving_mount)];
+    return eye.renderer->render_from(carried(eye.on_mount, mount), poses_);
+  }
+  return full ? eye.renderer->render_full(poses_) : eye.renderer->render(poses_);
 }
 
 Result<render::FrameView> SceneView::render(std::span<const double> q,
-                                            std::span<const Pose> objects) {
-  const render::Camera camera = place(q, objects);
-  if (moving_mount_ >= 0) return renderer_->render_from(camera, poses_);
-  return renderer_->render(poses_);
+                                            std::span<const Pose> objects, std::size_t camera) {
+  place(q, objects);
+  return look(eyes_[camera], false);
+}
+
+Result<std::span<const CameraFrame>> SceneView::render_all(std::span<const double> q,
+                                                           std::span<const Pose> objects) {
+  place(q, objects);
+  frames_.clear();
+  for (Eye& eye : eyes_) {
+    PROBE_ASSIGN(const render::FrameView frame, look(eye, false));
+    frames_.push_back({eye.name, frame});
+  }
+  return std::span<const CameraFrame>(frames_);
 }
 
 Result<render::FrameView> SceneView::render_full(std::span<const double> q,
-                                                 std::span<const Pose> objects) {
-  const render::Camera camera = place(q, objects);
-  if (moving_mount_ >= 0) return renderer_->render_from(camera, poses_);
-  return renderer_->render_full(poses_);
+                                                 std::span<const Pose> objects,
+                                                 std::size_t camera) {
+  place(q, objects);
+  return look(eyes_[camera], true);
 }
 
 }  // namespace probe::run

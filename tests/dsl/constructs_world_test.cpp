@@ -179,6 +179,79 @@ TEST_CASE("camera, camera_st: a copy with another image is another camera") {
   CHECK(built.task("v").axes == static_cast<std::uint32_t>(plan::Axis::kCamera));
 }
 
+TEST_CASE("view: a scene's cameras have names that stay when a task puts another camera there") {
+  write_text(asset_root() + "/scenes/photo.png", "photo");
+  const Built built(
+      "camera near like eye { lens 20px, 21px, 64px, 48px }\n"
+      "camera hand like eye { mount arm.wrist at (1cm, 2cm, 3cm) quat (0, 1, 0, 0) }\n"
+      "camera low_hand like hand { mount arm.wrist at (1cm, 2cm, 1cm) quat (0, 1, 0, 0) }\n"
+      "scene seen like bench { camera eye, hand as wrist, near overlay \"photo.png\" }\n"
+      "scene again like seen {}\n"
+      "task t like red_on_tray { scene seen }\n"
+      "variant all of red_on_tray { scene seen }\n"
+      "variant words of t { say take }\n"
+      "variant first of t { camera near }\n"
+      "variant by_name of t { camera low_hand as wrist }\n"
+      "variant both of by_name { camera near }\n"
+      "variant back of both { camera eye as eye }\n"
+      "variant named of red_on_tray { camera near as eye }\n");
+  const plan::Plan& plan = built.plan();
+  const auto text = [&](const char* task) {
+    std::string all;
+    for (const plan::ViewRecord& view : plan.views(built.task(task))) {
+      all += std::string(plan.text(view.name)) + "=" +
+             std::string(plan.text(plan.cameras()[view.camera].name)) +
+             (view.photo == plan::kNone ? " " : "+photo ");
+    }
+    return all;
+  };
+  CHECK(text("t") == "eye=eye wrist=hand near=near+photo ");
+  CHECK(text("first") == "eye=near wrist=hand near=near+photo ");
+  CHECK(text("by_name") == "eye=eye wrist=low_hand near=near+photo ");
+  CHECK(text("both") == "eye=near wrist=low_hand near=near+photo ");
+  CHECK(text("back") == text("by_name"));
+  CHECK(text("named") == "eye=near ");
+  CHECK(text("red_on_tray") == "eye=eye ");
+  CHECK(built.task("red_on_tray").views.count == 0);  // a camera alone needs no name
+  CHECK(built.task("words").views.first == built.task("t").views.first);
+  for (const char* name : {"all", "first", "by_name", "both", "back"}) {
+    CAPTURE(name);
+    CHECK(built.task(name).axes == static_cast<std::uint32_t>(plan::Axis::kCamera));
+  }
+  const plan::EpisodeRecord* episodes = plan.episodes().data();
+  CHECK(episodes[built.task("words").episodes.first].start_id ==
+        episodes[built.task("t").episodes.first].start_id);
+  CHECK(episodes[built.task("back").episodes.first].start_id ==
+        episodes[built.task("by_name").episodes.first].start_id);
+  CHECK(episodes[built.task("first").episodes.first].start_id !=
+        episodes[built.task("t").episodes.first].start_id);
+  CHECK(analyze_with_suite("scene s like bench { camera eye }\n"
+                           "variant v of red_on_tray { scene s }")
+            ->codes() == "P0702");
+}
+
+TEST_CASE("cameras that are not there, or twice, are told where they are written") {
+  const auto codes = [](const std::string& text) {
+    return analyze_with_suite("camera near like eye { lens 20px, 21px, 64px, 48px }\n" + text)
+        ->codes();
+  };
+  CHECK(codes("scene s like bench { camera eye, eye }") == "P0203");
+  CHECK(codes("scene s like bench { camera eye, near as eye }") == "P0203");
+  CHECK(codes("scene s like bench { camera eye, eye as other }") == "");
+  CHECK(codes("scene s like bench { camera eye, ear }") == "P0201");
+  CHECK(codes("scene s like bench { camera eye; camera near }") == "P0203");
+  CHECK(codes("variant v of red_on_tray { camera near as wrist }") == "P0201");
+  CHECK(codes("variant v of red_on_tray { camera near; camera eye }").starts_with("P0203"));
+  CHECK(codes("variant v of red_on_tray { camera eye as eye; camera near as eye }")
+            .starts_with("P0203"));
+  CHECK(codes("camera lost like eye { mount arm.elbow at (0cm, 0cm, 1m) look (1, 0, -1) }\n"
+              "scene s like bench { camera eye, lost }\nvariant v of red_on_tray { scene s }") ==
+        "P0201");
+  std::string many = "scene s like bench { camera eye";
+  for (int i = 0; i < 16; ++i) many += ", near as n" + std::to_string(i);
+  CHECK(codes(many + " }") == "P0304");
+}
+
 TEST_CASE("light, light_st: ambient light and any number of suns, with or without shadow") {
   const Built built(
       "light dawn { ambient 0.25 occlusion 8; sun (0, 0, -2) power 2 shadow; sun (1, 0, -1) power "

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,14 @@ inline Failure failure_after(const std::function<void(Records&, Writer&)>& chang
   change(w.records, w);
   const Status status = verify(w.lay_out());
   return status.ok() ? Failure{} : status.failure();
+}
+
+// The first task seen by `count` cameras, all of them the plan's own.
+inline void give_views(Records& r, Writer& w, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    r.views.push_back({w.text("view_" + std::to_string(i)), 0, i == 0 ? r.scenes[0].photo : kNone});
+  }
+  r.tasks[0].views = {0, count};
 }
 
 struct Defect {
@@ -174,6 +183,12 @@ inline std::vector<Defect> catalogue_defects() {
        [](Records& r, Writer&) { r.scenes[0].base_rotation[0] = 1 + 1e-11; }},
       {"SCNE", "extent", [](Records& r, Writer&) { r.scenes[0].area[2] = -1; }},
       {"SCNE", "whole number", [](Records& r, Writer&) { r.scenes[0].physics_hz = 501; }},
+      {"VIEW", "of CAMR",
+       [](Records& r, Writer& w) { give_views(r, w, 2), r.views[1].camera = 7; }},
+      {"VIEW", "a letter first",
+       [](Records& r, Writer& w) { give_views(r, w, 2), r.views[1].name = w.text("the wrist"); }},
+      {"VIEW", "has kind",
+       [](Records& r, Writer& w) { give_views(r, w, 2), r.views[1].photo = 1; }},
   };
 }
 
@@ -221,6 +236,12 @@ inline std::vector<Defect> task_defects() {
       {"TASK", "axes 0x8000", [](Records& r, Writer&) { r.tasks[1].axes = 0x8000; }},
       {"TASK", "no axis", [](Records& r, Writer&) { r.tasks[0].axes = 1; }},
       {"TASK", "ood", [](Records& r, Writer&) { r.tasks[0].ood = 8; }},
+      {"TASK", "of VIEW", [](Records& r, Writer&) { r.tasks[0].views.count = 1; }},
+      {"TASK", "at most 16 cameras", [](Records& r, Writer& w) { give_views(r, w, 17); }},
+      {"TASK", "is not its own",
+       [](Records& r, Writer& w) { give_views(r, w, 2), r.views[0].photo = kNone; }},
+      {"TASK", "are called `view_0`",
+       [](Records& r, Writer& w) { give_views(r, w, 2), r.views[1].name = r.views[0].name; }},
       {"TASK", "bodies; with its",
        [](Records& r, Writer&) { r.tasks[0].distractors = 0xffffffff; }},
       {"TASK", "has no episode", [](Records& r, Writer&) { r.tasks[0].episodes.count = 0; }},

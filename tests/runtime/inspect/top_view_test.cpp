@@ -82,9 +82,10 @@ TEST_CASE("a top view has every way in which things stand once, with its starts"
   CHECK(view->base == Point{0.147, 0.028});
   CHECK(view->base_yaw_deg == 180);
   // The camera's mount is the base, which is turned by half a turn.
-  CHECK(view->eye.x == doctest::Approx(0.147));
-  CHECK(view->eye.y == doctest::Approx(0.188));
-  CHECK(view->image.size() == 4);
+  REQUIRE(view->cameras.size() == 1);
+  CHECK(view->cameras[0].eye.x == doctest::Approx(0.147));
+  CHECK(view->cameras[0].eye.y == doctest::Approx(0.188));
+  CHECK(view->cameras[0].image.size() == 4);
 }
 
 TEST_CASE("the picture is the same every time, needs no other file and says what it shows") {

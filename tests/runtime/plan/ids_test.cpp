@@ -51,6 +51,26 @@ TEST_CASE("names, reach and sources are in no id") {
   CHECK(same([](Writer& w) { w.records.spans.clear(); }));
 }
 
+TEST_CASE("among several cameras names count; alone the camera does") {
+  const Ids base = ids_after([](Writer&) {});
+  const auto seen = [](const char* first, const char* second, bool photo) {
+    return ids_after([&](Writer& w) {
+      Records& r = w.records;
+      r.views.push_back({w.text(first), 0, r.scenes[0].photo});
+      r.views.push_back({w.text(second), 0, photo ? r.scenes[0].photo : kNone});
+      for (TaskRecord& task : r.tasks) task.views = {0, 2};
+    });
+  };
+  const Ids two = seen("outside", "wrist", false);
+  CHECK(two.start != base.start);
+  CHECK(two.judge == base.judge);
+  CHECK(two.start == seen("outside", "wrist", false).start);
+  CHECK(two.start != seen("wrist", "outside", false).start);
+  CHECK(two.start != seen("outside", "wrist", true).start);
+  CHECK(base.start ==
+        ids_after([](Writer& w) { w.records.cameras[0].name = w.text("eye"); }).start);
+}
+
 TEST_CASE("whatever is physical or visible is in the start") {
   const Ids base = ids_after([](Writer&) {});
   const std::vector<std::function<void(Writer&)>> changes = {

@@ -34,6 +34,7 @@ camera smooth like small { image 320 x 240 samples 4 }
 camera wrist { mount widowx.gripper_link at (0cm, 0cm, 8cm) look (1, 0, -0.4)
   image 320 x 240; lens 250px, 250px, 160px, 120px }
 scene photographed like table { camera third_view overlay "wall.png" }
+scene three_eyes like table { camera third_view, wrist, small as left overlay "wall.png" }
 
 variants of carrot_on_plate {
   carrot_evening { light evening }
@@ -46,13 +47,14 @@ variants of carrot_on_plate {
   carrot_smooth  { camera smooth }
   carrot_wrist   { camera wrist }
   carrot_photo   { scene photographed }
+  carrot_eyes    { scene three_eyes }
 }
 @allow(confounded, "a picture of both")
 variant carrot_photo_lamp of carrot_photo { light lamp }
 variant eggplant_fine of put_eggplant_in_basket { light lamp }
 suite pictures trained on bridge_v2 {
   tasks { carrot_on_plate, carrot_evening, carrot_lamp, carrot_corners, carrot_no_corners, carrot_nearer,
-          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp,
+          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes,
           put_eggplant_in_basket, eggplant_fine }
   seeds 42
 }
@@ -233,6 +235,36 @@ TEST_CASE("a camera on the wrist sees the fingers in one place and the table pas
   }
   CHECK(moved < 20);
   CHECK(before.rgb != after.rgb);
+}
+
+TEST_CASE("each of several cameras shows what it shows alone, under its name in the scene") {
+  const Pictures pictures;
+  const auto all = pictures.stage("carrot_eyes");
+  REQUIRE(all.view->camera_count() == 3);
+  CHECK(all.view->camera_name(2) == "left");
+  REQUIRE(all.world->reset(0).ok());
+  const auto outside = pictures.stage("carrot_on_plate");
+  const auto wrist = pictures.stage("carrot_wrist");
+  const auto small = pictures.stage("carrot_small");
+  std::vector<double> q(all.world->q().begin(), all.world->q().end());
+  for (int step = 0; step < 3; ++step) {
+    const auto objects = all.world->objects();
+    const auto frames = all.view->render_all(q, objects);
+    REQUIRE(frames.ok());
+    REQUIRE(frames->size() == 3);
+    CHECK((*frames)[0].camera == "third_view");
+    CHECK((*frames)[1].camera == "wrist");
+    const Picture first = copy((*frames)[0].frame), second = copy((*frames)[1].frame),
+                  third = copy((*frames)[2].frame);
+    CHECK(first == copy(outside.view->render(q, objects)));
+    CHECK(second == copy(wrist.view->render(q, objects)));
+    CHECK(third.ids == copy(small.view->render(q, objects)).ids);
+    CHECK(third.rgb != copy(small.view->render(q, objects)).rgb);  // before its photo
+    CHECK(second == copy(all.view->render(q, objects, 1)));
+    CHECK(first == copy(all.view->render_full(q, objects, 0)));
+    q[0] += 0.2;
+    q[1] += 0.1;
+  }
 }
 
 TEST_CASE("over an episode of every scene a cached picture equals one traced anew") {
