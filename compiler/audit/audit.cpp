@@ -23,7 +23,7 @@ struct KindName {
   Kind kind;
   std::string_view name, title;
 };
-constexpr std::array<KindName, 16> kKinds = {{
+constexpr std::array<KindName, 17> kKinds = {{
     {Kind::kConfounded, "confounded", "comparisons that move more than one axis"},
     {Kind::kAcrossScenes, "across_scenes", "comparisons across scenes"},
     {Kind::kAcrossLayouts, "across_layouts", "comparisons across layouts"},
@@ -42,6 +42,7 @@ constexpr std::array<KindName, 16> kKinds = {{
     {Kind::kOnFixture, "on_fixture",
      "success of an object that lies on a fixture beside the target"},
     {Kind::kHeld, "held", "success of an object that is still held above the target"},
+    {Kind::kTable, "table", "published percentages that the suite cannot give"},
     {Kind::kWarning, "warning", "warnings, said or silenced"},
 }};
 

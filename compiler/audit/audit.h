@@ -32,6 +32,7 @@ enum class Kind : std::uint8_t {
   kBeside,
   kOnFixture,
   kHeld,
+  kTable,
   kWarning
 };
 // As in JSON ("success_rule"), and the heading of the report.
@@ -58,6 +59,7 @@ struct Audit {
   std::string suite;
   std::size_t tasks = 0, comparisons = 0;  // of the suite
   std::vector<Finding> findings;           // by kind, then in the order of the text
+  std::vector<std::string> unchecked;      // columns of a published table that are no set
 };
 
 // `plan` is that of `compilation`, with all its suites; `suite` indexes plan.suites(). `files` are

@@ -41,6 +41,10 @@ std::string to_text(const Audit& audit) {
     if (finding.allowed) fmt::format_to(out, "    allowed: {}\n", *finding.allowed);
     allowed += finding.allowed ? 1 : 0;
   }
+  if (!audit.unchecked.empty()) {
+    fmt::format_to(out, "{}no sets, so not checked: {}\n", audit.findings.empty() ? "" : "\n",
+                   fmt::join(audit.unchecked, ", "));
+  }
   fmt::format_to(out, "{}suite `{}`, {} tasks, {} comparisons: {}\n",
                  audit.findings.empty() ? "" : "\n", audit.suite, audit.tasks, audit.comparisons,
                  audit.findings.empty()
@@ -73,6 +77,7 @@ std::string to_json(const Audit& audit) {
         finding.allowed ? nlohmann::ordered_json(*finding.allowed) : nlohmann::ordered_json();
     json["findings"].push_back(std::move(entry));
   }
+  if (!audit.unchecked.empty()) json["unchecked"] = audit.unchecked;
   return json.dump(2) + "\n";
 }
 

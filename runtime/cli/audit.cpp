@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "compiler/audit/table.h"
 #include "compiler/diag/text.h"
+#include "runtime/base/file.h"
 #include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
 #include "runtime/run/assets.h"
@@ -12,7 +14,7 @@ namespace probe::cli {
 namespace {
 
 struct Arguments {
-  std::string file, suite;
+  std::string file, suite, table;
   bool json = false;
   AssetOptions assets;
 };
@@ -40,8 +42,15 @@ int audit_verb(const Arguments& arguments) {
     if (!found) return exit;
     suite = *found;
   }
-  const auto audited = audit::audit(*compiled, *plan, suite, files);
+  auto audited = audit::audit(*compiled, *plan, suite, files);
   if (!audited) return report(audited.failure());
+  if (!arguments.table.empty()) {
+    const auto text = read_file(arguments.table);
+    if (!text) return report(text.failure());
+    const auto checked =
+        audit::check_table(*audited, *compiled, *plan, suite, *text, arguments.table);
+    if (!checked) return report(checked.failure());
+  }
   fmt::print("{}", arguments.json ? audit::to_json(*audited) : audit::to_text(*audited));
   return kFine;
 }
@@ -53,6 +62,8 @@ void add_audit(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("audit", "what is irregular in a suite, allowed or not");
   verb->add_option("F", arguments->file, ".probe text")->required();
   verb->add_option("--suite", arguments->suite, "which suite (default: the first of the file)");
+  verb->add_option("--table", arguments->table,
+                   "CSV of published percentages, a column a set: can they be averages over it?");
   verb->add_flag("--json", arguments->json, "as a JSON object");
   add_asset_option(*verb, arguments->assets);
   verb->footer("example: vlaprobe audit suite/intact.probe");

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/expert/away.h"
 #include "runtime/expert/path_planner.h"
 #include "runtime/expert/place_candidates.h"
 #include "runtime/expert/servo.h"
@@ -26,6 +27,7 @@ enum class Phase {
   kClose,      // still, fingers closing
   kTransport,  // with the source to the place, on a planned path
   kLower,      // until the source rests on the target
+  kKeep,       // instead of all that follows, for what shall not lie on the target: still, closed
   kLoosen,     // fingers just off the source
   kOpen,       // fingers wide
   kRetreat,    // straight up
@@ -63,6 +65,7 @@ class Expert final : public policy::Policy {
     pick_.reset();
     shove_.reset();
     path_.reset();
+    spot_.reset();
     enter(Phase::kRaise);
     return {};
   }
@@ -71,7 +74,9 @@ class Expert final : public policy::Policy {
 
   Result<policy::Action> act(const policy::Observation& observation) override {
     PROBE_TRY(check(observation));
-    const Scene scene = look(observation, {options_.source, options_.close ? options_.target : -1});
+    Scene scene = look(observation, {options_.source, options_.close ? options_.target : -1});
+    if (!started_) look_for_spot(observation, scene);
+    if (spot_) scene = with_spot(std::move(scene), *spot_);
     if (observation.horizon > 0) horizon_ = observation.horizon;
     steps_left_ = horizon_ - observation.step;
     const Arm arm{scene.tcp, scene.joints};
@@ -124,6 +129,12 @@ class Expert final : public policy::Policy {
     return {};
   }
 
+  // Only once an episode: the source must not be led from spot to spot.
+  void look_for_spot(const policy::Observation& observation, const Scene& scene) {
+    if (options_.close && observation.privileged->goal == policy::Goal::kAway)
+      spot_ = find_spot(scene, *reach_);
+  }
+
   void enter(Phase phase) {
     phase_ = phase;
     steps_ = 0;
@@ -171,6 +182,9 @@ class Expert final : public policy::Policy {
         return advance_transport(s);
       case Phase::kLower:
         return advance_lower(s);
+      case Phase::kKeep:
+        if (!holds(s)) start_over();
+        return;
       case Phase::kLoosen:
         if (steps_ >= 1) enter(Phase::kOpen);
         return;
@@ -284,7 +298,8 @@ class Expert final : public policy::Policy {
   void advance_lower(const Scene& s) {
     if (!holds(s)) return start_over();
     const bool stopped = steps_ >= 3 && last_.tcp.position.z() - s.tcp.position.z() < 0.0008;
-    if (gap_to_target(s) < 0.0025 || stopped || steps_ >= 9) enter(Phase::kLoosen);
+    if (gap_to_target(s) < 0.0025 || stopped || steps_ >= 9)
+      enter(spot_ ? Phase::kKeep : Phase::kLoosen);
   }
 
   policy::Action command(const Scene& s) {
@@ -303,6 +318,8 @@ class Expert final : public policy::Policy {
         return follow_path(s, kClosedGripper);
       case Phase::kLower:
         return command_lower(s);
+      case Phase::kKeep:
+        return servo_.hold(kClosedGripper);
       case Phase::kLoosen:
         return command_loosen(s);
       case Phase::kOpen:
@@ -364,6 +381,7 @@ class Expert final : public policy::Policy {
   Recent recent_;
   std::optional<Pick> pick_;
   std::optional<Shove> shove_;
+  std::optional<Vec2> spot_;        // where a source goes that shall not lie on the target
   Vec2 first_seen_ = Vec2::Zero();  // centre of the source at the start
   std::optional<PlannedPath> path_;
   int path_step_ = 0;            // of the path, asked for last

@@ -43,12 +43,19 @@ struct PrivilegedObject {
   bool finger_contact[2] = {false, false};  // over the last substep
 };
 
+// What success asks for.
+enum class Goal : std::uint8_t {
+  kOnTarget,
+  kAway,  // anywhere but on the target, still in the hand at the end
+};
+
 // The privileged view: task roles by index into `objects` (0 source, 1 target, 2.. distractors).
 struct Privileged {
   std::vector<PrivilegedObject> objects;
   std::vector<std::vector<Vec3>> fixtures;  // convex parts of what stands fixed, world frame
   Pose base;                                // robot base in world
   double surface_z = 0;
+  Goal goal = Goal::kOnTarget;
 };
 
 // A scene's camera and what it shows now.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/base/check.h"
+#include "runtime/run/goal.h"
 #include "runtime/run/scene_view.h"
 
 namespace probe::run {
@@ -94,6 +95,7 @@ Result<std::unique_ptr<EpisodeWorld>> EpisodeWorld::create(
   made->link_poses_.resize(made->tree_.link_count());
   made->jacobian_.resize(6, static_cast<Eigen::Index>(made->tree_.joint_count()));
   PROBE_TRY(made->read_bodies());
+  PROBE_ASSIGN(made->privileged_.goal, goal_of(plan, task_index));
   return made;
 }
 

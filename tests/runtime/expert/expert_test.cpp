@@ -109,6 +109,22 @@ TEST_CASE("the roles can be others, as for taking a distractor") {
   CHECK((table.tcp_in_world().position.head<2>() - Vec2(-0.235, 0.075)).norm() < 0.03);
 }
 
+TEST_CASE("what shall be anywhere but on the target is taken elsewhere and kept in hand") {
+  for (const double x : {-0.235, -0.085}) {
+    CAPTURE(x);
+    test::FakeTable table(test::carrot(x, 0.075, 180), test::plate(-0.16, -0.075));
+    table.set_goal(policy::Goal::kAway);
+    const Vec2 before = table.source().pose.position.head<2>();
+    const auto policy = expert();
+    CHECK(play(table, *policy) < 0);
+    CHECK(table.held());
+    const Vec2 after = table.source().pose.position.head<2>();
+    CHECK((after - before).norm() > 0.08);
+    CHECK((after - table.target().pose.position.head<2>()).norm() > 0.10);
+    CHECK(table.lowest_tip() > test::kSurface + 0.001);
+  }
+}
+
 TEST_CASE("the same episode gets the same actions") {
   std::vector<policy::Action> runs[2];
   for (auto& run : runs) {

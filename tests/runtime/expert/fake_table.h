@@ -100,6 +100,8 @@ class FakeTable {
   // The next grasp slips out once lifted.
   void lose_next_grasp() { slips_ = true; }
 
+  void set_goal(policy::Goal goal) { view_.goal = goal; }
+
   policy::PrivilegedObject& source() { return view_.objects[0]; }
   policy::PrivilegedObject& target() { return view_.objects[1]; }
   bool held() const { return held_; }

@@ -1,0 +1,47 @@
+// Worlds made up to ask a judge what it thinks of them: a task's bodies at rest, far apart, moved
+// by hand. No physics; what is found does not depend on how a rule is written.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+#include "runtime/vm/sample.h"
+
+namespace probe::vm {
+
+// N s: what a light object at rest presses in a substep.
+inline constexpr double kMadeUpContact = 0.01;
+
+// The task's bodies where its first episode turns them, half a metre from one another and from the
+// arm; nothing touches. Bodies 0 and 1 are source and target.
+struct MadeUpWorld {
+  std::vector<BodyStart> starts;
+  StepSample sample;
+  std::uint16_t surface = 0, fixture = 0;  // the fixture 0 where the scene has none
+  std::vector<std::uint16_t> fingers;      // each opens along +y
+
+  void put(std::size_t body, const Vec3& at) {
+    sample.bodies[body].position = sample.bodies[body].origin = at;
+  }
+  // Body `a` presses `b`, a < b, straight down.
+  void press_down(std::uint16_t a, std::uint16_t b) {
+    sample.contacts.push_back({a, b, {0, 0, -kMadeUpContact}});
+  }
+  // Every finger is pressed open by the source.
+  void hold_source() {
+    for (const std::uint16_t finger : fingers)
+      sample.contacts.push_back({0, finger, {0, kMadeUpContact, 0}});
+    sample.tcp = sample.bodies[0].position;
+  }
+};
+
+MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task);
+
+// What a condition among the task's metrics says when the world has stayed as it is for 8 control
+// steps, more than any rule counts.
+Result<bool> judge_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t metric,
+                         MadeUpWorld world);
+
+}  // namespace probe::vm
