@@ -126,12 +126,14 @@ void add_run_options(CLI::App& verb, RunArguments& arguments) {
   verb.add_option("--tasks", arguments.tasks, "glob over task names");
   verb.add_option("--episodes", arguments.episodes, "A-B, first and last start of each task");
   verb.add_option("--seeds", arguments.seeds, "A,B,... instead of the suite's");
-  verb.add_option("--jobs", arguments.jobs, "worlds in parallel")->check(CLI::Range(1, 1024));
+  verb.add_option("--jobs", arguments.jobs,
+                  "worlds in parallel; more than cores if the policy takes its time (1)")
+      ->check(CLI::Range(1, 1024));
   verb.add_option("--retries", arguments.retries,
-                  "how often an episode that the server failed is tried again at once")
+                  "how often an episode that the server failed is tried again at once (2)")
       ->check(CLI::Range(0, 1000));
   verb.add_option("--give-up-after", arguments.give_up_after,
-                  "stop when the server failed that many episodes in a row; 0: never")
+                  "stop when the server failed that many episodes in a row; 0: never (5)")
       ->check(CLI::Range(0, 1000000));
   verb.add_option("--if-changed", arguments.if_changed,
                   "refuse, fork (into DIR-2) or continue over another build or profile")

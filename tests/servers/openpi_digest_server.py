@@ -1,5 +1,6 @@
 """An openpi server whose four actions follow from the bytes of the observation and nothing else, so that
-a run with it has the same traces however often server and client are killed.
+a run with it has the same traces however often server and client are killed. It also takes INT-ACT's
+messages; then they follow from the model's path too.
 
 openpi_digest_server.py [PORT]    prints "port N" when it listens; 0 or nothing: any free port
 """
@@ -27,8 +28,20 @@ def actions(observation):
 
 async def handle(socket):
     await socket.send(msgpack.packb({}))
+    model = None
     async for message in socket:
-        await socket.send(msgpack.packb({"actions": actions(message)}))
+        # An array's keys are bytes, which makes all maps' keys of both kinds.
+        asked = msgpack.unpackb(message, strict_map_key=False)
+        if "new_model_path" in asked:
+            model = asked["new_model_path"]
+            answer = {"status": "model switched"}
+        elif "reset" in asked:
+            answer = {"status": "reset"}
+        elif model is not None:
+            answer = actions(model.encode() + message)
+        else:
+            answer = {"actions": actions(message)}
+        await socket.send(msgpack.packb(answer))
 
 
 async def main():

@@ -18,6 +18,7 @@
 #include "runtime/run/store.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/servers/python_server.h"
 
 namespace probe::cluster {
 namespace {
@@ -144,6 +145,36 @@ TEST_CASE("four array tasks, one killed and requeued, merged: the rows of a sing
   REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
   CHECK(again->job.empty());
   CHECK(again->stored == 32);
+}
+
+TEST_CASE("each task starts its own server, and the rows are those of a run with one") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = run::table_plan(6, 6);
+  const Cluster cluster(folder / "cluster");
+  if (!cluster.ready()) {
+    MESSAGE("skipped: ", cluster.said());
+    return;
+  }
+  SlurmOptions options = options_for(folder / "run");
+  options.run.policy = "openpi://127.0.0.1:{port}";
+  options.run.seeds = {1};
+  options.script.tasks = 2;
+  options.script.server_command =
+      "exec /usr/bin/python3 " VLAPROBE_SOURCE_DIR "/tests/servers/openpi_digest_server.py {port}";
+  options.script.server_wait_s = 30;
+  const auto report = run_on_slurm(plan, options);
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  for (const std::string& note : report->notes) MESSAGE(note);
+  CHECK(report->stored == 6);
+
+  const test::PythonServer server("openpi_digest_server.py");
+  run::RunOptions single = options.run;
+  single.policy = "openpi://127.0.0.1:" + server.port();
+  single.name = options.run.policy;
+  single.out = folder / "single";
+  const auto summary = run::run(plan, single);
+  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+  CHECK(rows_of(folder / "run") == rows_of(folder / "single"));
 }
 
 TEST_CASE("a job that cannot work is told with its log, and stays to be continued") {

@@ -12,6 +12,7 @@
 #include "runtime/run/store.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/servers/python_server.h"
 
 namespace probe::run {
 namespace {
@@ -77,6 +78,27 @@ TEST_CASE("the best checkpoint on the original tasks runs the whole suite; of eq
   REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
   CHECK(again->best == 1);
   CHECK(again->whole.done == 0);
+}
+
+TEST_CASE("INT-ACT checkpoints are switched on their server, each into its own folder") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 6);
+  const test::PythonServer server("openpi_digest_server.py");
+  REQUIRE_FALSE(server.port().empty());
+  SweepOptions options = options_for(folder / "sweep");
+  options.run.policy = "intact://127.0.0.1:" + server.port() + "?model={}";
+  options.checkpoints = {"/ckpt/a", "/ckpt/b"};
+  const auto swept = sweep(plan, options);
+  REQUIRE_MESSAGE(swept.ok(), to_text(swept.failure()));
+  const auto a = read_results(swept->scores[0].dir), b = read_results(swept->scores[1].dir);
+  REQUIRE_MESSAGE(a.ok(), to_text(a.failure()));
+  REQUIRE_MESSAGE(b.ok(), to_text(b.failure()));
+  REQUIRE(a->size() == b->size());
+  CHECK(a->at(0).policy.ends_with("?model=/ckpt/a"));
+  CHECK(a->at(0).sent_image_sha256 == b->at(0).sent_image_sha256);
+  CHECK(a->at(0).trace_sha256 != b->at(0).trace_sha256);
+  CHECK(swept->best == 0);
+  CHECK(swept->whole.call.queries.queries == 0);  // all was there
 }
 
 TEST_CASE("what cannot be swept is told before anything runs") {
