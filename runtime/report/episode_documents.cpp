@@ -1,0 +1,232 @@
+#include "runtime/report/episode_documents.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <tuple>
+#include <unordered_map>
+
+#include "runtime/rejudge/explain.h"
+#include "runtime/run/scheduler.h"
+#include "runtime/run/stored_trace.h"
+
+namespace probe::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A distance is written for every so many control steps.
+constexpr std::size_t kEvery = 2;
+// Closed more than half counts as closed.
+constexpr double kClosed = 0.5;
+// Notes of traces that could not be read; the rest is one number.
+constexpr std::size_t kNotes = 5;
+
+// Adds control step `step`, one-based, to spans that are written "first-last,first-last".
+class Spans {
+ public:
+  void add(std::size_t step) {
+    if (!spans_.empty() && spans_.back().second + 1 == step) {
+      spans_.back().second = step;
+    } else {
+      spans_.emplace_back(step, step);
+    }
+  }
+  bool empty() const { return spans_.empty(); }
+  std::string text() const {
+    std::string text;
+    for (const auto& [first, last] : spans_)
+      text += fmt::format("{}{}-{}", text.empty() ? "" : ",", first, last);
+    return text;
+  }
+
+ private:
+  std::vector<std::pair<std::size_t, std::size_t>> spans_;
+};
+
+void append_record(std::string& text, const std::string& key, const Spans& spans) {
+  if (spans.empty()) return;
+  text += fmt::format("{}{}:{}", text.empty() ? "" : ";", key, spans.text());
+}
+
+// Links of the arm touch each other and things rest on the surface all the time: neither says what
+// happened. Fingers come after the surface in the plan's order, see BodyRecord.
+std::size_t surface_of(const run::TraceHeader& header) {
+  const auto at = std::find(header.bodies.begin(), header.bodies.end(), "surface");
+  return static_cast<std::size_t>(at - header.bodies.begin());
+}
+
+// Texts that occur often, each once.
+class TextTable {
+ public:
+  int add(const std::string& text) {
+    const auto [at, is_new] = index_.try_emplace(text, static_cast<int>(texts_.size()));
+    if (is_new) texts_.push_back(text);
+    return at->second;
+  }
+  const std::vector<std::string>& texts() const { return texts_; }
+
+ private:
+  std::unordered_map<std::string, int> index_;
+  std::vector<std::string> texts_;
+};
+
+Json why_json(const std::vector<rejudge::MetricWhy>& metrics, TextTable& texts) {
+  Json list = Json::array();
+  for (const rejudge::MetricWhy& metric : metrics) {
+    Json conditions = Json::array();
+    for (const rejudge::Condition& c : metric.conditions) {
+      conditions.push_back({c.line, texts.add(c.text), texts.add(c.bodies), texts.add(c.measured),
+                            c.is_number ? -1 : static_cast<int>(c.truth), c.decides ? 1 : 0,
+                            c.alike});
+    }
+    list.push_back({metric.name, metric.shown, metric.when,
+                    metric.file.empty() ? -1 : texts.add(metric.file), metric.line,
+                    std::move(conditions)});
+  }
+  return list;
+}
+
+// Which episodes are explained: round after round one of each task and policy, failures before
+// successes, until there are `most`.
+std::vector<char> chosen_whys(std::span<const EpisodeTrace> episodes, std::size_t most) {
+  std::map<std::tuple<int, std::string>, std::vector<std::size_t>> groups;
+  const auto succeeded = [&](std::size_t i) {
+    const auto& metrics = episodes[i].row->metrics;
+    return std::any_of(metrics.begin(), metrics.end(), [](const run::MetricValue& m) {
+      return m.name == "success" && m.value != 0;
+    });
+  };
+  for (std::size_t i = 0; i < episodes.size(); ++i) {
+    if (!episodes[i].row->invalid) groups[{episodes[i].task, episodes[i].row->policy}].push_back(i);
+  }
+  std::size_t rounds = 0;
+  for (auto& [key, group] : groups) {
+    std::stable_partition(group.begin(), group.end(), [&](std::size_t i) { return !succeeded(i); });
+    rounds = std::max(rounds, group.size());
+  }
+  std::vector<char> chosen(episodes.size(), 0);
+  std::size_t count = 0;
+  for (std::size_t round = 0; round < rounds && count < most; ++round) {
+    for (const auto& [key, group] : groups) {
+      if (round >= group.size() || count >= most) continue;
+      chosen[group[round]] = 1;
+      ++count;
+    }
+  }
+  return chosen;
+}
+
+// What one thread found of one episode.
+struct Reading {
+  std::string timeline;
+  std::vector<std::string> bodies;
+  std::vector<rejudge::MetricWhy> why;
+  std::string problem;
+};
+
+Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> metrics,
+                     bool explained) {
+  Reading reading;
+  const auto trace = run::read_stored_trace(*episode.row);
+  if (!trace) {
+    reading.problem = to_text(trace.failure());
+    return reading;
+  }
+  reading.timeline = encode_timeline(*trace, metrics);
+  reading.bodies = trace->header.bodies;
+  if (!explained) return reading;
+  const auto task = episode.plan->find_task(episode.row->task);
+  if (!task || trace->header.plan_root != episode.plan->root()) return reading;
+  auto why = rejudge::explain(*episode.plan, *task, *trace);
+  if (why) {
+    reading.why = std::move(*why);
+  } else {
+    reading.problem = to_text(why.failure());
+  }
+  return reading;
+}
+
+}  // namespace
+
+std::string encode_timeline(const run::Trace& trace, std::span<const std::string> metrics) {
+  std::string text;
+  for (std::size_t m = 0; m < trace.header.metrics.size(); ++m) {
+    const auto& metric = trace.header.metrics[m];
+    const auto at = std::find(metrics.begin(), metrics.end(), metric.name);
+    if (!metric.is_bool || at == metrics.end()) continue;
+    Spans spans;
+    for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+      if (m < trace.steps[i].metrics.size() && trace.steps[i].metrics[m] != 0) spans.add(i + 1);
+    }
+    append_record(text, fmt::format("m{}", at - metrics.begin()), spans);
+  }
+  Spans closed;
+  std::map<std::pair<int, int>, Spans> contacts;
+  const std::size_t surface = surface_of(trace.header);
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    const vm::StepSample& sample = trace.steps[i].sample;
+    if (sample.grip > kClosed) closed.add(i + 1);
+    for (const vm::ContactSample& contact : sample.contacts) {
+      // Something that is handled, and not what it rests on.
+      if (contact.a >= surface || contact.b == surface) continue;
+      contacts[{contact.a, contact.b}].add(i + 1);
+    }
+  }
+  append_record(text, "g", closed);
+  for (const auto& [pair, spans] : contacts)
+    append_record(text, fmt::format("c{}.{}", pair.first, pair.second), spans);
+  std::string distances;
+  for (std::size_t i = 0; i < trace.steps.size(); i += kEvery) {
+    const auto& bodies = trace.steps[i].sample.bodies;
+    if (bodies.size() < 2) break;
+    const double cm = 100 * (bodies[0].position - bodies[1].position).norm();
+    distances += fmt::format("{}{:.1f}", distances.empty() ? "" : ",", cm);
+  }
+  if (!distances.empty()) text += fmt::format("{}d:{}", text.empty() ? "" : ";", distances);
+  return text;
+}
+
+EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
+                                   std::span<const std::string> metrics, std::size_t task_count,
+                                   const EpisodeDocumentOptions& options) {
+  EpisodeDocuments documents{.timelines = "{}", .whys = "{}", .notes = {}};
+  if (!options.traces || episodes.empty()) return documents;
+  const std::vector<char> explained = chosen_whys(episodes, options.explained);
+  std::vector<Reading> readings(episodes.size());
+  const auto work = [&](std::size_t i) -> Status {
+    if (!episodes[i].row->trace.empty())
+      readings[i] = read_episode(episodes[i], metrics, explained[i] != 0);
+    return {};
+  };
+  // No job fails: what cannot be read is noted.
+  (void)run::run_jobs(episodes.size(), std::max(1, options.jobs),
+                      [&]() -> Result<run::Worker> { return run::Worker(work); });
+
+  std::vector<std::vector<std::string>> bodies(task_count);
+  Json lines = Json::array(), whys = Json::object();
+  TextTable texts;
+  std::size_t problems = 0;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    Reading& reading = readings[i];
+    if (!reading.problem.empty() && problems++ < kNotes)
+      documents.notes.push_back("no timeline of one episode: " + reading.problem);
+    lines.push_back(reading.timeline.empty() ? Json(0) : Json(std::move(reading.timeline)));
+    const auto task = static_cast<std::size_t>(episodes[i].task);
+    if (task < task_count && bodies[task].empty()) bodies[task] = std::move(reading.bodies);
+    if (!reading.why.empty()) whys[std::to_string(i)] = why_json(reading.why, texts);
+  }
+  if (problems > kNotes)
+    documents.notes.push_back(
+        fmt::format("{} further episodes without a timeline", problems - kNotes));
+  const auto dumped = [](const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  };
+  documents.timelines = dumped({{"every", kEvery}, {"bodies", bodies}, {"e", std::move(lines)}});
+  documents.whys = dumped({{"strings", texts.texts()}, {"e", std::move(whys)}});
+  return documents;
+}
+
+}  // namespace probe::report

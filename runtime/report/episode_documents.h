@@ -1,0 +1,43 @@
+// What happened in each episode, step by step, and why it was judged so: the documents `timelines`
+// and `whys` of the page, read from stored traces. Knows nothing of counts and tables.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/plan/plan.h"
+#include "runtime/run/results.h"
+#include "runtime/run/trace.h"
+
+namespace probe::report {
+
+// One episode of the page's column arrays, in their order.
+struct EpisodeTrace {
+  const run::ResultRow* row = nullptr;
+  const plan::Plan* plan = nullptr;  // the one the row was made under
+  int task = 0;                      // index into the page's tasks
+};
+
+struct EpisodeDocumentOptions {
+  int jobs = 1;        // threads
+  bool traces = true;  // false: no trace is read, both documents are empty
+  // Explained verdicts are long: at most so many episodes have one, the same number of each task
+  // and policy, those that did not succeed first. The others have the command that explains them.
+  std::size_t explained = 600;
+};
+
+struct EpisodeDocuments {
+  std::string timelines, whys;     // JSON texts
+  std::vector<std::string> notes;  // sentences: traces that could not be read
+};
+
+// `metrics` are the page's metrics by name, `task_count` its tasks.
+EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
+                                   std::span<const std::string> metrics, std::size_t task_count,
+                                   const EpisodeDocumentOptions& options);
+
+// The record of one trace as PAGE_DATA.md encodes it.
+std::string encode_timeline(const run::Trace& trace, std::span<const std::string> metrics);
+
+}  // namespace probe::report

@@ -1,0 +1,115 @@
+// The documents that stand in the page, as PAGE_DATA.md describes them. What is missing is empty; nothing here computes a
+// statistic.
+
+export type Estimate = [k: number, n: number, low: number, high: number] | null;
+export type Level = "good" | "note" | "warn" | "bad";
+export interface Note { level: Level; text: string; see?: string }
+export interface Metric { name: string; label: string; truth: boolean; good: number }
+export interface Category { name: string; label: string; tasks: number[] }
+export interface Thing { name: string; label?: string; seen?: { source?: boolean | null; target?: boolean | null } | null }
+export interface Run {
+  dir: string; plan: number; fingerprint: number; seeds: number[];
+  done: number; expected: number; invalid: number; videos: number;
+}
+export interface Policy { name: string; label: string; role: string; runs: Run[] }
+export interface Task {
+  plan: number; name: string; baseline: number | null; axes: string[]; categories: number[]; prompt: string;
+  source: number; target: number; distractors: number[]; ood: string[]; horizon: number; hz: number; scene?: string;
+  metrics: number[]; confounded?: string | null; allowed?: { word: string; reason: string }[];
+  starts?: number[][][]; rule?: { file: string; line: number; text: string };
+}
+export interface Episodes {
+  count: number; policy: number[]; task: number[]; start: number[]; seed: number[]; bits: number[]; steps: number[];
+  reason: number[]; prompt: number[]; video?: number[];
+}
+export interface MainRow { policy: number; metric: number; all: Estimate; cells: Estimate[] }
+export interface ExternalRow {
+  policy: string; metric: string; all: number | null; cells: (number | null)[]; n?: (number | null)[]; flags?: (string | null)[];
+}
+export interface Difference { diff: number; low: number; high: number; p?: number | null; q?: number | null }
+export interface Delta extends Difference {
+  policy: number; task: number; baseline: number; metric: number; pairs: number[]; starts: number; floor?: boolean;
+}
+export interface CategoryDelta extends Difference { policy: number; category: number; metric: number; pairs: number[]; starts: number }
+export interface LanguageRow extends Difference {
+  policy: number; metric: number; category?: number; task?: number; variant: Estimate; baseline: Estimate;
+}
+export interface PairCell { policy: number; source: number; target: number; metric: number; e: Estimate; ood: string[] }
+export interface ObjectCell { policy: number; object: number; role: "source" | "target"; metric: number; e: Estimate; ood: boolean }
+export interface Gap extends Difference { policy: number; category: number; intention: Estimate; success: Estimate }
+export interface Floor { task: number; metric: number; floor: Estimate; ceiling: Estimate; note?: string }
+export interface Comparison extends Difference {
+  a: number; b: number; metric: number; scope: string; pairs: number; starts: number; real: boolean; detectable?: number | null;
+}
+export interface Sequential { a: number; b: number; metric: number; starts: number; used: number; a_wins: number; b_wins: number; p: number; stopped: boolean }
+export interface Ranking { policy: number; metric: number; score: number; low?: number | null; high?: number | null }
+export interface MixedTerm { term: string; kind: string; odds: number | null; low: number | null; high: number | null; p: number | null; note?: string }
+export interface Mixed { metric: number; model?: string; rows: MixedTerm[]; random?: { factor: string; sd: number }[]; n?: number; note?: string }
+export interface Tables {
+  main?: { rows: MainRow[]; all_label?: string };
+  external?: { source: string; rows: ExternalRow[] }[];
+  by_task?: Record<string, Estimate[][]>;
+  deltas?: Delta[]; category_deltas?: CategoryDelta[];
+  language?: { rows?: LanguageRow[]; tasks?: LanguageRow[] };
+  pairs?: PairCell[]; objects?: ObjectCell[]; gap?: Gap[]; floors?: Floor[];
+  compare?: Comparison[]; sequential?: Sequential[]; ranking?: Ranking[]; mixed?: Mixed[];
+  delivery?: (Note & { policy?: number | null; task?: number | null })[];
+  confounded?: { task: number; baseline: number; axes: string[]; reason: string }[];
+}
+export interface Data {
+  format: string; version: number; title: string; command?: string; program?: string; confidence?: number; interval?: string;
+  run: string[]; findings: Note[]; notes: Note[]; metrics: Metric[]; categories: Category[]; objects: Thing[];
+  plans: { root: string; suite: string; tasks: number; starts: number; trained_on?: string }[];
+  fingerprints: [string, string][][]; fingerprint_differences?: string[];
+  prompts: string[]; reasons: string[]; strings: string[];
+  policies: Policy[]; tasks: Task[]; episodes: Episodes; tables: Tables; empty?: Record<string, string>;
+}
+export interface Timelines { every?: number; bodies?: string[][]; e?: (string | 0)[] }
+export type WhyCondition = [line: number, text: number, bodies: number, measured: number, truth: number, decides: number, alike: number];
+export type WhyMetric = [name: string, shown: string, when: string, file: number, line: number, conditions: WhyCondition[]];
+export interface Whys { strings?: string[]; e?: Record<string, WhyMetric[]> }
+
+function parsed(id: string): unknown {
+  const text = document.getElementById(id)?.textContent;
+  return text ? JSON.parse(text) : {};
+}
+
+const kNoEpisodes: Episodes = { count: 0, policy: [], task: [], start: [], seed: [], bits: [], steps: [], reason: [], prompt: [] };
+
+// Fails with a sentence for the reader when the page holds no results, or results of another version.
+export function readData(): Data {
+  const data = parsed("data") as Partial<Data>;
+  if (data.format !== "vlaprobe-report") throw new Error("this page holds no results");
+  if (data.version !== 1) throw new Error(`these results have version ${data.version}; this page reads version 1`);
+  const full: Data = {
+    format: data.format, version: 1, title: data.title || "vlaprobe report", run: [], findings: [], notes: [], metrics: [], categories: [],
+    objects: [], plans: [], fingerprints: [], prompts: [], reasons: [], strings: [], policies: [], tasks: [], episodes: kNoEpisodes, tables: {},
+  };
+  for (const [key, value] of Object.entries(data)) if (value !== null) (full as unknown as Record<string, unknown>)[key] = value;
+  return full;
+}
+
+let timelines: Timelines | undefined, whys: Whys | undefined;
+export const readTimelines = (): Timelines => (timelines ??= parsed("timelines") as Timelines);
+export const readWhys = (): Whys => (whys ??= parsed("whys") as Whys);
+
+// Rows of every policy and task, in their order.
+export class EpisodeIndex {
+  private readonly rows = new Map<number, number[]>();
+  constructor(private readonly data: Data) {
+    const { count, policy, task } = data.episodes;
+    for (let i = 0; i < count; ++i) {
+      const key = policy[i]! * data.tasks.length + task[i]!;
+      const list = this.rows.get(key);
+      if (list) list.push(i);
+      else this.rows.set(key, [i]);
+    }
+  }
+  of(policy: number, task: number): number[] {
+    return this.rows.get(policy * this.data.tasks.length + task) ?? [];
+  }
+}
+
+export const metricIndex = (data: Data, name: string): number => data.metrics.findIndex((m) => m.name === name);
+export const objectName = (data: Data, object: number): string => data.objects[object]?.label ?? data.objects[object]?.name ?? "";
+export const taskName = (data: Data, task: number | null | undefined): string => data.tasks[task ?? -1]?.name ?? "";

@@ -1,0 +1,133 @@
+// One episode: where things stood, what was said, what happened when, and why it was judged so.
+import { type Child, h, s } from "../dom";
+import { safeLink, shellWord } from "../format";
+import { type Data, objectName, readTimelines, readWhys, taskName, type WhyMetric } from "../model";
+import { policyLabel } from "../parts";
+import type { State } from "../state";
+
+type Spans = [first: number, last: number][];
+interface Timeline { metrics: [number, Spans][]; contacts: [number, number, Spans][]; gripper: Spans; distance: number[] }
+
+const spansOf = (text: string): Spans => text.split(",").filter(Boolean).map((part) => { const [a, b] = part.split("-").map(Number); return [a!, b ?? a!]; });
+
+function decode(text: string): Timeline {
+  const timeline: Timeline = { metrics: [], contacts: [], gripper: [], distance: [] };
+  for (const record of text.split(";")) {
+    const colon = record.indexOf(":"), key = record.slice(0, colon), rest = record.slice(colon + 1);
+    if (key[0] === "m") timeline.metrics.push([Number(key.slice(1)), spansOf(rest)]);
+    else if (key[0] === "c") { const [a, b] = key.slice(1).split(".").map(Number); timeline.contacts.push([a!, b!, spansOf(rest)]); }
+    else if (key === "g") timeline.gripper = spansOf(rest);
+    else if (key === "d") timeline.distance = rest.split(",").map(Number);
+  }
+  return timeline;
+}
+
+const kLeft = 190, kWide = 620, kLine = 20;
+
+// Lines of spans over control steps, the distance below, and a cursor that set() moves.
+function drawing(data: Data, timeline: Timeline, bodies: string[], steps: number, every: number): { element: SVGElement; set: (step: number) => void } {
+  const x = (step: number) => kLeft + (kWide * step) / Math.max(steps, 1);
+  const lines: [string, string, Spans][] = [
+    ...timeline.metrics.map(([m, spans]): [string, string, Spans] => [data.metrics[m]?.label ?? "", data.metrics[m]?.name === "wrong" ? "bad" : "metric", spans]),
+    ...(timeline.gripper.length ? [["gripper closed", "gripper", timeline.gripper] as [string, string, Spans]] : []),
+    ...timeline.contacts.map(([a, b, spans]): [string, string, Spans] => [`${bodies[a] || "?"} \u2013 ${bodies[b] || "?"}`, "contact", spans]),
+  ];
+  const curve = timeline.distance.length > 1;
+  const top = 4, bottom = top + lines.length * kLine, height = bottom + (curve ? 64 : 0) + 24;
+  const most = Math.max(5, ...timeline.distance);
+  const cursor = s("line", { class: "cursor", y1: top, y2: height - 20, x1: kLeft, x2: kLeft });
+  const ticks: number[] = [];
+  const stride = [1, 2, 5, 10, 20, 50, 100, 200, 500].find((d) => steps / d <= 8) ?? 1000;
+  for (let step = 0; step <= steps; step += stride) ticks.push(step);
+  const words = lines.map(([name, , spans]) => `${name}: steps ${spans.map(([a, b]) => `${a} to ${b}`).join(", ")}`).join("; ");
+  const element = s("svg", { class: "timeline", viewBox: `0 0 ${kLeft + kWide + 20} ${height}`, role: "img", "aria-label": `Timeline of ${steps} control steps. ${words}` },
+    ticks.map((step) => [s("line", { class: "tick", x1: x(step), x2: x(step), y1: top, y2: height - 20 }), s("text", { class: "axis", x: x(step), y: height - 6, "text-anchor": "middle" }, String(step))]),
+    lines.map(([name, kind, spans], i) => [
+      s("text", { class: "line", x: kLeft - 10, y: top + i * kLine + 14, "text-anchor": "end" }, name.length > 26 ? name.slice(0, 25) + "\u2026" : name),
+      spans.map(([a, b]) => s("rect", { class: kind, x: x(a - 1), width: Math.max(2, x(b) - x(a - 1)), y: top + i * kLine + 4, height: kLine - 8, rx: 2 }))]),
+    curve ? [s("text", { class: "line", x: kLeft - 10, y: bottom + 34, "text-anchor": "end" }, "source to target, cm"), s("text", { class: "axis", x: kLeft - 10, y: bottom + 50, "text-anchor": "end" }, `0 to ${most.toFixed(0)}`),
+      s("polyline", { class: "curve", points: timeline.distance.map((d, i) => `${x(Math.min(steps, i * every)).toFixed(1)},${(bottom + 58 - (50 * d) / most).toFixed(1)}`).join(" ") })] : null, cursor);
+  return { element, set: (step) => { cursor.setAttribute("x1", String(x(step))); cursor.setAttribute("x2", String(x(step))); } };
+}
+
+// The start from above: the robot's base is below, x grows upwards, as it looks outwards.
+function topView(data: Data, task: number, start: number): Child {
+  const t = data.tasks[task]!;
+  const places = t.starts?.[start];
+  if (!places?.length) return null;
+  const objects = [t.source, t.target, ...t.distractors];
+  const xs = places.map((p) => p[0]!), ys = places.map((p) => p[1]!);
+  const half = Math.max(0.14, (Math.max(...xs) - Math.min(...xs)) / 2 + 0.06, (Math.max(...ys) - Math.min(...ys)) / 2 + 0.06);
+  const cx = (Math.max(...xs) + Math.min(...xs)) / 2, cy = (Math.max(...ys) + Math.min(...ys)) / 2;
+  const at = (p: number[]): [number, number] => [110 - (100 * (p[1]! - cy)) / half, 110 - (100 * (p[0]! - cx)) / half];
+  return h("figure", { class: "top" }, h("figcaption", {}, `Start ${start} from above`),
+    s("svg", { viewBox: "0 0 220 220", role: "img", "aria-label": `Start ${start}: ` + places.map((p, i) => `${objectName(data, objects[i] ?? -1)} at x ${(100 * p[0]!).toFixed(0)} cm, y ${(100 * p[1]!).toFixed(0)} cm`).join("; ") },
+      s("rect", { class: "table", x: 1, y: 1, width: 218, height: 218, rx: 6 }),
+      places.map((p, i) => {
+        const [x, y] = at(p), turn = ((p[2] ?? 0) * Math.PI) / 180, name = objectName(data, objects[i] ?? -1);
+        return s("g", { class: i === 0 ? "source" : i === 1 ? "target" : "distractor" }, s("circle", { cx: x, cy: y, r: i === 1 ? 15 : 10 }),
+          s("line", { x1: x, y1: y, x2: x - 18 * Math.sin(turn), y2: y - 18 * Math.cos(turn) }),
+          s("text", { x: Math.min(190, Math.max(30, x)), y: y + (y > 185 ? -18 : 28), "text-anchor": "middle" }, name.length > 18 ? name.slice(0, 17) + "\u2026" : name));
+      })));
+}
+
+function whyView(list: WhyMetric[], strings: string[]): Child {
+  const text = (i: number) => strings[i] ?? "";
+  return list.map(([name, shown, when, file, line, conditions]) => h("div", { class: "why" },
+    h("p", {}, h("b", {}, name), " = ", shown, ", ", when, file >= 0 ? h("span", { class: "sub" }, ` ${text(file)}${line > 0 ? `:${line}` : ""}`) : null),
+    conditions.length ? h("table", { class: "plain compact" }, h("caption", { class: "unseen" }, `Conditions of ${name}`),
+      h("thead", {}, h("tr", {}, ["Line", "Condition", "Of", "Measured", "", "Decides"].map((c) => h("th", { scope: "col" }, c)))),
+      h("tbody", {}, conditions.map(([at, what, bodies, measured, truth, decides, alike]) => h("tr", { class: decides ? "decides" : "idle" }, h("td", { class: "number" }, at > 0 ? String(at) : ""), h("th", { scope: "row" }, h("code", {}, text(what)), alike > 0 ? h("span", { class: "sub" }, `and ${alike} alike`) : null),
+        h("td", {}, text(bodies)), h("td", {}, text(measured)), h("td", {}, truth < 0 ? "" : truth ? "true" : "false"), h("td", {}, decides ? "yes" : ""))))) : null));
+}
+
+// A command to copy; dragging over it takes all of it.
+function command(text: string): HTMLElement {
+  const code = h("code", { class: "long command", tabindex: 0 }, text);
+  const button = h("button", { type: "button", click: () => {
+    const done = () => { button.textContent = "Copied"; setTimeout(() => { button.textContent = "Copy"; }, 1500); };
+    const choose = () => { getSelection()?.selectAllChildren(code); };
+    if (navigator.clipboard) navigator.clipboard.writeText(text).then(done, choose);
+    else choose();
+  } }, "Copy");
+  return h("div", { class: "copy" }, code, button);
+}
+
+export function episodeView(state: State, row: number): Child {
+  const { data } = state;
+  const e = data.episodes;
+  const [p, t, start, seed, steps] = [e.policy[row]!, e.task[row]!, e.start[row]!, e.seed[row]!, e.steps[row]!];
+  const task = data.tasks[t]!;
+  const run = data.policies[p]!.runs.find((r) => r.seeds.includes(seed) && r.plan === task.plan) ?? data.policies[p]!.runs[0];
+  const bad = e.reason[row]! >= 0;
+  const truths = task.metrics.filter((m) => data.metrics[m]?.truth);
+  const holds = (m: number) => Math.floor(e.bits[row]! / 2 ** m) % 2 === 1;
+
+  const timelines = readTimelines(), encoded = timelines.e?.[row];
+  const timeline = encoded ? drawing(data, decode(encoded), timelines.bodies?.[t] ?? [], steps, timelines.every ?? 1) : null;
+  const link = safeLink(data.strings[e.video?.[row] ?? -1] ?? "");
+  const video = link ? h("video", { src: link, controls: true, preload: "metadata", playsinline: true, muted: true, "aria-label": `Video of ${task.name}, start ${start}` }) : null;
+  const shown = h("output", {}, `step 0 of ${steps}`);
+  const slider = h("input", { type: "range", min: 0, max: steps, value: 0, step: 1, id: "scrub", "aria-label": "Control step", input: () => { move(Number(slider.value)); if (video?.duration) video.currentTime = (Number(slider.value) / Math.max(steps, 1)) * video.duration; } });
+  const move = (step: number): void => {
+    slider.value = String(step);
+    slider.setAttribute("aria-valuetext", `step ${step} of ${steps}`);
+    shown.textContent = `step ${step} of ${steps}${task.hz ? `, ${(step / task.hz).toFixed(1)} s` : ""}`;
+    timeline?.set(step);
+  };
+  video?.addEventListener("timeupdate", () => { if (!video.paused && video.duration) move(Math.round((video.currentTime / video.duration) * steps)); });
+  video?.addEventListener("error", () => { video.replaceWith(h("p", { class: "nothing" }, "The video is not where this page expects it: ", h("code", {}, data.strings[e.video![row]!] ?? ""), ". Keep the page and the results folder together.")); });
+
+  const args = [shellWord(run?.dir ?? "DIR"), shellWord(task.name), start, seed].join(" ");
+  const why = readWhys().e?.[String(row)];
+  const prompt = data.prompts[e.prompt[row] ?? -1];
+  return [
+    h("h3", { tabindex: -1 }, policyLabel(state, p), ` at start ${start} of ${taskName(data, t)}, seed ${seed}`),
+    bad ? h("p", { class: "bad" }, h("b", {}, "Invalid: "), data.reasons[e.reason[row]!] ?? "") : h("ul", { class: "verdicts", "aria-label": "Verdicts" }, truths.map((m) => h("li", { class: holds(m) ? "yes" : "no" }, h("span", { "aria-hidden": "true" }, holds(m) ? "\u2713" : "\u2013"), data.metrics[m]!.label, h("span", { class: "unseen" }, holds(m) ? ": yes" : ": no")))),
+    h("div", { class: "said" }, h("span", { class: "sub" }, "Instruction as sent"), prompt === undefined ? h("p", { class: "nothing" }, "What was sent is not the plan's instruction, and its text was not kept.") : h("q", { class: "prompt" }, prompt)),
+    h("div", { class: "scene" }, topView(data, t, start), h("div", { class: "video" }, video ?? h("p", { class: "nothing" }, "No video was recorded. The episode can be had again, bit for bit:", command(`vlaprobe replay ${args} --video ${shellWord(`${task.name.replace(/[^\w.-]+/g, "_")}-${start}-${seed}.mp4`)}`)))),
+    h("div", { class: "scrub" }, h("label", { for: "scrub" }, "Control step"), slider, shown),
+    timeline?.element ?? h("p", { class: "nothing" }, bad ? "It ended before anything was kept." : "No timeline was kept for this episode."),
+    h("h4", {}, "Why"), why ? whyView(why, readWhys().strings ?? []) : null, command(`vlaprobe why ${args}`),
+  ];
+}

@@ -1,0 +1,55 @@
+// Base tasks beside their rewordings, policies down: the layout of the published language table.
+import { h, replace, scroller, select } from "../dom";
+import { points, probability } from "../format";
+import { type Delta, metricIndex, taskName } from "../model";
+import { kConfounded, mainMetrics, nothing, type Panel, panel, policyLabel, shortCell } from "../parts";
+import type { State } from "../state";
+
+const isLanguage = (axis: string): boolean => axis.startsWith("language");
+const shortAxis = (axis: string): string => axis.replace(/^language\./, "");
+
+function change(d: Delta | undefined): HTMLElement | null {
+  if (!d) return null;
+  const real = (d.q ?? 1) <= 0.05;
+  return h("span", { class: "change" + (real ? " real" : ""), title: `p ${probability(d.p)}, q ${probability(d.q)}` }, points(d.diff) || "0", real ? "\u2217" : "");
+}
+
+export function language(state: State): Panel {
+  const { data } = state;
+  const holder = h("div", {});
+  const metrics = mainMetrics(data);
+  let metric = Math.max(0, metricIndex(data, "success"));
+  // Variants that only say it differently, in groups by their baseline.
+  const groups = new Map<number, number[]>();
+  data.tasks.forEach((task, t) => {
+    if (task.baseline === null || task.baseline < 0 || !task.axes.some(isLanguage)) return;
+    groups.set(task.baseline, [...(groups.get(task.baseline) ?? []), t]);
+  });
+  const byCategory = (): HTMLElement | null => {
+    const rows = (data.tables.language?.rows ?? []).filter((r) => r.metric === metric && state.chosen.includes(r.policy));
+    const categories = [...new Set(rows.map((r) => r.category ?? -1))];
+    if (!rows.length) return null;
+    return scroller("Language categories", h("table", { class: "plain compact" }, h("caption", {}, "By kind of rewording: variants, and the same starts of their own baselines"),
+      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Policy"), categories.map((c) => [h("th", { scope: "col" }, "baseline"), h("th", { scope: "col" }, data.categories[c]?.label ?? "all")]))),
+      h("tbody", {}, state.chosen.map((p) => h("tr", {}, h("th", { scope: "row" }, policyLabel(state, p)), categories.map((c) => {
+        const r = rows.find((x) => x.policy === p && (x.category ?? -1) === c);
+        return [h("td", {}, shortCell(r?.baseline ?? null)), h("td", {}, shortCell(r?.variant ?? null), r ? h("span", { class: "change" + ((r.q ?? 1) <= 0.05 ? " real" : ""), title: `p ${probability(r.p)}` }, points(r.diff) || "0", (r.q ?? 1) <= 0.05 ? "\u2217" : "") : null)];
+      }))))));
+  };
+  const group = (base: number, variants: number[]): HTMLElement => scroller(`Rewordings of ${taskName(data, base)}`, h("table", { class: "plain compact" },
+    h("caption", {}, h("b", {}, taskName(data, base))),
+    h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Policy"), [base, ...variants].map((t, i) => h("th", { scope: "col" },
+      i === 0 ? "original" : data.tasks[t]!.axes.filter(isLanguage).map(shortAxis).join(" + "),
+      i > 0 && data.tasks[t]!.axes.some((a) => !isLanguage(a)) ? h("abbr", { class: "dagger", title: `also moved: ${data.tasks[t]!.axes.filter((a) => !isLanguage(a)).join(", ")}` }, kConfounded) : null,
+      h("q", { class: "prompt" }, data.tasks[t]!.prompt))))),
+    h("tbody", {}, state.chosen.map((p) => h("tr", {}, h("th", { scope: "row" }, policyLabel(state, p)),
+      [base, ...variants].map((t, i) => h("td", {}, shortCell(data.tables.by_task?.[data.metrics[metric]!.name]?.[p]?.[t] ?? null),
+        i > 0 ? change(data.tables.deltas?.find((d) => d.policy === p && d.task === t && d.metric === metric)) : null)))))));
+  const draw = (): void => {
+    if (groups.size === 0 || !data.tables.by_task) return replace(holder, nothing(data, "language", "No task here is a rewording of another."));
+    replace(holder, h("div", { class: "controls" }, select("Metric", metrics.map((m) => data.metrics[m]!.label), metrics.indexOf(metric), (i) => { metric = metrics[i]!; draw(); })),
+      byCategory(), [...groups].map(([base, variants]) => group(base, variants)));
+  };
+  state.watch(draw);
+  return panel("language", "The same task in other words", `Percent, count, and the change against the original wording in points; \u2217 where it is real (q \u2264 0.05), ${kConfounded} where something besides the words changed.`, holder);
+}

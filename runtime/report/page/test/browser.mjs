@@ -1,0 +1,244 @@
+// Opens pages of made-up results in headless Chromium and looks at them: node browser.mjs BUILD OUT CASE [PAGE]. BUILD is the
+// folder of build.mjs with its packages, OUT gets pages and screenshots. Ends with "ok" and status 0, or names what is wrong.
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { embed, kHostile, sample } from "./sample.mjs";
+
+const [build, out, name, given] = process.argv.slice(2);
+const require = createRequire(pathToFileURL(join(build, "package.json")));
+const puppeteer = await import(pathToFileURL(require.resolve("puppeteer-core")).href);
+const launch = (puppeteer.default ?? puppeteer).launch;
+mkdirSync(out, { recursive: true });
+
+const kPanels = ["main", "radar", "gap", "compare", "deltas", "language", "heatmap", "objects", "cases", "tasks", "floors", "confounded", "invalid", "delivery", "runs"];
+const wrong = [];
+const expect = (holds, what) => { if (!holds) wrong.push(what); };
+const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+
+const chromium = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
+const browser = await launch({ executablePath: chromium, headless: true, args: ["--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--font-render-hinting=none"] });
+
+function written(file, options) {
+  const path = join(out, file);
+  writeFileSync(path, embed(readFileSync(join(build, "before.html"), "utf8"), readFileSync(join(build, "after.html"), "utf8"), sample(options)));
+  return path;
+}
+
+// Opens, waits until the page says it is complete, and draws everything by scrolling through. Errors of any kind are wrong.
+async function open(path, { width = 1440, dark = false, hash = "" } = {}) {
+  const page = await browser.newPage();
+  await page.setViewport({ width, height: 900 });
+  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }]);
+  page.on("pageerror", (error) => wrong.push(`script error: ${error.message}`));
+  page.on("console", (message) => {
+    // A video that is not there is said in the page.
+    if (["error", "warn"].includes(message.type()) && !/ERR_FILE_NOT_FOUND/.test(message.text())) wrong.push(`console: ${message.text()}`);
+  });
+  page.on("request", (request) => expect(/^(file|data|blob):/.test(request.url()), `fetched ${request.url()}`));
+  page.on("dialog", (dialog) => { wrong.push("a dialog opened"); dialog.dismiss(); });
+  await page.goto(pathToFileURL(path).href + hash);
+  await page.waitForSelector("html[data-ready=yes]", { timeout: 30000 }).catch(() => wrong.push(`${path} never became ready`));
+  const ready = await page.evaluate(() => performance.now());
+  await page.evaluate(async () => {
+    for (let y = 0; y < document.body.scrollHeight; y += 600) { scrollTo(0, y); await new Promise((done) => setTimeout(done, 40)); }
+    scrollTo(0, 0);
+  });
+  await pause(200);
+  return { page, ready };
+}
+
+async function checkPanels(page) {
+  const found = await page.evaluate(() => [...document.querySelectorAll("main section")].map((s) => ({
+    id: s.id, title: s.querySelector("h2")?.textContent, text: s.innerText.length, broken: /could not be drawn/.test(s.textContent),
+    empty: [...s.querySelectorAll(".chart")].filter((c) => !c.querySelector("svg")).length,
+    unnamed: [...s.querySelectorAll(".chart, svg[role=img], select, input, .scroller")].filter((e) => !e.getAttribute("aria-label") && !document.querySelector(`label[for="${e.id}"]`) && !e.closest("label")).length })));
+  expect(JSON.stringify(found.map((f) => f.id)) === JSON.stringify(kPanels), `panels are ${found.map((f) => f.id)}`);
+  for (const f of found) {
+    expect(f.title && f.text > 40, `panel ${f.id} is empty`);
+    expect(!f.broken, `panel ${f.id} could not be drawn`);
+    expect(f.empty === 0, `panel ${f.id} has ${f.empty} charts that were not drawn`);
+    expect(f.unnamed === 0, `panel ${f.id} has ${f.unnamed} parts without a name for screen readers`);
+  }
+}
+
+// Contrast of every visible text with what is behind it (WCAG 2.1, 1.4.3).
+async function checkContrast(page, theme) {
+  const low = await page.evaluate(() => {
+    const numbers = (color) => { const m = color.match(/[\d.]+/g).map(Number); return { rgb: m.slice(0, 3), a: m[3] ?? 1 }; };
+    const luminance = ([r, g, b]) => { const c = [r, g, b].map((v) => (v / 255 <= 0.03928 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4)); return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
+    const found = new Set();
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (walker.nextNode()) {
+      const element = walker.currentNode.parentElement;
+      if (!walker.currentNode.data.trim() || element.closest("script, noscript, .unseen, .skip, option, [aria-hidden=true]")) continue;
+      if (!element.getClientRects().length) continue;
+      const style = getComputedStyle(element);
+      let ground = element;
+      while (ground && numbers(getComputedStyle(ground).backgroundColor).a < 1) ground = ground.parentElement;
+      const inSvg = element instanceof SVGElement;
+      const a = luminance(numbers(inSvg ? style.fill : style.color).rgb), b = luminance(numbers(ground ? getComputedStyle(ground).backgroundColor : "rgb(255,255,255)").rgb);
+      const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+      if (ratio < 4.5) found.add(`${ratio.toFixed(2)} ${element.tagName}.${element.getAttribute("class")} in ${element.closest("section, aside, header, footer")?.id ?? "?"}: ${walker.currentNode.data.slice(0, 30)}`);
+    }
+    return [...found];
+  });
+  for (const text of low.slice(0, 8)) wrong.push(`contrast, ${theme}: ${text}`);
+}
+
+const focused = (page) => page.evaluate(() => { const e = document.activeElement; return { tag: e.tagName, text: e.textContent?.slice(0, 60), type: e.type ?? "", id: e.id, panel: e.closest("section, aside")?.id ?? "", label: e.getAttribute("aria-label") ?? "", visible: !!e.getClientRects().length, className: e.getAttribute("class") ?? "" }; });
+
+async function checkKeyboard(page) {
+  await page.evaluate(() => { document.activeElement?.blur(); scrollTo(0, 0); });
+  await page.keyboard.press("Tab");
+  const first = await focused(page);
+  expect(/Skip/.test(first.text), `the first stop is ${first.tag} ${first.text}, not the skip link`);
+  const seen = new Set(), panels = new Set();
+  for (let i = 0; i < 700; ++i) {
+    const at = await focused(page);
+    seen.add(at.tag + (at.type ? `:${at.type}` : ""));
+    if (at.panel) panels.add(at.panel);
+    expect(at.tag === "BODY" || at.visible, `focus on something that is not to be seen: ${at.tag} ${at.text}`);
+    if (at.tag === "BODY" && i > 3) break;
+    await page.keyboard.press("Tab");
+  }
+  for (const kind of ["A", "SELECT:select-one", "INPUT:checkbox", "INPUT:search", "BUTTON:button", "SUMMARY", "DIV"]) expect(seen.has(kind), `Tab never reaches a ${kind}; it reached ${[...seen]}`);
+  for (const id of ["main", "gap", "deltas", "language", "heatmap", "objects", "cases", "tasks"]) expect(panels.has(id), `Tab reaches nothing in panel ${id}`);
+  // A task by its link, a start by arrows and Enter, a step by the slider.
+  await page.focus("#tasks tbody a");
+  await page.keyboard.press("Enter");
+  await pause(100);
+  expect((await focused(page)).id === "task-title", "Enter on a task does not lead to it");
+  await page.focus(".starts button[tabindex='0']");
+  const before = (await focused(page)).label;
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowDown");
+  const after = (await focused(page)).label;
+  expect(after && after !== before, "arrow keys do not move over the starts");
+  await page.keyboard.press("Enter");
+  await pause(100);
+  expect(await page.$(".episode h3"), "Enter on a start does not open its episode");
+  if (await page.$(".timeline .cursor")) {
+    await page.focus("#scrub");
+    const x = () => page.$eval(".timeline .cursor", (c) => c.getAttribute("x1"));
+    const from = await x();
+    await page.keyboard.press("ArrowRight");
+    expect((await x()) !== from, "the slider does not move the timeline's cursor");
+  } else {
+    wrong.push("the opened episode has no timeline");
+  }
+  expect(/vlaprobe why /.test(await page.$eval(".episode", (e) => e.textContent)), "an episode does not say how to ask why");
+}
+
+async function shots(page, prefix, ids) {
+  for (const id of ids) await (await page.$(`#${id}`)).screenshot({ path: join(out, `${prefix}-${id}.png`) });
+}
+
+// What a page of hostile names may not do.
+async function checkInert(page) {
+  const state = await page.evaluate(() => ({
+    pwned: window.pwned, handlers: [...document.querySelectorAll("*")].filter((e) => [...e.attributes].some((a) => /^on/i.test(a.name))).length,
+    images: document.querySelectorAll("img, iframe, object, embed, base, form").length,
+    links: [...document.querySelectorAll("[href], [src]")].filter((e) => /^\s*javascript:/i.test(e.getAttribute("href") ?? e.getAttribute("src"))).length,
+    scripts: document.querySelectorAll("script:not([type])").length, text: document.body.innerText, title: document.title }));
+  expect(state.pwned === undefined, `a name was run: ${state.pwned}`);
+  expect(state.handlers === 0 && state.images === 0 && state.links === 0 && state.scripts === 1, `names became elements: ${JSON.stringify({ ...state, text: "" })}`);
+  for (const text of kHostile) expect(state.text.includes(text.replace(/\u2028/g, "").slice(0, 4)), `a name is not shown as text: ${text}`);
+  expect(state.text.includes(kHostile[0]) && state.text.includes(kHostile[1]) && state.title === kHostile[1], "names are not shown as they are");
+}
+
+const kCases = {
+  // Six policies with 3,640 episodes each.
+  async large() {
+    const { page, ready } = await open(written("large.html", { policies: 6, starts: 26, seeds: [1, 2, 3, 4, 5] }));
+    console.log(`6 policies, 21,840 episodes: complete after ${(ready / 1000).toFixed(2)} s`);
+    expect(ready < 15000, `the page needed ${ready} ms`);
+    await checkPanels(page);
+    await page.pdf({ path: join(out, "large.pdf"), preferCSSPageSize: true, printBackground: true });
+    expect(readFileSync(join(out, "large.pdf")).length > 50000, "the printed page is empty");
+  },
+  async light() {
+    const { page } = await open(written("six.html", { policies: 6 }));
+    await checkPanels(page);
+    await page.screenshot({ path: join(out, "light-page.png") });
+    await shots(page, "light", kPanels);
+    await checkKeyboard(page);
+    await page.evaluate(() => document.querySelectorAll("details").forEach((d) => { d.open = true; }));
+    await checkContrast(page, "light");
+    await shots(page, "light-open", ["tasks"]);
+  },
+  async dark() {
+    const { page } = await open(written("six-dark.html", { policies: 6 }), { dark: true, hash: "#episode-1500" });
+    await checkPanels(page);
+    await page.evaluate(() => document.querySelectorAll("details").forEach((d) => { d.open = true; }));
+    await checkContrast(page, "dark");
+    await page.screenshot({ path: join(out, "dark-page.png") });
+    await shots(page, "dark", ["radar", "tasks", "heatmap"]);
+  },
+  async hostile() {
+    const { page } = await open(written("hostile.html", { policies: 8, hostile: true }));
+    await checkPanels(page);
+    await checkInert(page);
+    for (const hash of ["#episode-3", "#episode-40", "#task-2"]) {
+      await page.evaluate((h) => { location.hash = h; }, hash);
+      await pause(150);
+    }
+    await page.evaluate(() => document.querySelectorAll("details").forEach((d) => { d.open = true; }));
+    await checkInert(page);
+    await page.screenshot({ path: join(out, "hostile-page.png") });
+  },
+  async few() {
+    for (const [file, options] of [["none", { only: "none" }], ["invalid", { only: "invalid", policies: 2 }], ["partial", { only: "partial" }], ["one", { policies: 1 }], ["nobody", { policies: 0 }]]) {
+      const { page } = await open(written(`${file}.html`, options));
+      const before = wrong.length;
+      await checkPanels(page);
+      await page.screenshot({ path: join(out, `${file}-page.png`), fullPage: true });
+      for (let i = before; i < wrong.length; ++i) wrong[i] = `${file}: ${wrong[i]}`;
+    }
+    const broken = join(out, "broken.html");
+    writeFileSync(broken, readFileSync(join(build, "before.html"), "utf8") + readFileSync(join(build, "after.html"), "utf8"));
+    const page = await browser.newPage();
+    await page.goto(pathToFileURL(broken).href);
+    expect(/cannot be shown/.test(await page.evaluate(() => document.body.innerText)), "a page without results says nothing");
+  },
+  async many() {
+    const { page, ready } = await open(written("many.html", { policies: 50 }));
+    console.log(`50 policies, 33,600 episodes: complete after ${(ready / 1000).toFixed(2)} s`);
+    await checkPanels(page);
+    await page.screenshot({ path: join(out, "many-page.png") });
+    await shots(page, "many", ["radar", "cases"]);
+  },
+  async narrow() {
+    const { page } = await open(written("narrow.html", { policies: 4 }), { width: 420, hash: "#episode-40" });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    expect(wide <= 0, `the page is ${wide} px wider than a narrow window`);
+    await page.screenshot({ path: join(out, "narrow-page.png") });
+  },
+  // A page that the program wrote.
+  async given() {
+    const { page, ready } = await open(given);
+    console.log(`${given}: complete after ${(ready / 1000).toFixed(2)} s`);
+    await checkPanels(page);
+    await page.evaluate(() => document.querySelectorAll("details").forEach((d) => { d.open = true; }));
+    await checkContrast(page, "light");
+    await page.evaluate(() => document.querySelectorAll("details").forEach((d) => { d.open = false; }));
+    await page.screenshot({ path: join(out, "report-page.png") });
+    await shots(page, "report", kPanels);
+    if (await page.$(".starts, #tasks tbody a")) {
+      await checkKeyboard(page);
+      await shots(page, "report-open", ["tasks"]);
+    }
+  },
+};
+
+if (!kCases[name]) throw new Error(`no such case: ${name}`);
+try {
+  await kCases[name]();
+} catch (error) {
+  wrong.push(`${error.stack ?? error}`);
+}
+await browser.close();
+for (const text of wrong.slice(0, 25)) console.log(`wrong: ${text}`);
+console.log(wrong.length ? `${wrong.length} wrong` : "ok");
+process.exitCode = wrong.length ? 1 : 0;

@@ -1,0 +1,13 @@
+// The page without results, bundled at build time by page/build.mjs: what stands before the results
+// and what after, in pieces.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace probe::report {
+
+std::span<const std::string_view> page_before();
+std::span<const std::string_view> page_after();
+
+}  // namespace probe::report
