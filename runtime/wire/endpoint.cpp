@@ -36,6 +36,28 @@ Result<std::string> decoded(std::string_view text) {
   return plain;
 }
 
+// Whatever stands in a policy's name gets into results and reports.
+bool is_secret(std::string_view option) {
+  std::string name;
+  for (const char c : option) {
+    if (c != '_' && c != '-' && c != '.')
+      name += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  }
+  for (const char* known : {"key", "apikey", "token", "apitoken", "accesstoken", "auth",
+                            "authorization", "password", "passwd", "secret", "bearer"}) {
+    if (name == known) return true;
+  }
+  return false;
+}
+
+Failure secret(const std::string& what) {
+  return {"usage",
+          what +
+              " would be stored with every result: give it in the environment, as "
+              "VLAPROBE_API_KEY",
+          "--policy"};
+}
+
 Status read_options(std::string_view text, std::map<std::string, std::string>* options) {
   while (!text.empty()) {
     const std::string_view pair = text.substr(0, text.find('&'));
@@ -44,9 +66,12 @@ Status read_options(std::string_view text, std::map<std::string, std::string>* o
     if (equals == std::string_view::npos || equals == 0) {
       return bad(pair, "an option is written `name=value`");
     }
+    if (is_secret(pair.substr(0, equals))) {
+      return secret("a secret, `" + std::string(pair.substr(0, equals)) + "`,");
+    }
     PROBE_ASSIGN(std::string value, decoded(pair.substr(equals + 1)));
     if (!options->emplace(pair.substr(0, equals), std::move(value)).second) {
-      return bad(pair, "the option is there twice");
+      return bad(pair.substr(0, equals), "the option is there twice");
     }
   }
   return {};
@@ -55,13 +80,23 @@ Status read_options(std::string_view text, std::map<std::string, std::string>* o
 }  // namespace
 
 Result<Endpoint> parse_endpoint(std::string_view text, std::string_view default_port) {
+  const std::size_t query = text.find('?');
+  const std::string_view options =
+      query == std::string_view::npos ? std::string_view() : text.substr(query + 1);
+  text = text.substr(0, query);
   if (!text.starts_with("//")) return bad(text, "a server is written `//HOST:PORT`");
+  for (const char c : text) {
+    // They would end a line of an HTTP request.
+    if (static_cast<unsigned char>(c) <= 0x20 || c == 0x7f) {
+      return Failure{"usage", "a server's address has a blank or a control character; write %20",
+                     "--policy"};
+    }
+  }
   std::string_view rest = text.substr(2);
   Endpoint endpoint;
-  const std::size_t query = rest.find('?');
-  if (query != std::string_view::npos) {
-    PROBE_TRY(read_options(rest.substr(query + 1), &endpoint.options));
-    rest = rest.substr(0, query);
+  PROBE_TRY(read_options(options, &endpoint.options));
+  if (rest.substr(0, rest.find('/')).find('@') != std::string_view::npos) {
+    return secret("a name or a password before `@`");
   }
   const std::size_t slash = rest.find('/');
   if (slash != std::string_view::npos) {

@@ -77,12 +77,14 @@ class WebSocket::Connection {
                           [this](error_code error, std::size_t) {
                             std::lock_guard guard(mutex_);
                             sent_ = true;
+                            is_write_fine_ = !error;
                             if (error) break_off("sending: " + error.message());
                             changed_.notify_all();
                           });
     });
     if (changed_.wait_for(lock, timeout, [this] { return sent_; })) {
-      return broken_ ? Status(*broken_) : Status();
+      // What the reader may have met since is receive()'s to tell, after the messages before it.
+      return is_write_fine_ ? Status() : Status(*broken_);
     }
     break_off("took no message for " + seconds_text(timeout));
     lock.unlock();
@@ -161,6 +163,7 @@ class WebSocket::Connection {
   std::deque<Message> inbox_;
   std::optional<Failure> broken_;
   bool sent_ = false;
+  bool is_write_fine_ = false;
 };
 
 WebSocket::WebSocket(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}

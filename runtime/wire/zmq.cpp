@@ -41,7 +41,7 @@ class ZmqRequester::Sockets {
  private:
   void open() {
     reached_ = Reached::kNothing;
-    lost_ = false;
+    lost_ = has_answered_ = false;
     request_.emplace(context_, zmq::socket_type::req);
     request_->set(zmq::sockopt::linger, 0);
     // Messages wait for a connection here, where it is noticed, and not in a queue.
@@ -72,14 +72,16 @@ class ZmqRequester::Sockets {
     }
     if (!wait(ZMQ_POLLIN, Clock::now() + timeout)) {
       if (!lost_) return failed("no answer in " + seconds_text(timeout));
+      // Any bytes at all can pass for a first version's greeting.
       return failed(
-          "the server closed the connection before it answered: it went away, or its "
-          "answer has more than " +
+          std::string("the server closed the connection before it answered: it went away") +
+          (has_answered_ ? "" : ", does not speak ZeroMQ") + ", or its answer has more than " +
           std::to_string(options_.largest_message >> 20) + " MiB");
     }
     zmq::message_t answer;
     if (!request_->recv(answer, zmq::recv_flags::dontwait)) return failed("no answer");
     if (answer.more()) return failed("an answer in several parts, where one was expected");
+    has_answered_ = true;
     const auto* data = answer.data<std::uint8_t>();
     return Bytes(data, data + answer.size());
   }
@@ -153,6 +155,7 @@ class ZmqRequester::Sockets {
   std::optional<zmq::socket_t> request_, monitor_;
   int opened_ = 0;
   Reached reached_ = Reached::kNothing;
+  bool has_answered_ = false;
   bool lost_ = false;  // the connection ended since the last send
 };
 

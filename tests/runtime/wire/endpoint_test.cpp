@@ -36,4 +36,21 @@ TEST_CASE("what is no address is named with what it lacks") {
   CHECK_FALSE(parse_endpoint("//[::1", "1").ok());
 }
 
+TEST_CASE("a secret is refused, never repeated, and told where it belongs") {
+  for (const char* text :
+       {"//h?key=hunter2", "//h?profile=p&Api-Key=hunter2", "//h?api_token=hunter2",
+        "//me:hunter2@h:80", "h?a=1&password=hunter2", "//h?token=hunter2&b"}) {
+    const auto refused = parse_endpoint(text, "1");
+    REQUIRE_FALSE(refused.ok());
+    CHECK_MESSAGE(refused.failure().message.find("hunter2") == std::string::npos, text);
+  }
+  CHECK(parse_endpoint("//h?key=hunter2", "1").failure().message ==
+        "a secret, `key`, would be stored with every result: give it in the environment, as "
+        "VLAPROBE_API_KEY");
+  CHECK(parse_endpoint("//h?prompt.key=task", "1").ok());
+  CHECK(parse_endpoint("//h?image=first -> a/b 8x8", "1").ok());
+  CHECK_FALSE(parse_endpoint("//h/a b", "1").ok());
+  CHECK_FALSE(parse_endpoint("//h/\r\nX: y", "1").ok());
+}
+
 }  // namespace probe::wire

@@ -55,8 +55,8 @@ TEST_CASE("a ZeroMQ server that dies or floods is told from one that is slow") {
   test::PythonServer server("zmq_server.py");
   const auto socket = requester(server.port(), 1 << 20);
   CHECK(failure_of(*socket, "huge", 5s) ==
-        "the server closed the connection before it answered: it went away, or its answer has "
-        "more than 1 MiB");
+        "the server closed the connection before it answered: it went away, does not speak "
+        "ZeroMQ, or its answer has more than 1 MiB");
   CHECK(failure_of(*socket, "parts", 5s) == "an answer in several parts, where one was expected");
   REQUIRE(socket->ask(bytes_of("echo"), 5s).ok());
   server.stop();
@@ -67,12 +67,14 @@ TEST_CASE("a ZeroMQ server that dies or floods is told from one that is slow") {
 }
 
 TEST_CASE("what listens without speaking ZeroMQ is named") {
-  for (const char* mode : {"raw", "silent"}) {
-    const test::PythonServer server("zmq_server.py", {mode});
-    const auto socket = requester(server.port());
-    const std::string message = failure_of(*socket, "echo", 500ms);
-    CHECK_MESSAGE(message == "something listens there that does not speak ZeroMQ", mode);
+  {
+    const test::PythonServer server("zmq_server.py", {"raw"});
+    const std::string message = failure_of(*requester(server.port()), "echo", 500ms);
+    CHECK_MESSAGE(message.find("not speak ZeroMQ") != std::string::npos, message);
   }
+  const test::PythonServer server("zmq_server.py", {"silent"});
+  CHECK(failure_of(*requester(server.port()), "echo", 500ms) ==
+        "something listens there that does not speak ZeroMQ");
 }
 
 }  // namespace probe::wire
