@@ -1,6 +1,8 @@
 // Plan records to a render::SceneSpec, and poses to frames.
 #include "runtime/run/scene_view.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "runtime/base/check.h"
@@ -160,6 +162,23 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   return view;
 }
 
+// A photo is scaled to the picture, so it has the picture's shape; a pixel of rounding is fine.
+Status check_shape(const scene::Texture& photo, const plan::CameraRecord& camera,
+                   const std::string& where) {
+  const double across = static_cast<double>(photo.width) * camera.height;
+  const double down = static_cast<double>(photo.height) * camera.width;
+  const double rounding = 1.5 * std::max(camera.width, camera.height);
+  if (std::abs(across - down) <= std::max(rounding, 0.01 * down)) return {};
+  const auto size = [](auto width, auto height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+  };
+  return Failure{"render",
+                 "the photo is " + size(photo.width, photo.height) +
+                     " pixels, the camera's picture " + size(camera.width, camera.height) +
+                     ": a photo of another size is scaled, one of another shape must be cut first",
+                 where};
+}
+
 // `seen` is the scene as every camera sees it.
 Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
                                            const plan::ViewRecord& record,
@@ -183,6 +202,7 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
   if (record.photo != plan::kNone && eye.moving_mount < 0) {
     spec.photo = assets_->photo(record.photo);
+    PROBE_TRY(check_shape(*spec.photo, camera, where));
   }
   PROBE_ASSIGN(eye.renderer, render::Renderer::create(std::move(spec)));
   return eye;

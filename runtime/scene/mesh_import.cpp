@@ -21,6 +21,7 @@
 #include "runtime/base/asset_path.h"
 #include "runtime/scene/color.h"
 #include "runtime/scene/image.h"
+#include "runtime/scene/mesh_counts.h"
 #include "runtime/scene/mesh_references.h"
 #include "runtime/scene/vertex_colors.h"
 
@@ -495,6 +496,7 @@ Result<std::shared_ptr<const Mesh>> load(const std::string& path, const Vec3& sc
       return asset_failure(reference.problem, path + " (" + reference.written + ")");
     }
   }
+  PROBE_TRY(check_counts(path));
   Assimp::Importer importer;
   importer.SetIOHandler(new NamedFiles(path, references));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);

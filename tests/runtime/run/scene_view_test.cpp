@@ -34,6 +34,7 @@ camera smooth like small { image 320 x 240 samples 4 }
 camera wrist { mount widowx.gripper_link at (0cm, 0cm, 8cm) look (1, 0, -0.4)
   image 320 x 240; lens 250px, 250px, 160px, 120px }
 scene photographed like table { camera third_view overlay "wall.png" }
+scene wide_photo like table { camera third_view overlay "wide.png" }
 scene three_eyes like table { camera third_view, wrist, small as left overlay "wall.png" }
 
 variants of carrot_on_plate {
@@ -48,13 +49,14 @@ variants of carrot_on_plate {
   carrot_wrist   { camera wrist }
   carrot_photo   { scene photographed }
   carrot_eyes    { scene three_eyes }
+  carrot_wide    { scene wide_photo }
 }
 @allow(confounded, "a picture of both")
 variant carrot_photo_lamp of carrot_photo { light lamp }
 variant eggplant_fine of put_eggplant_in_basket { light lamp }
 suite pictures trained on bridge_v2 {
   tasks { carrot_on_plate, carrot_evening, carrot_lamp, carrot_corners, carrot_no_corners, carrot_nearer,
-          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes,
+          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes, carrot_wide,
           put_eggplant_in_basket, eggplant_fine }
   seeds 42
 }
@@ -70,6 +72,9 @@ class Pictures {
              fs::copy_options::recursive);
     const std::vector<std::uint8_t> photo(3 * 320 * 240, 123);
     REQUIRE(scene::write_png((folder_ / "assets/scenes/wall.png").string(), 320, 240, photo).ok());
+    REQUIRE(scene::write_png((folder_ / "assets/scenes/wide.png").string(), 320, 200,
+                             std::span(photo).first(3 * 320 * 200))
+                .ok());
     const std::string text = (folder_ / "pictures.probe").string();
     std::ofstream(text) << kVariants;
     const std::string files[] = {text};
@@ -209,6 +214,18 @@ TEST_CASE("lights, cameras and backdrops of the language are what is drawn") {
     starts.insert(Sha256{pictures.plan().episodes(task)[0].start_id});
   }
   CHECK(starts.size() == pictures.plan().tasks().size());  // every one of these is in the id
+}
+
+TEST_CASE("a photo of another shape than the picture is refused with both sizes") {
+  const Pictures pictures;
+  const std::uint32_t tasks[] = {pictures.task("carrot_wide")};
+  auto assets = SharedAssets::load(pictures.plan(), pictures.root(), tasks);
+  REQUIRE(assets.ok());
+  const auto view = SceneView::create(pictures.plan(), tasks[0], *assets);
+  REQUIRE_FALSE(view.ok());
+  CHECK(to_text(view.failure()).find("320 x 200 pixels, the camera's picture 640 x 480") !=
+        std::string::npos);
+  CHECK(view.failure().where == "camera `third_view`");
 }
 
 TEST_CASE("a camera on the wrist sees the fingers in one place and the table pass by") {
