@@ -68,14 +68,16 @@ TEST_CASE("the table is of the suite as it is now") {
 }
 
 TEST_CASE("who stays where he is intends nothing and succeeds nowhere") {
-  for (const auto& [task, counts] : read_floors()["null"]) {
+  const auto floors = read_floors()["null"];
+  for (const auto& [task, counts] : floors) {
     CAPTURE(task);
     CHECK(counts.intention + counts.grasp + counts.success + counts.wrong == 0);
   }
 }
 
 TEST_CASE("who goes to the source and never closes intends always and grasps never") {
-  for (const auto& [task, counts] : read_floors()["reach"]) {
+  const auto floors = read_floors()["reach"];
+  for (const auto& [task, counts] : floors) {
     CAPTURE(task);
     CHECK(counts.intention == counts.episodes);
     CHECK(counts.grasp == 0);
@@ -86,7 +88,8 @@ TEST_CASE("who goes to the source and never closes intends always and grasps nev
 TEST_CASE("who takes a distractor touches the wrong object always, and stays still where none is") {
   const plan::Plan& plan = test::suite_plan();
   std::size_t crowded = 0;
-  for (const auto& [task, counts] : read_floors()["wrong"]) {
+  const auto floors = read_floors()["wrong"];
+  for (const auto& [task, counts] : floors) {
     CAPTURE(task);
     const auto index = plan.find_task(task);
     REQUIRE(index);
@@ -100,7 +103,8 @@ TEST_CASE("who takes a distractor touches the wrong object always, and stays sti
 
 TEST_CASE("every start can be solved") {
   int episodes = 0, successes = 0;
-  for (const auto& [task, counts] : read_floors()["expert"]) {
+  const auto floors = read_floors()["expert"];
+  for (const auto& [task, counts] : floors) {
     CAPTURE(task);
     CHECK(counts.success * 5 >= counts.episodes * 4);
     episodes += counts.episodes;
