@@ -113,6 +113,10 @@ void print_summary(const run::RunSummary& summary) {
   fmt::print(stderr, "{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total,
              summary.out, summary.done, summary.skipped, summary.invalid);
   if (summary.done > 0) fmt::print(stderr, "{}\n", run::to_text(summary.call));
+  if (summary.call.retried > 0) {
+    fmt::print(stderr, "{} attempts that the server spoiled were made again\n",
+               summary.call.retried);
+  }
 }
 
 void add_run_options(CLI::App& verb, RunArguments& arguments) {
