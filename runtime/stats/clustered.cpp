@@ -51,8 +51,9 @@ double design_effect(const std::vector<Row>& rows, double confidence) {
   std::vector<Sum> tasks(ids(rows, [](const Row& r) { return r.task; }));
   std::vector<Sum> clusters(ids(rows, [](const Row& r) { return r.cluster; }));
   Sum all;
-  double squares = 0;
+  double squares = 0, starts = 0;
   for (const Row& row : rows) {
+    starts += row.n > 0 ? 1 : 0;
     for (Sum* sum : {&tasks[row.task], &all}) {
       sum->total += row.total;
       sum->n += row.n;
@@ -77,14 +78,14 @@ double design_effect(const std::vector<Row>& rows, double confidence) {
   }
   const double mean_size = all.n / used;
   const double mean = all.total / all.n;
-  double effect = mean_size;
+  double effect = all.n / starts;
   if (mean_size > 1 && used > 1 && within > 1e-9) {
     by_clusters *= used / (used - 1);
     const double quantile = student_two_sided(confidence, used - 1) / normal_two_sided(confidence);
     effect = std::clamp(by_clusters / within, 1.0, mean_size) * quantile * quantile;
   }
   // A mean is estimated for every task, not for all together.
-  if (all.n > used_tasks) effect *= (all.n - 1) / (all.n - used_tasks);
+  if (within > 1e-9 && all.n > used_tasks) effect *= (all.n - 1) / (all.n - used_tasks);
   return effect * (1 - between_share(tasks, mean, squares / all.n - mean * mean));
 }
 

@@ -27,7 +27,8 @@ struct StartCount {
 // normal one, since that variance is estimated from few clusters. Tasks of unlike rates are worth
 // more, because the tasks stay when the starts change: only the variance within tasks counts; a
 // task's rate is first drawn towards the pooled one by two episodes, so that rates of 0 and 1 by
-// chance do not pass for certainty. With one task and one seed it is Wilson's interval.
+// chance do not pass for certainty. Where all episodes ended alike there is no variance to compare
+// and the starts count once each. With one task and one seed it is Wilson's interval.
 Interval clustered_rate(std::span<const StartCount> starts, double confidence = 0.95);
 
 // Pairs of one start in one task; clusters as above.

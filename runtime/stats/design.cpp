@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
+#include <vector>
 
 #include "runtime/base/check.h"
 
@@ -29,12 +30,43 @@ std::int64_t critical_losses(std::int64_t m, double alpha) {
 }
 
 // P(rejected | m discordant pairs, each won by A with chance `share`).
-double power_given(std::int64_t m, double share, double alpha) {
-  const std::int64_t critical = critical_losses(m, alpha);
+double power_given(std::int64_t m, std::int64_t critical, double share) {
   if (critical < 0) return 0;
   const double n = static_cast<double>(m);
   const double c = static_cast<double>(critical);
   return boost::math::cdf(Binomial(n, share), c) + boost::math::cdf(Binomial(n, 1 - share), c);
+}
+
+// The numbers of discordant pairs that a design may have, with their chances and critical losses;
+// those further than ten standard deviations from the mean add nothing.
+struct Discordant {
+  std::int64_t pairs = 0, critical = 0;
+  double chance = 0;
+};
+std::vector<Discordant> discordant_pairs(const PairedDesign& design) {
+  const double n = static_cast<double>(design.pairs);
+  const Binomial discordant(n, design.discordance);
+  const double mean = n * design.discordance;
+  const double spread = 10 * std::sqrt(mean * (1 - design.discordance)) + 1;
+  const auto first = static_cast<std::int64_t>(std::max(1.0, mean - spread));
+  const auto last = static_cast<std::int64_t>(std::min(n, mean + spread));
+  std::vector<Discordant> all;
+  for (std::int64_t m = first; m <= last; ++m) {
+    const double chance = boost::math::pdf(discordant, static_cast<double>(m));
+    if (chance > 1e-12) all.push_back({m, critical_losses(m, design.alpha), chance});
+  }
+  return all;
+}
+
+double power_of(const std::vector<Discordant>& discordant, double share) {
+  double total = 0;
+  for (const Discordant& d : discordant)
+    total += d.chance * power_given(d.pairs, d.critical, share);
+  return std::min(1.0, total);
+}
+
+double share_won(const PairedDesign& design, double difference) {
+  return (1 + difference / design.discordance) / 2;
 }
 
 }  // namespace
@@ -43,30 +75,19 @@ double power(const PairedDesign& design, double difference) {
   PROBE_CHECK(std::abs(difference) <= design.discordance && design.discordance <= 1,
               "rates cannot differ by more than the share of pairs that differ");
   if (design.pairs <= 0 || design.discordance <= 0) return 0;
-  const double share = (1 + difference / design.discordance) / 2;
-  const double n = static_cast<double>(design.pairs);
-  const Binomial discordant(n, design.discordance);
-  // Numbers of discordant pairs further than ten standard deviations from the mean add nothing.
-  const double mean = n * design.discordance;
-  const double spread = 10 * std::sqrt(mean * (1 - design.discordance)) + 1;
-  const auto first = static_cast<std::int64_t>(std::max(1.0, mean - spread));
-  const auto last = static_cast<std::int64_t>(std::min(n, mean + spread));
-  double total = 0;
-  for (std::int64_t m = first; m <= last; ++m) {
-    total +=
-        boost::math::pdf(discordant, static_cast<double>(m)) * power_given(m, share, design.alpha);
-  }
-  return std::min(1.0, total);
+  return power_of(discordant_pairs(design), share_won(design, difference));
 }
 
 std::optional<double> minimum_detectable_difference(const PairedDesign& design,
                                                     double wanted_power) {
-  if (power(design, design.discordance) < wanted_power) return std::nullopt;
+  if (design.pairs <= 0 || design.discordance <= 0) return std::nullopt;
+  const auto discordant = discordant_pairs(design);
+  if (power_of(discordant, 1) < wanted_power) return std::nullopt;
   double low = 0;
   double high = design.discordance;
   while (high - low > 1e-6) {
     const double middle = (low + high) / 2;
-    (power(design, middle) < wanted_power ? low : high) = middle;
+    (power_of(discordant, share_won(design, middle)) < wanted_power ? low : high) = middle;
   }
   return high;
 }

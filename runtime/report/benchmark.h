@@ -1,0 +1,138 @@
+// Run folders as one table of episodes: policies, tasks, starts, categories and what could not be
+// used. Reads databases and plans, never traces.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+#include "runtime/run/results.h"
+
+namespace probe::report {
+
+// Indices of tables below; kAbsent where there is none.
+inline constexpr int kAbsent = -1;
+
+struct Metric {
+  std::string name;
+  bool truth = true;
+  int good = 0;  // +1 higher is better, -1 lower, 0 neither
+};
+
+struct Object {
+  std::string name;
+  std::optional<bool> seen_as_source, seen_as_target;  // in training
+};
+
+struct StartPlace {
+  std::string start_id, episode_id;  // hex
+  std::uint32_t cluster = 0;         // starts of any task that lie in the same places share it
+  std::vector<std::array<double, 3>> bodies;  // x, y (m), yaw (deg): source, target, distractors
+};
+
+// Tasks of several plans are one if name, instruction, judge, source and target agree; their starts
+// are told apart by content.
+struct Task {
+  std::string name, prompt, scene;
+  int plan = 0;
+  int baseline = kAbsent;
+  std::uint32_t axes = 0;  // mask of plan::Axis, against the baseline
+  std::vector<std::string> axis_names;
+  int source = 0, target = 0;
+  std::vector<int> distractors;
+  std::vector<std::string> ood;  // "source", "target", "relation"
+  int horizon = 0;               // control steps
+  double hz = 0;
+  std::vector<int> metrics;
+  std::string allowed;  // reason of an allowed confounded comparison
+  std::string
+      confounded;        // why the comparison with the baseline says nothing of one axis; or empty
+  std::string unpaired;  // why its starts do not correspond to the baseline's; or empty
+  std::string rule_file, rule;  // of success, as written
+  int rule_line = 0;
+  std::vector<StartPlace> starts;
+};
+
+struct Category {
+  std::string name, label;
+  std::vector<int> tasks;
+};
+
+struct PlanInfo {
+  std::string root, suite, trained_on;
+  int tasks = 0, starts = 0;  // of the suite that was run
+  int seeds = 1;              // of the suite as declared
+};
+
+struct RunInfo {
+  std::string dir;
+  int plan = 0, fingerprint = 0;
+  std::vector<int> seeds;
+  int done = 0, expected = 0, invalid = 0, videos = 0;
+  int tasks = 0;  // that have an episode
+};
+
+enum class Role : std::uint8_t { kModel, kCeiling, kFloor, kRandom, kProbe };
+std::string_view to_text(Role role);
+
+struct Policy {
+  std::string name, label;  // labels are unique
+  Role role = Role::kModel;
+  std::vector<RunInfo> runs;
+};
+
+struct Episode {
+  int policy = 0, task = 0, start = 0;
+  std::uint64_t bits = 0;  // metric i of the benchmark was true
+  int reason = kAbsent;    // of invalidity
+  int prompt = kAbsent;    // what the policy was sent, if its hash fits a known instruction
+  int plan = 0;            // under which it was run
+  std::string video;       // path, or empty
+  run::ResultRow row;      // as stored
+
+  bool valid() const { return reason == kAbsent; }
+  bool is(int metric) const { return ((bits >> metric) & 1U) != 0; }
+};
+
+struct Note {
+  std::string level;  // "note", "warn", "bad"
+  std::string text;
+};
+
+struct Benchmark {
+  std::vector<Metric> metrics;  // truths first
+  std::vector<Object> objects;
+  std::vector<Task> tasks;
+  std::vector<Category> categories;
+  std::vector<PlanInfo> plans;
+  std::vector<std::vector<std::pair<std::string, std::string>>> fingerprints;
+  std::vector<std::string> fingerprint_differences;
+  std::vector<Policy> policies;
+  std::vector<std::string> prompts, reasons;
+  std::vector<Episode> episodes;  // ascending by policy, task, start, seed
+  std::vector<Note> notes;
+  std::vector<plan::Plan> plan_files;  // by plan
+
+  int find_metric(std::string_view name) const;
+  int find_task(std::string_view name) const;
+  std::span<const Episode> of(int policy, int task) const;
+  std::vector<int> all_tasks() const;
+
+  std::vector<std::size_t> first;  // episode of policy * tasks + task, and the end
+};
+
+struct LoadOptions {
+  std::vector<std::string> sets;  // columns of the tables; empty: the plan's finest sets
+};
+
+// Folders that cannot be read are a failure that names the folder; what can be read but not used is
+// a note. Runs of one policy whose episodes do not overlap are one policy's.
+Result<Benchmark> load(std::span<const std::string> dirs, const LoadOptions& options = {});
+
+}  // namespace probe::report

@@ -1,0 +1,129 @@
+#include "runtime/report/categories.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace probe::report {
+namespace {
+
+using Members = std::set<int>;
+
+bool is_strict_subset(const Members& small, const Members& large) {
+  return small.size() < large.size() &&
+         std::includes(large.begin(), large.end(), small.begin(), small.end());
+}
+
+// Sets of all plans by name, in the order of their first use; only tasks with episodes or in a
+// suite are in the benchmark.
+std::vector<Category> all_sets(const Benchmark& benchmark) {
+  std::map<std::string, int> by_name;
+  for (std::size_t t = 0; t < benchmark.tasks.size(); ++t)
+    by_name.emplace(benchmark.tasks[t].name, static_cast<int>(t));
+  std::vector<Category> sets;
+  for (const plan::Plan& plan : benchmark.plan_files) {
+    for (const plan::SetRecord& record : plan.sets()) {
+      const std::string name(plan.text(record.name));
+      auto at = std::find_if(sets.begin(), sets.end(),
+                             [&](const Category& known) { return known.name == name; });
+      if (at == sets.end()) {
+        sets.push_back({name, category_label(name), {}});
+        at = sets.end() - 1;
+      }
+      for (const std::uint32_t t : plan.members(record)) {
+        const auto task = by_name.find(std::string(plan.text(plan.tasks()[t].name)));
+        if (task != by_name.end()) at->tasks.push_back(task->second);
+      }
+      std::sort(at->tasks.begin(), at->tasks.end());
+      at->tasks.erase(std::unique(at->tasks.begin(), at->tasks.end()), at->tasks.end());
+    }
+  }
+  std::erase_if(sets, [](const Category& set) { return set.tasks.empty(); });
+  return sets;
+}
+
+std::vector<Category> finest(const std::vector<Category>& sets) {
+  std::vector<Category> kept;
+  std::set<Members> seen;
+  for (const Category& set : sets) {
+    const Members members(set.tasks.begin(), set.tasks.end());
+    const bool has_smaller = std::any_of(sets.begin(), sets.end(), [&](const Category& other) {
+      return is_strict_subset(Members(other.tasks.begin(), other.tasks.end()), members);
+    });
+    if (!has_smaller && seen.insert(members).second) kept.push_back(set);
+  }
+  return kept;
+}
+
+bool are_originals(const Benchmark& benchmark, const Category& set) {
+  return std::all_of(set.tasks.begin(), set.tasks.end(), [&](int t) {
+    return benchmark.tasks[static_cast<std::size_t>(t)].baseline == kAbsent;
+  });
+}
+
+}  // namespace
+
+std::string category_label(const std::string& name) {
+  static const std::map<std::string, std::string> kWords = {
+      {"core", "original"},
+      {"ood_source", "OOD source"},
+      {"ood_target", "OOD target"},
+      {"ood_source_target", "OOD source + target"},
+      {"ood_relation", "OOD relation"},
+      {"lang_action", "language: action"},
+      {"lang_negation", "language: negation"},
+      {"lang_appearance", "language: appearance"},
+      {"commonsense_distraction", "commonsense + distraction"}};
+  const auto known = kWords.find(name);
+  if (known != kWords.end()) return known->second;
+  std::string label = name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+void find_categories(Benchmark& benchmark, const std::vector<std::string>& sets) {
+  std::vector<Category> all = all_sets(benchmark);
+  std::vector<Category> chosen;
+  if (sets.empty()) {
+    chosen = finest(all);
+    std::stable_partition(chosen.begin(), chosen.end(),
+                          [&](const Category& c) { return are_originals(benchmark, c); });
+  }
+  for (const std::string& name : sets) {
+    const auto at = std::find_if(all.begin(), all.end(),
+                                 [&](const Category& known) { return known.name == name; });
+    if (at != all.end()) {
+      chosen.push_back(*at);
+    } else {
+      benchmark.notes.push_back(
+          {"warn", fmt::format("set `{}` is in no plan or holds no task; it has no column", name)});
+    }
+  }
+  std::vector<int> uses(benchmark.tasks.size(), 0);
+  for (const Category& category : chosen) {
+    for (const int t : category.tasks) ++uses[static_cast<std::size_t>(t)];
+  }
+  std::string none, several;
+  int none_count = 0, several_count = 0;
+  for (std::size_t t = 0; t < uses.size(); ++t) {
+    if (uses[t] == 1 || chosen.empty()) continue;
+    std::string& names = uses[t] == 0 ? none : several;
+    int& count = uses[t] == 0 ? none_count : several_count;
+    if (++count <= 3) names += (names.empty() ? "`" : ", `") + benchmark.tasks[t].name + "`";
+  }
+  if (none_count > 0) {
+    benchmark.notes.push_back(
+        {"note", fmt::format("{} tasks are in no category and count only under `all`: {}{}",
+                             none_count, none, none_count > 3 ? " ..." : "")});
+  }
+  if (several_count > 0) {
+    benchmark.notes.push_back(
+        {"note", fmt::format("{} tasks are in several categories: {}{}", several_count, several,
+                             several_count > 3 ? " ..." : "")});
+  }
+  benchmark.categories = std::move(chosen);
+}
+
+}  // namespace probe::report

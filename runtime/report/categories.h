@@ -1,0 +1,19 @@
+// The columns of the tables: a plan's sets, the finest ones, and what people call them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/report/benchmark.h"
+
+namespace probe::report {
+
+// Fills benchmark.categories. `sets` names them in order; if it is empty, every set of the plans
+// that holds a task and no other such set: unions of sets are not columns. The set of tasks without
+// a baseline comes first. Unknown names, tasks in no column and tasks in several are notes.
+void find_categories(Benchmark& benchmark, const std::vector<std::string>& sets);
+
+// "ood_source_target" -> "OOD source + target", "core" of the originals -> "original".
+std::string category_label(const std::string& name);
+
+}  // namespace probe::report

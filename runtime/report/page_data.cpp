@@ -1,0 +1,219 @@
+#include "runtime/report/page_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace probe::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// "success" is drawn as "success"; a name's underscores are for programs.
+std::string label_of(const std::string& name) {
+  if (name == "wrong") return "wrong object";
+  std::string label = name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  return label;
+}
+
+std::string from(const std::string& base, const std::string& path) {
+  std::error_code error;
+  const fs::path relative =
+      fs::relative(path, base.empty() ? fs::path(".") : fs::path(base), error);
+  return error || relative.empty() ? path : relative.string();
+}
+
+Json policies_json(const Benchmark& benchmark, const PageOptions& options) {
+  Json policies = Json::array();
+  for (const Policy& policy : benchmark.policies) {
+    Json runs = Json::array();
+    for (const RunInfo& run : policy.runs) {
+      runs.push_back({{"dir", from(options.relative_to, run.dir)},
+                      {"plan", run.plan},
+                      {"fingerprint", run.fingerprint},
+                      {"seeds", run.seeds},
+                      {"done", run.done},
+                      {"expected", run.expected},
+                      {"invalid", run.invalid},
+                      {"videos", run.videos}});
+    }
+    policies.push_back({{"name", policy.name},
+                        {"label", policy.label},
+                        {"role", to_text(policy.role)},
+                        {"runs", std::move(runs)}});
+  }
+  return policies;
+}
+
+Json starts_json(const Task& task) {
+  Json starts = Json::array();
+  for (const StartPlace& start : task.starts) {
+    Json bodies = Json::array();
+    for (const auto& body : start.bodies)
+      bodies.push_back({rounded(body[0]), rounded(body[1]), std::round(body[2] * 10) / 10});
+    starts.push_back(std::move(bodies));
+  }
+  return starts;
+}
+
+Json tasks_json(const Benchmark& benchmark) {
+  std::vector<std::vector<int>> categories(benchmark.tasks.size());
+  for (std::size_t c = 0; c < benchmark.categories.size(); ++c) {
+    for (const int t : benchmark.categories[c].tasks)
+      categories[static_cast<std::size_t>(t)].push_back(static_cast<int>(c));
+  }
+  Json tasks = Json::array();
+  for (std::size_t t = 0; t < benchmark.tasks.size(); ++t) {
+    const Task& task = benchmark.tasks[t];
+    Json json = {
+        {"plan", task.plan},       {"name", task.name},           {"baseline", task.baseline},
+        {"axes", task.axis_names}, {"categories", categories[t]}, {"prompt", task.prompt},
+        {"source", task.source},   {"target", task.target},       {"distractors", task.distractors},
+        {"ood", task.ood},         {"horizon", task.horizon},     {"hz", task.hz},
+        {"scene", task.scene},     {"metrics", task.metrics},     {"starts", starts_json(task)}};
+    if (!task.confounded.empty()) json["confounded"] = task.confounded;
+    if (!task.allowed.empty()) {
+      json["allowed"] = Json::array();
+      json["allowed"].push_back({{"word", "confounded"}, {"reason", task.allowed}});
+    }
+    if (!task.unpaired.empty()) json["unpaired"] = task.unpaired;
+    if (!task.rule.empty())
+      json["rule"] = {{"file", task.rule_file}, {"line", task.rule_line}, {"text", task.rule}};
+    tasks.push_back(std::move(json));
+  }
+  return tasks;
+}
+
+Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json& strings) {
+  Json columns = {{"count", benchmark.episodes.size()}};
+  for (const char* name :
+       {"policy", "task", "start", "seed", "bits", "steps", "reason", "prompt", "video", "sha"})
+    columns[name] = Json::array();
+  Json numbers = Json::object();
+  for (const Metric& metric : benchmark.metrics) {
+    if (!metric.truth) numbers[metric.name] = Json::array();
+  }
+  for (const Episode& e : benchmark.episodes) {
+    columns["policy"].push_back(e.policy);
+    columns["task"].push_back(e.task);
+    columns["start"].push_back(e.start);
+    columns["seed"].push_back(e.row.seed);
+    columns["bits"].push_back(e.bits);
+    columns["steps"].push_back(e.row.steps);
+    columns["reason"].push_back(e.reason);
+    columns["prompt"].push_back(e.prompt);
+    if (e.video.empty()) {
+      columns["video"].push_back(kAbsent);
+    } else {
+      columns["video"].push_back(strings.size());
+      strings.push_back(from(options.relative_to, e.video));
+    }
+    columns["sha"].push_back(e.row.trace_sha256.substr(0, 12));
+    for (auto& [name, values] : numbers.items()) {
+      const auto at = std::find_if(e.row.metrics.begin(), e.row.metrics.end(),
+                                   [&](const run::MetricValue& v) { return v.name == name; });
+      const bool known = e.valid() && at != e.row.metrics.end() && std::isfinite(at->value);
+      values.push_back(known ? Json(rounded(at->value)) : Json());
+    }
+  }
+  if (!numbers.empty()) columns["numbers"] = std::move(numbers);
+  return columns;
+}
+
+std::vector<std::string> what_was_run(const Benchmark& benchmark) {
+  std::vector<std::string> sentences;
+  for (const PlanInfo& plan : benchmark.plans) {
+    sentences.push_back(fmt::format(
+        "plan {}, suite `{}`: {} tasks, {} starts{}", plan.root.substr(0, 12), plan.suite,
+        plan.tasks, plan.starts,
+        plan.trained_on.empty() ? "" : ", out of distribution against " + plan.trained_on));
+  }
+  for (const Policy& policy : benchmark.policies) {
+    int done = 0;
+    std::set<int> seeds;
+    for (const RunInfo& run : policy.runs) {
+      done += run.done;
+      seeds.insert(run.seeds.begin(), run.seeds.end());
+    }
+    std::string list;
+    for (const int seed : seeds) list += (list.empty() ? "" : ", ") + std::to_string(seed);
+    sentences.push_back(fmt::format("{}: {} episodes, seed{} {}", policy.label, done,
+                                    seeds.size() == 1 ? "" : "s", list));
+  }
+  return sentences;
+}
+
+}  // namespace
+
+const char kIntervalText[] =
+    "95 % intervals: Wilson's, with episodes counted as what they are worth: starts in one place "
+    "form a cluster, tasks are strata (with one task and one seed, Wilson's own)";
+
+double rounded(double value) {
+  const double scaled = std::round(value * 1e4) / 1e4;
+  return scaled == 0 ? 0 : scaled;  // no negative zero
+}
+
+Json to_json(const std::optional<Estimate>& estimate) {
+  if (!estimate || estimate->count.n == 0) return nullptr;
+  return {estimate->count.k, estimate->count.n, rounded(estimate->interval.low),
+          rounded(estimate->interval.high)};
+}
+
+Json page_data(const Benchmark& benchmark, const Tables& tables, const PageOptions& options) {
+  Json data = {{"format", "vlaprobe-report"}, {"version", 1}, {"title", options.title}};
+  if (!options.command.empty()) data["command"] = options.command;
+  if (!options.program.empty()) data["program"] = options.program;
+  data["confidence"] = 0.95;
+  data["interval"] = kIntervalText;
+  data["run"] = what_was_run(benchmark);
+  data["findings"] = findings(benchmark, tables);
+  data["notes"] = Json::array();
+  for (const Note& note : benchmark.notes)
+    data["notes"].push_back({{"level", note.level}, {"text", note.text}});
+  data["metrics"] = Json::array();
+  for (const Metric& metric : benchmark.metrics) {
+    data["metrics"].push_back({{"name", metric.name},
+                               {"label", label_of(metric.name)},
+                               {"truth", metric.truth},
+                               {"good", metric.good}});
+  }
+  data["categories"] = Json::array();
+  for (const Category& c : benchmark.categories)
+    data["categories"].push_back({{"name", c.name}, {"label", c.label}, {"tasks", c.tasks}});
+  data["objects"] = Json::array();
+  const auto seen = [](const std::optional<bool>& known) { return known ? Json(*known) : Json(); };
+  for (const Object& object : benchmark.objects) {
+    data["objects"].push_back(
+        {{"name", object.name},
+         {"label", label_of(object.name)},
+         {"seen",
+          {{"source", seen(object.seen_as_source)}, {"target", seen(object.seen_as_target)}}}});
+  }
+  data["plans"] = Json::array();
+  for (const PlanInfo& plan : benchmark.plans) {
+    data["plans"].push_back({{"root", plan.root},
+                             {"suite", plan.suite},
+                             {"tasks", plan.tasks},
+                             {"starts", plan.starts},
+                             {"trained_on", plan.trained_on}});
+  }
+  data["fingerprints"] = benchmark.fingerprints;
+  data["fingerprint_differences"] = benchmark.fingerprint_differences;
+  data["prompts"] = benchmark.prompts;
+  data["reasons"] = benchmark.reasons;
+  data["policies"] = policies_json(benchmark, options);
+  data["tasks"] = tasks_json(benchmark);
+  Json strings = Json::array();
+  data["episodes"] = episodes_json(benchmark, options, strings);
+  data["strings"] = std::move(strings);
+  data["tables"] = tables_json(benchmark, tables, options);
+  return data;
+}
+
+}  // namespace probe::report

@@ -1,0 +1,46 @@
+// The document `data` of the report page, as PAGE_DATA.md describes it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/report/benchmark.h"
+#include "runtime/report/published.h"
+#include "runtime/report/tables.h"
+
+namespace probe::report {
+
+struct PageOptions {
+  std::string title, command, program;
+  std::string relative_to;                // folder of the page; dirs and videos are written from it
+  std::vector<PublishedTable> published;  // other people's numbers
+  bool models = true;                     // mixed models, which take seconds
+};
+
+nlohmann::ordered_json page_data(const Benchmark& benchmark, const Tables& tables,
+                                 const PageOptions& options);
+inline nlohmann::ordered_json page_data(const Benchmark& benchmark, const PageOptions& options) {
+  return page_data(benchmark, make_tables(benchmark), options);
+}
+
+// Its parts.
+nlohmann::ordered_json tables_json(const Benchmark& benchmark, const Tables& tables,
+                                   const PageOptions& options);
+nlohmann::ordered_json external_json(const Benchmark& benchmark,
+                                     const std::vector<PublishedTable>& published);
+// [{level, text, see}], most important first.
+nlohmann::ordered_json findings(const Benchmark& benchmark, const Tables& tables);
+
+// [k, n, low, high], ends rounded to four digits; null without an episode.
+nlohmann::ordered_json to_json(const std::optional<Estimate>& estimate);
+double rounded(double value);  // to four digits behind the point
+
+// What an interval of these tables is, in one sentence.
+extern const char kIntervalText[];
+
+// Floors and ceilings that were measured before, as suite/floors.csv holds them, for tasks of which
+// the runs have none; a file of another plan is a note.
+Status add_floors(const std::string& path, Benchmark& benchmark, Tables& tables);
+
+}  // namespace probe::report

@@ -1,0 +1,164 @@
+#include "runtime/report/published.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "runtime/base/file.h"
+
+namespace probe::report {
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+// Cells of one line; quotes as spreadsheets write them, without line breaks inside.
+std::vector<std::string> cells_of(std::string_view line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
+      cells.back().push_back('"');
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (c == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back().push_back(c);
+    }
+  }
+  for (std::string& cell : cells) cell = std::string(trimmed(cell));
+  return cells;
+}
+
+std::optional<Percentage> percentage_of(std::string_view text) {
+  std::string_view digits = text;
+  if (!digits.empty() && digits.back() == '%')
+    digits = trimmed(digits.substr(0, digits.size() - 1));
+  Percentage percentage;
+  percentage.text = text;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(),
+                                            percentage.value, std::chars_format::fixed);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  if (!(percentage.value >= 0 && percentage.value <= 100)) return std::nullopt;
+  const std::size_t point = digits.find('.');
+  if (point != std::string_view::npos)
+    percentage.decimals = static_cast<int>(digits.size() - point - 1);
+  return percentage;
+}
+
+double percent(std::int64_t k, std::int64_t n) {
+  return 100 * static_cast<double>(k) / static_cast<double>(n);
+}
+
+}  // namespace
+
+Result<PublishedTable> parse_published(std::string_view csv, const std::string& source) {
+  PublishedTable table;
+  table.source = source;
+  if (csv.substr(0, 3) == "\xef\xbb\xbf") csv.remove_prefix(3);
+  std::set<std::pair<std::string, std::string>> seen;
+  bool has_header = false;
+  std::size_t number = 0;
+  while (!csv.empty()) {
+    const std::size_t end = std::min(csv.find('\n'), csv.size());
+    const std::string_view line = trimmed(csv.substr(0, end));
+    csv.remove_prefix(std::min(end + 1, csv.size()));
+    ++number;
+    if (line.empty() || line[0] == '#') continue;
+    const std::string where = fmt::format("{}:{}", source, number);
+    std::vector<std::string> cells = cells_of(line);
+    if (!has_header) {
+      if (cells.size() < 3 || cells[0] != "policy" || cells[1] != "metric") {
+        return Failure{"usage",
+                       "a table of published numbers begins with `policy,metric,` and its columns, "
+                       "as in policy,metric,avg,original,ood_source",
+                       where};
+      }
+      table.columns.assign(cells.begin() + 2, cells.end());
+      has_header = true;
+      continue;
+    }
+    if (cells.size() != table.columns.size() + 2) {
+      return Failure{"usage",
+                     fmt::format("{} cells where the first line has {}", cells.size(),
+                                 table.columns.size() + 2),
+                     where};
+    }
+    PublishedRow row{cells[0], cells[1], {}};
+    if (!seen.emplace(row.policy, row.metric).second) {
+      return Failure{"usage", fmt::format("`{}`, `{}` stands twice", row.policy, row.metric),
+                     where};
+    }
+    for (std::size_t i = 2; i < cells.size(); ++i) {
+      if (cells[i].empty() || cells[i] == "-") {
+        row.cells.emplace_back();
+        continue;
+      }
+      auto percentage = percentage_of(cells[i]);
+      if (!percentage) {
+        return Failure{"usage",
+                       fmt::format("`{}` under `{}` is no percentage from 0 to 100", cells[i],
+                                   table.columns[i - 2]),
+                       where};
+      }
+      row.cells.push_back(std::move(percentage));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  if (table.rows.empty()) return Failure{"usage", "holds no row of numbers", source};
+  return table;
+}
+
+Result<PublishedTable> read_published(const std::string& path) {
+  PROBE_ASSIGN(const std::string text, read_file(path));
+  return parse_published(text, path);
+}
+
+Possible possible(const Percentage& percentage, std::int64_t n) {
+  const double exact = percentage.value / 100 * static_cast<double>(n);
+  Possible found;
+  found.below = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(exact + 1e-9)), 0, n);
+  found.above = std::min(found.below + 1, n);
+  // Halves may have been rounded either way.
+  const double half_digit = 0.5 * std::pow(10.0, -percentage.decimals) + 1e-9;
+  for (const std::int64_t k : {found.below, found.above}) {
+    if (std::abs(percent(k, n) - percentage.value) > half_digit) continue;
+    return {true, k, k};
+  }
+  return found;
+}
+
+std::optional<std::string> impossible(const Percentage& percentage, std::int64_t tasks,
+                                      std::int64_t per_task) {
+  const std::int64_t n = tasks * per_task;
+  if (n <= 0) return std::nullopt;
+  const Possible found = possible(percentage, n);
+  if (found.fits) return std::nullopt;
+  const int digits = percentage.decimals;
+  std::string text =
+      fmt::format("{} % is no count of {} episodes; nearest: {} ({:.{}f} %)", percentage.value, n,
+                  found.below, percent(found.below, n), digits + 1);
+  if (found.above != found.below) {
+    text += fmt::format(" and {} ({:.{}f} %)", found.above, percent(found.above, n), digits + 1);
+  }
+  for (const std::int64_t other : {tasks + 1, tasks - 1, tasks + 2}) {
+    if (other <= 0) continue;
+    const Possible would = possible(percentage, other * per_task);
+    if (!would.fits) continue;
+    text += fmt::format("; {} tasks could give it: {} of {}", other, would.below, other * per_task);
+    break;
+  }
+  return text;
+}
+
+}  // namespace probe::report

@@ -1,0 +1,52 @@
+// Other people's numbers: a table of percentages in the layout of the paper's main table, and
+// whether any number of episodes can give them. Knows nothing of runs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::report {
+
+// A percentage as it was written.
+struct Percentage {
+  double value = 0;  // 0..100
+  int decimals = 0;  // digits behind the point
+  std::string text;
+};
+
+struct PublishedRow {
+  std::string policy, metric;
+  std::vector<std::optional<Percentage>> cells;  // by column; nothing: the cell is empty or "-"
+};
+
+struct PublishedTable {
+  std::string source;                // the file
+  std::vector<std::string> columns;  // "avg", "original", "ood_source" ...
+  std::vector<PublishedRow> rows;
+};
+
+// `policy,metric,COLUMN,...` and a line a policy and metric, percentages with or without "%".
+// Fails (code "usage", where = source:line) on another layout, on a cell that is no percentage and
+// on a row that stands twice.
+Result<PublishedTable> parse_published(std::string_view csv, const std::string& source);
+Result<PublishedTable> read_published(const std::string& path);
+
+// The counts of `n` episodes whose percentages are nearest; `fits` when one of them, rounded to the
+// digits that were written, is it.
+struct Possible {
+  bool fits = false;
+  std::int64_t below = 0, above = 0;  // k of n; equal when it fits
+};
+Possible possible(const Percentage& percentage, std::int64_t n);
+
+// Why the percentage cannot be one of `tasks` tasks with `per_task` episodes each, in a sentence
+// with the nearest possible ones and, if there is one near, a number of tasks that would give it;
+// nothing when it can.
+std::optional<std::string> impossible(const Percentage& percentage, std::int64_t tasks,
+                                      std::int64_t per_task);
+
+}  // namespace probe::report
