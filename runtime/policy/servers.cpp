@@ -3,9 +3,12 @@
 #include <cstdlib>
 
 #include "runtime/base/spelling.h"
+#include "runtime/policy/gr00t.h"
 #include "runtime/policy/openpi.h"
+#include "runtime/policy/openvla.h"
 #include "runtime/policy/profile_library.h"
 #include "runtime/policy/server_policy.h"
+#include "runtime/policy/vlaeval.h"
 
 namespace probe::policy {
 namespace {
@@ -18,10 +21,11 @@ struct Entry {
 
 std::vector<std::string> no_options() { return {}; }
 std::vector<std::string> intact_options() { return {"model"}; }
+std::vector<std::string> vlaeval_options() { return {"pictures", "send_state"}; }
 
 constexpr Entry kEntries[] = {
     {Protocol::kOpenpi, "8000", no_options},    {Protocol::kIntact, "8000", intact_options},
-    {Protocol::kRoboArena, "8000", no_options}, {Protocol::kVlaEval, "8000", no_options},
+    {Protocol::kRoboArena, "8000", no_options}, {Protocol::kVlaEval, "8000", vlaeval_options},
     {Protocol::kGr00t, "5555", no_options},     {Protocol::kOpenVla, "8000", no_options},
 };
 
@@ -83,12 +87,13 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice) {
     case Protocol::kRoboArena:
       return make_roboarena(choice.profile, choice.server);
     case Protocol::kVlaEval:
+      return make_vlaeval(choice.profile, choice.server);
     case Protocol::kGr00t:
+      return make_gr00t(choice.profile, choice.server);
     case Protocol::kOpenVla:
-      break;
+      return make_openvla(choice.profile, choice.server);
   }
-  return usage("servers that speak " + std::string(to_word(choice.profile.protocol)) +
-               " are not available yet");
+  return usage("a protocol that nothing here speaks");
 }
 
 Result<std::unique_ptr<Policy>> make_server(Protocol protocol, std::string_view argument,

@@ -16,6 +16,7 @@
 #define STBI_NO_HDR
 #define STBI_NO_LINEAR
 #include <stb/stb_image.h>
+#include <stb/stb_image_write.h>
 
 #include "runtime/base/file.h"
 
@@ -72,18 +73,33 @@ bool encode_png(std::FILE* file, int width, int height, const PngFormat& format,
   return true;
 }
 
+Status check_size(int width, int height, std::size_t bytes_per_pixel, std::size_t bytes,
+                  const std::string& where) {
+  const std::size_t expected = static_cast<std::size_t>(width > 0 ? width : 0) *
+                               static_cast<std::size_t>(height > 0 ? height : 0) * bytes_per_pixel;
+  if (expected != 0 && bytes == expected) return {};
+  return Failure{.code = "io",
+                 .message = "a picture of " + std::to_string(width) + " x " +
+                            std::to_string(height) + " needs " + std::to_string(expected) +
+                            " bytes, got " + std::to_string(bytes),
+                 .where = where};
+}
+
+Result<std::string> png_in_memory(int width, int height, const PngFormat& format,
+                                  const std::uint8_t* pixels) {
+  char* data = nullptr;
+  std::size_t size = 0;
+  std::unique_ptr<std::FILE, FileCloser> file(open_memstream(&data, &size));
+  bool fine = file && encode_png(file.get(), width, height, format, pixels);
+  if (file) fine = std::fclose(file.release()) == 0 && fine;
+  const std::unique_ptr<char, void (*)(void*)> owned(data, std::free);
+  if (!fine) return Failure{"io", "no memory to write a picture", ""};
+  return std::string(data, size);
+}
+
 Status write_any(const std::string& path, int width, int height, const PngFormat& format,
                  std::span<const std::uint8_t> pixels) {
-  const std::size_t expected = static_cast<std::size_t>(width > 0 ? width : 0) *
-                               static_cast<std::size_t>(height > 0 ? height : 0) *
-                               format.bytes_per_pixel;
-  if (expected == 0 || pixels.size() != expected) {
-    return Failure{.code = "io",
-                   .message = "a picture of " + std::to_string(width) + " x " +
-                              std::to_string(height) + " needs " + std::to_string(expected) +
-                              " bytes, got " + std::to_string(pixels.size()),
-                   .where = path};
-  }
+  PROBE_TRY(check_size(width, height, format.bytes_per_pixel, pixels.size(), path));
   PendingFile pending(path);
   std::unique_ptr<std::FILE, FileCloser> file(std::fopen(pending.temporary().c_str(), "wb"));
   if (!file) return io_failure("cannot create the file", path);
@@ -154,15 +170,27 @@ Result<Texture> load_image(const std::string& path) {
 }
 
 Result<std::string> png_bytes(const Texture& texture) {
-  char* data = nullptr;
-  std::size_t size = 0;
-  std::unique_ptr<std::FILE, FileCloser> file(open_memstream(&data, &size));
-  bool fine = file && encode_png(file.get(), texture.width, texture.height,
-                                 {PNG_COLOR_TYPE_RGB_ALPHA, 8, 4}, texture.rgba.data());
-  if (file) fine = std::fclose(file.release()) == 0 && fine;
-  const std::unique_ptr<char, void (*)(void*)> owned(data, std::free);
-  if (!fine) return Failure{"io", "no memory to write a picture", ""};
-  return std::string(data, size);
+  return png_in_memory(texture.width, texture.height, {PNG_COLOR_TYPE_RGB_ALPHA, 8, 4},
+                       texture.rgba.data());
+}
+
+Result<std::string> png_bytes(int width, int height, std::span<const std::uint8_t> rgb) {
+  PROBE_TRY(check_size(width, height, 3, rgb.size(), ""));
+  return png_in_memory(width, height, {PNG_COLOR_TYPE_RGB, 8, 3}, rgb.data());
+}
+
+Result<std::string> jpeg_bytes(int width, int height, std::span<const std::uint8_t> rgb,
+                               int quality) {
+  PROBE_TRY(check_size(width, height, 3, rgb.size(), ""));
+  std::string bytes;
+  const auto append = [](void* to, void* data, int size) {
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data),
+                                          static_cast<std::size_t>(size));
+  };
+  if (stbi_write_jpg_to_func(append, &bytes, width, height, 3, rgb.data(), quality) == 0) {
+    return Failure{"io", "a picture cannot be written as JPEG", ""};
+  }
+  return bytes;
 }
 
 Status write_png(const std::string& path, int width, int height,

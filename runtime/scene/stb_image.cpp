@@ -1,4 +1,4 @@
-// The one place where stb_image is compiled. Its own warnings are not ours to fix.
+// The one place where stb_image and stb_image_write are compiled. Its own warnings are not ours to fix.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"
@@ -19,4 +19,7 @@
 #define STBI_NO_PNM
 #define STBI_MAX_DIMENSIONS 65535  // decode_image states the limit before it decodes
 #include <stb/stb_image.h>
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop

@@ -70,6 +70,35 @@ TEST_CASE("a picture that cannot be written leaves nothing behind") {
   }
 }
 
+TEST_CASE("a picture as PNG bytes is exact, as JPEG bytes near and the same each time") {
+  constexpr int kSide = 32;
+  std::vector<std::uint8_t> rgb;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    for (const int channel : {i % kSide * 7, i / kSide * 7, 128}) {
+      rgb.push_back(static_cast<std::uint8_t>(channel));
+    }
+  }
+  const auto png = png_bytes(kSide, kSide, rgb);
+  const auto jpeg = jpeg_bytes(kSide, kSide, rgb, 95);
+  REQUIRE(png.ok());
+  REQUIRE(jpeg.ok());
+  CHECK(*jpeg == *jpeg_bytes(kSide, kSide, rgb, 95));
+  CHECK(jpeg->size() < rgb.size() / 2);
+  const auto exact = decode_image(std::as_bytes(std::span(*png)), "png");
+  const auto near = decode_image(std::as_bytes(std::span(*jpeg)), "jpeg");
+  REQUIRE(exact.ok());
+  REQUIRE(near.ok());
+  int worst = 0;
+  for (std::size_t i = 0; i < rgb.size(); ++i) {
+    const std::size_t at = i / 3 * 4 + i % 3;
+    CHECK(exact->rgba[at] == rgb[i]);
+    worst = std::max(worst, std::abs(near->rgba[at] - rgb[i]));
+  }
+  CHECK(worst <= 12);
+  CHECK(png_bytes(kSide, 1, rgb).failure().message ==
+        "a picture of 32 x 1 needs 96 bytes, got 3072");
+}
+
 TEST_CASE("images that are missing, cut off or too large are refused by name") {
   const std::string missing = scratch("missing.png");
   const Result<Texture> absent = load_image(missing);

@@ -1,0 +1,16 @@
+# What gr00t:// does without profile=: GR00T N1.6 and later on BridgeData V2 behind its simulation
+# wrapper; the same as gr00t_bridge.
+protocol = gr00t
+about = GR00T N1.6 or later on BridgeData V2, one action of each answer
+dialect = n1.6                       # or n1.6_nested, n1.5
+image = first -> video.image_0 256x256 stretch
+prompt.key = annotation.human.action.task_description
+state.key = state
+state.layout = xyz_rpy_pad_openness
+state.frame = top_down
+action.rotation = euler
+action.gripper = unit
+action.threshold = 0.5
+chunk.use = 1
+timeout.connect_s = 15
+timeout.wait_s = 60

@@ -1,0 +1,14 @@
+# openvla/openvla-7b, whose statistics for BridgeData V2 are called bridge_orig:
+#   openvla://HOST:PORT?profile=openvla_bridge
+# The server resizes pictures, lowers the instruction's case and un-normalises its actions itself.
+protocol = openvla
+about = OpenVLA 7B on BridgeData V2 behind its REST server
+unnorm_key = bridge_orig
+image = first -> image
+prompt.key = instruction
+action.rotation = euler
+action.gripper = unit
+action.threshold = 0.5
+chunk.length = 1
+timeout.connect_s = 60
+timeout.wait_s = 60
