@@ -1,6 +1,7 @@
 // vlaprobe doctor
 #include <fmt/format.h>
 
+#include "runtime/cli/compile.h"
 #include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/run/doctor.h"
@@ -13,8 +14,20 @@ struct Arguments {
   AssetOptions assets;
 };
 
+// The shipped suite with the assets at hand.
+Result<plan::Plan> compile_suite(const std::string& asset_root) {
+  const std::string file = run::golden_suite();
+  if (file.empty()) return Failure{"usage", "the suite's text is not here", ""};
+  AssetOptions assets;
+  assets.root = asset_root;
+  CompiledText text = compile_quietly({file}, assets, {}, true);
+  if (text.plan.empty())
+    return Failure{"asset", "the suite does not compile with these assets", file};
+  return plan::Plan::from_bytes(std::move(text.plan));
+}
+
 int examine(const Arguments& arguments) {
-  const auto report = run::examine(arguments.assets.root);
+  const auto report = run::examine(arguments.assets.root, compile_suite);
   if (!report) return cli::report(report.failure());
   if (arguments.json) {
     fmt::print("{}\n", run::to_json(*report, VLAPROBE_VERSION));

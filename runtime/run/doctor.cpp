@@ -7,6 +7,7 @@
 #include "runtime/base/file.h"
 #include "runtime/render/renderer.h"
 #include "runtime/run/assets.h"
+#include "runtime/run/golden_starts.h"
 #include "runtime/scene/mesh_cache.h"
 
 namespace probe::run {
@@ -65,7 +66,7 @@ Result<Sha256> check_manifest(const std::string& root, DoctorReport& report) {
 
 bool DoctorReport::fine() const { return asset_damage.empty() && (!golden || golden->fine()); }
 
-Result<DoctorReport> examine(const std::string& assets) {
+Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite) {
   DoctorReport report;
   PROBE_ASSIGN(report.asset_root, find_asset_root(assets));
   PROBE_ASSIGN(const Sha256 manifest, check_manifest(report.asset_root, report));
@@ -80,7 +81,15 @@ Result<DoctorReport> examine(const std::string& assets) {
   }
   PROBE_ASSIGN(report.ray_engine, render::describe_ray_engine());
   report.mesh_cache = scene::default_mesh_cache();
-  PROBE_ASSIGN(const auto frames, draw_golden_frames(report.asset_root));
+  PROBE_ASSIGN(auto frames, draw_golden_frames(report.asset_root));
+  const auto plan = suite(report.asset_root);
+  auto starts = plan ? draw_first_frames(*plan, report.asset_root)
+                     : Result<std::vector<GoldenFrame>>(plan.failure());
+  if (starts) {
+    for (GoldenFrame& frame : *starts) frames.push_back(std::move(frame));
+  } else {
+    report.no_suite = to_text(starts.failure());
+  }
   PROBE_ASSIGN(const GoldenSettle settle, settle_golden_objects(report.asset_root));
   report.settle_state = to_hex(settle.state);
   report.golden_folder = golden_folder();
@@ -102,6 +111,8 @@ std::string to_json(const DoctorReport& report, const std::string& version) {
       {"root", report.asset_root}, {"files", report.asset_files}, {"damage", report.asset_damage}};
   json["mesh_cache"] = report.mesh_cache;
   json["settle"]["state"] = report.settle_state;
+  json["suite"] = nullptr;
+  if (!report.no_suite.empty()) json["suite"] = report.no_suite;
   json["golden"] = nullptr;
   if (report.golden) {
     json["settle"]["result"] = to_text(report.golden->settle);
@@ -135,6 +146,7 @@ std::string to_text(const DoctorReport& report, const std::string& version) {
                            std::to_string(report.asset_damage.size()) + " damaged");
   for (const std::string& damage : report.asset_damage) line("", damage);
   line("mesh cache", report.mesh_cache.empty() ? "none" : report.mesh_cache);
+  if (!report.no_suite.empty()) line("suite not drawn", report.no_suite);
   if (!report.golden) {
     line("settled state", report.settle_state);
     line("golden pictures", "not stored here");

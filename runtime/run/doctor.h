@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "runtime/plan/plan.h"
 #include "runtime/run/golden_frames.h"
 
 namespace probe::run {
@@ -23,11 +25,16 @@ struct DoctorReport {
   std::string settle_state;               // hash after the drop, hexadecimal
   std::string golden_folder;              // empty: not here
   std::optional<GoldenReport> golden;
+  std::string no_suite;  // why the suite's own scenes were not drawn; empty: they were
   bool fine() const;
 };
 
+// The suite whose scenes are drawn, compiled with the asset folder that is examined, or why there
+// is none.
+using SuiteMaker = std::function<Result<plan::Plan>(const std::string& asset_root)>;
+
 // `assets` as find_asset_root. Fails when there is no asset folder or its objects cannot be drawn.
-Result<DoctorReport> examine(const std::string& assets);
+Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite);
 
 std::string to_json(const DoctorReport& report, const std::string& version);
 std::string to_text(const DoctorReport& report, const std::string& version);

@@ -107,6 +107,11 @@ std::string golden_folder() {
   return fs::is_directory(folder) ? folder : std::string();
 }
 
+std::string golden_suite() {
+  const std::string text = std::string(VLAPROBE_BUILT_FROM) + "/suite/intact.probe";
+  return fs::is_regular_file(text) ? text : std::string();
+}
+
 const char* to_text(GoldenState state) {
   switch (state) {
     case GoldenState::kIdentical:

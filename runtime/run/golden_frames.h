@@ -14,6 +14,8 @@ namespace probe::run {
 
 // `golden_frames` of the tests of the source tree the program was built from; empty if not there.
 std::string golden_folder();
+// The text of the suite whose first frames are among them, of the same source tree.
+std::string golden_suite();
 
 enum class GoldenState : std::uint8_t {
   kIdentical,  // byte for byte

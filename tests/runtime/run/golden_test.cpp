@@ -1,11 +1,14 @@
-// Golden pictures of every object and scene. VLAPROBE_UPDATE=1 stores them anew.
+// Golden pictures of every object and scene, and of the suite's own first frames.
+// VLAPROBE_UPDATE=1 stores them anew.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 
+#include "compiler/emit/compile.h"
 #include "runtime/run/golden_frames.h"
+#include "runtime/run/golden_starts.h"
 
 namespace probe::run {
 namespace {
@@ -14,6 +17,17 @@ namespace fs = std::filesystem;
 
 const std::string kAssets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
 const std::string kGolden = std::string(VLAPROBE_SOURCE_DIR) + "/tests/golden_frames";
+
+plan::Plan suite_plan() {
+  const std::string file = VLAPROBE_SOURCE_DIR "/suite/intact.probe";
+  auto built = build(std::span(&file, 1),
+                     {.asset_root = kAssets, .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
+  REQUIRE_MESSAGE(built.ok(), (built.ok() ? "" : to_text(built.failure())));
+  REQUIRE(built->ok);
+  auto plan = plan::Plan::from_bytes(std::move(built->plan));
+  REQUIRE(plan.ok());
+  return std::move(*plan);
+}
 
 struct Drawn {
   std::vector<GoldenFrame> frames;
@@ -25,6 +39,10 @@ Drawn draw_all() {
   REQUIRE_MESSAGE(frames.ok(), (frames.ok() ? "" : to_text(frames.failure())));
   auto settle = settle_golden_objects(kAssets);
   REQUIRE_MESSAGE(settle.ok(), (settle.ok() ? "" : to_text(settle.failure())));
+  auto starts = draw_first_frames(suite_plan(), kAssets);
+  REQUIRE_MESSAGE(starts.ok(), (starts.ok() ? "" : to_text(starts.failure())));
+  CHECK(starts->size() == 2);  // the suite's table and its sink
+  for (GoldenFrame& frame : *starts) frames->push_back(std::move(frame));
   return {std::move(*frames), std::move(*settle)};
 }
 
@@ -39,8 +57,8 @@ TEST_CASE("every object and scene looks as its golden picture, by hash on the sa
   for (std::size_t i = 0; i < here.frames.size(); ++i) {
     const GoldenCheck& check = report->frames[i];
     const bool fine = check.state == GoldenState::kIdentical || check.state == GoldenState::kClose;
-    CHECK_MESSAGE(fine, check.name, " ", to_text(check.state), ": ", check.ids, " ids, ",
-                  check.levels, " colours, depth by ", check.depth, " m");
+    CHECK_MESSAGE(fine, check.name, " ", std::string(to_text(check.state)), ": ", check.ids,
+                  " ids, ", check.levels, " colours, depth by ", check.depth, " m");
     if (fine) continue;
     const std::string png = VLAPROBE_BINARY_DIR "/golden_" + check.name + ".png";
     if (write_golden_difference(kGolden, here.frames[i], png).ok()) MESSAGE("see ", png);
