@@ -6,6 +6,7 @@
 
 #include "runtime/policy/servers.h"
 #include "runtime/robot/rotation.h"
+#include "runtime/wire/http.h"
 #include "runtime/wire/msgpack.h"
 #include "runtime/wire/websocket.h"
 
@@ -27,7 +28,9 @@ class OpenpiConnection {
     if (const std::string key = api_key(); !key.empty()) {
       options.headers.emplace_back("Authorization", "Api-Key " + key);
     }
-    PROBE_ASSIGN(socket_, wire::WebSocket::connect(server_, options));
+    auto socket = wire::WebSocket::connect(server_, options);
+    if (!socket) return explained(socket.failure());
+    socket_ = std::move(*socket);
     PROBE_ASSIGN(wire::Value metadata, receive(deadlines.connect));
     if (metadata.as<wire::Map>() == nullptr) {
       return bad("expected the server's metadata first, a map; got " + wire::describe(metadata));
@@ -44,6 +47,11 @@ class OpenpiConnection {
 
   Status send(const wire::Value& request, wire::Duration timeout) {
     if (!socket_) return bad("there is no connection");
+    // It would be taken for this question's answer, and every answer after it be one too old.
+    if (socket_->has_message()) {
+      PROBE_ASSIGN(const wire::Value message, receive(timeout));
+      return bad("the server sent what nothing asked for: " + wire::describe(message));
+    }
     return socket_->send(wire::to_msgpack(request, wire::ArrayStyle::kBinKeys), timeout);
   }
 
@@ -59,6 +67,26 @@ class OpenpiConnection {
   }
 
  private:
+  // Where something listens that does not open a WebSocket, what its health page says of it.
+  Failure explained(Failure failure) const {
+    if (failure.message.find("opening a WebSocket") == std::string::npos) return failure;
+    constexpr wire::Duration kPatience{2000};
+    wire::HttpRequest health;
+    health.path = "/healthz";
+    const auto answer =
+        wire::http_exchange(server_, health, {kPatience, kPatience, std::size_t{1} << 16});
+    if (!answer) {
+      failure.message += "; it does not answer /healthz either: busy, or no policy server";
+    } else if (answer->status == 200 && answer->body.starts_with("OK")) {
+      failure.message +=
+          "; /healthz says OK, so a policy server is there: does it want another VLAPROBE_API_KEY?";
+    } else {
+      failure.message += "; /healthz is answered with HTTP " + std::to_string(answer->status) +
+                         ": another kind of server?";
+    }
+    return failure;
+  }
+
   wire::Endpoint server_;
   std::unique_ptr<wire::WebSocket> socket_;
 };

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "runtime/wire/printable.h"
+
 namespace probe::policy {
 namespace {
 
@@ -52,16 +54,11 @@ std::string last_lines(std::string_view text) {
     const std::size_t cut = end == 0 ? std::string_view::npos : text.rfind('\n', end - 1);
     const std::size_t begin = cut == std::string_view::npos ? 0 : cut + 1;
     std::string line;
-    for (const char c : text.substr(begin, end - begin)) {
-      const bool is_control = static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
-      if (is_control || c == ' ') {
-        if (!line.empty() && line.back() != ' ') line += ' ';
-      } else {
-        line += c;
-      }
+    for (const char c : wire::printable(text.substr(begin, end - begin), kLongest)) {
+      if (c != ' ' || (!line.empty() && line.back() != ' ')) line += c;
     }
     if (line.ends_with(' ')) line.pop_back();
-    if (!line.empty()) lines.insert(lines.begin(), line.substr(0, kLongest));
+    if (!line.empty()) lines.insert(lines.begin(), line);
     if (begin == 0) break;
     end = begin - 1;
   }

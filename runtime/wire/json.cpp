@@ -165,6 +165,7 @@ std::string to_json(const Value& value) {
 }
 
 Result<Value> from_json(std::string_view text) {
+  if (text.empty()) return failed("no JSON but an empty text");
   if (is_too_deep(text)) return failed("JSON of more than " + std::to_string(kDepth) + " levels");
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) {

@@ -207,6 +207,7 @@ Bytes to_msgpack(const Value& value, ArrayStyle style) {
 }
 
 Result<Value> from_msgpack(std::span<const std::uint8_t> bytes) {
+  if (bytes.empty()) return failed("not a MessagePack message: it is empty");
   const msgpack::unpack_limit limit(kElements, kElements, bytes.size(), bytes.size(), bytes.size(),
                                     kDepth);
   try {
@@ -215,7 +216,8 @@ Result<Value> from_msgpack(std::span<const std::uint8_t> bytes) {
         reinterpret_cast<const char*>(bytes.data()), bytes.size(), offset,
         [](auto, auto, auto) { return true; }, nullptr, limit);
     if (offset != bytes.size()) {
-      return failed(std::to_string(bytes.size() - offset) + " bytes follow the message");
+      return failed("not one MessagePack message: " + std::to_string(bytes.size() - offset) +
+                    " bytes follow it");
     }
     return read(handle.get());
   } catch (const std::exception& error) {

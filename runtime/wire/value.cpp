@@ -2,8 +2,11 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <limits>
+
+#include "runtime/wire/printable.h"
 
 namespace probe::wire {
 namespace {
@@ -12,18 +15,14 @@ constexpr std::size_t kShown = 60;  // characters of a text that a message repea
 
 std::string joined(const std::vector<std::int64_t>& shape) {
   std::string text;
-  for (const std::int64_t n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
+  for (const std::int64_t n : shape) {
+    if (text.size() > kShown) return text + " x ...";
+    text += (text.empty() ? "" : " x ") + std::to_string(n);
+  }
   return text.empty() ? "scalar" : text;
 }
 
-// What is printable of a server's text, cut: an answer must not be able to repaint a terminal.
-std::string shown(std::string_view text) {
-  std::string clean;
-  for (const char c : text.substr(0, kShown)) {
-    clean += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-  }
-  return clean + (text.size() > kShown ? "..." : "");
-}
+std::string shown(std::string_view text) { return printable(text, kShown); }
 
 template <typename T>
 double load(const std::uint8_t* at) {
@@ -119,7 +118,11 @@ const Value* Value::find(std::string_view key) const {
 std::string describe(const Value& value) {
   if (value.as<bool>() != nullptr) return *value.as<bool>() ? "true" : "false";
   if (const auto* i = value.as<std::int64_t>()) return "the number " + std::to_string(*i);
-  if (const auto* d = value.as<double>()) return "the number " + std::to_string(*d);
+  if (const auto* d = value.as<double>()) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%g", *d);
+    return std::string("the number ") + digits;
+  }
   if (const auto* s = value.as<std::string>()) return "the text \"" + shown(*s) + "\"";
   if (const auto* b = value.as<Bytes>()) return std::to_string(b->size()) + " bytes";
   if (const auto* a = value.as<Array>()) {

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "runtime/wire/beast_io.h"
+#include "runtime/wire/printable.h"
 
 namespace probe::wire {
 namespace {
@@ -94,6 +95,11 @@ class WebSocket::Connection {
     return *broken_;
   }
 
+  bool has_message() {
+    std::lock_guard guard(mutex_);
+    return !inbox_.empty();
+  }
+
   Result<Message> receive(Duration timeout) {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, timeout, [this] { return !inbox_.empty() || broken_; })) {
@@ -133,7 +139,7 @@ class WebSocket::Connection {
   std::string reason(const error_code& error) {
     if (error == websocket::error::closed) {
       const auto& why = socket_.reason();
-      const std::string text(why.reason.c_str());
+      const std::string text = printable(why.reason.c_str(), 123);  // as long as a reason may be
       return "the server closed the connection (code " + std::to_string(why.code) +
              (text.empty() ? ")" : ": " + text + ")");
     }
@@ -185,5 +191,7 @@ Status WebSocket::send(std::span<const std::uint8_t> bytes, Duration timeout) {
 }
 
 Result<Message> WebSocket::receive(Duration timeout) { return connection_->receive(timeout); }
+
+bool WebSocket::has_message() const { return connection_->has_message(); }
 
 }  // namespace probe::wire

@@ -44,6 +44,8 @@ class WebSocket {
   // when the server closes (with its code and reason) or sends more than the largest message. After
   // a failure only the destructor is of use.
   Result<Message> receive(Duration timeout);
+  // Whether a message is there already: before a question, that is one which nothing asked for.
+  bool has_message() const;
 
  private:
   class Connection;

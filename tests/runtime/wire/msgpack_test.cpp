@@ -5,20 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include "tests/hex.h"
+
 namespace probe::wire {
 namespace {
 
-Bytes from_hex(std::string_view text) {
-  std::string digits;
-  for (const char c : text) {
-    if (c != ' ') digits += c;
-  }
-  Bytes bytes;
-  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
-    bytes.push_back(static_cast<std::uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
-  }
-  return bytes;
-}
+using test::from_hex;
 
 // Made with Debian 12's python3-msgpack 1.0.3 and python3-numpy 1.24.2 by openpi's encoding.
 const char* const kObservation =
@@ -117,6 +109,8 @@ TEST_CASE("what an answer is can be said in a line without its control character
   CHECK(describe(array_f32({4, 7}, std::vector<double>(28, 0.0))) == "an array 4 x 7 of <f4");
   CHECK(describe("a\x1b[2Jb") == "the text \"a [2Jb\"");
   CHECK(describe(std::string(10000, 'x')).size() < 100);
+  CHECK(describe(1e300) == "the number 1e+300");
+  CHECK(describe(Array{"|u1", std::vector<std::int64_t>(9999, 1), {0}}).size() < 100);
 }
 
 }  // namespace probe::wire
