@@ -2,9 +2,14 @@
 #include "runtime/run/run.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <cstdlib>
+
 #include "runtime/cli/filled.h"
+#include "runtime/cli/progress.h"
 #include "runtime/cli/run_options.h"
 #include "runtime/policy/factory.h"
 
@@ -27,17 +32,39 @@ Result<std::pair<int, int>> parse_shard(const std::string& text) {
                  ""};
 }
 
-// One line that is rewritten on a terminal; one line an episode that went wrong anywhere.
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Columns of standard error's terminal; nothing when it is none.
+std::optional<std::size_t> terminal_columns() {
+  if (isatty(STDERR_FILENO) == 0) return std::nullopt;
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
+  return size.ws_col;
+}
+
+// A line that is redrawn on a terminal, one a minute elsewhere, and one for each episode that went
+// wrong.
 class ProgressPrinter {
  public:
   void operator()(const run::RunProgress& progress) {
+    const double now = now_s();
+    progress_.add(progress);
     if (progress.row && progress.row->invalid) {
       clear();
       print_invalid(*progress.row);
     }
-    if (!terminal_) return;
-    fmt::print(stderr, "\r{}/{} episodes{}", progress.done + progress.skipped, progress.total,
-               progress.skipped ? fmt::format(" ({} were there)", progress.skipped) : "");
+    const auto columns = terminal_columns();
+    if (!columns) {
+      if (const auto line = progress_.log_line(now)) fmt::print(stderr, "{}\n", *line);
+      return;
+    }
+    constexpr double kRedrawEvery = 0.1;  // s
+    if (now - drawn_ < kRedrawEvery && progress.done + progress.skipped < progress.total) return;
+    drawn_ = now;
+    // The last column stays free: a full line would wrap.
+    fmt::print(stderr, "\r\033[K{}", progress_.terminal_line(now, *columns - 1, color_));
     std::fflush(stderr);
     dirty_ = true;
   }
@@ -47,7 +74,9 @@ class ProgressPrinter {
   }
 
  private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  Progress progress_{now_s()};
+  double drawn_ = 0;
+  bool color_ = std::getenv("NO_COLOR") == nullptr;
   bool dirty_ = false;
 };
 

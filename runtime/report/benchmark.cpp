@@ -354,7 +354,7 @@ class Loader {
     using Key = std::tuple<int, int, int>;
     std::set<Key> keys;
     for (const Episode& e : episodes) keys.emplace(e.task, e.start, e.row.seed);
-    std::size_t policy = 0;
+    std::size_t policy = options_.join ? 0 : benchmark_.policies.size();
     for (; policy < benchmark_.policies.size(); ++policy) {
       if (benchmark_.policies[policy].name != name) continue;
       const auto& held = held_[policy];

@@ -129,10 +129,11 @@ struct Benchmark {
 
 struct LoadOptions {
   std::vector<std::string> sets;  // columns of the tables; empty: the plan's finest sets
+  bool join = true;               // runs of one policy that do not overlap are one policy's
 };
 
 // Folders that cannot be read are a failure that names the folder; what can be read but not used is
-// a note. Runs of one policy whose episodes do not overlap are one policy's.
+// a note.
 Result<Benchmark> load(std::span<const std::string> dirs, const LoadOptions& options = {});
 
 }  // namespace probe::report

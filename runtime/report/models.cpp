@@ -204,8 +204,14 @@ MixedModel fit(const Benchmark& benchmark, int metric, bool by_category) {
   }
   const std::string aliased = drop_aliased(columns, rows.size());
   if (!aliased.empty()) model.note += "Not told apart from the others: " + aliased + ". ";
-  const auto fitted =
-      stats::fit_mixed_logistic(data_of(benchmark, rows, columns), {.fixed_prior_sd = kPriorSd});
+  stats::MixedData data = data_of(benchmark, rows, columns);
+  // One episode a start says nothing of how starts differ.
+  const auto starts = *std::max_element(data.groups[2].begin(), data.groups[2].end()) + 1;
+  if (static_cast<double>(starts) == data.trials.sum()) {
+    data.groups.pop_back();
+    model.note += "Every start has one episode here, so it has no effect of its own. ";
+  }
+  const auto fitted = stats::fit_mixed_logistic(data, {.fixed_prior_sd = kPriorSd});
   if (!fitted) {
     model.note += "No fit: " + probe::to_text(fitted.failure()) + ".";
     return model;

@@ -56,6 +56,14 @@ std::optional<Percentage> percentage_of(std::string_view text) {
   return percentage;
 }
 
+// Columns of our own CSV that are no percentages of a table.
+bool is_beside(std::string_view column) {
+  for (const std::string_view suffix : {"_k", "_n", "_low", "_high"}) {
+    if (column.ends_with(suffix)) return true;
+  }
+  return column == "source";
+}
+
 double percent(std::int64_t k, std::int64_t n) {
   return 100 * static_cast<double>(k) / static_cast<double>(n);
 }
@@ -68,6 +76,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
   if (csv.substr(0, 3) == "\xef\xbb\xbf") csv.remove_prefix(3);
   std::set<std::pair<std::string, std::string>> seen;
   bool has_header = false;
+  std::vector<bool> kept;  // by column after the first two
   std::size_t number = 0;
   while (!csv.empty()) {
     const std::size_t end = std::min(csv.find('\n'), csv.size());
@@ -84,15 +93,18 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
                        "as in policy,metric,avg,original,ood_source",
                        where};
       }
-      table.columns.assign(cells.begin() + 2, cells.end());
+      for (std::size_t i = 2; i < cells.size(); ++i) {
+        kept.push_back(!is_beside(cells[i]));
+        if (kept.back()) table.columns.push_back(cells[i]);
+      }
       has_header = true;
       continue;
     }
-    if (cells.size() != table.columns.size() + 2) {
-      return Failure{"usage",
-                     fmt::format("{} cells where the first line has {}", cells.size(),
-                                 table.columns.size() + 2),
-                     where};
+    if (cells.size() != kept.size() + 2) {
+      return Failure{
+          "usage",
+          fmt::format("{} cells where the first line has {}", cells.size(), kept.size() + 2),
+          where};
     }
     PublishedRow row{cells[0], cells[1], {}};
     if (!seen.emplace(row.policy, row.metric).second) {
@@ -100,6 +112,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
                      where};
     }
     for (std::size_t i = 2; i < cells.size(); ++i) {
+      if (!kept[i - 2]) continue;
       if (cells[i].empty() || cells[i] == "-") {
         row.cells.emplace_back();
         continue;
@@ -108,7 +121,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
       if (!percentage) {
         return Failure{"usage",
                        fmt::format("`{}` under `{}` is no percentage from 0 to 100", cells[i],
-                                   table.columns[i - 2]),
+                                   table.columns[row.cells.size()]),
                        where};
       }
       row.cells.push_back(std::move(percentage));

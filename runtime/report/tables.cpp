@@ -122,9 +122,11 @@ Contrast paired(const PairRows& pairs) {
   const stats::Difference d = stats::clustered_difference(pairs.rows);
   contrast.difference = d.estimate;
   contrast.interval = d.interval;
-  std::vector<stats::Cluster> starts;
-  for (const StartPairs& row : pairs.rows) starts.push_back(row.pairs);
-  contrast.p = stats::clustered_exact(starts);
+  // Signs are flipped by place, as the interval counts: starts of several tasks in one place are
+  // not independent.
+  std::vector<stats::Cluster> places(static_cast<std::size_t>(pairs.clusters.size()));
+  for (const StartPairs& row : pairs.rows) places[row.cluster] = places[row.cluster] + row.pairs;
+  contrast.p = stats::clustered_exact(places);
   return contrast;
 }
 

@@ -1,0 +1,54 @@
+// vlaprobe compare
+#include "runtime/report/compare.h"
+
+#include <fmt/format.h>
+
+#include "runtime/cli/filled.h"
+#include "runtime/cli/verbs.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::string a, b;
+  std::vector<std::string> metrics, sets;
+  bool json = false;
+};
+
+int compare_verb(const Arguments& arguments) {
+  const std::vector<std::string> dirs = {arguments.a, arguments.b};
+  const auto benchmark = report::load(dirs, {.sets = arguments.sets, .join = false});
+  if (!benchmark) return report(benchmark.failure());
+  if (benchmark->policies.size() < 2) {
+    return report(
+        Failure{"usage", "is the same folder twice: there is nothing to compare", arguments.a});
+  }
+  const auto compared = report::compare(*benchmark, 0, 1, {.metrics = arguments.metrics});
+  if (!compared) return report(compared.failure());
+  if (arguments.json) {
+    fmt::print("{}\n", report::to_json(*benchmark, *compared)
+                           .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else {
+    fmt::print("{}", report::to_text(*benchmark, *compared));
+  }
+  return kFine;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand(
+      "compare", "two runs on the same starts: which differences are real, and how large");
+  verb->footer("example: vlaprobe compare runs/step_10000 runs/step_20000");
+  verb->add_option("A", arguments->a, "results folder")->required();
+  verb->add_option("B", arguments->b, "results folder")->required();
+  verb->add_option("--metrics", arguments->metrics, "A,B,...: of these only")->delimiter(',');
+  verb->add_option("--sets", arguments->sets, "A,B,...: sets of the plan that are the categories")
+      ->delimiter(',');
+  verb->add_flag("--json", arguments->json, "words and numbers as a JSON object");
+  refuse_empty_values(*verb);
+  verb->callback([arguments, &exit] { exit = compare_verb(*arguments); });
+}
+
+}  // namespace probe::cli

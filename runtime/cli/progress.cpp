@@ -1,0 +1,105 @@
+#include "runtime/cli/progress.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace probe::cli {
+namespace {
+
+// Worth a place on one line, in this order.
+constexpr std::array<std::string_view, 4> kShown = {"success", "intention", "grasp", "wrong"};
+constexpr int kBarWidth = 20;
+constexpr double kLogEvery = 60;  // s
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(std::max(0.0, seconds)));
+  if (whole < 100) return fmt::format("{} s", whole);
+  const long long minutes = (whole + 30) / 60;
+  if (minutes < 100) return fmt::format("{} min", minutes);
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+void Progress::add(const run::RunProgress& progress) {
+  done_ = progress.done;
+  skipped_ = progress.skipped;
+  total_ = progress.total;
+  if (progress.row == nullptr) return;
+  if (progress.row->invalid) {
+    ++invalid_;
+    return;
+  }
+  for (const std::string_view name : kShown) {
+    for (const run::MetricValue& value : progress.row->metrics) {
+      if (value.name != name || !value.is_bool) continue;
+      auto at = std::find_if(rates_.begin(), rates_.end(),
+                             [&](const Rate& rate) { return rate.name == name; });
+      if (at == rates_.end()) {
+        rates_.push_back({value.name, {}});
+        at = rates_.end() - 1;
+      }
+      at->count.k += value.value != 0 ? 1 : 0;
+      ++at->count.n;
+    }
+  }
+}
+
+std::string Progress::counts() const {
+  std::string text = fmt::format("{}/{} episodes", finished(), total_);
+  if (skipped_ > 0) text += fmt::format(" ({} were there)", skipped_);
+  if (invalid_ > 0) text += fmt::format(", {} invalid", invalid_);
+  return text;
+}
+
+std::string Progress::rate_text(const Rate& rate) const {
+  const stats::Interval interval = stats::wilson(rate.count);
+  return fmt::format("{} {}/{} {:.0f} % [{:.0f}-{:.0f}]", rate.name, rate.count.k, rate.count.n,
+                     100 * rate.count.rate(), 100 * interval.low, 100 * interval.high);
+}
+
+// Episodes that were there cost nothing, so only this call's pace counts.
+std::string Progress::time_left(double now) const {
+  const int left = total_ - finished();
+  if (left <= 0) return "done in " + duration_text(now - begun_);
+  if (done_ == 0) return "";
+  return duration_text((now - begun_) / done_ * left) + " left";
+}
+
+std::string Progress::terminal_line(double now, std::size_t columns, bool color) const {
+  std::vector<std::string> parts = {counts()};
+  if (const std::string left = time_left(now); !left.empty()) parts.push_back(left);
+  std::string line;
+  for (const std::string& part : parts) line += (line.empty() ? "" : "  ") + part;
+  std::string bar;
+  std::size_t used = line.size();
+  if (total_ > 0 && used + kBarWidth + 3 <= columns) {
+    const int full = static_cast<int>(static_cast<long long>(kBarWidth) * finished() / total_);
+    const std::string done(static_cast<std::size_t>(full), '=');
+    bar = "[" + (color ? "\033[32m" + done + "\033[0m" : done) +
+          std::string(static_cast<std::size_t>(kBarWidth - full), ' ') + "] ";
+    used += kBarWidth + 3;
+  }
+  for (const Rate& rate : rates_) {
+    const std::string text = "  " + rate_text(rate);
+    if (used + text.size() > columns) break;
+    line += text;
+    used += text.size();
+  }
+  if (bar.empty()) line.resize(std::min(line.size(), columns));
+  return bar + line;
+}
+
+std::optional<std::string> Progress::log_line(double now) {
+  if (now - logged_ < kLogEvery) return std::nullopt;
+  logged_ = now;
+  std::string line = counts();
+  for (const Rate& rate : rates_) line += ", " + rate_text(rate);
+  if (const std::string left = time_left(now); !left.empty()) line += ", " + left;
+  return line;
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,372 @@
+#include "runtime/report/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "runtime/plan/axis_names.h"
+#include "runtime/report/page_data.h"
+#include "runtime/stats/design.h"
+#include "runtime/stats/multiplicity.h"
+
+namespace probe::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Scope = ComparedRow::Scope;
+
+constexpr double kAlpha = 0.05;
+constexpr double kPower = 0.8;
+
+struct Shared {
+  std::size_t common = 0, only_a = 0, only_b = 0;
+  std::vector<int> tasks;  // that have a common start
+};
+
+Shared shared_starts(const Benchmark& benchmark, int a, int b) {
+  Shared shared;
+  for (const int t : benchmark.all_tasks()) {
+    std::set<std::pair<int, int>> ours, theirs;
+    for (const Episode& e : benchmark.of(a, t)) {
+      if (e.valid()) ours.emplace(e.start, e.row.seed);
+    }
+    for (const Episode& e : benchmark.of(b, t)) {
+      if (e.valid()) theirs.emplace(e.start, e.row.seed);
+    }
+    std::size_t common = 0;
+    for (const auto& key : ours) common += theirs.contains(key) ? 1 : 0;
+    shared.common += common;
+    shared.only_a += ours.size() - common;
+    shared.only_b += theirs.size() - common;
+    if (common > 0) shared.tasks.push_back(t);
+  }
+  return shared;
+}
+
+Failure nothing_shared(const Benchmark& benchmark, int a, int b, const Shared& shared) {
+  const Policy& first = benchmark.policies[static_cast<std::size_t>(a)];
+  const Policy& second = benchmark.policies[static_cast<std::size_t>(b)];
+  std::string why = "they ran other tasks, starts or seeds";
+  if (shared.only_a == 0 || shared.only_b == 0) {
+    why = fmt::format("`{}` has no valid episode", shared.only_a == 0 ? first.label : second.label);
+  } else if (benchmark.plans.size() > 1) {
+    why = "their plans have no task with the same instruction, rule, objects and starts";
+  }
+  return {"usage",
+          fmt::format("`{}` and `{}` share no episode: {}", first.label, second.label, why), ""};
+}
+
+std::vector<int> both(const std::vector<int>& tasks, const std::vector<int>& of) {
+  std::vector<int> common;
+  for (const int t : tasks) {
+    if (std::find(of.begin(), of.end(), t) != of.end()) common.push_back(t);
+  }
+  return common;
+}
+
+class Comparer {
+ public:
+  Comparer(const Benchmark& benchmark, int a, int b, std::vector<int> tasks)
+      : benchmark_(benchmark), a_(a), b_(b), tasks_(std::move(tasks)) {}
+
+  std::vector<ComparedRow> rows(const std::vector<int>& metrics) {
+    for (const int m : metrics) add(Scope::kAll, m, "all tasks", tasks_);
+    adjust(0, true);
+    for (const int m : metrics) {
+      std::size_t first = rows_.size();
+      for (const Category& c : benchmark_.categories)
+        add(Scope::kCategory, m, c.label, both(tasks_, c.tasks));
+      adjust(first, true);
+      first = rows_.size();
+      add_axes(m);
+      adjust(first, true);
+      first = rows_.size();
+      for (const int t : tasks_)
+        add(Scope::kTask, m, benchmark_.tasks[static_cast<std::size_t>(t)].name, {t});
+      adjust(first, false);
+    }
+    for (ComparedRow& row : rows_) what_would_tell(row);
+    return std::move(rows_);
+  }
+
+ private:
+  void add(Scope scope, int metric, const std::string& name, const std::vector<int>& tasks) {
+    ComparedRow row{scope, metric, name, policy_contrast(benchmark_, a_, b_, metric, tasks),
+                    {},    {}};
+    if (row.contrast.first.n > 0) rows_.push_back(std::move(row));
+  }
+
+  // The tasks that move an axis against their own baselines.
+  void add_axes(int metric) {
+    for (const auto& [axis, name] : plan::kAxisNames) {
+      std::vector<int> tasks;
+      for (const int t : tasks_) {
+        const std::uint32_t moved = benchmark_.tasks[static_cast<std::size_t>(t)].axes;
+        if ((moved & static_cast<std::uint32_t>(axis)) != 0) tasks.push_back(t);
+      }
+      if (!tasks.empty()) add(Scope::kAxis, metric, "moves " + std::string(name), tasks);
+    }
+  }
+
+  void adjust(std::size_t first, bool family_wise) {
+    std::vector<double> p;
+    for (std::size_t i = first; i < rows_.size(); ++i) p.push_back(rows_[i].contrast.p);
+    const auto adjusted = family_wise ? stats::holm(p) : stats::benjamini_hochberg(p);
+    for (std::size_t i = first; i < rows_.size(); ++i)
+      rows_[i].contrast.adjusted = adjusted[i - first];
+  }
+
+  static void what_would_tell(ComparedRow& row) {
+    if (row.is_real() || row.scope == Scope::kTask) return;
+    row.detectable = detectable(row.contrast);
+    const stats::PairTable& pairs = row.contrast.pairs;
+    const double share = static_cast<double>(pairs.only_a + pairs.only_b) /
+                         static_cast<double>(std::max<std::int64_t>(1, pairs.pairs()));
+    const auto needed = starts_needed(std::abs(row.contrast.difference), share);
+    if (needed && *needed > row.contrast.starts) row.more_starts = *needed - row.contrast.starts;
+  }
+
+  const Benchmark& benchmark_;
+  int a_, b_;
+  std::vector<int> tasks_;
+  std::vector<ComparedRow> rows_;
+};
+
+bool differs_anywhere(const Contrast& c) { return c.pairs.only_a + c.pairs.only_b > 0; }
+
+std::string rate(const stats::Count& count) {
+  return fmt::format("{} of {} ({:.1f} %)", count.k, count.n, 100 * count.rate());
+}
+
+std::string p_text(double p) {
+  if (p < 1e-4) return "p < 0.0001";
+  return fmt::format("p = {:.2g}", p);
+}
+
+std::string range(const Contrast& c) {
+  return fmt::format("{:+.1f} points, {:+.1f} to {:+.1f}", 100 * c.difference, 100 * c.interval.low,
+                     100 * c.interval.high);
+}
+
+// "more" is not "better" for every metric.
+std::string verdict(const Benchmark& benchmark, const Comparison& comparison,
+                    const ComparedRow& row) {
+  const Metric& metric = benchmark.metrics[static_cast<std::size_t>(row.metric)];
+  const Contrast& c = row.contrast;
+  const std::string numbers = fmt::format("{} against {}; {}; {}", rate(c.first), rate(c.second),
+                                          range(c), p_text(c.adjusted));
+  if (row.is_real()) {
+    const bool a_more = c.difference > 0;
+    const bool a_better = a_more == (metric.good >= 0);
+    return fmt::format("{}: {} is {} ({}).", metric.name, a_better ? comparison.a : comparison.b,
+                       metric.good == 0 ? "higher" : "better", numbers);
+  }
+  if (c.pairs.only_a + c.pairs.only_b == 0) {
+    return fmt::format(
+        "{}: no difference was seen in any of {} episodes ({}). A true difference of "
+        "more than {:.1f} points is unlikely.",
+        metric.name, c.pairs.pairs(), rate(c.first), 100 * c.interval.high);
+  }
+  std::string text = fmt::format("{}: the data cannot tell them apart ({}).", metric.name, numbers);
+  if (row.detectable) {
+    text += fmt::format(" {} starts show differences from {:.1f} points on, four times in five.",
+                        c.starts, 100 * *row.detectable);
+  } else {
+    text += fmt::format(" {} starts with so few that differ could show no difference reliably.",
+                        c.starts);
+  }
+  if (row.more_starts) {
+    text += fmt::format(" If the difference is what was seen, about {} more starts would show it.",
+                        *row.more_starts);
+  }
+  return text;
+}
+
+std::string listed(const std::vector<const ComparedRow*>& rows) {
+  constexpr std::size_t kMost = 6;
+  std::string text;
+  for (std::size_t i = 0; i < rows.size() && i < kMost; ++i) {
+    text += fmt::format("{}{} ({:+.1f})", i == 0 ? "" : ", ", rows[i]->name,
+                        100 * rows[i]->contrast.difference);
+  }
+  if (rows.size() > kMost) text += fmt::format(" and {} more", rows.size() - kMost);
+  return text;
+}
+
+void say(const Benchmark& benchmark, Comparison& comparison) {
+  for (const ComparedRow& row : comparison.rows) {
+    if (row.scope != Scope::kAll) continue;
+    comparison.words.push_back(verdict(benchmark, comparison, row));
+    if (!differs_anywhere(row.contrast)) continue;
+    const auto add = [&](Scope scope, const char* one, const char* many, const char* method) {
+      std::vector<const ComparedRow*> real;
+      std::size_t total = 0;
+      for (const ComparedRow& other : comparison.rows) {
+        if (other.scope != scope || other.metric != row.metric) continue;
+        ++total;
+        if (other.is_real()) real.push_back(&other);
+      }
+      if (total == 0) return;
+      std::stable_sort(real.begin(), real.end(), [](const ComparedRow* a, const ComparedRow* b) {
+        return std::abs(a->contrast.difference) > std::abs(b->contrast.difference);
+      });
+      comparison.words.push_back(
+          real.empty() ? fmt::format("  no {} of {} differs for certain ({}).", one, total, method)
+                       : fmt::format("  {} of {} {} differ ({}): {}.", real.size(), total, many,
+                                     method, listed(real)));
+    };
+    add(Scope::kCategory, "category", "categories", "Holm");
+    add(Scope::kAxis, "kind of variant", "kinds of variant", "Holm");
+    add(Scope::kTask, "task", "tasks", "Benjamini-Hochberg");
+  }
+}
+
+bool differs_somewhere(const Comparison& comparison, int metric) {
+  return std::any_of(comparison.rows.begin(), comparison.rows.end(), [&](const ComparedRow& row) {
+    return row.metric == metric && differs_anywhere(row.contrast);
+  });
+}
+
+const char* scope_name(Scope scope) {
+  switch (scope) {
+    case Scope::kAll:
+      return "all";
+    case Scope::kCategory:
+      return "category";
+    case Scope::kAxis:
+      return "axis";
+    case Scope::kTask:
+      return "task";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::optional<std::int64_t> starts_needed(double difference, double discordance) {
+  constexpr std::int64_t kMost = 1'000'000;
+  if (difference <= 0 || discordance < difference) return std::nullopt;
+  // McNemar's test: n pairs see d with power 1 - b when n = (z_a sqrt(q) + z_b sqrt(q - d^2))^2 /
+  // d^2, q the share that differ (Connor 1987, Biometrics 43:207).
+  const double alpha = stats::normal_two_sided(1 - kAlpha);
+  const double beta = stats::normal_two_sided(2 * kPower - 1);
+  const double root = alpha * std::sqrt(discordance) +
+                      beta * std::sqrt(std::max(0.0, discordance - difference * difference));
+  const double n = std::ceil(root * root / (difference * difference));
+  if (n > static_cast<double>(kMost)) return std::nullopt;
+  return static_cast<std::int64_t>(n);
+}
+
+Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
+                           const CompareOptions& options) {
+  Comparison comparison;
+  comparison.a = benchmark.policies[static_cast<std::size_t>(a)].label;
+  comparison.b = benchmark.policies[static_cast<std::size_t>(b)].label;
+  std::vector<int> metrics;
+  for (const std::string& name : options.metrics) {
+    const int metric = benchmark.find_metric(name);
+    if (metric == kAbsent) {
+      std::string known;
+      for (const Metric& m : benchmark.metrics) known += (known.empty() ? "" : ", ") + m.name;
+      return Failure{"usage", fmt::format("no metric is called `{}`; there are {}", name, known),
+                     "--metrics"};
+    }
+    metrics.push_back(metric);
+  }
+  if (metrics.empty()) {
+    metrics = table_metrics(benchmark);
+    // What counts first stands first.
+    std::stable_sort(metrics.begin(), metrics.end(), [&](int x, int y) {
+      const auto is_success = [&](int m) {
+        return benchmark.metrics[static_cast<std::size_t>(m)].name == "success";
+      };
+      return is_success(x) && !is_success(y);
+    });
+  }
+  const Shared shared = shared_starts(benchmark, a, b);
+  if (shared.common == 0) return nothing_shared(benchmark, a, b, shared);
+  comparison.common_starts = shared.common;
+  comparison.only_a = shared.only_a;
+  comparison.only_b = shared.only_b;
+  if (shared.only_a + shared.only_b > 0) {
+    comparison.notes.push_back(fmt::format(
+        "{} episodes are common to both; {} that only {} has and {} that only {} has are left out",
+        shared.common, shared.only_a, comparison.a, shared.only_b, comparison.b));
+  }
+  for (const Note& note : benchmark.notes) comparison.notes.push_back(note.text);
+  comparison.rows = Comparer(benchmark, a, b, shared.tasks).rows(metrics);
+  say(benchmark, comparison);
+  return comparison;
+}
+
+std::string to_text(const Benchmark& benchmark, const Comparison& comparison) {
+  std::string text = fmt::format("{} against {}, the same {} episodes\n\n", comparison.a,
+                                 comparison.b, comparison.common_starts);
+  for (const std::string& words : comparison.words) text += words + "\n";
+  int last = kAbsent;
+  for (const ComparedRow& row : comparison.rows) {
+    if (row.scope == Scope::kAll || (row.scope == Scope::kTask && !row.is_real())) continue;
+    if (!differs_somewhere(comparison, row.metric)) continue;
+    if (row.metric != last) {
+      text += fmt::format("\n{:<32} {:>16} {:>16} {:>8} {:>17} {:>9}\n",
+                          benchmark.metrics[static_cast<std::size_t>(row.metric)].name,
+                          comparison.a.substr(0, 16), comparison.b.substr(0, 16), "points", "95 %",
+                          "p adj.");
+      last = row.metric;
+    }
+    const Contrast& c = row.contrast;
+    const auto of = [](const stats::Count& count) {
+      return fmt::format("{}/{} {:.1f} %", count.k, count.n, 100 * count.rate());
+    };
+    text +=
+        fmt::format("{:<32} {:>16} {:>16} {:>+8.1f} {:>+7.1f} to {:>+6.1f} {:>9.2g}{}\n", row.name,
+                    of(c.first), of(c.second), 100 * c.difference, 100 * c.interval.low,
+                    100 * c.interval.high, c.adjusted, row.is_real() ? " *" : "");
+  }
+  text +=
+      "\n* differs; p exact by sign flips of places of start, adjusted over categories and axes "
+      "(Holm) "
+      "and tasks (Benjamini-Hochberg, only those that differ are listed)\n";
+  for (const std::string& note : comparison.notes) text += "note: " + note + "\n";
+  return text;
+}
+
+Json to_json(const Benchmark& benchmark, const Comparison& comparison) {
+  Json json = {{"a", comparison.a},
+               {"b", comparison.b},
+               {"episodes", comparison.common_starts},
+               {"only_a", comparison.only_a},
+               {"only_b", comparison.only_b},
+               {"words", comparison.words},
+               {"notes", comparison.notes}};
+  json["rows"] = Json::array();
+  for (const ComparedRow& row : comparison.rows) {
+    const Contrast& c = row.contrast;
+    Json one = {{"scope", scope_name(row.scope)},
+                {"name", row.name},
+                {"metric", benchmark.metrics[static_cast<std::size_t>(row.metric)].name},
+                {"a", {{"k", c.first.k}, {"n", c.first.n}}},
+                {"b", {{"k", c.second.k}, {"n", c.second.n}}},
+                {"pairs",
+                 {{"both", c.pairs.both},
+                  {"only_a", c.pairs.only_a},
+                  {"only_b", c.pairs.only_b},
+                  {"neither", c.pairs.neither}}},
+                {"starts", c.starts},
+                {"difference", rounded(c.difference)},
+                {"low", rounded(c.interval.low)},
+                {"high", rounded(c.interval.high)},
+                {"p", c.p},
+                {"p_adjusted", c.adjusted},
+                {"real", row.is_real()}};
+    one["detectable"] = row.detectable ? Json(rounded(*row.detectable)) : Json();
+    one["more_starts"] = row.more_starts ? Json(*row.more_starts) : Json();
+    json["rows"].push_back(std::move(one));
+  }
+  return json;
+}
+
+}  // namespace probe::report

@@ -1,0 +1,347 @@
+#include "runtime/report/table_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "runtime/report/page_data.h"
+
+namespace probe::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out.push_back('"');
+    out.push_back(c);
+  }
+  return out + "\"";
+}
+
+// The paper calls the tasks without a baseline "original".
+std::string column_name(const Benchmark& benchmark, std::size_t category) {
+  const Category& c = benchmark.categories[category];
+  return c.label == "original" ? c.label : c.name;
+}
+
+std::vector<std::string> column_names(const Benchmark& benchmark) {
+  std::vector<std::string> names = {"avg"};
+  for (std::size_t c = 0; c < benchmark.categories.size(); ++c)
+    names.push_back(column_name(benchmark, c));
+  return names;
+}
+
+std::vector<std::optional<Estimate>> cells_of(const MainRow& row) {
+  std::vector<std::optional<Estimate>> cells = {row.all};
+  cells.insert(cells.end(), row.cells.begin(), row.cells.end());
+  return cells;
+}
+
+const std::string& policy_label(const Benchmark& benchmark, int policy) {
+  return benchmark.policies[static_cast<std::size_t>(policy)].label;
+}
+const std::string& metric_name(const Benchmark& benchmark, int metric) {
+  return benchmark.metrics[static_cast<std::size_t>(metric)].name;
+}
+
+// The published percentage of one of our columns; nothing when that table has none.
+std::optional<Percentage> published_cell(const PublishedTable& table, const PublishedRow& row,
+                                         const std::string& column, const Category* category) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    const std::string& name = table.columns[c];
+    if (name == column ||
+        (category != nullptr && (name == category->name || name == category->label)))
+      return row.cells[c];
+  }
+  return std::nullopt;
+}
+
+std::string to_csv(const Benchmark& benchmark, const Tables& tables,
+                   const std::vector<PublishedTable>& published) {
+  const std::vector<std::string> names = column_names(benchmark);
+  std::string text = "policy,metric";
+  for (const std::string& name : names) text += "," + csv_cell(name);
+  for (const std::string& name : names) {
+    for (const char* part : {"k", "n", "low", "high"})
+      text += "," + csv_cell(fmt::format("{}_{}", name, part));
+  }
+  text += ",source\n";
+  for (const MainRow& row : tables.main) {
+    const auto cells = cells_of(row);
+    text += csv_cell(policy_label(benchmark, row.policy)) + "," +
+            csv_cell(metric_name(benchmark, row.metric));
+    for (const auto& cell : cells) {
+      text += ",";
+      if (cell) text += fmt::format("{:.1f}", 100 * cell->count.rate());
+    }
+    for (const auto& cell : cells) {
+      text += cell ? fmt::format(",{},{},{:.1f},{:.1f}", cell->count.k, cell->count.n,
+                                 100 * cell->interval.low, 100 * cell->interval.high)
+                   : ",,,,";
+    }
+    text += ",measured\n";
+  }
+  for (const PublishedTable& table : published) {
+    for (const PublishedRow& row : table.rows) {
+      text += csv_cell(row.policy) + "," + csv_cell(row.metric);
+      for (std::size_t c = 0; c < names.size(); ++c) {
+        const auto cell =
+            published_cell(table, row, names[c], c == 0 ? nullptr : &benchmark.categories[c - 1]);
+        text += "," + (cell ? csv_cell(cell->text) : "");
+      }
+      for (std::size_t c = 0; c < names.size(); ++c) text += ",,,,";
+      text += "," + csv_cell("published: " + table.source) + "\n";
+    }
+  }
+  return text;
+}
+
+Json estimate_json(const std::optional<Estimate>& e) {
+  if (!e) return nullptr;
+  return {{"k", e->count.k},
+          {"n", e->count.n},
+          {"percent", rounded(100 * e->count.rate())},
+          {"low", rounded(100 * e->interval.low)},
+          {"high", rounded(100 * e->interval.high)}};
+}
+
+Json contrast_json(const Contrast& c) {
+  Json json = {{"k", c.first.k},
+               {"n", c.first.n},
+               {"against_k", c.second.k},
+               {"against_n", c.second.n},
+               {"starts", c.starts},
+               {"points", rounded(100 * c.difference)},
+               {"low", rounded(100 * c.interval.low)},
+               {"high", rounded(100 * c.interval.high)},
+               {"paired", c.paired},
+               {"p", c.p},
+               {"p_adjusted", c.adjusted}};
+  if (c.paired) {
+    json["pairs"] = {{"both", c.pairs.both},
+                     {"only_first", c.pairs.only_a},
+                     {"only_second", c.pairs.only_b},
+                     {"neither", c.pairs.neither}};
+  }
+  return json;
+}
+
+std::string to_json_text(const Benchmark& benchmark, const Tables& tables,
+                         const std::vector<PublishedTable>& published) {
+  const std::vector<std::string> names = column_names(benchmark);
+  Json json = {{"interval", std::string(kIntervalText)}};
+  json["main"] = Json::array();
+  for (const MainRow& row : tables.main) {
+    Json columns = Json::object();
+    const auto cells = cells_of(row);
+    for (std::size_t c = 0; c < cells.size(); ++c) columns[names[c]] = estimate_json(cells[c]);
+    json["main"].push_back({{"policy", policy_label(benchmark, row.policy)},
+                            {"metric", metric_name(benchmark, row.metric)},
+                            {"columns", std::move(columns)}});
+  }
+  json["category_differences"] = Json::array();
+  for (const CategoryDeltaRow& row : tables.category_deltas) {
+    Json one = {{"policy", policy_label(benchmark, row.policy)},
+                {"metric", metric_name(benchmark, row.metric)},
+                {"category", benchmark.categories[static_cast<std::size_t>(row.category)].name}};
+    one.update(contrast_json(row.contrast));
+    one["tasks_left_out"] = row.left_out;
+    json["category_differences"].push_back(std::move(one));
+  }
+  json["task_differences"] = Json::array();
+  for (const DeltaRow& row : tables.deltas) {
+    const Task& task = benchmark.tasks[static_cast<std::size_t>(row.task)];
+    Json one = {{"policy", policy_label(benchmark, row.policy)},
+                {"metric", metric_name(benchmark, row.metric)},
+                {"task", task.name},
+                {"baseline", benchmark.tasks[static_cast<std::size_t>(task.baseline)].name},
+                {"axes", task.axis_names}};
+    one.update(contrast_json(row.contrast));
+    if (!task.confounded.empty()) one["confounded"] = task.confounded;
+    if (!task.unpaired.empty()) one["unpaired"] = task.unpaired;
+    json["task_differences"].push_back(std::move(one));
+  }
+  json["policies"] = Json::array();
+  for (const PolicyRow& row : tables.policies) {
+    Json one = {
+        {"a", policy_label(benchmark, row.a)},
+        {"b", policy_label(benchmark, row.b)},
+        {"metric", metric_name(benchmark, row.metric)},
+        {"category", row.category == kAbsent
+                         ? std::string("all")
+                         : benchmark.categories[static_cast<std::size_t>(row.category)].name}};
+    one.update(contrast_json(row.contrast));
+    json["policies"].push_back(std::move(one));
+  }
+  if (!published.empty()) json["published"] = external_json(benchmark, published);
+  json["notes"] = Json::array();
+  for (const Note& note : benchmark.notes) json["notes"].push_back(note.text);
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string tex(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '\\':
+        out += "\\textbackslash{}";
+        break;
+      case '~':
+        out += "\\textasciitilde{}";
+        break;
+      case '^':
+        out += "\\textasciicircum{}";
+        break;
+      case '<':
+        out += "\\textless{}";
+        break;
+      case '>':
+        out += "\\textgreater{}";
+        break;
+      case '|':
+        out += "\\textbar{}";
+        break;
+      case '&':
+      case '%':
+      case '$':
+      case '#':
+      case '_':
+      case '{':
+      case '}':
+        out += '\\';
+        out += c;
+        break;
+      default:
+        // Control characters have no glyph; everything else is UTF-8, which LaTeX reads.
+        if (static_cast<unsigned char>(c) >= 0x20) out += c;
+    }
+  }
+  return out;
+}
+
+// The rate above, count and interval below, small.
+std::string tex_cell(const std::optional<Estimate>& e) {
+  if (!e) return "--";
+  return fmt::format("\\cell{{{:.1f}}}{{{}/{}}}{{{:.0f}--{:.0f}}}", 100 * e->count.rate(),
+                     e->count.k, e->count.n, 100 * e->interval.low, 100 * e->interval.high);
+}
+
+std::string tex_main(const Benchmark& benchmark, const Tables& tables,
+                     const std::vector<PublishedTable>& published) {
+  const std::size_t columns = benchmark.categories.size() + 1;
+  std::string text = "\\begin{table}\n\\centering\\footnotesize\n\\begin{tabular}{ll" +
+                     std::string(columns, 'r') + "}\n\\toprule\npolicy & metric & avg";
+  for (const Category& c : benchmark.categories) text += " & \\head{" + tex(c.label) + "}";
+  text += " \\\\\n";
+  int last = kAbsent;
+  for (const MainRow& row : tables.main) {
+    if (row.policy != last) text += "\\midrule\n";
+    text += (row.policy == last ? std::string() : tex(policy_label(benchmark, row.policy))) +
+            " & " + tex(metric_name(benchmark, row.metric));
+    last = row.policy;
+    for (const auto& cell : cells_of(row)) text += " & " + tex_cell(cell);
+    text += " \\\\\n";
+  }
+  const std::vector<std::string> names = column_names(benchmark);
+  for (const PublishedTable& table : published) {
+    text += fmt::format(
+        "\\midrule\n\\multicolumn{{{}}}{{l}}{{\\emph{{published, without counts: {}}}}} "
+        "\\\\\n",
+        columns + 2, tex(table.source));
+    std::string policy;
+    for (const PublishedRow& row : table.rows) {
+      text += (row.policy == policy ? std::string() : tex(row.policy)) + " & " + tex(row.metric);
+      policy = row.policy;
+      for (std::size_t c = 0; c < names.size(); ++c) {
+        const auto cell =
+            published_cell(table, row, names[c], c == 0 ? nullptr : &benchmark.categories[c - 1]);
+        text += " & " + (cell ? tex(cell->text) : "--");
+      }
+      text += " \\\\\n";
+    }
+  }
+  return text +
+         "\\bottomrule\n\\end{tabular}\n\\caption{Percent of episodes; below, the count and "
+         "the 95\\,\\% interval.}\n\\end{table}\n";
+}
+
+bool is_worded(const Benchmark& benchmark, int category) {
+  for (const int t : benchmark.categories[static_cast<std::size_t>(category)].tasks) {
+    for (const std::string& axis : benchmark.tasks[static_cast<std::size_t>(t)].axis_names) {
+      if (axis.rfind("language.", 0) == 0) return true;
+    }
+  }
+  return false;
+}
+
+std::string tex_count(const stats::Count& count) {
+  return fmt::format("\\cell{{{:.1f}}}{{{}/{}}}{{}}", 100 * count.rate(), count.k, count.n);
+}
+
+std::string tex_differences(const Benchmark& benchmark, const Tables& tables, bool language) {
+  std::string text =
+      "\\begin{table}\n\\centering\\footnotesize\n\\begin{tabular}{lllrrrr}\n"
+      "\\toprule\npolicy & category & metric & baseline & variant & points (95\\,\\%) "
+      "& $p$ (Holm) \\\\\n";
+  int last = kAbsent;
+  bool any = false;
+  for (const CategoryDeltaRow& row : tables.category_deltas) {
+    if (is_worded(benchmark, row.category) != language) continue;
+    any = true;
+    if (row.policy != last) text += "\\midrule\n";
+    const Contrast& c = row.contrast;
+    text += fmt::format(
+        "{} & {} & {} & {} & {} & ${:+.1f}$ (${:.1f}$ to ${:.1f}$) & {:.2g} \\\\\n",
+        row.policy == last ? std::string() : tex(policy_label(benchmark, row.policy)),
+        tex(benchmark.categories[static_cast<std::size_t>(row.category)].label),
+        tex(metric_name(benchmark, row.metric)), tex_count(c.second), tex_count(c.first),
+        100 * c.difference, 100 * c.interval.low, 100 * c.interval.high, c.adjusted);
+    last = row.policy;
+  }
+  if (!any) return "";
+  return text + "\\bottomrule\n\\end{tabular}\n\\caption{" +
+         (language ? "Language variation" : "Object and scene variation") +
+         ": variants beside their own baselines on the same starts, exact tests.}\n\\end{table}\n";
+}
+
+std::string to_latex(const Benchmark& benchmark, const Tables& tables,
+                     const std::vector<PublishedTable>& published) {
+  return "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[utf8]{inputenc}\n"
+         "\\usepackage{booktabs}\n\\usepackage[landscape,margin=5mm,paperwidth=600mm,"
+         "paperheight=900mm]{geometry}\n"
+         "% rate, count, interval\n"
+         "\\newcommand{\\cell}[3]{\\begin{tabular}[t]{@{}r@{}}#1\\\\[-3pt]{\\tiny #2}\\\\[-4pt]"
+         "{\\tiny #3}\\end{tabular}}\n"
+         "\\newcommand{\\head}[1]{\\begin{tabular}[b]{@{}r@{}}#1\\end{tabular}}\n"
+         "\\begin{document}\n" +
+         tex_main(benchmark, tables, published) + tex_differences(benchmark, tables, true) +
+         tex_differences(benchmark, tables, false) + "\\end{document}\n";
+}
+
+}  // namespace
+
+std::optional<TableFormat> table_format(std::string_view name) {
+  if (name == "csv") return TableFormat::kCsv;
+  if (name == "json") return TableFormat::kJson;
+  if (name == "latex") return TableFormat::kLatex;
+  return std::nullopt;
+}
+
+std::string table_text(const Benchmark& benchmark, const Tables& tables,
+                       const std::vector<PublishedTable>& published, TableFormat format) {
+  switch (format) {
+    case TableFormat::kCsv:
+      return to_csv(benchmark, tables, published);
+    case TableFormat::kJson:
+      return to_json_text(benchmark, tables, published);
+    case TableFormat::kLatex:
+      return to_latex(benchmark, tables, published);
+  }
+  return "";
+}
+
+}  // namespace probe::report
