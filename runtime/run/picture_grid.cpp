@@ -48,7 +48,9 @@ Picture join_frames(std::span<const CameraFrame> frames) {
   Picture all = make_picture(width, height, {0, 0, 0});
   int x = 0;
   for (const CameraFrame& seen : frames) {
-    paste(all, copy_picture(seen.frame.width, seen.frame.height, seen.frame.rgb), x, 0);
+    // A small one in the middle of the height: there no strip of words lies over it.
+    paste(all, copy_picture(seen.frame.width, seen.frame.height, seen.frame.rgb), x,
+          (height - seen.frame.height) / 2);
     x += seen.frame.width + kGap;
   }
   return all;

@@ -114,7 +114,7 @@ TEST_CASE("people see several cameras side by side, or the one they ask for") {
   bool same = true;
   for (std::size_t y = 0; y < 224; ++y) {
     for (std::size_t x = 0; x < 4 * 224; ++x)
-      same = same && all->rgba[4 * (866 * y + 642) + x] == one->rgba[4 * 224 * y + x];
+      same = same && all->rgba[4 * (866 * (y + 128) + 642) + x] == one->rgba[4 * 224 * y + x];
   }
   CHECK(same);
   const Status none = write_start(plan, task, 0, folder / "v/no.png", kAssets, "wirst");
