@@ -36,3 +36,13 @@ TEST_CASE("audit says so when nothing is irregular, and refuses what is no suite
   CHECK(contains(none.err, "no suite to audit"));
   CHECK(box.vlaprobe("audit absent.probe").exit == 2);
 }
+
+TEST_CASE("audit asks of a published table whether the suite can give its percentages") {
+  Sandbox box;
+  probe::test::write_file(box / "paper.csv", "policy,avg,ood_target\na,5.0,1.9\nb,5.0,4.7\n");
+  const Outcome text = box.vlaprobe("audit $SUITE --table paper.csv");
+  REQUIRE_MESSAGE(text.exit == 0, text.err);
+  CHECK(contains(text.out, "2 of the 2 percentages of `ood_target` in paper.csv"));
+  CHECK(contains(text.out, "no sets, so not checked: avg"));
+  CHECK(box.vlaprobe("audit $SUITE --table absent.csv").exit == 2);
+}
