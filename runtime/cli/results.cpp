@@ -6,18 +6,36 @@
 #include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/rejudge/tally.h"
+#include "runtime/run/delivery.h"
 
 namespace probe::cli {
 namespace {
 
 struct Arguments {
   std::string dir;
-  bool json = false, csv = false;
+  bool json = false, csv = false, delivery = false;
 };
+
+// Whether what makes tasks different reached the policy.
+int delivery_verb(const Arguments& arguments, std::span<const run::ResultRow> rows) {
+  const auto plan = rejudge::stored_plan(arguments.dir);
+  if (!plan) return report({"store", "its plan cannot be read", arguments.dir});
+  const auto findings = run::check_delivery(*plan, rows);
+  if (arguments.json) {
+    fmt::print("{}\n", run::to_json(findings));
+    return kFine;
+  }
+  for (const run::DeliveryFinding& finding : findings) fmt::print("{}\n", finding.sentence);
+  if (findings.empty()) {
+    fmt::print("every instruction and picture that should differ reached the policy different\n");
+  }
+  return kFine;
+}
 
 int results_verb(const Arguments& arguments) {
   auto rows = run::read_results(arguments.dir);
   if (!rows) return report(rows.failure());
+  if (arguments.delivery) return delivery_verb(arguments, *rows);
   if (arguments.json) {
     fmt::print("{}\n", run::results_to_json(*rows));
   } else if (arguments.csv) {
@@ -38,6 +56,8 @@ void add_results(CLI::App& app, int& exit) {
   verb->add_option("DIR", arguments->dir, "results folder")->required();
   CLI::Option* json = verb->add_flag("--json", arguments->json, "a JSON array of rows");
   verb->add_flag("--csv", arguments->csv, "rows as comma-separated values")->excludes(json);
+  verb->add_flag("--delivery", arguments->delivery,
+                 "whether differing instructions and pictures reached the policy (--json too)");
   refuse_empty_values(*verb);
   verb->callback([arguments, &exit] { exit = results_verb(*arguments); });
 }

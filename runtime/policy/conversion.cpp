@@ -182,11 +182,16 @@ Result<std::vector<double>> to_state(const Profile& profile, const Proprioceptio
   return state;
 }
 
-Result<Action> to_action(const Profile& profile, const RawAction& raw) {
-  Action action = raw;
+RawAction denormalised(const Profile& profile, const RawAction& raw) {
+  RawAction action = raw;
   for (std::size_t i = 0; i < action.size(); ++i) {
     action[i] = denormalised(profile.action_statistics, i, action[i]);
   }
+  return action;
+}
+
+Result<Action> to_action(const Profile& profile, const RawAction& raw) {
+  Action action = denormalised(profile, raw);
   PROBE_TRY(check_limit(length(action.data()), profile.action_limit_m, "shifts by", "m",
                         "action.limit_m"));
   PROBE_TRY(check_limit(length(action.data() + 3), profile.action_limit_rad, "turns by", "rad",

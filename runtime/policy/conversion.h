@@ -18,6 +18,9 @@ std::string to_prompt(const Profile& profile, std::string_view prompt);
 // than the profile has statistics.
 Result<std::vector<double>> to_state(const Profile& profile, const Proprioception& measured);
 
+// What the profile's statistics make of a server's numbers, in m, rad and the gripper's range.
+RawAction denormalised(const Profile& profile, const RawAction& raw);
+
 // Denormalised, the rotation as a rotation vector, the gripper -1 .. +1. Numbers that already are
 // ours come back bit for bit. Fails (code "policy"), naming the field that would be at fault, on a
 // shift or turn above the profile's limits and on a gripper's number far outside its range.

@@ -186,6 +186,14 @@ Result<std::unique_ptr<Policy>> make_policy(std::string_view text, const PolicyC
   return make_server(choice.entry->protocol, choice.argument, context.queries);
 }
 
+Result<ServerChoice> server_choice(std::string_view text) {
+  PROBE_ASSIGN(const Choice choice, choose(text));
+  if (choice.entry->kind != Kind::kServer) {
+    return Failure{"usage", "policy `" + std::string(text) + "` is no server", "--policy"};
+  }
+  return choose_server(choice.entry->protocol, choice.argument);
+}
+
 std::string policy_argument(std::string_view text) {
   const std::size_t colon = text.find(':');
   return std::string(colon == std::string_view::npos ? "" : text.substr(colon + 1));

@@ -21,6 +21,7 @@ struct PolicyTraits {
 };
 
 class QueryMeter;
+struct ServerChoice;
 
 // What a policy may need from outside. `recorded_actions` gives the actions of a stored episode
 // (for replay:DIR).
@@ -36,6 +37,9 @@ struct PolicyContext {
 Result<PolicyTraits> policy_traits(std::string_view text);
 Result<std::unique_ptr<Policy>> make_policy(std::string_view text,
                                             const PolicyContext& context = {});
+
+// Of a policy that is a server; fails (code "usage") on any other.
+Result<ServerChoice> server_choice(std::string_view text);
 
 // What stands after the first ':', or nothing.
 std::string policy_argument(std::string_view text);

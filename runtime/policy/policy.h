@@ -112,6 +112,8 @@ class Policy {
   // Of the episode that was begun last; nothing of a policy in this process, or before the first
   // request.
   virtual std::optional<Delivery> delivery() const { return std::nullopt; }
+  // Sentences that whoever reads the results should know, such as what a server asked for in vain.
+  virtual std::vector<std::string> notes() const { return {}; }
   // Whether act() reads Observation::image; a run without video may then skip rendering... never by
   // default.
   virtual bool wants_image() const { return true; }

@@ -122,6 +122,7 @@ Status ServerPolicy::connect() {
     pause = std::min(2 * pause, kLongestPause);
   }
   is_open_ = true;
+  notes_ = transport_->notes();
   queue_ = ChunkQueue(profile_);
   return {};
 }

@@ -39,6 +39,7 @@ class ServerPolicy : public Policy {
   Result<Action> act(const Observation& observation) override;
   void end(const EpisodeEnd& end) override;
   std::optional<Delivery> delivery() const override { return delivery_; }
+  std::vector<std::string> notes() const override { return notes_; }
 
  private:
   Status connect();
@@ -54,6 +55,7 @@ class ServerPolicy : public Policy {
   QueryMeter* queries_;
   ChunkQueue queue_;
   std::optional<Delivery> delivery_;
+  std::vector<std::string> notes_;  // of the transport, once there was a connection
   bool is_open_ = false;
   bool has_answered_ = false;  // this connection, once
   bool in_episode_ = false;    // begin_episode was fine and the connection stands since

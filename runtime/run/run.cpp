@@ -10,6 +10,7 @@
 
 #include "runtime/policy/factory.h"
 #include "runtime/run/assets.h"
+#include "runtime/run/delivery.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/episode_video.h"
 #include "runtime/run/fingerprint.h"
@@ -50,6 +51,10 @@ Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
   const policy::PolicyContext context = context_with(queries);
   return options.own_policy ? options.own_policy->make(context)
                             : policy::make_policy(options.policy, context);
+}
+
+void add_once(std::vector<std::string>& notes, std::string note) {
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
 }
 
 bool has_failed(const ResultRow& row) {
@@ -132,6 +137,7 @@ class EpisodeWorker {
     PROBE_TRY(shared_.store.commit(row, task_order));
     ++shared_.summary.done;
     shared_.summary.call.observations += row.steps;
+    for (std::string& note : policy_->notes()) add_once(shared_.summary.notes, std::move(note));
     if (row.invalid) ++shared_.summary.invalid;
     if (shared_.options.progress) {
       shared_.options.progress(
@@ -313,6 +319,21 @@ Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
   }
 }
 
+// Whether what makes tasks different reached the policy, over all that the folder holds.
+Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary& summary) {
+  constexpr std::size_t kTold = 5;
+  PROBE_ASSIGN(const auto rows, read_results(out));
+  const auto findings = check_delivery(plan, rows);
+  for (std::size_t i = 0; i < findings.size() && i < kTold; ++i) {
+    summary.notes.push_back(findings[i].sentence);
+  }
+  if (findings.size() > kTold) {
+    summary.notes.push_back(std::to_string(findings.size() - kTold) +
+                            " more of this kind: `vlaprobe results " + out + " --delivery`");
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
@@ -388,6 +409,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const Status written = store->write_call(summary.call);
   PROBE_TRY(ran);
   PROBE_TRY(written);
+  PROBE_TRY(note_delivery(plan, options.out, summary));
   return summary;
 }
 

@@ -1,0 +1,157 @@
+#include "runtime/run/delivery.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
+
+#include "runtime/plan/axis_names.h"
+#include "runtime/plan/plan.h"
+
+namespace probe::run {
+namespace {
+
+using Kind = DeliveryFinding::Kind;
+
+constexpr plan::Axis kVisible[] = {
+    plan::Axis::kObjectSource, plan::Axis::kObjectTarget, plan::Axis::kDistractors,
+    plan::Axis::kLayout,       plan::Axis::kScene,        plan::Axis::kLight,
+    plan::Axis::kCamera,
+};
+
+const std::string& prompt_of(const ResultRow& row) {
+  return row.sent_prompt_sha256 ? *row.sent_prompt_sha256 : row.prompt_sha256;
+}
+
+const std::string& picture_of(const ResultRow& row) {
+  return row.sent_image_sha256 ? *row.sent_image_sha256 : row.image_sha256;
+}
+
+std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"; }
+
+std::string count_of(int count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+// Names of the visible ones among `axes`.
+std::string visible_axes(std::uint32_t axes) {
+  std::string names;
+  for (const plan::Axis axis : kVisible) {
+    if ((axes & static_cast<std::uint32_t>(axis)) == 0) continue;
+    for (const plan::AxisName& name : plan::kAxisNames) {
+      if (name.axis != axis) continue;
+      if (!names.empty()) names += ", ";
+      names += name.name;
+    }
+  }
+  return names;
+}
+
+class Detector {
+ public:
+  Detector(const plan::Plan& plan, std::span<const ResultRow> rows) : plan_(plan) {
+    std::map<std::string_view, std::uint32_t> tasks;
+    for (std::uint32_t i = 0; i < plan.tasks().size(); ++i) {
+      tasks.emplace(plan.text(plan.tasks()[i].name), i);
+    }
+    for (const ResultRow& row : rows) {
+      const auto found = tasks.find(row.task);
+      // Before the first request nothing was sent, and a row without a picture never got so far.
+      if (found == tasks.end() || row.image_sha256.empty()) continue;
+      rows_[found->second].push_back(&row);
+    }
+  }
+
+  std::vector<DeliveryFinding> find() {
+    for (const auto& [task, rows] : rows_) {
+      check_prompt(task, rows);
+      check_pictures(task, rows);
+    }
+    return std::move(findings_);
+  }
+
+ private:
+  std::string_view name(std::uint32_t task) const { return plan_.text(plan_.tasks()[task].name); }
+  std::string_view prompt(std::uint32_t task) const {
+    return plan_.text(plan_.tasks()[task].prompt);
+  }
+
+  void check_prompt(std::uint32_t task, const std::vector<const ResultRow*>& rows) {
+    std::set<std::string_view> sent;
+    for (const ResultRow* row : rows) sent.insert(prompt_of(*row));
+    if (sent.size() > 1) {
+      add({Kind::kManyPrompts, std::string(name(task)), "", "", static_cast<int>(sent.size()),
+           static_cast<int>(rows.size()),
+           "task " + quoted(name(task)) + ": its one instruction reached the policy as " +
+               std::to_string(sent.size()) + " different texts"});
+    }
+    for (const std::string_view text : sent) {
+      // Each text is compared with the first task that sent it, so a hundred tasks that send the
+      // same are a hundred findings and not five thousand.
+      const auto [first, is_first] = first_with_.emplace(text, task);
+      if (is_first || prompt(first->second) == prompt(task)) continue;
+      const auto count = static_cast<int>(rows.size());
+      add({Kind::kSamePrompt, std::string(name(task)), std::string(name(first->second)), "", count,
+           count,
+           "tasks " + quoted(name(task)) + " and " + quoted(name(first->second)) +
+               " have different instructions (\"" + std::string(prompt(task)) + "\", \"" +
+               std::string(prompt(first->second)) + "\"), but the policy was sent the same text"});
+    }
+  }
+
+  void check_pictures(std::uint32_t task, const std::vector<const ResultRow*>& rows) {
+    const plan::TaskRecord& record = plan_.tasks()[task];
+    const std::string axes = visible_axes(record.axes);
+    const auto baseline = rows_.find(record.baseline);
+    if (axes.empty() || baseline == rows_.end()) return;
+    std::map<std::pair<int, int>, const ResultRow*> others;
+    for (const ResultRow* row : baseline->second) others[{row->episode, row->seed}] = row;
+    int compared = 0, same = 0;
+    for (const ResultRow* row : rows) {
+      const auto other = others.find({row->episode, row->seed});
+      if (other == others.end() || other->second->start_id == row->start_id) continue;
+      ++compared;
+      if (picture_of(*other->second) == picture_of(*row)) ++same;
+    }
+    if (same == 0) return;
+    add({Kind::kSamePicture, std::string(name(task)), std::string(name(record.baseline)), axes,
+         same, compared,
+         "task " + quoted(name(task)) + " differs from its baseline " +
+             quoted(name(record.baseline)) + " in " + axes + ", but in " + std::to_string(same) +
+             " of " + count_of(compared, "episode") +
+             " the policy's first picture is the baseline's"});
+  }
+
+  void add(DeliveryFinding finding) { findings_.push_back(std::move(finding)); }
+
+  const plan::Plan& plan_;
+  std::map<std::uint32_t, std::vector<const ResultRow*>> rows_;  // by task
+  std::map<std::string_view, std::uint32_t> first_with_;         // a sent text: its first task
+  std::vector<DeliveryFinding> findings_;
+};
+
+}  // namespace
+
+std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
+                                            std::span<const ResultRow> rows) {
+  return Detector(plan, rows).find();
+}
+
+std::string to_json(std::span<const DeliveryFinding> findings) {
+  auto array = nlohmann::ordered_json::array();
+  for (const DeliveryFinding& finding : findings) {
+    const char* kind = finding.kind == Kind::kSamePrompt    ? "same_prompt"
+                       : finding.kind == Kind::kManyPrompts ? "many_prompts"
+                                                            : "same_picture";
+    array.push_back({{"kind", kind},
+                     {"task", finding.task},
+                     {"other", finding.other},
+                     {"axes", finding.axes},
+                     {"episodes", finding.episodes},
+                     {"compared", finding.compared},
+                     {"sentence", finding.sentence}});
+  }
+  return array.dump(1);
+}
+
+}  // namespace probe::run

@@ -1,0 +1,41 @@
+// Whether what makes tasks different reached the policy: the instructions and pictures that were
+// sent, as their hashes in the rows have it, against what the plan says should differ.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/run/results.h"
+
+namespace probe::plan {
+class Plan;
+}
+
+namespace probe::run {
+
+struct DeliveryFinding {
+  enum class Kind {
+    kSamePrompt,   // two instructions of the plan, one text sent
+    kManyPrompts,  // one instruction of the plan, several texts sent
+    kSamePicture,  // a variant and its baseline, equal first pictures of different starts
+  };
+  Kind kind = Kind::kSamePrompt;
+  std::string task, other;  // the variant and its baseline, or any two tasks; `other` may be empty
+  std::string axes;         // of kSamePicture: what differs, "camera, light"
+  int episodes = 0;         // that show it
+  int compared = 0;         // that could
+  std::string sentence;     // for people
+  bool operator==(const DeliveryFinding&) const = default;
+};
+
+// Of rows of one run of `plan`; tasks that the plan does not have are passed over. A policy in this
+// process is compared by what it was shown. Ascending by the plan's task order.
+std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
+                                            std::span<const ResultRow> rows);
+
+// A JSON array of objects {kind, task, other, axes, episodes, compared, sentence}; kinds are
+// same_prompt, many_prompts, same_picture.
+std::string to_json(std::span<const DeliveryFinding> findings);
+
+}  // namespace probe::run

@@ -1,0 +1,124 @@
+// A policy in process and the same one served: the first run's actions become what the server
+// answers, found by each episode's first picture, and the two runs have to agree in every bit.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "compiler/emit/compile.h"
+#include "runtime/plan/plan.h"
+#include "runtime/run/run.h"
+#include "runtime/run/store.h"
+#include "runtime/run/trace.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::run {
+
+class ServedRun {
+ public:
+  // The suite's carrot_on_plate: 24 starts, run by the scripted expert.
+  ServedRun() {
+    const std::string files[] = {VLAPROBE_SOURCE_DIR "/suite/intact.probe"};
+    auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
+                                  .suite = "",
+                                  .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
+    REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
+    REQUIRE_FALSE(compiled->plan.empty());
+    auto opened = plan::Plan::from_bytes(std::move(compiled->plan));
+    REQUIRE(opened.ok());
+    plan_ = std::make_unique<plan::Plan>(std::move(*opened));
+    in_process_ = rows_of("expert", folder_ / "in_process", 2);
+    write_actions();
+  }
+
+  // What recorded_actions.load of tests/servers reads: a line an episode.
+  std::string actions_file() const { return folder_ / "actions"; }
+
+  // The same episodes asked of `policy`: everything in a row and in a trace but timing is equal.
+  void check_equal(const std::string& policy, int jobs = 2) {
+    CAPTURE(policy);
+    const auto served = rows_of(policy, folder_ / ("served" + std::to_string(++runs_)), jobs);
+    REQUIRE(served.size() == 24);
+    REQUIRE(in_process_.size() == 24);
+    for (std::size_t i = 0; i < served.size(); ++i) {
+      const ResultRow& here = in_process_[i];
+      const ResultRow& there = served[i];
+      CAPTURE(here.episode);
+      REQUIRE_MESSAGE(!there.invalid, there.invalid.value_or(""));
+      CHECK(there.episode == here.episode);
+      CHECK(there.metrics == here.metrics);
+      CHECK(there.frames_sha256 == here.frames_sha256);
+      const auto local = read_trace(here.trace), remote = read_trace(there.trace);
+      REQUIRE((local.ok() && remote.ok()));
+      REQUIRE(local->steps.size() == remote->steps.size());
+      for (std::size_t k = 0; k < local->steps.size(); ++k) {
+        CHECK(local->steps[k].action == remote->steps[k].action);
+        CHECK(local->steps[k].state_hash == remote->steps[k].state_hash);
+      }
+      CHECK(there.sent_prompt_sha256 == here.prompt_sha256);
+      CHECK_FALSE(here.sent_prompt_sha256.has_value());
+    }
+    served_ = served;
+  }
+
+  // The same where actions are converted on the way, which rounds: every truth is equal.
+  void check_alike(const std::string& policy, int jobs = 2) {
+    CAPTURE(policy);
+    const auto served = rows_of(policy, folder_ / ("served" + std::to_string(++runs_)), jobs);
+    REQUIRE(served.size() == in_process_.size());
+    for (std::size_t i = 0; i < served.size(); ++i) {
+      CAPTURE(served[i].episode);
+      REQUIRE_MESSAGE(!served[i].invalid, served[i].invalid.value_or(""));
+      REQUIRE(served[i].metrics.size() == in_process_[i].metrics.size());
+      for (std::size_t k = 0; k < served[i].metrics.size(); ++k) {
+        if (!served[i].metrics[k].is_bool) continue;
+        CHECK(served[i].metrics[k] == in_process_[i].metrics[k]);
+      }
+    }
+  }
+
+  const std::vector<ResultRow>& served() const { return served_; }
+
+ private:
+  std::vector<ResultRow> rows_of(const std::string& policy, const std::string& out, int jobs) {
+    RunOptions options;
+    options.policy = policy;
+    options.out = out;
+    options.tasks = "carrot_on_plate";
+    options.seeds = {42};
+    options.jobs = jobs;
+    options.assets = VLAPROBE_SOURCE_DIR "/assets";
+    const auto summary = run(*plan_, options);
+    REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+    auto rows = read_results(out);
+    REQUIRE(rows.ok());
+    return *rows;
+  }
+
+  void write_actions() {
+    std::ofstream file(actions_file());
+    for (const ResultRow& row : in_process_) {
+      const auto trace = read_trace(row.trace);
+      REQUIRE(trace.ok());
+      file << row.image_sha256;
+      for (const TraceStep& step : trace->steps) {
+        for (const double number : step.action) {
+          char text[40];
+          std::snprintf(text, sizeof text, " %a", number);
+          file << text;
+        }
+      }
+      file << '\n';
+    }
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<plan::Plan> plan_;
+  std::vector<ResultRow> in_process_, served_;
+  int runs_ = 0;
+};
+
+}  // namespace probe::run

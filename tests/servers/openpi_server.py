@@ -1,0 +1,184 @@
+"""A server that speaks openpi's protocol or one of its dialects as their own servers do, and is as
+strict as they are.
+
+openpi_server.py openpi|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] [seen=HABIT]
+                 [key=KEY]
+
+Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or
+those of recorded_actions, or with `seen` small ones that depend on picture and instruction alone,
+where HABIT is `fine` or what is to be wrong: unit, inverted, euler, vector, normalised, noise, deaf,
+blind, nan, six. `record` gets every message that comes, a line of hexadecimal digits each. With
+`key` a client without this Api-Key is refused.
+"""
+import asyncio
+import functools
+import hashlib
+import http
+import os
+import sys
+import traceback
+
+import msgpack
+import numpy
+import websockets
+
+import recorded_actions
+
+
+def pack_array(obj):
+    """openpi_client.msgpack_numpy: keys are bytes."""
+    if isinstance(obj, numpy.ndarray):
+        return {b"__ndarray__": True, b"data": obj.tobytes(), b"dtype": obj.dtype.str,
+                b"shape": obj.shape}
+    if isinstance(obj, numpy.generic):
+        return {b"__npgeneric__": True, b"data": obj.item(), b"dtype": obj.dtype.str}
+    return obj
+
+
+def unpack_array(obj):
+    if b"__ndarray__" in obj:
+        return numpy.ndarray(buffer=obj[b"data"], dtype=numpy.dtype(obj[b"dtype"]),
+                             shape=obj[b"shape"])
+    if b"__npgeneric__" in obj:
+        return numpy.dtype(obj[b"dtype"]).type(obj[b"data"])
+    return obj
+
+
+pack = functools.partial(msgpack.packb, default=pack_array)
+unpack = functools.partial(msgpack.unpackb, object_hook=unpack_array)
+
+dialect = sys.argv[1]
+options = dict(word.split("=", 1) for word in sys.argv[2:])
+chunk = int(options.get("chunk", 1))
+episodes = recorded_actions.load(options["actions"]) if "actions" in options else None
+METADATA = {
+    "openpi": {},
+    "intact": {},
+    "roboarena": {"image_resolution": [224, 224], "needs_wrist_camera": False,
+                  "n_external_cameras": 1, "needs_stereo_camera": False, "needs_session_id": True,
+                  "action_space": "cartesian_velocity"},
+}
+
+
+def seen_actions(image, prompt, habit):
+    seen = (b"" if habit == "blind" else image.tobytes()) + (b"" if habit == "deaf" else
+                                                             prompt.encode())
+    seed = None if habit == "noise" else int.from_bytes(hashlib.sha256(seen).digest()[:4], "big")
+    draws = numpy.random.default_rng(seed)
+    actions = draws.uniform(-0.02, 0.02, (chunk, 7))
+    actions[:, 6] = 1
+    if habit == "unit":
+        actions[:, 6] = draws.uniform(0.6, 1, chunk)
+    elif habit == "inverted":
+        actions[:, 6] = -1
+    elif habit == "euler":
+        actions[:, 3:6] = [2.5, 0.1, 2.5] + draws.uniform(0, 0.1, (chunk, 3))
+    elif habit == "vector":
+        actions[:, 3:6] = [0.1, 2.5, 0.1] + draws.uniform(0, 0.1, (chunk, 3))
+    elif habit == "normalised":
+        actions[:, :6] = draws.uniform(-1, 1, (chunk, 6))
+    elif habit == "nan":
+        actions[:, 2] = numpy.nan
+    return actions[:, :6] if habit == "six" else actions
+
+
+class Policy:
+    def __init__(self):
+        self.recorded = recorded_actions.RecordedPolicy(episodes) if episodes else None
+        self.count = 0
+        self.model = None
+
+    def infer(self, image, prompt=""):
+        assert image.dtype == numpy.uint8 and image.ndim == 3 and image.shape[2] == 3, image.shape
+        if self.recorded:
+            return self.recorded.answer(image, chunk)
+        if "seen" in options:
+            return seen_actions(image, prompt, options["seen"])
+        actions = numpy.zeros((chunk, 7))
+        actions[:, 0] = (self.count + numpy.arange(chunk)) / 1000
+        actions[:, 6] = 1
+        self.count += chunk
+        return actions
+
+    def reset(self):
+        self.count = 0
+        if self.recorded:
+            self.recorded.reset()
+
+
+def answer_openpi(policy, request):
+    assert set(request) == {"observation/image", "observation/state", "prompt"}, set(request)
+    assert isinstance(request["prompt"], str)
+    assert request["observation/state"].shape == (8,)
+    return pack({"actions": policy.infer(request["observation/image"], request["prompt"]),
+                 "server_timing": {"infer_ms": 1.5}})
+
+
+def answer_intact(policy, request):
+    if "new_model_path" in request:
+        policy.model = request["new_model_path"]
+        return pack({"status": "model switched"})
+    if policy.model is None:
+        raise AttributeError("'NoneType' object has no attribute 'preprocess'")
+    if "reset" in request:
+        policy.reset()
+        return pack({"status": "reset"})
+    assert request["observation.state"]["agent"]["eef_pos"].shape == (8,)
+    assert isinstance(request["task"], str)
+    actions = policy.infer(request["observation.images.top"])
+    return pack(actions if chunk > 1 else [actions[0]])
+
+
+def answer_roboarena(policy, request):
+    endpoint = request.pop("endpoint")
+    if endpoint == "reset":
+        policy.reset()
+        return "reset successful"
+    assert set(request) == {"observation/exterior_image_0_left", "observation/joint_position",
+                            "observation/cartesian_position", "observation/gripper_position",
+                            "session_id", "prompt"}, set(request)
+    assert request["observation/exterior_image_0_left"].shape == (224, 224, 3)
+    assert request["observation/joint_position"].shape == (7,)
+    return pack(policy.infer(request["observation/exterior_image_0_left"]))
+
+
+ANSWER = {"openpi": answer_openpi, "intact": answer_intact, "roboarena": answer_roboarena}
+
+
+async def handle(socket):
+    policy = Policy()
+    await socket.send(pack(METADATA[dialect]))
+    async for message in socket:
+        if "record" in options:
+            with open(options["record"], "a") as file:
+                file.write(message.hex() + "\n")
+        try:
+            request = unpack(message)
+            if dialect == "openpi" and policy.recorded:
+                # There is no reset in openpi: a picture that begins an episode does.
+                policy.recorded.begin_if_first(request["observation/image"])
+            await socket.send(ANSWER[dialect](policy, request))
+        except Exception:
+            await socket.send(traceback.format_exc())
+            await socket.close(1011, "Internal server error. Traceback included in previous frame.")
+            return
+
+
+async def check(path, headers):
+    if path == "/healthz":
+        return http.HTTPStatus.OK, [], b"OK\n"
+    if "key" in options and headers.get("Authorization") != "Api-Key " + options["key"]:
+        return http.HTTPStatus.UNAUTHORIZED, [], b"no key\n"
+    return None
+
+
+async def main():
+    async with websockets.serve(handle, "127.0.0.1", 0, compression=None, max_size=None,
+                                process_request=check) as server:
+        print("port", server.sockets[0].getsockname()[1])
+        sys.stdout.flush()
+        os.close(1)
+        await asyncio.Future()
+
+
+asyncio.run(main())
