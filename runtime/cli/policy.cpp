@@ -1,0 +1,82 @@
+// vlaprobe policy: servers tested, ready profiles shown.
+#include <fmt/format.h>
+
+#include "runtime/cli/filled.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/policy/conformance.h"
+#include "runtime/policy/factory.h"
+#include "runtime/policy/profile_library.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::string policy, profile;
+  bool json = false;
+};
+
+int test_verb(const Arguments& arguments) {
+  const auto choice = policy::server_choice(arguments.policy);
+  if (!choice) return report(choice.failure());
+  const auto tested = policy::test_server(*choice);
+  if (!tested) return report(tested.failure());
+  if (arguments.json) {
+    fmt::print("{}\n", policy::to_json(*tested));
+  } else {
+    fmt::print("{}", policy::to_text(*tested));
+  }
+  return tested->is_wrong() ? kOutside : kFine;
+}
+
+int profiles_verb(const Arguments& arguments) {
+  if (arguments.profile.empty()) {
+    for (const policy::ProfileText& ready : policy::ready_profiles()) {
+      const auto profile = policy::find_profile(ready.name);
+      if (!profile) return report(profile.failure());
+      fmt::print("{:<20}{:<11}{}\n", ready.name, policy::to_word(profile->protocol),
+                 profile->about);
+    }
+    return kFine;
+  }
+  for (const policy::ProfileText& ready : policy::ready_profiles()) {
+    if (ready.name != arguments.profile) continue;
+    fmt::print("{}", ready.text);
+    return kFine;
+  }
+  // A file: read, checked and written out as it is understood.
+  const auto profile = policy::find_profile(arguments.profile);
+  if (!profile) return report(profile.failure());
+  fmt::print("{}", policy::to_text(*profile));
+  return kFine;
+}
+
+}  // namespace
+
+void add_policy(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("policy", "test a policy server; show ready profiles");
+  verb->require_subcommand(1);
+  verb->footer("example: vlaprobe policy test openpi://localhost:8000?profile=pi0_bridge_openpi");
+
+  CLI::App* test = verb->add_subcommand(
+      "test", "does a server agree with its profile: shapes, rotation, gripper, chunks, sameness");
+  test->footer(
+      "Asks about ten known observations, runs no simulator. Exit code 2 where something is "
+      "wrong.\n"
+      "example: vlaprobe policy test "
+      "\"intact://gpu:8000?model=/checkpoints/pi0&profile=pi0_bridge\"");
+  test->add_option("P", arguments->policy, "a policy server, as for `run --policy`")->required();
+  test->add_flag("--json", arguments->json, "an object with a check each");
+  refuse_empty_values(*test);
+  test->callback([arguments, &exit] { exit = test_verb(*arguments); });
+
+  CLI::App* profiles = verb->add_subcommand(
+      "profiles", "ready profiles; with a name or a file, that one, read and checked");
+  profiles->footer("fields of a profile:\n" + policy::profile_help() +
+                   "\nexample: vlaprobe policy profiles copy_me > mine.profile");
+  profiles->add_option("NAME", arguments->profile, "a ready profile or a .profile file");
+  refuse_empty_values(*profiles);
+  profiles->callback([arguments, &exit] { exit = profiles_verb(*arguments); });
+}
+
+}  // namespace probe::cli
