@@ -81,10 +81,13 @@ int main(int argc, char** argv) {
   add_sweep(app, exit);
   add_merge(app, exit);
   add_slurm(app, exit);
+  add_policy(app, exit);
   add_results(app, exit);
   add_replay(app, exit);
   add_judge(app, exit);
   add_why(app, exit);
+  add_report(app, exit);
+  add_compare(app, exit);
   add_export(app, exit);
   add_assets(app, exit);
   add_doctor(app, exit);

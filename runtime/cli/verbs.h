@@ -45,6 +45,7 @@ void add_graph(CLI::App& app, int& exit);
 void add_draw(CLI::App& app, int& exit);
 void add_dis(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
+void add_policy(CLI::App& app, int& exit);
 void add_preview(CLI::App& app, int& exit);
 void add_sheet(CLI::App& app, int& exit);
 void add_run(CLI::App& app, int& exit);
@@ -55,6 +56,8 @@ void add_results(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);
 void add_judge(CLI::App& app, int& exit);
 void add_why(CLI::App& app, int& exit);
+void add_report(CLI::App& app, int& exit);
+void add_compare(CLI::App& app, int& exit);
 void add_export(CLI::App& app, int& exit);
 
 // The program: parses, runs one verb, returns the exit code.

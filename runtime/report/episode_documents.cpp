@@ -19,8 +19,8 @@ using Json = nlohmann::ordered_json;
 
 // A distance is written for every so many control steps.
 constexpr std::size_t kEvery = 2;
-// Closed more than half counts as closed.
-constexpr double kClosed = 0.5;
+// Of the way from open to shut: what is held keeps the fingers apart.
+constexpr double kClosed = 0.2;
 // Notes of traces that could not be read; the rest is one number.
 constexpr std::size_t kNotes = 5;
 

@@ -5,7 +5,7 @@ import { AriaComponent, GridComponent, RadarComponent, TooltipComponent } from "
 import { type EChartsCoreOption, type EChartsType, init, use } from "echarts/core";
 import { SVGRenderer } from "echarts/renderers";
 import { h } from "./dom";
-import { token } from "./theme";
+import { setPaper, token } from "./theme";
 
 use([BarChart, CustomChart, RadarChart, ScatterChart, AriaComponent, GridComponent, RadarComponent, TooltipComponent, SVGRenderer]);
 
@@ -56,13 +56,20 @@ export function redrawAll(): void {
 }
 
 function forPaper(): void {
+  setPaper(true);
   for (const entry of charts) {
-    if (!entry.drawn) draw(entry);
+    draw(entry);
     entry.drawn!.resize();
   }
 }
 addEventListener("beforeprint", forPaper);
-addEventListener("afterprint", () => charts.forEach((entry) => entry.drawn?.resize()));
+addEventListener("afterprint", () => {
+  setPaper(false);
+  for (const entry of charts) {
+    draw(entry);
+    entry.drawn!.resize();
+  }
+});
 
 // Common parts.
 export const axisStyle = () => ({

@@ -58,8 +58,8 @@ export function checkbox(label: string, checked: boolean, change: (checked: bool
 }
 
 // A table that scrolls sideways by itself, reachable by keyboard.
-export function scroller(label: string, table: HTMLElement): HTMLElement {
-  return h("div", { class: "scroller", tabindex: 0, role: "region", "aria-label": label }, table);
+export function scroller(label: string, table: HTMLElement, tall = false): HTMLElement {
+  return h("div", { class: tall ? "scroller tall" : "scroller", tabindex: 0, role: "region", "aria-label": label }, table);
 }
 
 export function simpleTable(caption: string, head: Child[], rows: Child[][]): HTMLElement {

@@ -2,7 +2,7 @@
 import { freshId, h, replace } from "./dom";
 import { plural } from "./format";
 import { type Data, readData } from "./model";
-import { noteList, type Panel, panel, policyLabel } from "./parts";
+import { noteList, type Panel, panel, policyLabel, prose } from "./parts";
 import { cases } from "./panels/cases";
 import { compare } from "./panels/compare";
 import { deltas } from "./panels/deltas";
@@ -31,8 +31,8 @@ function opening(state: State): HTMLElement {
   const { data } = state;
   return h("header", { class: "opening", id: "top" },
     h("p", { class: "brand" }, "vlaprobe"), h("h1", {}, data.title),
-    data.run.length ? h("div", { class: "run" }, data.run.map((sentence) => h("p", {}, sentence))) : null,
-    data.notes.length ? noteList(data.notes) : null,
+    data.run.length ? h("div", { class: "run" }, h("p", {}, prose(data.run[0]!)), data.run.length > 1 ? h("ul", {}, data.run.slice(1).map((sentence) => h("li", {}, prose(sentence)))) : null) : null,
+    data.notes.some((note) => note.level !== "note") ? noteList(data.notes.filter((note) => note.level !== "note")) : null,
     data.findings.length ? [h("h2", {}, "What stands out"), noteList(data.findings, (note) => (note.see && kPanels.some(([id]) => id === note.see) ? h("a", { class: "see", href: `#${note.see}` }, kPanels.find(([id]) => id === note.see)![1]) : null))] : null);
 }
 

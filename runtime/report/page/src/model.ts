@@ -27,19 +27,16 @@ export interface ExternalRow {
   policy: string; metric: string; all: number | null; cells: (number | null)[]; n?: (number | null)[]; flags?: (string | null)[];
 }
 export interface Difference { diff: number; low: number; high: number; p?: number | null; q?: number | null }
-export interface Delta extends Difference {
-  policy: number; task: number; baseline: number; metric: number; pairs: number[]; starts: number; floor?: boolean;
-}
-export interface CategoryDelta extends Difference { policy: number; category: number; metric: number; pairs: number[]; starts: number }
-export interface LanguageRow extends Difference {
-  policy: number; metric: number; category?: number; task?: number; variant: Estimate; baseline: Estimate;
-}
+// `first` minus `second`, counts of both; `pairs` is null where starts do not correspond.
+export interface Contrast extends Difference { first: [k: number, n: number]; second: [k: number, n: number]; pairs: number[] | null; starts: number }
+export interface Delta extends Contrast { policy: number; task: number; baseline: number; metric: number; floor?: boolean }
+export interface CategoryDelta extends Contrast { policy: number; category: number; metric: number; left_out?: number }
 export interface PairCell { policy: number; source: number; target: number; metric: number; e: Estimate; ood: string[] }
 export interface ObjectCell { policy: number; object: number; role: "source" | "target"; metric: number; e: Estimate; ood: boolean }
 export interface Gap extends Difference { policy: number; category: number; intention: Estimate; success: Estimate }
 export interface Floor { task: number; metric: number; floor: Estimate; ceiling: Estimate; note?: string }
 export interface Comparison extends Difference {
-  a: number; b: number; metric: number; scope: string; pairs: number; starts: number; real: boolean; detectable?: number | null;
+  a: number; b: number; metric: number; scope: string; starts: number; real: boolean; detectable?: number | null;
 }
 export interface Sequential { a: number; b: number; metric: number; starts: number; used: number; a_wins: number; b_wins: number; p: number; stopped: boolean }
 export interface Ranking { policy: number; metric: number; score: number; low?: number | null; high?: number | null }
@@ -50,7 +47,7 @@ export interface Tables {
   external?: { source: string; rows: ExternalRow[] }[];
   by_task?: Record<string, Estimate[][]>;
   deltas?: Delta[]; category_deltas?: CategoryDelta[];
-  language?: { rows?: LanguageRow[]; tasks?: LanguageRow[] };
+  language?: CategoryDelta[];
   pairs?: PairCell[]; objects?: ObjectCell[]; gap?: Gap[]; floors?: Floor[];
   compare?: Comparison[]; sequential?: Sequential[]; ranking?: Ranking[]; mixed?: Mixed[];
   delivery?: (Note & { policy?: number | null; task?: number | null })[];
@@ -86,6 +83,10 @@ export function readData(): Data {
     objects: [], plans: [], fingerprints: [], prompts: [], reasons: [], strings: [], policies: [], tasks: [], episodes: kNoEpisodes, tables: {},
   };
   for (const [key, value] of Object.entries(data)) if (value !== null) (full as unknown as Record<string, unknown>)[key] = value;
+  // Labels stand at the head of columns.
+  const capital = (label: string): string => label.charAt(0).toUpperCase() + label.slice(1);
+  for (const entry of [...full.metrics, ...full.categories]) entry.label = capital(entry.label);
+  if (full.tables.main?.all_label) full.tables.main.all_label = capital(full.tables.main.all_label);
   return full;
 }
 

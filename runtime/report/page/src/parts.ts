@@ -61,13 +61,18 @@ export function differenceBar(d: Difference): SVGElement {
     s("circle", { class: "point", cx: at(d.diff), cy: 7, r: 3.6 }));
 }
 
+// Words between backticks are code.
+export function prose(text: string): Child[] {
+  return text.split("`").map((part, i) => (i % 2 ? h("code", {}, part) : part));
+}
+
 const kSigns: Record<Level, [string, string]> = {
   good: ["\u2713", "good"], note: ["i", "note"], warn: ["!", "warning"], bad: ["\u00d7", "problem"],
 };
 export function noteList(notes: Note[], more?: (note: Note, i: number) => Child): HTMLElement {
   return h("ul", { class: "notes" }, notes.map((note, i) => {
     const [sign, word] = kSigns[note.level] ?? kSigns.note;
-    return h("li", { class: kSigns[note.level] ? note.level : "note" }, h("span", { class: "sign", role: "img", "aria-label": word }, sign), h("span", {}, note.text, more?.(note, i)));
+    return h("li", { class: kSigns[note.level] ? note.level : "note" }, h("span", { class: "sign", role: "img", "aria-label": word }, sign), h("span", {}, prose(note.text), " ", more?.(note, i)));
   }));
 }
 

@@ -5,7 +5,12 @@ import { s } from "./dom";
 const kLight = ["#0b6bb0", "#c9540a", "#0a7a5c", "#9b3f8f", "#7d6608", "#4a5361", "#3d35a8", "#b3214e"];
 const kDark = ["#62b5ec", "#f0904f", "#41c79b", "#dd92cf", "#d6b54c", "#b9c1cc", "#a9a0f2", "#f48aa8"];
 
+let onPaper = false;
+// While the page is printed, colours are those for white paper.
+export const setPaper = (paper: boolean): void => { onPaper = paper; };
+
 export const isDark = (): boolean => {
+  if (onPaper) return false;
   const chosen = document.documentElement.dataset.theme;
   return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 };

@@ -168,7 +168,7 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
         if (!n) continue;
         const diff = (four[1] - four[2]) / n, se = Math.sqrt(Math.max(four[1] + four[2], 1)) / n;
         const prob = Math.min(1, Math.exp(-0.7 * (diff / se) ** 2));
-        deltas.push({ policy: p, task: t, baseline: task.baseline, metric: m, pairs: four, starts: n, diff: round(diff),
+        deltas.push({ policy: p, task: t, baseline: task.baseline, metric: m, pairs: task.name === "carrot_on_wheel" ? null : four, first: [four[0] + four[1], n], second: [four[0] + four[2], n], floor: four[0] + four[2] === 0, starts: n, diff: round(diff),
           low: round(Math.max(-1, diff - 1.96 * se)), high: round(Math.min(1, diff + 1.96 * se)), p: prob, q: Math.min(1, prob * 2) });
       }
     });

@@ -43,7 +43,7 @@ export function cases(state: State): Panel {
     if (task !== undefined && chosen.length < 6) chosen.push(task);
   }
   const draw = (): void => {
-    if (!data.tables.by_task || !data.tasks.length || !metrics.length) return replace(holder, nothing(data, "cases", "There is no task to show."));
+    if (!data.tables.by_task || !data.tasks.length || !metrics.length || !state.chosen.length) return replace(holder, nothing(data, "cases", "There is no task to show."));
     const options = data.tasks.map((task, t) => {
       const box = h("input", { type: "checkbox", checked: chosen.includes(t), disabled: !chosen.includes(t) && chosen.length >= kMost, change: () => {
         chosen = box.checked ? [...chosen, t] : chosen.filter((c) => c !== t);

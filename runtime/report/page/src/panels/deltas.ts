@@ -1,29 +1,26 @@
 // Every variant against its baseline on the same starts, one policy and metric at a time.
-import { breakable, checkbox, h, replace, scroller, select } from "../dom";
+import { breakable, type Child, checkbox, h, replace, scroller, select } from "../dom";
 import { percent, points, probability, signedRange } from "../format";
 import { type Delta, taskName } from "../model";
 import { details, differenceBar, kConfounded, mainMetrics, nothing, type Panel, panel, policyLabel } from "../parts";
 import type { State } from "../state";
 
-const rates = (d: Delta): [number, number] => {
-  const n = d.pairs.reduce((a, b) => a + b, 0);
-  return [(d.pairs[0]! + d.pairs[1]!) / n, (d.pairs[0]! + d.pairs[2]!) / n];
-};
+const split = (pairs: number[] | null): string => (pairs ? `${pairs[1]} : ${pairs[2]}` : "not paired");
+const share = ([k, n]: [number, number]): Child => [percent(k / n), h("small", {}, `${k}/${n}`)];
 
 function row(state: State, d: Delta): HTMLElement {
   const { data } = state;
   const task = data.tasks[d.task]!;
-  const [variant, baseline] = rates(d);
   const real = d.q !== null && d.q !== undefined && d.q <= 0.05;
   return h("tr", { class: real ? "real" : null },
     h("th", { scope: "row" }, h("a", { href: `#task-${d.task}` }, breakable(task.name)), task.confounded ? h("abbr", { title: `confounded: ${task.confounded}`, class: "dagger" }, kConfounded) : null,
       h("span", { class: "sub" }, "against ", breakable(taskName(data, d.baseline)))),
     h("td", { class: "words" }, task.axes.join(", ") || "\u2013"),
-    h("td", { class: "number" }, percent(variant)), h("td", { class: "number" }, percent(baseline)),
-    h("td", { class: "number strong" }, points(d.diff)),
+    h("td", { class: "number" }, share(d.first)), h("td", { class: "number" }, share(d.second)),
+    h("td", { class: "number strong" }, points(d.diff), d.floor ? h("abbr", { class: "floor", title: "the baseline never succeeds: there is nothing to lose" }, "floor") : null),
     h("td", { class: "bar" }, differenceBar(d)),
     h("td", { class: "number" }, signedRange(d.low, d.high)),
-    h("td", { class: "number" }, `${d.pairs[1]} : ${d.pairs[2]}`),
+    h("td", { class: "number" }, split(d.pairs)),
     h("td", { class: "number" }, String(d.starts)),
     h("td", { class: "number" }, probability(d.p)),
     h("td", { class: "number" }, probability(d.q), real ? h("span", { class: "star", title: "real at a false discovery rate of 5 %" }, "\u2217") : null));
@@ -50,16 +47,16 @@ export function deltas(state: State): Panel {
         select("Order", ["of the suite", "largest loss first", "surest first"], order, (i) => { order = i; draw(); }),
         checkbox("only real differences", onlyReal, (on) => { onlyReal = on; draw(); })),
       h("p", { class: "summary", "aria-live": "polite" }, policyLabel(state, policy), ` differs from the baseline in ${real} of ${own.length} comparisons.`),
-      categories.length ? scroller("Differences by category", h("table", { class: "plain deltas" }, h("caption", {}, "By category, p adjusted after Holm"),
-        h("thead", {}, h("tr", {}, ["Category", "Difference", "", "Interval", "Variant only : baseline only", "Starts", "p", "Adjusted"].map((t) => h("th", { scope: "col" }, t)))),
+      categories.length ? scroller("Differences by category", h("table", { class: "plain deltas" }, h("caption", {}, "By category; q after Holm"),
+        h("thead", {}, h("tr", {}, ["Category", "Difference", "", "Interval", "Variant only : baseline only", "Starts", "p", "q"].map((t) => h("th", { scope: "col" }, t)))),
         h("tbody", {}, categories.map((d) => h("tr", { class: (d.q ?? 1) <= 0.05 ? "real" : null }, h("th", { scope: "row" }, data.categories[d.category]?.label ?? ""),
           h("td", { class: "number strong" }, points(d.diff)), h("td", { class: "bar" }, differenceBar(d)), h("td", { class: "number" }, signedRange(d.low, d.high)),
-          h("td", { class: "number" }, `${d.pairs[1]} : ${d.pairs[2]}`), h("td", { class: "number" }, String(d.starts)),
+          h("td", { class: "number" }, split(d.pairs)), h("td", { class: "number" }, String(d.starts)),
           h("td", { class: "number" }, probability(d.p)), h("td", { class: "number" }, probability(d.q))))))) : null,
       scroller("Variants against their baselines", h("table", { class: "plain deltas" }, h("caption", {}, "By task"),
         h("thead", {}, h("tr", {}, ["Variant", "What moved", "Variant %", "Baseline %", "Difference", "\u2212100 to +100", "Interval", "Variant only : baseline only", "Starts", "p", "q"]
           .map((t) => h("th", { scope: "col" }, t)))),
-        h("tbody", {}, shown.length ? shown.map((d) => row(state, d)) : h("tr", {}, h("td", { colspan: 11, class: "nothing" }, "No comparison fits the choice."))))),
+        h("tbody", {}, shown.length ? shown.map((d) => row(state, d)) : h("tr", {}, h("td", { colspan: 11, class: "nothing" }, "No comparison fits the choice.")))), shown.length > 14),
       details("How to read this table",
         h("p", {}, "Each start is met once by the variant and once by its baseline; only starts where they came out differently say anything (column \u201cvariant only : baseline only\u201d). p is McNemar\u2019s exact test, clustered by start where seeds repeat it; q keeps the share of false findings over all tasks at the stated level (Benjamini and Hochberg). \u2217 marks q \u2264 0.05. ",
           `${kConfounded} marks comparisons that move more than one thing.`)));

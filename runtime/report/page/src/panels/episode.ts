@@ -29,7 +29,7 @@ function drawing(data: Data, timeline: Timeline, bodies: string[], steps: number
   const x = (step: number) => kLeft + (kWide * step) / Math.max(steps, 1);
   const lines: [string, string, Spans][] = [
     ...timeline.metrics.map(([m, spans]): [string, string, Spans] => [data.metrics[m]?.label ?? "", data.metrics[m]?.name === "wrong" ? "bad" : "metric", spans]),
-    ...(timeline.gripper.length ? [["gripper closed", "gripper", timeline.gripper] as [string, string, Spans]] : []),
+    ...(timeline.gripper.length ? [["gripper closing", "gripper", timeline.gripper] as [string, string, Spans]] : []),
     ...timeline.contacts.map(([a, b, spans]): [string, string, Spans] => [`${bodies[a] || "?"} \u2013 ${bodies[b] || "?"}`, "contact", spans]),
   ];
   const curve = timeline.distance.length > 1;

@@ -37,7 +37,7 @@ export function gap(state: State): Panel {
   let by = 0;  // 0: all policies over everything, else one policy by category
   const draw = (): void => {
     const all = (data.tables.gap ?? []).filter((g) => g.intention && g.success && state.chosen.includes(g.policy));
-    if (!all.length) return replace(holder, nothing(data, "gap", "The plans have no metrics `intention` and `success`, or nothing was run."));
+    if (!all.length) return replace(holder, nothing(data, "gap", "The gap needs valid episodes of plans with the metrics intention and success."));
     if (by > state.chosen.length) by = 0;
     const chosen = by === 0 ? all.filter((g) => g.category < 0) : all.filter((g) => g.policy === state.chosen[by - 1]);
     const rows = chosen.map((g): Row => ({ gap: g, policy: g.policy, name: by === 0 ? data.policies[g.policy]!.label : g.category < 0 ? "All" : data.categories[g.category]?.label ?? "" }));

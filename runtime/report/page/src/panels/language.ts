@@ -1,14 +1,18 @@
 // Base tasks beside their rewordings, policies down: the layout of the published language table.
-import { h, replace, scroller, select } from "../dom";
-import { points, probability } from "../format";
-import { type Delta, metricIndex, taskName } from "../model";
-import { kConfounded, mainMetrics, nothing, type Panel, panel, policyLabel, shortCell } from "../parts";
+import { type Child, h, replace, scroller, select } from "../dom";
+import { percent, plural, points, probability } from "../format";
+import { type Contrast, metricIndex, taskName } from "../model";
+import { details, kConfounded, mainMetrics, nothing, type Panel, panel, policyLabel, shortCell } from "../parts";
 import type { State } from "../state";
 
 const isLanguage = (axis: string): boolean => axis.startsWith("language");
+// Another name for another object is no rewording.
+const isReworded = (axes: string[]): boolean => axes.some((a) => isLanguage(a) && a !== "language.paraphrase") || (axes.length > 0 && axes.every(isLanguage));
 const shortAxis = (axis: string): string => axis.replace(/^language\./, "");
 
-function change(d: Delta | undefined): HTMLElement | null {
+const share = ([k, n]: [number, number]): Child => h("span", { class: "short" }, h("b", {}, percent(k / n)), h("small", {}, `${k}/${n}`));
+
+function change(d: Contrast | undefined): HTMLElement | null {
   if (!d) return null;
   const real = (d.q ?? 1) <= 0.05;
   return h("span", { class: "change" + (real ? " real" : ""), title: `p ${probability(d.p)}, q ${probability(d.q)}` }, points(d.diff) || "0", real ? "\u2217" : "");
@@ -22,18 +26,19 @@ export function language(state: State): Panel {
   // Variants that only say it differently, in groups by their baseline.
   const groups = new Map<number, number[]>();
   data.tasks.forEach((task, t) => {
-    if (task.baseline === null || task.baseline < 0 || !task.axes.some(isLanguage)) return;
+    if (task.baseline === null || task.baseline < 0 || !isReworded(task.axes)) return;
     groups.set(task.baseline, [...(groups.get(task.baseline) ?? []), t]);
   });
+  const large = [...groups].filter(([, variants]) => variants.length >= 3 || groups.size <= 4), small = [...groups].filter((entry) => !large.includes(entry));
   const byCategory = (): HTMLElement | null => {
-    const rows = (data.tables.language?.rows ?? []).filter((r) => r.metric === metric && state.chosen.includes(r.policy));
-    const categories = [...new Set(rows.map((r) => r.category ?? -1))];
+    const rows = (data.tables.language ?? []).filter((r) => r.metric === metric && state.chosen.includes(r.policy) && data.categories[r.category]?.tasks.every((t) => isReworded(data.tasks[t]?.axes ?? [])));
+    const categories = [...new Set(rows.map((r) => r.category))];
     if (!rows.length) return null;
     return scroller("Language categories", h("table", { class: "plain compact" }, h("caption", {}, "By kind of rewording: variants, and the same starts of their own baselines"),
-      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Policy"), categories.map((c) => [h("th", { scope: "col" }, "baseline"), h("th", { scope: "col" }, data.categories[c]?.label ?? "all")]))),
+      h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Policy"), categories.map((c) => [h("th", { scope: "col", class: "before" }, "baseline"), h("th", { scope: "col" }, data.categories[c]?.label ?? "all")]))),
       h("tbody", {}, state.chosen.map((p) => h("tr", {}, h("th", { scope: "row" }, policyLabel(state, p)), categories.map((c) => {
-        const r = rows.find((x) => x.policy === p && (x.category ?? -1) === c);
-        return [h("td", {}, shortCell(r?.baseline ?? null)), h("td", {}, shortCell(r?.variant ?? null), r ? h("span", { class: "change" + ((r.q ?? 1) <= 0.05 ? " real" : ""), title: `p ${probability(r.p)}` }, points(r.diff) || "0", (r.q ?? 1) <= 0.05 ? "\u2217" : "") : null)];
+        const r = rows.find((x) => x.policy === p && x.category === c);
+        return [h("td", { class: "before" }, r ? share(r.second) : "\u2013"), h("td", {}, r ? share(r.first) : "\u2013", change(r))];
       }))))));
   };
   const group = (base: number, variants: number[]): HTMLElement => scroller(`Rewordings of ${taskName(data, base)}`, h("table", { class: "plain compact" },
@@ -46,9 +51,10 @@ export function language(state: State): Panel {
       [base, ...variants].map((t, i) => h("td", {}, shortCell(data.tables.by_task?.[data.metrics[metric]!.name]?.[p]?.[t] ?? null),
         i > 0 ? change(data.tables.deltas?.find((d) => d.policy === p && d.task === t && d.metric === metric)) : null)))))));
   const draw = (): void => {
-    if (groups.size === 0 || !data.tables.by_task) return replace(holder, nothing(data, "language", "No task here is a rewording of another."));
+    if (groups.size === 0 || !data.tables.by_task || !state.chosen.length) return replace(holder, nothing(data, "language", groups.size ? "Nothing was run." : "No task here is a rewording of another."));
     replace(holder, h("div", { class: "controls" }, select("Metric", metrics.map((m) => data.metrics[m]!.label), metrics.indexOf(metric), (i) => { metric = metrics[i]!; draw(); })),
-      byCategory(), [...groups].map(([base, variants]) => group(base, variants)));
+      byCategory(), large.map(([base, variants]) => group(base, variants)),
+      small.length ? details(`${plural(small.length, "further task")}, with fewer wordings`, small.map(([base, variants]) => group(base, variants))) : null);
   };
   state.watch(draw);
   return panel("language", "The same task in other words", `Percent, count, and the change against the original wording in points; \u2217 where it is real (q \u2264 0.05), ${kConfounded} where something besides the words changed.`, holder);

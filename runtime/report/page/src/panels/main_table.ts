@@ -33,7 +33,7 @@ function theirs(data: Data, flags: string[]): HTMLElement[] {
   const bodies: HTMLElement[] = [];
   for (const table of data.tables.external ?? []) {
     bodies.push(h("tbody", { class: "external source" }, h("tr", {},
-      h("th", { scope: "rowgroup", colspan: data.categories.length + 3 }, h("span", { class: "tag" }, "not ours"), "as published in ", h("cite", {}, table.source)))));
+      h("th", { scope: "rowgroup", colspan: data.categories.length + 3 }, h("span", { class: "tag" }, "not ours"), "as published in ", h("cite", { title: table.source }, table.source.replace(/^.*\//, ""))))));
     const by = new Map<string, ExternalRow[]>();
     for (const row of table.rows) by.set(row.policy, [...(by.get(row.policy) ?? []), row]);
     for (const [policy, rows] of by) {

@@ -40,7 +40,7 @@ export function delivery(state: State): Panel {
   return panel("delivery", "What reached the policy", "Whether the instruction and the pictures that each policy got are those the plan describes, by their hashes.",
     notes.length ? noteList(notes, (note) => {
       const { policy, task } = note as { policy?: number | null; task?: number | null };
-      return [typeof policy === "number" && policy >= 0 ? h("span", { class: "sub" }, " ", policyLabel(state, policy)) : null, typeof task === "number" && task >= 0 ? h("span", { class: "sub" }, ` ${taskName(data, task)}`) : null];
+      return [typeof policy === "number" && policy >= 0 && !note.text.includes(data.policies[policy]?.label ?? "") ? h("span", { class: "sub" }, " ", policyLabel(state, policy)) : null, typeof task === "number" && task >= 0 ? h("span", { class: "sub" }, ` ${taskName(data, task)}`) : null];
     }) : nothing(data, "delivery", "Nothing was checked."));
 }
 
@@ -48,7 +48,8 @@ export function runs(state: State): Panel {
   const { data } = state;
   const holder = h("div", {});
   state.watch(() => replace(holder,
-    data.fingerprint_differences?.length ? noteList(data.fingerprint_differences.map((text) => ({ level: "warn" as const, text }))) : null,
+    data.notes.some((note) => note.level === "note") ? noteList(data.notes.filter((note) => note.level === "note")) : null,
+    data.fingerprint_differences?.length ? details("What differs between the fingerprints", h("ul", { class: "differences" }, data.fingerprint_differences.map((text) => h("li", {}, text)))) : null,
     data.policies.length ? simpleTable("Runs", ["Policy", "Folder", "Plan", "Suite", "Seeds", "Episodes", "Invalid", "Videos", "Fingerprint"],
       data.policies.flatMap((policy, p) => policy.runs.map((run) => [policyLabel(state, p), h("code", {}, run.dir), h("code", { title: data.plans[run.plan]?.root ?? "" }, (data.plans[run.plan]?.root ?? "").slice(0, 12)),
         data.plans[run.plan]?.suite ?? "", run.seeds.join(", "), run.done === run.expected ? count(run.done) : `${count(run.done)} of ${count(run.expected)}`, count(run.invalid), run.videos ? count(run.videos) : "none", `no. ${run.fingerprint + 1}`]))) : nothing(data, "runs", "No run was given."),

@@ -1,0 +1,139 @@
+// vlaprobe report
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include "runtime/base/file.h"
+#include "runtime/cli/filled.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/report/episode_documents.h"
+#include "runtime/report/page_data.h"
+#include "runtime/report/page_writer.h"
+#include "runtime/report/table_text.h"
+
+namespace probe::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> dirs, published, sets;
+  std::string out, title, floors, format;
+  bool json = false, no_traces = false;
+  int jobs = 0;
+  std::string command;  // as it was called
+};
+
+std::string dump(const nlohmann::ordered_json& json, int indent = -1) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+report::EpisodeDocuments read_traces(const report::Benchmark& benchmark,
+                                     const Arguments& arguments) {
+  std::vector<report::EpisodeTrace> episodes;
+  episodes.reserve(benchmark.episodes.size());
+  for (const report::Episode& e : benchmark.episodes) {
+    episodes.push_back({.row = &e.row,
+                        .plan = &benchmark.plan_files[static_cast<std::size_t>(e.plan)],
+                        .task = e.task});
+  }
+  std::vector<std::string> metrics;
+  for (const report::Metric& metric : benchmark.metrics) metrics.push_back(metric.name);
+  const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return report::episode_documents(
+      episodes, metrics, benchmark.tasks.size(),
+      {.jobs = arguments.jobs > 0 ? arguments.jobs : all, .traces = !arguments.no_traces});
+}
+
+Status write_report(const Arguments& arguments) {
+  PROBE_ASSIGN(report::Benchmark benchmark, report::load(arguments.dirs, {.sets = arguments.sets}));
+  report::PageOptions options{.title = arguments.title,
+                              .command = arguments.command,
+                              .program = "vlaprobe " VLAPROBE_VERSION,
+                              .relative_to = "",
+                              .published = {},
+                              .models = true};
+  options.relative_to = std::filesystem::path(arguments.out).parent_path().string();
+  for (const std::string& path : arguments.published) {
+    PROBE_ASSIGN(auto table, report::read_published(path));
+    options.published.push_back(std::move(table));
+  }
+  report::Tables tables = report::make_tables(benchmark);
+  if (!arguments.floors.empty()) PROBE_TRY(report::add_floors(arguments.floors, benchmark, tables));
+  if (!arguments.format.empty()) {
+    const std::string text = report::table_text(benchmark, tables, options.published,
+                                                *report::table_format(arguments.format));
+    for (const report::Note& note : benchmark.notes)
+      fmt::print(stderr, "{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
+    if (!arguments.out.empty()) return write_file(arguments.out, std::as_bytes(std::span(text)));
+    fmt::print("{}", text);
+    return {};
+  }
+  if (arguments.json) {
+    fmt::print("{}\n", dump(report::page_data(benchmark, tables, options), 1));
+    if (arguments.out.empty()) return {};
+  }
+  report::EpisodeDocuments episodes = read_traces(benchmark, arguments);
+  for (std::string& note : episodes.notes)
+    benchmark.notes.push_back({.level = "warn", .text = std::move(note)});
+  const std::string page =
+      report::write_page({.data = dump(report::page_data(benchmark, tables, options)),
+                          .timelines = std::move(episodes.timelines),
+                          .whys = std::move(episodes.whys)});
+  PROBE_TRY(write_file(arguments.out, std::as_bytes(std::span(page))));
+  for (const report::Note& note : benchmark.notes)
+    fmt::print(stderr, "{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
+  fmt::print(stderr, "{}: {} {}, {} episodes, {:.1f} MB\n", arguments.out,
+             benchmark.policies.size(), benchmark.policies.size() == 1 ? "policy" : "policies",
+             benchmark.episodes.size(), static_cast<double>(page.size()) / 1e6);
+  return {};
+}
+
+int report_verb(Arguments& arguments) {
+  if (arguments.out.empty() && !arguments.json && arguments.format.empty()) {
+    return report(
+        Failure{"usage", "nothing to write: give -o page.html, or --json, or --format csv", ""});
+  }
+  arguments.command = "vlaprobe report";
+  for (const std::string& dir : arguments.dirs) arguments.command += " " + dir;
+  for (const std::string& path : arguments.published) arguments.command += " --with " + path;
+  if (!arguments.floors.empty()) arguments.command += " --floors " + arguments.floors;
+  if (!arguments.out.empty()) arguments.command += " -o " + arguments.out;
+  const Status status = write_report(arguments);
+  return status ? kFine : report(status.failure());
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, int& exit) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand(
+      "report", "one page of runs: tables with intervals, charts, every episode");
+  verb->footer(
+      "the page opens from disk, offline; videos are linked, so keep them where they are\n"
+      "example: vlaprobe report runs/expert runs/null runs/pi0 -o page.html");
+  verb->add_option("DIR", arguments->dirs, "results folders")->required();
+  verb->add_option("-o,--out", arguments->out, "the page");
+  verb->add_option("--title", arguments->title, "of the page");
+  verb->add_option("--with", arguments->published,
+                   "CSV of published percentages, to stand beside ours")
+      ->expected(1)
+      ->take_all();
+  verb->add_option("--floors", arguments->floors,
+                   "CSV of floors and ceilings measured before, as suite/floors.csv");
+  verb->add_option("--sets", arguments->sets, "A,B,...: sets of the plan that are the columns")
+      ->delimiter(',');
+  CLI::Option* json =
+      verb->add_flag("--json", arguments->json, "the page's numbers as JSON on stdout");
+  verb->add_option("--format", arguments->format,
+                   "only the tables, as csv, json or latex, to stdout or -o")
+      ->check(CLI::IsMember({"csv", "json", "latex"}))
+      ->excludes(json);
+  verb->add_flag("--no-traces", arguments->no_traces, "no timelines and no explained verdicts");
+  verb->add_option("--jobs", arguments->jobs, "threads that read traces (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  refuse_empty_values(*verb);
+  verb->callback([arguments, &exit] { exit = report_verb(*arguments); });
+}
+
+}  // namespace probe::cli
