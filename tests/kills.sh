@@ -13,7 +13,7 @@ server=
 client=
 stop() {
   [ -n "$client" ] && kill -9 "$client" 2>/dev/null
-  [ -n "$server" ] && kill -9 "$server" 2>/dev/null
+  [ -n "$server" ] && kill -9 "$server" 2>/dev/null && wait "$server" 2>/dev/null
   rm -rf "$dir"
 }
 trap stop EXIT
@@ -22,11 +22,12 @@ RANDOM=20
 start_server() {
   "$python" "$here/tests/servers/openpi_digest_server.py" "$port" >"$dir/port" 2>>"$dir/server.log" &
   server=$!
-  for _ in {1..100}; do
-    grep -q port "$dir/port" && break
+  for _ in {1..200}; do
+    grep -q port "$dir/port" && return
     sleep 0.05
   done
-  port=$(awk '{print $2}' "$dir/port")
+  tail -n 3 "$dir/server.log"
+  return 1
 }
 run() { # FOLDER
   exec "$vlaprobe" run "$dir/suite.plan" --tasks carrot_on_plate --seeds 1,2,3,4 --jobs 3 \
@@ -46,7 +47,10 @@ moment() { # seconds, from LOW to HIGH in milliseconds
 }
 
 "$vlaprobe" build "$here/suite/intact.probe" -o "$dir/suite.plan" >/dev/null
-port=0
+# Not one of the ports that the system gives to connections: a client that tries while nobody listens
+# could get the very same one, and the server then could not.
+port=$((20000 + $$ % 8000))
+while (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do port=$((port + 1)); done
 start_server
 (run "$dir/calm") || { tail -n 5 "$dir/client.log"; exit 1; }
 

@@ -30,9 +30,10 @@ exec "${run[@]}" -o "$out/shards/$shard-of-$shards" --shard "$shard/$shards" --p
 constexpr const char* kServer = R"sh(
 is_open() { (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }
 
-# A port that nobody listens on; tasks on one machine begin to look at different places.
+# A port that nobody listens on, below those that the system gives to connections; tasks on one
+# machine begin to look at different places.
 find_port() {
-  port=$((20000 + (SLURM_JOB_ID * 97 + $1 * 7) % 20000))
+  port=$((20000 + (SLURM_JOB_ID * 97 + $1 * 7) % 12000))
   while is_open "$port"; do port=$((port + 1)); done
 }
 
