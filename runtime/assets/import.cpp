@@ -214,7 +214,12 @@ class Import {
       taken.push_back(
           fmt::format("photo {}, {} x {}", scene.photo, texture->width, texture->height));
       if (texture->width != 640 || texture->height != 480) {
-        odd.push_back("the camera's picture is 640 x 480: the photo is scaled to it");
+        // The same rule as where the photo is shown, a hundredth of the shape.
+        const bool same_shape =
+            std::abs(3 * texture->width - 4 * texture->height) <= 0.03 * texture->width;
+        odd.push_back(same_shape ? "the camera's picture is 640 x 480: the photo is scaled to it"
+                                 : "the camera's picture is 640 x 480: this photo has another "
+                                   "shape and must be cut before it is shown");
       }
     } else {
       odd.push_back("no photo " + std::string(scene.photo));
