@@ -26,7 +26,10 @@ std::optional<error_code> run_until(boost::asio::io_context& io, boost::beast::t
   std::optional<error_code> result;
   start([&result](error_code error) { result = error; });
   io.restart();
-  io.run_until(deadline);
+  // Not until there is nothing left to do: a timer of Beast's may still be set when the operation
+  // has ended, such as a declined handshake's.
+  while (!result && Clock::now() < deadline && io.run_one_until(deadline) > 0) {
+  }
   if (!result) {
     error_code ignored;
     stream.socket().close(ignored);

@@ -228,7 +228,8 @@ TEST_CASE("a restarted server is found again at the next episode") {
 
 TEST_CASE("the key comes from the environment and is in no message") {
   const PythonServer server("openpi_server.py", {"openpi", "key=sesame-7"});
-  const auto without = made("openpi", server);
+  // Long before the time to connect is over: declined is declined.
+  const auto without = made("openpi", server, "&timeout.connect_s=600");
   const auto refused = without->begin(start());
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.failure().message.find("/healthz says OK") != std::string::npos);
