@@ -26,7 +26,7 @@ export function compare(state: State): Panel {
         h("tbody", {}, rows.map((c) => h("tr", { class: c.real ? "real" : null }, h("th", { scope: "row" }, policyLabel(state, c.a)), h("td", {}, policyLabel(state, c.b)),
           h("td", { class: "number strong" }, points(c.diff) || "0"), h("td", { class: "bar" }, differenceBar(c)), h("td", { class: "number" }, signedRange(c.low, c.high)), h("td", { class: "number" }, String(c.starts)),
           h("td", { class: "number" }, probability(c.p)), h("td", { class: "number" }, probability(c.q)),
-          h("td", {}, c.real ? "real" : c.diff === 0 && c.low === c.high ? "no start came out differently" : c.detectable ? `cannot tell; ${percent(c.detectable, 1)} points would have shown` : "cannot tell")))))),
+          h("td", {}, c.real ? "real" : c.diff === 0 && (c.p ?? 0) > 0.995 ? "no difference seen" : c.detectable ? `cannot tell; ${percent(c.detectable, 1)} points would have shown` : "cannot tell")))))),
       ranking.length ? simpleTable("Ranking (Bradley and Terry): the higher, the more often ahead where two differ", ["Policy", "Score", "Interval"],
         ranking.map((r) => [policyLabel(state, r.policy), r.score.toFixed(2), r.low === null || r.low === undefined || r.high === null || r.high === undefined ? "\u2013" : `${r.low.toFixed(2)} to ${r.high.toFixed(2)}`])) : null,
       sequential.length ? simpleTable("Could it have stopped earlier? A sequential test on the starts in their order", ["Policy", "Against", "Starts used", "Ahead", "Behind", "p at any time", ""],

@@ -107,15 +107,16 @@ export function episodeView(state: State, row: number): Child {
   const timeline = encoded ? drawing(data, decode(encoded), timelines.bodies?.[t] ?? [], steps, timelines.every ?? 1) : null;
   const link = safeLink(data.strings[e.video?.[row] ?? -1] ?? "");
   const video = link ? h("video", { src: link, controls: true, preload: "metadata", playsinline: true, muted: true, "aria-label": `Video of ${task.name}, start ${start}` }) : null;
+  // A video has a frame before the first step and one after each.
   const shown = h("output", {}, `step 0 of ${steps}`);
-  const slider = h("input", { type: "range", min: 0, max: steps, value: 0, step: 1, id: "scrub", "aria-label": "Control step", input: () => { move(Number(slider.value)); if (video?.duration) video.currentTime = (Number(slider.value) / Math.max(steps, 1)) * video.duration; } });
+  const slider = h("input", { type: "range", min: 0, max: steps, value: 0, step: 1, id: "scrub", "aria-label": "Control step", input: () => { move(Number(slider.value)); if (video?.duration) video.currentTime = ((Number(slider.value) + 0.5) / (steps + 1)) * video.duration; } });
   const move = (step: number): void => {
     slider.value = String(step);
     slider.setAttribute("aria-valuetext", `step ${step} of ${steps}`);
     shown.textContent = `step ${step} of ${steps}${task.hz ? `, ${(step / task.hz).toFixed(1)} s` : ""}`;
     timeline?.set(step);
   };
-  video?.addEventListener("timeupdate", () => { if (!video.paused && video.duration) move(Math.round((video.currentTime / video.duration) * steps)); });
+  video?.addEventListener("timeupdate", () => { if (!video.paused && video.duration) move(Math.min(steps, Math.floor((video.currentTime / video.duration) * (steps + 1)))); });
   video?.addEventListener("error", () => { video.replaceWith(h("p", { class: "nothing" }, "The video is not where this page expects it: ", h("code", {}, data.strings[e.video![row]!] ?? ""), ". Keep the page and the results folder together.")); });
 
   const args = [shellWord(run?.dir ?? "DIR"), shellWord(task.name), start, seed].join(" ");

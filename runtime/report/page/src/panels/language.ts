@@ -29,7 +29,8 @@ export function language(state: State): Panel {
     if (task.baseline === null || task.baseline < 0 || !isReworded(task.axes)) return;
     groups.set(task.baseline, [...(groups.get(task.baseline) ?? []), t]);
   });
-  const large = [...groups].filter(([, variants]) => variants.length >= 3 || groups.size <= 4), small = [...groups].filter((entry) => !large.includes(entry));
+  const isLarge = (variants: number[]): boolean => variants.length >= 3 || groups.size <= 4;
+  const large = [...groups].filter(([, variants]) => isLarge(variants)), small = [...groups].filter(([, variants]) => !isLarge(variants));
   const byCategory = (): HTMLElement | null => {
     const rows = (data.tables.language ?? []).filter((r) => r.metric === metric && state.chosen.includes(r.policy) && data.categories[r.category]?.tasks.every((t) => isReworded(data.tasks[t]?.axes ?? [])));
     const categories = [...new Set(rows.map((r) => r.category))];
