@@ -616,8 +616,14 @@ std::string to_text(const Profile& profile) {
 }
 
 std::string profile_sha256(const Profile& profile) {
+  const Profile plain;
   Profile bare = profile;
   bare.about.clear();
+  bare.wait_s = plain.wait_s;
+  bare.connect_s = plain.connect_s;
+  bare.first_s = plain.first_s;
+  bare.answer_s = plain.answer_s;
+  bare.largest_answer = plain.largest_answer;
   return to_hex(sha256(to_text(bare)));
 }
 

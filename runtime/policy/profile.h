@@ -141,7 +141,8 @@ Status check_profile(const Profile& profile);
 // equal. Equal profiles have equal texts.
 std::string to_text(const Profile& profile);
 
-// 64 hexadecimal digits over everything but `about`: profiles that do the same have the same.
+// 64 hexadecimal digits over everything but `about` and the limits on time and size: profiles that
+// do the same have the same.
 std::string profile_sha256(const Profile& profile);
 
 // A line for each field: its name, the values it takes, what it means.

@@ -263,19 +263,11 @@ Status note_missing_videos(const RunOptions& options, const std::set<EpisodeKey>
   return {};
 }
 
-// "openpi://HOST:PORT?profile=a" without the address.
-std::string without_address(const std::string& policy) {
-  const std::size_t scheme = policy.find("://");
-  if (scheme == std::string::npos) return policy;
-  const std::size_t end = std::min(policy.find_first_of("/?", scheme + 3), policy.size());
-  return policy.substr(0, scheme) + policy.substr(end);
-}
-
-// A server may move during a run: its rows keep the name that they began with.
+// A server may move during a run, and be given more time: its rows keep the name that they began
+// with. The content has all else that an address says.
 bool has_only_moved(const RunIdentity& there, const RunIdentity& here) {
   return !there.policy_content.empty() && there.policy_content == here.policy_content &&
-         there.policy != here.policy &&
-         without_address(there.policy) == without_address(here.policy);
+         there.policy != here.policy;
 }
 
 // The folder to write into, by `options.if_changed`; what is written in spite of a change becomes

@@ -77,6 +77,7 @@ TEST_CASE("a profile's text reads back equal") {
   CHECK(profile_sha256(*again) == profile_sha256(*read));
   Profile other = *read;
   other.about = "said otherwise";
+  other.answer_s = 600;
   CHECK(profile_sha256(other) == profile_sha256(*read));
   other.chunk_use = 4;
   CHECK(profile_sha256(other) != profile_sha256(*read));
@@ -136,7 +137,7 @@ TEST_CASE("options of a server's address are a profile's fields") {
 
 TEST_CASE("a server's description has its profile and not its address") {
   const auto here = choose_server(Protocol::kIntact, "//here:1?model=/m");
-  const auto there = choose_server(Protocol::kIntact, "//there:2?model=/m");
+  const auto there = choose_server(Protocol::kIntact, "//there:2?model=/m&timeout.answer_s=300");
   const auto otherwise = choose_server(Protocol::kIntact, "//here:1?model=/m&chunk.use=2");
   REQUIRE((here.ok() && there.ok() && otherwise.ok()));
   CHECK(describe(*here) == describe(*there));
