@@ -128,8 +128,8 @@ struct Benchmark {
 };
 
 struct LoadOptions {
-  std::vector<std::string> sets;  // columns of the tables; empty: the plan's finest sets
-  bool join = true;               // runs of one policy that do not overlap are one policy's
+  std::vector<std::string> sets = {};  // columns of the tables; empty: the plan's finest sets
+  bool join = true;                    // runs of one policy that do not overlap are one policy's
 };
 
 // Folders that cannot be read are a failure that names the folder; what can be read but not used is

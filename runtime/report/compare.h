@@ -12,7 +12,7 @@
 namespace probe::report {
 
 struct CompareOptions {
-  std::vector<std::string> metrics;  // empty: those of the tables
+  std::vector<std::string> metrics = {};  // empty: those of the tables
 };
 
 // One line of the comparison. `adjusted` after Holm over the categories (or axes, or metrics) of a

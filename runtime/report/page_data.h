@@ -12,10 +12,10 @@
 namespace probe::report {
 
 struct PageOptions {
-  std::string title, command, program;
-  std::string relative_to;                // folder of the page; dirs and videos are written from it
-  std::vector<PublishedTable> published;  // other people's numbers
-  bool models = true;                     // mixed models, which take seconds
+  std::string title, command = {}, program = {};
+  std::string relative_to = {};  // folder of the page; dirs and videos are written from it
+  std::vector<PublishedTable> published = {};  // other people's numbers
+  bool models = true;                          // mixed models, which take seconds
 };
 
 nlohmann::ordered_json page_data(const Benchmark& benchmark, const Tables& tables,

@@ -1,0 +1,177 @@
+#include "runtime/report/benchmark.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runtime/report/page_data.h"
+#include "tests/runtime/report/fake_runs.h"
+
+namespace probe::report {
+namespace {
+
+const std::vector<std::string> kFour = {"carrot_on_plate", "spoon_on_towel",
+                                        "carrot_on_plate_lang_action", "carrot_on_plate_distract"};
+
+bool says(const Benchmark& benchmark, std::string_view words) {
+  return std::any_of(benchmark.notes.begin(), benchmark.notes.end(),
+                     [&](const Note& note) { return note.text.find(words) != std::string::npos; });
+}
+
+Benchmark loaded(const std::vector<std::string>& dirs, const LoadOptions& options = {}) {
+  auto benchmark = load(dirs, options);
+  REQUIRE_MESSAGE(benchmark.ok(), to_text(benchmark.failure()));
+  return std::move(benchmark).value();
+}
+
+}  // namespace
+
+TEST_CASE("the paper's eleven categories are found among the plan's sets, originals first") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  fake_run(folder / "a", plan, "pi0", {.tasks = kFour, .last = 1}, always(true));
+  const Benchmark benchmark = loaded({folder / "a"});
+  CHECK(benchmark.tasks.size() == 50);
+  REQUIRE(benchmark.categories.size() == 11);
+  CHECK(benchmark.categories[0].label == "original");
+  CHECK(benchmark.categories[0].tasks.size() == 4);
+  CHECK(benchmark.categories[10].name == "commonsense_distraction");
+  CHECK(benchmark.metrics[0].name == "success");
+  CHECK(benchmark.episodes.size() == 8);
+  CHECK(says(benchmark, "`pi0` is partial: 8 of 1200 episodes"));
+  CHECK(loaded({folder / "a"}, {.sets = {"worded", "nowhere"}}).categories.size() == 1);
+}
+
+TEST_CASE("traces are not read") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  fake_run(folder / "a", plan, "pi0", {.tasks = {kFour[0]}, .last = 2}, always(true));
+  std::filesystem::remove_all(folder / "a/traces");
+  CHECK(loaded({folder / "a"}).episodes.size() == 3);
+}
+
+TEST_CASE("a folder named twice counts once, two runs of a policy stand apart, shards are one") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  fake_run(folder / "a", plan, "pi0", {.tasks = {kFour[0]}, .last = 2}, always(true));
+  fake_run(folder / "again", plan, "pi0", {.tasks = {kFour[0]}, .last = 2}, always(false));
+  fake_run(folder / "rest", plan, "pi0", {.tasks = {kFour[1]}, .last = 2}, always(true));
+  const Benchmark twice = loaded({folder / "a", folder.path + "/./a"});
+  CHECK(twice.policies.size() == 1);
+  CHECK(twice.episodes.size() == 3);
+  CHECK(says(twice, "named twice"));
+  const Benchmark apart = loaded({folder / "a", folder / "again"});
+  REQUIRE(apart.policies.size() == 2);
+  CHECK(apart.policies[0].label != apart.policies[1].label);
+  const Benchmark joined = loaded({folder / "a", folder / "rest"});
+  CHECK(joined.policies.size() == 1);
+  CHECK(joined.policies[0].runs.size() == 2);
+  CHECK(loaded({folder / "a", folder / "rest"}, {.sets = {}, .join = false}).policies.size() == 2);
+}
+
+TEST_CASE("no folder, no run and no episode are told apart") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  CHECK(load({}).failure().code == "usage");
+  const std::vector<std::string> nowhere = {folder / "nowhere"};
+  CHECK(to_text(load(nowhere).failure()).find("no run here") != std::string::npos);
+  fake_run(folder / "empty", plan, "pi0", {}, always(true));
+  const std::vector<std::string> empty = {folder / "empty"};
+  CHECK(to_text(load(empty).failure()).find("no episode has been run yet") != std::string::npos);
+}
+
+TEST_CASE("invalid episodes count neither way, and tasks with no other have no numbers") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  fake_run(folder / "a", plan, "pi0", {.tasks = kFour, .last = 3},
+           [](const std::string& task, int episode, int) {
+             Outcome outcome{.success = true};
+             if (task == "spoon_on_towel" || episode == 0) outcome.invalid = "the server went away";
+             return outcome;
+           });
+  const Benchmark benchmark = loaded({folder / "a"});
+  CHECK(says(benchmark, "7 of 16 episodes are invalid"));
+  const int success = benchmark.find_metric("success");
+  CHECK(!estimate(benchmark, 0, success, {benchmark.find_task("spoon_on_towel")}));
+  const auto carrot = estimate(benchmark, 0, success, {benchmark.find_task("carrot_on_plate")});
+  REQUIRE(carrot);
+  CHECK(carrot->count.n == 3);
+
+  fake_run(folder / "b", plan, "gone", {.tasks = {kFour[0]}, .last = 1},
+           [](const std::string&, int, int) {
+             return Outcome{false, false, false, false, "policy: no answer"};
+           });
+  const Benchmark none = loaded({folder / "b"});
+  const auto data = page_data(none, {.title = "none"});
+  CHECK(data["tables"]["main"]["rows"][0]["all"].is_null());
+  CHECK(data["reasons"][0] == "policy: no answer");
+}
+
+TEST_CASE("runs of different plans are joined where tasks agree and kept apart where they do not") {
+  const plan::Plan published = suite_plan();
+  const plan::Plan repaired = suite_plan("intact_clean.probe");
+  RunsFolder folder;
+  const std::vector<std::string> tasks = {"carrot_on_plate", "spoon_on_towel_distract"};
+  fake_run(folder / "a", published, "pi0", {.tasks = tasks, .last = 1}, always(true));
+  fake_run(folder / "b", repaired, "magma", {.tasks = tasks, .last = 1}, always(true));
+  const Benchmark benchmark = loaded({folder / "a", folder / "b"});
+  CHECK(benchmark.plans.size() == 2);
+  CHECK(says(benchmark, "the runs are of 2 plans"));
+  CHECK(benchmark.tasks.size() > 50);
+}
+
+TEST_CASE("what a name says is text, whatever it looks like") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  const std::string name = "<script>alert(1)</script>\xff & \"co\"";
+  fake_run(folder / "a", plan, name, {.tasks = {kFour[0]}, .last = 1}, always(true));
+  const auto data = page_data(loaded({folder / "a"}), {.title = "<b>"});
+  const std::string text =
+      data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  const auto back = nlohmann::json::parse(text);
+  CHECK(back["policies"][0]["label"].get<std::string>().find("<script>alert(1)") == 0);
+}
+
+TEST_CASE("fifty policies make a table in little time") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  std::vector<std::string> dirs;
+  for (int p = 0; p < 50; ++p) {
+    dirs.push_back(folder / std::to_string(p));
+    fake_run(dirs.back(), plan, "checkpoint_" + std::to_string(p),
+             {.tasks = {kFour[0], kFour[2]}, .last = 1}, [&](const std::string&, int episode, int) {
+               return Outcome{.success = (episode + p) % 3 == 0};
+             });
+  }
+  const Benchmark benchmark = loaded(dirs);
+  CHECK(benchmark.policies.size() == 50);
+  const auto data = page_data(benchmark, {.title = "many"});
+  CHECK(data["tables"]["ranking"].size() == 50);
+  CHECK(data["tables"]["main"]["rows"].size() == 200);
+}
+
+TEST_CASE("the document has every key that the page is promised") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  fake_run(folder / "a", plan, "expert", {.tasks = kFour, .last = 5}, always(true));
+  fake_run(folder / "b", plan, "null", {.tasks = kFour, .last = 5}, always(false));
+  const auto data = page_data(loaded({folder / "a", folder / "b"}), {.title = "two"});
+  for (const char* key : {"format", "version", "title", "interval", "run", "findings", "notes",
+                          "metrics", "categories", "objects", "plans", "fingerprints", "prompts",
+                          "reasons", "strings", "policies", "tasks", "episodes", "tables"}) {
+    CAPTURE(key);
+    CHECK(data.contains(key));
+  }
+  for (const char* key :
+       {"main", "by_task", "deltas", "category_deltas", "language", "pairs", "objects", "gap",
+        "floors", "compare", "ranking", "sequential", "mixed", "delivery", "confounded"}) {
+    CAPTURE(key);
+    CHECK(data["tables"].contains(key));
+  }
+  CHECK(data["policies"][0]["role"] == "ceiling");
+  CHECK(data["policies"][1]["role"] == "floor");
+  CHECK(data["episodes"]["count"] == 48);
+  CHECK(data["tables"]["delivery"][0]["level"] == "good");
+  CHECK(!data["tables"]["confounded"].empty());
+}
+
+}  // namespace probe::report

@@ -1,0 +1,100 @@
+// Run folders with made-up results of the published suite, without traces or physics.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/emit/compile.h"
+#include "runtime/plan/ids.h"
+#include "runtime/plan/plan.h"
+#include "runtime/run/store.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::report {
+
+inline plan::Plan suite_plan(const std::string& file = "intact.probe") {
+  const std::string path = std::string(VLAPROBE_SOURCE_DIR "/suite/") + file;
+  auto compiled =
+      build(std::span(&path, 1), {.asset_root = VLAPROBE_SOURCE_DIR "/assets", .suite = ""});
+  REQUIRE(compiled.ok());
+  REQUIRE(compiled->ok);
+  auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
+  REQUIRE(plan.ok());
+  return std::move(plan).value();
+}
+
+// In memory where that is possible: each row of a run waits for the disk.
+struct RunsFolder : run::TemporaryFolder {
+  RunsFolder()
+      : TemporaryFolder(std::filesystem::exists("/dev/shm")
+                            ? "/dev/shm"
+                            : std::filesystem::temp_directory_path()) {}
+};
+
+// What one episode gave: metrics in the order success, intention, grasp, wrong; or why it is
+// invalid.
+struct Outcome {
+  bool success = false, intention = true, grasp = false, wrong = false;
+  std::optional<std::string> invalid = {};
+};
+using Script = std::function<Outcome(const std::string& task, int episode, int seed)>;
+
+struct FakeRunOptions {
+  std::vector<std::string> tasks;  // empty: none
+  int first = 0, last = 23;        // starts
+  std::vector<int> seeds = {42};
+};
+
+// Makes DIR with a row for every task, start and seed.
+inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::string& policy,
+                     const FakeRunOptions& options, const Script& script) {
+  run::RunRecord record;
+  record.identity.plan_root = to_hex(plan.root());
+  record.identity.policy = policy;
+  record.suite = plan.text(plan.suites()[0].name);
+  record.seeds = options.seeds;
+  record.fingerprint.entries = {{"cpu", "test"}};
+  auto store = run::Store::open(dir, record, plan.bytes());
+  REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
+  for (const std::string& name : options.tasks) {
+    const auto task = plan.find_task(name);
+    REQUIRE(task);
+    const plan::TaskRecord& of_plan = plan.tasks()[*task];
+    for (int episode = options.first; episode <= options.last; ++episode) {
+      for (const int seed : options.seeds) {
+        const Outcome outcome = script(name, episode, seed);
+        run::ResultRow row;
+        row.task = name;
+        row.episode = episode;
+        row.seed = seed;
+        row.policy = policy;
+        row.metrics = {{"success", true, outcome.success ? 1.0 : 0.0},
+                       {"intention", true, outcome.intention ? 1.0 : 0.0},
+                       {"grasp", true, outcome.grasp ? 1.0 : 0.0},
+                       {"wrong", true, outcome.wrong ? 1.0 : 0.0}};
+        row.steps = 60;
+        row.invalid = outcome.invalid;
+        row.prompt_sha256 = to_hex(sha256(plan.text(of_plan.prompt)));
+        row.image_sha256 = "picture";
+        std::ofstream(
+            (*store)->temporary_trace(name, episode, seed));  // no report reads it unasked
+        REQUIRE((*store)->commit(row, static_cast<int>(*task)).ok());
+      }
+    }
+  }
+}
+
+inline Script always(bool success) {
+  return [success](const std::string&, int, int) {
+    return Outcome{success, true, success, false, {}};
+  };
+}
+
+}  // namespace probe::report

@@ -1,0 +1,90 @@
+#include "runtime/report/published.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+namespace probe::report {
+
+TEST_CASE("a percentage fits when some count rounds to it") {
+  CHECK(possible({66.1, 1, "66.1"}, 360).fits);  // 238 of 360
+  CHECK(possible({66.1, 1, "66.1"}, 360).below == 238);
+  const Possible no = possible({66.1, 1, "66.1"}, 288);
+  CHECK(!no.fits);
+  CHECK(no.below == 190);
+  CHECK(no.above == 191);
+  CHECK(possible({100, 1, "100.0"}, 7).fits);
+  CHECK(possible({0, 0, "0"}, 7).fits);
+  CHECK(possible({14, 0, "14"}, 7).fits);  // 14.29
+  CHECK(!possible({14.0, 1, "14.0"}, 7).fits);
+  CHECK(possible({12.5, 1, "12.5"}, 24).fits);
+}
+
+// A published 43.9 % of 500 episodes: 219 are 43.8 and 220 are 44.0.
+TEST_CASE("a percentage that no count gives is told with the nearest ones") {
+  const auto flag = impossible({43.9, 1, "43.9"}, 1, 500);
+  REQUIRE(flag);
+  CHECK(flag->find("219 (43.80 %) and 220 (44.00 %)") != std::string::npos);
+  const auto tasks = impossible({66.1, 1, "66.1"}, 4, 72);
+  REQUIRE(tasks);
+  CHECK(tasks->find("5 tasks could give it: 238 of 360") != std::string::npos);
+  CHECK(!impossible({50, 1, "50.0"}, 4, 72));
+  CHECK(!impossible({50, 1, "50.0"}, 0, 72));
+}
+
+TEST_CASE("the paper's layout is read with quotes, percent signs and gaps") {
+  const auto table = parse_published(
+      "\xef\xbb\xbfpolicy,metric,avg,original\r\n# a remark\r\n\"pi0, finetuned\",success,30.4%,\n"
+      "Magma,success,21.6,-\n",
+      "x.csv");
+  REQUIRE_MESSAGE(table.ok(), to_text(table.failure()));
+  CHECK(table->columns.size() == 2);
+  CHECK(table->rows[0].policy == "pi0, finetuned");
+  CHECK(table->rows[0].cells[0]->value == 30.4);
+  CHECK(table->rows[0].cells[0]->decimals == 1);
+  CHECK(!table->rows[0].cells[1]);
+  CHECK(!table->rows[1].cells[1]);
+}
+
+TEST_CASE("another layout is refused with its line") {
+  const auto where = [](std::string_view csv) {
+    const auto table = parse_published(csv, "x.csv");
+    return table.ok() ? std::string("fine") : table.failure().where;
+  };
+  CHECK(where("") == "x.csv");
+  CHECK(where("a,b,c\n") == "x.csv:1");
+  CHECK(where("policy,metric,avg\npi0,success\n") == "x.csv:2");
+  CHECK(where("policy,metric,avg\npi0,success,lots\n") == "x.csv:2");
+  CHECK(where("policy,metric,avg\npi0,success,101\n") == "x.csv:2");
+  CHECK(where("policy,metric,avg\npi0,success,nan\n") == "x.csv:2");
+  CHECK(where("policy,metric,avg\npi0,success,1\npi0,success,2\n") == "x.csv:3");
+  CHECK(where("policy,metric,avg\n") == "x.csv");
+}
+
+// The published OOD Target column fits five tasks, not the four that its list has: ten of its
+// values are no count of 4 x 72 episodes.
+TEST_CASE("the paper's own table is read and its odd column found") {
+  const std::string path = VLAPROBE_SOURCE_DIR "/../shared/reference/paper_table_main.csv";
+  if (!std::filesystem::exists(path)) {
+    MESSAGE("skipped: the published table is not here");
+    return;
+  }
+  const auto table = read_published(path);
+  REQUIRE_MESSAGE(table.ok(), to_text(table.failure()));
+  CHECK(table->rows.size() == 18);
+  REQUIRE(table->columns.size() == 12);
+  const std::vector<std::int64_t> tasks = {50, 4, 4, 4, 4, 4, 4, 4, 4, 6, 7, 5};
+  std::vector<int> flags(tasks.size(), 0);
+  for (const PublishedRow& row : table->rows) {
+    for (std::size_t c = 0; c < tasks.size(); ++c)
+      flags[c] += impossible(*row.cells[c], tasks[c], 72) ? 1 : 0;
+  }
+  int others = 0;
+  for (std::size_t c = 0; c < flags.size(); ++c) {
+    if (table->columns[c] != "ood_target") others += flags[c];
+  }
+  CHECK(flags[3] == 10);
+  CHECK(others == 0);
+}
+
+}  // namespace probe::report
