@@ -1,7 +1,6 @@
 // The table of fields, and the reading and writing of a profile by it.
 #include "runtime/policy/profile.h"
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <set>
@@ -11,107 +10,10 @@
 
 #include "runtime/base/sha256.h"
 #include "runtime/base/spelling.h"
+#include "runtime/policy/profile_words.h"
 
 namespace probe::policy {
 namespace {
-
-template <typename E>
-struct Word {
-  std::string_view text;
-  E value;
-};
-
-constexpr std::array kProtocols = {
-    Word<Protocol>{"openpi", Protocol::kOpenpi},
-    Word<Protocol>{"intact", Protocol::kIntact},
-    Word<Protocol>{"roboarena", Protocol::kRoboArena},
-    Word<Protocol>{"vlaeval", Protocol::kVlaEval},
-    Word<Protocol>{"gr00t", Protocol::kGr00t},
-    Word<Protocol>{"openvla", Protocol::kOpenVla},
-};
-constexpr std::array kResizes = {
-    Word<Resize>{"none", Resize::kNone},
-    Word<Resize>{"stretch", Resize::kStretch},
-    Word<Resize>{"pad", Resize::kPad},
-    Word<Resize>{"crop", Resize::kCrop},
-};
-constexpr std::array kPixelLayouts = {
-    Word<PixelLayout>{"hwc_u8", PixelLayout::kHwcU8},
-    Word<PixelLayout>{"chw_f32", PixelLayout::kChwF32},
-};
-constexpr std::array kStateLayouts = {
-    Word<StateLayout>{"none", StateLayout::kNone},
-    Word<StateLayout>{"xyz_wxyz_openness", StateLayout::kXyzWxyzOpenness},
-    Word<StateLayout>{"xyz_rpy_openness", StateLayout::kXyzRpyOpenness},
-    Word<StateLayout>{"xyz_rpy_pad_openness", StateLayout::kXyzRpyPadOpenness},
-    Word<StateLayout>{"xyz_rotvec_openness", StateLayout::kXyzRotvecOpenness},
-    Word<StateLayout>{"xyz_rotvec_fingers", StateLayout::kXyzRotvecFingers},
-    Word<StateLayout>{"joints", StateLayout::kJoints},
-    Word<StateLayout>{"joints_openness", StateLayout::kJointsOpenness},
-};
-constexpr std::array kStateFrames = {
-    Word<StateFrame>{"base", StateFrame::kBase},
-    Word<StateFrame>{"top_down", StateFrame::kTopDown},
-};
-constexpr std::array kNumberTypes = {
-    Word<NumberType>{"f32", NumberType::kF32},
-    Word<NumberType>{"f64", NumberType::kF64},
-};
-constexpr std::array kNormalisations = {
-    Word<Normalisation>{"none", Normalisation::kNone},
-    Word<Normalisation>{"bound", Normalisation::kBound},
-    Word<Normalisation>{"gaussian", Normalisation::kGaussian},
-};
-constexpr std::array kRotations = {
-    Word<RotationForm>{"vector", RotationForm::kVector},
-    Word<RotationForm>{"euler", RotationForm::kEuler},
-};
-constexpr std::array kGrippers = {
-    Word<GripperRange>{"signed", GripperRange::kSigned},
-    Word<GripperRange>{"unit", GripperRange::kUnit},
-    Word<GripperRange>{"signed_inverted", GripperRange::kSignedInverted},
-    Word<GripperRange>{"unit_inverted", GripperRange::kUnitInverted},
-};
-constexpr std::array kCases = {
-    Word<PromptCase>{"as_is", PromptCase::kAsIs},
-    Word<PromptCase>{"lower", PromptCase::kLower},
-};
-constexpr std::array kFullStops = {
-    Word<FullStop>{"as_is", FullStop::kAsIs},
-    Word<FullStop>{"without", FullStop::kWithout},
-    Word<FullStop>{"with", FullStop::kWith},
-};
-constexpr std::array kEnsembles = {
-    Word<Ensemble>{"none", Ensemble::kNone},
-    Word<Ensemble>{"temporal", Ensemble::kTemporal},
-};
-
-constexpr std::array kConnections = {
-    Word<ConnectionUse>{"kept", ConnectionUse::kKept},
-    Word<ConnectionUse>{"per_episode", ConnectionUse::kPerEpisode},
-};
-
-constexpr std::span<const Word<Protocol>> words_of(Protocol) { return kProtocols; }
-constexpr std::span<const Word<Resize>> words_of(Resize) { return kResizes; }
-constexpr std::span<const Word<PixelLayout>> words_of(PixelLayout) { return kPixelLayouts; }
-constexpr std::span<const Word<StateLayout>> words_of(StateLayout) { return kStateLayouts; }
-constexpr std::span<const Word<StateFrame>> words_of(StateFrame) { return kStateFrames; }
-constexpr std::span<const Word<NumberType>> words_of(NumberType) { return kNumberTypes; }
-constexpr std::span<const Word<Normalisation>> words_of(Normalisation) { return kNormalisations; }
-constexpr std::span<const Word<RotationForm>> words_of(RotationForm) { return kRotations; }
-constexpr std::span<const Word<GripperRange>> words_of(GripperRange) { return kGrippers; }
-constexpr std::span<const Word<PromptCase>> words_of(PromptCase) { return kCases; }
-constexpr std::span<const Word<FullStop>> words_of(FullStop) { return kFullStops; }
-constexpr std::span<const Word<Ensemble>> words_of(Ensemble) { return kEnsembles; }
-constexpr std::span<const Word<ConnectionUse>> words_of(ConnectionUse) { return kConnections; }
-
-template <typename E>
-std::string_view word_of(E value) {
-  for (const auto& word : words_of(E{})) {
-    if (word.value == value) return word.text;
-  }
-  return "";
-}
 
 // What a field is stored in, and so how it is read and written.
 struct Count {
@@ -470,56 +372,6 @@ const Field* find_field(std::string_view name) {
   return nullptr;
 }
 
-Status check_statistics(const Statistics& statistics, const std::string& prefix, std::size_t size) {
-  const auto check_size = [&](const std::vector<double>& numbers, const char* name) -> Status {
-    if (numbers.empty() || size == 0 || numbers.size() == size) return {};
-    return bad("`" + prefix + name + "` has " + std::to_string(numbers.size()) +
-               " numbers, there are " + std::to_string(size));
-  };
-  PROBE_TRY(check_size(statistics.low, "low"));
-  PROBE_TRY(check_size(statistics.high, "high"));
-  PROBE_TRY(check_size(statistics.mean, "mean"));
-  PROBE_TRY(check_size(statistics.std, "std"));
-  PROBE_TRY(check_size(statistics.mask, "mask"));
-  if (statistics.kind == Normalisation::kBound) {
-    if (statistics.low.empty() || statistics.high.size() != statistics.low.size()) {
-      return bad("bound needs `" + prefix + "low` and `" + prefix + "high`, as many of each");
-    }
-    for (std::size_t i = 0; i < statistics.low.size(); ++i) {
-      if (statistics.low[i] < statistics.high[i]) continue;
-      if (i < statistics.mask.size() && statistics.mask[i] == 0) continue;
-      return bad("number " + std::to_string(i + 1) + " of `" + prefix +
-                 "low` is not below that of `" + prefix + "high`");
-    }
-  }
-  if (statistics.kind == Normalisation::kGaussian) {
-    if (statistics.mean.empty() || statistics.std.size() != statistics.mean.size()) {
-      return bad("gaussian needs `" + prefix + "mean` and `" + prefix + "std`, as many of each");
-    }
-    for (const double value : statistics.std) {
-      if (value <= 0) return bad("a number of `" + prefix + "std` is not above 0");
-    }
-  }
-  return {};
-}
-
-std::size_t size_of(StateLayout layout) {
-  switch (layout) {
-    case StateLayout::kXyzWxyzOpenness:
-    case StateLayout::kXyzRpyPadOpenness:
-    case StateLayout::kXyzRotvecFingers:
-      return 8;
-    case StateLayout::kXyzRpyOpenness:
-    case StateLayout::kXyzRotvecOpenness:
-      return 7;
-    case StateLayout::kNone:
-    case StateLayout::kJoints:
-    case StateLayout::kJointsOpenness:
-      break;
-  }
-  return 0;  // depends on the robot
-}
-
 // A text in quotes without them; `#` begins a comment outside of them.
 std::string_view value_of(std::string_view text) {
   text = trimmed(text);
@@ -546,20 +398,6 @@ Status set_field(Profile& profile, std::string_view field, std::string_view valu
     return bad("a profile has no field `" + std::string(field) + "`" + did_you_mean(field, names));
   }
   return std::visit(Reader{field, value}, known->slot(profile));
-}
-
-Status check_profile(const Profile& profile) {
-  constexpr std::size_t kActionSize = 7;
-  PROBE_TRY(check_statistics(profile.action_statistics, "action.", kActionSize));
-  PROBE_TRY(check_statistics(profile.state_statistics, "state.", size_of(profile.state_layout)));
-  if (profile.ensemble == Ensemble::kTemporal && profile.chunk_use > 1) {
-    return bad("`ensemble = temporal` asks at every step; `chunk.use` is then 1 or absent");
-  }
-  if (profile.chunk_length > 0 && profile.chunk_use > profile.chunk_length) {
-    return bad("`chunk.use` is more than `chunk.length`");
-  }
-  if (profile.images.empty()) return bad("a profile has at least one line `image = ...`");
-  return {};
 }
 
 Result<Profile> parse_profile(std::string_view text, std::string_view where) {
