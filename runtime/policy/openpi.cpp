@@ -29,7 +29,7 @@ class OpenpiConnection {
       options.headers.emplace_back("Authorization", "Api-Key " + key);
     }
     auto socket = wire::WebSocket::connect(server_, options);
-    if (!socket) return explained(socket.failure());
+    if (!socket) return explained(socket.failure(), deadlines.connect);
     socket_ = std::move(*socket);
     PROBE_ASSIGN(wire::Value metadata, receive(deadlines.connect));
     if (metadata.as<wire::Map>() == nullptr) {
@@ -68,13 +68,13 @@ class OpenpiConnection {
 
  private:
   // Where something listens that does not open a WebSocket, what its health page says of it.
-  Failure explained(Failure failure) const {
+  Failure explained(Failure failure, wire::Duration connect_time) const {
     if (failure.message.find("opening a WebSocket") == std::string::npos) return failure;
-    constexpr wire::Duration kPatience{2000};
+    const wire::Duration patience = std::min(connect_time, wire::Duration(2000));
     wire::HttpRequest health;
     health.path = "/healthz";
     const auto answer =
-        wire::http_exchange(server_, health, {kPatience, kPatience, std::size_t{1} << 16});
+        wire::http_exchange(server_, health, {patience, patience, std::size_t{1} << 16});
     if (!answer) {
       failure.message += "; it does not answer /healthz either: busy, or no policy server";
     } else if (answer->status == 200 && answer->body.starts_with("OK")) {

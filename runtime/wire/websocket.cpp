@@ -18,7 +18,9 @@ namespace asio = boost::asio;
 namespace websocket = beast::websocket;
 using beast_io::error_code;
 
-constexpr Duration kCloseTimeout{500};
+// For a server to answer a close; one that has not answered a question will not answer this.
+constexpr Duration kCloseTimeout{200};
+constexpr Duration kLateCloseTimeout{20};
 // Messages that nobody has asked for yet; a server that floods must not fill the memory.
 constexpr std::size_t kLargestInbox = 16;
 
@@ -39,7 +41,8 @@ class WebSocket::Connection {
     });
     {
       std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, kCloseTimeout, [this] { return broken_.has_value(); });
+      changed_.wait_for(lock, is_late_ ? kLateCloseTimeout : kCloseTimeout,
+                        [this] { return broken_.has_value(); });
     }
     io_.stop();
     thread_.join();
@@ -58,9 +61,7 @@ class WebSocket::Connection {
     socket_.auto_fragment(false);
     socket_.write_buffer_bytes(std::size_t{1} << 16);
     socket_.binary(true);
-    PROBE_TRY(beast_io::finish(io_, stream, deadline, name_, "opening a WebSocket", [&](auto done) {
-      socket_.async_handshake(name_, server.path, [done](error_code error) { done(error); });
-    }));
+    PROBE_TRY(shake_hands(stream, server, deadline));
     io_.restart();
     read_next();
     thread_ = std::thread([this] { io_.run(); });
@@ -103,6 +104,7 @@ class WebSocket::Connection {
   Result<Message> receive(Duration timeout) {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, timeout, [this] { return !inbox_.empty() || broken_; })) {
+      is_late_ = true;
       return Failure{"policy", "no answer in " + seconds_text(timeout), name_};
     }
     if (inbox_.empty()) return *broken_;
@@ -112,6 +114,26 @@ class WebSocket::Connection {
   }
 
  private:
+  Status shake_hands(beast::tcp_stream& stream, const Endpoint& server,
+                     const beast_io::Deadline& deadline) {
+    // Filled in while the handshake runs; given up, it must outlive what is under way.
+    const auto response = std::make_shared<websocket::response_type>();
+    bool is_declined = false;
+    PROBE_TRY(beast_io::finish(
+        io_, stream, deadline, name_, "opening a WebSocket", [&, response](auto done) {
+          socket_.async_handshake(*response, name_, server.path,
+                                  [&is_declined, response, done](error_code error) {
+                                    is_declined = error == websocket::error::upgrade_declined;
+                                    done(is_declined ? error_code() : error);
+                                  });
+        }));
+    if (!is_declined) return {};
+    return Failure{
+        "policy",
+        "opening a WebSocket: answered with HTTP status " + std::to_string(response->result_int()),
+        name_};
+  }
+
   void read_next() {
     socket_.async_read(buffer_, [this](error_code error, std::size_t) {
       std::lock_guard guard(mutex_);
@@ -137,8 +159,8 @@ class WebSocket::Connection {
   }
 
   std::string reason(const error_code& error) {
-    if (error == websocket::error::closed) {
-      const auto& why = socket_.reason();
+    // Also where our answer to its close met a connection that was gone by then.
+    if (const auto& why = socket_.reason(); why.code != websocket::close_code::none) {
       const std::string text = printable(why.reason.c_str(), 123);  // as long as a reason may be
       return "the server closed the connection (code " + std::to_string(why.code) +
              (text.empty() ? ")" : ": " + text + ")");
@@ -146,7 +168,13 @@ class WebSocket::Connection {
     if (error == websocket::error::message_too_big) {
       return "an answer of more than " + std::to_string(options_.largest_message >> 20) + " MiB";
     }
-    if (error == asio::error::eof || error == asio::error::connection_reset) {
+    if (error.category() == error_code(websocket::error::bad_opcode).category() &&
+        error != websocket::error::closed) {
+      return "what came is no WebSocket message (" + error.message() + ")";
+    }
+    if (error == asio::error::eof || error == asio::error::connection_reset ||
+        error == asio::error::not_connected || error == asio::error::broken_pipe ||
+        error == websocket::error::closed) {
       return "the server went away";
     }
     return error.message();
@@ -170,6 +198,7 @@ class WebSocket::Connection {
   std::optional<Failure> broken_;
   bool sent_ = false;
   bool is_write_fine_ = false;
+  bool is_late_ = false;  // an answer did not come in time
 };
 
 WebSocket::WebSocket(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}

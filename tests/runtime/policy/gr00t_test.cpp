@@ -94,7 +94,7 @@ TEST_CASE("actions are rows of GR00T's columns, alone or beside an info map") {
 
 TEST_CASE("each of GR00T's forms is spoken") {
   for (const char* form : {"n1.6", "n1.6_nested", "n1.5"}) {
-    CAPTURE(form);
+    CAPTURE(std::string(form));
     const PythonServer server("gr00t_server.py", {form, "bridge=1", "chunk=4"});
     const auto policy =
         policy_at("gr00t", server, "&dialect=" + std::string(form) + "&chunk.use=2");

@@ -58,7 +58,7 @@ TEST_CASE("OpenVLA's answers are read in both forms, and its `error` is one") {
 
 TEST_CASE("OpenVLA's two forms are spoken, a chunk too") {
   for (const char* dialect : {"plain", "encoded"}) {
-    CAPTURE(dialect);
+    CAPTURE(std::string(dialect));
     const PythonServer server("openvla_server.py", {"bridge=1", "chunk=2"});
     const auto policy =
         policy_at("openvla", server, "&chunk.length=any&dialect=" + std::string(dialect));
