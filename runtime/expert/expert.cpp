@@ -39,6 +39,7 @@ constexpr int kMostTries = 3;
 constexpr double kCareful = 0.4;  // more steps with each try
 constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
 
+constexpr double kThin = 0.015;       // m high
 constexpr int kLongestShove = 8;      // steps
 constexpr double kShoved = 0.038;     // m that are enough
 constexpr int kLongestApproach = 30;  // steps in which a source that moves is followed
@@ -222,7 +223,9 @@ class Expert final : public policy::Policy {
   bool plan_to_grasp(const Scene& s) {
     pick_ = plan_pick(s, *reach_, options_.close, failed_);
     shove_.reset();
-    if (options_.close && (!pick_ || (pick_->grasp.rim && tries_ > 0))) {
+    // A thin rim that slipped once slips again.
+    const int rims = s.source.top - s.source.bottom < kThin ? 1 : 2;
+    if (options_.close && (!pick_ || (pick_->grasp.rim && tries_ >= rims))) {
       shove_ = plan_shove(s, *reach_);
       if (shove_) pick_ = shove_->start;
     }
