@@ -20,7 +20,7 @@ export interface Task {
 }
 export interface Episodes {
   count: number; policy: number[]; task: number[]; start: number[]; seed: number[]; bits: number[]; steps: number[];
-  reason: number[]; prompt: number[]; video?: number[];
+  reason: number[]; prompt: number[]; video?: number[]; numbers?: Record<string, (number | null)[]>;
 }
 export interface MainRow { policy: number; metric: number; all: Estimate; cells: Estimate[] }
 export interface ExternalRow {

@@ -50,24 +50,26 @@ function drawing(data: Data, timeline: Timeline, bodies: string[], steps: number
   return { element, set: (step) => { cursor.setAttribute("x1", String(x(step))); cursor.setAttribute("x2", String(x(step))); } };
 }
 
-// The start from above: the robot's base is below, x grows upwards, as it looks outwards.
+// The start from above as `vlaprobe draw` shows it: x of the world to the right, y upwards. Dots are the places of all starts.
 function topView(data: Data, task: number, start: number): Child {
   const t = data.tasks[task]!;
   const places = t.starts?.[start];
   if (!places?.length) return null;
   const objects = [t.source, t.target, ...t.distractors];
-  const xs = places.map((p) => p[0]!), ys = places.map((p) => p[1]!);
-  const half = Math.max(0.14, (Math.max(...xs) - Math.min(...xs)) / 2 + 0.06, (Math.max(...ys) - Math.min(...ys)) / 2 + 0.06);
-  const cx = (Math.max(...xs) + Math.min(...xs)) / 2, cy = (Math.max(...ys) + Math.min(...ys)) / 2;
-  const at = (p: number[]): [number, number] => [110 - (100 * (p[1]! - cy)) / half, 110 - (100 * (p[0]! - cx)) / half];
+  const all = t.starts!.flat();
+  const low = [0, 1].map((i) => Math.min(...all.map((p) => p[i]!))), high = [0, 1].map((i) => Math.max(...all.map((p) => p[i]!)));
+  const half = Math.max(0.1, ...[0, 1].map((i) => (high[i]! - low[i]!) / 2)) * 1.45;
+  const at = (p: number[]): [number, number] => [110 + (105 * (p[0]! - (low[0]! + high[0]!) / 2)) / half, 110 - (105 * (p[1]! - (low[1]! + high[1]!) / 2)) / half];
   return h("figure", { class: "top" }, h("figcaption", {}, `Start ${start} from above`),
     s("svg", { viewBox: "0 0 220 220", role: "img", "aria-label": `Start ${start}: ` + places.map((p, i) => `${objectName(data, objects[i] ?? -1)} at x ${(100 * p[0]!).toFixed(0)} cm, y ${(100 * p[1]!).toFixed(0)} cm`).join("; ") },
       s("rect", { class: "table", x: 1, y: 1, width: 218, height: 218, rx: 6 }),
+      s("text", { class: "axes", x: 8, y: 211 }, "x \u2192  y \u2191"),
+      [...new Set(all.map((p) => at(p).map((v) => v.toFixed(1)).join(" ")))].map((key) => { const [cx, cy] = key.split(" "); return s("circle", { class: "place", cx, cy, r: 1.6 }); }),
       places.map((p, i) => {
         const [x, y] = at(p), turn = ((p[2] ?? 0) * Math.PI) / 180, name = objectName(data, objects[i] ?? -1);
         return s("g", { class: i === 0 ? "source" : i === 1 ? "target" : "distractor" }, s("circle", { cx: x, cy: y, r: i === 1 ? 15 : 10 }),
-          s("line", { x1: x, y1: y, x2: x - 18 * Math.sin(turn), y2: y - 18 * Math.cos(turn) }),
-          s("text", { x: Math.min(190, Math.max(30, x)), y: y + (y > 185 ? -18 : 28), "text-anchor": "middle" }, name.length > 18 ? name.slice(0, 17) + "\u2026" : name));
+          s("line", { x1: x, y1: y, x2: x + 19 * Math.cos(turn), y2: y - 19 * Math.sin(turn) }),
+          s("text", { x: Math.min(190, Math.max(30, x)), y: y + 28, "text-anchor": "middle" }, name.length > 18 ? name.slice(0, 17) + "\u2026" : name));
       })));
 }
 
@@ -120,11 +122,13 @@ export function episodeView(state: State, row: number): Child {
   video?.addEventListener("error", () => { video.replaceWith(h("p", { class: "nothing" }, "The video is not where this page expects it: ", h("code", {}, data.strings[e.video![row]!] ?? ""), ". Keep the page and the results folder together.")); });
 
   const args = [shellWord(run?.dir ?? "DIR"), shellWord(task.name), start, seed].join(" ");
+  const numbers = Object.entries(e.numbers ?? {}).flatMap(([name, values]) => (typeof values[row] === "number" ? [`${data.metrics.find((m) => m.name === name)?.label ?? name} ${Number(values[row]!.toPrecision(5))}`] : []));
   const why = readWhys().e?.[String(row)];
   const prompt = data.prompts[e.prompt[row] ?? -1];
   return [
     h("h3", { tabindex: -1 }, policyLabel(state, p), ` at start ${start} of ${taskName(data, t)}, seed ${seed}`),
     bad ? h("p", { class: "bad" }, h("b", {}, "Invalid: "), data.reasons[e.reason[row]!] ?? "") : h("ul", { class: "verdicts", "aria-label": "Verdicts" }, truths.map((m) => h("li", { class: holds(m) ? "yes" : "no" }, h("span", { "aria-hidden": "true" }, holds(m) ? "\u2713" : "\u2013"), data.metrics[m]!.label, h("span", { class: "unseen" }, holds(m) ? ": yes" : ": no")))),
+    numbers.length ? h("p", { class: "key" }, numbers.join("; ")) : null,
     h("div", { class: "said" }, h("span", { class: "sub" }, "Instruction as sent"), prompt === undefined ? h("p", { class: "nothing" }, "What was sent is not the plan's instruction, and its text was not kept.") : h("q", { class: "prompt" }, prompt)),
     h("div", { class: "scene" }, topView(data, t, start), h("div", { class: "video" }, video ?? h("p", { class: "nothing" }, "No video was recorded. The episode can be had again, bit for bit:", command(`vlaprobe replay ${args} --video ${shellWord(`${task.name.replace(/[^\w.-]+/g, "_")}-${start}-${seed}.mp4`)}`)))),
     h("div", { class: "scrub" }, h("label", { for: "scrub" }, "Control step"), slider, shown),
