@@ -193,9 +193,12 @@ MixedModel fit(const Benchmark& benchmark, int metric, bool by_category) {
                                          : axis_columns(benchmark, rows);
   columns.insert(columns.end(), std::make_move_iterator(more.begin()),
                  std::make_move_iterator(more.end()));
-  model.formula = fmt::format("{} ~ policy + {} + (1 | task) + (1 | source) + (1 | start)",
-                              benchmark.metrics[static_cast<std::size_t>(metric)].name,
-                              by_category ? "category" : "axes");
+  const auto formula = [&](const char* random) {
+    return fmt::format("{} ~ policy + {} + {}",
+                       benchmark.metrics[static_cast<std::size_t>(metric)].name,
+                       by_category ? "category" : "axes", random);
+  };
+  model.formula = formula("(1 | task) + (1 | source) + (1 | start)");
   model.rows = rows.size();
   if (!constant.empty()) model.note = "left out, always or never so: " + constant + ". ";
   if (rows.empty()) {
@@ -209,6 +212,7 @@ MixedModel fit(const Benchmark& benchmark, int metric, bool by_category) {
   const auto starts = *std::max_element(data.groups[2].begin(), data.groups[2].end()) + 1;
   if (static_cast<double>(starts) == data.trials.sum()) {
     data.groups.pop_back();
+    model.formula = formula("(1 | task) + (1 | source)");
     model.note += "Every start has one episode here, so it has no effect of its own. ";
   }
   const auto fitted = stats::fit_mixed_logistic(data, {.fixed_prior_sd = kPriorSd});

@@ -125,26 +125,38 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
   return columns;
 }
 
+// "1,200 episodes, seeds 42, 7"
+std::string what_policy_did(const Policy& policy) {
+  int done = 0;
+  std::set<int> seeds;
+  for (const RunInfo& run : policy.runs) {
+    done += run.done;
+    seeds.insert(run.seeds.begin(), run.seeds.end());
+  }
+  std::string digits = std::to_string(done);
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  std::string list;
+  for (const int seed : seeds) list += (list.empty() ? "" : ", ") + std::to_string(seed);
+  return fmt::format("{} episodes, seed{} {}", digits, seeds.size() == 1 ? "" : "s", list);
+}
+
 std::vector<std::string> what_was_run(const Benchmark& benchmark) {
   std::vector<std::string> sentences;
   for (const PlanInfo& plan : benchmark.plans) {
     sentences.push_back(fmt::format(
-        "plan {}, suite `{}`: {} tasks, {} starts{}", plan.root.substr(0, 12), plan.suite,
+        "Plan {}, suite `{}`: {} tasks, {} starts{}.", plan.root.substr(0, 12), plan.suite,
         plan.tasks, plan.starts,
         plan.trained_on.empty() ? "" : ", out of distribution against " + plan.trained_on));
   }
-  for (const Policy& policy : benchmark.policies) {
-    int done = 0;
-    std::set<int> seeds;
-    for (const RunInfo& run : policy.runs) {
-      done += run.done;
-      seeds.insert(run.seeds.begin(), run.seeds.end());
-    }
-    std::string list;
-    for (const int seed : seeds) list += (list.empty() ? "" : ", ") + std::to_string(seed);
-    sentences.push_back(fmt::format("{}: {} episodes, seed{} {}", policy.label, done,
-                                    seeds.size() == 1 ? "" : "s", list));
+  std::set<std::string> kinds;
+  for (const Policy& policy : benchmark.policies) kinds.insert(what_policy_did(policy));
+  if (kinds.size() == 1 && benchmark.policies.size() > 1) {
+    sentences.push_back(
+        fmt::format("{} policies, each {}.", benchmark.policies.size(), *kinds.begin()));
+    return sentences;
   }
+  for (const Policy& policy : benchmark.policies)
+    sentences.push_back(fmt::format("{}: {}.", policy.label, what_policy_did(policy)));
   return sentences;
 }
 

@@ -117,7 +117,7 @@ Json delivery_json(const Benchmark& benchmark) {
     if (sent > 0 && own == sent) {
       rows.push_back({{"level", "good"},
                       {"policy", p},
-                      {"text", fmt::format("{}: the hash of the instruction that was sent is its "
+                      {"text", fmt::format("{}: the hash of the instruction it was given is its "
                                            "task's in all {} episodes",
                                            label, sent)}});
     } else if (sent > 0) {

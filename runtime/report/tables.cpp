@@ -243,7 +243,8 @@ class Maker {
       if (task_at(benchmark_, t).baseline == kAbsent) continue;
       DeltaRow row{policy, t, metric, variant_contrast(benchmark_, policy, metric, t), false};
       if (is_empty(row.contrast)) continue;
-      row.at_floor = row.contrast.second.k == 0;
+      row.at_floor = row.contrast.second.k == 0 &&
+                     benchmark_.metrics[static_cast<std::size_t>(metric)].good > 0;
       tables_.deltas.push_back(std::move(row));
     }
     for (std::size_t c = 0; c < benchmark_.categories.size(); ++c) {

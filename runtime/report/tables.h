@@ -26,7 +26,7 @@ struct Contrast {
   bool paired = true;
   double difference = 0;     // first - second
   stats::Interval interval;  // 95 %
-  double p = 1;              // exact: sign flips of starts, or dealing out unpaired ones
+  double p = 1;              // exact: sign flips, or dealing out unpaired starts
   double adjusted = 1;       // for the table's family, see there
 };
 

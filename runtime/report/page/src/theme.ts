@@ -51,7 +51,7 @@ export function decal(policy: number): object {
   return { ...kDecals[policy % kDecals.length], color: isDark() ? "rgba(0,0,0,.42)" : "rgba(255,255,255,.6)" };
 }
 export const dashOf = (policy: number): number[] | "solid" => {
-  const dash = [[], [7, 3], [2, 3], [9, 3, 2, 3], [4, 2], [12, 4], [1, 2], [6, 2, 1, 2, 1, 2]][policy % 8]!;
+  const dash = [[], [7, 3], [2, 3], [9, 3, 2, 3], [5, 5], [12, 4], [4, 2], [6, 2, 1, 2, 1, 2]][policy % 8]!;
   return dash.length ? dash : "solid";
 };
 
