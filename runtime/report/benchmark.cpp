@@ -15,6 +15,7 @@
 #include "runtime/plan/ids.h"
 #include "runtime/plan/source_line.h"
 #include "runtime/report/categories.h"
+#include "runtime/run/delivery.h"
 #include "runtime/run/store.h"
 
 namespace probe::report {
@@ -22,6 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kNamed = 3;        // before the rest is only counted
 constexpr std::size_t kMostTruths = 52;  // a page's numbers hold so many bits
 
 std::string hex(const std::array<std::uint8_t, 32>& bytes) {
@@ -232,11 +234,7 @@ class Loader {
     for (const Task& other : benchmark_.tasks) {
       if (other.name != task.name) continue;
       task.name += fmt::format(" (plan {})", to_hex(plan.root()).substr(0, 8));
-      note("warn",
-           fmt::format("task `{}` means two things: plan {} has another instruction, rule "
-                       "or object than plan {}; they are shown apart",
-                       other.name, to_hex(plan.root()).substr(0, 12),
-                       benchmark_.plans[static_cast<std::size_t>(other.plan)].root.substr(0, 12)));
+      two_meanings_.push_back(other.name);
       break;
     }
     task.prompt = plan.text(record.prompt);
@@ -291,6 +289,7 @@ class Loader {
                 std::vector<run::ResultRow> rows, RunInfo& info) {
     const plan::Plan& file = benchmark_.plan_files[static_cast<std::size_t>(plan)];
     const PlanTasks& map = maps_[static_cast<std::size_t>(plan)];
+    note_delivery(dir, file, rows);
     std::vector<Episode> episodes;
     std::set<int> tasks;
     std::size_t unknown = 0;
@@ -385,7 +384,35 @@ class Loader {
     }
   }
 
+  void note_two_meanings() {
+    if (two_meanings_.empty()) return;
+    std::string names;
+    for (std::size_t i = 0; i < two_meanings_.size() && i < kNamed; ++i)
+      names += (i == 0 ? "`" : ", `") + two_meanings_[i] + "`";
+    if (two_meanings_.size() > kNamed)
+      names += fmt::format(" and {} more", two_meanings_.size() - kNamed);
+    note("warn",
+         fmt::format("{} tasks mean different things in different plans (another instruction, rule "
+                     "or object) and are shown apart: {}",
+                     two_meanings_.size(), names));
+  }
+
+  // What was meant to differ and reached the policy equal.
+  void note_delivery(const std::string& dir, const plan::Plan& plan,
+                     std::span<const run::ResultRow> rows) {
+    const auto findings = run::check_delivery(plan, rows);
+    for (std::size_t i = 0; i < findings.size() && i < kNamed; ++i)
+      note("bad", fmt::format("`{}`: {}", dir, findings[i].sentence));
+    if (findings.size() > kNamed) {
+      note("bad",
+           fmt::format("`{}`: {} more findings of that kind; `vlaprobe results {} --delivery` "
+                       "lists them",
+                       dir, findings.size() - kNamed, dir));
+    }
+  }
+
   void note_runs() {
+    note_two_meanings();
     for (const Policy& policy : benchmark_.policies) {
       int done = 0, invalid = 0, expected = 0;
       for (const RunInfo& run : policy.runs) {
@@ -518,6 +545,7 @@ class Loader {
   std::vector<PlanTasks> maps_;                      // by plan
   std::map<TaskKey, std::size_t> by_content_;
   std::map<std::string, std::uint32_t> clusters_;
+  std::vector<std::string> two_meanings_;
   std::map<std::string, int> prompt_hashes_;
   std::size_t hashed_ = 0;
   std::vector<std::set<std::tuple<int, int, int>>> held_;  // by policy

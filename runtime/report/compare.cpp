@@ -175,8 +175,8 @@ std::string verdict(const Benchmark& benchmark, const Comparison& comparison,
     text += fmt::format(" {} starts show differences from {:.1f} points on, four times in five.",
                         c.starts, 100 * *row.detectable);
   } else {
-    text += fmt::format(" {} starts with so few that differ could show no difference reliably.",
-                        c.starts);
+    text += fmt::format(" {} starts, of which {} differ, cannot show a difference reliably.",
+                        c.starts, c.pairs.only_a + c.pairs.only_b);
   }
   if (row.more_starts) {
     text += fmt::format(" If the difference is what was seen, about {} more starts would show it.",

@@ -116,6 +116,7 @@ TEST_CASE("runs of different plans are joined where tasks agree and kept apart w
   const Benchmark benchmark = loaded({folder / "a", folder / "b"});
   CHECK(benchmark.plans.size() == 2);
   CHECK(says(benchmark, "the runs are of 2 plans"));
+  CHECK(says(benchmark, "tasks mean different things in different plans"));
   CHECK(benchmark.tasks.size() > 50);
 }
 

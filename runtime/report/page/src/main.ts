@@ -1,8 +1,8 @@
 // Builds the page: words first, then tables and charts, each panel on its own so that a broken one leaves the others.
-import { freshId, h, replace } from "./dom";
+import { type Child, freshId, h, replace } from "./dom";
 import { plural } from "./format";
-import { type Data, readData } from "./model";
-import { noteList, type Panel, panel, policyLabel, prose } from "./parts";
+import { type Data, type Note, readData } from "./model";
+import { details, noteList, type Panel, panel, policyLabel, prose } from "./parts";
 import { cases } from "./panels/cases";
 import { compare } from "./panels/compare";
 import { deltas } from "./panels/deltas";
@@ -27,12 +27,19 @@ const kPanels: [string, string, (state: State) => Panel][] = [
   ["invalid", "Invalid episodes", invalid], ["delivery", "What reached the policy", delivery], ["runs", "Runs and fingerprints", runs],
 ];
 
+// What is wrong with the runs, the first few at once.
+function shortList(notes: Note[]): Child {
+  const kAtOnce = 5;
+  if (!notes.length) return null;
+  return [noteList(notes.slice(0, kAtOnce)), notes.length > kAtOnce ? details(plural(notes.length - kAtOnce, "further warning"), noteList(notes.slice(kAtOnce))) : null];
+}
+
 function opening(state: State): HTMLElement {
   const { data } = state;
   return h("header", { class: "opening", id: "top" },
     h("p", { class: "brand" }, "vlaprobe"), h("h1", {}, data.title),
     data.run.length ? h("div", { class: "run" }, h("p", {}, prose(data.run[0]!)), data.run.length > 1 ? h("ul", {}, data.run.slice(1).map((sentence) => h("li", {}, prose(sentence)))) : null) : null,
-    data.notes.some((note) => note.level !== "note") ? noteList(data.notes.filter((note) => note.level !== "note")) : null,
+    shortList(data.notes.filter((note) => note.level !== "note")),
     data.findings.length ? [h("h2", {}, "What stands out"), noteList(data.findings, (note) => (note.see && kPanels.some(([id]) => id === note.see) ? h("a", { class: "see", href: `#${note.see}` }, kPanels.find(([id]) => id === note.see)![1]) : null))] : null);
 }
 

@@ -73,16 +73,25 @@ function parsed(id: string): unknown {
 
 const kNoEpisodes: Episodes = { count: 0, policy: [], task: [], start: [], seed: [], bits: [], steps: [], reason: [], prompt: [] };
 
+// "pi0 and expert on intact", "6 policies on intact".
+function ownTitle(data: Data): string {
+  const names = data.policies.map((p) => p.label);
+  const suites = [...new Set(data.plans.map((p) => p.suite))].join(" and ");
+  if (!names.length) return "vlaprobe report";
+  return (names.length <= 3 ? names.join(names.length === 2 ? " and " : ", ") : `${names.length} policies`) + (suites ? ` on ${suites}` : "");
+}
+
 // Fails with a sentence for the reader when the page holds no results, or results of another version.
 export function readData(): Data {
   const data = parsed("data") as Partial<Data>;
   if (data.format !== "vlaprobe-report") throw new Error("this page holds no results");
   if (data.version !== 1) throw new Error(`these results have version ${data.version}; this page reads version 1`);
   const full: Data = {
-    format: data.format, version: 1, title: data.title || "vlaprobe report", run: [], findings: [], notes: [], metrics: [], categories: [],
+    format: data.format, version: 1, title: "", run: [], findings: [], notes: [], metrics: [], categories: [],
     objects: [], plans: [], fingerprints: [], prompts: [], reasons: [], strings: [], policies: [], tasks: [], episodes: kNoEpisodes, tables: {},
   };
   for (const [key, value] of Object.entries(data)) if (value !== null) (full as unknown as Record<string, unknown>)[key] = value;
+  full.title ||= ownTitle(full);
   // Labels stand at the head of columns.
   const capital = (label: string): string => label.charAt(0).toUpperCase() + label.slice(1);
   for (const entry of [...full.metrics, ...full.categories]) entry.label = capital(entry.label);
