@@ -23,15 +23,6 @@ struct Spot {
   double cost = 0;
 };
 
-double half_diagonal(const Footprint& print) {
-  Vec2 low = print.center, high = low;
-  for (const Vec2& p : print.whole) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return 0.5 * (high - low).norm();
-}
-
 // The least gap between the source's outline and the others', moved by `way`.
 double room_at(const Scene& scene, const Vec2& way) {
   Outline moved = scene.source.whole;

@@ -65,6 +65,15 @@ double best_edge_gap(const Outline& a, const Outline& b) {
 
 }  // namespace
 
+double half_diagonal(const Footprint& footprint) {
+  Vec2 low = footprint.center, high = low;
+  for (const Vec2& p : footprint.whole) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return 0.5 * (high - low).norm();
+}
+
 Outline convex_outline(std::vector<Vec2> points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());

@@ -28,6 +28,9 @@ Footprint footprint_of(std::span<const std::vector<Vec3>> parts, const Pose& pos
 // Counts from another centre, such as that of mass.
 void recenter(Footprint& footprint, const Vec2& center);
 
+// Of the box around the outline, along the frame's axes.
+double half_diagonal(const Footprint& footprint);
+
 // The convex hull of points; collinear ones are dropped.
 Outline convex_outline(std::vector<Vec2> points);
 

@@ -175,13 +175,8 @@ double gap_to_target(const Scene& scene) {
 }
 
 bool lies_on_target(const Scene& scene) {
-  Vec2 low = scene.target.center, high = low;
-  for (const Vec2& p : scene.target.whole) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
   // Heights by the shapes: a model's origin may be anywhere in it.
-  return (scene.source.center - scene.target.center).norm() < 0.5 * (high - low).norm() &&
+  return (scene.source.center - scene.target.center).norm() < half_diagonal(scene.target) &&
          scene.source.bottom < scene.target.top + 0.02 &&
          scene.source.bottom > scene.target.bottom + 0.0005;
 }

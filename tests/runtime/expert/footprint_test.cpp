@@ -22,6 +22,7 @@ TEST_CASE("a footprint knows height, middle and extent of the object where it st
   CHECK(print.top == doctest::Approx(7));
   // Both parts have area 2, centres (1, .5) and (.5, 2); a quarter turn takes (x, y) to (-y, x).
   CHECK((print.center - Vec2(10 - 1.25, 0.75)).norm() < 1e-9);
+  CHECK(half_diagonal(print) == doctest::Approx(0.5 * std::sqrt(9.0 + 4.0)));
   const Extent whole = extent_in_slab(print.parts, {Vec2(0, 1), 0.5, 0.4}, Vec2(1, 0));
   CHECK(whole.lower == doctest::Approx(7));
   CHECK(whole.upper == doctest::Approx(10));
@@ -44,6 +45,7 @@ TEST_CASE("an object without a hull is a point") {
   const Footprint print = footprint_of({}, {Vec3(1, 2, 3), Quat::Identity()});
   CHECK(print.whole.empty());
   CHECK(print.center == Vec2(1, 2));
+  CHECK(half_diagonal(print) == 0);
   CHECK(print.top == 3);
 }
 
