@@ -15,7 +15,7 @@ export interface Policy { name: string; label: string; role: string; runs: Run[]
 export interface Task {
   plan: number; name: string; baseline: number | null; axes: string[]; categories: number[]; prompt: string;
   source: number; target: number; distractors: number[]; ood: string[]; horizon: number; hz: number; scene?: string;
-  metrics: number[]; confounded?: string | null; allowed?: { word: string; reason: string }[];
+  metrics: number[]; confounded?: string | null; unpaired?: string; allowed?: { word: string; reason: string }[];
   starts?: number[][][]; rule?: { file: string; line: number; text: string };
 }
 export interface Episodes {

@@ -85,6 +85,7 @@ function taskView(state: State, task: number, open: (row: number) => void): Chil
     ["Time", `${t.horizon} control steps${t.hz ? ` at ${t.hz} Hz, ${(t.horizon / t.hz).toFixed(0)} s` : ""}`],
   ];
   if (t.confounded) facts.push([`Confounded ${kConfounded}`, t.confounded]);
+  if (t.unpaired) facts.push(["Not paired", t.unpaired]);
   for (const a of t.allowed ?? []) facts.push([`Allowed: ${a.word}`, a.reason]);
   if (t.rule) facts.push(["Rule of success", [h("code", {}, t.rule.text), h("span", { class: "sub" }, `${t.rule.file}:${t.rule.line}`)]]);
   const deltas = (data.tables.deltas ?? []).filter((d) => d.task === task && state.chosen.includes(d.policy) && data.metrics[d.metric]?.name === "success");
