@@ -55,6 +55,7 @@ bool invert(const JointMatrix& m, Count count, JointMatrix* out) {
 void guess_saturation(const Drives& drives, const Joints& joints, const JointMatrix& mass,
                       double dt, ArmResponse* arm) {
   for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
+    arm->flung[i] = false;
     const double e = drives.stiffness[i] * (joints.target[i] - joints.q[i]);
     const double resistance = drives.damping[i] + dt * drives.stiffness[i];
     const double speed = (mass[i][i] * joints.u[i] + dt * e) / (mass[i][i] + dt * resistance);
@@ -102,10 +103,12 @@ bool find_overload(const Drives& drives, const Joints& joints, const JointArray&
     const double torque = drives.stiffness[i] * (joints.target[i] - joints.q[i] - dt * u[i]) -
                           drives.damping[i] * u[i];
     if (arm->saturated[i] != 0) {
-      if (!release || arm->saturated[i] * torque > drives.limit[i] / kOver) continue;
+      arm->flung[i] = !release && arm->saturated[i] * torque < 0;
+      const bool below = release && arm->saturated[i] * torque <= drives.limit[i] / kOver;
+      if (!below && !arm->flung[i]) continue;
       arm->saturated[i] = 0;
     } else {
-      if (!(std::fabs(torque) > kOver * drives.limit[i])) continue;
+      if (arm->flung[i] || !(std::fabs(torque) > kOver * drives.limit[i])) continue;
       arm->saturated[i] = torque > 0 ? 1 : -1;
     }
     any = true;

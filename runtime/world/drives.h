@@ -12,6 +12,7 @@ struct ArmResponse {
   JointArray free_speed{};  // u* without contacts
   std::array<int, kMaxJoints>
       saturated{};  // -1, 0, +1: sign of the force limit that replaces the drive
+  std::array<bool, kMaxJoints> flung{};  // its force limit is not tried again in this substep
 };
 
 // First guess of which drives are at their limit: the torque that the implicit drive would exert on
@@ -28,8 +29,9 @@ void guess_saturation(const Drives& drives, const Joints& joints, const JointMat
 bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass, double dt,
              ArmResponse* arm);
 
-// Marks drives that exceed their limit at the new speeds `u` and, with `release`, unmarks those
-// that would not reach it; true if there are any.
+// Marks drives that exceed their limit at the new speeds `u` and unmarks those whose limit flung
+// the joint so far that the drive would already brake; with `release` all that would not reach it.
+// True if there are any.
 bool find_overload(const Drives& drives, const Joints& joints, const JointArray& u, double dt,
                    bool release, ArmResponse* arm);
 

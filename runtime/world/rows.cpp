@@ -10,6 +10,7 @@ namespace probe::world {
 namespace {
 
 constexpr double kRegular = 1e-9;
+constexpr int kHeldRounds = 4;          // of sweeps between renewals of friction's bounds
 constexpr double kRevoluteLever = 0.2;  // m, makes rad/s of a limit comparable to m/s
 
 // The bodies of a contact; absent ones are never touched.
@@ -106,6 +107,11 @@ void couple(const ArmResponse& arm, Lanes lanes, int joints, Row* row) {
   row->inverse_k = 1.0 / row->k;
 }
 
+struct Sweeps {
+  int count = 0;
+  double change = 0;  // m/s, of the last
+};
+
 template <typename Lanes>
 double sweep_limits(const ArmResponse& arm, Lanes lanes, Problem* problem) {
   double change = 0;
@@ -122,7 +128,10 @@ double sweep_limits(const ArmResponse& arm, Lanes lanes, Problem* problem) {
   return change;
 }
 
-template <typename Lanes>
+// Friction's bound follows the normal impulse of the moment, or is held at Contact::grip.
+enum class Friction { kFollows, kHeld };
+
+template <Friction kFriction, typename Lanes>
 inline double sweep_contact(Contact* contact, const Sides& s, double* u, Lanes lanes) {
   Contact& c = *contact;
   const double v = row_speed(c.normal, s, u, lanes);
@@ -134,7 +143,7 @@ inline double sweep_contact(Contact* contact, const Sides& s, double* u, Lanes l
     push(c.normal, c, s, delta, u, lanes);
   }
 
-  const double bound = c.friction * c.normal.impulse;
+  const double bound = kFriction == Friction::kHeld ? c.grip : c.friction * c.normal.impulse;
   if (bound > 0 || c.tangent1.impulse != 0 || c.tangent2.impulse != 0) {
     const double v1 = row_speed(c.tangent1, s, u, lanes);
     const double v2 = row_speed(c.tangent2, s, u, lanes);
@@ -164,6 +173,22 @@ inline double sweep_contact(Contact* contact, const Sides& s, double* u, Lanes l
     change = std::max(change, std::fabs(d) * c.twist.k * c.patch);
   }
   return change;
+}
+
+// Ends after a sweep that changes less than the tolerance, after `enough` sweeps unless the last
+// changed more than jam_change, and after `most` in any case.
+template <Friction kFriction, typename Lanes>
+Sweeps sweep(const Parameters& parameters, int enough, int most, const ArmResponse& arm,
+             Lanes lanes, Problem* problem) {
+  for (int count = 1;; ++count) {
+    double change = sweep_limits(arm, lanes, problem);
+    for (Contact& c : problem->contacts) {
+      change = std::max(change, sweep_contact<kFriction>(&c, sides(c, problem->bodies),
+                                                         problem->u.data(), lanes));
+    }
+    const bool stop = count >= enough && change < parameters.jam_change;
+    if (change < parameters.tolerance || stop || count >= most) return {count, change};
+  }
 }
 
 }  // namespace
@@ -244,31 +269,53 @@ void warm_start(Problem* problem, const ArmResponse& arm) {
   with_lanes(problem->lanes, [&](auto lanes) {
     for (Contact& c : problem->contacts) {
       const Sides s = sides(c, problem->bodies);
-      if (c.torsion && c.twist.impulse != 0) push(c.twist, c, s, c.twist.impulse, u, lanes);
-      if (c.normal.impulse != 0) push(c.normal, c, s, c.normal.impulse, u, lanes);
-      if (c.tangent1.impulse != 0) push(c.tangent1, c, s, c.tangent1.impulse, u, lanes);
-      if (c.tangent2.impulse != 0) push(c.tangent2, c, s, c.tangent2.impulse, u, lanes);
+      for (Row* row : {&c.twist, &c.normal, &c.tangent1, &c.tangent2}) {
+        row->start = row->impulse;
+        if (row->impulse != 0 && (c.torsion || row != &c.twist))
+          push(*row, c, s, row->impulse, u, lanes);
+      }
     }
   });
-  for (const LimitRow& row : problem->limits) {
+  for (LimitRow& row : problem->limits) {
+    row.start = row.impulse;
     if (row.impulse == 0) continue;
     add_scaled(u, arm.response[static_cast<std::size_t>(row.joint)].data(), row.sign * row.impulse,
                problem->lanes);
   }
 }
 
+void rewind(Problem* problem, const ArmResponse& arm) {
+  problem->u = arm.free_speed;
+  for (Body& body : *problem->bodies) {
+    if (body.asleep) continue;
+    body.velocity = body.start_velocity;
+    body.spin = body.start_spin;
+  }
+}
+
 int solve(const Parameters& parameters, const ArmResponse& arm, Problem* problem) {
   if (problem->contacts.empty() && problem->limits.empty()) return 0;
   return with_lanes(problem->lanes, [&](auto lanes) {
-    for (int sweep = 1;; ++sweep) {
-      double change = sweep_limits(arm, lanes, problem);
-      for (Contact& c : problem->contacts) {
-        change = std::max(change,
-                          sweep_contact(&c, sides(c, problem->bodies), problem->u.data(), lanes));
-      }
-      const bool enough = sweep >= parameters.max_sweeps && change < parameters.jam_change;
-      if (change < parameters.tolerance || enough || sweep >= parameters.jam_sweeps) return sweep;
+    const Sweeps free = sweep<Friction::kFollows>(parameters, parameters.max_sweeps,
+                                                  parameters.jam_sweeps, arm, lanes, problem);
+    if (!(free.change > parameters.runaway)) return free.count;
+
+    // Normal impulses and friction drive each other up. Again from the start with friction's bounds
+    // held, which makes the problem convex; bounds renewed a few times cannot run far.
+    int count = free.count;
+    for (LimitRow& row : problem->limits) row.impulse = row.start;
+    for (Contact& c : problem->contacts) {
+      for (Row* row : {&c.twist, &c.normal, &c.tangent1, &c.tangent2}) row->impulse = row->start;
     }
+    rewind(problem, arm);
+    warm_start(problem, arm);
+    for (int round = 0; round < kHeldRounds; ++round) {
+      for (Contact& c : problem->contacts) c.grip = c.friction * c.normal.impulse;
+      count += sweep<Friction::kHeld>(parameters, parameters.max_sweeps, parameters.max_sweeps, arm,
+                                      lanes, problem)
+                   .count;
+    }
+    return count;
   });
 }
 

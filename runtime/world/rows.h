@@ -32,10 +32,14 @@ void build_limits(const Parameters& parameters, const Drives& drives, Joints* jo
 // The arm's share of the effective masses; again after each change of the drives' saturation.
 void couple_arm(const ArmResponse& arm, Problem* problem);
 
+// Takes every impulse back: u and the bodies as they were before warm_start().
+void rewind(Problem* problem, const ArmResponse& arm);
+
 // Applies the stored impulses to u and the bodies.
 void warm_start(Problem* problem, const ArmResponse& arm);
 
 // Sweeps until the largest velocity change is below the tolerance; returns the number of sweeps.
+// Where sweeps run away (see Parameters::runaway) they begin again with friction's bounds held.
 int solve(const Parameters& parameters, const ArmResponse& arm, Problem* problem);
 
 }  // namespace probe::world

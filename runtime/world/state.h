@@ -21,6 +21,7 @@ struct Parameters {
   int max_sweeps = 50;
   int jam_sweeps = 200;      // at most, while a sweep still changes more than jam_change:
   double jam_change = 1e-3;  // m/s; something is squeezed between the arm and the table
+  double runaway = 0.05;     // m/s; sweeps that still change more after jam_sweeps do not converge
   double tolerance = 1e-5;   // m/s, largest velocity change of a sweep at which it ends
   double beta = 0.2;         // share of the overlap removed in a substep
   double slop = 5e-5;  // m of overlap left alone, so that resting contacts never switch off and on
@@ -143,6 +144,7 @@ struct Row {
   double k = 1, inverse_k = 1;
   double bias = 0;
   double impulse = 0;
+  double start = 0;  // the impulse that the sweeps began with
 };
 
 // Row without direction: torsion about the normal.
@@ -155,6 +157,7 @@ struct Contact {
   int body_a = -1, body_b = -1;          // awake free bodies only, else -1
   Vec3 n, p, t1, t2;
   double gap = 0, friction = 0, patch = 0;
+  double grip = 0;  // N s, the bound of friction while bounds are held
   double inverse_mass_a = 0, inverse_mass_b = 0;
   Row normal, tangent1, tangent2, twist;
 };
@@ -164,6 +167,7 @@ struct LimitRow {
   double sign = 1;  // +1 lower limit, -1 upper
   double bias = 0, k = 1, lever = 1;
   double impulse = 0;
+  double start = 0;  // the impulse that the sweeps began with
 };
 
 }  // namespace probe::world

@@ -8,7 +8,7 @@
 namespace probe::world {
 namespace {
 
-constexpr int kMaxResolves = 3;
+constexpr int kMaxResolves = 5;
 
 Failure stiff_failure() {
   return {"world", "the robot's mass matrix is not positive definite", ""};
@@ -50,7 +50,7 @@ Status Stepper::advance() {
   build_rows(parameters, arm.get(), colliders, &problem);
   build_limits(parameters, drives, &joints, &problem);
   for (int attempt = 0;; ++attempt) {
-    problem.u = response.free_speed;
+    rewind(&problem, response);
     couple_arm(response, &problem);
     warm_start(&problem, response);
     last_sweeps = solve(parameters, response, &problem);
@@ -61,11 +61,6 @@ Status Stepper::advance() {
     // A drive would exceed its limit: solve again with it replaced by the limit.
     ++resolves;
     if (!respond(drives, joints, arm->mass(), parameters.dt, &response)) return stiff_failure();
-    for (Body& body : bodies) {
-      if (body.asleep) continue;
-      body.velocity = body.start_velocity;
-      body.spin = body.start_spin;
-    }
   }
   if (arm) note_load();
   store_impulses(problem, &table);

@@ -76,13 +76,28 @@ TEST_CASE("a drive taken to be at its limit that would not reach it is solved fo
   mass[0][0] = 1e-4;
   ArmResponse arm;
   arm.saturated[0] = 1;
-  REQUIRE(respond(drives, joints, mass, 0.002, &arm));
-  CHECK(arm.free_speed[0] == doctest::Approx(200));  // what held it is gone
-  CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, false, &arm));
-  REQUIRE(find_overload(drives, joints, arm.free_speed, 0.002, true, &arm));
+  const JointArray moving{22};  // where the drive would push with 4 of its 10 N m
+  CHECK(!find_overload(drives, joints, moving, 0.002, false, &arm));
+  REQUIRE(find_overload(drives, joints, moving, 0.002, true, &arm));
   REQUIRE(respond(drives, joints, mass, 0.002, &arm));
   CHECK(arm.free_speed[0] < 25);
   CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, true, &arm));
+}
+
+TEST_CASE("a limit force that flings its joint gives way to the drive for the rest of a substep") {
+  Joints joints;
+  const Drives drives = finger(&joints);
+  JointMatrix mass{};
+  mass[0][0] = 1e-4;
+  ArmResponse arm;
+  arm.saturated[0] = 1;
+  REQUIRE(respond(drives, joints, mass, 0.002, &arm));
+  CHECK(arm.free_speed[0] == doctest::Approx(200));  // what held it is gone
+  REQUIRE(find_overload(drives, joints, arm.free_speed, 0.002, false, &arm));
+  CHECK(arm.saturated[0] == 0);
+  CHECK(!find_overload(drives, joints, JointArray{0}, 0.002, false, &arm));  // five times its limit
+  guess_saturation(drives, joints, mass, 0.002, &arm);
+  CHECK(find_overload(drives, joints, JointArray{0}, 0.002, false, &arm));
 }
 
 }  // namespace
