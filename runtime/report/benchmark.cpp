@@ -379,8 +379,14 @@ class Loader {
                         [&](const Policy& other) { return other.name == policy.name; });
       if (same < 2 || policy.runs.empty()) continue;
       policy.label = fmt::format("{} ({})", policy.name, policy.runs[0].dir);
-      note("note", fmt::format("policy `{}` was run more than once; `{}` is one of the runs",
-                               policy.name, policy.label));
+      const bool is_first =
+          std::none_of(benchmark_.policies.data(), static_cast<const Policy*>(&policy),
+                       [&](const Policy& other) { return other.name == policy.name; });
+      if (is_first) {
+        note("note", fmt::format("policy `{}` was run more than once; its runs stand apart, each "
+                                 "with its folder",
+                                 policy.name));
+      }
     }
   }
 

@@ -303,7 +303,7 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
 }
 
 std::string to_text(const Benchmark& benchmark, const Comparison& comparison) {
-  std::string text = fmt::format("{} against {}, the same {} episodes\n\n", comparison.a,
+  std::string text = fmt::format("{} (A) against {} (B), the same {} episodes\n\n", comparison.a,
                                  comparison.b, comparison.common_starts);
   for (const std::string& words : comparison.words) text += words + "\n";
   int last = kAbsent;
@@ -312,9 +312,8 @@ std::string to_text(const Benchmark& benchmark, const Comparison& comparison) {
     if (!differs_somewhere(comparison, row.metric)) continue;
     if (row.metric != last) {
       text += fmt::format("\n{:<32} {:>16} {:>16} {:>8} {:>17} {:>9}\n",
-                          benchmark.metrics[static_cast<std::size_t>(row.metric)].name,
-                          comparison.a.substr(0, 16), comparison.b.substr(0, 16), "points", "95 %",
-                          "p adj.");
+                          benchmark.metrics[static_cast<std::size_t>(row.metric)].name, "A", "B",
+                          "points", "95 %", "p adj.");
       last = row.metric;
     }
     const Contrast& c = row.contrast;
@@ -326,12 +325,13 @@ std::string to_text(const Benchmark& benchmark, const Comparison& comparison) {
                     of(c.first), of(c.second), 100 * c.difference, 100 * c.interval.low,
                     100 * c.interval.high, c.adjusted, row.is_real() ? " *" : "");
   }
-  text +=
-      "\n* differs; p exact by sign flips of places of start, adjusted over categories and axes "
-      "(Holm) "
-      "and tasks (Benjamini-Hochberg, only those that differ are listed)\n";
-  for (const std::string& note : comparison.notes) text += "note: " + note + "\n";
-  return text;
+  if (last != kAbsent) {
+    text +=
+        "\n* differs; p exact by sign flips of places of start, adjusted over categories and kinds "
+        "of variant (Holm) and tasks (Benjamini-Hochberg, only those that differ are listed)\n";
+  }
+  for (const std::string& note : comparison.notes) text += "\nnote: " + note;
+  return text + "\n";
 }
 
 Json to_json(const Benchmark& benchmark, const Comparison& comparison) {

@@ -41,7 +41,7 @@ TEST_CASE("a clear difference is said first, with who is better and by how much"
         0);
   CHECK(c.rows[0].is_real());
   CHECK(c.common_starts == 24);
-  CHECK(to_text(*two.benchmark, c).find("first against second, the same 24 episodes") == 0);
+  CHECK(to_text(*two.benchmark, c).find("first (A) against second (B), the same 24 episodes") == 0);
 }
 
 TEST_CASE("where fewer is better, the one with fewer is better") {

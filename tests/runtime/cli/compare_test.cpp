@@ -1,0 +1,49 @@
+// Two runs side by side and the tables of a report, as a user asks for them.
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/runtime/cli/program.h"
+
+using probe::test::Outcome;
+using probe::test::Sandbox;
+
+namespace {
+
+Outcome run(const Sandbox& box, const std::string& policy, const std::string& rest) {
+  const Outcome outcome = box.vlaprobe("run $SUITE --assets $ASSETS --policy " + policy + " -o " +
+                                       policy + " --seeds 42 --tasks carrot_on_plate " + rest);
+  REQUIRE_MESSAGE(outcome.exit == 0, outcome.err);
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("compare says in words what differs, report gives the tables, both refuse what is none") {
+  const Sandbox box;
+  run(box, "reach", "--episodes 0-5");
+  run(box, "null", "--episodes 0-3");
+
+  const Outcome words = box.vlaprobe("compare reach null");
+  REQUIRE_MESSAGE(words.exit == 0, words.err);
+  CHECK(words.out.find("reach (A) against null (B), the same 4 episodes") == 0);
+  CHECK(words.out.find("success: no difference was seen") != std::string::npos);
+  CHECK(words.out.find("intention: the data cannot tell them apart") != std::string::npos);
+  CHECK(words.out.find("note: 4 episodes are common to both; 2 that only reach has") !=
+        std::string::npos);
+  const Outcome json = box.vlaprobe("compare reach null --json --metrics intention");
+  REQUIRE(json.exit == 0);
+  CHECK(nlohmann::json::parse(json.out)["rows"][0]["a"]["k"] == 4);
+
+  const Outcome csv = box.vlaprobe("report reach null --format csv");
+  REQUIRE_MESSAGE(csv.exit == 0, csv.err);
+  CHECK(csv.out.find("policy,metric,avg,original") == 0);
+  CHECK(csv.out.find("reach,intention,100.0") != std::string::npos);
+  CHECK(box.vlaprobe("report reach --format latex -o t.tex").exit == 0);
+  CHECK(probe::test::read_file(box / "t.tex").find("\\toprule") != std::string::npos);
+
+  CHECK(box.vlaprobe("compare reach reach").exit == 1);
+  CHECK(box.vlaprobe("compare reach nowhere").exit == 2);
+  CHECK(box.vlaprobe("compare reach null --metrics sucess").exit == 1);
+  CHECK(box.vlaprobe("report reach").exit == 1);
+}
