@@ -379,10 +379,10 @@ class Loader {
                         [&](const Policy& other) { return other.name == policy.name; });
       if (same < 2 || policy.runs.empty()) continue;
       policy.label = fmt::format("{} ({})", policy.name, policy.runs[0].dir);
-      const bool is_first =
-          std::none_of(benchmark_.policies.data(), static_cast<const Policy*>(&policy),
+      const auto first =
+          std::find_if(benchmark_.policies.begin(), benchmark_.policies.end(),
                        [&](const Policy& other) { return other.name == policy.name; });
-      if (is_first) {
+      if (&*first == &policy) {
         note("note", fmt::format("policy `{}` was run more than once; its runs stand apart, each "
                                  "with its folder",
                                  policy.name));
