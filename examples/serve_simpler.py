@@ -109,7 +109,7 @@ class Connection(socketserver.StreamRequestHandler):
             if len(message) + size > 64 << 20:
                 break
             mask, data = (numpy.frombuffer(self.rfile.read(n), "u1") for n in (4, size))
-            data = (data ^ numpy.resize(mask, len(data))).tobytes()
+            data = (data ^ numpy.tile(mask, size // 4 + 1)[:size]).tobytes()
             if head[0] & 15 == 9:
                 self.send(10, data)
             elif head[0] & 15 < 3:
