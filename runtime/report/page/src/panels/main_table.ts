@@ -65,5 +65,5 @@ export function mainTable(state: State): Panel {
       flags.length ? h("div", { class: "flags" }, h("h3", {}, "\u2691 Published numbers that no count of episodes gives"), h("ul", {}, flags.map((flag) => h("li", {}, flag)))) : null);
   });
   return panel("main", "Main table",
-    ["Percent of valid episodes, with the count beneath and the ", `${Math.round(100 * (data.confidence ?? 0.95))} % interval beside it. `, data.interval ?? ""], holder);
+    ["Percent of valid episodes, beneath it their count and the interval. ", data.interval ?? `Intervals: ${Math.round(100 * (data.confidence ?? 0.95))} %.`], holder);
 }
