@@ -31,6 +31,7 @@ void loop(benchmark::State& state, const std::string& policy, int jobs) {
     options.jobs = jobs;
     options.assets = probe::bench::asset_root();
     options.tasks = "carrot_on_plate";
+    options.seeds = {42};
     const auto summary = need(probe::run::run(plan, options));
     call = summary.call;
     if (summary.done != episodes || summary.invalid != 0)

@@ -120,7 +120,9 @@ TEST_CASE("four array tasks, one killed and requeued, merged: the rows of a sing
     if (!waited_for(some_rows)) return;
     const std::string job = read_file(out + "/slurm/job").value();
     CHECK(run_program({"scontrol", "requeue", job + "_2"})->status == 0);
+    // A node takes a job again only in a later second than the one it was killed in; by itself
     // Slurm lets a requeued task wait for two minutes.
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
     CHECK(waited_for([&] {
       const auto hurried =
           run_program({"scontrol", "update", "JobId=" + job + "_2", "StartTime=now"});

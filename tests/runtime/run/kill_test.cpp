@@ -39,7 +39,7 @@ std::vector<ResultRow> rows_of(const std::string& dir) {
 
 TEST_CASE("ten kills at random moments: each episode once, with the undisturbed run's traces") {
   TemporaryFolder folder;
-  const plan::Plan plan = table_plan(24, 6);
+  const plan::Plan plan = table_plan(12, 6);
   const RunOptions options = options_for(folder / "killed");
   policy::Draws draws(7);
   int killed = 0;
@@ -47,7 +47,7 @@ TEST_CASE("ten kills at random moments: each episode once, with the undisturbed 
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
     if (child == 0) ::_exit(run(plan, options).ok() ? 0 : 1);
-    ::usleep(static_cast<useconds_t>(150'000 + 500'000 * draws.uniform()));
+    ::usleep(static_cast<useconds_t>(100'000 + 300'000 * draws.uniform()));
     ::kill(child, SIGKILL);
     int status = 0;
     ::waitpid(child, &status, 0);
@@ -56,7 +56,7 @@ TEST_CASE("ten kills at random moments: each episode once, with the undisturbed 
   CHECK(killed > 0);
   const auto summary = run(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
-  CHECK(summary->total == 48);
+  CHECK(summary->total == 24);
   const auto undisturbed = run(plan, options_for(folder / "calm"));
   REQUIRE_MESSAGE(undisturbed.ok(), to_text(undisturbed.failure()));
   CHECK(rows_of(folder / "killed") == rows_of(folder / "calm"));
@@ -87,15 +87,15 @@ class SmallDisk {
 
 TEST_CASE("a full disk ends the run with its reason and loses nothing that was stored") {
   TemporaryFolder folder;
-  const plan::Plan plan = table_plan(24, 20);
-  SmallDisk disk(folder / "disk", "500k");
+  const plan::Plan plan = table_plan(8, 20);
+  SmallDisk disk(folder / "disk", "140k");
   if (!disk.mounted()) {
     MESSAGE("skipped: only root may mount a small disk");
     return;
   }
   const RunOptions options = options_for(folder / "disk/run");
   std::size_t stored = 0;
-  for (const char* size : {"500k", "600k", "700k"}) {
+  for (const char* size : {"140k", "180k", "220k"}) {
     disk.grow(size);
     const auto full = run(plan, options);
     REQUIRE_FALSE(full.ok());
@@ -110,7 +110,7 @@ TEST_CASE("a full disk ends the run with its reason and loses nothing that was s
     }
   }
   CHECK(stored > 0);
-  CHECK(stored < 48);
+  CHECK(stored < 16);
   disk.grow("64m");
   const auto summary = run(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
