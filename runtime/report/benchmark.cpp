@@ -233,7 +233,7 @@ class Loader {
     task.name = plan.text(record.name);
     for (const Task& other : benchmark_.tasks) {
       if (other.name != task.name) continue;
-      task.name += fmt::format(" (plan {})", to_hex(plan.root()).substr(0, 8));
+      task.name = name_apart(task.name, to_hex(plan.root()));
       two_meanings_.push_back(other.name);
       break;
     }
@@ -558,6 +558,10 @@ class Loader {
 };
 
 }  // namespace
+
+std::string name_apart(const std::string& task, const std::string& root) {
+  return fmt::format("{} (plan {})", task, root.substr(0, 8));
+}
 
 std::string_view to_text(Role role) {
   switch (role) {

@@ -127,6 +127,10 @@ struct Benchmark {
   std::vector<std::size_t> first;  // episode of policy * tasks + task, and the end
 };
 
+// What a task is called whose name means another task in a plan before: "stack_cube (plan
+// 4385c74b)".
+std::string name_apart(const std::string& task, const std::string& root);
+
 struct LoadOptions {
   std::vector<std::string> sets = {};  // columns of the tables; empty: the plan's finest sets
   bool join = true;                    // runs of one policy that do not overlap are one policy's

@@ -33,7 +33,9 @@ std::vector<Category> all_sets(const Benchmark& benchmark) {
         at = sets.end() - 1;
       }
       for (const std::uint32_t t : plan.members(record)) {
-        const auto task = by_name.find(std::string(plan.text(plan.tasks()[t].name)));
+        const std::string task_name(plan.text(plan.tasks()[t].name));
+        auto task = by_name.find(name_apart(task_name, to_hex(plan.root())));
+        if (task == by_name.end()) task = by_name.find(task_name);
         if (task != by_name.end()) at->tasks.push_back(task->second);
       }
       std::sort(at->tasks.begin(), at->tasks.end());

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runtime/plan/axis_names.h"
+#include "runtime/report/models.h"
 #include "runtime/report/page_data.h"
 #include "runtime/stats/design.h"
 #include "runtime/stats/multiplicity.h"
@@ -196,11 +197,25 @@ std::string listed(const std::vector<const ComparedRow*>& rows) {
   return text;
 }
 
-void say(const Benchmark& benchmark, Comparison& comparison) {
+// Of what was found: when a look after every start would have stopped.
+void say_when_enough(const Benchmark& benchmark, int a, int b, Comparison& comparison,
+                     const ComparedRow& row) {
+  if (!row.is_real()) return;
+  for (const SequentialRow& looked : sequential(benchmark, row.metric)) {
+    if (looked.a != a || looked.b != b || !looked.stopped) continue;
+    comparison.words.push_back(
+        fmt::format("  looked at after every start, {} of {} starts would have been enough "
+                    "(anytime-valid, {}).",
+                    looked.used, looked.starts, p_text(looked.p)));
+  }
+}
+
+void say(const Benchmark& benchmark, int a, int b, Comparison& comparison) {
   for (const ComparedRow& row : comparison.rows) {
     if (row.scope != Scope::kAll) continue;
     comparison.words.push_back(verdict(benchmark, comparison, row));
     if (!differs_anywhere(row.contrast)) continue;
+    say_when_enough(benchmark, a, b, comparison, row);
     const auto add = [&](Scope scope, const char* one, const char* many, const char* method) {
       std::vector<const ComparedRow*> real;
       std::size_t total = 0;
@@ -210,8 +225,8 @@ void say(const Benchmark& benchmark, Comparison& comparison) {
         if (other.is_real()) real.push_back(&other);
       }
       if (total == 0) return;
-      std::stable_sort(real.begin(), real.end(), [](const ComparedRow* a, const ComparedRow* b) {
-        return std::abs(a->contrast.difference) > std::abs(b->contrast.difference);
+      std::stable_sort(real.begin(), real.end(), [](const ComparedRow* x, const ComparedRow* y) {
+        return std::abs(x->contrast.difference) > std::abs(y->contrast.difference);
       });
       comparison.words.push_back(
           real.empty() ? fmt::format("  no {} of {} differs for certain ({}).", one, total, method)
@@ -298,7 +313,7 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
   }
   for (const Note& note : benchmark.notes) comparison.notes.push_back(note.text);
   comparison.rows = Comparer(benchmark, a, b, shared.tasks).rows(metrics);
-  say(benchmark, comparison);
+  say(benchmark, a, b, comparison);
   return comparison;
 }
 

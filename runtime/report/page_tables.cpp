@@ -197,7 +197,9 @@ Json external_json(const Benchmark& benchmark, const std::vector<PublishedTable>
       auto at = column(category.name);
       if (!at) at = column(category.label);
       columns.push_back(at);
-      tasks.push_back(static_cast<std::int64_t>(category.tasks.size()));
+      tasks.push_back(std::count_if(category.tasks.begin(), category.tasks.end(), [&](int t) {
+        return benchmark.tasks[static_cast<std::size_t>(t)].plan == 0;
+      }));
     }
     // Theirs have no starts of ours: a task is worth the suite's starts and seeds.
     std::int64_t per_task = 0;

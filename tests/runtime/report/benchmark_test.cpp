@@ -118,6 +118,10 @@ TEST_CASE("runs of different plans are joined where tasks agree and kept apart w
   CHECK(says(benchmark, "the runs are of 2 plans"));
   CHECK(says(benchmark, "tasks mean different things in different plans"));
   CHECK(benchmark.tasks.size() > 50);
+  // Each plan's tasks are in the columns.
+  const int success = benchmark.find_metric("success");
+  for (int policy = 0; policy < 2; ++policy)
+    CHECK(estimate(benchmark, policy, success, benchmark.categories[0].tasks)->count.n == 2);
 }
 
 TEST_CASE("what a name says is text, whatever it looks like") {
