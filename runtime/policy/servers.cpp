@@ -61,6 +61,7 @@ Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument)
   // An image option stands for all of the file's: it could not name the one it replaces.
   if (options.contains("image")) profile.images.clear();
   for (const auto& [field, value] : options) {
+    if (field == "protocol") return usage("`protocol` is what stands before `://`");
     if (auto set = set_field(profile, field, value); !set) {
       std::vector<std::string> own = entry.own_options();
       own.emplace_back("profile");
