@@ -6,6 +6,7 @@
 #include "runtime/base/sha256.h"
 #include "runtime/policy/conversion.h"
 #include "runtime/policy/resize.h"
+#include "runtime/policy/servers.h"
 
 namespace probe::policy {
 namespace {
@@ -148,6 +149,12 @@ Deadlines ServerPolicy::deadlines() const {
 
 Failure ServerPolicy::named(Failure failure) const {
   if (failure.where.empty()) failure.where = server_;
+  // A server may repeat the key that it refuses; this text is stored.
+  if (const std::string key = api_key(); !key.empty()) {
+    for (std::size_t at = 0; (at = failure.message.find(key, at)) != std::string::npos; ++at) {
+      failure.message.replace(at, key.size(), "*");
+    }
+  }
   return failure;
 }
 

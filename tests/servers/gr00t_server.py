@@ -92,7 +92,7 @@ def reset(request):
 
 def answer(request):
     if "token" in options and request.get("api_token") != options["token"]:
-        return {"error": "Unauthorized: Invalid API token"}
+        return {"error": f"Unauthorized: Invalid API token {request.get('api_token')}"}
     endpoint = request.get("endpoint", "get_action")
     if endpoint == "ping":
         return {"status": "ok", "message": "Server is running"}

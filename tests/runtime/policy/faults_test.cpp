@@ -184,6 +184,7 @@ TEST_CASE("a server's bad answer ends one episode, with its reason, and the next
 TEST_CASE("what listens and is no policy server is told from one that is not there") {
   for (const Fault& fault : kConnectionFaults) {
     for (std::size_t p = 0; p < std::size(kProtocols); ++p) {
+      if (kProtocols[p].name == std::string("intact")) continue;  // connects as openpi does
       CAPTURE(std::string(kProtocols[p].name));
       CAPTURE(std::string(fault.name));
       const PythonServer server("fault_server.py",
