@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "runtime/inspect/axes.h"
+
 namespace probe::report {
 namespace {
 
@@ -66,6 +68,17 @@ bool are_originals(const Benchmark& benchmark, const Category& set) {
 }
 
 }  // namespace
+
+bool is_worded(const Benchmark& benchmark, int category) {
+  bool any = false;
+  for (const int t : benchmark.categories[static_cast<std::size_t>(category)].tasks) {
+    const Task& task = benchmark.tasks[static_cast<std::size_t>(t)];
+    if (task.baseline == kAbsent) continue;
+    if ((task.axes & inspect::kLanguageAxes) == 0) return false;
+    any = true;
+  }
+  return any;
+}
 
 std::string category_label(const std::string& name) {
   static const std::map<std::string, std::string> kWords = {

@@ -13,6 +13,9 @@ namespace probe::report {
 // a baseline comes first. Unknown names, tasks in no column and tasks in several are notes.
 void find_categories(Benchmark& benchmark, const std::vector<std::string>& sets);
 
+// Whether every variant of the category says something else than its baseline.
+bool is_worded(const Benchmark& benchmark, int category);
+
 // "ood_source_target" -> "OOD source + target", "core" of the originals -> "original".
 std::string category_label(const std::string& name);
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "runtime/base/file.h"
+#include "runtime/report/categories.h"
 #include "runtime/report/models.h"
 #include "runtime/report/page_data.h"
 
@@ -61,20 +62,11 @@ Json by_task_json(const Benchmark& benchmark, const Tables& tables) {
   return json;
 }
 
-// The category's variants beside their own baselines: the language categories are those in which
-// some task moves a language axis against its baseline.
+// Categories of other words: variants beside their own baselines.
 Json language_json(const Benchmark& benchmark, const Tables& tables) {
-  const auto is_worded = [&](int category) {
-    for (const int t : benchmark.categories[static_cast<std::size_t>(category)].tasks) {
-      for (const std::string& axis : benchmark.tasks[static_cast<std::size_t>(t)].axis_names) {
-        if (axis.rfind("language.", 0) == 0) return true;
-      }
-    }
-    return false;
-  };
   Json rows = Json::array();
   for (const CategoryDeltaRow& row : tables.category_deltas) {
-    if (!is_worded(row.category)) continue;
+    if (!is_worded(benchmark, row.category)) continue;
     Json json = {{"policy", row.policy}, {"metric", row.metric}, {"category", row.category}};
     put(json, row.contrast);
     rows.push_back(std::move(json));

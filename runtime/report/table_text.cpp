@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "runtime/report/categories.h"
 #include "runtime/report/page_data.h"
 
 namespace probe::report {
@@ -269,50 +270,46 @@ std::string tex_main(const Benchmark& benchmark, const Tables& tables,
          "the 95\\,\\% interval.}\n\\end{table}\n";
 }
 
-bool is_worded(const Benchmark& benchmark, int category) {
-  for (const int t : benchmark.categories[static_cast<std::size_t>(category)].tasks) {
-    for (const std::string& axis : benchmark.tasks[static_cast<std::size_t>(t)].axis_names) {
-      if (axis.rfind("language.", 0) == 0) return true;
-    }
-  }
-  return false;
-}
-
 std::string tex_count(const stats::Count& count) {
-  return fmt::format("\\cell{{{:.1f}}}{{{}/{}}}{{}}", 100 * count.rate(), count.k, count.n);
+  return fmt::format("{:.1f} {{\\tiny {}/{}}}", 100 * count.rate(), count.k, count.n);
 }
 
 std::string tex_differences(const Benchmark& benchmark, const Tables& tables, bool language) {
-  std::string text =
-      "\\begin{table}\n\\centering\\footnotesize\n\\begin{tabular}{lllrrrr}\n"
-      "\\toprule\npolicy & category & metric & baseline & variant & points (95\\,\\%) "
-      "& $p$ (Holm) \\\\\n";
-  int last = kAbsent;
-  bool any = false;
+  const std::string head =
+      "policy & metric & category & baseline & variant & points (95\\,\\%) & $p$ (Holm) \\\\\n";
+  std::string text = "\\begin{longtable}{lllrrrr}\n\\toprule\n" + head +
+                     "\\endfirsthead\n\\toprule\n" + head + "\\midrule\n\\endhead\n";
+  int policy = kAbsent, metric = kAbsent;
   for (const CategoryDeltaRow& row : tables.category_deltas) {
     if (is_worded(benchmark, row.category) != language) continue;
-    any = true;
-    if (row.policy != last) text += "\\midrule\n";
+    if (row.policy != policy) {
+      text += "\\midrule\n";
+      metric = kAbsent;
+    }
     const Contrast& c = row.contrast;
-    text += fmt::format(
-        "{} & {} & {} & {} & {} & ${:+.1f}$ (${:.1f}$ to ${:.1f}$) & {:.2g} \\\\\n",
-        row.policy == last ? std::string() : tex(policy_label(benchmark, row.policy)),
-        tex(benchmark.categories[static_cast<std::size_t>(row.category)].label),
-        tex(metric_name(benchmark, row.metric)), tex_count(c.second), tex_count(c.first),
-        100 * c.difference, 100 * c.interval.low, 100 * c.interval.high, c.adjusted);
-    last = row.policy;
+    text +=
+        fmt::format("{} & {} & {} & {} & {} & ${:+.1f}$ (${:.1f}$ to ${:.1f}$) & {:.2g} \\\\\n",
+                    row.policy == policy ? std::string() : tex(policy_label(benchmark, row.policy)),
+                    row.metric == metric ? std::string() : tex(metric_name(benchmark, row.metric)),
+                    tex(benchmark.categories[static_cast<std::size_t>(row.category)].label),
+                    tex_count(c.second), tex_count(c.first), 100 * c.difference,
+                    100 * c.interval.low, 100 * c.interval.high, c.adjusted);
+    policy = row.policy;
+    metric = row.metric;
   }
-  if (!any) return "";
-  return text + "\\bottomrule\n\\end{tabular}\n\\caption{" +
-         (language ? "Language variation" : "Object and scene variation") +
-         ": variants beside their own baselines on the same starts, exact tests.}\n\\end{table}\n";
+  if (policy == kAbsent) return "";
+  return text + "\\bottomrule\n\\caption{" +
+         (language ? "Language variation" : "Variation of objects and scene") +
+         ": variants beside their own baselines on the same starts, exact tests.}\n"
+         "\\end{longtable}\n";
 }
 
 std::string to_latex(const Benchmark& benchmark, const Tables& tables,
                      const std::vector<PublishedTable>& published) {
   return "\\documentclass{article}\n\\usepackage[T1]{fontenc}\n\\usepackage[utf8]{inputenc}\n"
-         "\\usepackage{booktabs}\n\\usepackage[landscape,margin=5mm,paperwidth=600mm,"
-         "paperheight=900mm]{geometry}\n"
+         "\\usepackage{booktabs,longtable}\n\\usepackage[margin=15mm,papersize={420mm,594mm}]{"
+         "geometry}"
+         "\n"
          "% rate, count, interval\n"
          "\\newcommand{\\cell}[3]{\\begin{tabular}[t]{@{}r@{}}#1\\\\[-3pt]{\\tiny #2}\\\\[-4pt]"
          "{\\tiny #3}\\end{tabular}}\n"

@@ -18,8 +18,8 @@ std::optional<TableFormat> table_format(std::string_view name);  // "csv", "json
 //   count `COLUMN_k`, `COLUMN_n` and interval `COLUMN_low`, `COLUMN_high`; published tables follow
 //   as rows without counts, their source in the last column. parse_published reads the percentages.
 // json: {main, language, deltas, category_deltas, ...} with names in place of indices.
-// latex: a document of booktabs tables: main table, language variation, differences by category.
-//   The input of a paper is what stands between \begin{table} and \end{table}.
+// latex: a document of booktabs tables: main table, language variation, other differences by
+//   category. For a paper take a table and the two commands before the document begins.
 // Every percentage has its count beside it.
 std::string table_text(const Benchmark& benchmark, const Tables& tables,
                        const std::vector<PublishedTable>& published, TableFormat format);
