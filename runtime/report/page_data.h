@@ -27,6 +27,14 @@ inline nlohmann::ordered_json page_data(const Benchmark& benchmark, const PageOp
 // Its parts.
 nlohmann::ordered_json tables_json(const Benchmark& benchmark, const Tables& tables,
                                    const PageOptions& options);
+// Of how many tasks a published percentage is, over all and by category, and how many episodes each
+// has: theirs have no starts of ours, so the first plan's suite and seeds stand for them.
+struct PublishedSizes {
+  std::vector<std::int64_t> tasks;
+  std::int64_t per_task = 0;
+};
+PublishedSizes published_sizes(const Benchmark& benchmark);
+
 nlohmann::ordered_json external_json(const Benchmark& benchmark,
                                      const std::vector<PublishedTable>& published);
 // [{level, text, see}], most important first.

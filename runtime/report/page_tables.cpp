@@ -174,7 +174,23 @@ constexpr std::size_t kMostPairs = 300;
 
 }  // namespace
 
+PublishedSizes published_sizes(const Benchmark& benchmark) {
+  PublishedSizes sizes;
+  sizes.tasks.push_back(static_cast<std::int64_t>(benchmark.tasks.size()));
+  for (const Category& category : benchmark.categories) {
+    sizes.tasks.push_back(std::count_if(category.tasks.begin(), category.tasks.end(), [&](int t) {
+      return benchmark.tasks[static_cast<std::size_t>(t)].plan == 0;
+    }));
+  }
+  if (benchmark.plans.empty() || benchmark.plans[0].tasks == 0) return sizes;
+  const PlanInfo& plan = benchmark.plans[0];
+  sizes.tasks[0] = plan.tasks;
+  sizes.per_task = static_cast<std::int64_t>(plan.starts) / plan.tasks * plan.seeds;
+  return sizes;
+}
+
 Json external_json(const Benchmark& benchmark, const std::vector<PublishedTable>& published) {
+  const auto [tasks, per_task] = published_sizes(benchmark);
   Json tables = Json::array();
   for (const PublishedTable& table : published) {
     const auto column = [&](const std::string& name) -> std::optional<std::size_t> {
@@ -184,21 +200,10 @@ Json external_json(const Benchmark& benchmark, const std::vector<PublishedTable>
     };
     std::vector<std::optional<std::size_t>> columns = {column("avg")};
     if (!columns[0]) columns[0] = column("all");
-    std::vector<std::int64_t> tasks = {static_cast<std::int64_t>(benchmark.tasks.size())};
     for (const Category& category : benchmark.categories) {
       auto at = column(category.name);
       if (!at) at = column(category.label);
       columns.push_back(at);
-      tasks.push_back(std::count_if(category.tasks.begin(), category.tasks.end(), [&](int t) {
-        return benchmark.tasks[static_cast<std::size_t>(t)].plan == 0;
-      }));
-    }
-    // Theirs have no starts of ours: a task is worth the suite's starts and seeds.
-    std::int64_t per_task = 0;
-    if (!benchmark.plans.empty() && benchmark.plans[0].tasks > 0) {
-      const PlanInfo& plan = benchmark.plans[0];
-      tasks[0] = plan.tasks;
-      per_task = static_cast<std::int64_t>(plan.starts) / plan.tasks * plan.seeds;
     }
     Json rows = Json::array();
     for (const PublishedRow& row : table.rows) {

@@ -248,6 +248,8 @@ std::string tex_main(const Benchmark& benchmark, const Tables& tables,
     text += " \\\\\n";
   }
   const std::vector<std::string> names = column_names(benchmark);
+  const auto [tasks, per_task] = published_sizes(benchmark);
+  bool flagged = false;
   for (const PublishedTable& table : published) {
     text += fmt::format(
         "\\midrule\n\\multicolumn{{{}}}{{l}}{{\\emph{{published, without counts: {}}}}} "
@@ -261,13 +263,19 @@ std::string tex_main(const Benchmark& benchmark, const Tables& tables,
         const auto cell =
             published_cell(table, row, names[c], c == 0 ? nullptr : &benchmark.categories[c - 1]);
         text += " & " + (cell ? tex(cell->text) : "--");
+        if (cell && impossible(*cell, tasks[c], per_task)) {
+          text += "\\rlap{\\textsuperscript{?}}";
+          flagged = true;
+        }
       }
       text += " \\\\\n";
     }
   }
   return text +
          "\\bottomrule\n\\end{tabular}\n\\caption{Percent of episodes; below, the count and "
-         "the 95\\,\\% interval.}\n\\end{table}\n";
+         "the 95\\,\\% interval." +
+         (flagged ? std::string(" ?: no count of so many episodes gives this percentage.") : "") +
+         "}\n\\end{table}\n";
 }
 
 std::string tex_count(const stats::Count& count) {
