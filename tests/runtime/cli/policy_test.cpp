@@ -1,0 +1,37 @@
+// The verb `policy` as a user types it.
+#include <doctest/doctest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/runtime/cli/program.h"
+
+namespace probe::test {
+
+TEST_CASE("ready profiles are listed, and the one to copy is read back") {
+  const Sandbox sandbox;
+  const Outcome list = sandbox.vlaprobe("policy profiles");
+  CHECK(list.exit == 0);
+  CHECK(list.out.find("pi0_bridge ") != std::string::npos);
+  const Outcome copy = sandbox.vlaprobe("policy profiles copy_me");
+  REQUIRE(copy.exit == 0);
+  write_file(sandbox / "mine.profile", copy.out);
+  CHECK(sandbox.vlaprobe("policy profiles ./mine.profile").exit == 0);
+  write_file(sandbox / "mine.profile", copy.out + "chunk.uze = 4\n");
+  const Outcome slip = sandbox.vlaprobe("policy profiles ./mine.profile");
+  CHECK(slip.exit == 1);
+  CHECK(slip.err.find("did you mean `chunk.use`?") != std::string::npos);
+}
+
+TEST_CASE("a policy test of no server is an error, of an absent one a finding") {
+  const Sandbox sandbox;
+  const Outcome expert = sandbox.vlaprobe("policy test expert");
+  CHECK(expert.exit == 1);
+  CHECK(expert.err.find("`expert` is no server") != std::string::npos);
+  const Outcome absent = sandbox.vlaprobe("policy test openpi://127.0.0.1:1 --json");
+  CHECK(absent.exit == 2);
+  const auto json = nlohmann::json::parse(absent.out);
+  CHECK(json["checks"][0]["name"] == "connection");
+  CHECK(json["checks"][0]["verdict"] == "wrong");
+}
+
+}  // namespace probe::test
