@@ -199,7 +199,7 @@ TEST_CASE("scenes with every statement") {
   surface 87cm area (-34cm, -20cm) .. (4cm, 20cm)
   fixture "sink" at (1cm, 2cm, 3cm)
   backdrop "room"
-  camera c overlay "o.png"; camera d
+  camera c overlay "o.png"; camera d, e as wrist
   light l
   physics 500Hz friction 0.5 window step
 })");
@@ -209,8 +209,14 @@ TEST_CASE("scenes with every statement") {
   CHECK(as<SceneRobotStmt>(body[0]).at.coordinates.size() == 3);
   CHECK(as<JointsStmt>(body[1]).positions.coordinates[0].unit == Unit::kRadian);
   CHECK(as<BackdropStmt>(body[4]).mesh.value == "room");
-  CHECK(as<SceneCameraStmt>(body[5]).overlay->value == "o.png");
-  CHECK(!as<SceneCameraStmt>(body[6]).overlay);
+  REQUIRE(as<SceneCameraStmt>(body[5]).cameras.size() == 1);
+  CHECK(as<SceneCameraStmt>(body[5]).cameras[0].overlay->value == "o.png");
+  const auto& cameras = as<SceneCameraStmt>(body[6]).cameras;
+  REQUIRE(cameras.size() == 2);
+  CHECK(!cameras[0].overlay);
+  CHECK(!cameras[0].as);
+  CHECK(cameras[1].camera.text == "e");
+  CHECK(cameras[1].as->text == "wrist");
   CHECK(as<PhysicsStmt>(body[8]).window_step);
 }
 
@@ -316,7 +322,7 @@ TEST_CASE("metrics say how their signal is read out") {
 
 TEST_CASE("tasks and variants with every statement") {
   const Parsed parsed(R"(abstract task a like b against c {
-  scene s; layout l; source x; target y; metrics m; light i; camera k
+  scene s; layout l; source x; target y; metrics m; light i; camera k as wrist
   distractors p, q; distractors none
   say put; say "put {source}"
   refer source as by_color; refer target as r
@@ -334,7 +340,8 @@ variants of a {
   CHECK(task.abstract);
   CHECK(task.against->text == "c");
   REQUIRE(task.body.size() == 16);
-  CHECK(as<FieldStmt>(task.body[6]).field == TaskField::kCamera);
+  CHECK(as<TaskCameraStmt>(task.body[6]).camera.text == "k");
+  CHECK(as<TaskCameraStmt>(task.body[6]).as->text == "wrist");
   CHECK(as<DistractorsStmt>(task.body[7]).objects.size() == 2);
   CHECK(as<DistractorsStmt>(task.body[8]).objects.empty());
   CHECK(std::get<Name>(as<SayStmt>(task.body[9]).what).text == "put");
