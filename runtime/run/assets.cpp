@@ -94,7 +94,8 @@ Result<std::string> find_asset_root(std::string_view chosen) {
   for (const std::string& place : {beside.empty() ? beside : beside + "/../assets",
                                    std::string(VLAPROBE_BUILT_FROM) + "/assets"}) {
     if (place.empty()) continue;
-    if (fs::is_directory(place)) return fs::path(place).lexically_normal().string();
+    // A build folder has an `assets` too, without a manifest.
+    if (fs::exists(place + "/manifest.json")) return fs::path(place).lexically_normal().string();
     looked += (looked.empty() ? "" : ", ") + place;
   }
   return Failure{
