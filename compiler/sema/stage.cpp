@@ -11,6 +11,8 @@
 namespace probe::sema {
 namespace {
 
+constexpr std::uint32_t kLargestSide = 8192;  // of a picture as it is traced
+
 template <std::size_t N>
 void assign(std::array<double, N>& to, const std::optional<std::vector<Quantity>>& from) {
   if (!from) return;
@@ -308,6 +310,15 @@ struct CameraReader {
       context.report(Code::P0304, stmt.samples->span, "expected 1, 4 or 16 samples a pixel");
       return;
     }
+    // The renderer traces a picture of all samples and averages it.
+    const std::uint32_t across = samples == 16 ? 4 : samples == 4 ? 2 : 1;
+    if (std::max(camera.width, camera.height) * across > kLargestSide) {
+      context.report(Code::P0304, stmt.samples->span,
+                     "with " + std::to_string(samples) +
+                         " samples a pixel an image side is at most " +
+                         std::to_string(kLargestSide / across) + " pixels");
+      return;
+    }
     if (samples > 1) camera.samples = static_cast<std::uint32_t>(samples);
   }
   void operator()(const syntax::LensStmt& stmt) {
@@ -324,7 +335,8 @@ struct CameraReader {
     }
   }
   std::uint32_t size(const syntax::Int& value) {
-    if (value.value >= 1 && value.value <= 8192) return static_cast<std::uint32_t>(value.value);
+    if (value.value >= 1 && value.value <= kLargestSide)
+      return static_cast<std::uint32_t>(value.value);
     context.report(Code::P0304, value.span, "expected an image side between 1 and 8192 pixels");
     return 1;
   }

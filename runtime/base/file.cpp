@@ -23,10 +23,23 @@ std::string next_suffix() {
   return "." + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".tmp";
 }
 
+// Where a symbolic link leads, also one whose file is not there yet.
+std::string without_links(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::filesystem::path place = path;
+  std::error_code error;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(place, error); ++i) {
+    const auto next = std::filesystem::read_symlink(place, error);
+    if (error) break;
+    place = next.is_absolute() ? next : place.parent_path() / next;
+  }
+  return place.string();
+}
+
 }  // namespace
 
 PendingFile::PendingFile(std::string path)
-    : path_(std::move(path)), temporary_(path_ + next_suffix()) {}
+    : path_(std::move(path)), target_(without_links(path_)), temporary_(target_ + next_suffix()) {}
 
 PendingFile::~PendingFile() {
   if (!kept_) std::remove(temporary_.c_str());
@@ -40,7 +53,15 @@ Status PendingFile::keep() {
   ::close(file);
   errno = error;
   if (!synced) return io_failure("cannot be forced to the disk", path_);
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+  std::error_code ignored;
+  const auto present = std::filesystem::status(target_, ignored).type();
+  if (present != std::filesystem::file_type::regular &&
+      present != std::filesystem::file_type::not_found) {
+    return {Failure{.code = "io",
+                    .message = "is a folder, a device or a pipe and is not replaced",
+                    .where = path_}};
+  }
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
     return io_failure("cannot be renamed", path_);
   }
   kept_ = true;

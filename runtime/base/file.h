@@ -10,8 +10,8 @@
 
 namespace probe {
 
-// A file in the making. Whoever writes does so at temporary(); keep() puts the file into its place,
-// and without it nothing is left.
+// A file in the making, in place of what a symbolic link at `path` points to. Whoever writes does
+// so at temporary(); keep() puts the file into its place, and without it nothing is left.
 class PendingFile {
  public:
   // `path` with a suffix that ends in ".tmp": in the same folder, so that renaming is one step.
@@ -24,11 +24,11 @@ class PendingFile {
   const std::string& temporary() const { return temporary_; }
 
   // After the last byte was written and the file closed. Fails (code "io", where = path); the file
-  // is then gone.
+  // is then gone. What is no regular file (a device, a pipe, a folder) is never replaced.
   Status keep();
 
  private:
-  std::string path_, temporary_;
+  std::string path_, target_, temporary_;
   bool kept_ = false;
 };
 

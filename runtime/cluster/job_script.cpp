@@ -88,6 +88,33 @@ bool has_line_break(std::string_view text) {
   return text.find_first_of("\n\r") != std::string_view::npos;
 }
 
+// One word of a #SBATCH line. sbatch ends a word at a blank outside quotes and takes the rest after
+// `#` for a comment; unlike in a shell, a backslash counts inside both kinds of quotes.
+std::string sbatch_word(std::string_view text) {
+  if (!text.empty() && text.find_first_of(" \t\v\f\"'\\#") == std::string_view::npos) {
+    return std::string(text);
+  }
+  std::string word = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') word += '\\';
+    word += c;
+  }
+  return word + "\"";
+}
+
+// An option as it is given, `--name=value`, `--name value`, `-n value` or `-nvalue`, for a #SBATCH
+// line: all of the value is one word.
+std::string sbatch_option(std::string_view option) {
+  constexpr std::size_t kShortName = 2;
+  std::size_t end = option.starts_with("--") ? option.find_first_of("= ") : kShortName;
+  if (end >= option.size()) return sbatch_word(option);
+  std::size_t value = option.find_first_not_of(' ', end);
+  if (value == std::string_view::npos) return sbatch_word(option.substr(0, end));
+  if (option[end] == '=') value = ++end;
+  return sbatch_word(option.substr(0, end)) + (option[end - 1] != '=' && value > end ? " " : "") +
+         sbatch_word(option.substr(value));
+}
+
 }  // namespace
 
 std::string shell_word(std::string_view text) {
@@ -138,7 +165,7 @@ Result<std::string> to_text(const JobScript& script) {
     if (has_line_break(option) || !option.starts_with("-")) {
       return usage("`" + option + "` is not one option, as --partition=gpu is", "--sbatch");
     }
-    text += "#SBATCH " + option + "\n";
+    text += "#SBATCH " + sbatch_option(option) + "\n";
   }
   text += "\nout=" + shell_word(script.out) + "\n";
   text += "shards=" + std::to_string(script.tasks) + "\n";

@@ -81,6 +81,9 @@ Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite)
   }
   PROBE_ASSIGN(report.ray_engine, render::describe_ray_engine());
   report.mesh_cache = scene::default_mesh_cache();
+  report.golden_folder = golden_folder();
+  report.own_assets = report.golden_folder.empty() || shown_in_golden(report.asset_root);
+  if (!report.own_assets) return report;
   PROBE_ASSIGN(auto frames, draw_golden_frames(report.asset_root));
   const auto plan = suite(report.asset_root);
   auto starts = plan ? draw_first_frames(*plan, report.asset_root)
@@ -92,7 +95,6 @@ Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite)
   }
   PROBE_ASSIGN(const GoldenSettle settle, settle_golden_objects(report.asset_root));
   report.settle_state = to_hex(settle.state);
-  report.golden_folder = golden_folder();
   if (!report.golden_folder.empty()) {
     PROBE_ASSIGN(report.golden, check_golden(report.golden_folder, frames, settle));
   }
@@ -110,6 +112,7 @@ std::string to_json(const DoctorReport& report, const std::string& version) {
   json["assets"] = {
       {"root", report.asset_root}, {"files", report.asset_files}, {"damage", report.asset_damage}};
   json["mesh_cache"] = report.mesh_cache;
+  json["own_assets"] = report.own_assets;
   json["settle"]["state"] = report.settle_state;
   json["suite"] = nullptr;
   if (!report.no_suite.empty()) json["suite"] = report.no_suite;
@@ -146,6 +149,10 @@ std::string to_text(const DoctorReport& report, const std::string& version) {
                            std::to_string(report.asset_damage.size()) + " damaged");
   for (const std::string& damage : report.asset_damage) line("", damage);
   line("mesh cache", report.mesh_cache.empty() ? "none" : report.mesh_cache);
+  if (!report.own_assets) {
+    line("golden pictures", "not compared: they show vlaprobe's own assets, these are others");
+    return out;
+  }
   if (!report.no_suite.empty()) line("suite not drawn", report.no_suite);
   if (!report.golden) {
     line("settled state", report.settle_state);

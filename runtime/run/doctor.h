@@ -22,8 +22,9 @@ struct DoctorReport {
   int asset_files = 0;                    // of the manifest
   std::vector<std::string> asset_damage;  // "path: has other bytes"
   std::string mesh_cache;                 // folder, empty: none
-  std::string settle_state;               // hash after the drop, hexadecimal
-  std::string golden_folder;              // empty: not here
+  bool own_assets = true;     // those of the golden pictures; else nothing is drawn or dropped
+  std::string settle_state;   // hash after the drop, hexadecimal
+  std::string golden_folder;  // empty: not here
   std::optional<GoldenReport> golden;
   std::string no_suite;  // why the suite's own scenes were not drawn; empty: they were
   bool fine() const;

@@ -107,6 +107,12 @@ std::string golden_folder() {
   return fs::is_directory(folder) ? folder : std::string();
 }
 
+bool shown_in_golden(const std::string& asset_root) {
+  const auto here = read_file((fs::path(asset_root) / "manifest.json").string());
+  const auto own = read_file(std::string(VLAPROBE_BUILT_FROM) + "/assets/manifest.json");
+  return here && own && *here == *own;
+}
+
 std::string golden_suite() {
   const std::string text = std::string(VLAPROBE_BUILT_FROM) + "/suite/intact.probe";
   return fs::is_regular_file(text) ? text : std::string();

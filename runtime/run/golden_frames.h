@@ -14,6 +14,8 @@ namespace probe::run {
 
 // `golden_frames` of the tests of the source tree the program was built from; empty if not there.
 std::string golden_folder();
+// Whether these are the assets that the golden pictures show: the manifest is that source tree's.
+bool shown_in_golden(const std::string& asset_root);
 // The text of the suite whose first frames are among them, of the same source tree.
 std::string golden_suite();
 

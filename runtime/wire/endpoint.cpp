@@ -43,9 +43,12 @@ bool is_secret(std::string_view option) {
     if (c != '_' && c != '-' && c != '.')
       name += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   }
-  for (const char* known : {"key", "apikey", "token", "apitoken", "accesstoken", "auth",
-                            "authorization", "password", "passwd", "secret", "bearer"}) {
+  for (const char* known : {"key", "auth", "authorization", "bearer", "pass", "pwd", "sig"}) {
     if (name == known) return true;
+  }
+  for (const char* end : {"apikey", "accesskey", "secretkey", "token", "password", "passwd",
+                          "secret", "signature", "credential", "credentials"}) {
+    if (name.ends_with(end)) return true;
   }
   return false;
 }
@@ -58,18 +61,54 @@ Failure secret(const std::string& what) {
           "--policy"};
 }
 
+// Of a URL's authority: what stands before the `@` is a name and a password.
+bool has_user(std::string_view text) {
+  for (std::size_t at = text.starts_with("//") ? 0 : text.find("://"); at != std::string_view::npos;
+       at = text.find("://", at + 1)) {
+    const std::string_view rest = text.substr(text.find("//", at) + 2);
+    if (rest.substr(0, rest.find_first_of("/?#")).find('@') != std::string_view::npos) return true;
+  }
+  return false;
+}
+
+// A secret inside a value: in a URL that is one, or in an address's options. `what` names the
+// value in the message, which never shows it.
+Status check_no_secret(const std::string& what, std::string value) {
+  constexpr int kDeepest = 4;  // a URL in a URL is escaped once more
+  constexpr std::string_view kBetween = "?&;#, \t";
+  for (int depth = 0; depth < kDeepest; ++depth) {
+    if (has_user(value)) return secret("a name or a password before `@` in " + what);
+    std::string_view rest = value;
+    while (!rest.empty()) {
+      const std::string_view part = rest.substr(0, rest.find_first_of(kBetween));
+      rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+      const std::size_t equals = part.find('=');
+      if (equals == std::string_view::npos || !is_secret(part.substr(0, equals))) continue;
+      return secret("a secret, `" + std::string(part.substr(0, equals)) + "`, in " + what);
+    }
+    auto plain = decoded(value);
+    if (!plain || *plain == value) break;
+    value = std::move(*plain);
+  }
+  return {};
+}
+
 Status read_options(std::string_view text, std::map<std::string, std::string>* options) {
-  while (!text.empty()) {
+  for (int number = 1; !text.empty(); ++number) {
     const std::string_view pair = text.substr(0, text.find('&'));
     text.remove_prefix(std::min(text.size(), pair.size() + 1));
     const std::size_t equals = pair.find('=');
     if (equals == std::string_view::npos || equals == 0) {
-      return bad(pair, "an option is written `name=value`");
+      // Not shown: it may be the rest of a password with `&`.
+      return Failure{"usage",
+                     "option " + std::to_string(number) + " of the address is not `name=value`",
+                     "--policy"};
     }
     if (is_secret(pair.substr(0, equals))) {
       return secret("a secret, `" + std::string(pair.substr(0, equals)) + "`,");
     }
     PROBE_ASSIGN(std::string value, decoded(pair.substr(equals + 1)));
+    PROBE_TRY(check_no_secret("`" + std::string(pair.substr(0, equals)) + "`,", value));
     if (!options->emplace(pair.substr(0, equals), std::move(value)).second) {
       return bad(pair.substr(0, equals), "the option is there twice");
     }
@@ -84,7 +123,10 @@ Result<Endpoint> parse_endpoint(std::string_view text, std::string_view default_
   const std::string_view options =
       query == std::string_view::npos ? std::string_view() : text.substr(query + 1);
   text = text.substr(0, query);
-  if (!text.starts_with("//")) return bad(text, "a server is written `//HOST:PORT`");
+  if (!text.starts_with("//")) {
+    if (text.find('@') != std::string_view::npos) return secret("a name or a password before `@`");
+    return bad(text, "a server is written `//HOST:PORT`");
+  }
   for (const char c : text) {
     // They would end a line of an HTTP request.
     if (static_cast<unsigned char>(c) <= 0x20 || c == 0x7f) {
@@ -101,6 +143,7 @@ Result<Endpoint> parse_endpoint(std::string_view text, std::string_view default_
   const std::size_t slash = rest.find('/');
   if (slash != std::string_view::npos) {
     endpoint.path = std::string(rest.substr(slash));
+    PROBE_TRY(check_no_secret("the path,", endpoint.path));
     rest = rest.substr(0, slash);
   }
   std::string_view port = default_port;

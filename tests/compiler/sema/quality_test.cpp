@@ -22,6 +22,11 @@ TEST_CASE("a camera takes 1, 4 or 16 samples a pixel, ambient light up to 16 ray
     CHECK(codes(std::string("camera c like eye { image 64 x 48 samples ") + bad + " }\n")
               .find("P0304") != std::string::npos);
   }
+  // Traced with all samples a side has at most 8192 pixels.
+  CHECK(codes("camera c like eye { image 2048 x 1536 samples 16 }\n").find("P0304") ==
+        std::string::npos);
+  CHECK(codes("camera c like eye { image 2049 x 1536 samples 16 }\n").find("P0304") !=
+        std::string::npos);
   for (const char* bad : {"0", "17"}) {
     CHECK(codes(std::string("light l { ambient 0.3 occlusion ") + bad + " }\n").find("P0304") !=
           std::string::npos);

@@ -2,6 +2,7 @@
 #include "runtime/base/file.h"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -63,6 +64,27 @@ TEST_CASE("what cannot be written or read is a failure with the path") {
   CHECK(folder.entries() == 1);
   PendingFile never(folder.file("b"));
   CHECK_FALSE(never.keep().ok());
+}
+
+TEST_CASE("a pipe, a device or a folder in the place of a file stays what it is") {
+  const Folder folder;
+  REQUIRE(::mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  const Status status = write_file(folder.file("pipe"), bytes_of("x"));
+  REQUIRE_FALSE(status.ok());
+  CHECK(to_text(status.failure()) ==
+        folder.file("pipe") + ": is a folder, a device or a pipe and is not replaced");
+  CHECK(fs::is_fifo(folder.file("pipe")));
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("a file behind a symbolic link is written where the link leads") {
+  const Folder folder;
+  fs::create_directories(folder.file("there"));
+  fs::create_symlink("there/a", folder.file("link"));
+  REQUIRE(write_file(folder.file("link"), bytes_of("first")).ok());
+  REQUIRE(write_file(folder.file("link"), bytes_of("second")).ok());
+  CHECK(fs::is_symlink(folder.file("link")));
+  CHECK(read_file(folder.file("there/a")).value() == "second");
 }
 
 }  // namespace

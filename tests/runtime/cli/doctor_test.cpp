@@ -41,3 +41,12 @@ TEST_CASE("doctor names a damaged asset, and a folder that is none") {
   CHECK(worse.err.find("scenes/table/visual.glb") != std::string::npos);
   CHECK(box.vlaprobe("doctor --assets nowhere").exit == 2);
 }
+
+TEST_CASE("doctor compares no golden pictures with assets that they do not show") {
+  const Sandbox box;
+  fs::create_directories(box / "assets");
+  probe::test::write_file(box / "assets/manifest.json", R"({"files": []})");
+  const auto outcome = box.vlaprobe("doctor --assets assets");
+  CHECK(outcome.exit == 0);
+  CHECK(outcome.out.find("not compared: they show vlaprobe's own assets") != std::string::npos);
+}

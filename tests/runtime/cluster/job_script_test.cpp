@@ -61,6 +61,28 @@ TEST_CASE("the job says how many tasks and CPUs it wants, and passes other optio
   CHECK(to_text(script)->find("#SBATCH --exclusive\n") != std::string::npos);
 }
 
+TEST_CASE("an option's value is one word for sbatch, whatever it holds") {
+  JobScript script = script_in("/out");
+  for (const auto& [option, line] : {
+           std::pair{"--comment=a b", "--comment=\"a b\""},
+           std::pair{"--comment a  b", "--comment \"a  b\""},
+           std::pair{"--comment=#1", "--comment=\"#1\""},
+           std::pair{"--comment=it's", "--comment=\"it's\""},
+           std::pair{"--comment=say \"hi\" \\o/", "--comment=\"say \\\"hi\\\" \\\\o/\""},
+           std::pair{"--comment=", "--comment=\"\""},
+           std::pair{"-p gpu", "-p gpu"},
+           std::pair{"-J two words", "-J \"two words\""},
+           std::pair{"-Jtwo words", "-J\"two words\""},
+           std::pair{"--exclusive", "--exclusive"},
+           std::pair{"--gres=gpu:1", "--gres=gpu:1"},
+       }) {
+    script.sbatch = {option};
+    const auto text = to_text(script);
+    REQUIRE_MESSAGE(text.ok(), to_text(text.failure()));
+    CHECK_MESSAGE(text->find("#SBATCH " + std::string(line) + "\n") != std::string::npos, line);
+  }
+}
+
 TEST_CASE("what no job could do is refused") {
   JobScript script = script_in("/out");
   const auto refusal = [&] {
@@ -76,8 +98,10 @@ TEST_CASE("what no job could do is refused") {
   script.server_command = "serve --port {port}";
   script.sbatch = {"gpu"};
   CHECK(refusal() == "--sbatch: `gpu` is not one option, as --partition=gpu is");
-  script.sbatch = {"--comment=a\nrm"};
-  CHECK_FALSE(to_text(script).ok());
+  for (const char* broken : {"--comment=a\nrm", "--comment=a\r#SBATCH --x"}) {
+    script.sbatch = {broken};
+    CHECK_FALSE(to_text(script).ok());
+  }
   script.sbatch.clear();
   script.out = "/a\nb";
   CHECK_FALSE(to_text(script).ok());

@@ -53,4 +53,27 @@ TEST_CASE("a secret is refused, never repeated, and told where it belongs") {
   CHECK_FALSE(parse_endpoint("//h/\r\nX: y", "1").ok());
 }
 
+TEST_CASE("a secret inside an option's value is refused as well, and never repeated") {
+  for (const char* text :
+       {"//h?model=https://u:hunter2@h/x", "//h?model=https%3A%2F%2Fu%3Ahunter2%40h%2Fx",
+        "//h?model=https://hunter2@h", "//h?model=https://h/x%3Ftoken=hunter2",
+        "//h?model=https://h/x%3Fa=1%26X-Amz-Signature=hunter2", "//h?model=//u:hunter2@h/x",
+        "//h?model=https://h/x?api_key=hunter2", "//h?model=/m%23access_token=hunter2",
+        "//h?model=https://g/%3Fto%3Dhttps%253A%252F%252Fu%253Ahunter2%2540h",
+        "//h?model=https://h/x?a=1&hf_token=hunter2", "//h?model=https://u:a&hunter2@h/x",
+        "//h/act;token=hunter2", "u:hunter2@h", "//h?=hunter2"}) {
+    const auto refused = parse_endpoint(text, "1");
+    REQUIRE_MESSAGE(!refused.ok(), text);
+    CHECK_MESSAGE(to_text(refused.failure()).find("hunter2") == std::string::npos, text);
+  }
+  CHECK(parse_endpoint("//h?model=https://h/x?token=hunter2", "1").failure().message ==
+        "a secret, `token`, in `model`, would be stored with every result: give it in the "
+        "environment, as VLAPROBE_API_KEY");
+  for (const char* text :
+       {"//h?model=hf://org/octo@main", "//h?model=s3://b/k/model.pt", "//h?model=/ckpt/a@b/30000",
+        "//h?unnorm_key=bridge_orig", "//h?model=/m%3Fstep=3", "//h?about=50%25 of it"}) {
+    CHECK_MESSAGE(parse_endpoint(text, "1").ok(), text);
+  }
+}
+
 }  // namespace probe::wire
