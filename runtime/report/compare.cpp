@@ -123,11 +123,11 @@ class Comparer {
   static void what_would_tell(ComparedRow& row) {
     if (row.is_real() || row.scope == Scope::kTask) return;
     row.detectable = detectable(row.contrast);
-    const stats::PairTable& pairs = row.contrast.pairs;
-    const double share = static_cast<double>(pairs.only_a + pairs.only_b) /
-                         static_cast<double>(std::max<std::int64_t>(1, pairs.pairs()));
-    const auto needed = starts_needed(std::abs(row.contrast.difference), share);
-    if (needed && *needed > row.contrast.starts) row.more_starts = *needed - row.contrast.starts;
+    const PlaceDesign design = place_design(row.contrast);
+    if (design.differ == 0) return;
+    const auto needed =
+        places_needed(std::abs(row.contrast.difference) / design.episodes, design.discordance);
+    if (needed && *needed > design.places) row.more_places = *needed - design.places;
   }
 
   const Benchmark& benchmark_;
@@ -135,6 +135,16 @@ class Comparer {
   std::vector<int> tasks_;
   std::vector<ComparedRow> rows_;
 };
+
+// What the test counts; every place is one start where one task was run.
+std::string places(const Contrast& c) {
+  const auto count = static_cast<std::int64_t>(c.place_nets.size());
+  if (count == c.starts) return fmt::format("{} {}", count, count == 1 ? "start" : "starts");
+  return fmt::format("{} starts in {} {}", c.starts, count, count == 1 ? "place" : "places");
+}
+bool is_one_start_a_place(const Contrast& c) {
+  return static_cast<std::int64_t>(c.place_nets.size()) == c.starts;
+}
 
 bool differs_anywhere(const Contrast& c) { return c.pairs.only_a + c.pairs.only_b > 0; }
 
@@ -167,21 +177,22 @@ std::string verdict(const Benchmark& benchmark, const Comparison& comparison,
   }
   if (c.pairs.only_a + c.pairs.only_b == 0) {
     return fmt::format(
-        "{}: no difference was seen in any of {} episodes ({}). A true difference of "
-        "more than {:.1f} points is unlikely.",
-        metric.name, c.pairs.pairs(), rate(c.first), 100 * c.interval.high);
+        "{}: no difference was seen in any of {} episodes ({}). {} exclude a true difference of "
+        "more "
+        "than {:.1f} points (95 %).",
+        metric.name, c.pairs.pairs(), rate(c.first), places(c), 100 * c.interval.high);
   }
   std::string text = fmt::format("{}: the data cannot tell them apart ({}).", metric.name, numbers);
   if (row.detectable) {
-    text += fmt::format(" {} starts show differences from {:.1f} points on, four times in five.",
-                        c.starts, 100 * *row.detectable);
+    text += fmt::format(" {} show differences from {:.1f} points on, four times in five.",
+                        places(c), 100 * *row.detectable);
   } else {
-    text += fmt::format(" {} starts, of which {} differ, cannot show a difference reliably.",
-                        c.starts, c.pairs.only_a + c.pairs.only_b);
+    text += fmt::format(" {}, of which {} {}, cannot show a difference reliably.", places(c),
+                        place_design(c).differ, place_design(c).differ == 1 ? "differs" : "differ");
   }
-  if (row.more_starts) {
-    text += fmt::format(" If the difference is what was seen, about {} more starts would show it.",
-                        *row.more_starts);
+  if (row.more_places) {
+    text += fmt::format(" If the difference is what was seen, about {} more {} would show it.",
+                        *row.more_places, is_one_start_a_place(c) ? "starts" : "places of start");
   }
   return text;
 }
@@ -197,16 +208,17 @@ std::string listed(const std::vector<const ComparedRow*>& rows) {
   return text;
 }
 
-// Of what was found: when a look after every start would have stopped.
+// Of what was found: when a look after every place would have stopped.
 void say_when_enough(const Benchmark& benchmark, int a, int b, Comparison& comparison,
                      const ComparedRow& row) {
   if (!row.is_real()) return;
   for (const SequentialRow& looked : sequential(benchmark, row.metric)) {
     if (looked.a != a || looked.b != b || !looked.stopped) continue;
     comparison.words.push_back(
-        fmt::format("  looked at after every start, {} of {} starts would have been enough "
-                    "(anytime-valid, {}).",
-                    looked.used, looked.starts, p_text(looked.p)));
+        fmt::format("  looked at after every {0}, {1} of {2} {0}s would have been enough "
+                    "(anytime-valid, {3}).",
+                    is_one_start_a_place(row.contrast) ? "start" : "place", looked.used,
+                    looked.places, p_text(looked.p)));
   }
 }
 
@@ -261,7 +273,7 @@ const char* scope_name(Scope scope) {
 
 }  // namespace
 
-std::optional<std::int64_t> starts_needed(double difference, double discordance) {
+std::optional<std::int64_t> places_needed(double difference, double discordance) {
   constexpr std::int64_t kMost = 1'000'000;
   if (difference <= 0 || discordance < difference) return std::nullopt;
   // McNemar's test: n pairs see d with power 1 - b when n = (z_a sqrt(q) + z_b sqrt(q - d^2))^2 /
@@ -371,6 +383,7 @@ Json to_json(const Benchmark& benchmark, const Comparison& comparison) {
                   {"only_b", c.pairs.only_b},
                   {"neither", c.pairs.neither}}},
                 {"starts", c.starts},
+                {"places", c.place_nets.size()},
                 {"difference", rounded(c.difference)},
                 {"low", rounded(c.interval.low)},
                 {"high", rounded(c.interval.high)},
@@ -378,7 +391,7 @@ Json to_json(const Benchmark& benchmark, const Comparison& comparison) {
                 {"p_adjusted", c.adjusted},
                 {"real", row.is_real()}};
     one["detectable"] = row.detectable ? Json(rounded(*row.detectable)) : Json();
-    one["more_starts"] = row.more_starts ? Json(*row.more_starts) : Json();
+    one["more_places"] = row.more_places ? Json(*row.more_places) : Json();
     json["rows"].push_back(std::move(one));
   }
   return json;

@@ -24,7 +24,8 @@ struct ComparedRow {
   std::string name;  // of category, axis or task
   Contrast contrast;
   std::optional<double> detectable;         // where no difference was found
-  std::optional<std::int64_t> more_starts;  // that would find the difference seen, with 80 % power
+  std::optional<std::int64_t> more_places;  // of start, that would find the difference seen, with
+                                            // 80 % power
 
   bool is_real() const { return contrast.adjusted <= 0.05; }
 };
@@ -45,8 +46,8 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
 std::string to_text(const Benchmark& benchmark, const Comparison& comparison);
 nlohmann::ordered_json to_json(const Benchmark& benchmark, const Comparison& comparison);
 
-// How many paired starts of the same kind would find `difference` with 80 % power, when a share
+// How many paired places of the same kind would find `difference` with 80 % power, when a share
 // `discordance` of them differ; nothing when a million would not.
-std::optional<std::int64_t> starts_needed(double difference, double discordance);
+std::optional<std::int64_t> places_needed(double difference, double discordance);
 
 }  // namespace probe::report

@@ -15,6 +15,7 @@
 #include "runtime/report/tables.h"
 #include "runtime/stats/bradley_terry.h"
 #include "runtime/stats/mixed_logistic.h"
+#include "runtime/stats/paired.h"
 #include "runtime/stats/sequential.h"
 
 namespace probe::report {
@@ -314,14 +315,19 @@ std::vector<SequentialRow> sequential(const Benchmark& benchmark, int metric) {
     for (int b = a + 1; b < n; ++b) {
       SequentialRow row{a, b, metric, 0, 0, 0, 0, 1, false};
       stats::SequentialComparison comparison;
-      for (const int sign : outcomes(benchmark, a, b, metric)) {
-        ++row.starts;
+      std::vector<stats::Cluster> seen;
+      for (const std::int64_t net :
+           policy_contrast(benchmark, a, b, metric, benchmark.all_tasks()).place_nets) {
+        ++row.places;
         if (row.stopped) continue;
-        comparison.add(sign);
+        comparison.add(net);
+        seen.push_back(
+            {.only_a = std::max<std::int64_t>(net, 0), .only_b = std::max<std::int64_t>(-net, 0)});
         ++row.used;
-        row.stopped = comparison.p_value() <= kAlpha;
+        // Signs and sums may disagree where places hold unlike numbers of episodes.
+        row.stopped = comparison.p_value() <= kAlpha && stats::clustered_exact(seen) <= kAlpha;
       }
-      if (row.starts == 0) continue;
+      if (row.places == 0) continue;
       row.a_wins = comparison.a_wins();
       row.b_wins = comparison.b_wins();
       row.p = comparison.p_value();

@@ -44,14 +44,15 @@ std::vector<RankRow> ranking(const Benchmark& benchmark, int metric);
 
 struct SequentialRow {
   int a = 0, b = 0, metric = 0;
-  std::int64_t starts = 0, used = 0;  // of the shared starts, how many were looked at
+  std::int64_t places = 0, used = 0;  // of the shared places of start, how many were looked at
   std::int64_t a_wins = 0, b_wins = 0;
   double p = 1;  // anytime-valid, at the stop or the end
   bool stopped = false;
 };
 
-// Policies in pairs, looked at after every start, the first start of all tasks first; stopped as
-// soon as the anytime-valid p is at most 0.05.
+// Policies in pairs, looked at after every place of start with all its tasks and seeds, which are
+// one outcome: the sign of their sum, as in the paired test. Stopped as soon as the anytime-valid p
+// is at most 0.05 and the paired test of the places so far agrees.
 std::vector<SequentialRow> sequential(const Benchmark& benchmark, int metric);
 
 }  // namespace probe::report

@@ -313,7 +313,7 @@ Json tables_json(const Benchmark& benchmark, const Tables& tables, const PageOpt
         json["sequential"].push_back({{"a", row.a},
                                       {"b", row.b},
                                       {"metric", row.metric},
-                                      {"starts", row.starts},
+                                      {"places", row.places},
                                       {"used", row.used},
                                       {"a_wins", row.a_wins},
                                       {"b_wins", row.b_wins},

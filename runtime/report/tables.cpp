@@ -127,6 +127,7 @@ Contrast paired(const PairRows& pairs) {
   std::vector<stats::Cluster> places(static_cast<std::size_t>(pairs.clusters.size()));
   for (const StartPairs& row : pairs.rows) places[row.cluster] = places[row.cluster] + row.pairs;
   contrast.p = stats::clustered_exact(places);
+  for (const stats::Cluster& place : places) contrast.place_nets.push_back(place.net());
   return contrast;
 }
 
@@ -454,13 +455,33 @@ Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
   return paired(pairs);
 }
 
+PlaceDesign place_design(const Contrast& contrast) {
+  PlaceDesign design;
+  design.places = static_cast<std::int64_t>(contrast.place_nets.size());
+  if (design.places == 0) return design;
+  double squares = 0;
+  for (const std::int64_t net : contrast.place_nets) {
+    design.differ += net == 0 ? 0 : 1;
+    squares += static_cast<double>(net * net);
+  }
+  const double places = static_cast<double>(design.places);
+  const double differ = static_cast<double>(design.differ);
+  // A share of 0 is what was seen, not what can be: half a place.
+  design.discordance = std::max(differ, 0.5) / places;
+  // Places of unlike sums are worth less than their number: the root of the mean square, not the
+  // mean, is what the variance of the flipped total holds.
+  const double per_place = design.differ == 0 ? 1 : std::sqrt(squares / differ);
+  design.episodes = per_place * places / static_cast<double>(contrast.pairs.pairs());
+  return design;
+}
+
 std::optional<double> detectable(const Contrast& contrast) {
-  const double pairs = static_cast<double>(contrast.pairs.pairs());
-  if (pairs == 0 || contrast.starts == 0) return std::nullopt;
-  const double differ = static_cast<double>(contrast.pairs.only_a + contrast.pairs.only_b);
-  // A share of 0 is what was seen, not what can be: half a pair.
-  const double share = std::max(differ, 0.5) / pairs;
-  return stats::minimum_detectable_difference({.pairs = contrast.starts, .discordance = share});
+  const PlaceDesign design = place_design(contrast);
+  if (design.places == 0) return std::nullopt;
+  const auto share = stats::minimum_detectable_difference(
+      {.pairs = design.places, .discordance = design.discordance});
+  if (!share) return std::nullopt;
+  return std::min(1.0, *share * design.episodes);
 }
 
 Tables make_tables(const Benchmark& benchmark) { return Maker(benchmark).make(); }

@@ -22,7 +22,10 @@ struct Estimate {
 struct Contrast {
   stats::PairTable pairs;  // of episodes; empty when not paired
   stats::Count first, second;
-  std::int64_t starts = 0;  // clusters behind the test
+  std::int64_t starts = 0;  // rows of task and start
+  // First less second, in episodes, by place of start: the clusters whose signs the test of a
+  // paired contrast flips; in the order of tasks and starts.
+  std::vector<std::int64_t> place_nets;
   bool paired = true;
   double difference = 0;     // first - second
   stats::Interval interval;  // 95 %
@@ -110,8 +113,17 @@ Contrast category_contrast(const Benchmark& benchmark, int policy, int metric,
                            const std::vector<int>& tasks, int& left_out);
 Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
                          const std::vector<int>& tasks);
-// What a comparison with as many starts, of whose pairs as many differ, finds with 80 % power;
-// nothing when not even the largest difference.
+// A paired contrast as its test sees it: one outcome a place. `discordance` is the share of places
+// with a winner; `episodes` turns a difference of shares of places into one of rates.
+struct PlaceDesign {
+  std::int64_t places = 0, differ = 0;
+  double discordance = 0;
+  double episodes = 1;
+};
+PlaceDesign place_design(const Contrast& contrast);
+
+// The difference of rates that a comparison with as many places, of which as many differ by as
+// much, finds with 80 % power; nothing when not even the largest difference.
 std::optional<double> detectable(const Contrast& contrast);
 
 }  // namespace probe::report

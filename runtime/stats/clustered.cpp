@@ -46,8 +46,11 @@ struct Row {
   std::uint32_t task = 0, cluster = 0;
 };
 
+// What counts once where all observations are alike, so that no variance says what they are worth.
+enum class Unit : std::uint8_t { kRow, kCluster };
+
 // By what factor the rows' observations are worth less than as many independent ones.
-double design_effect(const std::vector<Row>& rows, double confidence) {
+double design_effect(const std::vector<Row>& rows, double confidence, Unit unit) {
   std::vector<Sum> tasks(ids(rows, [](const Row& r) { return r.task; }));
   std::vector<Sum> clusters(ids(rows, [](const Row& r) { return r.cluster; }));
   Sum all;
@@ -78,7 +81,7 @@ double design_effect(const std::vector<Row>& rows, double confidence) {
   }
   const double mean_size = all.n / used;
   const double mean = all.total / all.n;
-  double effect = all.n / starts;
+  double effect = unit == Unit::kCluster ? mean_size : all.n / starts;
   if (mean_size > 1 && used > 1 && within > 1e-9) {
     by_clusters *= used / (used - 1);
     const double quantile = student_two_sided(confidence, used - 1) / normal_two_sided(confidence);
@@ -120,7 +123,7 @@ Interval clustered_rate(std::span<const StartCount> starts, double confidence) {
     rows.push_back({static_cast<double>(s.count.n), k, k, s.task, s.cluster});
   }
   const double n = static_cast<double>(all.n);
-  return wilson_effective(all.rate(), n / design_effect(rows, confidence), confidence);
+  return wilson_effective(all.rate(), n / design_effect(rows, confidence, Unit::kRow), confidence);
 }
 
 Difference clustered_difference(std::span<const StartPairs> pairs, double confidence) {
@@ -133,7 +136,7 @@ Difference clustered_difference(std::span<const StartPairs> pairs, double confid
   }
   if (all.pairs() == 0) return newcombe_paired(all, confidence);
   const double n = static_cast<double>(all.pairs());
-  return newcombe_effective(all, n / design_effect(rows, confidence), confidence);
+  return newcombe_effective(all, n / design_effect(rows, confidence, Unit::kCluster), confidence);
 }
 
 Difference unpaired_difference(std::span<const StartCount> a, std::span<const StartCount> b,

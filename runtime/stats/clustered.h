@@ -39,8 +39,9 @@ struct StartPairs {
 };
 
 // rate(A) - rate(B) over all pairs: Newcombe's interval for paired proportions with the pairs
-// counted as what they are worth, as in clustered_rate. Where no pair differs there is no variance
-// to compare and the clusters count once each.
+// counted as what they are worth, as in clustered_rate. Where all pairs of a task differ alike, or
+// none does, there is no variance to compare and the clusters count once each, because the test of
+// a difference (clustered_exact) counts them so: an interval must not exclude what the test cannot.
 Difference clustered_difference(std::span<const StartPairs> pairs, double confidence = 0.95);
 
 // rate(A) - rate(B) of starts that do not correspond: Newcombe's method 10 for independent

@@ -6,6 +6,10 @@ namespace probe::report {
 namespace {
 
 constexpr char kTask[] = "carrot_on_plate";
+// Their starts lie in the same places.
+const std::vector<std::string> kSamePlaces = {kTask, "carrot_on_plate_lang_action",
+                                              "carrot_on_plate_lang_color",
+                                              "carrot_on_plate_lang_common"};
 
 struct Two {
   RunsFolder folder;
@@ -57,8 +61,8 @@ TEST_CASE("when the data cannot tell, it says what they could have shown and how
   const Comparison c = two.compared({.metrics = {"success"}});
   CHECK(c.words[0].find("success: the data cannot tell them apart") == 0);
   CHECK(c.words[0].find("more starts would show it") != std::string::npos);
-  REQUIRE(c.rows[0].more_starts);
-  CHECK(*c.rows[0].more_starts > 10);
+  REQUIRE(c.rows[0].more_places);
+  CHECK(*c.rows[0].more_places > 10);
 }
 
 TEST_CASE("equal outcomes are said to be equal, with what they exclude") {
@@ -66,6 +70,49 @@ TEST_CASE("equal outcomes are said to be equal, with what they exclude") {
   const Comparison c = two.compared({.metrics = {"success"}});
   CHECK(c.words.size() == 1);
   CHECK(c.words[0].find("no difference was seen in any of 24 episodes") != std::string::npos);
+}
+
+// Four tasks in one place are one place: the test on them says p = 1.
+TEST_CASE("an early stop counts places, as the test does") {
+  const FakeRunOptions one_place{.tasks = kSamePlaces, .last = 0};
+  const Two first(one_place, below(24), one_place, below(0));
+  const Comparison nothing = first.compared({.metrics = {"success"}});
+  CHECK(nothing.rows[0].contrast.p == 1);
+  CHECK(nothing.rows[0].contrast.place_nets == std::vector<std::int64_t>{4});
+  CHECK(nothing.words[0].find("4 starts in 1 place, of which 1 differs, cannot show") !=
+        std::string::npos);
+  for (const std::string& words : nothing.words) {
+    CHECK(words.find("would have been enough") == std::string::npos);
+  }
+  const FakeRunOptions all{.tasks = kSamePlaces};
+  const Two every(all, below(24), all, below(0));
+  const Comparison clear = every.compared({.metrics = {"success"}});
+  CHECK(clear.words[1].find("after every place, 7 of 24 places would have been enough") !=
+        std::string::npos);
+  const FakeRunOptions enough{.tasks = kSamePlaces, .last = 6};
+  const Two seven(enough, below(24), enough, below(0));
+  CHECK(seven.compared({.metrics = {"success"}}).rows[0].is_real());
+}
+
+TEST_CASE("what could have been seen counts places, as the test does") {
+  const Two one({.tasks = {kTask}}, below(12), {.tasks = {kTask}}, below(9));
+  const Two four({.tasks = kSamePlaces}, below(12), {.tasks = kSamePlaces}, below(9));
+  const ComparedRow few = one.compared({.metrics = {"success"}}).rows[0];
+  const ComparedRow copies = four.compared({.metrics = {"success"}}).rows[0];
+  CHECK(copies.contrast.p == few.contrast.p);
+  CHECK(copies.detectable.has_value() == few.detectable.has_value());
+  REQUIRE(copies.more_places);
+  CHECK(*copies.more_places == *few.more_places);
+}
+
+TEST_CASE("equal runs exclude no more than their places can") {
+  const Two one({.tasks = {kTask}}, below(12), {.tasks = {kTask}}, below(12));
+  const Two four({.tasks = kSamePlaces}, below(12), {.tasks = kSamePlaces}, below(12));
+  const stats::Interval of_one = one.compared({.metrics = {"success"}}).rows[0].contrast.interval;
+  const Comparison c = four.compared({.metrics = {"success"}});
+  CHECK(c.rows[0].contrast.interval.high == doctest::Approx(of_one.high));
+  CHECK(c.words[0].find("96 starts in 24 places exclude a true difference of more than") !=
+        std::string::npos);
 }
 
 TEST_CASE("only common starts are compared, and the others are counted") {
@@ -107,18 +154,19 @@ TEST_CASE("JSON says the same words and all numbers") {
   CHECK(json["rows"][0]["real"] == true);
 }
 
-TEST_CASE("the number of starts needed has about the power it promises") {
-  const auto n = starts_needed(0.1, 0.3);
+TEST_CASE("the number of places needed has about the power it promises") {
+  const auto n = places_needed(0.1, 0.3);
   REQUIRE(n);
   Contrast contrast;
   contrast.pairs.only_a = *n * 3 / 10;
   contrast.pairs.neither = *n - contrast.pairs.only_a;
-  contrast.starts = *n;
+  contrast.place_nets.assign(static_cast<std::size_t>(*n), 0);
+  std::fill_n(contrast.place_nets.begin(), contrast.pairs.only_a, 1);
   const auto found = detectable(contrast);
   REQUIRE(found);
   CHECK(*found == doctest::Approx(0.1).epsilon(0.08));
-  CHECK(!starts_needed(0, 0.3));
-  CHECK(!starts_needed(0.4, 0.3));
+  CHECK(!places_needed(0, 0.3));
+  CHECK(!places_needed(0.4, 0.3));
 }
 
 }  // namespace probe::report

@@ -58,6 +58,14 @@ TEST_CASE("seeds without any agreement beyond chance are worth almost as many st
   CHECK(clustered.high == doctest::Approx(pairs.high).epsilon(0.1));
 }
 
+// Four tasks in 24 places without a difference say no more than 24 pairs.
+TEST_CASE("without any difference the places count once each") {
+  std::vector<StartPairs> pairs, one;
+  for (std::uint32_t i = 0; i < 96; ++i) pairs.push_back({{.both = 1}, i / 24, i % 24});
+  for (std::uint32_t i = 0; i < 24; ++i) one.push_back({{.both = 1}, 0, i});
+  check_same(clustered_difference(pairs).interval, clustered_difference(one).interval);
+}
+
 TEST_CASE("without any success the starts count once each") {
   std::vector<StartCount> starts;
   for (std::uint32_t i = 0; i < 24; ++i) starts.push_back({{0, 3}, 0, i});

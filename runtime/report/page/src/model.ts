@@ -38,7 +38,7 @@ export interface Floor { task: number; metric: number; floor: Estimate; ceiling:
 export interface Comparison extends Difference {
   a: number; b: number; metric: number; scope: string; starts: number; real: boolean; detectable?: number | null;
 }
-export interface Sequential { a: number; b: number; metric: number; starts: number; used: number; a_wins: number; b_wins: number; p: number; stopped: boolean }
+export interface Sequential { a: number; b: number; metric: number; places: number; used: number; a_wins: number; b_wins: number; p: number; stopped: boolean }
 export interface Ranking { policy: number; metric: number; score: number; low?: number | null; high?: number | null }
 export interface MixedTerm { term: string; kind: string; odds: number | null; low: number | null; high: number | null; p: number | null; note?: string }
 export interface Mixed { metric: number; model?: string; rows: MixedTerm[]; random?: { factor: string; sd: number }[]; n?: number; note?: string }
