@@ -19,17 +19,6 @@ constexpr std::array<std::string_view, 8> kPaddedStateNames = {"x",     "y",   "
 
 Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
 
-std::span<const std::string_view> state_names(StateLayout layout) {
-  if (layout == StateLayout::kXyzRpyOpenness) return kStateNames;
-  if (layout == StateLayout::kXyzRpyPadOpenness) return kPaddedStateNames;
-  return {};
-}
-
-// "video.image_0" is `image_0` in a map of its own in the nested form.
-std::string without_prefix(std::string_view key, std::string_view prefix) {
-  return std::string(key.starts_with(prefix) ? key.substr(prefix.size()) : key);
-}
-
 // The array with leading dimensions of 1: batch and, from n1.6 on, time.
 wire::Array led(wire::Array array, Gr00tForm form) {
   const std::size_t count = form == Gr00tForm::kN15 ? 1 : 2;
@@ -64,7 +53,7 @@ class Gr00t : public Transport {
     PROBE_ASSIGN(socket_, wire::ZmqRequester::create(server_, options));
     PROBE_ASSIGN(const wire::Value pong, exchange({{"endpoint", "ping"}}, deadlines.connect));
     if (pong.as<wire::Map>() != nullptr) return {};
-    return bad("ping: expected a map, got " + wire::describe(pong));
+    return answered("ping: expected a map, got " + wire::describe(pong));
   }
   void close() override { socket_.reset(); }
 
@@ -82,6 +71,7 @@ class Gr00t : public Transport {
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
     wire::Value data = gr00t_observation(form_, profile_, request);
+    PROBE_TRY(check_distinct_keys(data));
     if (form_ != Gr00tForm::kN15) {
       data = wire::Map{{"observation", std::move(data)}, {"options", wire::Value()}};
     }
@@ -99,7 +89,7 @@ class Gr00t : public Transport {
         const wire::Bytes bytes,
         socket_->ask(wire::to_msgpack(std::move(request), wire::ArrayStyle::kNpy), timeout));
     PROBE_ASSIGN(wire::Value answer, wire::from_msgpack(bytes));
-    PROBE_TRY(check_no_error(answer));
+    if (auto fine = check_no_error(answer); !fine) return answered(fine.failure().message);
     return answer;
   }
 
@@ -111,14 +101,25 @@ class Gr00t : public Transport {
 
 }  // namespace
 
+std::span<const std::string_view> gr00t_state_names(StateLayout layout) {
+  if (layout == StateLayout::kXyzRpyOpenness) return kStateNames;
+  if (layout == StateLayout::kXyzRpyPadOpenness) return kPaddedStateNames;
+  return {};
+}
+
+std::string gr00t_nested_image_key(std::string_view key) {
+  constexpr std::string_view kPrefix = "video.";
+  return std::string(key.starts_with(kPrefix) ? key.substr(kPrefix.size()) : key);
+}
+
 wire::Value gr00t_observation(Gr00tForm form, const Profile& profile, const Request& request) {
   const bool is_nested = form == Gr00tForm::kN16Nested;
   wire::Map video, state, language;
   for (const RequestImage& image : request.images) {
-    video.emplace_back(is_nested ? without_prefix(image.key, "video.") : image.key,
+    video.emplace_back(is_nested ? gr00t_nested_image_key(image.key) : image.key,
                        led(image.pixels, form));
   }
-  const auto names = state_names(profile.state_layout);
+  const auto names = gr00t_state_names(profile.state_layout);
   for (std::size_t i = 0; i < names.size() && i < request.state.size(); ++i) {
     const std::string prefix = is_nested ? "" : profile.state_key + ".";
     state.emplace_back(prefix + std::string(names[i]),
@@ -183,7 +184,8 @@ Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile,
                        profile.dialect + "`",
                    "--policy"};
   }
-  if (profile.state_layout != StateLayout::kNone && state_names(profile.state_layout).empty()) {
+  if (profile.state_layout != StateLayout::kNone &&
+      gr00t_state_names(profile.state_layout).empty()) {
     return Failure{"usage",
                    "GR00T is sent its state number by number: `state.layout` is "
                    "xyz_rpy_pad_openness, xyz_rpy_openness or none",

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -16,6 +19,12 @@ enum class Gr00tForm { kN16, kN16Nested, kN15 };
 // The observation of a "get_action". The state goes number by number under `state.key` and a
 // number's name: x, y, z, roll, pitch, yaw, pad, gripper.
 wire::Value gr00t_observation(Gr00tForm form, const Profile& profile, const Request& request);
+
+// What a state's numbers are called, each an entry of its own; none where GR00T is not sent such a
+// layout.
+std::span<const std::string_view> gr00t_state_names(StateLayout layout);
+// "video.image_0" is `image_0` in a map of its own in the nested form.
+std::string gr00t_nested_image_key(std::string_view key);
 
 // The actions of an answer: arrays x, y, z, roll, pitch, yaw and gripper of one length, with or
 // without "action." before their names. Fails (code "policy") on an error map, with what the server

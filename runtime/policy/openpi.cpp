@@ -33,12 +33,20 @@ class OpenpiConnection {
     socket_ = std::move(*socket);
     PROBE_ASSIGN(wire::Value metadata, receive(deadlines.connect));
     if (metadata.as<wire::Map>() == nullptr) {
-      return bad("expected the server's metadata first, a map; got " + wire::describe(metadata));
+      return answered("expected the server's metadata first, a map; got " +
+                      wire::describe(metadata));
     }
     return metadata;
   }
 
   void close() { socket_.reset(); }
+
+  // A map with pictures, which a profile's keys could make overwrite each other.
+  Result<wire::Value> ask(wire::Map map, wire::Duration timeout) {
+    const wire::Value request(std::move(map));
+    PROBE_TRY(check_distinct_keys(request));
+    return exchange(request, timeout);
+  }
 
   Result<wire::Value> exchange(const wire::Value& request, wire::Duration timeout) {
     PROBE_TRY(send(request, timeout));
@@ -62,8 +70,10 @@ class OpenpiConnection {
 
   Result<wire::Value> receive(wire::Duration timeout) {
     PROBE_ASSIGN(const wire::Message message, receive_message(timeout));
-    if (message.is_text) return bad("the server failed: " + last_lines(message.text()));
-    return wire::from_msgpack(message.bytes);
+    if (message.is_text) return answered("the server failed: " + last_lines(message.text()));
+    auto value = wire::from_msgpack(message.bytes);
+    if (!value) return answered(value.failure().message);
+    return value;
   }
 
  private:
@@ -124,7 +134,7 @@ class Openpi : public Transport {
       map.emplace_back(profile_.state_key, state_array(profile_, request.state));
     }
     map.emplace_back(profile_.prompt_key, request.prompt);
-    PROBE_ASSIGN(const wire::Value answer, connection_.exchange(std::move(map), deadlines.answer));
+    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
     const wire::Value* actions = answer.find("actions");
     if (actions == nullptr) {
       return bad("expected a map with `actions`, got " + wire::describe(answer));
@@ -161,7 +171,7 @@ class Intact : public Transport {
           wire::Map{{"agent", wire::Map{{"eef_pos", state_array(profile_, request.state)}}}});
     }
     map.emplace_back(profile_.prompt_key, request.prompt);
-    PROBE_ASSIGN(const wire::Value answer, connection_.exchange(std::move(map), deadlines.answer));
+    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
     if (answer.as<wire::Map>() == nullptr) return to_actions(answer);
     for (const char* key : {"actions", "action"}) {
       if (const wire::Value* actions = answer.find(key)) return to_actions(*actions);
@@ -183,8 +193,8 @@ class Intact : public Transport {
                  connection_.exchange(std::move(request), deadlines.answer));
     const wire::Value* status = answer.find("status");
     if (status != nullptr && *status == wire::Value(wanted)) return {};
-    return bad("`" + asked + "`: expected {\"status\": \"" + wanted + "\"}, got " +
-               wire::describe(status == nullptr ? answer : *status));
+    return answered("`" + asked + "`: expected {\"status\": \"" + wanted + "\"}, got " +
+                    wire::describe(status == nullptr ? answer : *status));
   }
 
   Profile profile_;
@@ -255,7 +265,7 @@ class RoboArena : public Transport {
     if (wants("needs_session_id")) map.emplace_back("session_id", session_);
     map.emplace_back(profile_.prompt_key, request.prompt);
     map.emplace_back("endpoint", "infer");
-    PROBE_ASSIGN(const wire::Value answer, connection_.exchange(std::move(map), deadlines.answer));
+    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
     const wire::Value* actions = answer.find("actions");
     return to_actions(actions == nullptr ? answer : *actions);
   }

@@ -30,7 +30,7 @@ class OpenVla : public Transport {
     wire::HttpRequest post;
     post.method = "POST";
     post.path = path_;
-    post.body = openvla_request(profile_, request);
+    PROBE_ASSIGN(post.body, openvla_request(profile_, request));
     PROBE_ASSIGN(const wire::HttpResponse answer,
                  wire::http_exchange(server_, post, options(deadlines, deadlines.answer)));
     if (answer.status != 200) {
@@ -52,7 +52,7 @@ class OpenVla : public Transport {
 
 }  // namespace
 
-std::string openvla_request(const Profile& profile, const Request& request) {
+Result<std::string> openvla_request(const Profile& profile, const Request& request) {
   wire::Map map;
   for (const RequestImage& image : request.images) map.emplace_back(image.key, image.pixels);
   if (!request.state.empty()) {
@@ -60,7 +60,9 @@ std::string openvla_request(const Profile& profile, const Request& request) {
   }
   map.emplace_back(profile.prompt_key, request.prompt);
   if (!profile.unnorm_key.empty()) map.emplace_back("unnorm_key", profile.unnorm_key);
-  std::string plain = wire::to_json(std::move(map));
+  const wire::Value whole(std::move(map));
+  PROBE_TRY(check_distinct_keys(whole));
+  std::string plain = wire::to_json(whole);
   if (profile.dialect != kEncoded) return plain;
   return wire::to_json(wire::Map{{"encoded", std::move(plain)}});
 }

@@ -14,7 +14,7 @@ namespace probe::policy {
 
 // {image keys, the state where the profile has one, the instruction, "unnorm_key" where the profile
 // has one}.
-std::string openvla_request(const Profile& profile, const Request& request);
+Result<std::string> openvla_request(const Profile& profile, const Request& request);
 
 // The actions of an answer's body, in either form. Fails (code "policy") on the text "error", which
 // is all that OpenVLA says when it fails, and on what to_actions refuses.

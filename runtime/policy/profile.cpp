@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <set>
 #include <span>
 #include <type_traits>
@@ -10,6 +11,7 @@
 
 #include "runtime/base/sha256.h"
 #include "runtime/base/spelling.h"
+#include "runtime/policy/profile_check.h"
 #include "runtime/policy/profile_words.h"
 
 namespace probe::policy {
@@ -388,6 +390,36 @@ Failure at(Failure failure, std::string_view where, std::size_t line, std::size_
   return failure;
 }
 
+// Of a field's value: line from 1, column from 0.
+struct Place {
+  std::size_t line = 0, column = 0;
+  auto operator<=>(const Place&) const = default;
+};
+
+// Statistics have none.
+bool has_default(std::string_view field) {
+  const Field* known = find_field(field);
+  Profile plain;
+  return known != nullptr && !std::visit(Writer{}, known->slot(plain)).front().empty();
+}
+
+// At the last of the fields at fault, with those that are not written.
+Failure placed(const Mistake& mistake, const std::map<std::string, Place>& places,
+               std::string_view where) {
+  Failure failure = bad(mistake.message);
+  Place last;
+  for (const std::string& field : mistake.fields) {
+    if (const auto it = places.find(field); it != places.end()) {
+      last = std::max(last, it->second);
+    } else if (has_default(field)) {
+      failure.message += "; `" + field + "` is not written and has its default";
+    }
+  }
+  if (last.line > 0) return at(std::move(failure), where, last.line, last.column);
+  failure.where = where;
+  return failure;
+}
+
 }  // namespace
 
 Status set_field(Profile& profile, std::string_view field, std::string_view value) {
@@ -403,6 +435,7 @@ Status set_field(Profile& profile, std::string_view field, std::string_view valu
 Result<Profile> parse_profile(std::string_view text, std::string_view where) {
   Profile profile;
   std::set<std::string_view> seen;
+  std::map<std::string, Place> places;
   std::size_t number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -427,15 +460,15 @@ Result<Profile> parse_profile(std::string_view text, std::string_view where) {
           names_value ? static_cast<std::size_t>(value.data() - line.data()) : first;
       return at(set.failure(), where, number, column);
     }
+    const std::string ordinal =
+        field == "image" ? " " + std::to_string(profile.images.size()) : std::string();
+    places[std::string(field) + ordinal] = {number,
+                                            static_cast<std::size_t>(value.data() - line.data())};
   }
   if (!seen.contains("protocol")) {
     return at(bad("a profile needs a line `protocol = ...`"), where, 1, 0);
   }
-  if (auto whole = check_profile(profile); !whole) {
-    Failure failure = whole.failure();
-    failure.where = where;
-    return failure;
-  }
+  if (const auto mistake = find_mistake(profile)) return placed(*mistake, places, where);
   return profile;
 }
 

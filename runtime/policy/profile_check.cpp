@@ -1,42 +1,70 @@
 // Fields of a profile that do not go together.
-#include "runtime/policy/profile.h"
+#include "runtime/policy/profile_check.h"
+
+#include <algorithm>
 
 namespace probe::policy {
 namespace {
 
-Failure bad(std::string message) { return {"usage", std::move(message), ""}; }
+using MaybeMistake = std::optional<Mistake>;
 
-Status check_statistics(const Statistics& statistics, const std::string& prefix, std::size_t size) {
-  const auto check_size = [&](const std::vector<double>& numbers, const char* name) -> Status {
-    if (numbers.empty() || size == 0 || numbers.size() == size) return {};
-    return bad("`" + prefix + name + "` has " + std::to_string(numbers.size()) +
-               " numbers, there are " + std::to_string(size));
-  };
-  PROBE_TRY(check_size(statistics.low, "low"));
-  PROBE_TRY(check_size(statistics.high, "high"));
-  PROBE_TRY(check_size(statistics.mean, "mean"));
-  PROBE_TRY(check_size(statistics.std, "std"));
-  PROBE_TRY(check_size(statistics.mask, "mask"));
-  if (statistics.kind == Normalisation::kBound) {
-    if (statistics.low.empty() || statistics.high.size() != statistics.low.size()) {
-      return bad("bound needs `" + prefix + "low` and `" + prefix + "high`, as many of each");
-    }
-    for (std::size_t i = 0; i < statistics.low.size(); ++i) {
-      if (statistics.low[i] < statistics.high[i]) continue;
-      if (i < statistics.mask.size() && statistics.mask[i] == 0) continue;
-      return bad("number " + std::to_string(i + 1) + " of `" + prefix +
-                 "low` is not below that of `" + prefix + "high`");
-    }
+MaybeMistake check_bound(const Statistics& statistics, const std::string& kind,
+                         const std::string& prefix) {
+  const std::string low = prefix + "low", high = prefix + "high";
+  if (statistics.low.empty() || statistics.high.size() != statistics.low.size()) {
+    return Mistake{"bound needs `" + low + "` and `" + high + "`, as many of each",
+                   {kind, low, high}};
   }
-  if (statistics.kind == Normalisation::kGaussian) {
-    if (statistics.mean.empty() || statistics.std.size() != statistics.mean.size()) {
-      return bad("gaussian needs `" + prefix + "mean` and `" + prefix + "std`, as many of each");
-    }
-    for (const double value : statistics.std) {
-      if (value <= 0) return bad("a number of `" + prefix + "std` is not above 0");
-    }
+  for (std::size_t i = 0; i < statistics.low.size(); ++i) {
+    if (statistics.low[i] < statistics.high[i]) continue;
+    if (i < statistics.mask.size() && statistics.mask[i] == 0) continue;
+    return Mistake{
+        "number " + std::to_string(i + 1) + " of `" + low + "` is not below that of `" + high + "`",
+        {low, high}};
   }
-  return {};
+  return std::nullopt;
+}
+
+MaybeMistake check_gaussian(const Statistics& statistics, const std::string& kind,
+                            const std::string& prefix) {
+  const std::string mean = prefix + "mean", std = prefix + "std";
+  if (statistics.mean.empty() || statistics.std.size() != statistics.mean.size()) {
+    return Mistake{"gaussian needs `" + mean + "` and `" + std + "`, as many of each",
+                   {kind, mean, std}};
+  }
+  for (const double value : statistics.std) {
+    if (value <= 0) return Mistake{"a number of `" + std + "` is not above 0", {std}};
+  }
+  return std::nullopt;
+}
+
+// `kind` is the field that says how; `size` 0 is any.
+MaybeMistake check_statistics(const Statistics& statistics, const std::string& kind,
+                              const std::string& prefix, std::size_t size) {
+  const std::pair<const char*, const std::vector<double>*> lists[] = {{"low", &statistics.low},
+                                                                      {"high", &statistics.high},
+                                                                      {"mean", &statistics.mean},
+                                                                      {"std", &statistics.std},
+                                                                      {"mask", &statistics.mask}};
+  for (const auto& [name, numbers] : lists) {
+    if (numbers->empty() || size == 0 || numbers->size() == size) continue;
+    return Mistake{"`" + prefix + name + "` has " + std::to_string(numbers->size()) +
+                       " numbers, there are " + std::to_string(size),
+                   {prefix + name}};
+  }
+  const std::string mask = prefix + "mask";
+  for (std::size_t i = 0; i < statistics.mask.size(); ++i) {
+    if (statistics.mask[i] == 0 || statistics.mask[i] == 1) continue;
+    return Mistake{"number " + std::to_string(i + 1) + " of `" + mask + "` is neither 0 nor 1",
+                   {mask}};
+  }
+  if (statistics.kind == Normalisation::kNone) return std::nullopt;
+  if (!statistics.mask.empty() && std::ranges::count(statistics.mask, 1.0) == 0) {
+    return Mistake{"`" + kind + "` normalises nothing: `" + mask + "` is 0 everywhere",
+                   {kind, mask}};
+  }
+  return statistics.kind == Normalisation::kBound ? check_bound(statistics, kind, prefix)
+                                                  : check_gaussian(statistics, kind, prefix);
 }
 
 std::size_t size_of(StateLayout layout) {
@@ -58,17 +86,36 @@ std::size_t size_of(StateLayout layout) {
 
 }  // namespace
 
-Status check_profile(const Profile& profile) {
+std::optional<Mistake> find_mistake(const Profile& profile) {
   constexpr std::size_t kActionSize = 7;
-  PROBE_TRY(check_statistics(profile.action_statistics, "action.", kActionSize));
-  PROBE_TRY(check_statistics(profile.state_statistics, "state.", size_of(profile.state_layout)));
+  if (auto mistake = check_statistics(profile.action_statistics, "action.normalised", "action.",
+                                      kActionSize)) {
+    return mistake;
+  }
+  if (profile.state_layout == StateLayout::kNone &&
+      profile.state_statistics.kind != Normalisation::kNone) {
+    return Mistake{"`state.normalise` normalises nothing: `state.layout = none` sends no state",
+                   {"state.normalise", "state.layout"}};
+  }
+  if (auto mistake = check_statistics(profile.state_statistics, "state.normalise", "state.",
+                                      size_of(profile.state_layout))) {
+    return mistake;
+  }
   if (profile.ensemble == Ensemble::kTemporal && profile.chunk_use > 1) {
-    return bad("`ensemble = temporal` asks at every step; `chunk.use` is then 1 or absent");
+    return Mistake{"`ensemble = temporal` asks at every step; `chunk.use` is then 1 or absent",
+                   {"ensemble", "chunk.use"}};
   }
   if (profile.chunk_length > 0 && profile.chunk_use > profile.chunk_length) {
-    return bad("`chunk.use` is more than `chunk.length`");
+    return Mistake{"`chunk.use` is more than `chunk.length`", {"chunk.use", "chunk.length"}};
   }
-  if (profile.images.empty()) return bad("a profile has at least one line `image = ...`");
+  if (profile.images.empty()) {
+    return Mistake{"a profile has at least one line `image = ...`", {}};
+  }
+  return find_key_conflict(profile);
+}
+
+Status check_profile(const Profile& profile) {
+  if (auto mistake = find_mistake(profile)) return Failure{"usage", mistake->message, ""};
   return {};
 }
 

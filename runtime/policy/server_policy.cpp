@@ -110,11 +110,13 @@ Status ServerPolicy::connect() {
   for (int attempt = 1;; ++attempt) {
     profile_ = given_;
     auto opened = transport_->open(deadlines());
+    bool is_answer = opened.ok();
     if (opened) opened = transport_->adapt(profile_);
     if (opened) break;
     transport_->close();
+    is_answer = is_answer || opened.failure().code == kAnswered;
     Failure failure = named(opened.failure());
-    if (failure.code == "usage") return failure;
+    if (is_answer || failure.code == "usage") return failure;
     if (Clock::now() + pause > limit) {
       if (attempt > 1) failure.message += " (tried " + std::to_string(attempt) + " times)";
       return failure;
@@ -149,6 +151,7 @@ Deadlines ServerPolicy::deadlines() const {
 
 Failure ServerPolicy::named(Failure failure) const {
   if (failure.where.empty()) failure.where = server_;
+  if (failure.code == kAnswered) failure.code = "policy";
   // A server may repeat the key that it refuses; this text is stored.
   if (const std::string key = api_key(); !key.empty()) {
     for (std::size_t at = 0; (at = failure.message.find(key, at)) != std::string::npos; ++at) {

@@ -33,8 +33,8 @@ class ServerPolicy : public Policy {
   ~ServerPolicy() override;
 
   // Connects if there is no connection, trying again with growing pauses until the profile's
-  // `timeout.wait_s` have passed. Fails (code "policy", or "usage" at once where the profile and
-  // the server do not go together).
+  // `timeout.wait_s` have passed. Fails (code "policy", at once where a server answers with an
+  // error; or "usage", at once, where the profile and the server do not go together).
   Status begin(const EpisodeStart& start) override;
   Result<Action> act(const Observation& observation) override;
   void end(const EpisodeEnd& end) override;

@@ -2,6 +2,8 @@
 #include "runtime/policy/transport.h"
 
 #include <cmath>
+#include <set>
+#include <string_view>
 
 #include "runtime/wire/printable.h"
 
@@ -65,6 +67,21 @@ std::string last_lines(std::string_view text) {
   std::string joined;
   for (const std::string& line : lines) joined += (joined.empty() ? "" : " | ") + line;
   return joined;
+}
+
+Failure answered(std::string message) { return {kAnswered, std::move(message), ""}; }
+
+Status check_distinct_keys(const wire::Value& request) {
+  const auto* map = request.as<wire::Map>();
+  if (map == nullptr) return {};
+  std::set<std::string_view> seen;
+  for (const auto& [key, value] : *map) {
+    if (!seen.insert(key).second) {
+      return bad("the request has the key `" + key + "` twice: one of the two would not arrive");
+    }
+    PROBE_TRY(check_distinct_keys(value));
+  }
+  return {};
 }
 
 wire::Array state_array(const Profile& profile, const std::vector<double>& state) {

@@ -42,8 +42,13 @@ struct Deadlines {
   wire::Duration answer{60'000};
 };
 
-// Any method that fails (code "policy", where = the server's HOST:PORT) has left the connection in
-// an unknown state: the caller closes and opens again. No message holds a secret.
+// The code of a failure that is an answer: a server is there and says no, so that asking it the
+// same again is of no use. ServerPolicy makes "policy" of it.
+inline constexpr const char* kAnswered = "answered";
+Failure answered(std::string message);
+
+// Any method that fails (code "policy" or kAnswered, where = the server's HOST:PORT) has left the
+// connection in an unknown state: the caller closes and opens again. No message holds a secret.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -81,6 +86,10 @@ Result<std::vector<RawAction>> to_actions(const wire::Value& answer);
 // The end of a text that a server sent, a traceback usually: its last lines on one, without what
 // could repaint a terminal, a few hundred characters at most.
 std::string last_lines(std::string_view text);
+
+// Fails (code "policy") where a map in it has a key twice: servers read the last and never see the
+// others.
+Status check_distinct_keys(const wire::Value& request);
 
 // A state as the array that is sent, of the profile's type.
 wire::Array state_array(const Profile& profile, const std::vector<double>& state);

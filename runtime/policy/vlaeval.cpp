@@ -116,7 +116,7 @@ class VlaEval : public Transport {
     PROBE_ASSIGN(const Message hello,
                  answer_to(seq_, Clock::now() + deadlines.connect, deadlines.connect));
     if (hello.type != "hello")
-      return bad("hello: expected a `hello`, got `" + last_lines(hello.type) + "`");
+      return answered("hello: expected a `hello`, got `" + last_lines(hello.type) + "`");
     hello_ = hello.payload;
     const wire::Value* version = hello_.find("protocol_version");
     if (version != nullptr && *version != wire::Value(kProtocolVersion)) {
@@ -266,13 +266,15 @@ class VlaEval : public Transport {
         return bad("no answer in " + wire::seconds_text(stated));
       }
       if (!received) return received.failure();
-      if (received->is_text) return bad("the server failed: " + last_lines(received->text()));
-      PROBE_ASSIGN(Message message, vlaeval::from_bytes(received->bytes));
+      if (received->is_text) return answered("the server failed: " + last_lines(received->text()));
+      auto read = vlaeval::from_bytes(received->bytes);
+      if (!read) return answered(read.failure().message);
+      Message message = std::move(*read);
       if (message.type == "error") {
         const wire::Value* error = message.payload.find("error");
         const auto* text = error == nullptr ? nullptr : error->as<std::string>();
-        return bad("the server failed: " +
-                   (text == nullptr ? wire::describe(message.payload) : last_lines(*text)));
+        return answered("the server failed: " +
+                        (text == nullptr ? wire::describe(message.payload) : last_lines(*text)));
       }
       if (message.seq == seq) return message;
     }

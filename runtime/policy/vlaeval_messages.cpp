@@ -74,7 +74,9 @@ Result<wire::Value> observation(const Profile& profile, const Request& request,
     map.emplace_back("base_pose", pose_array(Pose{}));
     map.emplace_back("tcp_pose", pose_array(request.proprioception.tcp_in_base));
   }
-  return wire::Value(std::move(map));
+  wire::Value whole(std::move(map));
+  PROBE_TRY(check_distinct_keys(whole));
+  return whole;
 }
 
 }  // namespace probe::policy::vlaeval

@@ -128,8 +128,11 @@ class WebSocket::Connection {
                                   });
         }));
     if (!is_declined) return {};
+    const bool is_declined_for_good =
+        response->result() == beast::http::status::unauthorized ||
+        response->result() == beast::http::status::forbidden;  // others may be a server that starts
     return Failure{
-        "policy",
+        is_declined_for_good ? "answered" : "policy",
         "opening a WebSocket: answered with HTTP status " + std::to_string(response->result_int()),
         name_};
   }

@@ -2,13 +2,13 @@
 strict as they are.
 
 openpi_server.py openpi|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] [seen=HABIT]
-                 [key=KEY]
+                 [key=KEY] [lacks=MODEL]
 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or
 those of recorded_actions, or with `seen` small ones that depend on picture and instruction alone,
 where HABIT is `fine` or what is to be wrong: unit, inverted, euler, vector, normalised, noise, deaf,
 blind, nan, six. `record` gets every message that comes, a line of hexadecimal digits each. With
-`key` a client without this Api-Key is refused.
+`key` a client without this Api-Key is refused; INT-ACT's server fails to load the model `lacks`.
 """
 import asyncio
 import functools
@@ -116,6 +116,8 @@ def answer_openpi(policy, request):
 
 def answer_intact(policy, request):
     if "new_model_path" in request:
+        if request["new_model_path"] == options.get("lacks"):
+            raise FileNotFoundError(request["new_model_path"])
         policy.model = request["new_model_path"]
         return pack({"status": "model switched"})
     if policy.model is None:

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -211,6 +212,41 @@ TEST_CASE("a server that is not there is tried for as long as the profile says")
   REQUIRE_FALSE(begun.ok());
   CHECK(begun.failure().message.find("Connection refused") != std::string::npos);
   CHECK(begun.failure().message.find("(tried 3 times)") != std::string::npos);
+}
+
+TEST_CASE("a server that answers connecting with an error is told at once") {
+  const PythonServer server("openpi_server.py", {"intact", "lacks=/nowhere"});
+  // Trying again would take 100 s.
+  auto made_here =
+      make_policy("intact://127.0.0.1:" + server.port() + "?model=/nowhere&timeout.wait_s=100");
+  REQUIRE_MESSAGE(made_here.ok(), to_text(made_here.failure()));
+  const auto policy = std::move(made_here).value();
+  const auto before = std::chrono::steady_clock::now();
+  const auto begun = policy->begin(start());
+  REQUIRE_FALSE(begun.ok());
+  CHECK(begun.failure().code == "policy");
+  CHECK(begun.failure().message.find("FileNotFoundError: /nowhere") != std::string::npos);
+  CHECK(begun.failure().message.find("tried") == std::string::npos);
+  CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(20));
+}
+
+TEST_CASE("a request in which two things have one key is not sent") {
+  Profile profile;
+  profile.images = {{"", "prompt"}};
+  for (const auto make : {make_openpi, make_roboarena}) {
+    auto transport = make(profile, {});
+    REQUIRE(transport.ok());
+    Request request;
+    request.images.push_back({"prompt", wire::array_u8({1, 1, 3}, {1, 2, 3})});
+    const auto answer = (*transport)->ask(request, {});
+    REQUIRE_FALSE(answer.ok());
+    CHECK(answer.failure().message ==
+          "the request has the key `prompt` twice: one of the two would not arrive");
+  }
+  const wire::Value nested =
+      wire::Map{{"a", wire::Map{{"x", 1}, {"x", 2}}}, {"b", wire::Map{{"x", 1}}}};
+  CHECK_FALSE(check_distinct_keys(nested).ok());
+  CHECK(check_distinct_keys(wire::Map{{"x", 1}, {"b", wire::Map{{"x", 1}}}}).ok());
 }
 
 TEST_CASE("a restarted server is found again at the next episode") {

@@ -29,12 +29,14 @@ TEST_CASE("an OpenVLA request is json_numpy's text, plain or encoded") {
   const std::string plain =
       "{\"image\": {\"__numpy__\": \"AAECAwQF\", \"dtype\": \"|u1\", \"shape\": [1, 2, 3]}, "
       "\"instruction\": \"put \\\"it\\\" down\"}";
-  CHECK(openvla_request(profile, small_request()) == plain);
+  CHECK(openvla_request(profile, small_request()).value() == plain);
   profile.unnorm_key = "bridge_orig";
-  CHECK(openvla_request(profile, small_request()).ends_with(", \"unnorm_key\": \"bridge_orig\"}"));
+  CHECK(openvla_request(profile, small_request())
+            .value()
+            .ends_with(", \"unnorm_key\": \"bridge_orig\"}"));
   profile.unnorm_key.clear();
   profile.dialect = "encoded";
-  const auto encoded = nlohmann::json::parse(openvla_request(profile, small_request()));
+  const auto encoded = nlohmann::json::parse(openvla_request(profile, small_request()).value());
   CHECK(encoded.size() == 1);
   CHECK(encoded["encoded"] == plain);
 }

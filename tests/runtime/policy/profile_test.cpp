@@ -60,6 +60,72 @@ TEST_CASE("what does not go together is refused") {
   CHECK_FALSE(parse_profile("protocol = openpi\n", "x").ok());
 }
 
+TEST_CASE("two things with one key are refused, defaults too, at the later line") {
+  CHECK(failure_of("image = wrist -> prompt\n") ==
+        "mine.profile:3:9: `image` (wrist -> prompt) and `prompt.key` have the same key `prompt`: "
+        "one of them would never arrive; `prompt.key` is not written and has its default");
+  CHECK(failure_of("prompt.key = observation/image\n")
+            .starts_with("mine.profile:3:14: `image` (first -> observation/image) and "
+                         "`prompt.key` have the same key"));
+  CHECK(failure_of("state.key = prompt\nstate.layout = joints\nprompt.key = prompt\n")
+            .starts_with("mine.profile:5:14: `state.key` and `prompt.key` have the same key"));
+  CHECK(failure_of("state.key = observation/image\nstate.layout = joints\n")
+            .find("`image` (first -> observation/image) and `state.key`") != std::string::npos);
+  // A state that is not sent takes no key.
+  CHECK(parse_profile(std::string(kSmall) + "state.key = prompt\n", "x").ok());
+}
+
+TEST_CASE("a key of the protocol's own is refused, and keys of different maps are not compared") {
+  const auto refusal = [](const std::string& text) {
+    const auto read = parse_profile("protocol = " + text, "p");
+    return read ? std::string("accepted") : to_text(read.failure());
+  };
+  CHECK(refusal("intact\nimage = first -> reset\n") ==
+        "p:2:9: `image` (first -> reset) has the key `reset`, which is intact's own");
+  CHECK(refusal("roboarena\nimage = first -> a\nprompt.key = endpoint\n") ==
+        "p:3:14: `prompt.key` has the key `endpoint`, which is roboarena's own");
+  CHECK(
+      refusal("roboarena\nimage = first -> observation/joint_position\n").find("roboarena's own") !=
+      std::string::npos);
+  CHECK(refusal("vlaeval\nimage = first -> a\nprompt.key = images\n").find("vlaeval's own") !=
+        std::string::npos);
+  CHECK(refusal("vlaeval\nimage = first -> images\nimage = wrist -> prompt\n") == "accepted");
+  CHECK(refusal("openvla\nimage = first -> unnorm_key\n").find("openvla's own") !=
+        std::string::npos);
+  const std::string gr00t = "gr00t\nstate.layout = xyz_rpy_openness\nstate.key = state\n";
+  CHECK(refusal(gr00t + "image = first -> state.roll\n")
+            .starts_with("p:4:9: `image` (first -> state.roll) and `state.key` have the same key "
+                         "`state.roll`"));
+  CHECK(refusal(gr00t + "dialect = n1.6_nested\nimage = first -> state.roll\n") == "accepted");
+  CHECK(refusal(gr00t + "dialect = n1.6_nested\nimage = first -> a\nimage = w -> video.a\n")
+            .starts_with("p:6:9: `image` (first -> a) and `image` (w -> video.a) have the same"));
+}
+
+TEST_CASE("a conflict of keys in an address is refused too") {
+  const auto refused = choose_server(Protocol::kOpenpi, "//gpu?image=first%20-%3E%20prompt");
+  REQUIRE_FALSE(refused.ok());
+  CHECK(to_text(refused.failure()).starts_with("--policy: `image` (first -> prompt) and"));
+}
+
+TEST_CASE("a mask is made of 0 and 1, and nothing cannot be normalised") {
+  CHECK(failure_of("action.mask = 1 1 2 1 1 1 1\n") ==
+        "mine.profile:3:15: number 3 of `action.mask` is neither 0 nor 1");
+  CHECK(failure_of("state.layout = xyz_rpy_openness\nstate.mask = 1 1 0.5 1 1 1 1\n") ==
+        "mine.profile:4:14: number 3 of `state.mask` is neither 0 nor 1");
+  const std::string statistics = "state.low = 0 0\nstate.high = 1 1\n";
+  CHECK(failure_of(statistics + "state.normalise = bound\nstate.layout = none\n") ==
+        "mine.profile:6:16: `state.normalise` normalises nothing: `state.layout = none` sends no "
+        "state");
+  CHECK(failure_of("state.normalise = gaussian\n") ==
+        "mine.profile:3:19: `state.normalise` normalises nothing: `state.layout = none` sends no "
+        "state; `state.layout` is not written and has its default");
+  CHECK(failure_of("action.normalised = bound\naction.low = 0 0 0 0 0 0 0\n"
+                   "action.high = 1 1 1 1 1 1 1\naction.mask = 0 0 0 0 0 0 0\n")
+            .starts_with("mine.profile:6:15: `action.normalised` normalises nothing"));
+  CHECK(failure_of("action.normalised = bound\n") ==
+        "mine.profile:3:21: bound needs `action.low` and `action.high`, as many of each");
+}
+
 TEST_CASE("a profile's text reads back equal") {
   const auto read = parse_profile(
       "protocol = gr00t\nabout = \"a # inside\" # and one behind\n"
