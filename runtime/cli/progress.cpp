@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/base/percent.h"
+
 namespace probe::cli {
 namespace {
 
@@ -57,8 +59,9 @@ std::string Progress::counts() const {
 
 std::string Progress::rate_text(const Rate& rate) const {
   const stats::Interval interval = stats::wilson(rate.count);
-  return fmt::format("{} {}/{} {:.0f} % [{:.0f}-{:.0f}]", rate.name, rate.count.k, rate.count.n,
-                     100 * rate.count.rate(), 100 * interval.low, 100 * interval.high);
+  return fmt::format("{} {}/{} {} % [{}]", rate.name, rate.count.k, rate.count.n,
+                     decimal_text(100 * rate.count.rate(), 0),
+                     percent_range(interval.low, interval.high, "-"));
 }
 
 // Episodes that were there cost nothing, so only this call's pace counts.

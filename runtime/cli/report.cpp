@@ -11,6 +11,7 @@
 #include "runtime/report/episode_documents.h"
 #include "runtime/report/page_data.h"
 #include "runtime/report/page_writer.h"
+#include "runtime/report/published_match.h"
 #include "runtime/report/table_text.h"
 
 namespace probe::cli {
@@ -45,7 +46,29 @@ report::EpisodeDocuments read_traces(const report::Benchmark& benchmark,
       {.jobs = arguments.jobs > 0 ? arguments.jobs : all, .traces = !arguments.no_traces});
 }
 
+// Refuses to write over what a run folder is made of, wherever it lies.
+Status spare_runs(const std::string& out) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path path = fs::weakly_canonical(fs::absolute(out, error), error);
+  if (error) return {};  // writing will say what is wrong
+  for (fs::path dir = path.parent_path(); dir.has_relative_path(); dir = dir.parent_path()) {
+    if (!fs::exists(dir / "results.sqlite", error)) continue;
+    const std::string part = path.lexically_relative(dir).begin()->string();
+    if (part.starts_with("results.sqlite") || part == "suite.plan" || part == "lock" ||
+        part == "traces" || part == "videos") {
+      return Failure{"usage",
+                     fmt::format("belongs to the run in `{}` and is not written over; give -o "
+                                 "another name",
+                                 dir.string()),
+                     out};
+    }
+  }
+  return {};
+}
+
 Status write_report(const Arguments& arguments) {
+  if (!arguments.out.empty()) PROBE_TRY(spare_runs(arguments.out));
   PROBE_ASSIGN(report::Benchmark benchmark, report::load(arguments.dirs, {.sets = arguments.sets}));
   report::PageOptions options{.title = arguments.title,
                               .command = arguments.command,
@@ -56,6 +79,8 @@ Status write_report(const Arguments& arguments) {
   options.relative_to = std::filesystem::path(arguments.out).parent_path().string();
   for (const std::string& path : arguments.published) {
     PROBE_ASSIGN(auto table, report::read_published(path));
+    for (report::Note& note : report::unmatched(benchmark, table))
+      benchmark.notes.push_back(std::move(note));
     options.published.push_back(std::move(table));
   }
   report::Tables tables = report::make_tables(benchmark);

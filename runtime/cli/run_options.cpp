@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 
+#include "runtime/base/printable.h"
 #include "runtime/policy/factory.h"
 
 namespace probe::cli {
@@ -64,6 +65,15 @@ std::optional<int> to_int(std::string_view text) {
 Result<run::RunOptions> to_options(const RunArguments& arguments) {
   run::RunOptions options;
   options.policy = arguments.policy;
+  if (!is_printable(arguments.name)) {
+    constexpr std::size_t kShown = 100;
+    return Failure{
+        "usage",
+        fmt::format("a name is UTF-8 text without control characters (line breaks, tabs, "
+                    "escapes), which `{}` is not",
+                    printable(arguments.name, kShown)),
+        "--name"};
+  }
   options.name = arguments.name;
   options.out = arguments.out;
   options.suite = arguments.suite;

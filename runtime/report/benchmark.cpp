@@ -11,6 +11,7 @@
 #include <set>
 #include <tuple>
 
+#include "runtime/base/printable.h"
 #include "runtime/inspect/axes.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/source_line.h"
@@ -23,8 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kNamed = 3;        // before the rest is only counted
-constexpr std::size_t kMostTruths = 52;  // a page's numbers hold so many bits
+constexpr std::size_t kLongestText = 1000;  // of a name or reason that a run folder holds, bytes
+constexpr std::size_t kNamed = 3;           // before the rest is only counted
+constexpr std::size_t kMostTruths = 52;     // a page's numbers hold so many bits
 
 std::string hex(const std::array<std::uint8_t, 32>& bytes) {
   return to_hex(plan::to_sha256(bytes));
@@ -305,7 +307,7 @@ class Loader {
       episode.start = map.start[*task][static_cast<std::size_t>(row.episode)];
       episode.plan = plan;
       if (row.invalid) {
-        episode.reason = index_in(benchmark_.reasons, *row.invalid);
+        episode.reason = index_in(benchmark_.reasons, printable(*row.invalid, kLongestText));
         ++info.invalid;
       } else {
         for (const run::MetricValue& value : row.metrics) {
@@ -335,7 +337,8 @@ class Loader {
     const PlanInfo& of_plan = benchmark_.plans[static_cast<std::size_t>(plan)];
     info.expected =
         of_plan.starts * static_cast<int>(std::max<std::size_t>(1, record.seeds.size()));
-    place_run(record.identity.policy, std::move(info), std::move(episodes));
+    place_run(printable(record.identity.policy, kLongestText), std::move(info),
+              std::move(episodes));
   }
 
   int prompt_of(const std::string& hash) {
@@ -378,7 +381,8 @@ class Loader {
           std::count_if(benchmark_.policies.begin(), benchmark_.policies.end(),
                         [&](const Policy& other) { return other.name == policy.name; });
       if (same < 2 || policy.runs.empty()) continue;
-      policy.label = fmt::format("{} ({})", policy.name, policy.runs[0].dir);
+      policy.label =
+          fmt::format("{} ({})", policy.name, printable(policy.runs[0].dir, kLongestText));
       const auto first =
           std::find_if(benchmark_.policies.begin(), benchmark_.policies.end(),
                        [&](const Policy& other) { return other.name == policy.name; });

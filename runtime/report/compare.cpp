@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "runtime/base/percent.h"
 #include "runtime/plan/axis_names.h"
 #include "runtime/report/models.h"
 #include "runtime/report/page_data.h"
@@ -149,7 +150,7 @@ bool is_one_start_a_place(const Contrast& c) {
 bool differs_anywhere(const Contrast& c) { return c.pairs.only_a + c.pairs.only_b > 0; }
 
 std::string rate(const stats::Count& count) {
-  return fmt::format("{} of {} ({:.1f} %)", count.k, count.n, 100 * count.rate());
+  return fmt::format("{} of {} ({} %)", count.k, count.n, percent_text(count.k, count.n));
 }
 
 std::string p_text(double p) {
@@ -157,9 +158,11 @@ std::string p_text(double p) {
   return fmt::format("p = {:.2g}", p);
 }
 
+std::string points(double difference) { return signed_text(100 * difference, 1); }
+
 std::string range(const Contrast& c) {
-  return fmt::format("{:+.1f} points, {:+.1f} to {:+.1f}", 100 * c.difference, 100 * c.interval.low,
-                     100 * c.interval.high);
+  return fmt::format("{} points, {} to {}", points(c.difference), points(c.interval.low),
+                     points(c.interval.high));
 }
 
 // "more" is not "better" for every metric.
@@ -179,13 +182,14 @@ std::string verdict(const Benchmark& benchmark, const Comparison& comparison,
     return fmt::format(
         "{}: no difference was seen in any of {} episodes ({}). {} exclude a true difference of "
         "more "
-        "than {:.1f} points (95 %).",
-        metric.name, c.pairs.pairs(), rate(c.first), places(c), 100 * c.interval.high);
+        "than {} points (95 %).",
+        metric.name, c.pairs.pairs(), rate(c.first), places(c),
+        decimal_text(100 * c.interval.high, 1));
   }
   std::string text = fmt::format("{}: the data cannot tell them apart ({}).", metric.name, numbers);
   if (row.detectable) {
-    text += fmt::format(" {} show differences from {:.1f} points on, four times in five.",
-                        places(c), 100 * *row.detectable);
+    text += fmt::format(" {} show differences from {} points on, four times in five.", places(c),
+                        decimal_text(100 * *row.detectable, 1));
   } else {
     text += fmt::format(" {}, of which {} {}, cannot show a difference reliably.", places(c),
                         place_design(c).differ, place_design(c).differ == 1 ? "differs" : "differ");
@@ -201,8 +205,8 @@ std::string listed(const std::vector<const ComparedRow*>& rows) {
   constexpr std::size_t kMost = 6;
   std::string text;
   for (std::size_t i = 0; i < rows.size() && i < kMost; ++i) {
-    text += fmt::format("{}{} ({:+.1f})", i == 0 ? "" : ", ", rows[i]->name,
-                        100 * rows[i]->contrast.difference);
+    text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", rows[i]->name,
+                        points(rows[i]->contrast.difference));
   }
   if (rows.size() > kMost) text += fmt::format(" and {} more", rows.size() - kMost);
   return text;
@@ -345,12 +349,11 @@ std::string to_text(const Benchmark& benchmark, const Comparison& comparison) {
     }
     const Contrast& c = row.contrast;
     const auto of = [](const stats::Count& count) {
-      return fmt::format("{}/{} {:.1f} %", count.k, count.n, 100 * count.rate());
+      return fmt::format("{}/{} {} %", count.k, count.n, percent_text(count.k, count.n));
     };
-    text +=
-        fmt::format("{:<32} {:>16} {:>16} {:>+8.1f} {:>+7.1f} to {:>+6.1f} {:>9.2g}{}\n", row.name,
-                    of(c.first), of(c.second), 100 * c.difference, 100 * c.interval.low,
-                    100 * c.interval.high, c.adjusted, row.is_real() ? " *" : "");
+    text += fmt::format("{:<32} {:>16} {:>16} {:>8} {:>7} to {:>6} {:>9.2g}{}\n", row.name,
+                        of(c.first), of(c.second), points(c.difference), points(c.interval.low),
+                        points(c.interval.high), c.adjusted, row.is_real() ? " *" : "");
   }
   if (last != kAbsent) {
     text +=

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/base/percent.h"
 #include "runtime/report/page_data.h"
 
 namespace probe::report {
@@ -16,7 +17,7 @@ Json finding(const char* level, std::string text, const char* see) {
   return {{"level", level}, {"text", std::move(text)}, {"see", see}};
 }
 
-std::string points(double difference) { return fmt::format("{:+.1f} points", 100 * difference); }
+std::string points(double difference) { return signed_text(100 * difference, 1) + " points"; }
 
 // Of the policies under test, where there are some.
 bool is_tested(const Benchmark& benchmark, int policy) {
@@ -60,10 +61,10 @@ void add_gap(const Benchmark& benchmark, const Tables& tables, Json& found) {
     found.push_back(finding(
         "note",
         fmt::format("{}: goes for the right object in {} of {} episodes and succeeds in {}: a gap "
-                    "of {:.1f} points ({:.1f} to {:.1f})",
+                    "of {} points ({} to {})",
                     benchmark.policies[static_cast<std::size_t>(row.policy)].label, c.first.k,
-                    c.first.n, c.second.k, 100 * c.difference, 100 * c.interval.low,
-                    100 * c.interval.high),
+                    c.first.n, c.second.k, decimal_text(100 * c.difference, 1),
+                    decimal_text(100 * c.interval.low, 1), decimal_text(100 * c.interval.high, 1)),
         "gap"));
   }
 }

@@ -9,6 +9,7 @@
 #include "runtime/report/categories.h"
 #include "runtime/report/models.h"
 #include "runtime/report/page_data.h"
+#include "runtime/report/published_match.h"
 
 namespace probe::report {
 namespace {
@@ -193,18 +194,7 @@ Json external_json(const Benchmark& benchmark, const std::vector<PublishedTable>
   const auto [tasks, per_task] = published_sizes(benchmark);
   Json tables = Json::array();
   for (const PublishedTable& table : published) {
-    const auto column = [&](const std::string& name) -> std::optional<std::size_t> {
-      const auto at = std::find(table.columns.begin(), table.columns.end(), name);
-      if (at == table.columns.end()) return std::nullopt;
-      return static_cast<std::size_t>(at - table.columns.begin());
-    };
-    std::vector<std::optional<std::size_t>> columns = {column("avg")};
-    if (!columns[0]) columns[0] = column("all");
-    for (const Category& category : benchmark.categories) {
-      auto at = column(category.name);
-      if (!at) at = column(category.label);
-      columns.push_back(at);
-    }
+    const auto columns = matched_columns(benchmark, table);
     Json rows = Json::array();
     for (const PublishedRow& row : table.rows) {
       Json all, cells = Json::array(), n = Json::array(), flags = Json::array();

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runtime/base/file.h"
+#include "runtime/base/printable.h"
 
 namespace probe::report {
 namespace {
@@ -64,6 +65,8 @@ bool is_beside(std::string_view column) {
   return column == "source";
 }
 
+constexpr std::size_t kLongestName = 1000;  // of a policy, bytes
+
 double percent(std::int64_t k, std::int64_t n) {
   return 100 * static_cast<double>(k) / static_cast<double>(n);
 }
@@ -95,8 +98,14 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
       }
       for (std::size_t i = 2; i < cells.size(); ++i) {
         kept.push_back(!is_beside(cells[i]));
-        if (kept.back()) table.columns.push_back(cells[i]);
+        if (!kept.back()) continue;
+        if (std::find(table.columns.begin(), table.columns.end(), cells[i]) !=
+            table.columns.end()) {
+          return Failure{"usage", fmt::format("column `{}` stands twice", cells[i]), where};
+        }
+        table.columns.push_back(cells[i]);
       }
+      table.header_line = number;
       has_header = true;
       continue;
     }
@@ -106,7 +115,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
           fmt::format("{} cells where the first line has {}", cells.size(), kept.size() + 2),
           where};
     }
-    PublishedRow row{cells[0], cells[1], {}};
+    PublishedRow row{printable(cells[0], kLongestName), cells[1], {}, number};
     if (!seen.emplace(row.policy, row.metric).second) {
       return Failure{"usage", fmt::format("`{}`, `{}` stands twice", row.policy, row.metric),
                      where};

@@ -21,18 +21,20 @@ struct Percentage {
 struct PublishedRow {
   std::string policy, metric;
   std::vector<std::optional<Percentage>> cells;  // by column; nothing: the cell is empty or "-"
+  std::size_t line = 0;
 };
 
 struct PublishedTable {
   std::string source;                // the file
   std::vector<std::string> columns;  // "avg", "original", "ood_source" ...
   std::vector<PublishedRow> rows;
+  std::size_t header_line = 0;
 };
 
 // `policy,metric,COLUMN,...` and a line a policy and metric, percentages with or without "%"; the
 // counts and intervals of our own tables are passed over.
 // Fails (code "usage", where = source:line) on another layout, on a cell that is no percentage and
-// on a row that stands twice.
+// on a row or column that stands twice.
 Result<PublishedTable> parse_published(std::string_view csv, const std::string& source);
 Result<PublishedTable> read_published(const std::string& path);
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "runtime/base/percent.h"
 #include "runtime/report/categories.h"
 #include "runtime/report/page_data.h"
+#include "runtime/report/published_match.h"
 
 namespace probe::report {
 namespace {
@@ -50,15 +52,9 @@ const std::string& metric_name(const Benchmark& benchmark, int metric) {
 }
 
 // The published percentage of one of our columns; nothing when that table has none.
-std::optional<Percentage> published_cell(const PublishedTable& table, const PublishedRow& row,
-                                         const std::string& column, const Category* category) {
-  for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const std::string& name = table.columns[c];
-    if (name == column ||
-        (category != nullptr && (name == category->name || name == category->label)))
-      return row.cells[c];
-  }
-  return std::nullopt;
+std::optional<Percentage> published_cell(const PublishedRow& row,
+                                         const std::optional<std::size_t>& column) {
+  return column ? row.cells[*column] : std::nullopt;
 }
 
 std::string to_csv(const Benchmark& benchmark, const Tables& tables,
@@ -77,21 +73,22 @@ std::string to_csv(const Benchmark& benchmark, const Tables& tables,
             csv_cell(metric_name(benchmark, row.metric));
     for (const auto& cell : cells) {
       text += ",";
-      if (cell) text += fmt::format("{:.1f}", 100 * cell->count.rate());
+      if (cell) text += percent_text(cell->count.k, cell->count.n);
     }
     for (const auto& cell : cells) {
-      text += cell ? fmt::format(",{},{},{:.1f},{:.1f}", cell->count.k, cell->count.n,
-                                 100 * cell->interval.low, 100 * cell->interval.high)
+      text += cell ? fmt::format(",{},{},{},{}", cell->count.k, cell->count.n,
+                                 decimal_text(100 * cell->interval.low, 1),
+                                 decimal_text(100 * cell->interval.high, 1))
                    : ",,,,";
     }
     text += ",measured\n";
   }
   for (const PublishedTable& table : published) {
+    const auto columns_of = matched_columns(benchmark, table);
     for (const PublishedRow& row : table.rows) {
       text += csv_cell(row.policy) + "," + csv_cell(row.metric);
       for (std::size_t c = 0; c < names.size(); ++c) {
-        const auto cell =
-            published_cell(table, row, names[c], c == 0 ? nullptr : &benchmark.categories[c - 1]);
+        const auto cell = published_cell(row, columns_of[c]);
         text += "," + (cell ? csv_cell(cell->text) : "");
       }
       for (std::size_t c = 0; c < names.size(); ++c) text += ",,,,";
@@ -227,8 +224,9 @@ std::string tex(const std::string& text) {
 // The rate above, count and interval below, small.
 std::string tex_cell(const std::optional<Estimate>& e) {
   if (!e) return "--";
-  return fmt::format("\\cell{{{:.1f}}}{{{}/{}}}{{{:.0f}--{:.0f}}}", 100 * e->count.rate(),
-                     e->count.k, e->count.n, 100 * e->interval.low, 100 * e->interval.high);
+  return fmt::format("\\cell{{{}}}{{{}/{}}}{{{}}}", percent_text(e->count.k, e->count.n),
+                     e->count.k, e->count.n,
+                     percent_range(e->interval.low, e->interval.high, "--"));
 }
 
 std::string tex_main(const Benchmark& benchmark, const Tables& tables,
@@ -251,6 +249,7 @@ std::string tex_main(const Benchmark& benchmark, const Tables& tables,
   const auto [tasks, per_task] = published_sizes(benchmark);
   bool flagged = false;
   for (const PublishedTable& table : published) {
+    const auto columns_of = matched_columns(benchmark, table);
     text += fmt::format(
         "\\midrule\n\\multicolumn{{{}}}{{l}}{{\\emph{{published, without counts: {}}}}} "
         "\\\\\n",
@@ -260,8 +259,7 @@ std::string tex_main(const Benchmark& benchmark, const Tables& tables,
       text += (row.policy == policy ? std::string() : tex(row.policy)) + " & " + tex(row.metric);
       policy = row.policy;
       for (std::size_t c = 0; c < names.size(); ++c) {
-        const auto cell =
-            published_cell(table, row, names[c], c == 0 ? nullptr : &benchmark.categories[c - 1]);
+        const auto cell = published_cell(row, columns_of[c]);
         text += " & " + (cell ? tex(cell->text) : "--");
         if (cell && impossible(*cell, tasks[c], per_task)) {
           text += "\\rlap{\\textsuperscript{?}}";
@@ -279,7 +277,7 @@ std::string tex_main(const Benchmark& benchmark, const Tables& tables,
 }
 
 std::string tex_count(const stats::Count& count) {
-  return fmt::format("{:.1f} {{\\tiny {}/{}}}", 100 * count.rate(), count.k, count.n);
+  return fmt::format("{} {{\\tiny {}/{}}}", percent_text(count.k, count.n), count.k, count.n);
 }
 
 std::string tex_differences(const Benchmark& benchmark, const Tables& tables, bool language) {
@@ -295,13 +293,13 @@ std::string tex_differences(const Benchmark& benchmark, const Tables& tables, bo
       metric = kAbsent;
     }
     const Contrast& c = row.contrast;
-    text +=
-        fmt::format("{} & {} & {} & {} & {} & ${:+.1f}$ (${:.1f}$ to ${:.1f}$) & {:.2g} \\\\\n",
-                    row.policy == policy ? std::string() : tex(policy_label(benchmark, row.policy)),
-                    row.metric == metric ? std::string() : tex(metric_name(benchmark, row.metric)),
-                    tex(benchmark.categories[static_cast<std::size_t>(row.category)].label),
-                    tex_count(c.second), tex_count(c.first), 100 * c.difference,
-                    100 * c.interval.low, 100 * c.interval.high, c.adjusted);
+    text += fmt::format(
+        "{} & {} & {} & {} & {} & ${}$ (${}$ to ${}$) & {:.2g} \\\\\n",
+        row.policy == policy ? std::string() : tex(policy_label(benchmark, row.policy)),
+        row.metric == metric ? std::string() : tex(metric_name(benchmark, row.metric)),
+        tex(benchmark.categories[static_cast<std::size_t>(row.category)].label),
+        tex_count(c.second), tex_count(c.first), signed_text(100 * c.difference, 1),
+        decimal_text(100 * c.interval.low, 1), decimal_text(100 * c.interval.high, 1), c.adjusted);
     policy = row.policy;
     metric = row.metric;
   }

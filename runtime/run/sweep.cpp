@@ -1,7 +1,6 @@
 // Run, score, choose, run.
 #include "runtime/run/sweep.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -10,6 +9,7 @@
 #include <tuple>
 
 #include "runtime/base/file.h"
+#include "runtime/base/percent.h"
 #include "runtime/plan/plan.h"
 #include "runtime/run/selection.h"
 
@@ -114,11 +114,7 @@ bool is_better(const CheckpointScore& a, const CheckpointScore& b) {
   return a.success != b.success ? a.success > b.success : a.intention > b.intention;
 }
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * share);
-  return text;
-}
+std::string percent(double share) { return decimal_text(100 * share, 1) + " %"; }
 
 std::string sentence(const CheckpointScore& score) {
   return score.checkpoint + ": success " + percent(score.success) + ", intention " +

@@ -120,3 +120,34 @@ TEST_CASE("the numbers of a report are there as JSON too") {
   CHECK(data["format"] == "vlaprobe-report");
   CHECK(data["tables"].contains("main"));
 }
+
+TEST_CASE("a report is not written over a part of a run") {
+  for (const char* part : {"results.sqlite", "suite.plan", "lock", "traces/x.html"}) {
+    const std::string path = std::string("expert/") + part;
+    const Outcome refused = sandbox().vlaprobe("report 'a run' --format csv -o " + path);
+    CHECK(refused.exit == 1);
+    CHECK(refused.err.find("belongs to the run") != std::string::npos);
+  }
+  CHECK(sandbox().vlaprobe("report expert --format csv -o expert/tables.csv").exit == 0);
+}
+
+TEST_CASE("a published table's slips are told on stderr") {
+  const Outcome told = sandbox().vlaprobe(
+      "report expert --format csv --with \"$(printf 'policy,metric,orignal\\npi0,sucess,1\\n' > "
+      "slips.csv; echo slips.csv)\"");
+  CHECK(told.exit == 0);
+  CHECK(told.err.find("warning: slips.csv:1: column `orignal`") != std::string::npos);
+  CHECK(told.err.find("warning: slips.csv:2: metric `sucess`") != std::string::npos);
+}
+
+TEST_CASE("a policy's name is a line of text") {
+  for (const char* name : {"\"$(printf 'a\\033[2Jb')\"", "\"$(printf 'a\\377')\"", "'a\nb'"}) {
+    const Outcome refused = sandbox().vlaprobe(
+        std::string("run $SUITE --tasks carrot_on_plate --policy null --assets $ASSETS -o named "
+                    "--name ") +
+        name);
+    CHECK(refused.exit == 1);
+    CHECK(refused.err.find("without control characters") != std::string::npos);
+    CHECK(refused.err.find('\x1b') == std::string::npos);
+  }
+}

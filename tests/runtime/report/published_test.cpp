@@ -1,5 +1,7 @@
 #include "runtime/report/published.h"
 
+#include "runtime/report/published_match.h"
+
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -58,7 +60,31 @@ TEST_CASE("another layout is refused with its line") {
   CHECK(where("policy,metric,avg\npi0,success,101\n") == "x.csv:2");
   CHECK(where("policy,metric,avg\npi0,success,nan\n") == "x.csv:2");
   CHECK(where("policy,metric,avg\npi0,success,1\npi0,success,2\n") == "x.csv:3");
+  CHECK(where("policy,metric,avg,original,avg\npi0,success,1,2,3\n") == "x.csv:1");
   CHECK(where("policy,metric,avg\n") == "x.csv");
+}
+
+TEST_CASE("what the runs do not have is told with its line and the nearest name") {
+  Benchmark benchmark;
+  benchmark.metrics = {{"success", true, 1}};
+  benchmark.categories = {{"bare", "original", {}}, {"ood_source", "OOD source", {}}};
+  const auto table = parse_published(
+      "# theirs\npolicy,metric,avg,orignal,ood_source\npi0,success,1,2,3\npi0,sucess,1,2,3\n",
+      "x.csv");
+  REQUIRE(table.ok());
+  const auto columns = matched_columns(benchmark, *table);
+  REQUIRE(columns.size() == 3);
+  CHECK(columns[0] == 0);
+  CHECK(!columns[1]);
+  CHECK(columns[2] == 2);
+  const std::vector<Note> notes = unmatched(benchmark, *table);
+  REQUIRE(notes.size() == 2);
+  CHECK(notes[0].text.find("x.csv:2: column `orignal`") == 0);
+  CHECK(notes[0].text.find("did you mean `original`?") != std::string::npos);
+  CHECK(notes[1].text.find("x.csv:4: metric `sucess`") == 0);
+  CHECK(notes[1].text.find("did you mean `success`?") != std::string::npos);
+  const auto fine = parse_published("policy,metric,all,original\npi0,success,1,2\n", "x.csv");
+  CHECK(unmatched(benchmark, *fine).empty());
 }
 
 // The published OOD Target column fits five tasks, not the four that its list has: ten of its

@@ -89,6 +89,30 @@ TEST_CASE("adjusted values are at least the raw ones, and every percentage has i
   CHECK(again->rows[0].cells[0]->text == "100.0");
 }
 
+// 54 of 96 is 56.25 %.
+TEST_CASE("halves of a percentage are rounded alike in every format") {
+  const Made made(
+      [](const std::string& task, int episode, int) {
+        return Outcome{.success = episode < (task == kBase || task.ends_with("color") ? 13 : 14)};
+      },
+      {.tasks = {"carrot_on_plate", "carrot_on_plate_lang_action", "carrot_on_plate_lang_color",
+                 "carrot_on_plate_lang_common"}});
+  const Tables tables = make_tables(made.benchmark);
+  const std::string csv = table_text(made.benchmark, tables, {}, TableFormat::kCsv);
+  const std::string latex = table_text(made.benchmark, tables, {}, TableFormat::kLatex);
+  const auto all = estimate(made.benchmark, 0, made.benchmark.find_metric("success"),
+                            made.benchmark.all_tasks());
+  REQUIRE(all->count.n == 96);
+  CHECK(all->count.k == 54);
+  CHECK(csv.find("pi0,success,56.3,") != std::string::npos);
+  CHECK(latex.find("\\cell{56.3}{54/96}") != std::string::npos);
+}
+
+TEST_CASE("a name that would obey a terminal or break a line is made printable") {
+  const Made made(loses_words, {.tasks = {kBase}, .last = 1}, "evil\x1b[2J\nend");
+  CHECK(made.benchmark.policies[0].label == "evil [2J end");
+}
+
 TEST_CASE("LaTeX and JSON hold the names as text") {
   const Made made(loses_words, {.tasks = {kBase, kVariant}}, "my_policy & 50% {x}");
   const Tables tables = make_tables(made.benchmark);

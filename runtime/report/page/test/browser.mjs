@@ -20,9 +20,11 @@ const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 const chromium = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
 const browser = await launch({ executablePath: chromium, headless: true, args: ["--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--font-render-hinting=none"] });
 
-function written(file, options) {
+function written(file, options, edit = () => {}) {
   const path = join(out, file);
-  writeFileSync(path, embed(readFileSync(join(build, "before.html"), "utf8"), readFileSync(join(build, "after.html"), "utf8"), sample(options)));
+  const made = sample(options);
+  edit(made.data);
+  writeFileSync(path, embed(readFileSync(join(build, "before.html"), "utf8"), readFileSync(join(build, "after.html"), "utf8"), made));
   return path;
 }
 
@@ -217,6 +219,14 @@ const kCases = {
     const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     expect(wide <= 0, `the page is ${wide} px wider than a narrow window`);
     await page.screenshot({ path: join(out, "narrow-page.png") });
+  },
+  // As tests/runtime/base/percent_test.cpp has it for the other formats.
+  async numbers() {
+    const edit = (data) => { data.tables.main.rows[0].all = [63, 1200, 0.041, 0.067]; data.tables.main.rows[1].all = [1200, 1200, 0.9968, 1]; };
+    const { page } = await open(written("numbers.html", { policies: 1 }, edit));
+    const text = await page.$eval("section#main", (e) => e.innerText);
+    expect(/5\.3\s+63\/1,200/.test(text), `63 of 1200 is not 5.3 in: ${text.slice(0, 400)}`);
+    expect(text.includes("99.7\u2013100.0"), `an interval with width looks as if it had none in: ${text.slice(0, 400)}`);
   },
   // A page that the program wrote.
   async given() {

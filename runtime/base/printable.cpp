@@ -1,8 +1,8 @@
-#include "runtime/wire/printable.h"
+#include "runtime/base/printable.h"
 
 #include <cstdint>
 
-namespace probe::wire {
+namespace probe {
 namespace {
 
 // The length of the UTF-8 sequence that `text` begins with; 0 where it begins with none. Overlong
@@ -49,4 +49,6 @@ std::string printable(std::string_view text, std::size_t most) {
   return clean;
 }
 
-}  // namespace probe::wire
+bool is_printable(std::string_view text) { return printable(text, text.size()) == text; }
+
+}  // namespace probe

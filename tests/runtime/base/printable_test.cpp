@@ -1,8 +1,8 @@
-#include "runtime/wire/printable.h"
+#include "runtime/base/printable.h"
 
 #include <doctest/doctest.h>
 
-namespace probe::wire {
+namespace probe {
 
 TEST_CASE("text stays, controls are blanks and what is no UTF-8 question marks") {
   CHECK(printable("put it \xe2\x86\x92 there, \xc3\xa4\xf0\x9f\xa5\x95", 100) ==
@@ -17,4 +17,12 @@ TEST_CASE("a long text is cut between characters and says so") {
   CHECK(printable("abcde\xc3\xa4", 6) == "abcde...");
 }
 
-}  // namespace probe::wire
+TEST_CASE("a text is printable or it is not") {
+  CHECK(is_printable(""));
+  CHECK(is_printable("pi0 \xc3\xa4?"));
+  CHECK(!is_printable("a\nb"));
+  CHECK(!is_printable("a\x1b[2J"));
+  CHECK(!is_printable("\xff"));
+}
+
+}  // namespace probe

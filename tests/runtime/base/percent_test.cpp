@@ -1,0 +1,36 @@
+#include "runtime/base/percent.h"
+
+#include <doctest/doctest.h>
+
+namespace probe {
+
+TEST_CASE("halves of a percentage go away from zero") {
+  CHECK(percent_text(63, 1200) == "5.3");
+  CHECK(percent_text(54, 96) == "56.3");
+  CHECK(percent_text(1, 3) == "33.3");
+  CHECK(percent_text(24, 24) == "100.0");
+  CHECK(percent_text(0, 0) == "0.0");
+}
+
+TEST_CASE("a rate as a number is rounded as its count is") {
+  for (std::int64_t n = 1; n <= 400; ++n) {
+    for (std::int64_t k = 0; k <= n; ++k) {
+      const double rate = static_cast<double>(k) / static_cast<double>(n);
+      if (decimal_text(100 * rate, 1) != percent_text(k, n)) FAIL(k << " of " << n);
+    }
+  }
+  CHECK(decimal_text(-0.25, 1) == "-0.3");
+  CHECK(decimal_text(-0.01, 1) == "0.0");
+  CHECK(signed_text(0.25, 1) == "+0.3");
+  CHECK(signed_text(-0.01, 1) == "+0.0");
+}
+
+TEST_CASE("an interval that has width shows it") {
+  CHECK(percent_range(0.43, 0.79, "-") == "43-79");
+  CHECK(percent_range(0.997, 1, "-") == "99.7-100.0");
+  CHECK(percent_range(0, 0.003, "--") == "0.0--0.3");
+  CHECK(percent_range(0.9997, 1, "-") == "99.97-100.00");
+  CHECK(percent_range(1, 1, "-") == "100-100");
+}
+
+}  // namespace probe
