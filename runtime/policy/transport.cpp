@@ -5,7 +5,7 @@
 #include <set>
 #include <string_view>
 
-#include "runtime/wire/printable.h"
+#include "runtime/base/printable.h"
 
 namespace probe::policy {
 namespace {
@@ -56,7 +56,7 @@ std::string last_lines(std::string_view text) {
     const std::size_t cut = end == 0 ? std::string_view::npos : text.rfind('\n', end - 1);
     const std::size_t begin = cut == std::string_view::npos ? 0 : cut + 1;
     std::string line;
-    for (const char c : wire::printable(text.substr(begin, end - begin), kLongest)) {
+    for (const char c : printable(text.substr(begin, end - begin), kLongest)) {
       if (c != ' ' || (!line.empty() && line.back() != ' ')) line += c;
     }
     if (line.ends_with(' ')) line.pop_back();

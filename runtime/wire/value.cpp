@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "runtime/wire/printable.h"
+#include "runtime/base/printable.h"
 
 namespace probe::wire {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <thread>
 
+#include "runtime/base/printable.h"
 #include "runtime/wire/beast_io.h"
-#include "runtime/wire/printable.h"
 
 namespace probe::wire {
 namespace {
