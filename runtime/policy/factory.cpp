@@ -26,7 +26,7 @@ struct Entry {
   Protocol protocol = Protocol::kOpenpi;  // of a server
 };
 
-constexpr std::array kPolicies = {
+const std::array kPolicies = {
     Entry{"expert", "", Kind::kExpert, {}, "the scripted expert, which sees the world's state"},
     Entry{"null", "", Kind::kNull, {}, "stays where it is, gripper open"},
     Entry{"random", "", Kind::kRandom, {true, false, false}, "uniform actions"},
