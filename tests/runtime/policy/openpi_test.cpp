@@ -14,6 +14,7 @@
 #include "runtime/policy/server_policy.h"
 #include "runtime/policy/servers.h"
 #include "runtime/wire/msgpack.h"
+#include "tests/runtime/policy/asking.h"
 #include "tests/servers/python_server.h"
 
 namespace probe::policy {
@@ -60,27 +61,6 @@ double first_number(Policy& policy, const Observation& seen) {
   return (*action)[0];
 }
 
-class RecordFile {
- public:
-  RecordFile()
-      : path_(
-            (std::filesystem::temp_directory_path() / ("vlaprobe_wire_" + std::to_string(getpid())))
-                .string()) {
-    std::filesystem::remove(path_);
-  }
-  ~RecordFile() { std::filesystem::remove(path_); }
-  std::string option() const { return "record=" + path_; }
-  std::vector<std::string> lines() const {
-    std::ifstream file(path_);
-    std::vector<std::string> lines;
-    for (std::string line; std::getline(file, line);) lines.push_back(line);
-    return lines;
-  }
-
- private:
-  std::string path_;
-};
-
 std::string hex(std::string_view bytes) {
   std::string text;
   for (const char c : bytes) {
@@ -94,7 +74,7 @@ std::string hex(std::string_view bytes) {
 }  // namespace
 
 TEST_CASE("openpi's request has its keys in order and its arrays with keys of bytes") {
-  const RecordFile record;
+  const ServerRecord record;
   const PythonServer server("openpi_server.py", {"openpi", record.option()});
   const auto policy = made("openpi", server);
   require_begin(*policy);
@@ -141,7 +121,7 @@ TEST_CASE("a chunk is done without asking again, and the first request is proved
 }
 
 TEST_CASE("INT-ACT hears the model first, infers, and a reset after each episode") {
-  const RecordFile record;
+  const ServerRecord record;
   const PythonServer server("openpi_server.py", {"intact", record.option()});
   const auto policy = made("intact", server, "&model=/m");
   Picture picture;

@@ -11,6 +11,7 @@
 #include "runtime/run/run.h"
 #include "runtime/run/selection.h"
 #include "runtime/run/store.h"
+#include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -64,23 +65,6 @@ struct Server {
 
 bool never(int) { return false; }
 bool always(int) { return true; }
-
-std::vector<std::string> hashes(const std::string& dir) {
-  std::vector<std::string> all;
-  const auto rows = read_results(dir);
-  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
-  for (const ResultRow& row : *rows) {
-    CHECK_MESSAGE(!row.invalid, row.invalid.value_or(""));
-    all.push_back(row.trace_sha256);
-  }
-  return all;
-}
-
-RunSummary must_run(const plan::Plan& plan, const RunOptions& options) {
-  const auto summary = run(plan, options);
-  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
-  return *summary;
-}
 
 TEST_CASE("an episode that the server spoils is tried again at once, with the same trace") {
   TemporaryFolder folder;

@@ -9,6 +9,7 @@
 #include "runtime/base/check.h"
 #include "runtime/run/run.h"
 #include "runtime/run/store.h"
+#include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -16,19 +17,6 @@ namespace probe::run {
 namespace {
 
 namespace fs = std::filesystem;
-
-RunOptions options_for(const std::string& out, const std::string& policy = "random") {
-  RunOptions options;
-  options.policy = policy;
-  options.out = out;
-  options.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
-  return options;
-}
-
-void must_run(const plan::Plan& plan, const RunOptions& options) {
-  const auto summary = run(plan, options);
-  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
-}
 
 MergeSummary must_merge(const MergeOptions& options) {
   const auto summary = merge(options);

@@ -18,6 +18,7 @@
 #include "runtime/run/trace.h"
 #include "runtime/run/video.h"
 #include "runtime/scene/image.h"
+#include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -26,36 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-RunOptions options_for(const std::string& out, const std::string& policy = "random") {
-  RunOptions options;
-  options.policy = policy;
-  options.out = out;
-  options.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
-  return options;
-}
-
 SheetOptions sheet_of(const RunOptions& options) {
   SheetOptions sheet;
   sheet.cell_width = 160;
   sheet.assets = options.assets;
   return sheet;
-}
-
-std::vector<std::string> hashes(const std::string& dir) {
-  std::vector<std::string> all;
-  const auto rows = read_results(dir);
-  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
-  for (const ResultRow& row : *rows) {
-    CHECK_MESSAGE(!row.invalid, row.invalid.value_or(""));
-    all.push_back(row.trace_sha256);
-  }
-  return all;
-}
-
-RunSummary must_run(const plan::Plan& plan, const RunOptions& options) {
-  const auto summary = run(plan, options);
-  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
-  return *summary;
 }
 
 TEST_CASE("one job or two, in one go or in shards, with or without videos: the same traces") {
