@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <numeric>
 
+#include "runtime/stats/deal.h"
 #include "runtime/stats/exact_sum.h"
 
 namespace probe::stats {
@@ -134,9 +135,9 @@ Difference clustered_difference(std::span<const StartPairs> pairs, double confid
     rows.push_back({static_cast<double>(p.pairs.pairs()), static_cast<double>(p.pairs.net()),
                     static_cast<double>(p.pairs.only_a + p.pairs.only_b), p.task, p.cluster});
   }
-  if (all.pairs() == 0) return newcombe_paired(all, confidence);
   const double n = static_cast<double>(all.pairs());
-  return newcombe_effective(all, n / design_effect(rows, confidence, Unit::kCluster), confidence);
+  if (all.pairs() == 0) return newcombe_paired(all, n, confidence);
+  return newcombe_paired(all, n / design_effect(rows, confidence, Unit::kCluster), confidence);
 }
 
 Difference unpaired_difference(std::span<const StartCount> a, std::span<const StartCount> b,
@@ -153,8 +154,8 @@ double shared_baseline_exact(std::span<const StartArms> starts) {
   for (const StartArms& arms : starts) {
     for (const Count& arm : arms) size = common_size(size, arm);
   }
-  std::vector<std::vector<std::int64_t>> choices;
-  std::int64_t observed = 0, reach = 0;
+  ExactSum sum;
+  std::int64_t observed = 0;
   for (const StartArms& arms : starts) {
     std::int64_t total = 0;
     std::vector<std::int64_t> values;
@@ -169,62 +170,52 @@ double shared_baseline_exact(std::span<const StartArms> starts) {
     for (std::int64_t& v : values) v = total - count * v;
     observed += values[0];
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    if (*low == *high) continue;
-    reach += std::max(std::abs(*low), std::abs(*high));
-    choices.push_back(std::move(values));
+    if (*low != *high) sum.add(values);
   }
-  if (reach == 0) return 1;
-  ExactSum sum(reach);
-  for (const auto& values : choices) sum.add(values);
   return sum.tail(observed);
 }
 
 double unpaired_exact(std::span<const Count> a, std::span<const Count> b) {
   std::int64_t size = 1;
-  std::vector<std::int64_t> values;
-  std::int64_t in_a = 0, total_a = 0;
   for (const auto& sample : {a, b}) {
     for (const Count& count : sample) size = common_size(size, count);
   }
-  for (const Count& count : a) {
-    if (count.n == 0) continue;
-    values.push_back(scaled(count, size));
-    total_a += values.back();
-    ++in_a;
-  }
-  for (const Count& count : b) {
-    if (count.n > 0) values.push_back(scaled(count, size));
+  // What a start of each sample adds, as whole numbers without a common divisor, the least of them
+  // 0.
+  std::vector<std::int64_t> values;
+  std::int64_t in_a = 0;
+  for (const auto& sample : {a, b}) {
+    for (const Count& count : sample) {
+      if (count.n > 0) values.push_back(scaled(count, size));
+    }
+    if (in_a == 0) in_a = static_cast<std::int64_t>(values.size());
   }
   const auto m = static_cast<std::int64_t>(values.size());
   if (in_a == 0 || in_a == m) return 1;
-  const std::int64_t total = std::accumulate(values.begin(), values.end(), std::int64_t{0});
-  // weight[c][s]: the chance that fair coins choose c of the values so far, with sum s. Given c =
-  // in_a every choice is as likely.
-  const auto width = static_cast<std::size_t>(total + 1);
-  std::vector<double> weight(static_cast<std::size_t>(in_a + 1) * width, 0.0);
-  weight[0] = 1;
-  std::int64_t chosen = 0, sum = 0;
-  for (const std::int64_t value : values) {
-    chosen = std::min(chosen + 1, in_a);
-    sum += value;
-    for (std::int64_t c = chosen; c >= 0; --c) {
-      double* const row = weight.data() + static_cast<std::size_t>(c) * width;
-      for (std::int64_t s = sum; s >= 0; --s) {
-        double from = row[s] / 2;
-        if (c > 0 && s >= value) from += (row - width)[s - value] / 2;
-        row[s] = from;
-      }
-    }
+  const std::int64_t least = *std::min_element(values.begin(), values.end());
+  std::int64_t divisor = 0;
+  for (std::int64_t& v : values) divisor = std::gcd(divisor, v -= least);
+  if (divisor == 0) return 1;  // all alike
+  Deck deck, turned;
+  std::int64_t total = 0, total_a = 0, most = 0;
+  for (std::int64_t i = 0; i < m; ++i) {
+    const std::int64_t v = values[static_cast<std::size_t>(i)] / divisor;
+    ++deck[v];
+    total += v;
+    total_a += i < in_a ? v : 0;
+    most = std::max(most, v);
   }
-  // m (sum of the chosen) - in_a total is the difference of means, times what does not change.
+  for (const auto& [v, count] : deck) turned[most - v] = count;
+  // m (sum of a) - in_a total is the difference of means, times what does not change. Which of the
+  // samples is dealt makes no difference; the smaller one is less work.
   const std::int64_t observed = std::abs(m * total_a - in_a * total);
-  double tail = 0, all = 0;
-  const double* const row = weight.data() + static_cast<std::size_t>(in_a) * width;
-  for (std::int64_t s = 0; s <= total; ++s) {
-    all += row[s];
-    if (std::abs(m * s - in_a * total) >= observed) tail += row[s];
-  }
-  return std::min(1.0, tail / all);
+  if (observed == 0) return 1;
+  const std::int64_t hand = std::min(in_a, m - in_a);
+  const std::int64_t far = (hand * total + observed + m - 1) / m;  // at least: the upper tail
+  const std::int64_t near = (hand * total - observed) / m;         // at most: the lower one
+  double p = deal_at_least(deck, hand, far);
+  if (hand * total >= observed) p += deal_at_least(turned, hand, hand * most - near);
+  return std::min(1.0, p);
 }
 
 }  // namespace probe::stats

@@ -1,5 +1,5 @@
 // What a design can see before a single episode is run: power and the minimum detectable difference
-// of a paired comparison by McNemar's exact test.
+// of a paired comparison by clustered_exact on starts that count once each (McNemar's exact test).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct PairedDesign {
   double alpha = 0.05;
 };
 
-// The chance that mcnemar_exact <= alpha when the true rates differ by `difference`
+// The chance that the test's p is at most alpha when the true rates differ by `difference`
 // (|difference| <= discordance): the binomial number of discordant pairs, and of those that A wins,
 // summed exactly.
 double power(const PairedDesign& design, double difference);

@@ -1,6 +1,5 @@
 #include "runtime/stats/intervals.h"
 
-#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -16,10 +15,6 @@ constexpr Interval kUnknown{0, 1};
 void check(Count count, double confidence) {
   PROBE_CHECK(count.k >= 0 && count.k <= count.n, "a count of successes lies in 0..n");
   PROBE_CHECK(confidence > 0 && confidence < 1, "a confidence lies between 0 and 1");
-}
-
-double beta_quantile(double a, double b, double p) {
-  return boost::math::quantile(boost::math::beta_distribution<>(a, b), p);
 }
 
 }  // namespace
@@ -52,26 +47,6 @@ Interval wilson_effective(double p, double n, double confidence) {
   const double half = scale * z * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
   // At 0 and 1 one end is exactly the rate; rounding must not say otherwise.
   return {p == 0 ? 0 : centre - half, p == 1 ? 1 : centre + half};
-}
-
-Interval clopper_pearson(Count count, double confidence) {
-  check(count, confidence);
-  if (count.n == 0) return kUnknown;
-  const double tail = (1 - confidence) / 2;
-  const double k = static_cast<double>(count.k);
-  const double n = static_cast<double>(count.n);
-  return {count.k == 0 ? 0 : beta_quantile(k, n - k + 1, tail),
-          count.k == count.n ? 1 : beta_quantile(k + 1, n - k, 1 - tail)};
-}
-
-Interval jeffreys(Count count, double confidence) {
-  check(count, confidence);
-  if (count.n == 0) return kUnknown;
-  const double tail = (1 - confidence) / 2;
-  const double a = static_cast<double>(count.k) + 0.5;
-  const double b = static_cast<double>(count.n - count.k) + 0.5;
-  return {count.k == 0 ? 0 : beta_quantile(a, b, tail),
-          count.k == count.n ? 1 : beta_quantile(a, b, 1 - tail)};
 }
 
 }  // namespace probe::stats

@@ -28,19 +28,11 @@ double normal_two_sided(double confidence);
 double student_two_sided(double confidence, double freedom);
 
 // Wilson's score interval (Wilson 1927, JASA 22:209): the roots of the score test. Near its nominal
-// coverage for every n; what tables show. With n = 0 all three give [0, 1]: nothing is known.
+// coverage for every n. With n = 0 it is [0, 1]: nothing is known.
 Interval wilson(Count count, double confidence = 0.95);
 
 // Wilson's interval of a rate that is worth `n` independent episodes, n > 0 and not always whole:
 // what a survey's design effect leaves of them.
 Interval wilson_effective(double rate, double n, double confidence = 0.95);
-
-// Clopper and Pearson's interval (Biometrika 1934, 26:404), from quantiles of the beta
-// distribution: never covers less than `confidence`, and is the widest.
-Interval clopper_pearson(Count count, double confidence = 0.95);
-
-// Jeffreys' equal-tailed interval, the beta(k + 1/2, n - k + 1/2) posterior, with the ends 0 at k =
-// 0 and 1 at k = n (Brown, Cai and DasGupta 2001, Statistical Science 16:101, section 4.1).
-Interval jeffreys(Count count, double confidence = 0.95);
 
 }  // namespace probe::stats

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
 #include "runtime/stats/exact_sum.h"
@@ -33,7 +32,6 @@ double joined(double a, double b, double correlation) {
 
 Difference newcombe(const RealTable& t, double confidence) {
   const double n = t.both + t.only_a + t.only_b + t.neither;
-  if (n <= 0) return {0, {-1, 1}};
   const double a = std::min(1.0, (t.both + t.only_a) / n);  // scaled counts round
   const double b = std::min(1.0, (t.both + t.only_b) / n);
   const Interval wa = wilson_effective(a, n, confidence);
@@ -52,51 +50,25 @@ RealTable scaled(const PairTable& t, double factor) {
 
 }  // namespace
 
-double mcnemar_exact(const PairTable& table) {
-  const std::int64_t discordant = table.only_a + table.only_b;
-  if (discordant == 0) return 1;
-  const boost::math::binomial_distribution<> even(static_cast<double>(discordant), 0.5);
-  const double fewer = static_cast<double>(std::min(table.only_a, table.only_b));
-  return std::min(1.0, 2 * boost::math::cdf(even, fewer));
-}
-
 double clustered_exact(std::span<const Cluster> clusters) {
+  ExactSum sum;
   std::int64_t observed = 0;
-  std::int64_t reach = 0;
   for (const Cluster& c : clusters) {
     observed += c.net();
-    reach += std::abs(c.net());
-  }
-  ExactSum sum(reach);
-  for (const Cluster& c : clusters) {
     if (c.net() != 0) sum.add(std::array{c.net(), -c.net()});
   }
   return sum.tail(observed);
 }
 
-Difference newcombe_paired(const PairTable& table, double confidence) {
-  return newcombe(scaled(table, 1), confidence);
-}
-
-Difference newcombe_effective(const PairTable& table, double n, double confidence) {
+Difference newcombe_paired(const PairTable& table, double n, double confidence) {
+  if (table.pairs() == 0) return {0, {-1, 1}};
   return newcombe(scaled(table, n / static_cast<double>(table.pairs())), confidence);
-}
-
-Difference newcombe_unpaired(Count a, Count b, double confidence) {
-  if (a.n == 0 || b.n == 0) return {0, {-1, 1}};
-  return unpaired_from(a.rate(), wilson(a, confidence), b.rate(), wilson(b, confidence));
 }
 
 Difference unpaired_from(double a, const Interval& of_a, double b, const Interval& of_b) {
   return {a - b,
           {a - b - joined(a - of_a.low, of_b.high - b, 0),
            a - b + joined(of_a.high - a, b - of_b.low, 0)}};
-}
-
-PairTable pooled(std::span<const Cluster> clusters) {
-  PairTable all;
-  for (const Cluster& c : clusters) all = all + c;
-  return all;
 }
 
 }  // namespace probe::stats

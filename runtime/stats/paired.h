@@ -28,15 +28,10 @@ struct PairTable {
 // One start under A and B: how many of its `pairs` (seeds) each of the four outcomes had.
 using Cluster = PairTable;
 
-// McNemar's exact test: two-sided probability, at an even chance, of a split of the discordant
-// pairs at least as uneven as this one. 1 without discordant pairs. (McNemar 1947, Psychometrika
-// 12:153.)
-double mcnemar_exact(const PairTable& table);
-
-// The same for clusters: under the hypothesis of no difference each cluster's sum of differences is
-// as likely with either sign, so the two-sided probability of a total at least as far from 0
-// follows from the 2^c sign flips, counted exactly. With clusters of one pair it is McNemar's exact
-// test.
+// Whether A and B differ, by sign flips: under the hypothesis of no difference each cluster's sum
+// of differences is as likely with either sign, so the two-sided probability of a total at least as
+// far from 0 follows from the 2^c choices of signs, exactly. With clusters of one pair it is
+// McNemar's exact test (1947, Psychometrika 12:153), the binomial test of the pairs that differ.
 double clustered_exact(std::span<const Cluster> clusters);
 
 // rate(A) - rate(B) and Newcombe's interval for paired proportions, method 10 (Statistics in
@@ -46,19 +41,13 @@ struct Difference {
   double estimate = 0;
   Interval interval;
 };
-Difference newcombe_paired(const PairTable& table, double confidence = 0.95);
+// The pairs are counted as `n` independent ones, n > 0 and not always whole: as many as there are,
+// or what a design effect leaves of them. Without a pair nothing is known: 0, from -1 to 1.
+Difference newcombe_paired(const PairTable& table, double n, double confidence = 0.95);
 
-// The same with the table's proportions, but counted as `n` independent pairs, n > 0 and not always
-// whole: what a design effect leaves of them.
-Difference newcombe_effective(const PairTable& table, double n, double confidence = 0.95);
-
-// rate(A) - rate(B) of two unpaired samples: Newcombe's method 10 for independent proportions
-// (Statistics in Medicine 1998, 17:873).
-Difference newcombe_unpaired(Count a, Count b, double confidence = 0.95);
-// The same from two rates and their intervals.
+// rate(A) - rate(B) of two samples that are not paired, from their rates and intervals: Newcombe's
+// method 10 for independent proportions (Statistics in Medicine 1998, 17:873), where the intervals
+// are Wilson's.
 Difference unpaired_from(double a, const Interval& of_a, double b, const Interval& of_b);
-
-// All clusters' pairs in one table.
-PairTable pooled(std::span<const Cluster> clusters);
 
 }  // namespace probe::stats
