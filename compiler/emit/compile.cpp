@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <set>
 
+#include "compiler/check/analyze.h"
+#include "compiler/define/template.h"
 #include "compiler/emit/emit.h"
-#include "compiler/sema/analyze.h"
-#include "compiler/sema/language.h"
 #include "compiler/syntax/parser.h"
 
 namespace probe {

@@ -8,10 +8,10 @@
 #include <map>
 #include <set>
 
+#include "compiler/define/axes.h"
 #include "compiler/emit/assets.h"
 #include "compiler/lower/intervals.h"
 #include "compiler/lower/lower.h"
-#include "compiler/sema/axes.h"
 #include "runtime/base/asset_path.h"
 #include "runtime/plan/writer.h"
 

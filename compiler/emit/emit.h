@@ -9,7 +9,7 @@
 
 #include "compiler/diag/diagnostic.h"
 #include "compiler/emit/compile.h"
-#include "compiler/sema/model.h"
+#include "compiler/model/model.h"
 #include "runtime/base/result.h"
 
 namespace probe::emit {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compiler/lower/program.h"
-#include "compiler/sema/units.h"
+#include "compiler/model/units.h"
 #include "runtime/plan/isa.h"
 
 namespace probe::lower {

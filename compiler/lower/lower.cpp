@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "compiler/define/judgement.h"
 #include "compiler/lower/builder.h"
-#include "compiler/sema/judgement.h"
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"
 

@@ -8,7 +8,7 @@
 
 #include "compiler/diag/diagnostic.h"
 #include "compiler/lower/program.h"
-#include "compiler/sema/model.h"
+#include "compiler/model/model.h"
 
 namespace probe::lower {
 

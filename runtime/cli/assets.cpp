@@ -5,7 +5,7 @@
 #include "runtime/assets/pack.h"
 #include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/run/assets.h"
+#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 namespace {
@@ -17,7 +17,7 @@ struct Arguments {
 
 int import_verb(Arguments& arguments) {
   if (arguments.fill) {
-    auto own = run::find_asset_root();
+    auto own = stage::find_asset_root();
     if (!own) return report(own.failure());
     arguments.options.fill_from = *own;
   }

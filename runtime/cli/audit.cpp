@@ -8,7 +8,7 @@
 #include "runtime/base/file.h"
 #include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
-#include "runtime/run/assets.h"
+#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 namespace {
@@ -20,7 +20,7 @@ struct Arguments {
 };
 
 int audit_verb(const Arguments& arguments) {
-  const auto root = run::find_asset_root(arguments.assets.root);
+  const auto root = stage::find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
   const auto library = find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());

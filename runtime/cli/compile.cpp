@@ -10,9 +10,9 @@
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/assets/asset_check.h"
+#include "runtime/base/glob.h"
 #include "runtime/cli/library.h"
-#include "runtime/run/assets.h"
-#include "runtime/run/glob.h"
+#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 
@@ -20,7 +20,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
                              const std::string& suite, bool want_plan, bool json,
                              bool chosen_only) {
   CompiledText text;
-  auto root = run::find_asset_root(assets.root);
+  auto root = stage::find_asset_root(assets.root);
   if (!root) {
     text.exit = report(root.failure());
     return text;
@@ -42,7 +42,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
   if (chosen_only) {
     options.wants_task = [glob = assets.tasks](std::string_view name) {
       // A task may be asked for with its suite's prefix before it.
-      return run::matches_glob(glob, name) || glob.ends_with("_" + std::string(name));
+      return matches_glob(glob, name) || glob.ends_with("_" + std::string(name));
     };
   }
   auto compiled = want_plan ? build(files, options) : check(files, options);

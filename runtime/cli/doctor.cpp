@@ -4,7 +4,7 @@
 #include "runtime/cli/compile.h"
 #include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/run/doctor.h"
+#include "runtime/doctor/doctor.h"
 
 namespace probe::cli {
 namespace {
@@ -16,7 +16,7 @@ struct Arguments {
 
 // The shipped suite with the assets at hand.
 Result<plan::Plan> compile_suite(const std::string& asset_root) {
-  const std::string file = run::golden_suite();
+  const std::string file = doctor::golden_suite();
   if (file.empty()) return Failure{"usage", "the suite's text is not here", ""};
   AssetOptions assets;
   assets.root = asset_root;
@@ -27,12 +27,12 @@ Result<plan::Plan> compile_suite(const std::string& asset_root) {
 }
 
 int examine(const Arguments& arguments) {
-  const auto report = run::examine(arguments.assets.root, compile_suite);
+  const auto report = doctor::examine(arguments.assets.root, compile_suite);
   if (!report) return cli::report(report.failure());
   if (arguments.json) {
-    fmt::print("{}\n", run::to_json(*report, VLAPROBE_VERSION));
+    fmt::print("{}\n", doctor::to_json(*report, VLAPROBE_VERSION));
   } else {
-    fmt::print("{}", run::to_text(*report, VLAPROBE_VERSION));
+    fmt::print("{}", doctor::to_text(*report, VLAPROBE_VERSION));
   }
   return report->fine() ? kFine : kOutside;
 }

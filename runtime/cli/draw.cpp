@@ -5,12 +5,12 @@
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/glob.h"
 #include "runtime/cli/load.h"
 #include "runtime/inspect/svg.h"
 #include "runtime/inspect/top_view.h"
-#include "runtime/run/assets.h"
-#include "runtime/run/glob.h"
-#include "runtime/run/phrase_sheet.h"
+#include "runtime/show/phrase_sheet.h"
+#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 namespace {
@@ -22,12 +22,13 @@ struct Arguments {
 };
 
 // Each pair of words and object once, where it is first said, with the number of tasks that say it.
-Result<std::vector<run::PhraseRow>> phrase_rows(const LoadedPlan& loaded, const std::string& glob) {
-  std::vector<run::PhraseRow> rows;
+Result<std::vector<show::PhraseRow>> phrase_rows(const LoadedPlan& loaded,
+                                                 const std::string& glob) {
+  std::vector<show::PhraseRow> rows;
   std::map<std::pair<std::string, std::string>, std::pair<std::size_t, int>> known;
   for (const ReferringWords& said : loaded.referring) {
     const auto task = loaded.plan->find_task(said.task);
-    if (!task || !(run::matches_glob(glob, said.task) || loaded.plan->find_task(glob) == task)) {
+    if (!task || !(matches_glob(glob, said.task) || loaded.plan->find_task(glob) == task)) {
       continue;
     }
     const auto [at, is_new] = known.try_emplace({said.words, said.object}, rows.size(), 0);
@@ -36,7 +37,7 @@ Result<std::vector<run::PhraseRow>> phrase_rows(const LoadedPlan& loaded, const 
   }
   if (rows.empty()) return Failure{"usage", "no task `" + glob + "` that names an object", ""};
   for (const auto& [said, place] : known) {
-    run::PhraseRow& row = rows[place.first];
+    show::PhraseRow& row = rows[place.first];
     row.note = fmt::format("`{}` in {}{}", row.object, row.note,
                            place.second == 1 ? "" : fmt::format(" and {} more", place.second - 1));
   }
@@ -52,7 +53,7 @@ int draw_phrases(const Arguments& arguments, const LoadedPlan& loaded) {
   auto rows = phrase_rows(loaded, arguments.task);
   if (!rows) return report(rows.failure());
   const auto written =
-      run::write_phrases(*loaded.plan, *rows, arguments.out, arguments.assets.root);
+      show::write_phrases(*loaded.plan, *rows, arguments.out, arguments.assets.root);
   if (!written) return report(written.failure());
   fmt::print("{}\n", arguments.out);
   return kFine;
@@ -66,7 +67,7 @@ int draw_verb(const Arguments& arguments) {
   if (arguments.phrases) return draw_phrases(arguments, loaded);
   const auto task = find_task(*loaded.plan, arguments.task, loaded.exit);
   if (!task) return loaded.exit;
-  auto root = run::find_asset_root(arguments.assets.root);
+  auto root = stage::find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
   auto view = inspect::top_view(*loaded.plan, *task, *root);
   if (!view) return report(view.failure());

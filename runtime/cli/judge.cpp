@@ -49,7 +49,7 @@ void print_json(const rejudge::RejudgeReport& report, const plan::Plan& plan) {
                      {"invalid", report.invalid},
                      {"left_out", report.left_out},
                      {"metrics", changes_json(report.metrics)},
-                     {"episodes", Json::parse(run::results_to_json(report.rows))}};
+                     {"episodes", Json::parse(store::results_to_json(report.rows))}};
   fmt::print("{}\n", json.dump(1));
 }
 

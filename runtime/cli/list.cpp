@@ -6,7 +6,7 @@
 #include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
 #include "runtime/inspect/task_json.h"
-#include "runtime/run/assets.h"
+#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 namespace {
@@ -19,7 +19,7 @@ struct Arguments {
 
 // A text is counted without making its plan: a sweep of a million episodes in a second.
 int count_text(const Arguments& arguments) {
-  const auto root = run::find_asset_root(arguments.assets.root);
+  const auto root = stage::find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
   const auto library = find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());

@@ -1,5 +1,5 @@
 // vlaprobe merge
-#include "runtime/run/merge.h"
+#include "runtime/store/merge.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 namespace probe::cli {
 namespace {
 
-int merge_verb(const run::MergeOptions& options) {
-  const auto summary = run::merge(options);
+int merge_verb(const store::MergeOptions& options) {
+  const auto summary = store::merge(options);
   if (!summary) return report(summary.failure());
   for (const std::string& note : summary->notes) fmt::print(stderr, "note: {}\n", note);
   fmt::print(stderr, "{} episodes in {}: {} added now, {} duplicates dropped, {} invalid\n",
@@ -21,7 +21,7 @@ int merge_verb(const run::MergeOptions& options) {
 }  // namespace
 
 void add_merge(CLI::App& app, int& exit) {
-  auto options = std::make_shared<run::MergeOptions>();
+  auto options = std::make_shared<store::MergeOptions>();
   CLI::App* verb = app.add_subcommand("merge", "join the folders of a run's shards, exactly once");
   verb->footer("example: vlaprobe merge runs/shard-1 runs/shard-2 -o runs/all");
   verb->add_option("DIR", options->dirs, "results folders")->required();

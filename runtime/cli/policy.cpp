@@ -3,9 +3,9 @@
 
 #include "runtime/cli/filled.h"
 #include "runtime/cli/verbs.h"
-#include "runtime/policy/conformance.h"
-#include "runtime/policy/factory.h"
-#include "runtime/policy/profile_library.h"
+#include "runtime/run/policies.h"
+#include "runtime/servers/conformance.h"
+#include "runtime/servers/profile_library.h"
 
 namespace probe::cli {
 namespace {
@@ -16,37 +16,37 @@ struct Arguments {
 };
 
 int test_verb(const Arguments& arguments) {
-  const auto choice = policy::server_choice(arguments.policy);
+  const auto choice = run::server_choice(arguments.policy);
   if (!choice) return report(choice.failure());
-  const auto tested = policy::test_server(*choice);
+  const auto tested = servers::test_server(*choice);
   if (!tested) return report(tested.failure());
   if (arguments.json) {
-    fmt::print("{}\n", policy::to_json(*tested));
+    fmt::print("{}\n", servers::to_json(*tested));
   } else {
-    fmt::print("{}", policy::to_text(*tested));
+    fmt::print("{}", servers::to_text(*tested));
   }
   return tested->is_wrong() ? kOutside : kFine;
 }
 
 int profiles_verb(const Arguments& arguments) {
   if (arguments.profile.empty()) {
-    for (const policy::ProfileText& ready : policy::ready_profiles()) {
-      const auto profile = policy::find_profile(ready.name);
+    for (const servers::ProfileText& ready : servers::ready_profiles()) {
+      const auto profile = servers::find_profile(ready.name);
       if (!profile) return report(profile.failure());
-      fmt::print("{:<20}{:<11}{}\n", ready.name, policy::to_word(profile->protocol),
+      fmt::print("{:<20}{:<11}{}\n", ready.name, servers::to_word(profile->protocol),
                  profile->about);
     }
     return kFine;
   }
-  for (const policy::ProfileText& ready : policy::ready_profiles()) {
+  for (const servers::ProfileText& ready : servers::ready_profiles()) {
     if (ready.name != arguments.profile) continue;
     fmt::print("{}", ready.text);
     return kFine;
   }
   // A file: read, checked and written out as it is understood.
-  const auto profile = policy::find_profile(arguments.profile);
+  const auto profile = servers::find_profile(arguments.profile);
   if (!profile) return report(profile.failure());
-  fmt::print("{}", policy::to_text(*profile));
+  fmt::print("{}", servers::to_text(*profile));
   return kFine;
 }
 
@@ -72,7 +72,7 @@ void add_policy(CLI::App& app, int& exit) {
 
   CLI::App* profiles = verb->add_subcommand(
       "profiles", "ready profiles; with a name or a file, that one, read and checked");
-  profiles->footer("fields of a profile:\n" + policy::profile_help() +
+  profiles->footer("fields of a profile:\n" + servers::profile_help() +
                    "\nexample: vlaprobe policy profiles copy_me > mine.profile");
   profiles->add_option("NAME", arguments->profile, "a ready profile or a .profile file");
   refuse_empty_values(*profiles);

@@ -36,7 +36,7 @@ void Progress::add(const run::RunProgress& progress) {
     return;
   }
   for (const std::string_view name : kShown) {
-    for (const run::MetricValue& value : progress.row->metrics) {
+    for (const store::MetricValue& value : progress.row->metrics) {
       if (value.name != name || !value.is_bool) continue;
       auto at = std::find_if(rates_.begin(), rates_.end(),
                              [&](const Rate& rate) { return rate.name == name; });

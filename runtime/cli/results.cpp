@@ -1,5 +1,5 @@
 // vlaprobe results
-#include "runtime/run/results.h"
+#include "runtime/store/results.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ struct Arguments {
 };
 
 // Whether what makes tasks different reached the policy.
-int delivery_verb(const Arguments& arguments, std::span<const run::ResultRow> rows) {
+int delivery_verb(const Arguments& arguments, std::span<const store::ResultRow> rows) {
   const auto plan = rejudge::stored_plan(arguments.dir);
   if (!plan) return report({"store", "its plan cannot be read", arguments.dir});
   const auto findings = run::check_delivery(*plan, rows);
@@ -33,13 +33,13 @@ int delivery_verb(const Arguments& arguments, std::span<const run::ResultRow> ro
 }
 
 int results_verb(const Arguments& arguments) {
-  auto rows = run::read_results(arguments.dir);
+  auto rows = store::read_results(arguments.dir);
   if (!rows) return report(rows.failure());
   if (arguments.delivery) return delivery_verb(arguments, *rows);
   if (arguments.json) {
-    fmt::print("{}\n", run::results_to_json(*rows));
+    fmt::print("{}\n", store::results_to_json(*rows));
   } else if (arguments.csv) {
-    fmt::print("{}", run::results_to_csv(*rows));
+    fmt::print("{}", store::results_to_csv(*rows));
   } else {
     const auto plan = rejudge::stored_plan(arguments.dir);
     fmt::print("{}", rejudge::tally_text(*rows, plan ? &*plan : nullptr));

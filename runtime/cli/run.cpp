@@ -11,7 +11,7 @@
 #include "runtime/cli/filled.h"
 #include "runtime/cli/progress.h"
 #include "runtime/cli/run_options.h"
-#include "runtime/policy/factory.h"
+#include "runtime/run/policies.h"
 
 namespace probe::cli {
 namespace {
@@ -87,8 +87,7 @@ int run_verb(const Arguments& arguments) {
   if (!shard) return report(shard.failure());
   options->shard = shard->first;
   options->shards = shard->second;
-  if (auto traits = policy::policy_traits(options->policy); !traits)
-    return report(traits.failure());
+  if (auto traits = run::policy_traits(options->policy); !traits) return report(traits.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
 
@@ -107,7 +106,7 @@ void add_run(CLI::App& app, int& exit) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("run", "evaluate a policy; the same command again continues");
   verb->footer(
-      "policies:\n" + policy::policy_help() +
+      "policies:\n" + run::policy_help() +
       "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
   add_run_options(*verb, arguments->run);
   verb->add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them");

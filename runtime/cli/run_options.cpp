@@ -7,7 +7,7 @@
 #include <map>
 
 #include "runtime/base/printable.h"
-#include "runtime/policy/factory.h"
+#include "runtime/run/policies.h"
 
 namespace probe::cli {
 namespace {
@@ -112,7 +112,7 @@ LoadedPlan load_runnable(const RunArguments& arguments) {
   return loaded;
 }
 
-void print_invalid(const run::ResultRow& row) {
+void print_invalid(const store::ResultRow& row) {
   fmt::print(stderr, "invalid: {} episode {} seed {}: {}\n", row.task, row.episode, row.seed,
              *row.invalid);
 }
@@ -122,7 +122,7 @@ void print_summary(const run::RunSummary& summary) {
   if (summary.total == 0) return;
   fmt::print(stderr, "{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total,
              summary.out, summary.done, summary.skipped, summary.invalid);
-  if (summary.done > 0) fmt::print(stderr, "{}\n", run::to_text(summary.call));
+  if (summary.done > 0) fmt::print(stderr, "{}\n", store::to_text(summary.call));
   if (summary.call.retried > 0) {
     fmt::print(stderr, "{} attempts that the server spoiled were made again\n",
                summary.call.retried);

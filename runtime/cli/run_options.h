@@ -27,7 +27,7 @@ Result<run::RunOptions> to_options(const RunArguments& arguments);
 LoadedPlan load_runnable(const RunArguments& arguments);
 
 // "invalid: TASK episode E seed S: why" on its own line.
-void print_invalid(const run::ResultRow& row);
+void print_invalid(const store::ResultRow& row);
 // Notes, counts and speed of a call, for stderr.
 void print_summary(const run::RunSummary& summary);
 

@@ -5,8 +5,8 @@
 
 #include "runtime/cli/filled.h"
 #include "runtime/cli/load.h"
-#include "runtime/run/preview.h"
 #include "runtime/run/replay.h"
+#include "runtime/show/preview.h"
 
 namespace probe::cli {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 struct Arguments {
   std::string input, task, out;
   std::optional<std::uint32_t> start;
-  run::SheetOptions options;
+  show::SheetOptions options;
   AssetOptions assets;
 };
 
@@ -46,7 +46,7 @@ void add_sheet(CLI::App& app, int& exit) {
   refuse_empty_values(*verb);
   verb->callback([arguments, &exit] {
     arguments->options.assets = arguments->assets.root;
-    exit = written(run::write_contact_sheet(arguments->input, arguments->out, arguments->options),
+    exit = written(show::write_contact_sheet(arguments->input, arguments->out, arguments->options),
                    arguments->out);
   });
 }
@@ -75,12 +75,12 @@ void add_preview(CLI::App& app, int& exit) {
     if (!task) return;
     arguments->options.assets = arguments->assets.root;
     if (arguments->start) {
-      exit = written(run::write_start(*loaded.plan, *task, *arguments->start, arguments->out,
-                                      arguments->options.assets, arguments->options.camera),
+      exit = written(show::write_start(*loaded.plan, *task, *arguments->start, arguments->out,
+                                       arguments->options.assets, arguments->options.camera),
                      arguments->out);
       return;
     }
-    exit = written(run::write_preview(*loaded.plan, *task, arguments->out, arguments->options),
+    exit = written(show::write_preview(*loaded.plan, *task, arguments->out, arguments->options),
                    arguments->out);
   });
 }

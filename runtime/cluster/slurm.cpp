@@ -15,7 +15,7 @@
 #include "runtime/base/file.h"
 #include "runtime/cluster/program.h"
 #include "runtime/run/selection.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 
 namespace probe::cluster {
 namespace {
@@ -65,7 +65,7 @@ Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
                                              const run::RunOptions& options) {
   std::string policy = options.policy;  // its port does not matter for what it draws
   if (const auto at = policy.find("{port}"); at != std::string::npos) policy.replace(at, 6, "1");
-  PROBE_ASSIGN(const auto traits, policy::policy_traits(policy));
+  PROBE_ASSIGN(const auto traits, run::policy_traits(policy));
   if (traits.recorded) {
     return Failure{"usage", "a replay needs no cluster; `vlaprobe run` does it", "--policy"};
   }
@@ -81,10 +81,10 @@ Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
 
 // Chosen episodes that the folder does not hold as valid rows.
 Result<std::set<EpisodeKey>> missing_in(const std::string& dir, std::set<EpisodeKey> chosen) {
-  PROBE_ASSIGN(const auto record, run::find_run_record(dir));
+  PROBE_ASSIGN(const auto record, store::find_run_record(dir));
   if (!record) return chosen;
-  PROBE_ASSIGN(const auto rows, run::read_results(dir));
-  for (const run::ResultRow& row : rows) {
+  PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  for (const store::ResultRow& row : rows) {
     if (!row.invalid) chosen.erase({row.task, row.episode, row.seed});
   }
   return chosen;
@@ -105,12 +105,12 @@ Status write_plan(const fs::path& path, const plan::Plan& plan) {
 
 // What merging would refuse at the end is refused before the first task.
 Status check_same_run(const std::string& out, const plan::Plan& plan, const std::string& name) {
-  PROBE_ASSIGN(const auto record, run::find_run_record(out));
+  PROBE_ASSIGN(const auto record, store::find_run_record(out));
   if (!record) return {};
-  run::RunRecord asked = *record;
+  store::RunRecord asked = *record;
   asked.identity.plan_root = to_hex(plan.root());
   asked.identity.policy = name;
-  const std::string change = run::changes_between(*record, asked).identity;
+  const std::string change = store::changes_between(*record, asked).identity;
   if (change.empty()) return {};
   return Failure{"store", change + "; take another folder or remove this one", out};
 }
@@ -185,16 +185,16 @@ std::string last_line(const fs::path& file) {
 
 // The shards that exist, joined into `out`.
 Status join(const SlurmOptions& options, const std::string& out, SlurmReport& report) {
-  run::MergeOptions merging;
+  store::MergeOptions merging;
   merging.out = out;
   merging.mixed_builds = options.run.if_changed == run::IfChanged::kContinue;
   for (int shard = 1; shard <= options.script.tasks; ++shard) {
     const std::string dir = out + "/" + shard_folder(shard, options.script.tasks);
-    PROBE_ASSIGN(const auto record, run::find_run_record(dir));
+    PROBE_ASSIGN(const auto record, store::find_run_record(dir));
     if (record) merging.dirs.push_back(dir);
   }
   if (merging.dirs.empty()) return {};
-  PROBE_ASSIGN(report.merged, run::merge(merging));
+  PROBE_ASSIGN(report.merged, store::merge(merging));
   return {};
 }
 

@@ -12,8 +12,8 @@
 
 #include "runtime/base/result.h"
 #include "runtime/cluster/job_script.h"
-#include "runtime/run/merge.h"
 #include "runtime/run/run.h"
+#include "runtime/store/merge.h"
 
 namespace probe::cluster {
 
@@ -31,7 +31,7 @@ struct SlurmReport {
   std::string job;     // Slurm's number of it; empty: nothing was submitted
   int total = 0;       // chosen episodes
   int stored = 0;      // of them valid in the merged run
-  run::MergeSummary merged;
+  store::MergeSummary merged;
   std::vector<std::string> notes;  // what each unfinished shard said last
 };
 

@@ -71,8 +71,6 @@ class Expert final : public policy::Policy {
     return {};
   }
 
-  bool wants_image() const override { return false; }
-
   Result<policy::Action> act(const policy::Observation& observation) override {
     PROBE_TRY(check(observation));
     Scene scene = look(observation, {options_.source, options_.close ? options_.target : -1});

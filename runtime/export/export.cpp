@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "runtime/base/file.h"
-#include "runtime/run/glob.h"
-#include "runtime/run/stored_trace.h"
+#include "runtime/base/glob.h"
+#include "runtime/store/stored_trace.h"
 
 namespace probe::exporting {
 namespace {
@@ -16,11 +16,11 @@ Result<std::unique_ptr<Sink>> open_sink(const std::string& path, const std::stri
 }
 
 Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportOptions& options) {
-  PROBE_ASSIGN(const auto rows, run::read_results(dir));
+  PROBE_ASSIGN(const auto rows, store::read_results(dir));
   ExportReport report;
-  for (const run::ResultRow& row : rows) {
-    if (!run::matches_glob(options.tasks, row.task)) continue;
-    PROBE_ASSIGN(const run::Trace trace, run::read_stored_trace(row));
+  for (const store::ResultRow& row : rows) {
+    if (!matches_glob(options.tasks, row.task)) continue;
+    PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
     PROBE_TRY(sink.episode(row, trace));
     ++report.episodes;
     report.steps += static_cast<int>(trace.steps.size());

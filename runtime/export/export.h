@@ -6,8 +6,8 @@
 #include <string>
 
 #include "runtime/base/result.h"
-#include "runtime/run/results.h"
-#include "runtime/run/trace.h"
+#include "runtime/store/results.h"
+#include "runtime/store/trace.h"
 
 namespace probe::exporting {
 
@@ -29,7 +29,7 @@ Result<ExportReport> export_run(const std::string& dir, const std::string& path,
 class Sink {
  public:
   virtual ~Sink() = default;
-  virtual Status episode(const run::ResultRow& row, const run::Trace& trace) = 0;
+  virtual Status episode(const store::ResultRow& row, const store::Trace& trace) = 0;
   virtual Status finish() = 0;
 };
 

@@ -36,8 +36,8 @@ class Hdf5 final : public Sink {
   Hdf5(const Hdf5&) = delete;
   Hdf5& operator=(const Hdf5&) = delete;
 
-  Status episode(const run::ResultRow& row, const run::Trace& trace) override {
-    const run::TraceHeader& header = trace.header;
+  Status episode(const store::ResultRow& row, const store::Trace& trace) override {
+    const store::TraceHeader& header = trace.header;
     const std::string name = "/" + header.task + "/" + std::to_string(header.episode) + "-" +
                              std::to_string(header.seed);
     const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
@@ -61,8 +61,8 @@ class Hdf5 final : public Sink {
  private:
   Failure failed() const { return {"io", "cannot be written as HDF5", path_}; }
 
-  void attributes(hid_t group, const run::ResultRow& row, const run::Trace& trace) {
-    const run::TraceHeader& header = trace.header;
+  void attributes(hid_t group, const store::ResultRow& row, const store::Trace& trace) {
+    const store::TraceHeader& header = trace.header;
     text(group, "task", header.task);
     text(group, "policy", header.policy);
     text(group, "prompt", header.prompt);
@@ -82,7 +82,7 @@ class Hdf5 final : public Sink {
     texts(group, "metrics", names);
   }
 
-  void start(hid_t group, const run::TraceStart& start) {
+  void start(hid_t group, const store::TraceStart& start) {
     std::vector<double> position, half, opening;
     for (const vm::BodyStart& body : start.starts) {
       put(position, body.position);
@@ -96,7 +96,7 @@ class Hdf5 final : public Sink {
     reals(group, "start_opening", opening, {bodies, 3});
   }
 
-  void steps(hid_t group, const run::Trace& trace) {
+  void steps(hid_t group, const store::Trace& trace) {
     const hsize_t n = trace.steps.size();
     const hsize_t bodies = trace.header.bodies.size(), joints = trace.header.joints.size();
     const hsize_t metric_count = trace.header.metrics.size();
@@ -106,7 +106,7 @@ class Hdf5 final : public Sink {
     const auto append = [](auto& to, const auto& from) {
       to.insert(to.end(), from.begin(), from.end());
     };
-    for (const run::TraceStep& s : trace.steps) {
+    for (const store::TraceStep& s : trace.steps) {
       step.push_back(s.sample.step);
       time.push_back(s.sample.time);
       grip.push_back(s.sample.grip);
@@ -148,10 +148,10 @@ class Hdf5 final : public Sink {
   }
 
   // Steps have different numbers of contacts, so these are rows of their own.
-  void contacts(hid_t group, const run::Trace& trace) {
+  void contacts(hid_t group, const store::Trace& trace) {
     std::vector<double> step, push;
     std::vector<std::uint16_t> pairs;
-    for (const run::TraceStep& s : trace.steps) {
+    for (const store::TraceStep& s : trace.steps) {
       for (const vm::ContactSample& contact : s.sample.contacts) {
         step.push_back(s.sample.step);
         pairs.push_back(contact.a);

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 Json xyz(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Json wxyz(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-Json metric_json(const run::TraceHeader::Metric& metric, double value) {
+Json metric_json(const store::TraceHeader::Metric& metric, double value) {
   return metric.is_bool ? Json(value != 0) : Json(value);
 }
 
@@ -47,8 +47,8 @@ Json sample_json(const vm::StepSample& sample, const std::vector<std::string>& n
   return json;
 }
 
-Json episode_json(const run::ResultRow& row, const run::Trace& trace) {
-  const run::TraceHeader& header = trace.header;
+Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
+  const store::TraceHeader& header = trace.header;
   Json json;
   json["kind"] = "episode";
   json["task"] = header.task;
@@ -67,7 +67,7 @@ Json episode_json(const run::ResultRow& row, const run::Trace& trace) {
   json["bodies"] = header.bodies;
   json["joints"] = header.joints;
   Json metrics = Json::object();
-  for (const run::MetricValue& metric : row.metrics) {
+  for (const store::MetricValue& metric : row.metrics) {
     metrics[metric.name] =
         row.invalid ? Json(nullptr) : metric_json({metric.name, metric.is_bool}, metric.value);
   }
@@ -90,7 +90,7 @@ Json episode_json(const run::ResultRow& row, const run::Trace& trace) {
   return json;
 }
 
-Json step_json(const run::TraceHeader& header, const run::TraceStep& step) {
+Json step_json(const store::TraceHeader& header, const store::TraceStep& step) {
   Json json;
   json["kind"] = "step";
   json["task"] = header.task;
@@ -122,9 +122,9 @@ class JsonLines final : public Sink {
   JsonLines(const JsonLines&) = delete;
   JsonLines& operator=(const JsonLines&) = delete;
 
-  Status episode(const run::ResultRow& row, const run::Trace& trace) override {
+  Status episode(const store::ResultRow& row, const store::Trace& trace) override {
     PROBE_TRY(line(episode_json(row, trace)));
-    for (const run::TraceStep& step : trace.steps) PROBE_TRY(line(step_json(trace.header, step)));
+    for (const store::TraceStep& step : trace.steps) PROBE_TRY(line(step_json(trace.header, step)));
     return {};
   }
 

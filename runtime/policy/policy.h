@@ -114,9 +114,6 @@ class Policy {
   virtual std::optional<Delivery> delivery() const { return std::nullopt; }
   // Sentences that whoever reads the results should know, such as what a server asked for in vain.
   virtual std::vector<std::string> notes() const { return {}; }
-  // Whether act() reads Observation::image; a run without video may then skip rendering... never by
-  // default.
-  virtual bool wants_image() const { return true; }
 };
 
 // Draws of a policy: a counter-based generator keyed by the episode, so that the order of episodes

@@ -5,24 +5,24 @@
 namespace probe::rejudge {
 namespace {
 
-const run::MetricValue* find_metric(const run::ResultRow& row, const std::string& name) {
-  const auto it = std::ranges::find(row.metrics, name, &run::MetricValue::name);
+const store::MetricValue* find_metric(const store::ResultRow& row, const std::string& name) {
+  const auto it = std::ranges::find(row.metrics, name, &store::MetricValue::name);
   return it == row.metrics.end() ? nullptr : &*it;
 }
 
 }  // namespace
 
-void count_changes(std::vector<MetricChange>& changes, const run::ResultRow& before,
-                   const run::ResultRow& after) {
-  const auto change_of = [&](const run::MetricValue& metric) -> MetricChange& {
+void count_changes(std::vector<MetricChange>& changes, const store::ResultRow& before,
+                   const store::ResultRow& after) {
+  const auto change_of = [&](const store::MetricValue& metric) -> MetricChange& {
     const auto it = std::ranges::find(changes, metric.name, &MetricChange::name);
     if (it != changes.end()) return *it;
     changes.push_back({.name = metric.name, .is_bool = metric.is_bool});
     return changes.back();
   };
-  for (const run::MetricValue& old : before.metrics) {
+  for (const store::MetricValue& old : before.metrics) {
     MetricChange& change = change_of(old);
-    const run::MetricValue* now = find_metric(after, old.name);
+    const store::MetricValue* now = find_metric(after, old.name);
     if (now == nullptr || now->is_bool != old.is_bool) {
       ++change.only_before;
       continue;
@@ -37,7 +37,7 @@ void count_changes(std::vector<MetricChange>& changes, const run::ResultRow& bef
     change.mean_before += (old.value - change.mean_before) / change.episodes;
     change.mean_after += (now->value - change.mean_after) / change.episodes;
   }
-  for (const run::MetricValue& now : after.metrics) {
+  for (const store::MetricValue& now : after.metrics) {
     if (find_metric(before, now.name) == nullptr) ++change_of(now).only_after;
   }
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/run/results.h"
+#include "runtime/store/results.h"
 
 namespace probe::rejudge {
 
@@ -21,7 +21,7 @@ struct MetricChange {
 };
 
 // One more episode. Metrics are listed in the order in which they are met first, `before` first.
-void count_changes(std::vector<MetricChange>& changes, const run::ResultRow& before,
-                   const run::ResultRow& after);
+void count_changes(std::vector<MetricChange>& changes, const store::ResultRow& before,
+                   const store::ResultRow& after);
 
 }  // namespace probe::rejudge

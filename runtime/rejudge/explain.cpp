@@ -11,8 +11,8 @@
 #include "runtime/rejudge/dimension.h"
 #include "runtime/rejudge/program_view.h"
 #include "runtime/rejudge/rescore.h"
-#include "runtime/run/recorded.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
 
 namespace probe::rejudge {
 namespace {
@@ -124,8 +124,8 @@ class Explainer {
         judge_(plan, task),
         run_lengths_(view_.registers()) {}
 
-  Result<std::vector<MetricWhy>> run(const run::Trace& trace, std::span<const std::uint32_t> chosen,
-                                     std::size_t steps) {
+  Result<std::vector<MetricWhy>> run(const store::Trace& trace,
+                                     std::span<const std::uint32_t> chosen, std::size_t steps) {
     std::vector<History> histories;
     for (const std::uint32_t m : chosen) histories.push_back(history_of(view_, m));
     PROBE_TRY(judge_.begin(trace.start->starts));
@@ -297,7 +297,7 @@ class Explainer {
 }  // namespace
 
 Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t task,
-                                       const run::Trace& trace, const std::string& metric) {
+                                       const store::Trace& trace, const std::string& metric) {
   PROBE_ASSIGN(const Rescored score, rescore(plan, task, trace));
   const plan::TaskRecord& record = plan.tasks()[task];
   std::vector<std::uint32_t> chosen;
@@ -318,15 +318,15 @@ Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t tas
 
 Result<EpisodeWhy> why(const std::string& dir, const std::string& task, int episode,
                        std::optional<int> seed, const std::string& metric) {
-  if (!std::filesystem::exists(run::plan_path(dir)))
+  if (!std::filesystem::exists(store::plan_path(dir)))
     return Failure{"store", "no run here: its plan is absent", dir};
-  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(run::plan_path(dir)));
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
   // Names with a suite's prefix are understood here too.
   const auto index = plan.find_task(task);
   const std::string name(index ? plan.text(plan.tasks()[*index].name) : std::string_view(task));
-  PROBE_ASSIGN(const run::StoredTrace stored, run::find_trace(dir, name, episode, seed));
+  PROBE_ASSIGN(const store::StoredTrace stored, store::find_trace(dir, name, episode, seed));
   if (!index || stored.trace.header.plan_root != plan.root()) {
-    return Failure{"store", "its plan is not the one of its traces", run::plan_path(dir)};
+    return Failure{"store", "its plan is not the one of its traces", store::plan_path(dir)};
   }
   EpisodeWhy out{.task = name,
                  .episode = episode,

@@ -9,7 +9,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/trace.h"
+#include "runtime/store/trace.h"
 
 namespace probe::rejudge {
 
@@ -44,7 +44,7 @@ struct MetricWhy {
 // Judges the trace again as `task` of `plan`, step by step. Fails where rescore() does, and when
 // `metric` is not empty and not one of the task's (code "usage").
 Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t task,
-                                       const run::Trace& trace, const std::string& metric = {});
+                                       const store::Trace& trace, const std::string& metric = {});
 
 struct EpisodeWhy {
   std::string task;

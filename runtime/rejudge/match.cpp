@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 // "differs in the camera, pose of the source", by the parts of both start ids.
 std::string difference(const plan::Plan& plan, std::uint32_t task, std::uint32_t episode,
-                       const plan::Plan& recorded, const run::ResultRow& row) {
+                       const plan::Plan& recorded, const store::ResultRow& row) {
   const auto old_task = recorded.find_task(row.task);
   if (!old_task) return "the stored plan does not have the task";
   const plan::TaskRecord& before = recorded.tasks()[*old_task];
@@ -60,7 +60,7 @@ Result<std::optional<std::uint32_t>> find_judge(const plan::Plan& plan,
                  name};
 }
 
-Result<Match> match_start(const plan::Plan& plan, std::uint32_t task, const run::ResultRow& row,
+Result<Match> match_start(const plan::Plan& plan, std::uint32_t task, const store::ResultRow& row,
                           const plan::Plan& recorded) {
   const std::string where = fmt::format("{} episode {} seed {}", row.task, row.episode, row.seed);
   const auto episodes = plan.episodes(plan.tasks()[task]);

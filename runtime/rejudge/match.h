@@ -9,7 +9,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/results.h"
+#include "runtime/store/results.h"
 
 namespace probe::rejudge {
 
@@ -29,7 +29,7 @@ Result<std::optional<std::uint32_t>> find_judge(const plan::Plan& plan,
 // The task's episode that begins as the stored one did: the one of the same index, which must have
 // an equal start id. Fails (code "usage") saying which part of the start differs, as far as
 // `recorded`, the plan that the row was made with, tells.
-Result<Match> match_start(const plan::Plan& plan, std::uint32_t task, const run::ResultRow& row,
+Result<Match> match_start(const plan::Plan& plan, std::uint32_t task, const store::ResultRow& row,
                           const plan::Plan& recorded);
 
 }  // namespace probe::rejudge

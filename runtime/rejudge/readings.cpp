@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "runtime/base/glob.h"
 #include "runtime/rejudge/stored.h"
-#include "runtime/run/glob.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 
 namespace probe::rejudge {
 namespace {
@@ -16,7 +16,7 @@ struct SuiteJobs {
 };
 
 Result<std::vector<SuiteJobs>> jobs_of(const plan::Plan& plan, const plan::Plan& recorded,
-                                       std::span<const run::ResultRow> rows,
+                                       std::span<const store::ResultRow> rows,
                                        std::span<const std::string> suites,
                                        const std::string& tasks) {
   std::vector<SuiteJobs> all;
@@ -25,7 +25,7 @@ Result<std::vector<SuiteJobs>> jobs_of(const plan::Plan& plan, const plan::Plan&
   for (const plan::SuiteRecord& suite : plan.suites()) {
     const std::string name(plan.text(suite.name));
     known += (known.empty() ? "" : ", ") + name;
-    const auto is_chosen = [&](const std::string& glob) { return run::matches_glob(glob, name); };
+    const auto is_chosen = [&](const std::string& glob) { return matches_glob(glob, name); };
     if (!std::ranges::any_of(suites, is_chosen)) continue;
     any = true;
     SuiteJobs one;
@@ -38,11 +38,11 @@ Result<std::vector<SuiteJobs>> jobs_of(const plan::Plan& plan, const plan::Plan&
   return all;
 }
 
-void count_row(const plan::Plan& plan, const run::Trace& trace, const Rescored& score,
+void count_row(const plan::Plan& plan, const store::Trace& trace, const Rescored& score,
                SuiteJobs& suite) {
   const Job& job = suite.jobs[suite.next];
   Reading& reading = suite.reading;
-  const run::ResultRow row = judged_row(plan, job, score, trace);
+  const store::ResultRow row = judged_row(plan, job, score, trace);
   if (row.invalid || job.row->invalid) {
     ++reading.invalid;
     return;
@@ -59,11 +59,11 @@ void count_row(const plan::Plan& plan, const run::Trace& trace, const Rescored& 
 Result<std::vector<Reading>> read_under(const std::string& dir, const plan::Plan& plan,
                                         std::span<const std::string> suites,
                                         const std::string& tasks) {
-  PROBE_ASSIGN(const auto rows, run::read_results(dir));
-  PROBE_ASSIGN(const plan::Plan recorded, plan::Plan::open(run::plan_path(dir)));
+  PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  PROBE_ASSIGN(const plan::Plan recorded, plan::Plan::open(store::plan_path(dir)));
   PROBE_ASSIGN(auto all, jobs_of(plan, recorded, rows, suites, tasks));
-  for (const run::ResultRow& row : rows) {
-    std::optional<run::Trace> trace;
+  for (const store::ResultRow& row : rows) {
+    std::optional<store::Trace> trace;
     for (SuiteJobs& suite : all) {
       if (suite.next == suite.jobs.size() || suite.jobs[suite.next].row != &row) continue;
       if (!trace) {

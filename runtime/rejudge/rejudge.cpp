@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "runtime/rejudge/stored.h"
-#include "runtime/run/store.h"
-#include "runtime/run/stored_trace.h"
+#include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
 
 namespace probe::rejudge {
 namespace {
@@ -13,9 +13,9 @@ namespace fs = std::filesystem;
 
 // The trace again, with the new plan's names and verdicts in it.
 Result<Sha256> write_judged(const std::string& path, const plan::Plan& plan, const Job& job,
-                            const Rescored& score, const run::Trace& trace) {
+                            const Rescored& score, const store::Trace& trace) {
   const plan::TaskRecord& task = plan.tasks()[job.match.task];
-  run::TraceHeader header = trace.header;
+  store::TraceHeader header = trace.header;
   header.plan_root = plan.root();
   header.task = std::string(plan.text(task.name));
   header.episode_id = Sha256{plan.episodes(task)[job.match.episode].episode_id};
@@ -24,12 +24,12 @@ Result<Sha256> write_judged(const std::string& path, const plan::Plan& plan, con
   for (const plan::BodyRecord& body : plan.bodies(task))
     header.bodies.emplace_back(plan.text(body.name));
   header.metrics.clear();
-  for (const run::MetricValue& metric : score.metrics)
+  for (const store::MetricValue& metric : score.metrics)
     header.metrics.push_back({metric.name, metric.is_bool});
-  PROBE_ASSIGN(auto writer, run::TraceWriter::create(path, header));
+  PROBE_ASSIGN(auto writer, store::TraceWriter::create(path, header));
   if (trace.start) PROBE_TRY(writer->start(*trace.start));
   for (std::size_t i = 0; i < score.steps.size(); ++i) {
-    run::TraceStep step = trace.steps[i];
+    store::TraceStep step = trace.steps[i];
     step.metrics = score.steps[i];
     PROBE_TRY(writer->step(step));
   }
@@ -41,9 +41,9 @@ Result<Sha256> write_judged(const std::string& path, const plan::Plan& plan, con
 
 Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
                               const RejudgeOptions& options) {
-  PROBE_ASSIGN(const run::RunRecord record, run::read_run_record(dir));
-  PROBE_ASSIGN(const auto rows, run::read_results(dir));
-  PROBE_ASSIGN(const plan::Plan recorded, plan::Plan::open(run::plan_path(dir)));
+  PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+  PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  PROBE_ASSIGN(const plan::Plan recorded, plan::Plan::open(store::plan_path(dir)));
   if (!options.out.empty()) {
     std::error_code error;
     if (fs::equivalent(options.out, dir, error)) {
@@ -57,27 +57,27 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
   if (jobs.empty()) return nothing_judged(options.suite, options.tasks, report.left_out);
   // All refusals come before the first byte is written.
   for (const Job& job : jobs) {
-    PROBE_ASSIGN(const run::Trace trace, proven_trace(recorded, *job.row));
+    PROBE_ASSIGN(const store::Trace trace, proven_trace(recorded, *job.row));
     PROBE_TRY(check_measures(plan, job.match.task, trace));
   }
 
-  std::unique_ptr<run::Store> store;
+  std::unique_ptr<store::Store> store;
   if (!options.out.empty()) {
-    run::RunRecord judged = record;
+    store::RunRecord judged = record;
     judged.identity.plan_root = to_hex(plan.root());
     if (!options.suite.empty()) judged.suite = options.suite;
-    PROBE_ASSIGN(store, run::Store::open(options.out, judged, plan.bytes()));
+    PROBE_ASSIGN(store, store::Store::open(options.out, judged, plan.bytes()));
   }
   for (const Job& job : jobs) {
-    PROBE_ASSIGN(const run::Trace trace, run::read_stored_trace(*job.row));
+    PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(*job.row));
     PROBE_ASSIGN(const Rescored score, rescore(plan, job.match.task, trace));
-    run::ResultRow row = judged_row(plan, job, score, trace);
+    store::ResultRow row = judged_row(plan, job, score, trace);
     if (store) {
       const std::string path = store->temporary_trace(row.task, row.episode, row.seed);
       PROBE_ASSIGN(const Sha256 hash, write_judged(path, plan, job, score, trace));
       row.trace_sha256 = to_hex(hash);
       PROBE_TRY(store->commit(row, static_cast<int>(job.match.task)));
-      row.trace = fs::absolute(run::trace_path(options.out, row.task, row.episode, row.seed))
+      row.trace = fs::absolute(store::trace_path(options.out, row.task, row.episode, row.seed))
                       .lexically_normal()
                       .string();
     }

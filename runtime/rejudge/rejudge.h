@@ -7,7 +7,7 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/rejudge/changes.h"
-#include "runtime/run/results.h"
+#include "runtime/store/results.h"
 
 namespace probe::rejudge {
 
@@ -18,8 +18,8 @@ struct RejudgeOptions {
 };
 
 struct RejudgeReport {
-  std::vector<run::ResultRow> rows;   // as judged now, in the stored order
-  std::vector<MetricChange> metrics;  // the stored plan's, then those that are new
+  std::vector<store::ResultRow> rows;  // as judged now, in the stored order
+  std::vector<MetricChange> metrics;   // the stored plan's, then those that are new
   int valid = 0, invalid = 0;
   std::vector<std::string> left_out;  // stored tasks that the plan does not judge
   bool same_plan = false;             // judged under the plan they were made with

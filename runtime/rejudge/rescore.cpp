@@ -6,9 +6,9 @@
 
 namespace probe::rejudge {
 
-Status check_measures(const plan::Plan& plan, std::uint32_t task, const run::Trace& trace) {
+Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace) {
   const plan::TaskRecord& record = plan.tasks()[task];
-  const run::TraceHeader& header = trace.header;
+  const store::TraceHeader& header = trace.header;
   const std::string where =
       fmt::format("{} episode {} seed {}", header.task, header.episode, header.seed);
   const auto refuse = [&](std::string message) {
@@ -44,7 +44,7 @@ Status check_measures(const plan::Plan& plan, std::uint32_t task, const run::Tra
   return {};
 }
 
-Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const run::Trace& trace) {
+Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace) {
   PROBE_TRY(check_measures(plan, task, trace));
   vm::Judge judge(plan, task);
   Rescored out;

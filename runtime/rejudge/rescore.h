@@ -8,7 +8,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/trace.h"
+#include "runtime/store/trace.h"
 #include "runtime/vm/judge.h"
 
 namespace probe::rejudge {
@@ -17,16 +17,16 @@ struct Rescored {
   // After each judged step, by metric of the plan's task.
   std::vector<std::vector<double>> steps;
   // After the last one; of no meaning when invalid.
-  std::vector<run::MetricValue> metrics;
+  std::vector<store::MetricValue> metrics;
   std::optional<std::string> invalid;  // as recorded, or because a metric was not finite
 };
 
 // Judges the first `horizon` steps of the trace as `task` of `plan`. Fails (code "usage") when what
 // was measured is not what the task judges: other bodies, another control rate, another
 // instruction, or fewer steps than the horizon without having been invalid.
-Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const run::Trace& trace);
+Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace);
 
 // The same refusals, without judging.
-Status check_measures(const plan::Plan& plan, std::uint32_t task, const run::Trace& trace);
+Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace);
 
 }  // namespace probe::rejudge

@@ -4,8 +4,8 @@
 #include <map>
 #include <optional>
 
-#include "runtime/run/glob.h"
-#include "runtime/run/stored_trace.h"
+#include "runtime/base/glob.h"
+#include "runtime/store/stored_trace.h"
 
 namespace probe::rejudge {
 namespace {
@@ -26,13 +26,14 @@ Result<std::vector<std::uint32_t>> candidates_of(const plan::Plan& plan, const s
 }  // namespace
 
 Result<std::vector<Job>> match_rows(const plan::Plan& plan, const plan::Plan& recorded,
-                                    std::span<const run::ResultRow> rows, const std::string& suite,
-                                    const std::string& tasks, std::vector<std::string>& left_out) {
+                                    std::span<const store::ResultRow> rows,
+                                    const std::string& suite, const std::string& tasks,
+                                    std::vector<std::string>& left_out) {
   PROBE_ASSIGN(const auto candidates, candidates_of(plan, suite));
   std::map<std::string, std::optional<std::uint32_t>> judges;
   std::vector<Job> jobs;
-  for (const run::ResultRow& row : rows) {
-    if (!run::matches_glob(tasks, row.task)) continue;
+  for (const store::ResultRow& row : rows) {
+    if (!matches_glob(tasks, row.task)) continue;
     const auto [known, is_new] = judges.try_emplace(row.task);
     if (is_new) {
       PROBE_ASSIGN(known->second, find_judge(plan, candidates, row.task));
@@ -53,8 +54,8 @@ Failure nothing_judged(const std::string& suite, const std::string& tasks,
           suite};
 }
 
-Result<run::Trace> proven_trace(const plan::Plan& recorded, const run::ResultRow& row) {
-  PROBE_ASSIGN(run::Trace trace, run::read_stored_trace(row));
+Result<store::Trace> proven_trace(const plan::Plan& recorded, const store::ResultRow& row) {
+  PROBE_ASSIGN(store::Trace trace, store::read_stored_trace(row));
   const auto task = recorded.find_task(row.task);
   if (!task || trace.header.plan_root != recorded.root())
     return Failure{"trace", "this trace was not made under the stored plan", row.trace};
@@ -70,10 +71,10 @@ Result<run::Trace> proven_trace(const plan::Plan& recorded, const run::ResultRow
   return trace;
 }
 
-run::ResultRow judged_row(const plan::Plan& plan, const Job& job, const Rescored& score,
-                          const run::Trace& trace) {
+store::ResultRow judged_row(const plan::Plan& plan, const Job& job, const Rescored& score,
+                            const store::Trace& trace) {
   const plan::TaskRecord& task = plan.tasks()[job.match.task];
-  run::ResultRow row = *job.row;
+  store::ResultRow row = *job.row;
   row.task = std::string(plan.text(task.name));
   row.metrics = score.metrics;
   row.invalid = score.invalid;

@@ -7,13 +7,13 @@
 
 #include "runtime/rejudge/match.h"
 #include "runtime/rejudge/rescore.h"
-#include "runtime/run/results.h"
-#include "runtime/run/trace.h"
+#include "runtime/store/results.h"
+#include "runtime/store/trace.h"
 
 namespace probe::rejudge {
 
 struct Job {
-  const run::ResultRow* row;
+  const store::ResultRow* row;
   Match match;
 };
 
@@ -21,8 +21,9 @@ struct Job {
 // allows; tasks that it does not judge are left out and named. Fails (code "usage") when a start
 // differs. `suite` is whose tasks judge; empty: all tasks of the plan.
 Result<std::vector<Job>> match_rows(const plan::Plan& plan, const plan::Plan& recorded,
-                                    std::span<const run::ResultRow> rows, const std::string& suite,
-                                    const std::string& tasks, std::vector<std::string>& left_out);
+                                    std::span<const store::ResultRow> rows,
+                                    const std::string& suite, const std::string& tasks,
+                                    std::vector<std::string>& left_out);
 
 // Why match_rows gave nothing.
 Failure nothing_judged(const std::string& suite, const std::string& tasks,
@@ -30,10 +31,10 @@ Failure nothing_judged(const std::string& suite, const std::string& tasks,
 
 // The row's trace. Fails (code "trace") unless it is whole, the one the row was made with, and its
 // verdicts after every step are what the plan it was recorded under says of its measurements.
-Result<run::Trace> proven_trace(const plan::Plan& recorded, const run::ResultRow& row);
+Result<store::Trace> proven_trace(const plan::Plan& recorded, const store::ResultRow& row);
 
 // The row as judged now.
-run::ResultRow judged_row(const plan::Plan& plan, const Job& job, const Rescored& score,
-                          const run::Trace& trace);
+store::ResultRow judged_row(const plan::Plan& plan, const Job& job, const Rescored& score,
+                            const store::Trace& trace);
 
 }  // namespace probe::rejudge

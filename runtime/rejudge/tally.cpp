@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/rejudge/dimension.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 
 namespace probe::rejudge {
 namespace {
@@ -43,7 +43,7 @@ Kind kind_of(const plan::Plan* plan, const std::string& task, const std::string&
           plan->metrics(record)[*at].readout == static_cast<std::uint32_t>(plan::Readout::kFirst)};
 }
 
-void add(Tally& tally, const run::ResultRow& row) {
+void add(Tally& tally, const store::ResultRow& row) {
   if (row.invalid) {
     if (tally.invalid++ == 0) {
       tally.first_invalid =
@@ -52,7 +52,7 @@ void add(Tally& tally, const run::ResultRow& row) {
     return;
   }
   ++tally.valid;
-  for (const run::MetricValue& metric : row.metrics) {
+  for (const store::MetricValue& metric : row.metrics) {
     auto column = std::find_if(tally.columns.begin(), tally.columns.end(),
                                [&](const Column& known) { return known.name == metric.name; });
     if (column == tally.columns.end()) {
@@ -86,15 +86,15 @@ std::string numbers_text(Column column, const Kind& kind) {
 }  // namespace
 
 std::optional<plan::Plan> stored_plan(const std::string& dir) {
-  auto plan = plan::Plan::open(run::plan_path(dir));
+  auto plan = plan::Plan::open(store::plan_path(dir));
   if (!plan) return std::nullopt;
   return std::move(plan).value();
 }
 
-std::string tally_text(std::span<const run::ResultRow> rows, const plan::Plan* plan) {
+std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan* plan) {
   std::vector<std::string> order;
   std::map<std::string, Tally> tallies;
-  for (const run::ResultRow& row : rows) {
+  for (const store::ResultRow& row : rows) {
     const auto [it, fresh] = tallies.try_emplace(row.task);
     if (fresh) order.push_back(row.task);
     add(it->second, row);

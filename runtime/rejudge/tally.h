@@ -7,14 +7,14 @@
 #include <string>
 
 #include "runtime/plan/plan.h"
-#include "runtime/run/results.h"
+#include "runtime/store/results.h"
 
 namespace probe::rejudge {
 
 // Tasks in the order of the rows, metrics in the order of the plan. Invalid episodes count nowhere;
 // the first one is named with its reason. Without a plan numbers have no units. A `first` that
 // never came (-1) is counted apart.
-std::string tally_text(std::span<const run::ResultRow> rows, const plan::Plan* plan);
+std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan* plan);
 
 // The plan that a results folder keeps; nothing when it cannot be read.
 std::optional<plan::Plan> stored_plan(const std::string& dir);

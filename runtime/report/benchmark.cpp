@@ -17,7 +17,7 @@
 #include "runtime/plan/source_line.h"
 #include "runtime/report/categories.h"
 #include "runtime/run/delivery.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 
 namespace probe::report {
 namespace {
@@ -103,8 +103,8 @@ class Loader {
   }
 
   Status add_folder(const std::string& dir) {
-    PROBE_ASSIGN(const run::RunRecord record, run::read_run_record(dir));
-    PROBE_ASSIGN(std::vector<run::ResultRow> rows, run::read_results(dir));
+    PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+    PROBE_ASSIGN(std::vector<store::ResultRow> rows, store::read_results(dir));
     PROBE_ASSIGN(const int plan, plan_of(dir, record));
     RunInfo info;
     info.dir = dir;
@@ -112,8 +112,8 @@ class Loader {
     info.fingerprint = index_in(benchmark_.fingerprints, record.fingerprint.entries);
     info.seeds = record.seeds;
     if (info.fingerprint > 0) {
-      const run::Fingerprint first{benchmark_.fingerprints[0]};
-      for (const std::string& line : run::differences(first, record.fingerprint)) {
+      const store::Fingerprint first{benchmark_.fingerprints[0]};
+      for (const std::string& line : store::differences(first, record.fingerprint)) {
         index_in(benchmark_.fingerprint_differences, line);
       }
     }
@@ -122,13 +122,13 @@ class Loader {
   }
 
   // Opens the folder's plan, or finds the one with the same root.
-  Result<int> plan_of(const std::string& dir, const run::RunRecord& record) {
-    auto plan = plan::Plan::open(run::plan_path(dir));
+  Result<int> plan_of(const std::string& dir, const store::RunRecord& record) {
+    auto plan = plan::Plan::open(store::plan_path(dir));
     if (!plan) return plan.failure();
     const std::string root = to_hex(plan->root());
     if (root != record.identity.plan_root) {
       return Failure{"store", "the folder's plan is not the one its results were made with",
-                     run::plan_path(dir)};
+                     store::plan_path(dir)};
     }
     for (std::size_t i = 0; i < benchmark_.plans.size(); ++i) {
       if (benchmark_.plans[i].root == root && benchmark_.plans[i].suite == record.suite)
@@ -287,15 +287,15 @@ class Loader {
     task.rule = line.text;
   }
 
-  void add_rows(const std::string& dir, const run::RunRecord& record, int plan,
-                std::vector<run::ResultRow> rows, RunInfo& info) {
+  void add_rows(const std::string& dir, const store::RunRecord& record, int plan,
+                std::vector<store::ResultRow> rows, RunInfo& info) {
     const plan::Plan& file = benchmark_.plan_files[static_cast<std::size_t>(plan)];
     const PlanTasks& map = maps_[static_cast<std::size_t>(plan)];
     note_delivery(dir, file, rows);
     std::vector<Episode> episodes;
     std::set<int> tasks;
     std::size_t unknown = 0;
-    for (run::ResultRow& row : rows) {
+    for (store::ResultRow& row : rows) {
       const auto task = file.find_task(row.task);
       if (!task || row.episode < 0 ||
           static_cast<std::size_t>(row.episode) >= map.start[*task].size()) {
@@ -310,7 +310,7 @@ class Loader {
         episode.reason = index_in(benchmark_.reasons, printable(*row.invalid, kLongestText));
         ++info.invalid;
       } else {
-        for (const run::MetricValue& value : row.metrics) {
+        for (const store::MetricValue& value : row.metrics) {
           const int m = metric(value.name, value.is_bool);
           if (value.is_bool && value.value != 0 && static_cast<std::size_t>(m) < 64)
             episode.bits |= std::uint64_t{1} << m;
@@ -409,7 +409,7 @@ class Loader {
 
   // What was meant to differ and reached the policy equal.
   void note_delivery(const std::string& dir, const plan::Plan& plan,
-                     std::span<const run::ResultRow> rows) {
+                     std::span<const store::ResultRow> rows) {
     const auto findings = run::check_delivery(plan, rows);
     for (std::size_t i = 0; i < findings.size() && i < kNamed; ++i)
       note("bad", fmt::format("`{}`: {}", dir, findings[i].sentence));

@@ -12,7 +12,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/results.h"
+#include "runtime/store/results.h"
 
 namespace probe::report {
 
@@ -94,7 +94,7 @@ struct Episode {
   int prompt = kAbsent;    // what the policy was sent, if its hash fits a known instruction
   int plan = 0;            // under which it was run
   std::string video;       // path, or empty
-  run::ResultRow row;      // as stored
+  store::ResultRow row;    // as stored
 
   bool valid() const { return reason == kAbsent; }
   bool is(int metric) const { return ((bits >> metric) & 1U) != 0; }

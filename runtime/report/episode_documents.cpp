@@ -9,8 +9,8 @@
 #include <unordered_map>
 
 #include "runtime/rejudge/explain.h"
-#include "runtime/run/scheduler.h"
-#include "runtime/run/stored_trace.h"
+#include "runtime/run/workers.h"
+#include "runtime/store/stored_trace.h"
 
 namespace probe::report {
 namespace {
@@ -53,7 +53,7 @@ void append_record(std::string& text, const std::string& key, const Spans& spans
 
 // Links of the arm touch each other and things rest on the surface all the time: neither says what
 // happened. Fingers come after the surface in the plan's order, see BodyRecord.
-std::size_t surface_of(const run::TraceHeader& header) {
+std::size_t surface_of(const store::TraceHeader& header) {
   const auto at = std::find(header.bodies.begin(), header.bodies.end(), "surface");
   return static_cast<std::size_t>(at - header.bodies.begin());
 }
@@ -95,7 +95,7 @@ std::vector<char> chosen_whys(std::span<const EpisodeTrace> episodes, std::size_
   std::map<std::tuple<int, std::string>, std::vector<std::size_t>> groups;
   const auto succeeded = [&](std::size_t i) {
     const auto& metrics = episodes[i].row->metrics;
-    return std::any_of(metrics.begin(), metrics.end(), [](const run::MetricValue& m) {
+    return std::any_of(metrics.begin(), metrics.end(), [](const store::MetricValue& m) {
       return m.name == "success" && m.value != 0;
     });
   };
@@ -130,7 +130,7 @@ struct Reading {
 Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> metrics,
                      bool explained) {
   Reading reading;
-  const auto trace = run::read_stored_trace(*episode.row);
+  const auto trace = store::read_stored_trace(*episode.row);
   if (!trace) {
     reading.problem = to_text(trace.failure());
     return reading;
@@ -151,7 +151,7 @@ Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> m
 
 }  // namespace
 
-std::string encode_timeline(const run::Trace& trace, std::span<const std::string> metrics) {
+std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics) {
   std::string text;
   for (std::size_t m = 0; m < trace.header.metrics.size(); ++m) {
     const auto& metric = trace.header.metrics[m];

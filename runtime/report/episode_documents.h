@@ -7,14 +7,14 @@
 #include <vector>
 
 #include "runtime/plan/plan.h"
-#include "runtime/run/results.h"
-#include "runtime/run/trace.h"
+#include "runtime/store/results.h"
+#include "runtime/store/trace.h"
 
 namespace probe::report {
 
 // One episode of the page's column arrays, in their order.
 struct EpisodeTrace {
-  const run::ResultRow* row = nullptr;
+  const store::ResultRow* row = nullptr;
   const plan::Plan* plan = nullptr;  // the one the row was made under
   int task = 0;                      // index into the page's tasks
 };
@@ -38,6 +38,6 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
                                    const EpisodeDocumentOptions& options);
 
 // The record of one trace as PAGE_DATA.md encodes it.
-std::string encode_timeline(const run::Trace& trace, std::span<const std::string> metrics);
+std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics);
 
 }  // namespace probe::report

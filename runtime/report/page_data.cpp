@@ -116,7 +116,7 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
     columns["sha"].push_back(e.row.trace_sha256.substr(0, 12));
     for (auto& [name, values] : numbers.items()) {
       const auto at = std::find_if(e.row.metrics.begin(), e.row.metrics.end(),
-                                   [&](const run::MetricValue& v) { return v.name == name; });
+                                   [&](const store::MetricValue& v) { return v.name == name; });
       const bool known = e.valid() && at != e.row.metrics.end() && std::isfinite(at->value);
       values.push_back(known ? Json(rounded(at->value)) : Json());
     }

@@ -19,11 +19,11 @@ constexpr plan::Axis kVisible[] = {
     plan::Axis::kCamera,
 };
 
-const std::string& prompt_of(const ResultRow& row) {
+const std::string& prompt_of(const store::ResultRow& row) {
   return row.sent_prompt_sha256 ? *row.sent_prompt_sha256 : row.prompt_sha256;
 }
 
-const std::string& picture_of(const ResultRow& row) {
+const std::string& picture_of(const store::ResultRow& row) {
   return row.sent_image_sha256 ? *row.sent_image_sha256 : row.image_sha256;
 }
 
@@ -49,12 +49,12 @@ std::string visible_axes(std::uint32_t axes) {
 
 class Detector {
  public:
-  Detector(const plan::Plan& plan, std::span<const ResultRow> rows) : plan_(plan) {
+  Detector(const plan::Plan& plan, std::span<const store::ResultRow> rows) : plan_(plan) {
     std::map<std::string_view, std::uint32_t> tasks;
     for (std::uint32_t i = 0; i < plan.tasks().size(); ++i) {
       tasks.emplace(plan.text(plan.tasks()[i].name), i);
     }
-    for (const ResultRow& row : rows) {
+    for (const store::ResultRow& row : rows) {
       const auto found = tasks.find(row.task);
       // Before the first request nothing was sent, and a row without a picture never got so far.
       if (found == tasks.end() || row.image_sha256.empty()) continue;
@@ -76,9 +76,9 @@ class Detector {
     return plan_.text(plan_.tasks()[task].prompt);
   }
 
-  void check_prompt(std::uint32_t task, const std::vector<const ResultRow*>& rows) {
+  void check_prompt(std::uint32_t task, const std::vector<const store::ResultRow*>& rows) {
     std::set<std::string_view> sent;
-    for (const ResultRow* row : rows) sent.insert(prompt_of(*row));
+    for (const store::ResultRow* row : rows) sent.insert(prompt_of(*row));
     if (sent.size() > 1) {
       add({Kind::kManyPrompts, std::string(name(task)), "", "", static_cast<int>(sent.size()),
            static_cast<int>(rows.size()),
@@ -99,15 +99,15 @@ class Detector {
     }
   }
 
-  void check_pictures(std::uint32_t task, const std::vector<const ResultRow*>& rows) {
+  void check_pictures(std::uint32_t task, const std::vector<const store::ResultRow*>& rows) {
     const plan::TaskRecord& record = plan_.tasks()[task];
     const std::string axes = visible_axes(record.axes);
     const auto baseline = rows_.find(record.baseline);
     if (axes.empty() || baseline == rows_.end()) return;
-    std::map<std::pair<int, int>, const ResultRow*> others;
-    for (const ResultRow* row : baseline->second) others[{row->episode, row->seed}] = row;
+    std::map<std::pair<int, int>, const store::ResultRow*> others;
+    for (const store::ResultRow* row : baseline->second) others[{row->episode, row->seed}] = row;
     int compared = 0, same = 0;
-    for (const ResultRow* row : rows) {
+    for (const store::ResultRow* row : rows) {
       const auto other = others.find({row->episode, row->seed});
       if (other == others.end() || other->second->start_id == row->start_id) continue;
       ++compared;
@@ -125,15 +125,15 @@ class Detector {
   void add(DeliveryFinding finding) { findings_.push_back(std::move(finding)); }
 
   const plan::Plan& plan_;
-  std::map<std::uint32_t, std::vector<const ResultRow*>> rows_;  // by task
-  std::map<std::string_view, std::uint32_t> first_with_;         // a sent text: its first task
+  std::map<std::uint32_t, std::vector<const store::ResultRow*>> rows_;  // by task
+  std::map<std::string_view, std::uint32_t> first_with_;  // a sent text: its first task
   std::vector<DeliveryFinding> findings_;
 };
 
 }  // namespace
 
 std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
-                                            std::span<const ResultRow> rows) {
+                                            std::span<const store::ResultRow> rows) {
   return Detector(plan, rows).find();
 }
 

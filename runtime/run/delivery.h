@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/run/results.h"
+#include "runtime/store/results.h"
 
 namespace probe::plan {
 class Plan;
@@ -32,7 +32,7 @@ struct DeliveryFinding {
 // Of rows of one run of `plan`; tasks that the plan does not have are passed over. A policy in this
 // process is compared by what it was shown. Ascending by the plan's task order.
 std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
-                                            std::span<const ResultRow> rows);
+                                            std::span<const store::ResultRow> rows);
 
 // A JSON array of objects {kind, task, other, axes, episodes, compared, sentence}; kinds are
 // same_prompt, many_prompts, same_picture.

@@ -25,10 +25,10 @@ struct Outcome {
 };
 
 // Of what the policy sees: a picture's bytes; of several pictures, the hash of their hashes.
-Sha256 hash_of(std::span<const CameraFrame> frames) {
+Sha256 hash_of(std::span<const stage::CameraFrame> frames) {
   if (frames.size() == 1) return sha256(std::as_bytes(frames[0].frame.rgb));
   Hasher all;
-  for (const CameraFrame& seen : frames) all.hash(sha256(std::as_bytes(seen.frame.rgb)));
+  for (const stage::CameraFrame& seen : frames) all.hash(sha256(std::as_bytes(seen.frame.rgb)));
   return all.finish();
 }
 
@@ -39,7 +39,7 @@ policy::Image image_of(const render::FrameView& frame) {
 class Loop {
  public:
   Loop(TaskStage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
-       TraceWriter& trace, FrameSink* frames, ResultRow& row)
+       store::TraceWriter& trace, show::FrameSink* frames, store::ResultRow& row)
       : stage_(stage),
         plan_(plan),
         task_(plan.tasks()[job.task]),
@@ -72,7 +72,7 @@ class Loop {
   void leave(const Outcome& outcome) {
     if (!policy_begun_) return;
     policy::EpisodeEnd end{!outcome.invalid && !outcome.broken, false, row_.steps};
-    for (const MetricValue& metric : row_.metrics) {
+    for (const store::MetricValue& metric : row_.metrics) {
       if (metric.name == "success") end.success = end.completed && metric.value != 0;
     }
     policy_.end(end);
@@ -84,12 +84,12 @@ class Loop {
 
  private:
   Outcome begin() {
-    EpisodeWorld& world = stage_.world();
+    stage::EpisodeWorld& world = stage_.world();
     if (auto reset = world.reset(job_.index); !reset) return {reason("world", reset.failure()), {}};
     if (auto begun = stage_.judge().begin(world.starts()); !begun) {
       return {reason("judge", begun.failure()), {}};
     }
-    TraceStart start;
+    store::TraceStart start;
     start.q.assign(world.q().begin(), world.q().end());
     start.starts.assign(world.starts().begin(), world.starts().end());
     start.sample = world.sample();
@@ -111,8 +111,8 @@ class Loop {
   }
 
   Outcome step(int number) {
-    EpisodeWorld& world = stage_.world();
-    TraceStep record;
+    stage::EpisodeWorld& world = stage_.world();
+    store::TraceStep record;
     auto clock = Clock::now();
     const auto frames = stage_.view().render_all(world.q(), world.objects());
     if (!frames) return {reason("picture", frames.failure()), {}};
@@ -128,7 +128,8 @@ class Loop {
     clock = Clock::now();
     policy::Observation observation;
     images_.clear();
-    for (const CameraFrame& seen : *frames) images_.push_back({seen.camera, image_of(seen.frame)});
+    for (const stage::CameraFrame& seen : *frames)
+      images_.push_back({seen.camera, image_of(seen.frame)});
     observation.image = images_.front().image;
     observation.cameras = images_;
     observation.prompt = prompt_;
@@ -177,10 +178,10 @@ class Loop {
   const plan::EpisodeRecord& episode_;
   const EpisodeJob& job_;
   policy::Policy& policy_;
-  TraceWriter& trace_;
-  FrameSink* frames_;
+  store::TraceWriter& trace_;
+  show::FrameSink* frames_;
   std::vector<policy::CameraImage> images_;  // of the observation in hand
-  ResultRow& row_;
+  store::ResultRow& row_;
   bool policy_begun_ = false;
   std::string_view prompt_;
   Sha256 prompt_hash_;
@@ -217,20 +218,20 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
   return value;
 }
 
-Result<std::unique_ptr<TaskStage>> TaskStage::create(const plan::Plan& plan, std::uint32_t task,
-                                                     std::shared_ptr<const SharedAssets> assets) {
+Result<std::unique_ptr<TaskStage>> TaskStage::create(
+    const plan::Plan& plan, std::uint32_t task, std::shared_ptr<const stage::SharedAssets> assets) {
   auto stage = std::unique_ptr<TaskStage>(new TaskStage(plan, task));
-  PROBE_ASSIGN(stage->world_, EpisodeWorld::create(plan, task, assets));
-  PROBE_ASSIGN(stage->view_, SceneView::create(plan, task, std::move(assets)));
+  PROBE_ASSIGN(stage->world_, stage::EpisodeWorld::create(plan, task, assets));
+  PROBE_ASSIGN(stage->view_, stage::SceneView::create(plan, task, std::move(assets)));
   return stage;
 }
 
-TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
-                              const std::string& policy, const std::string& fingerprint) {
+store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
+                                     const std::string& policy, const std::string& fingerprint) {
   const plan::TaskRecord& task = plan.tasks()[job.task];
   const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
   const plan::RobotRecord& robot = plan.robots()[plan.scenes()[task.scene].robot];
-  TraceHeader header;
+  store::TraceHeader header;
   header.plan_root = plan.root();
   header.episode_id = Sha256{episode.episode_id};
   header.start_id = Sha256{episode.start_id};
@@ -243,7 +244,7 @@ TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
   header.control_hz = robot.control_hz;
   for (const plan::BodyRecord& body : plan.bodies(task))
     header.bodies.emplace_back(plan.text(body.name));
-  header.joints = drive_joints(plan, robot);
+  header.joints = stage::drive_joints(plan, robot);
   for (const plan::MetricRecord& metric : plan.metrics(task)) {
     header.metrics.push_back({std::string(plan.text(metric.name)),
                               metric.type == static_cast<std::uint32_t>(plan::MetricType::kBool)});
@@ -252,12 +253,13 @@ TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
   return header;
 }
 
-Result<ResultRow> run_episode(TaskStage& stage, const plan::Plan& plan, const EpisodeJob& job,
-                              const std::string& policy_name, policy::Policy& policy,
-                              TraceWriter& trace, FrameSink* frames, int steps) {
+Result<store::ResultRow> run_episode(TaskStage& stage, const plan::Plan& plan,
+                                     const EpisodeJob& job, const std::string& policy_name,
+                                     policy::Policy& policy, store::TraceWriter& trace,
+                                     show::FrameSink* frames, int steps) {
   const plan::TaskRecord& task = plan.tasks()[job.task];
   const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
-  ResultRow row;
+  store::ResultRow row;
   row.task = std::string(plan.text(task.name));
   row.episode = static_cast<int>(job.index);
   row.seed = job.seed;

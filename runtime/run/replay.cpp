@@ -4,39 +4,40 @@
 #include <filesystem>
 
 #include "runtime/run/episode.h"
-#include "runtime/run/episode_video.h"
-#include "runtime/run/fingerprint.h"
-#include "runtime/run/picture_grid.h"
-#include "runtime/run/recorded.h"
-#include "runtime/run/store.h"
-#include "runtime/run/trace_compare.h"
 #include "runtime/scene/image.h"
+#include "runtime/show/episode_video.h"
+#include "runtime/show/picture_grid.h"
+#include "runtime/store/fingerprint.h"
+#include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
+#include "runtime/store/trace_compare.h"
 
 namespace probe::run {
 namespace {
 
 class TraceActions final : public policy::Policy {
  public:
-  explicit TraceActions(const Trace& trace) : trace_(trace) {}
+  explicit TraceActions(const store::Trace& trace) : trace_(trace) {}
   Status begin(const policy::EpisodeStart&) override { return {}; }
   Result<policy::Action> act(const policy::Observation& observation) override {
     return trace_.steps[static_cast<std::size_t>(observation.step)].action;
   }
 
  private:
-  const Trace& trace_;
+  const store::Trace& trace_;
 };
 
 // Hands frames to the video and keeps the one that was asked for.
-class ReplayPictures final : public FrameSink {
+class ReplayPictures final : public show::FrameSink {
  public:
-  ReplayPictures(const TraceHeader& header, const ReplayOptions& options) : options_(options) {
+  ReplayPictures(const store::TraceHeader& header, const ReplayOptions& options)
+      : options_(options) {
     if (!options.video.empty()) video_.emplace(header, options.video, options.camera);
   }
-  Status frame(std::span<const CameraFrame> frames, int step,
-               std::span<const MetricValue> metrics) override {
+  Status frame(std::span<const stage::CameraFrame> frames, int step,
+               std::span<const store::MetricValue> metrics) override {
     if (!options_.png.empty() && step == options_.png_step) {
-      PROBE_ASSIGN(const Picture picture, show_frames(frames, options_.camera));
+      PROBE_ASSIGN(const show::Picture picture, show::show_frames(frames, options_.camera));
       PROBE_TRY(scene::write_png(options_.png, picture.width, picture.height, picture.rgb));
     }
     return video_ ? video_->frame(frames, step, metrics) : Status();
@@ -45,7 +46,7 @@ class ReplayPictures final : public FrameSink {
 
  private:
   const ReplayOptions& options_;
-  std::optional<EpisodeVideo> video_;
+  std::optional<show::EpisodeVideo> video_;
 };
 
 // A picture's folder is not made: a slip of the pen should not leave folders behind.
@@ -55,9 +56,10 @@ Status check_folder_of(const std::string& file, const char* option) {
   return Failure{"usage", "there is no folder `" + folder.string() + "` to write into", option};
 }
 
-Result<EpisodeJob> find_job(const plan::Plan& plan, const Trace& trace, const std::string& dir) {
+Result<EpisodeJob> find_job(const plan::Plan& plan, const store::Trace& trace,
+                            const std::string& dir) {
   const auto task = plan.find_task(trace.header.task);
-  const Failure stranger{"store", "its plan is not the one of its traces", plan_path(dir)};
+  const Failure stranger{"store", "its plan is not the one of its traces", store::plan_path(dir)};
   if (!task || trace.header.plan_root != plan.root()) return stranger;
   const auto index = static_cast<std::uint32_t>(trace.header.episode);
   if (index >= plan.episodes(plan.tasks()[*task]).size()) return stranger;
@@ -70,14 +72,14 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
                             std::optional<int> seed, const ReplayOptions& options) {
   PROBE_TRY(check_folder_of(options.video, "--video"));
   PROBE_TRY(check_folder_of(options.png, "--png"));
-  if (auto record = read_run_record(dir); !record) return record.failure();
-  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(plan_path(dir)));
+  if (auto record = store::read_run_record(dir); !record) return record.failure();
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
   // Rows have the plan's name; the suite's prefix is understood too.
   std::string name = task;
   if (const auto found = plan.find_task(task))
     name = std::string(plan.text(plan.tasks()[*found].name));
-  PROBE_ASSIGN(const StoredTrace stored, find_trace(dir, name, episode, seed));
-  const Trace& trace = stored.trace;
+  PROBE_ASSIGN(const store::StoredTrace stored, store::find_trace(dir, name, episode, seed));
+  const store::Trace& trace = stored.trace;
   const int steps = static_cast<int>(trace.steps.size());
   if (!options.png.empty() && (options.png_step < 0 || options.png_step > steps)) {
     return Failure{"usage",
@@ -89,19 +91,21 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
 
   ReplayReport report;
   report.seed = job.seed;
-  PROBE_ASSIGN(const Fingerprint recorded, fingerprint_from_json(trace.header.fingerprint));
-  report.fingerprint_differences = differences(recorded, take_fingerprint(asset_digest(plan)));
+  PROBE_ASSIGN(const store::Fingerprint recorded,
+               store::fingerprint_from_json(trace.header.fingerprint));
+  report.fingerprint_differences =
+      store::differences(recorded, store::take_fingerprint(stage::asset_digest(plan)));
 
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
   const std::uint32_t tasks[] = {job.task};
-  PROBE_ASSIGN(auto assets, SharedAssets::load(plan, root, tasks));
+  PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, TaskStage::create(plan, job.task, std::move(assets)));
 
   TraceActions actions(trace);
-  TraceComparer comparer(trace);
+  store::TraceComparer comparer(trace);
   ReplayPictures pictures(trace.header, options);
-  PROBE_ASSIGN(const ResultRow row, run_episode(*stage, plan, job, trace.header.policy, actions,
-                                                comparer, &pictures, steps));
+  PROBE_ASSIGN(const store::ResultRow row, run_episode(*stage, plan, job, trace.header.policy,
+                                                       actions, comparer, &pictures, steps));
   PROBE_TRY(pictures.finish());
   report.steps = row.steps;
   report.difference = comparer.difference();

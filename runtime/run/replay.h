@@ -32,17 +32,4 @@ struct ReplayReport {
 Result<ReplayReport> replay(const std::string& dir, const std::string& task, int episode,
                             std::optional<int> seed, const ReplayOptions& options);
 
-struct SheetOptions {
-  std::string tasks = "*";  // glob over task names
-  int columns = 6;
-  int cell_width = 213;  // pixels of one picture; a cell shows the first and the last
-  std::string camera;    // as in ReplayOptions
-  std::string assets;
-};
-
-// A PNG grid of the first and last picture of every stored episode, with captions, drawn from the
-// traces.
-Status write_contact_sheet(const std::string& dir, const std::string& png_path,
-                           const SheetOptions& options = {});
-
 }  // namespace probe::run

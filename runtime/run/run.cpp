@@ -8,16 +8,16 @@
 #include <set>
 #include <tuple>
 
-#include "runtime/policy/factory.h"
-#include "runtime/run/assets.h"
 #include "runtime/run/delivery.h"
 #include "runtime/run/episode.h"
-#include "runtime/run/episode_video.h"
-#include "runtime/run/fingerprint.h"
+#include "runtime/run/policies.h"
 #include "runtime/run/recorded.h"
-#include "runtime/run/scheduler.h"
 #include "runtime/run/selection.h"
-#include "runtime/run/store.h"
+#include "runtime/run/workers.h"
+#include "runtime/show/episode_video.h"
+#include "runtime/stage/assets.h"
+#include "runtime/store/fingerprint.h"
+#include "runtime/store/store.h"
 
 namespace probe::run {
 namespace {
@@ -28,10 +28,10 @@ namespace fs = std::filesystem;
 struct Shared {
   const plan::Plan& plan;
   const RunOptions& options;
-  std::shared_ptr<const SharedAssets> assets;
+  std::shared_ptr<const stage::SharedAssets> assets;
   std::string fingerprint;
   std::vector<EpisodeJob> jobs;
-  Store& store;
+  store::Store& store;
   RunSummary& summary;
   policy::QueryMeter& queries;
   bool asks_server = false;
@@ -40,26 +40,26 @@ struct Shared {
   std::atomic<bool> given_up = false;
 };
 
-policy::PolicyContext context_with(policy::QueryMeter* queries) {
-  policy::PolicyContext context = policy_context();
+run::PolicyContext context_with(policy::QueryMeter* queries) {
+  run::PolicyContext context = policy_context();
   context.queries = queries;
   return context;
 }
 
 Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
                                                     policy::QueryMeter* queries) {
-  const policy::PolicyContext context = context_with(queries);
+  const run::PolicyContext context = context_with(queries);
   return options.own_policy ? options.own_policy->make(context)
-                            : policy::make_policy(options.policy, context);
+                            : run::make_policy(options.policy, context);
 }
 
 void add_once(std::vector<std::string>& notes, std::string note) {
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
 }
 
-bool has_failed(const ResultRow& row) {
+bool has_failed(const store::ResultRow& row) {
   if (row.invalid) return true;
-  for (const MetricValue& metric : row.metrics) {
+  for (const store::MetricValue& metric : row.metrics) {
     if (metric.name == "success") return metric.value == 0;
   }
   return false;
@@ -85,7 +85,7 @@ class EpisodeWorker {
       stage_.reset();  // frees the old before the new is made
       PROBE_ASSIGN(stage_, TaskStage::create(shared_.plan, job.task, shared_.assets));
     }
-    const TraceHeader header =
+    const store::TraceHeader header =
         make_trace_header(shared_.plan, job, shared_.options.name, shared_.fingerprint);
     const std::string path =
         shared_.store.temporary_trace(header.task, header.episode, header.seed);
@@ -106,10 +106,10 @@ class EpisodeWorker {
   }
 
  private:
-  Result<ResultRow> write(const EpisodeJob& job, const TraceHeader& header,
-                          const std::string& path) {
-    PROBE_ASSIGN(auto trace, TraceWriter::create(path, header));
-    std::optional<EpisodeVideo> video;
+  Result<store::ResultRow> write(const EpisodeJob& job, const store::TraceHeader& header,
+                                 const std::string& path) {
+    PROBE_ASSIGN(auto trace, store::TraceWriter::create(path, header));
+    std::optional<show::EpisodeVideo> video;
     if (shared_.options.video != VideoChoice::kNone) {
       const fs::path file =
           video_path(shared_.options.out, header.task, header.episode, header.seed);
@@ -117,8 +117,8 @@ class EpisodeWorker {
       fs::create_directories(file.parent_path(), ignored);
       video.emplace(header, file.string());
     }
-    PROBE_ASSIGN(ResultRow row, run_episode(*stage_, shared_.plan, job, shared_.options.name,
-                                            *policy_, *trace, video ? &*video : nullptr));
+    PROBE_ASSIGN(store::ResultRow row, run_episode(*stage_, shared_.plan, job, shared_.options.name,
+                                                   *policy_, *trace, video ? &*video : nullptr));
     if (video) {
       const bool keep = shared_.options.video == VideoChoice::kAll || has_failed(row);
       PROBE_TRY(keep ? video->finish() : video->discard());
@@ -128,11 +128,11 @@ class EpisodeWorker {
 
   // Whether a policy server kept the episode from its end. Other failures, and those of policies in
   // this process, would only repeat themselves.
-  bool is_spoiled(const ResultRow& row) const {
+  bool is_spoiled(const store::ResultRow& row) const {
     return shared_.asks_server && row.invalid && row.invalid->starts_with("policy: ");
   }
 
-  Status commit(const ResultRow& row, int task_order) {
+  Status commit(const store::ResultRow& row, int task_order) {
     const std::lock_guard lock(shared_.mutex);
     PROBE_TRY(shared_.store.commit(row, task_order));
     ++shared_.summary.done;
@@ -176,16 +176,16 @@ std::vector<std::uint32_t> tasks_of(const std::vector<EpisodeJob>& jobs) {
 }
 
 // Rows of the run that `replay:DIR` repeats; only those that came to an end.
-Result<std::vector<ResultRow>> recorded_rows(const std::string& dir) {
-  const auto record = read_run_record(dir);
-  auto rows = read_results(dir);
+Result<std::vector<store::ResultRow>> recorded_rows(const std::string& dir) {
+  const auto record = store::read_run_record(dir);
+  auto rows = store::read_results(dir);
   for (const Failure* failure :
        {record ? nullptr : &record.failure(), rows ? nullptr : &rows.failure()}) {
     if (failure == nullptr) continue;
     return Failure{"usage", "DIR of `replay:DIR` is the folder of a run, but " + to_text(*failure),
                    "--policy"};
   }
-  std::erase_if(*rows, [](const ResultRow& row) { return row.invalid.has_value(); });
+  std::erase_if(*rows, [](const store::ResultRow& row) { return row.invalid.has_value(); });
   return rows;
 }
 
@@ -214,14 +214,14 @@ std::string text_of(const std::string& task, int episode, int seed) {
 }
 
 // Leaves the jobs that are not stored yet, or only as invalid. Returns the others.
-Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, Store& store,
+Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, store::Store& store,
                                          std::vector<EpisodeJob>& jobs, RunSummary& summary) {
   constexpr std::size_t kToldOneByOne = 5;
   PROBE_ASSIGN(const auto stored, store.episodes());
   std::set<EpisodeKey> chosen, valid;
   for (const EpisodeJob& job : jobs) chosen.insert(key_of(plan, job));
   std::size_t again = 0;
-  for (const StoredEpisode& episode : stored) {
+  for (const store::StoredEpisode& episode : stored) {
     EpisodeKey key{episode.task, episode.episode, episode.seed};
     if (!chosen.contains(key)) continue;
     if (episode.valid) {
@@ -243,10 +243,10 @@ Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, Store& store,
 Status note_missing_videos(const RunOptions& options, const std::set<EpisodeKey>& stored,
                            RunSummary& summary) {
   if (options.video == VideoChoice::kNone || stored.empty()) return {};
-  PROBE_ASSIGN(const auto rows, read_results(options.out));
+  PROBE_ASSIGN(const auto rows, store::read_results(options.out));
   int missing = 0;
   std::string first;
-  for (const ResultRow& row : rows) {
+  for (const store::ResultRow& row : rows) {
     if (!stored.contains({row.task, row.episode, row.seed})) continue;
     if (options.video == VideoChoice::kFailures && !has_failed(row)) continue;
     if (fs::exists(video_path(options.out, row.task, row.episode, row.seed))) continue;
@@ -265,25 +265,25 @@ Status note_missing_videos(const RunOptions& options, const std::set<EpisodeKey>
 
 // A server may move during a run, and be given more time: its rows keep the name that they began
 // with. The content has all else that an address says.
-bool has_only_moved(const RunIdentity& there, const RunIdentity& here) {
+bool has_only_moved(const store::RunIdentity& there, const store::RunIdentity& here) {
   return !there.policy_content.empty() && there.policy_content == here.policy_content &&
          there.policy != here.policy;
 }
 
 // The folder to write into, by `options.if_changed`; what is written in spite of a change becomes
 // part of `record`.
-Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
+Result<std::string> choose_folder(const RunOptions& options, store::RunRecord& record,
                                   std::vector<std::string>& notes) {
   const fs::path asked = fs::path(options.out).lexically_normal();
   const std::string base = (asked.has_filename() ? asked : asked.parent_path()).string();
   for (int copy = 1;; ++copy) {
     const std::string dir = copy == 1 ? options.out : base + "-" + std::to_string(copy);
-    PROBE_ASSIGN(const auto stored, find_run_record(dir));
+    PROBE_ASSIGN(const auto stored, store::find_run_record(dir));
     if (!stored) return dir;
     const bool moved = options.name.empty() && has_only_moved(stored->identity, record.identity);
-    RunRecord here = record;
+    store::RunRecord here = record;
     if (moved) here.identity.policy = stored->identity.policy;
-    const RunChanges changes = changes_between(*stored, here);
+    const store::RunChanges changes = store::changes_between(*stored, here);
     if (!changes.any()) {
       if (moved) notes.push_back("the rows keep the policy's name `" + here.identity.policy + "`");
       record = std::move(here);
@@ -314,7 +314,7 @@ Result<std::string> choose_folder(const RunOptions& options, RunRecord& record,
 // Whether what makes tasks different reached the policy, over all that the folder holds.
 Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary& summary) {
   constexpr std::size_t kTold = 5;
-  PROBE_ASSIGN(const auto rows, read_results(out));
+  PROBE_ASSIGN(const auto rows, store::read_results(out));
   const auto findings = check_delivery(plan, rows);
   for (std::size_t i = 0; i < findings.size() && i < kTold; ++i) {
     summary.notes.push_back(findings[i].sentence);
@@ -330,22 +330,22 @@ Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary&
 
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   RunOptions options = asked;
-  policy::PolicyTraits traits;
+  run::PolicyTraits traits;
   if (options.own_policy) {
     traits = options.own_policy->traits;
   } else {
-    PROBE_ASSIGN(traits, policy::policy_traits(options.policy));
+    PROBE_ASSIGN(traits, run::policy_traits(options.policy));
   }
   // Made once before anything else, so that a policy that cannot be had is told before the folder
   // exists.
   if (auto made = make_policy(options, nullptr); !made) return made.failure();
-  std::vector<ResultRow> recorded;
+  std::vector<store::ResultRow> recorded;
   if (traits.recorded) {
-    PROBE_ASSIGN(recorded, recorded_rows(policy::policy_argument(options.policy)));
+    PROBE_ASSIGN(recorded, recorded_rows(run::policy_argument(options.policy)));
   }
   PROBE_ASSIGN(Selection selection,
                select_jobs(plan, options, traits.draws, traits.recorded ? &recorded : nullptr));
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
 
   RunSummary summary;
   summary.notes = selection.notes;
@@ -357,16 +357,16 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   }
   if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
   // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
-  PROBE_ASSIGN(auto assets, SharedAssets::load(plan, root, tasks_of(selection.jobs)));
-  const Fingerprint fingerprint = take_fingerprint(asset_digest(plan));
-  RunRecord record{
+  PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks_of(selection.jobs)));
+  const store::Fingerprint fingerprint = store::take_fingerprint(stage::asset_digest(plan));
+  store::RunRecord record{
       {to_hex(plan.root()), options.name.empty() ? options.policy : options.name, traits.content},
       selection.suite,
       selection.seeds,
       fingerprint};
   PROBE_ASSIGN(options.out, choose_folder(options, record, summary.notes));
   options.name = record.identity.policy;
-  PROBE_ASSIGN(auto store, Store::open(options.out, record, plan.bytes()));
+  PROBE_ASSIGN(auto store, store::Store::open(options.out, record, plan.bytes()));
   summary.out = options.out;
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
   summary.skipped = static_cast<int>(stored.size());
@@ -382,7 +382,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   Shared shared{.plan = plan,
                 .options = options,
                 .assets = std::move(assets),
-                .fingerprint = to_json(fingerprint),
+                .fingerprint = store::to_json(fingerprint),
                 .jobs = std::move(selection.jobs),
                 .store = *store,
                 .summary = summary,

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "runtime/base/result.h"
-#include "runtime/policy/factory.h"
-#include "runtime/run/results.h"
-#include "runtime/run/run_record.h"
+#include "runtime/run/policies.h"
+#include "runtime/store/results.h"
+#include "runtime/store/run_record.h"
 
 namespace probe::plan {
 class Plan;
@@ -33,15 +33,15 @@ enum class IfChanged {
 
 // A policy that is not in the factory's table; for tests and benches.
 struct OwnPolicy {
-  policy::PolicyTraits traits;
-  std::function<Result<std::unique_ptr<policy::Policy>>(const policy::PolicyContext&)> make;
+  run::PolicyTraits traits;
+  std::function<Result<std::unique_ptr<policy::Policy>>(const run::PolicyContext&)> make;
 };
 
 struct RunProgress {
-  int done = 0;                    // episodes finished by this call
-  int skipped = 0;                 // found valid in the folder
-  int total = 0;                   // chosen episodes
-  const ResultRow* row = nullptr;  // the one just committed; null for the first report
+  int done = 0;                           // episodes finished by this call
+  int skipped = 0;                        // found valid in the folder
+  int total = 0;                          // chosen episodes
+  const store::ResultRow* row = nullptr;  // the one just committed; null for the first report
 };
 
 struct RunOptions {
@@ -73,7 +73,7 @@ struct RunSummary {
   int total = 0, done = 0, skipped = 0, invalid = 0;
   std::vector<std::string> notes;  // sentences for stderr, such as why seeds were dropped
   std::string out;                 // the folder that was written
-  RunCall call;                    // speed, and how busy server and simulators were
+  store::RunCall call;             // speed, and how busy server and simulators were
 };
 
 // Fails with code "policy" when it gave up on a policy server; what was done until then is stored.

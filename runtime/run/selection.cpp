@@ -6,8 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include "runtime/base/glob.h"
 #include "runtime/base/spelling.h"
-#include "runtime/run/glob.h"
 
 namespace probe::run {
 namespace {
@@ -43,10 +43,10 @@ Failure no_task(const std::string& glob, const std::vector<std::string>& names) 
 
 using EpisodeKey = std::tuple<std::string, int, int>;
 
-std::set<EpisodeKey> keys_of(const std::vector<ResultRow>* rows) {
+std::set<EpisodeKey> keys_of(const std::vector<store::ResultRow>* rows) {
   std::set<EpisodeKey> keys;
   if (rows != nullptr) {
-    for (const ResultRow& row : *rows) keys.emplace(row.task, row.episode, row.seed);
+    for (const store::ResultRow& row : *rows) keys.emplace(row.task, row.episode, row.seed);
   }
   return keys;
 }
@@ -65,7 +65,7 @@ int shard_of(const Sha256& episode_id, int seed, int shards) {
 }
 
 Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,
-                              const std::vector<ResultRow>* recorded) {
+                              const std::vector<store::ResultRow>* recorded) {
   if (options.shards < 1 || options.shard < 1 || options.shard > options.shards) {
     return usage("shard " + std::to_string(options.shard) + "/" + std::to_string(options.shards) +
                      " is not one of 1/N .. N/N",

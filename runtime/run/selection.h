@@ -28,6 +28,6 @@ int shard_of(const Sha256& episode_id, int seed, int shards);
 // `options.seeds` only narrowing them. Fails (code "usage") on an unknown suite, a glob that no
 // task matches, episodes that no chosen task has, and a shard outside 1/1 .. N/N.
 Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,
-                              const std::vector<ResultRow>* recorded = nullptr);
+                              const std::vector<store::ResultRow>* recorded = nullptr);
 
 }  // namespace probe::run

@@ -62,8 +62,8 @@ RunOptions run_of(const SweepOptions& options, const std::string& checkpoint) {
   return run;
 }
 
-double value_of(const ResultRow& row, const char* metric) {
-  for (const MetricValue& value : row.metrics) {
+double value_of(const store::ResultRow& row, const char* metric) {
+  for (const store::MetricValue& value : row.metrics) {
     if (value.name == metric) return value.value;
   }
   return 0;
@@ -72,13 +72,13 @@ double value_of(const ResultRow& row, const char* metric) {
 // Of the rows of the original tasks that `run` chose; its folder may hold more.
 Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
                                  const std::string& checkpoint) {
-  PROBE_ASSIGN(const auto traits, policy::policy_traits(run.policy));
+  PROBE_ASSIGN(const auto traits, run::policy_traits(run.policy));
   PROBE_ASSIGN(const Selection selection, select_jobs(plan, run, traits.draws));
   std::set<std::tuple<std::string, int, int>> chosen;
   for (const EpisodeJob& job : selection.jobs) {
     chosen.emplace(plan.text(plan.tasks()[job.task].name), static_cast<int>(job.index), job.seed);
   }
-  PROBE_ASSIGN(const auto rows, read_results(run.out));
+  PROBE_ASSIGN(const auto rows, store::read_results(run.out));
   struct Sums {
     double episodes = 0, success = 0, intention = 0;
   };
@@ -86,7 +86,7 @@ Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
   CheckpointScore score;
   score.checkpoint = checkpoint;
   score.dir = run.out;
-  for (const ResultRow& row : rows) {
+  for (const store::ResultRow& row : rows) {
     if (row.invalid || !chosen.contains({row.task, row.episode, row.seed})) continue;
     Sums& sums = tasks[row.task];
     ++sums.episodes;
@@ -165,7 +165,7 @@ Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options) 
   PROBE_TRY(check(options));
   // What none of them could run with is told before the first is run.
   for (const std::string& checkpoint : options.checkpoints) {
-    PROBE_TRY(policy::policy_traits(with_checkpoint(options.run.policy, checkpoint)));
+    PROBE_TRY(run::policy_traits(with_checkpoint(options.run.policy, checkpoint)));
   }
   const auto tell = [&](const std::string& text) {
     if (options.tell) options.tell(text);

@@ -35,7 +35,7 @@ void load_suite(benchmark::State& state) {
   for (std::uint32_t task = 0; task < plan.tasks().size(); ++task) tasks.push_back(task);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        need(probe::run::SharedAssets::load(plan, probe::bench::asset_root(), tasks)));
+        need(probe::stage::SharedAssets::load(plan, probe::bench::asset_root(), tasks)));
   }
 }
 BENCHMARK(load_suite)->Name("assets/load_suite")->Unit(benchmark::kMillisecond);

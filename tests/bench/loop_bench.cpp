@@ -19,7 +19,7 @@ void loop(benchmark::State& state, const std::string& policy, int jobs) {
   const probe::plan::Plan& plan = probe::bench::suite_plan();
   const fs::path dir = fs::temp_directory_path() / "vlaprobe-bench";
   const int episodes = 24;
-  probe::run::RunCall call;
+  probe::store::RunCall call;
   for (auto _ : state) {
     state.PauseTiming();
     fs::remove_all(dir);

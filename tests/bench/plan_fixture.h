@@ -5,7 +5,7 @@
 
 #include "compiler/emit/compile.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/assets.h"
+#include "runtime/stage/assets.h"
 #include "tests/bench/need.h"
 
 namespace probe::bench {
@@ -21,10 +21,10 @@ inline const plan::Plan& suite_plan() {
 
 inline std::uint32_t bench_task() { return suite_plan().find_task("carrot_on_plate").value(); }
 
-inline std::shared_ptr<const run::SharedAssets> suite_assets() {
+inline std::shared_ptr<const stage::SharedAssets> suite_assets() {
   static const auto assets = [] {
     const std::uint32_t tasks[] = {bench_task()};
-    return need(run::SharedAssets::load(suite_plan(), asset_root(), tasks));
+    return need(stage::SharedAssets::load(suite_plan(), asset_root(), tasks));
   }();
   return assets;
 }

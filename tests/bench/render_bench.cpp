@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "runtime/base/trig.h"
-#include "runtime/run/scene_view.h"
+#include "runtime/stage/scene_view.h"
 #include "tests/bench/plan_fixture.h"
 
 namespace {
@@ -15,8 +15,8 @@ using probe::bench::need;
 void render(benchmark::State& state, int width, int height) {
   const probe::plan::Plan& plan = probe::bench::suite_plan();
   const std::uint32_t task = probe::bench::bench_task();
-  const auto view = need(probe::run::SceneView::create(plan, task, probe::bench::suite_assets(),
-                                                       probe::run::ImageSize{width, height}));
+  const auto view = need(probe::stage::SceneView::create(plan, task, probe::bench::suite_assets(),
+                                                         probe::stage::ImageSize{width, height}));
   const auto& record = plan.tasks()[task];
   const auto start = plan.joints(plan.scenes()[record.scene]);
   std::vector<double> q(start.begin(), start.end());

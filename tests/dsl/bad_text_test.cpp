@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "compiler/format/format.h"
-#include "tests/compiler/sema/small_suite.h"
+#include "tests/compiler/small_suite.h"
 #include "tests/dsl/tree_copy.h"
 
 using namespace probe;

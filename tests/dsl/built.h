@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/define/axes.h"
 #include "compiler/emit/compile.h"
-#include "compiler/sema/axes.h"
 #include "runtime/plan/plan.h"
-#include "tests/compiler/sema/small_suite.h"
+#include "tests/compiler/small_suite.h"
 
 namespace probe::test {
 

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <string>
 
+#include "compiler/check/analyze.h"
 #include "compiler/diag/text.h"
-#include "compiler/sema/analyze.h"
 #include "compiler/syntax/parser.h"
 
 using namespace probe;

@@ -98,7 +98,7 @@ TEST_CASE("the reference names every declaration, unit, measure and code") {
   for (const std::string_view measure : {
 #define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, meaning) \
   std::string_view("| `" name),
-#include "compiler/sema/measures.def"
+#include "compiler/model/measures.def"
        }) {
     CHECK_MESSAGE(page.find(measure) != std::string::npos, measure);
   }

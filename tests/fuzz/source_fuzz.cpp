@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/check/analyze.h"
 #include "compiler/diag/text.h"
 #include "compiler/format/format.h"
-#include "compiler/sema/analyze.h"
 #include "compiler/syntax/parser.h"
 
 using namespace probe;

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "runtime/base/sha256.h"
-#include "runtime/run/trace.h"
-#include "runtime/run/trace_codec.h"
+#include "runtime/store/trace.h"
+#include "runtime/store/trace_codec.h"
 
 namespace {
 
@@ -38,8 +38,8 @@ const std::string& path() {
 void read(const void* data, std::size_t size) {
   need(ftruncate(memory_file(), 0) == 0);
   need(size == 0 || pwrite(memory_file(), data, size, 0) == static_cast<ssize_t>(size));
-  const auto whole = run::read_trace(path());
-  const auto prefix = run::read_trace_prefix(path());
+  const auto whole = store::read_trace(path());
+  const auto prefix = store::read_trace_prefix(path());
   if (whole.ok()) {
     need(prefix.ok() && prefix->incomplete.empty());
     need(whole->end.has_value() && whole->end->steps == whole->steps.size());
@@ -51,7 +51,7 @@ void read(const void* data, std::size_t size) {
 
 // The input as chunks: a byte chooses the tag, two the size of the payload that follows.
 std::vector<std::byte> as_content(const std::uint8_t* data, std::size_t size) {
-  using run::codec::Tag;
+  using store::codec::Tag;
   constexpr Tag kTags[] = {Tag::kHead, Tag::kFingerprint, Tag::kSettled, Tag::kTime,
                            Tag::kStep, Tag::kDone,        Tag::kHash};
   std::vector<std::byte> out;
@@ -59,8 +59,8 @@ std::vector<std::byte> as_content(const std::uint8_t* data, std::size_t size) {
     const auto* begin = static_cast<const std::byte*>(from);
     out.insert(out.end(), begin, begin + count);
   };
-  put(run::codec::kMagic.data(), run::codec::kMagic.size());
-  const std::uint32_t head[2] = {run::codec::kVersion, 0};
+  put(store::codec::kMagic.data(), store::codec::kMagic.size());
+  const std::uint32_t head[2] = {store::codec::kVersion, 0};
   put(head, sizeof head);
   while (size > 3) {
     const auto tag = static_cast<std::uint32_t>(kTags[data[0] % std::size(kTags)]);

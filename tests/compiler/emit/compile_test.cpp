@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "runtime/plan/plan.h"
-#include "tests/compiler/sema/small_suite.h"
+#include "tests/compiler/small_suite.h"
 
 using namespace probe;
 namespace fs = std::filesystem;

@@ -2,7 +2,7 @@
 
 #include "compiler/emit/compile.h"
 #include "compiler/emit/emit.h"
-#include "tests/compiler/sema/small_suite.h"
+#include "tests/compiler/small_suite.h"
 
 using namespace probe;
 

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "compiler/lower/builder.h"
-#include "tests/compiler/sema/small_suite.h"
+#include "tests/compiler/small_suite.h"
 
 using namespace probe;
 

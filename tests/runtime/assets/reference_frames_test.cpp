@@ -11,11 +11,11 @@
 #include "runtime/assets/asset_check.h"
 #include "runtime/assets/import.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/assets.h"
-#include "runtime/run/episode_world.h"
-#include "runtime/run/preview.h"
-#include "runtime/run/scene_view.h"
 #include "runtime/scene/image.h"
+#include "runtime/show/preview.h"
+#include "runtime/stage/assets.h"
+#include "runtime/stage/episode_world.h"
+#include "runtime/stage/scene_view.h"
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::assets {
@@ -69,7 +69,7 @@ Difference compare(const std::string& task_name, std::uint32_t start, const std:
   REQUIRE(task.has_value());
 
   const std::string png = std::string(VLAPROBE_BINARY_DIR "/") + task_name + ".png";
-  const auto wrote = run::write_start(*plan, *task, start, png, root);
+  const auto wrote = show::write_start(*plan, *task, start, png, root);
   REQUIRE_MESSAGE(wrote.ok(), (wrote.ok() ? "" : to_text(wrote.failure())));
   const auto ours = scene::load_image(png);
   const auto theirs = scene::load_image(kReference + "simpler_frames/" + picture);
@@ -79,10 +79,10 @@ Difference compare(const std::string& task_name, std::uint32_t start, const std:
 
   // The same picture again, for its segmentation.
   const std::uint32_t tasks[] = {*task};
-  const auto assets = run::SharedAssets::load(*plan, root, tasks);
+  const auto assets = stage::SharedAssets::load(*plan, root, tasks);
   REQUIRE(assets.ok());
-  auto world = run::EpisodeWorld::create(*plan, *task, *assets);
-  auto view = run::SceneView::create(*plan, *task, *assets);
+  auto world = stage::EpisodeWorld::create(*plan, *task, *assets);
+  auto view = stage::SceneView::create(*plan, *task, *assets);
   REQUIRE(world.ok());
   REQUIRE(view.ok());
   REQUIRE((*world)->reset(start).ok());

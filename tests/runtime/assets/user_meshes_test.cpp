@@ -7,8 +7,8 @@
 #include "compiler/emit/compile.h"
 #include "runtime/assets/asset_check.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/preview.h"
 #include "runtime/scene/image.h"
+#include "runtime/show/preview.h"
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/runtime/scene/tiny_meshes.h"
 
@@ -84,7 +84,7 @@ TEST_CASE("a mesh of any format beside no collision mesh is seen, felt and settl
     }
     CHECK(named == 2);                                // to be seen and to be felt
     if (std::string(name) == "visual.glb") continue;  // its node puts it a metre away
-    const auto start = run::write_start(*plan, 0, 0, assets / "start.png", assets.path);
+    const auto start = show::write_start(*plan, 0, 0, assets / "start.png", assets.path);
     CHECK_MESSAGE(start.ok(), (start.ok() ? "" : to_text(start.failure())));
   }
 }
@@ -143,7 +143,7 @@ TEST_CASE("a photo in the scene's folder stands behind the robot, at any size") 
   REQUIRE(plan.ok());
   REQUIRE(plan->scenes()[0].photo != plan::kNone);
   CHECK(plan->scenes()[0].backdrop != plan::kNone);
-  REQUIRE(run::write_start(*plan, 0, 0, assets / "start.png", assets.path).ok());
+  REQUIRE(show::write_start(*plan, 0, 0, assets / "start.png", assets.path).ok());
   const auto picture = scene::load_image(assets / "start.png");
   REQUIRE(picture.ok());
   CHECK(picture->width == 640);

@@ -5,8 +5,8 @@
 namespace probe::cli {
 namespace {
 
-run::ResultRow row(bool success, bool intention) {
-  run::ResultRow row;
+store::ResultRow row(bool success, bool intention) {
+  store::ResultRow row;
   row.task = "carrot_on_plate";
   row.metrics = {{"success", true, success ? 1.0 : 0.0},
                  {"intention", true, intention ? 1.0 : 0.0}};
@@ -18,7 +18,7 @@ Progress quarter_done() {
   Progress progress(1000);
   progress.add({0, 0, 120, nullptr});
   for (int i = 1; i <= 30; ++i) {
-    run::ResultRow one = row(i % 3 == 0, true);
+    store::ResultRow one = row(i % 3 == 0, true);
     if (i == 30) one.invalid = "the server went away";
     progress.add({i, 0, 120, &one});
   }
@@ -63,7 +63,7 @@ TEST_CASE("time left goes by this call's pace, not by what was there") {
   progress.add({0, 90, 100, nullptr});
   CHECK(progress.terminal_line(5, 80, false) ==
         "[==================  ] 90/100 episodes (90 were there)");
-  const run::ResultRow one = row(true, true);
+  const store::ResultRow one = row(true, true);
   progress.add({5, 90, 100, &one});
   CHECK(progress.terminal_line(50, 60, false) == "95/100 episodes (90 were there)  50 s left");
   progress.add({10, 90, 100, &one});

@@ -15,7 +15,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/cluster/program.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/servers/python_server.h"
@@ -73,11 +73,11 @@ SlurmOptions options_for(const std::string& out) {
   return options;
 }
 
-std::vector<run::ResultRow> rows_of(const std::string& dir) {
-  const auto rows = run::read_results(dir);
+std::vector<store::ResultRow> rows_of(const std::string& dir) {
+  const auto rows = store::read_results(dir);
   REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
-  std::vector<run::ResultRow> all = *rows;
-  for (run::ResultRow& row : all) row.trace = "";
+  std::vector<store::ResultRow> all = *rows;
+  for (store::ResultRow& row : all) row.trace = "";
   return all;
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("four array tasks, one killed and requeued, merged: the rows of a sing
   std::atomic<int> rows_when_killed = -1;
   std::thread killer([&] {
     const auto some_rows = [&] {
-      const auto rows = run::read_results(second);
+      const auto rows = store::read_results(second);
       if (rows.ok()) rows_when_killed = static_cast<int>(rows->size());
       return rows_when_killed > 0;
     };

@@ -8,8 +8,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tests/runtime/run/sample_trace.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/store/sample_trace.h"
 
 namespace probe::exporting {
 namespace {
@@ -17,14 +17,14 @@ namespace {
 using run::TemporaryFolder;
 
 struct Recorded {
-  run::ResultRow row;
-  run::Trace trace;
+  store::ResultRow row;
+  store::Trace trace;
 };
 
 Recorded recorded(const TemporaryFolder& folder) {
-  const auto hash = run::write_sample_trace(folder / "a.trace", 4);
+  const auto hash = store::write_sample_trace(folder / "a.trace", 4);
   REQUIRE(hash.ok());
-  auto trace = run::read_trace(folder / "a.trace");
+  auto trace = store::read_trace(folder / "a.trace");
   REQUIRE(trace.ok());
   Recorded out{{}, std::move(*trace)};
   out.row.task = out.trace.header.task;

@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "runtime/run/trace.h"
+#include "runtime/store/trace.h"
 #include "tests/runtime/plan/small_plan.h"
 
 namespace probe::rejudge {
@@ -22,9 +22,9 @@ inline plan::Plan small() {
 }
 
 // The carrot comes within 4 cm of the tool at step 3 of 60 and is touched from step 10 on.
-inline run::Trace made_trace(const plan::Plan& plan, std::uint32_t task) {
+inline store::Trace made_trace(const plan::Plan& plan, std::uint32_t task) {
   const plan::TaskRecord& record = plan.tasks()[task];
-  run::Trace trace;
+  store::Trace trace;
   trace.header.task = plan.text(record.name);
   trace.header.prompt = plan.text(record.prompt);
   trace.header.control_hz = 5;
@@ -36,7 +36,7 @@ inline run::Trace made_trace(const plan::Plan& plan, std::uint32_t task) {
   trace.start->sample.bodies.resize(bodies);
   trace.start->starts[3].opening = {0, 1, 0};
   for (std::uint32_t i = 1; i <= record.horizon; ++i) {
-    run::TraceStep step;
+    store::TraceStep step;
     step.sample.bodies.resize(bodies);
     step.sample.step = i;
     step.sample.tcp = {i == 3 ? 0.04 : 0.5 / i + 0.06, 0, 0};

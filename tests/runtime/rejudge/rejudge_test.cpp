@@ -13,9 +13,9 @@
 namespace probe::rejudge {
 namespace {
 
-run::ResultRow row_of(const plan::Plan& plan, std::uint32_t task, int episode) {
+store::ResultRow row_of(const plan::Plan& plan, std::uint32_t task, int episode) {
   const plan::TaskRecord& record = plan.tasks()[task];
-  run::ResultRow row;
+  store::ResultRow row;
   row.task = plan.text(record.name);
   row.episode = episode;
   row.start_id = to_hex(Sha256{plan.episodes(record)[static_cast<std::size_t>(episode)].start_id});
@@ -30,7 +30,7 @@ TEST_CASE("a trace is judged to the horizon, and its metrics are those of its st
   REQUIRE(score->steps.size() == 60);
   CHECK(score->steps[1][0] == 0);
   CHECK(score->steps[2][0] == 1);
-  CHECK(score->metrics[0] == run::MetricValue{"near", true, 1});
+  CHECK(score->metrics[0] == store::MetricValue{"near", true, 1});
   CHECK(score->steps[12][2] == 0);  // touched for 4 steps
   CHECK(score->steps[13][2] == 1);
 }
@@ -38,35 +38,35 @@ TEST_CASE("a trace is judged to the horizon, and its metrics are those of its st
 TEST_CASE("measurements that are not the task's are refused with the reason") {
   const plan::Plan plan = small();
   const auto refusal = [&](auto&& change) {
-    run::Trace trace = made_trace(plan, 0);
+    store::Trace trace = made_trace(plan, 0);
     change(trace);
     const auto score = rescore(plan, 0, trace);
     REQUIRE(!score.ok());
     CHECK(score.failure().code == "usage");
     return score.failure().message;
   };
-  using run::Trace;
+  using store::Trace;
   CHECK(refusal([](Trace& t) { t.header.bodies.pop_back(); }).starts_with("5 bodies were"));
   CHECK(refusal([](Trace& t) { t.header.bodies[4] = "thumb"; }).starts_with("body 4 is `thumb`"));
   CHECK(refusal([](Trace& t) { t.header.control_hz = 10; }).starts_with("it was measured at 10"));
   CHECK(refusal([](Trace& t) { t.header.prompt = "drop it"; }).find("drop it") !=
         std::string::npos);
   CHECK(refusal([](Trace& t) { t.steps.pop_back(); }).starts_with("it has 59 steps"));
-  run::Trace renamed = made_trace(plan, 0);
+  store::Trace renamed = made_trace(plan, 0);
   renamed.header.bodies[0] = "vegetable";
   CHECK(rescore(plan, 0, renamed).ok());
 }
 
 TEST_CASE("an invalid episode stays invalid with its reason, judged as far as it went") {
   const plan::Plan plan = small();
-  run::Trace trace = made_trace(plan, 0);
+  store::Trace trace = made_trace(plan, 0);
   trace.steps.resize(7);
-  trace.end = run::TraceEnd{7, {}, "policy: gone"};
+  trace.end = store::TraceEnd{7, {}, "policy: gone"};
   const auto score = rescore(plan, 0, trace);
   REQUIRE(score.ok());
   CHECK(score->steps.size() == 7);
   CHECK(score->invalid == "policy: gone");
-  run::Trace broken = made_trace(plan, 0);
+  store::Trace broken = made_trace(plan, 0);
   broken.steps[4].sample.tcp.x() = NAN;
   const auto judged = rescore(plan, 0, broken);
   REQUIRE(judged.ok());
@@ -100,7 +100,7 @@ TEST_CASE("a start is matched by its id, and the part that differs is named") {
           r.lights[0].ambient = 1;
           r.placements[3].position[1] = 0;
         }) == "light, pose of the target");
-  run::ResultRow late = row_of(recorded, 0, 1);
+  store::ResultRow late = row_of(recorded, 0, 1);
   late.episode = 2;
   CHECK(match_start(recorded, 0, late, recorded).failure().message.find("has 2 episodes") !=
         std::string::npos);
@@ -137,7 +137,7 @@ TEST_CASE("an explanation names the deciding step and the numbers measured there
   CHECK(steady.conditions[0].measured == "0.05Ns <= 0.2Ns");
   CHECK(steady.conditions[1].measured == "5 of 5 steps");
 
-  run::Trace far = made_trace(plan, 0);
+  store::Trace far = made_trace(plan, 0);
   far.steps[2].sample.tcp.x() = 0.9;
   far.steps[40].sample.tcp.x() = 0.0501;
   const auto never = explain(plan, 0, far, "near");
@@ -169,7 +169,7 @@ TEST_CASE("what must be held is nearer to true the longer it has been held") {
   std::uint16_t hold = 0;
   while (view.op(hold) != plan::Op::kHOLD) ++hold;
   vm::Judge judge(plan, 0);
-  const run::Trace trace = made_trace(plan, 0);  // touched from step 10 on
+  const store::Trace trace = made_trace(plan, 0);  // touched from step 10 on
   REQUIRE(judge.begin(trace.start->starts).ok());
   std::vector<int> held(view.registers());
   std::vector<std::uint32_t> distances;

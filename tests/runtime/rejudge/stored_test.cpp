@@ -10,15 +10,15 @@ namespace probe::rejudge {
 namespace {
 
 struct Stored {
-  run::Trace trace;
-  run::ResultRow row;
+  store::Trace trace;
+  store::ResultRow row;
 };
 
 // Written as a run writes it, after `change`, with good hashes.
 Stored stored(const plan::Plan& plan, const std::string& path,
-              const std::function<void(run::Trace&)>& change = {}) {
+              const std::function<void(store::Trace&)>& change = {}) {
   Stored out{made_trace(plan, 0), {}};
-  run::Trace& trace = out.trace;
+  store::Trace& trace = out.trace;
   const plan::TaskRecord& task = plan.tasks()[0];
   const plan::EpisodeRecord& episode = plan.episodes(task)[1];
   trace.header.plan_root = plan.root();
@@ -29,17 +29,17 @@ Stored stored(const plan::Plan& plan, const std::string& path,
   const auto score = rescore(plan, 0, trace);
   REQUIRE(score.ok());
   for (std::size_t i = 0; i < trace.steps.size(); ++i) trace.steps[i].metrics = score->steps[i];
-  trace.end = run::TraceEnd{task.horizon, score->metrics, std::nullopt};
-  for (const run::MetricValue& metric : score->metrics)
+  trace.end = store::TraceEnd{task.horizon, score->metrics, std::nullopt};
+  for (const store::MetricValue& metric : score->metrics)
     trace.header.metrics.push_back({metric.name, metric.is_bool});
   if (change) change(trace);
-  auto writer = run::TraceWriter::create(path, trace.header);
+  auto writer = store::TraceWriter::create(path, trace.header);
   REQUIRE(writer.ok());
   REQUIRE((*writer)->start(*trace.start).ok());
-  for (const run::TraceStep& step : trace.steps) REQUIRE((*writer)->step(step).ok());
+  for (const store::TraceStep& step : trace.steps) REQUIRE((*writer)->step(step).ok());
   const auto hash = (*writer)->finish(*trace.end);
   REQUIRE(hash.ok());
-  run::ResultRow& row = out.row;
+  store::ResultRow& row = out.row;
   row.task = trace.header.task;
   row.episode = 1;
   row.metrics = trace.end->metrics;
@@ -57,48 +57,48 @@ TEST_CASE("a trace is proven by its row, its header and the verdicts of its own 
   run::TemporaryFolder folder;
   const plan::Plan plan = small();
   const std::string path = folder / "a.trace";
-  const auto message = [&](const run::ResultRow& row) {
+  const auto message = [&](const store::ResultRow& row) {
     const auto trace = proven_trace(plan, row);
     return trace.ok() ? std::string() : trace.failure().code + ": " + trace.failure().message;
   };
-  const run::ResultRow good = stored(plan, path).row;
+  const store::ResultRow good = stored(plan, path).row;
   CHECK(message(good).empty());
 
   const auto forged = [&](auto&& change) {
-    run::ResultRow row = good;
+    store::ResultRow row = good;
     change(row);
     return message(row);
   };
   const std::string other = "trace: this trace is not the one its result row was made with";
-  CHECK(forged([](run::ResultRow& r) { r.episode = 0; }).starts_with(other));
-  CHECK(forged([](run::ResultRow& r) { r.policy = "better"; }).starts_with(other));
-  CHECK(forged([](run::ResultRow& r) { r.start_id[0] ^= 1; }).starts_with(other));
-  CHECK(forged([](run::ResultRow& r) { r.episode_id[9] ^= 1; }).starts_with(other));
-  CHECK(forged([](run::ResultRow& r) { r.trace_sha256[3] ^= 1; }).starts_with(other));
-  CHECK(forged([](run::ResultRow& r) { r.metrics[0].value = 1 - r.metrics[0].value; }) ==
+  CHECK(forged([](store::ResultRow& r) { r.episode = 0; }).starts_with(other));
+  CHECK(forged([](store::ResultRow& r) { r.policy = "better"; }).starts_with(other));
+  CHECK(forged([](store::ResultRow& r) { r.start_id[0] ^= 1; }).starts_with(other));
+  CHECK(forged([](store::ResultRow& r) { r.episode_id[9] ^= 1; }).starts_with(other));
+  CHECK(forged([](store::ResultRow& r) { r.trace_sha256[3] ^= 1; }).starts_with(other));
+  CHECK(forged([](store::ResultRow& r) { r.metrics[0].value = 1 - r.metrics[0].value; }) ==
         "trace: this trace ended with other verdicts than its result row says");
-  CHECK(forged([](run::ResultRow& r) { r.invalid = "it was unlucky"; }) ==
+  CHECK(forged([](store::ResultRow& r) { r.invalid = "it was unlucky"; }) ==
         "trace: this trace ended with other verdicts than its result row says");
 }
 
 TEST_CASE("a forger who seals a trace with fresh hashes is found by judging it again") {
   run::TemporaryFolder folder;
   const plan::Plan plan = small();
-  const auto message = [&](const std::function<void(run::Trace&)>& change) {
-    const run::ResultRow row = stored(plan, folder / "forged.trace", change).row;
+  const auto message = [&](const std::function<void(store::Trace&)>& change) {
+    const store::ResultRow row = stored(plan, folder / "forged.trace", change).row;
     const auto trace = proven_trace(plan, row);
     return trace.ok() ? std::string() : trace.failure().message;
   };
   const std::string lies = "its verdicts are not what its own plan says of its measurements";
-  CHECK(message([](run::Trace&) {}).empty());
-  CHECK(message([](run::Trace& t) { t.end->metrics[0].value = 1 - t.end->metrics[0].value; }) ==
+  CHECK(message([](store::Trace&) {}).empty());
+  CHECK(message([](store::Trace& t) { t.end->metrics[0].value = 1 - t.end->metrics[0].value; }) ==
         lies);
-  CHECK(message([](run::Trace& t) { t.steps[20].metrics[0] = 0; }) == lies);
+  CHECK(message([](store::Trace& t) { t.steps[20].metrics[0] = 0; }) == lies);
   // A measurement that decides.
-  CHECK(message([](run::Trace& t) { t.steps[2].sample.tcp.x() = 0.3; }) == lies);
-  CHECK(message([](run::Trace& t) { t.header.plan_root.bytes[0] ^= 1; }) ==
+  CHECK(message([](store::Trace& t) { t.steps[2].sample.tcp.x() = 0.3; }) == lies);
+  CHECK(message([](store::Trace& t) { t.header.plan_root.bytes[0] ^= 1; }) ==
         "this trace was not made under the stored plan");
-  CHECK(message([](run::Trace& t) { t.steps.pop_back(), --t.end->steps; }).find("has 59 steps") !=
+  CHECK(message([](store::Trace& t) { t.steps.pop_back(), --t.end->steps; }).find("has 59 steps") !=
         std::string::npos);
 }
 

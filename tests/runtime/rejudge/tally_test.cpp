@@ -6,8 +6,8 @@ using namespace probe;
 
 namespace {
 
-run::ResultRow row(const char* task, int episode, double success, double top) {
-  run::ResultRow row;
+store::ResultRow row(const char* task, int episode, double success, double top) {
+  store::ResultRow row;
   row.task = task;
   row.episode = episode;
   row.metrics = {{"success", true, success}, {"top", false, top}};
@@ -18,7 +18,8 @@ run::ResultRow row(const char* task, int episode, double success, double top) {
 
 TEST_CASE(
     "conditions are counted, numbers have mean and extremes, invalid episodes count nowhere") {
-  std::vector<run::ResultRow> rows = {row("a", 0, 1, 0.5), row("a", 1, 0, 1.5), row("b", 0, 1, 2)};
+  std::vector<store::ResultRow> rows = {row("a", 0, 1, 0.5), row("a", 1, 0, 1.5),
+                                        row("b", 0, 1, 2)};
   rows.push_back(row("a", 2, 1, 100));
   rows.back().invalid = "the policy went away";
   rows.back().seed = 7;
@@ -32,7 +33,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a run without a valid episode says only that") {
-  run::ResultRow only = row("a", 0, 1, 1);
+  store::ResultRow only = row("a", 0, 1, 1);
   only.invalid = "no";
   CHECK(rejudge::tally_text(std::span(&only, 1), nullptr) ==
         "a: 1 episodes, 1 invalid (episode 0 seed 0: no)\n");

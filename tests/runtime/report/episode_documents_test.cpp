@@ -9,12 +9,12 @@ using namespace probe::report;
 
 namespace {
 
-run::Trace small_trace() {
-  run::Trace trace;
+store::Trace small_trace() {
+  store::Trace trace;
   trace.header.bodies = {"cup", "plate", "surface", "left_finger"};
   trace.header.metrics = {{"success", true}, {"first", false}, {"grasp", true}};
   for (int step = 1; step <= 5; ++step) {
-    run::TraceStep record;
+    store::TraceStep record;
     record.sample.bodies.resize(4);
     record.sample.bodies[0].position = Vec3(0.01 * step, 0, 0);
     record.sample.grip = step >= 3 ? 0.9 : 0.1;
@@ -37,11 +37,11 @@ TEST_CASE("a timeline has spans of truths, gripper and contacts, and distances")
 
 TEST_CASE("metrics that the page does not know are left out of a timeline") {
   CHECK(encode_timeline(small_trace(), {}) == "g:3-5;c0.3:2-2,4-5;d:1.0,3.0,5.0");
-  CHECK(encode_timeline(run::Trace{}, {}).empty());
+  CHECK(encode_timeline(store::Trace{}, {}).empty());
 }
 
 TEST_CASE("an episode whose trace is gone has no timeline, and a note says so") {
-  run::ResultRow row;
+  store::ResultRow row;
   row.task = "t";
   row.trace = "/nowhere/t/0-42.trace";
   const std::vector<EpisodeTrace> episodes(8, EpisodeTrace{&row, nullptr, 0});

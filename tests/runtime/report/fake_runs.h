@@ -14,7 +14,7 @@
 #include "compiler/emit/compile.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/plan.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::report {
@@ -55,13 +55,13 @@ struct FakeRunOptions {
 // Makes DIR with a row for every task, start and seed.
 inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::string& policy,
                      const FakeRunOptions& options, const Script& script) {
-  run::RunRecord record;
+  store::RunRecord record;
   record.identity.plan_root = to_hex(plan.root());
   record.identity.policy = policy;
   record.suite = plan.text(plan.suites()[0].name);
   record.seeds = options.seeds;
   record.fingerprint.entries = {{"cpu", "test"}};
-  auto store = run::Store::open(dir, record, plan.bytes());
+  auto store = store::Store::open(dir, record, plan.bytes());
   REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
   for (const std::string& name : options.tasks) {
     const auto task = plan.find_task(name);
@@ -70,7 +70,7 @@ inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::
     for (int episode = options.first; episode <= options.last; ++episode) {
       for (const int seed : options.seeds) {
         const Outcome outcome = script(name, episode, seed);
-        run::ResultRow row;
+        store::ResultRow row;
         row.task = name;
         row.episode = episode;
         row.seed = seed;

@@ -10,6 +10,7 @@
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {
+using namespace probe::store;
 namespace {
 
 plan::Plan suite() {

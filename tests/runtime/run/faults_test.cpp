@@ -7,15 +7,16 @@
 #include <fstream>
 
 #include "runtime/policy/query_meter.h"
-#include "runtime/policy/simple.h"
+#include "runtime/policy/scripted.h"
 #include "runtime/run/run.h"
 #include "runtime/run/selection.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {
+using namespace probe::store;
 namespace {
 
 namespace fs = std::filesystem;
@@ -55,7 +56,7 @@ struct Server {
     options.own_policy = OwnPolicy{
         {.content = content},
         [this,
-         fails](const policy::PolicyContext& context) -> Result<std::unique_ptr<policy::Policy>> {
+         fails](const run::PolicyContext& context) -> Result<std::unique_ptr<policy::Policy>> {
           return std::unique_ptr<policy::Policy>(
               std::make_unique<Unsteady>(begun, fails, context.queries));
         }};

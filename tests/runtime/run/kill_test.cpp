@@ -10,12 +10,13 @@
 
 #include "runtime/policy/policy.h"
 #include "runtime/run/run.h"
-#include "runtime/run/store.h"
-#include "runtime/run/stored_trace.h"
+#include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {
+using namespace probe::store;
 namespace {
 
 namespace fs = std::filesystem;

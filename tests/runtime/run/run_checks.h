@@ -10,6 +10,7 @@
 #include "runtime/run/run.h"
 
 namespace probe::run {
+using namespace probe::store;
 
 inline RunOptions options_for(const std::string& out, const std::string& policy = "random") {
   RunOptions options;

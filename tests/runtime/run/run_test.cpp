@@ -1,6 +1,7 @@
 // Whole runs on the real world, camera and judge: sameness, resume, replay, pictures, and what goes
 // wrong.
 #include "runtime/run/run.h"
+#include "runtime/show/contact_sheet.h"
 
 #include <doctest/doctest.h>
 #include <signal.h>
@@ -14,15 +15,18 @@
 
 #include "runtime/run/replay.h"
 #include "runtime/run/selection.h"
-#include "runtime/run/store.h"
-#include "runtime/run/trace.h"
-#include "runtime/run/video.h"
 #include "runtime/scene/image.h"
+#include "runtime/show/video.h"
+#include "runtime/store/store.h"
+#include "runtime/store/trace.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {
+using namespace probe::store;
+using namespace probe::show;
+using namespace probe::show;
 namespace {
 
 namespace fs = std::filesystem;

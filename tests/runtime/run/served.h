@@ -11,11 +11,12 @@
 #include "compiler/emit/compile.h"
 #include "runtime/plan/plan.h"
 #include "runtime/run/run.h"
-#include "runtime/run/store.h"
-#include "runtime/run/trace.h"
+#include "runtime/store/store.h"
+#include "runtime/store/trace.h"
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {
+using namespace probe::store;
 
 class ServedRun {
  public:

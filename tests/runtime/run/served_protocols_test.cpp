@@ -4,6 +4,8 @@
 #include "tests/servers/python_server.h"
 
 namespace probe::run {
+using namespace probe::store;
+using namespace probe::servers;
 namespace {
 
 using test::PythonServer;

@@ -4,6 +4,7 @@
 #include "tests/servers/python_server.h"
 
 namespace probe::run {
+using namespace probe::store;
 namespace {
 
 using test::PythonServer;

@@ -9,12 +9,14 @@
 
 #include "compiler/emit/compile.h"
 #include "runtime/base/file.h"
-#include "runtime/run/store.h"
+#include "runtime/store/store.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/servers/python_server.h"
 
 namespace probe::run {
+using namespace probe::store;
+using namespace probe::servers;
 namespace {
 
 namespace fs = std::filesystem;

@@ -7,6 +7,7 @@
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {
+using namespace probe::store;
 namespace {
 
 TEST_CASE("an expert that trembles its fingers into the table comes to the end of its episode") {

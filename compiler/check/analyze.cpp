@@ -1,0 +1,85 @@
+#include "compiler/check/analyze.h"
+
+#include <algorithm>
+#include <string_view>
+#include <type_traits>
+
+#include "compiler/define/passes.h"
+#include "compiler/names/allow.h"
+#include "compiler/names/repeats.h"
+
+namespace probe::sema {
+namespace {
+
+// Whether all names that it declares were read; of the members of a list not even then.
+bool has_names(const syntax::Decl& decl) {
+  if (decl.complete) return true;
+  return std::visit(
+      [](const auto& node) {
+        using Node = std::decay_t<decltype(node)>;
+        if constexpr (std::is_same_v<Node, syntax::FactsDecl> ||
+                      std::is_same_v<Node, syntax::AttributeDecl> ||
+                      std::is_same_v<Node, syntax::VariantsDecl>)
+          return false;
+        if constexpr (requires { std::string_view(node.name.text); })
+          return !std::string_view(node.name.text).empty();
+        return true;
+      },
+      decl.node);
+}
+
+// A mistake by which whole declarations are not known: in the name of a file, or outside of every
+// declaration that could be read.
+bool loses_names(const std::vector<const syntax::File*>& files, const Diagnostic& mistake) {
+  if (mistake.code == Code::P0202) return true;
+  if (mistake.severity != Severity::kError) return false;
+  for (const syntax::File* file : files) {
+    for (const syntax::Decl& decl : file->decls) {
+      if (is_within(mistake.primary, decl.span)) return !has_names(decl);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
+              const std::string& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots) {
+  Model model;
+  Diagnostics found;
+  Context context{.sources = sources,
+                  .diagnostics = found,
+                  .asset_root = asset_root,
+                  .model = model,
+                  .symbols = {},
+                  .files = files,
+                  .was_broken = diagnostics.has_errors()};
+  collect_names(context);
+  check_repeats(context);
+  define_catalog(context);
+  define_stage(context);
+  define_layouts(context);
+  define_templates(context);
+  define_judgement(context);
+  define_tasks(context);
+  check_comparisons(context);
+  check_language(context);
+  check_starts(context);
+  check_metrics(context);
+  define_sets(context);
+  define_suites(context);
+  check_tags(context);
+  check_magnitudes(context);
+  check_boxes(context);
+  if (roots.empty()) {
+    for (const syntax::File* file : files) roots.push_back(file->id);
+  }
+  check_unused(context, roots);
+  const bool lacks_names =
+      std::any_of(diagnostics.items().begin(), diagnostics.items().end(),
+                  [&](const Diagnostic& item) { return loses_names(files, item); });
+  say(context, roots, lacks_names, diagnostics);
+  return model;
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,20 @@
+// The analysis as a whole: parsed files in, the model and diagnostics out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/diag/diagnostic.h"
+#include "compiler/model/model.h"
+#include "compiler/syntax/ast.h"
+
+namespace probe::sema {
+
+// `files`: a file after the files it uses. `asset_root` is where URDF files are looked up. `roots`:
+// the files named by the user rather than by `use`; empty means all. The model means something only
+// when `diagnostics` has no errors.
+Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
+              const std::string& asset_root, Diagnostics& diagnostics,
+              std::vector<FileId> roots = {});
+
+}  // namespace probe::sema

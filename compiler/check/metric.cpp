@@ -1,0 +1,142 @@
+// P06xx over finished metrics: what can never become true within the horizon. Types were checked
+// when reading.
+#include <algorithm>
+#include <set>
+
+#include "compiler/define/passes.h"
+
+namespace probe::sema {
+namespace {
+
+struct HoldFinder {
+  const Model& model;
+  std::uint64_t horizon;
+  std::vector<ExprRef> too_long;
+  std::set<ExprRef> seen = {};  // a predicate that calls another twice is looked at once
+
+  // Bounded: expressions by the parser's depth, calls because predicates do not contain themselves.
+  void visit(ExprRef ref) {
+    if (!seen.insert(ref).second) return;
+    const ExprNode& node = model.exprs.nodes[ref];
+    if (node.op == ExprOp::kHold && node.a > horizon) too_long.push_back(ref);
+    for (const ExprRef arg : node.args) visit(arg);
+    if (node.op == ExprOp::kCall) visit(model.predicates[node.predicate].body);
+  }
+};
+
+// P0605: read-outs that mean something else than they seem to.
+struct LatchLint {
+  Context& context;
+
+  const ExprNode& node(ExprRef ref) const { return context.model.exprs.nodes[ref]; }
+
+  // A comparison of contact impulses, which come and go within a step.
+  bool is_pulse(ExprRef ref) const {
+    const ExprNode& at = node(ref);
+    switch (at.op) {
+      case ExprOp::kLess:
+      case ExprOp::kLessEqual:
+        return std::any_of(at.args.begin(), at.args.end(), [&](ExprRef arg) {
+          const ExprNode& side = node(arg);
+          return side.op == ExprOp::kMeasure && side.measure == Measure::kImpulse;
+        });
+      case ExprOp::kAny:
+        return is_pulse(at.args[0]);
+      case ExprOp::kCall:
+        return is_pulse(context.model.predicates[at.predicate].body);
+      default:
+        return false;
+    }
+  }
+
+  void check(const Metric& metric) const {
+    const ExprNode& top = node(metric.expr);
+    const std::string name = "metric `" + metric.name + "`";
+    const bool once = metric.readout == plan::Readout::kOnce;
+    if (metric.readout == plan::Readout::kAtEnd && is_pulse(metric.expr)) {
+      context
+          .report(Code::P0605, metric.readout_span, name + " reads a contact at the last step only")
+          .help("a contact comes and goes: `once` keeps it");
+    } else if (once && top.op == ExprOp::kNot && node(top.args[0]).span != top.span) {  // not `!=`
+      context
+          .report(Code::P0605, metric.readout_span,
+                  name + " is true as soon as one step lacks its condition")
+          .help("for a condition that never holds write `always not`");
+    } else if ((once || metric.readout == plan::Readout::kAlways) &&
+               (top.op == ExprOp::kOnce || top.op == ExprOp::kAlways)) {
+      context.report(Code::P0605, metric.readout_span, name + " latches what is latched already")
+          .help("one latch is enough: with `at end`, the inner one is read at the last step");
+    }
+  }
+};
+
+// `success` is what an episode is scored by: a condition, in every task.
+void check_success(Context& context, const Task& task,
+                   std::set<std::pair<std::uint32_t, std::uint32_t>>& reported) {
+  const auto success = std::find_if(task.judged.begin(), task.judged.end(),
+                                    [](const Metric& metric) { return metric.name == "success"; });
+  // What a copy lacks, the original lacks.
+  MetricsId id = task.metrics;
+  const auto lacks_success = [&](MetricsId at) {
+    const auto& items = context.model.metrics[at].items;
+    return std::none_of(items.begin(), items.end(),
+                        [](const Metric& metric) { return metric.name == "success"; });
+  };
+  for (MetricsId like = context.model.metrics[id].like; like != MetricsId::kNone;
+       like = context.model.metrics[like].like) {
+    if (lacks_success(like)) id = like;
+  }
+  const Metrics& metrics = context.model.metrics[id];
+  const Span& place = success == task.judged.end() ? metrics.span : success->span;
+  const bool is_condition =
+      success != task.judged.end() &&
+      (success->readout == plan::Readout::kAtEnd || success->readout == plan::Readout::kOnce ||
+       success->readout == plan::Readout::kAlways);
+  if (is_condition || !reported.insert({place.file.value, place.begin}).second) return;
+  if (success == task.judged.end()) {
+    context.report(Code::P0206, place, "metrics `" + metrics.name + "` have no `success`")
+        .label(task.span, "judged by them")
+        .help("an episode is scored by `success = at end ...`");
+  } else {
+    context.report(Code::P0601, success->readout_span, "expected `success` to be true or false")
+        .help("an episode is scored by it: `at end`, `once` or `always` a condition");
+  }
+}
+
+}  // namespace
+
+void check_metrics(Context& context) {
+  // A metric that is copied with `like` is looked at where it stands.
+  std::set<std::pair<std::uint32_t, std::uint32_t>> looked_at;
+  const auto lint = [&](const Metric& metric) {
+    if (looked_at.insert({metric.span.file.value, metric.span.begin}).second)
+      LatchLint{context}.check(metric);
+  };
+  for (const Metrics& metrics : context.model.metrics) {
+    for (const Metric& metric : metrics.items) lint(metric);
+  }
+  for (const Task& task : context.model.tasks) {
+    for (const Metric& metric : task.overrides) lint(metric);
+  }
+  std::set<std::pair<ExprRef, std::uint64_t>> reported;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> without_success;
+  for (const Task& task : context.model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    const About about(context, task.decl_span);
+    check_success(context, task, without_success);
+    for (const Metric& metric : task.judged) {
+      HoldFinder finder{context.model, task.horizon, {}};
+      finder.visit(metric.expr);
+      for (const ExprRef hold : finder.too_long) {
+        if (!reported.insert({hold, task.horizon}).second) continue;
+        context
+            .report(Code::P0604, context.model.exprs.nodes[hold].span,
+                    "metric `" + metric.name + "` can never become true in `" + task.name + "`")
+            .point("the horizon is " + std::to_string(task.horizon) + " steps")
+            .label(task.horizon_span, "set here");
+      }
+    }
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,262 @@
+// P04xx: every phrase must single out its referent among the objects of the task, and every
+// instruction must be a sentence that a policy can be given.
+#include <utf8proc.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+
+#include "compiler/define/passes.h"
+#include "compiler/define/task.h"
+#include "compiler/define/template.h"
+#include "compiler/names/allow.h"
+
+namespace probe::sema {
+namespace {
+
+constexpr std::size_t kMaxPromptBytes = 1000;
+
+// Phrases that do not fit their own object, whatever else is in the scene.
+using Unfit = std::set<std::pair<const Phrase*, ObjectId>>;
+
+struct TaskLanguage {
+  Context& context;
+  const Task& task;
+  Unfit& unfit;
+
+  const Model& model() const { return context.model; }
+  const Span& place(std::size_t role) const {
+    return task.refer[role]          ? task.refer[role]->span
+           : task.say_span.is_none() ? task.span
+                                     : task.say_span;
+  }
+
+  // What made `other` a rival of the words for a role: the newcomer when the words were there
+  // before it, else the words.
+  Span rivalry(std::size_t role, ObjectId other) const {
+    if (is_within(place(role), task.decl_span)) return place(role);
+    return entry_of(task, other).value_or(task.span);
+  }
+
+  // An attribute or fact that would tell the two apart: a hint that certainly helps.
+  std::string discriminator(const Object& wanted, const Object& other) const {
+    for (std::size_t a = 0; a < wanted.values.size(); ++a) {
+      if (wanted.values[a].size() != 1 || other.values[a].empty()) continue;
+      bool shared = false;
+      for (const std::uint32_t value : other.values[a])
+        shared = shared || value == wanted.values[a][0];
+      if (shared) continue;
+      const Attribute& attribute = model().attributes[static_cast<AttributeId>(a)];
+      return attribute.name + " " + attribute.values[wanted.values[a][0]];
+    }
+    for (std::size_t f = 0; f < wanted.facts.size(); ++f) {
+      if (wanted.facts[f] == Truth::kYes && other.facts[f] == Truth::kNo) return model().facts[f];
+    }
+    return {};
+  }
+
+  void check_phrase(std::size_t role, const Phrase& phrase, ObjectId wanted_id) const {
+    const Object& wanted = model().objects[wanted_id];
+    const std::string quoted = "\"" + phrase.text.text + "\"";
+    if (evaluate(phrase.means, wanted) != Truth::kYes) {
+      if (!unfit.insert({&phrase, wanted_id}).second) return;
+      context
+          .report(Code::P0401, place(role),
+                  quoted + " does not denote `" + wanted.name + "` in `" + task.name + "`")
+          .label(phrase.text.span, "means `" + phrase.means_text + "`");
+      return;
+    }
+    std::vector<ObjectId> sure, perhaps;
+    for (const ObjectId id : task.objects()) {
+      if (id == wanted_id) continue;
+      const Truth truth = evaluate(phrase.means, model().objects[id]);
+      if (truth == Truth::kYes) sure.push_back(id);
+      if (truth == Truth::kUnknown) perhaps.push_back(id);
+    }
+    const std::vector<ObjectId>& rivals = sure.empty() ? perhaps : sure;
+    if (rivals.empty()) return;
+    std::string names;
+    for (const ObjectId id : rivals)
+      names += (names.empty() ? "`" : ", `") + model().objects[id].name + "`";
+    const Object& first = model().objects[rivals.front()];
+    Diagnostic& diagnostic =
+        sure.empty()
+            ? context.report(Code::P0403, rivalry(role, rivals.front()),
+                             quoted + " may also denote " + names + " in `" + task.name + "`")
+            : context.report(Code::P0402, rivalry(role, rivals.front()),
+                             quoted + " denotes " + std::to_string(sure.size() + 1) +
+                                 " objects in `" + task.name + "`");
+    diagnostic.point("also `" + phrase.means_text + "`: " + names)
+        .label(phrase.text.span, "meant for `" + wanted.name + "`");
+    if (diagnostic.primary != place(role)) diagnostic.label(place(role), "said here");
+    const std::string hint = discriminator(wanted, first);
+    if (!hint.empty()) {
+      diagnostic.help("`" + hint + "` holds for `" + wanted.name + "` and not for `" + first.name +
+                      "`");
+    }
+  }
+
+  void check_name(std::size_t role, ObjectId wanted_id) const {
+    const Object& wanted = model().objects[wanted_id];
+    for (const ObjectId id : task.objects()) {
+      if (id == wanted_id) continue;
+      const std::string& other = model().objects[id].text.text;
+      const std::string& name = wanted.text.text;
+      // Words that differ in case alone are the same words.
+      const std::string folded = fold_case(other), mine = fold_case(name);
+      const bool same = folded == mine;
+      const bool part = folded.size() > mine.size() &&
+                        (folded.starts_with(mine + " ") || folded.ends_with(" " + mine));
+      if (!same && !part) continue;
+      context.report(
+          Code::P0405, rivalry(role, id),
+          same ? "two objects of `" + task.name + "` are called \"" + name + "\""
+               : "\"" + name + "\" is part of the name \"" + other + "\" in `" + task.name + "`");
+    }
+  }
+
+  void check_category(const SlotRef& slot, const Object& object) const {
+    if (!slot.category) return;
+    const auto attribute = context.symbols.attributes.peek("category");
+    if (!attribute) {
+      context.report(Code::P0407, slot.category->span, "there is no attribute `category`");
+      return;
+    }
+    const Attribute& record = model().attributes[static_cast<AttributeId>(*attribute)];
+    for (std::uint32_t value = 0; value < record.values.size(); ++value) {
+      if (record.values[value] != slot.category->text) continue;
+      for (const std::uint32_t has : object.values[*attribute]) {
+        if (has == value) return;
+      }
+    }
+    context
+        .report(Code::P0407, task.say_span.is_none() ? task.span : task.say_span,
+                "`" + object.name + "` is no `" + slot.category->text + "`")
+        .label(slot.span, "this slot wants one");
+  }
+
+  // The source is what is to be moved, and the target is avoided only where the goal moves with it.
+  bool check_avoided(const SlotRef& slot) const {
+    const auto is = [&](const char* role, ObjectId id) {
+      return slot.name.text == role || slot.name.text == model().objects[id].name;
+    };
+    if (is("source", task.source)) {
+      context.report(Code::P0404, slot.span, "the source cannot be the object to avoid");
+      return false;
+    }
+    if (!is("target", task.target) || task.baseline == TaskId::kNone) return true;
+    const Task& baseline = model().tasks[task.baseline];
+    if (!baseline.complete || baseline.abstract || has_negation(model().templates[baseline.say]) ||
+        (task.axes & static_cast<std::uint32_t>(plan::Axis::kGoal)) != 0)
+      return true;
+    context
+        .report(Code::P0404, slot.span,
+                "`" + task.name + "` says to avoid the target and is judged as `" + baseline.name +
+                    "` is")
+        .help("change the goal with the words, or avoid a distractor");
+    return false;
+  }
+
+  void check_slot(const SlotRef& slot) const {
+    if (slot.avoid && !check_avoided(slot)) return;
+    const bool is_source = slot.name.text == "source";
+    if (is_source || slot.name.text == "target") {
+      const ObjectId id = is_source ? task.source : task.target;
+      const std::size_t role = is_source ? 0 : 1;
+      check_category(slot, model().objects[id]);
+      const Referring words =
+          referring(model(), task, is_source ? syntax::Role::kSource : syntax::Role::kTarget);
+      if (words.phrase != nullptr) return check_phrase(role, *words.phrase, id);
+      return check_name(role, id);
+    }
+    std::string scene;
+    for (const ObjectId id : task.objects()) {
+      const Object& object = model().objects[id];
+      if (object.name == slot.name.text) return check_category(slot, object);
+      scene += (scene.empty() ? "" : ", ") + object.name;
+    }
+    const auto missing = context.symbols.objects.peek(slot.name.text);
+    if (!missing) return;  // no object at all, which was reported
+    if (task.keeps_absent && !task.allow_absent) return;
+    const Object& object = model().objects[static_cast<ObjectId>(*missing)];
+    const std::string words = (slot.avoid ? "not " : "") +
+                              std::string(slot.the && !object.bare ? "the " : "") +
+                              object.text.text;
+    Diagnostic& diagnostic = context.report(
+        Code::P0404, slot.span,
+        "\"" + words + "\" names an object that is not in the scene of `" + task.name + "`");
+    const std::string other = task_with(static_cast<ObjectId>(*missing));
+    diagnostic.point("the scene has " + scene)
+        .help("add `distractors " + slot.name.text + "`" +
+              (other.empty() ? "" : ", or derive from `" + other + "`"));
+    // Only a warning can be silenced: a suite that was published like this says so.
+    if (task.allow_absent) diagnostic.severity = Severity::kWarning;
+  }
+
+  // A task like this one in which the object is there as well; empty when there is none.
+  std::string task_with(ObjectId wanted) const {
+    for (const Task& other : model().tasks) {
+      if (other.abstract || !other.complete || other.source != task.source ||
+          other.target != task.target || other.scene != task.scene)
+        continue;
+      const std::vector<ObjectId> objects = other.objects();
+      if (std::find(objects.begin(), objects.end(), wanted) != objects.end()) return other.name;
+    }
+    return {};
+  }
+
+  void check_sentence() const {
+    const Span& span = task.say_span.is_none() ? task.span : task.say_span;
+    if (task.prompt.empty()) {
+      context.report(Code::P0406, span, "the instruction of `" + task.name + "` is empty");
+    } else if (task.prompt.size() > kMaxPromptBytes) {
+      context.report(Code::P0406, span,
+                     "the instruction of `" + task.name + "` is longer than " +
+                         std::to_string(kMaxPromptBytes) + " bytes");
+    } else if (task.prompt.find_first_of("{}") != std::string::npos) {
+      context.report(Code::P0406, span,
+                     "braces are left in the instruction of `" + task.name + "`");
+    } else if (!is_nfc(task.prompt)) {
+      context.report(Code::P0406, span,
+                     "the instruction of `" + task.name + "` is not in composed form (NFC)");
+    }
+  }
+
+  static std::string fold_case(const std::string& text) {
+    utf8proc_uint8_t* folded = nullptr;
+    const auto size = utf8proc_map(
+        reinterpret_cast<const utf8proc_uint8_t*>(text.data()),
+        static_cast<utf8proc_ssize_t>(text.size()), &folded,
+        static_cast<utf8proc_option_t>(UTF8PROC_CASEFOLD | UTF8PROC_COMPOSE | UTF8PROC_STABLE));
+    if (size < 0) return text;
+    const std::string result(reinterpret_cast<const char*>(folded), static_cast<std::size_t>(size));
+    std::free(folded);
+    return result;
+  }
+  static bool is_nfc(const std::string& text) {
+    utf8proc_uint8_t* normal =
+        utf8proc_NFC(reinterpret_cast<const utf8proc_uint8_t*>(text.c_str()));
+    const bool same = normal != nullptr && text == reinterpret_cast<const char*>(normal);
+    std::free(normal);
+    return same;
+  }
+};
+
+}  // namespace
+
+void check_language(Context& context) {
+  Unfit unfit;
+  for (const Task& task : context.model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    const About about(context, task.decl_span);
+    const TaskLanguage check{context, task, unfit};
+    std::set<std::pair<std::string, bool>> checked;  // a second slot of one name says nothing new
+    for (const Template::Part& part : context.model.templates[task.say].parts) {
+      if (part.slot && checked.insert({part.slot->name.text, part.slot->avoid}).second)
+        check.check_slot(*part.slot);
+    }
+    check.check_sentence();
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,148 @@
+// P0205: what a file of tasks declares and nothing mentions. A file that others use, or that has no
+// tasks of its own, is a library: what it offers need not be used by whoever checks it.
+#include <algorithm>
+#include <filesystem>
+#include <unordered_map>
+
+#include "compiler/define/passes.h"
+
+namespace probe::sema {
+namespace {
+
+using Counts = std::unordered_map<std::string_view, std::size_t>;
+
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || (c >= '0' && c <= '9');
+}
+
+// Words of the text and of its strings, where slots name objects; comments do not count.
+void count_words(std::string_view text, Counts& counts) {
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (c == '"' && !(in_string && text[i - 1] == '\\')) in_string = !in_string;
+    if (c == '\n') in_string = false;
+    if (c == '#' && !in_string) {
+      while (i < text.size() && text[i] != '\n') ++i;
+      continue;
+    }
+    if (!is_letter(c)) {
+      ++i;
+      continue;
+    }
+    const std::size_t begin = i;
+    while (i < text.size() && is_letter(text[i])) ++i;
+    ++counts[text.substr(begin, i - begin)];
+  }
+}
+
+// A file with attributes or datasets is a catalogue, whatever else stands in it: a vocabulary.
+bool declares_tasks(const syntax::File& file) {
+  for (const syntax::Decl& decl : file.decls) {
+    if (std::holds_alternative<syntax::AttributeDecl>(decl.node) ||
+        std::holds_alternative<syntax::DatasetDecl>(decl.node))
+      return false;
+  }
+  for (const syntax::Decl& decl : file.decls) {
+    if (std::holds_alternative<syntax::TaskDecl>(decl.node) ||
+        std::holds_alternative<syntax::VariantDecl>(decl.node) ||
+        std::holds_alternative<syntax::VariantsDecl>(decl.node) ||
+        std::holds_alternative<syntax::DeriveDecl>(decl.node) ||
+        std::holds_alternative<syntax::SuiteDecl>(decl.node))
+      return true;
+  }
+  return false;
+}
+
+bool is_used_file(const Context& context, const syntax::File& file) {
+  const std::string own = std::filesystem::path(context.sources.file(file.id).name()).filename();
+  for (const syntax::File* other : context.files) {
+    for (const syntax::Decl& decl : other->decls) {
+      const auto* use = std::get_if<syntax::UseDecl>(&decl.node);
+      if (use != nullptr && std::filesystem::path(use->path.value).filename() == own) return true;
+    }
+  }
+  return false;
+}
+
+// Phrases may share a name over objects; one mention uses all of them. A `derive` over an axis
+// uses every phrase of it.
+struct PhraseUse {
+  Counts declared;
+  bool all[2] = {false, false};
+};
+
+// So does one over a frame with its templates.
+bool is_in_bound_frame(const Context& context, const syntax::TemplateDecl& node) {
+  for (const auto& derive : context.symbols.derive_decls) {
+    for (const syntax::Binder& binder : derive.node->binders) {
+      const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over);
+      if (templates != nullptr && node.frame && templates->frame.text == node.frame->text)
+        return true;
+    }
+  }
+  return false;
+}
+
+PhraseUse phrase_use(const Context& context) {
+  PhraseUse use;
+  for (const auto& object : context.symbols.object_decls) {
+    for (const syntax::ObjectStmt& stmt : object.node->body) {
+      if (const auto* phrase = std::get_if<syntax::PhraseStmt>(&stmt))
+        ++use.declared[phrase->name.text];
+    }
+  }
+  for (const auto& derive : context.symbols.derive_decls) {
+    for (const syntax::Binder& binder : derive.node->binders) {
+      if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over))
+        use.all[phrases->axis.text == "commonsense" ? 1 : 0] = true;
+    }
+  }
+  return use;
+}
+
+}  // namespace
+
+void check_unused(Context& context, std::span<const FileId> roots) {
+  // A misspelt name would be found twice.
+  if (context.has_errors()) return;
+  std::vector<const syntax::File*> files;
+  for (const syntax::File* file : context.files) {
+    const bool is_root = std::any_of(roots.begin(), roots.end(),
+                                     [&](FileId id) { return id.value == file->id.value; });
+    if (is_root && declares_tasks(*file) && !is_used_file(context, *file)) files.push_back(file);
+  }
+  if (files.empty()) return;
+  Counts words;
+  for (const syntax::File* file : context.files)
+    count_words(context.sources.file(file->id).text(), words);
+  const PhraseUse phrases = phrase_use(context);
+  const auto report = [&](std::string_view kind, const syntax::Name& name) {
+    context.report(Code::P0205, name.span,
+                   std::string(kind) + " `" + std::string(name.text) + "` is never used");
+  };
+  for (const syntax::File* file : files) {
+    for (const syntax::Decl& decl : file->decls) {
+      if (!decl.complete) continue;
+      if (const auto* tmpl = std::get_if<syntax::TemplateDecl>(&decl.node)) {
+        // Its own frame may have the same word.
+        const std::size_t own = tmpl->frame && tmpl->frame->text == tmpl->name.text ? 2 : 1;
+        if (words[tmpl->name.text] <= own && !is_in_bound_frame(context, *tmpl))
+          report("template", tmpl->name);
+      } else if (const auto* predicate = std::get_if<syntax::PredicateDecl>(&decl.node)) {
+        if (words[predicate->name.text] <= 1) report("predicate", predicate->name);
+      } else if (const auto* object = std::get_if<syntax::ObjectDecl>(&decl.node)) {
+        if (words[object->name.text] <= 1) report("object", object->name);
+        for (const syntax::ObjectStmt& stmt : object->body) {
+          const auto* phrase = std::get_if<syntax::PhraseStmt>(&stmt);
+          if (phrase == nullptr || phrases.all[phrase->axis.text == "commonsense" ? 1 : 0])
+            continue;
+          const auto declared = phrases.declared.find(phrase->name.text);
+          if (words[phrase->name.text] <= declared->second) report("phrase", phrase->name);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace probe::sema

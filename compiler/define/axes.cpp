@@ -1,0 +1,343 @@
+#include "compiler/define/axes.h"
+
+#include <algorithm>
+
+#include "compiler/define/template.h"
+#include "runtime/plan/axis_names.h"
+
+namespace probe::sema {
+namespace {
+
+plan::Axis axis_of(PhraseAxis axis) {
+  return axis == PhraseAxis::kAppearance ? plan::Axis::kLanguageAppearance
+                                         : plan::Axis::kLanguageCommonsense;
+}
+
+bool same_cells(const Layout& a, const std::string& name_a, const Layout& b,
+                const std::string& name_b) {
+  const auto find = [](const Layout& layout, const std::string& name) {
+    return std::find_if(layout.cells.begin(), layout.cells.end(),
+                        [&](const Cells& c) { return c.name == name; });
+  };
+  const auto cells_a = find(a, name_a);
+  const auto cells_b = find(b, name_b);
+  if (cells_a == a.cells.end() || cells_b == b.cells.end())
+    return (cells_a == a.cells.end()) == (cells_b == b.cells.end());
+  if (cells_a->grids.size() != cells_b->grids.size()) return false;
+  for (std::size_t g = 0; g < cells_a->grids.size(); ++g) {
+    const auto& grid_a = cells_a->grids[g];
+    const auto& grid_b = cells_b->grids[g];
+    if (!std::equal(grid_a.begin(), grid_a.end(), grid_b.begin(), grid_b.end(),
+                    [](const Cell& p, const Cell& q) { return p.x == q.x && p.y == q.y; })) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool same_words(const std::vector<Spelled>& a, const std::vector<Spelled>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Spelled& p, const Spelled& q) { return p.text == q.text; });
+}
+
+bool same_layout(const Layout& a, const Layout& b) {
+  if (a.by_rest != b.by_rest || a.jitter != b.jitter || a.drop != b.drop || a.settle != b.settle)
+    return false;
+  if (a.places.size() != b.places.size() || a.orients.size() != b.orients.size()) return false;
+  for (std::size_t i = 0; i < a.places.size(); ++i) {
+    const Place& p = a.places[i];
+    const Place& q = b.places[i];
+    if (p.how != q.how || !same_words(p.what, q.what)) return false;
+    if (p.how == Place::kAt ? (p.at.x != q.at.x || p.at.y != q.at.y)
+                            : !same_cells(a, p.cells, b, q.cells))
+      return false;
+  }
+  for (std::size_t i = 0; i < a.orients.size(); ++i) {
+    if (a.orients[i].what.text != b.orients[i].what.text ||
+        a.orients[i].turns != b.orients[i].turns)
+      return false;
+  }
+  return true;
+}
+
+std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object) {
+  for (const PoseOverride& pose : task.poses) {
+    if (pose.object == object) return pose.turns;
+  }
+  return model.objects[object].rest;
+}
+
+// A pose of an object that only one of the two has comes with that object and is no change of its
+// own.
+bool same_poses(const Model& model, const Task& a, const Task& b) {
+  const std::vector<ObjectId> others = b.objects();
+  for (const ObjectId object : a.objects()) {
+    if (std::find(others.begin(), others.end(), object) == others.end()) continue;
+    if (rest_of(model, a, object) != rest_of(model, b, object)) return false;
+  }
+  return true;
+}
+
+std::string text_of(const std::optional<Spelled>& value) {
+  return value ? value->text : std::string();
+}
+
+std::optional<Spelled> main_photo(const Scene& scene) {
+  return scene.views.empty() ? std::nullopt : scene.views.front().overlay;
+}
+
+// Whether policies get the same pictures under the same names. The photo behind the first is the
+// scene's; alone it needs no name.
+bool same_cameras(const Model& model, const Task& a, const Task& b) {
+  const std::vector<View> here = views_of(model, a), there = views_of(model, b);
+  if (here.size() != there.size()) return false;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    if (!(model.cameras[here[i].camera] == model.cameras[there[i].camera])) return false;
+    if (has_names(here) && here[i].name != there[i].name) return false;
+    if (i > 0 && text_of(here[i].overlay) != text_of(there[i].overlay)) return false;
+  }
+  return has_names(here) == has_names(there);
+}
+
+// Camera and light are axes of their own.
+bool same_scene(const Scene& a, const Scene& b) {
+  const auto joints = [](const Scene& scene) {
+    std::vector<double> values;
+    for (const Quantity& joint : scene.joints) values.push_back(joint.si());
+    return values;
+  };
+  return a.robot == b.robot && a.base_position == b.base_position && a.base_turn == b.base_turn &&
+         joints(a) == joints(b) && a.surface_z == b.surface_z && a.area == b.area &&
+         text_of(a.fixture) == text_of(b.fixture) && a.fixture_position == b.fixture_position &&
+         text_of(a.backdrop) == text_of(b.backdrop) &&
+         text_of(main_photo(a)) == text_of(main_photo(b)) && a.physics_hz == b.physics_hz &&
+         a.friction == b.friction;
+}
+
+bool same_goal(const Task& a, const Task& b) {
+  return a.horizon == b.horizon && std::equal(a.judged.begin(), a.judged.end(), b.judged.begin(),
+                                              b.judged.end(), [](const Metric& p, const Metric& q) {
+                                                return p.name == q.name && p.readout == q.readout &&
+                                                       p.expr == q.expr;
+                                              });
+}
+
+// What is said apart from articles and from the words chosen for an object: the literal words with
+// the object that stands between them.
+std::vector<std::string> skeleton(const Model& model, const Task& task) {
+  std::vector<std::string> words;
+  for (const Template::Part& part : model.templates[task.say].parts) {
+    if (part.slot) {
+      const std::string& name = part.slot->name.text;
+      const bool is_role = name == "source" || name == "target";
+      const ObjectId role = name == "source" ? task.source : task.target;
+      // An object that fills a role is that role, however the text names it.
+      std::string object = is_role ? model.objects[role].name : name;
+      if (object == model.objects[task.source].name) object = "{source";
+      if (object == model.objects[task.target].name) object = "{target";
+      words.push_back(std::move(object));
+      continue;
+    }
+    const std::string& text = part.literal;
+    for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
+      const std::size_t end = std::min(text.find(' ', at), text.size());
+      std::string word = text.substr(at, end - at);
+      if (word != "the" && word != "a" && word != "an") words.push_back(std::move(word));
+      at = end;
+    }
+  }
+  return words;
+}
+
+// Another verb or a negation brings its own words; without them, other words are a paraphrase.
+bool says_otherwise(const Model& model, const Task& a, const Task& b) {
+  const Template& first = model.templates[a.say];
+  const Template& second = model.templates[b.say];
+  return first.frame == second.frame && has_negation(first) == has_negation(second) &&
+         skeleton(model, a) != skeleton(model, b);
+}
+
+bool is_seen(const Object& object) { return !object.seen_in.empty(); }
+
+// Nothing but words and tags tells the two apart.
+bool is_same_body(const Object& a, const Object& b) {
+  return a.mesh.text == b.mesh.text && a.box_min == b.box_min && a.box_max == b.box_max &&
+         a.density == b.density && a.friction == b.friction;
+}
+
+// Whether a policy hears, sees and is judged by the same, whatever declarations say it.
+bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
+  const Layout& layout = model.layouts[a.layout];
+  if (!same_goal(a, b) || !same_layout(layout, model.layouts[b.layout]) ||
+      (a.scene != b.scene && !same_scene(model.scenes[a.scene], model.scenes[b.scene])) ||
+      !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
+      !same_cameras(model, a, b) || a.distractors.size() != b.distractors.size())
+    return false;
+  // The order of distractors that both have is no difference.
+  std::vector<ObjectId> here = a.objects(), there = b.objects();
+  std::sort(here.begin() + 2, here.end());
+  std::sort(there.begin() + 2, there.end());
+  const bool by_name =
+      std::any_of(layout.places.begin(), layout.places.end(),
+                  [](const Place& p) {
+                    return std::any_of(p.what.begin(), p.what.end(), [](const Spelled& word) {
+                      return word.text != "source" && word.text != "target" &&
+                             word.text != "distractors";
+                    });
+                  }) ||
+      std::any_of(layout.orients.begin(), layout.orients.end(), [](const Orient& o) {
+        return o.what.text != "source" && o.what.text != "target" && o.what.text != "distractors";
+      });
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    if (rest_of(model, a, here[i]) != rest_of(model, b, there[i])) return false;
+    // A layout that jitters, or that names objects, puts a twin elsewhere.
+    if (here[i] != there[i] && (by_name || layout.jitter > 0 ||
+                                !is_same_body(model.objects[here[i]], model.objects[there[i]])))
+      return false;
+  }
+  return render_prompt(model, a) == render_prompt(model, b);
+}
+
+}  // namespace
+
+const View* view_named(const Scene& scene, std::string_view name) {
+  const auto found = std::find_if(scene.views.begin(), scene.views.end(),
+                                  [&](const View& view) { return view.name == name; });
+  return found == scene.views.end() ? nullptr : &*found;
+}
+
+std::vector<View> views_of(const Model& model, const Task& task) {
+  const Scene& scene = model.scenes[task.scene];
+  std::vector<View> views = scene.views;
+  for (const Task::OtherCamera& other : task.cameras) {
+    const View* named = other.as ? view_named(scene, other.as->text) : nullptr;
+    if (views.empty() || (other.as && named == nullptr)) continue;  // reported
+    View& view = views[named == nullptr ? 0 : static_cast<std::size_t>(named - scene.views.data())];
+    view.camera = other.camera;
+    view.is_named = view.is_named || other.as.has_value();
+  }
+  return views;
+}
+
+bool has_names(const std::vector<View>& views) {
+  return views.size() > 1 || (views.size() == 1 && views.front().is_named);
+}
+
+LightId light_of(const Model& model, const Task& task) {
+  return task.light != LightId::kNone ? task.light : model.scenes[task.scene].light;
+}
+
+std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline) {
+  if (is_same_experiment(model, task, baseline)) return 0;
+  std::uint32_t mask = 0;
+  const auto move = [&mask](plan::Axis axis) { mask |= static_cast<std::uint32_t>(axis); };
+  if (task.source != baseline.source) move(plan::Axis::kObjectSource);
+  if (task.target != baseline.target) move(plan::Axis::kObjectTarget);
+
+  std::vector<ObjectId> here = task.distractors;
+  std::vector<ObjectId> there = baseline.distractors;
+  std::sort(here.begin(), here.end());
+  std::sort(there.begin(), there.end());
+  if (here != there) move(plan::Axis::kDistractors);
+
+  const Template& say = model.templates[task.say];
+  const Template& said = model.templates[baseline.say];
+  if (say.frame != said.frame) move(plan::Axis::kLanguageAction);
+  if (has_negation(say) != has_negation(said)) move(plan::Axis::kLanguageNegation);
+  if (says_otherwise(model, task, baseline)) move(plan::Axis::kLanguageParaphrase);
+  for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
+    const bool is_source = role == syntax::Role::kSource;
+    const Phrase* now = referring(model, task, role).phrase;
+    const Phrase* then = referring(model, baseline, role).phrase;
+    if (now == nullptr && then == nullptr) continue;
+    const bool same_object =
+        is_source ? task.source == baseline.source : task.target == baseline.target;
+    if (now != nullptr && then != nullptr) {
+      // Two phrases of different objects are alike when they refer in the same way.
+      if (same_object ? now->name == then->name : now->axis == then->axis) continue;
+    }
+    move(axis_of(now != nullptr ? now->axis : then->axis));
+  }
+
+  if (!same_layout(model.layouts[task.layout], model.layouts[baseline.layout]) ||
+      !same_poses(model, task, baseline)) {
+    move(plan::Axis::kLayout);
+  }
+  const bool scene_moves = task.scene != baseline.scene &&
+                           !same_scene(model.scenes[task.scene], model.scenes[baseline.scene]);
+  if (scene_moves) move(plan::Axis::kScene);
+  // Another scene comes with its own camera and light; only an override makes them a change of
+  // their own.
+  const bool light_counts =
+      !scene_moves || task.light != LightId::kNone || baseline.light != LightId::kNone;
+  const bool camera_counts = !scene_moves || !task.cameras.empty() || !baseline.cameras.empty();
+  if (light_counts &&
+      !(model.lights[light_of(model, task)] == model.lights[light_of(model, baseline)])) {
+    move(plan::Axis::kLight);
+  }
+  if (camera_counts && !same_cameras(model, task, baseline)) move(plan::Axis::kCamera);
+  if (!same_goal(task, baseline)) move(plan::Axis::kGoal);
+  return mask;
+}
+
+std::string_view axis_name(plan::Axis axis) {
+  for (const auto& [known, name] : plan::kAxisNames) {
+    if (known == axis) return name;
+  }
+  return {};
+}
+
+std::vector<plan::Axis> axes_in(std::uint32_t mask) {
+  std::vector<plan::Axis> axes;
+  for (const auto& [axis, name] : plan::kAxisNames) {
+    if ((mask & static_cast<std::uint32_t>(axis)) != 0) axes.push_back(axis);
+  }
+  return axes;
+}
+
+std::uint32_t out_of_distribution(const Model& model, const Task& task) {
+  if (model.datasets.size() == 0) return 0;
+  const Object& source = model.objects[task.source];
+  const Object& target = model.objects[task.target];
+  std::uint32_t mask = (is_seen(source) ? 0u : 1u) | (is_seen(target) ? 0u : 2u);
+  if (mask != 0) return mask;
+  for (const Dataset& dataset : model.datasets) {
+    for (const Dataset::Relation& relation : dataset.relations) {
+      if (relation.subject == task.source && relation.object == task.target) return 0;
+    }
+  }
+  return 4;
+}
+
+namespace {
+
+// What a task is compared with in the end; itself when it has no baseline.
+const Task& root_of(const Model& model, const Task& task) {
+  const Task* root = &task;
+  for (std::size_t hops = 0; root->baseline != TaskId::kNone && hops < model.tasks.size(); ++hops) {
+    root = &model.tasks[root->baseline];
+  }
+  return *root;
+}
+
+}  // namespace
+
+bool uses_action(const Model& model, const Task& task) {
+  const Task& root = root_of(model, task);
+  return root.complete && model.templates[task.say].frame != model.templates[root.say].frame;
+}
+
+bool uses_paraphrase(const Model& model, const Task& task) {
+  const Task& root = root_of(model, task);
+  return root.complete && says_otherwise(model, task, root);
+}
+
+bool uses_phrase(const Model& model, const Task& task, PhraseAxis axis) {
+  for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
+    const Phrase* phrase = referring(model, task, role).phrase;
+    if (phrase != nullptr && phrase->axis == axis) return true;
+  }
+  return false;
+}
+
+}  // namespace probe::sema

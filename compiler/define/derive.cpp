@@ -1,0 +1,312 @@
+// `derive`: one task for each member of a set and each choice of phrases. What it makes is a
+// variant of that member, named by the text of the derive.
+#include <algorithm>
+
+#include "compiler/define/axes.h"
+#include "compiler/define/set.h"
+#include "compiler/define/task.h"
+#include "compiler/define/template.h"
+
+namespace probe::sema {
+namespace {
+
+bool is_identifier(const std::string& text) {
+  const auto is_letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9');
+  });
+}
+
+class Derive {
+ public:
+  Derive(Context& context, TaskTable& table, const Declared<syntax::DeriveDecl>& declared)
+      : context_(context), table_(table), declared_(declared), node_(*declared.node) {}
+
+  // False when the limit is reached.
+  bool expand() {
+    if (!declared_.decl->complete || !check_binders() || !check_name()) return true;
+    SetReader reader(context_, SetReader::Mode::kPreview);
+    const auto& over = std::get<syntax::BinderTasks>(tasks_->over);
+    const std::vector<TaskId> members = reader.read(*declared_.file, over.tasks);
+    if (node_.where && !reader.check_condition(*declared_.file, *node_.where)) return true;
+    const std::size_t errors = context_.diagnostics.error_count();
+    const std::size_t before = context_.symbols.task_decls.size();
+    bool any_fits = false, any_broken = false;
+    for (const TaskId id : members) {
+      if (!table_.is_defined(id)) {
+        report_undefined(static_cast<std::uint32_t>(id));
+        return true;
+      }
+      const Task& base = context_.model.tasks[id];
+      any_broken = any_broken || !base.complete;
+      if (!base.complete) continue;  // reported
+      if (node_.where && !reader.holds(*declared_.file, *node_.where, base)) continue;
+      any_fits = true;
+      if (!expand_phrases(id)) return false;
+    }
+    if (context_.symbols.task_decls.size() == before && !any_broken &&
+        context_.diagnostics.error_count() == errors && !context_.has_errors())
+      report_empty(members.empty(), any_fits);
+    return true;
+  }
+
+ private:
+  bool check_binders() {
+    bool fits = true;
+    std::vector<std::string_view> names;
+    for (const syntax::Binder& binder : node_.binders) {
+      if (std::find(names.begin(), names.end(), binder.name.text) != names.end()) {
+        context_.report(Code::P0203, binder.name.span,
+                        "`" + std::string(binder.name.text) + "` is bound twice");
+        fits = false;
+      }
+      names.push_back(binder.name.text);
+      if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
+        if (phrases->axis.text == "appearance" || phrases->axis.text == "commonsense") continue;
+        report_unknown(context_.diagnostics, "axis", phrases->axis, {"appearance", "commonsense"});
+        fits = false;
+      } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
+        fits = check_frame(templates->frame) && fits;
+      } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
+        for (const syntax::Name& object : objects->objects)
+          fits = context_.symbols.objects.find(object, context_.diagnostics).has_value() && fits;
+      } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
+        of_task_.push_back(&others->task);
+      } else if (tasks_ == nullptr) {
+        tasks_ = &binder;
+      } else {
+        context_
+            .report(Code::P0203, binder.span, "a `derive` varies the tasks of one set, found two")
+            .label(tasks_->span, "the first")
+            .help("unite them: `for t in a | b`");
+        fits = false;
+      }
+    }
+    for (const syntax::Name* task : of_task_) {
+      if (tasks_ == nullptr || task->text == tasks_->name.text) continue;
+      report_unknown(context_.diagnostics, "binder of tasks", *task, {tasks_->name.text});
+      fits = false;
+    }
+    if (tasks_ != nullptr) return fits;
+    context_.report(Code::P0206, node_.name.text.span, "this `derive` goes over no set of tasks")
+        .help("add a binder such as `for t in tasks`");
+    return false;
+  }
+
+  bool check_frame(const syntax::Name& frame) {
+    std::vector<std::string_view> frames;
+    for (const Template& known : context_.model.templates) {
+      if (known.frame == frame.text) return true;
+      if (!known.name.empty() &&
+          std::find(frames.begin(), frames.end(), known.frame) == frames.end())
+        frames.push_back(known.frame);
+    }
+    report_unknown(context_.diagnostics, "frame", frame, frames);
+    return false;
+  }
+
+  bool check_name() {
+    std::vector<std::string_view> names;
+    for (const syntax::Binder& binder : node_.binders) names.push_back(binder.name.text);
+    bool fits = true;
+    for (const syntax::TemplatePart& part : node_.name.parts) {
+      const auto* slot = std::get_if<syntax::Slot>(&part);
+      if (slot == nullptr) continue;
+      if (slot->avoid || slot->the || slot->category) {
+        context_.report(Code::P0101, slot->span, "a slot of a name holds a binder alone");
+        fits = false;
+      } else if (std::find(names.begin(), names.end(), slot->name.text) == names.end()) {
+        report_unknown(context_.diagnostics, "binder", slot->name, names);
+        fits = false;
+      }
+    }
+    return fits;
+  }
+
+  void report_empty(bool no_members, bool any_fits) {
+    Diagnostic& empty =
+        context_.report(Code::P0211, node_.name.text.span, "this `derive` makes no task");
+    if (no_members) {
+      empty.label(tasks_->span, "no task is in this set");
+    } else if (!any_fits) {
+      empty.label((*declared_.file)[*node_.where].span, "no task of the set fits this");
+    } else {
+      for (const syntax::Binder& binder : node_.binders) {
+        if (&binder == tasks_) continue;
+        empty.label(binder.span, std::holds_alternative<syntax::BinderPhrases>(binder.over)
+                                     ? "nothing is left to choose here"
+                                     : "nothing here is new to a task of the set");
+      }
+    }
+  }
+
+  void report_undefined(std::uint32_t task_index) {
+    const std::string_view task = context_.symbols.tasks.names()[task_index].text;
+    // What it copies in the end; a name that no `derive` makes is unknown, which is said later.
+    std::optional<std::uint32_t> at = task_index;
+    std::string_view copied = task;
+    for (std::size_t hops = 0; at && hops <= context_.symbols.task_decls.size(); ++hops) {
+      const auto& like = context_.symbols.task_decls[*at].like;
+      if (!like) break;
+      copied = like->text;
+      at = context_.symbols.tasks.peek(copied);
+    }
+    if (!at && !may_be_derived(copied)) return;
+    context_
+        .report(Code::P0207, tasks_->span,
+                "task `" + std::string(task) + "` is made from tasks of a `derive` below")
+        .help("move this `derive` behind it");
+  }
+
+  // Whether the name has the literal parts of some `derive` in their order.
+  bool may_be_derived(std::string_view name) const {
+    for (const auto& derive : context_.symbols.derive_decls) {
+      std::size_t at = 0;
+      for (const syntax::TemplatePart& part : derive.node->name.parts) {
+        const auto* literal = std::get_if<std::string>(&part);
+        if (literal == nullptr || at == std::string_view::npos) continue;
+        at = name.find(*literal, at);
+        if (at != std::string_view::npos) at += literal->size();
+      }
+      if (at != std::string_view::npos) return true;
+    }
+    return false;
+  }
+
+  // All choices of phrases for one task: the first binder slowest.
+  bool expand_phrases(TaskId id) {
+    const Task& base = context_.model.tasks[id];
+    const std::string_view name =
+        context_.symbols.task_decls[static_cast<std::size_t>(id)].name.text;
+    std::vector<std::vector<Binding>> rows = {{}};
+    for (const syntax::Binder& binder : node_.binders) {
+      std::vector<Binding> values;
+      for (const std::string_view value : choices(binder, base, name))
+        values.push_back({binder.name.text, value});
+      if (rows.size() * values.size() > kMaxTasks) return report_limit();
+      std::vector<std::vector<Binding>> longer;
+      for (const std::vector<Binding>& row : rows) {
+        for (const Binding& value : values) {
+          longer.push_back(row);
+          longer.back().push_back(value);
+        }
+      }
+      rows = std::move(longer);
+    }
+    for (std::vector<Binding>& row : rows) {
+      if (!add(id, std::move(row))) return false;
+    }
+    return true;
+  }
+
+  // What a binder stands for in the variants of one task. What the task has already is no choice:
+  // its own objects, and templates that say the same.
+  std::vector<std::string_view> choices(const syntax::Binder& binder, const Task& base,
+                                        std::string_view name) const {
+    const Model& model = context_.model;
+    const std::vector<ObjectId> present = base.objects();
+    std::vector<std::string_view> values;
+    if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
+      const ObjectId object = phrases->role == syntax::Role::kSource ? base.source : base.target;
+      const PhraseAxis axis =
+          phrases->axis.text == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense;
+      for (const Phrase& phrase : model.objects[object].phrases) {
+        if (phrase.axis != axis) continue;
+        const auto fits = [&](ObjectId id) {
+          return evaluate(phrase.means, model.objects[id]) ==
+                 (id == object ? Truth::kYes : Truth::kNo);
+        };
+        if (!phrases->clear || std::all_of(present.begin(), present.end(), fits))
+          values.push_back(phrase.name);
+      }
+    } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
+      const auto& declared = context_.symbols.templates.names();
+      Task other = base;
+      for (std::size_t i = 0; i < declared.size(); ++i) {
+        other.say = static_cast<TemplateId>(i);
+        if (model.templates[other.say].frame == templates->frame.text &&
+            axes_between(model, other, base) != 0)
+          values.push_back(declared[i].text);
+      }
+    } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
+      for (const syntax::Name& object : objects->objects) {
+        const auto id = static_cast<ObjectId>(*context_.symbols.objects.peek(object.text));
+        if (std::find(present.begin(), present.end(), id) == present.end())
+          values.push_back(object.text);
+      }
+    } else if (std::holds_alternative<syntax::BinderDistractors>(binder.over)) {
+      for (const ObjectId id : base.distractors) values.push_back(model.objects[id].name);
+    } else {
+      values.push_back(name);
+    }
+    return values;
+  }
+
+  bool add(TaskId base, std::vector<Binding> bindings) {
+    Symbols& symbols = context_.symbols;
+    if (symbols.task_decls.size() >= kMaxTasks) return report_limit();
+    std::string name;
+    for (const syntax::TemplatePart& part : node_.name.parts) {
+      if (const auto* literal = std::get_if<std::string>(&part)) name += *literal;
+      const auto* slot = std::get_if<syntax::Slot>(&part);
+      if (slot == nullptr) continue;
+      for (const Binding& binding : bindings) {
+        if (binding.name == slot->name.text) name += binding.value;
+      }
+    }
+    const Span& span = node_.name.text.span;
+    if (!is_identifier(name)) {
+      context_.report(Code::P0101, span, "`" + name + "` is no name")
+          .point("a name is letters, digits and `_`, a letter first");
+      return true;
+    }
+    if (const auto taken = symbols.tasks.peek(name)) {
+      const DeclaredTask& first = symbols.task_decls[*taken];
+      Diagnostic& twice =
+          context_.report(Code::P0203, span, "task `" + name + "` is declared twice");
+      if (first.decl == declared_.decl) {
+        twice.help("give every binder a slot in the name");
+      } else {
+        twice.label(first.name.span, "first declared here");
+      }
+      return true;
+    }
+    symbols.derived_names.push_back(std::move(name));
+    const auto index = static_cast<std::uint32_t>(symbols.task_decls.size());
+    const syntax::Name like{span, symbols.task_decls[static_cast<std::size_t>(base)].name.text};
+    DeclaredTask task{declared_.file, declared_.decl, {span, symbols.derived_names.back()},
+                      false,          like,           like,
+                      &node_.body,    true,           std::move(bindings)};
+    (void)symbols.tasks.declare(task.name, context_.diagnostics);
+    symbols.task_decls.push_back(std::move(task));
+    table_.add_row();
+    table_.define(index, static_cast<std::uint32_t>(base));
+    table_.compare(index, true);
+    return true;
+  }
+
+  bool report_limit() {
+    context_.report(Code::P0210, node_.name.text.span,
+                    "the suite grows beyond " + std::to_string(kMaxTasks) + " tasks here");
+    return false;
+  }
+
+  Context& context_;
+  TaskTable& table_;
+  const Declared<syntax::DeriveDecl>& declared_;
+  const syntax::DeriveDecl& node_;
+  const syntax::Binder* tasks_ = nullptr;
+  std::vector<const syntax::Name*> of_task_;  // what `distractors of` names
+};
+
+}  // namespace
+
+void expand_derives(Context& context, TaskTable& table) {
+  for (const auto& declared : context.symbols.derive_decls) {
+    if (!Derive(context, table, declared).expand()) return;
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,384 @@
+// Sets of tasks, computed from conditions, and suites that list them. Sets may name one another in
+// any order.
+#include "compiler/define/set.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "compiler/define/axes.h"
+#include "compiler/define/passes.h"
+#include "compiler/define/template.h"
+#include "runtime/base/sha256.h"
+
+namespace probe::sema {
+namespace {
+
+// Files by what they use, so that `tasks` and `variants of` can mean those of a file and of what it
+// uses.
+std::set<std::uint32_t> visible_files(const Context& context, const syntax::File& file) {
+  std::set<std::uint32_t> visible;
+  std::vector<const syntax::File*> open = {&file};
+  while (!open.empty()) {
+    const syntax::File* at = open.back();
+    open.pop_back();
+    if (!visible.insert(at->id.value).second) continue;
+    const std::filesystem::path folder =
+        std::filesystem::path(context.sources.file(at->id).name()).parent_path();
+    for (const syntax::Decl& decl : at->decls) {
+      const auto* use = std::get_if<syntax::UseDecl>(&decl.node);
+      if (use == nullptr) continue;
+      const std::string used = (folder / use->path.value).lexically_normal().string();
+      for (const syntax::File* other : context.files) {
+        const std::filesystem::path name(context.sources.file(other->id).name());
+        // A library file is found in a folder of its own.
+        const std::string path = name.lexically_normal().generic_string();
+        if (path == used || path.ends_with("/" + use->path.value)) open.push_back(other);
+      }
+    }
+  }
+  return visible;
+}
+
+// Which tasks are in a set.
+class Mask {
+ public:
+  explicit Mask(std::size_t tasks, const std::vector<TaskId>& members = {}) : bits_(tasks, false) {
+    for (const TaskId id : members) add(id);
+  }
+  void add(TaskId id) { bits_[static_cast<std::size_t>(id)] = true; }
+  bool has(TaskId id) const { return bits_[static_cast<std::size_t>(id)]; }
+
+ private:
+  std::vector<bool> bits_;
+};
+
+std::string path_text(const syntax::Path& path) {
+  std::string text;
+  for (const syntax::Name& part : path.parts)
+    text += (text.empty() ? "" : ".") + std::string(part.text);
+  return text;
+}
+
+}  // namespace
+
+SetReader::SetReader(Context& context, Mode mode)
+    : context_(context),
+      preview_(mode == Mode::kPreview),
+      diagnostics_(&context.diagnostics),
+      states_(context.symbols.set_decls.size(), mode == Mode::kDefined ? kDone : kNew) {}
+
+void SetReader::define(SetId id) {
+  State& state = states_[static_cast<std::size_t>(id)];
+  if (state == kDone) return;
+  const auto& declared = context_.symbols.set_decls[static_cast<std::size_t>(id)];
+  if (state == kOpen) {
+    diagnostics_->report(Code::P0207, declared.node->name.span,
+                         "set `" + std::string(declared.node->name.text) + "` is part of itself");
+    return;
+  }
+  state = kOpen;
+  Diagnostics* const heard = diagnostics_;
+  if (preview_) diagnostics_ = &unheard_;
+  std::vector<TaskId> members = read(*declared.file, declared.node->tasks);
+  diagnostics_ = heard;
+  // A mistake anywhere may be why nothing is in it.
+  if (!preview_ && members.empty() && declared.decl->complete && !context_.has_errors()) {
+    diagnostics_->report(Code::P0211, declared.node->name.span,
+                         "no task is in set `" + std::string(declared.node->name.text) + "`");
+  }
+  context_.model.sets[id] = {std::string(declared.node->name.text), declared.node->name.span,
+                             std::move(members)};
+  state = kDone;
+}
+
+std::vector<TaskId> SetReader::read(const syntax::File& file, syntax::TaskSetId id) {
+  if (id.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
+  const Level level(context_);
+  return std::visit([&](const auto& node) { return read_node(file, file[id].span, node); },
+                    file[id].node);
+}
+
+SetReader::Members SetReader::read_node(const syntax::File&, const Span&,
+                                        const syntax::TaskSetNames& names) {
+  Members members;
+  Mask seen(context_.model.tasks.size());
+  for (const syntax::Name& name : names.names) {
+    const auto found = context_.symbols.tasks.find(name, *diagnostics_);
+    if (!found) continue;
+    const auto id = static_cast<TaskId>(*found);
+    if (seen.has(id)) continue;
+    if (context_.symbols.task_decls[*found].abstract) {
+      diagnostics_
+          ->report(Code::P0703, name.span,
+                   "`" + std::string(name.text) + "` is abstract: it is copied, never run")
+          .label(context_.symbols.task_decls[*found].name.span, "declared here")
+          .help("name the tasks that are `like " + std::string(name.text) + "`");
+      continue;
+    }
+    seen.add(id);
+    members.push_back(id);
+  }
+  return members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetName& set) {
+  if (set.name.text.empty()) return {};  // a syntax error, reported
+  if (set.name.text == "tasks") {
+    const std::set<std::uint32_t> visible = visible_files(context_, file);
+    Members members;
+    for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
+      const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
+      if (!task.abstract && !task.name.empty() && visible.contains(task.file.value))
+        members.push_back(static_cast<TaskId>(i));
+    }
+    return members;
+  }
+  const auto found = context_.symbols.sets.find(set.name, *diagnostics_);
+  if (!found) return {};
+  if (context_.levels > kMaxLevels && states_[*found] == kNew) {
+    report_levels(*diagnostics_, set.name.span);
+    return {};
+  }
+  define(static_cast<SetId>(*found));
+  return context_.model.sets[static_cast<SetId>(*found)].members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetVariants& variants) {
+  const Mask of(context_.model.tasks.size(), read(file, variants.of));
+  // A file that uses this one may add variants; the set here does not grow by them.
+  const std::set<std::uint32_t> visible = visible_files(context_, file);
+  Members members;
+  for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
+    const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
+    if (!task.abstract && task.baseline != TaskId::kNone && of.has(task.baseline) &&
+        visible.contains(task.file.value))
+      members.push_back(static_cast<TaskId>(i));
+  }
+  return members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetSample& sample) {
+  if (sample.of.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
+  Members members = read(file, sample.of);
+  if (sample.count.value > members.size()) {
+    diagnostics_
+        ->report(Code::P0304, sample.count.span,
+                 "a sample of " + std::to_string(sample.count.value) + " from a set of " +
+                     std::to_string(members.size()) + " tasks")
+        .label(file[sample.of].span, "this set");
+    return members;
+  }
+  // Every task draws its own number from its name, so that a new task displaces at most one.
+  std::vector<std::pair<Sha256, TaskId>> draws;
+  for (const TaskId id : members) {
+    Hasher hasher;
+    hasher.text("sample").u64(sample.seed.value).text(context_.model.tasks[id].name);
+    draws.emplace_back(hasher.finish(), id);
+  }
+  std::sort(draws.begin(), draws.end());
+  draws.resize(sample.count.value);
+  Mask kept(context_.model.tasks.size());
+  for (const auto& [draw, id] : draws) kept.add(id);
+  std::erase_if(members, [&](TaskId id) { return !kept.has(id); });
+  return members;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetBinary& binary) {
+  Members left = read(file, binary.left);
+  const Members right = read(file, binary.right);
+  if (binary.op == syntax::SetOp::kUnion) {
+    const Mask here(context_.model.tasks.size(), left);
+    for (const TaskId id : right) {
+      if (!here.has(id)) left.push_back(id);
+    }
+    return left;
+  }
+  const Mask there(context_.model.tasks.size(), right);
+  const bool keep = binary.op == syntax::SetOp::kIntersection;
+  std::erase_if(left, [&](TaskId id) { return there.has(id) != keep; });
+  return left;
+}
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+                                        const syntax::TaskSetWhere& where) {
+  Members members = read(file, where.set);
+  if (!check_condition(file, where.condition)) return {};
+  std::erase_if(members,
+                [&](TaskId id) { return !holds(file, where.condition, context_.model.tasks[id]); });
+  return members;
+}
+
+bool SetReader::check_condition(const syntax::File& file, syntax::CondId id) {
+  if (id.value == syntax::CondId::kNone) return false;  // a syntax error, reported
+  const auto& node = file[id].node;
+  if (const auto* negation = std::get_if<syntax::CondNot>(&node))
+    return check_condition(file, negation->operand);
+  if (const auto* both = std::get_if<syntax::CondAnd>(&node)) {
+    const bool left = check_condition(file, both->left);
+    return check_condition(file, both->right) && left;
+  }
+  if (const auto* either = std::get_if<syntax::CondOr>(&node)) {
+    const bool left = check_condition(file, either->left);
+    return check_condition(file, either->right) && left;
+  }
+  const auto& test = std::get<syntax::CondTest>(node);
+  std::vector<std::string_view> words;
+  const char* kind = "";
+  switch (test.kind) {
+    case syntax::CondKind::kAxis:
+      kind = "axis";
+      for (const plan::Axis axis : axes_in(0xffffffffu)) words.push_back(axis_name(axis));
+      break;
+    case syntax::CondKind::kUses:
+      kind = "use of language";
+      words = {"action", "negation", "appearance", "commonsense", "paraphrase"};
+      break;
+    case syntax::CondKind::kOod:
+      kind = "kind of novelty";
+      words = {"source", "target", "relation"};
+      break;
+    case syntax::CondKind::kHas:
+      kind = "part of a task";
+      words = {"distractors", "baseline"};
+      break;
+    case syntax::CondKind::kScene:
+      if (test.path.parts.size() == 1) {
+        return context_.symbols.scenes.find(test.path.parts[0], *diagnostics_).has_value();
+      }
+      kind = "scene";
+      break;
+    case syntax::CondKind::kMetrics:
+      if (test.path.parts.size() == 1) {
+        return context_.symbols.metrics.find(test.path.parts[0], *diagnostics_).has_value();
+      }
+      kind = "metrics";
+      break;
+  }
+  const std::string text = path_text(test.path);
+  if (std::find(words.begin(), words.end(), text) != words.end()) return true;
+  report_unknown(*diagnostics_, kind, {test.path.span, text}, words);
+  return false;
+}
+
+bool SetReader::holds(const syntax::File& file, syntax::CondId id, const Task& task) const {
+  const auto& node = file[id].node;
+  if (const auto* negation = std::get_if<syntax::CondNot>(&node))
+    return !holds(file, negation->operand, task);
+  if (const auto* both = std::get_if<syntax::CondAnd>(&node)) {
+    return holds(file, both->left, task) && holds(file, both->right, task);
+  }
+  if (const auto* either = std::get_if<syntax::CondOr>(&node)) {
+    return holds(file, either->left, task) || holds(file, either->right, task);
+  }
+  return task.complete && holds(std::get<syntax::CondTest>(node), task);
+}
+
+bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
+  const Model& model = context_.model;
+  const std::string word = path_text(test.path);
+  switch (test.kind) {
+    case syntax::CondKind::kAxis:
+      for (const plan::Axis axis : axes_in(task.axes)) {
+        if (axis_name(axis) == word) return true;
+      }
+      return false;
+    case syntax::CondKind::kUses:
+      if (word == "action") return uses_action(model, task);
+      if (word == "paraphrase") return uses_paraphrase(model, task);
+      if (word == "negation") return has_negation(model.templates[task.say]);
+      return uses_phrase(model, task,
+                         word == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense);
+    case syntax::CondKind::kOod:
+      return (task.ood & (word == "source" ? 1u : word == "target" ? 2u : 4u)) != 0;
+    case syntax::CondKind::kHas:
+      return word == "distractors" ? !task.distractors.empty() : task.baseline != TaskId::kNone;
+    case syntax::CondKind::kScene:
+      return model.scenes[task.scene].name == word;
+    case syntax::CondKind::kMetrics:
+      return model.metrics[task.metrics].name == word;
+  }
+  return false;
+}
+namespace {
+
+void expect_suite(Context& context, const Suite& suite, const syntax::ExpectTasksStmt& expect) {
+  // A mistake may be why a set misses a task or more.
+  if (context.has_errors()) return;
+  for (const Task& task : context.model.tasks) {
+    if (!task.complete && !task.abstract) return;
+  }
+  std::uint64_t episodes = 0;
+  for (const TaskId id : suite.members) {
+    episodes += context.model.tasks[id].starts.size();
+  }
+  if (expect.tasks.value == suite.members.size() && expect.episodes.value == episodes) return;
+  context.report(Code::P0504, expect.span,
+                 "suite `" + suite.name + "` has " + std::to_string(suite.members.size()) +
+                     " tasks and " + std::to_string(episodes) + " episodes");
+}
+
+}  // namespace
+
+void define_sets(Context& context) {
+  const std::size_t count = context.symbols.set_decls.size();
+  SetReader reader(context, SetReader::Mode::kDefine);
+  for (std::size_t i = 0; i < count; ++i) reader.define(static_cast<SetId>(i));
+}
+
+void define_suites(Context& context) {
+  SetReader reader(context, SetReader::Mode::kDefined);
+  for (const auto& declared : context.symbols.suite_decls) {
+    const syntax::SuiteDecl& node = *declared.node;
+    Suite suite;
+    suite.name = std::string(node.name.text);
+    suite.span = node.name.span;
+    if (node.trained_on) {
+      const auto dataset = context.symbols.datasets.find(*node.trained_on, context.diagnostics);
+      if (dataset) suite.trained_on = static_cast<DatasetId>(*dataset);
+    }
+    bool has_tasks = false, has_seeds = false;
+    const syntax::ExpectTasksStmt* expect = nullptr;
+    for (const syntax::SuiteStmt& stmt : node.body) {
+      if (const auto* tasks = std::get_if<syntax::SuiteTasksStmt>(&stmt)) {
+        has_tasks = true;
+        suite.members = reader.read(*declared.file, tasks->tasks);
+      } else if (const auto* prefix = std::get_if<syntax::PrefixStmt>(&stmt)) {
+        suite.prefix = prefix->prefix.value;
+      } else if (const auto* seeds = std::get_if<syntax::SeedsStmt>(&stmt)) {
+        has_seeds = true;
+        for (const syntax::Int& seed : seeds->seeds) {
+          const auto value = static_cast<std::uint32_t>(seed.value);
+          const auto& known = suite.seeds;
+          if (seed.value > 0xfffffffeu) {
+            context.report(Code::P0304, seed.span, "a seed is below 4294967295");
+          } else if (std::find(known.begin(), known.end(), value) != known.end()) {
+            context
+                .report(Code::P0203, seed.span,
+                        "seed `" + std::to_string(value) + "` is listed twice")
+                .help("the same seed repeats the same episodes");
+          } else {
+            suite.seeds.push_back(value);
+          }
+        }
+      } else {
+        expect = &std::get<syntax::ExpectTasksStmt>(stmt);
+      }
+    }
+    if (declared.decl->complete) {
+      if (!has_tasks) {
+        context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `tasks`");
+      } else if (suite.members.empty() && !context.has_errors()) {
+        context.report(Code::P0211, suite.span, "no task is in suite `" + suite.name + "`")
+            .severity = Severity::kError;
+      }
+      if (!has_seeds) {
+        context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `seeds`")
+            .help("each seed runs every episode once: `seeds 42`");
+      }
+    }
+    if (suite.seeds.empty()) suite.seeds.push_back(0);
+    if (expect != nullptr) expect_suite(context, suite, *expect);
+    context.model.suites.add(std::move(suite));
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,411 @@
+// Tasks and variants: fields copied along `like`, statements over them, then everything that
+// follows from the fields.
+#include "compiler/define/task.h"
+
+#include <algorithm>
+
+#include "compiler/define/axes.h"
+#include "compiler/define/judgement.h"
+#include "compiler/define/layout.h"
+#include "compiler/define/passes.h"
+#include "compiler/define/template.h"
+#include "compiler/names/allow.h"
+
+namespace probe::sema {
+namespace {
+
+// `poisoned` tasks have a statement that was reported; what follows from them is not said again.
+struct TaskReader {
+  Context& context;
+  const DeclaredTask& declared;
+  Task& task;
+  bool& poisoned;
+
+  template <typename Id>
+  void field(Id& to, const NameTable& names, const syntax::Name& name) {
+    if (const auto found = names.find(name, context.diagnostics)) {
+      to = static_cast<Id>(*found);
+    } else {
+      poisoned = true;
+    }
+  }
+  // A name that a `derive` binds stands for what it is bound to.
+  syntax::Name bound(const syntax::Name& name) const {
+    for (const Binding& binding : declared.bindings) {
+      if (binding.name == name.text) return {name.span, binding.value};
+    }
+    return name;
+  }
+  void role(std::size_t index, const syntax::Name& name) {
+    field(index == 0 ? task.source : task.target, context.symbols.objects, bound(name));
+    task.refer[index].reset();
+    task.role_span[index] = name.span;
+  }
+
+  void operator()(const syntax::FieldStmt& stmt) {
+    Symbols& symbols = context.symbols;
+    switch (stmt.field) {
+      case syntax::TaskField::kScene:
+        return field(task.scene, symbols.scenes, stmt.value);
+      case syntax::TaskField::kLayout:
+        task.layout_span = stmt.value.span;
+        return field(task.layout, symbols.layouts, stmt.value);
+      case syntax::TaskField::kSource:
+        return role(0, stmt.value);
+      case syntax::TaskField::kTarget:
+        return role(1, stmt.value);
+      case syntax::TaskField::kMetrics:
+        return field(task.metrics, symbols.metrics, stmt.value);
+      case syntax::TaskField::kLight:
+        return field(task.light, symbols.lights, stmt.value);
+    }
+  }
+  void operator()(const syntax::TaskCameraStmt& stmt) {
+    Task::OtherCamera other;
+    field(other.camera, context.symbols.cameras, stmt.camera);
+    if (other.camera == CameraId::kNone) return;
+    if (stmt.as) other.as = spelled(*stmt.as);
+    task.cameras.push_back(std::move(other));
+  }
+  void operator()(const syntax::DistractorsStmt& stmt) {
+    task.distractors.clear();
+    task.distractor_spans.clear();
+    task.distractors_span = stmt.span;
+    for (const syntax::Name& name : stmt.objects) {
+      ObjectId object = ObjectId::kNone;
+      field(object, context.symbols.objects, bound(name));
+      if (object == ObjectId::kNone) continue;
+      if (std::find(task.distractors.begin(), task.distractors.end(), object) !=
+          task.distractors.end()) {
+        context.report(Code::P0203, name.span, "`" + std::string(name.text) + "` is listed twice");
+        poisoned = true;
+        continue;
+      }
+      task.distractors.push_back(object);
+      task.distractor_spans.push_back(name.span);
+    }
+  }
+  void operator()(const syntax::SayStmt& stmt) {
+    task.say_span = stmt.span;
+    if (const auto* name = std::get_if<syntax::Name>(&stmt.what)) {
+      return field(task.say, context.symbols.templates, bound(*name));
+    }
+    syntax::TemplateText text = std::get<syntax::TemplateText>(stmt.what);
+    for (syntax::TemplatePart& part : text.parts) {
+      if (auto* slot = std::get_if<syntax::Slot>(&part)) slot->name = bound(slot->name);
+    }
+    const TemplateId copied = task.say;
+    task.say = add_template(context, text, {}, text.text.span, std::nullopt);
+    if (copied == TemplateId::kNone) return;
+    // The same first word is the same verb, whatever its frame is called.
+    const Template& before = context.model.templates[copied];
+    Template& now = context.model.templates[task.say];
+    if (now.frame == first_word(before.parts)) now.frame = before.frame;
+  }
+  // After the roles: a new source or target drops what was said of the old one.
+  void operator()(const syntax::ReferStmt& stmt) {
+    const std::size_t index = stmt.role == syntax::Role::kSource ? 0 : 1;
+    task.refer[index] = spelled(bound(stmt.phrase));
+  }
+  void operator()(const syntax::PoseStmt& stmt) {
+    PoseOverride pose;
+    field(pose.object, context.symbols.objects, stmt.object);
+    const auto turns = read_turns(context, stmt.poses);
+    if (!turns || pose.object == ObjectId::kNone) {
+      poisoned = true;
+      return;
+    }
+    pose.turns = *turns;
+    std::erase_if(task.poses, [&](const PoseOverride& old) { return old.object == pose.object; });
+    task.poses.push_back(std::move(pose));
+  }
+  void operator()(const syntax::HorizonStmt& stmt) {
+    task.horizon_span = stmt.span;
+    task.horizon = stmt.steps.value;
+    if (task.horizon >= 1 && task.horizon <= 100000) return;
+    context.report(Code::P0304, stmt.steps.span, "expected a horizon between 1 and 100000 steps");
+    poisoned = true;
+  }
+  void operator()(const syntax::MetricStmt& stmt) {
+    Metric metric = analyze_metric(context, *declared.file, stmt);
+    poisoned = poisoned || metric.type.kind == TypeKind::kPoison;
+    std::erase_if(task.overrides, [&](const Metric& old) { return old.name == metric.name; });
+    task.overrides.push_back(std::move(metric));
+  }
+};
+
+void check_refer(Context& context, Task& task, std::size_t role, bool& poisoned) {
+  const ObjectId id = role == 0 ? task.source : task.target;
+  if (!task.refer[role] || id == ObjectId::kNone) return;
+  const Object& object = context.model.objects[id];
+  if (object.find_phrase(task.refer[role]->text) != nullptr) return;
+  std::vector<std::string_view> candidates;
+  for (const Phrase& phrase : object.phrases) candidates.push_back(phrase.name);
+  report_unknown(context.diagnostics, "phrase of `" + object.name + "`",
+                 {task.refer[role]->span, task.refer[role]->text}, candidates)
+      .label(object.span, "the object");
+  poisoned = true;
+}
+
+// A record with a mistake of its own: what it does to the task is not said.
+bool has_broken_part(const Model& model, const Task& task) {
+  const auto is_broken = [](const auto& table, auto id) {
+    return id != decltype(id)::kNone && table[id].broken;
+  };
+  if (is_broken(model.layouts, task.layout) || is_broken(model.metrics, task.metrics) ||
+      is_broken(model.templates, task.say))
+    return true;
+  for (const Task::OtherCamera& other : task.cameras) {
+    if (is_broken(model.cameras, other.camera)) return true;
+  }
+  if (task.scene != SceneId::kNone) {
+    for (const View& view : model.scenes[task.scene].views) {
+      if (is_broken(model.cameras, view.camera)) return true;
+    }
+  }
+  const std::vector<ObjectId> objects = task.objects();
+  return std::any_of(objects.begin(), objects.end(),
+                     [&](ObjectId id) { return is_broken(model.objects, id); });
+}
+
+// One object in one place: a scene with two of a kind needs a second declaration with `like`.
+void check_roles(Context& context, const Task& task, bool& poisoned) {
+  std::vector<ObjectId> seen;
+  for (const ObjectId id : task.objects()) {
+    if (std::find(seen.begin(), seen.end(), id) != seen.end()) {
+      context.report(Code::P0203, task.span,
+                     "`" + context.model.objects[id].name + "` stands twice in the scene of `" +
+                         task.name + "`");
+      poisoned = true;
+    }
+    seen.push_back(id);
+  }
+}
+
+// What a task's camera takes the place of must be there, and a camera moves with a link, so that
+// link must be in the scene.
+void check_cameras(Context& context, const Task& task, bool& poisoned) {
+  const Scene& scene = context.model.scenes[task.scene];
+  for (const Task::OtherCamera& other : task.cameras) {
+    if (!other.as || view_named(scene, other.as->text) != nullptr) continue;
+    std::vector<std::string_view> names;
+    for (const View& view : scene.views) names.push_back(view.name);
+    report_unknown(context.diagnostics, "view", {other.as->span, other.as->text}, names)
+        .label(scene.span, "the scene of `" + task.name + "`");
+    poisoned = true;
+  }
+  for (const View& view : views_of(context.model, task)) {
+    const Camera& camera = context.model.cameras[view.camera];
+    if (camera.mount_robot == scene.robot) continue;
+    context
+        .report(Code::P0201, task.span,
+                "camera `" + camera.name + "` of `" + task.name +
+                    "` is mounted on a robot that is not in scene `" + scene.name + "`")
+        .label(camera.mount_link.span, "this link");
+    poisoned = true;
+  }
+}
+
+std::string missing_statements(const Task& task) {
+  const std::pair<bool, const char*> wanted[] = {
+      {task.scene != SceneId::kNone, "scene"},
+      {task.layout != LayoutId::kNone, "layout"},
+      {task.source != ObjectId::kNone, "source"},
+      {task.target != ObjectId::kNone, "target"},
+      {task.metrics != MetricsId::kNone, "metrics"},
+      {task.say != TemplateId::kNone, "say"},
+      {task.horizon != 0, "horizon"},
+  };
+  std::string missing;
+  for (const auto& [there, name] : wanted) {
+    if (!there) missing += (missing.empty() ? "`" : ", `") + std::string(name) + "`";
+  }
+  return missing;
+}
+
+std::vector<Metric> judged_metrics(const Model& model, const Task& task) {
+  std::vector<Metric> metrics = model.metrics[task.metrics].items;
+  for (const Metric& metric : task.overrides) {
+    const auto at = std::find_if(metrics.begin(), metrics.end(),
+                                 [&](const Metric& old) { return old.name == metric.name; });
+    if (at != metrics.end()) {
+      *at = metric;
+    } else {
+      metrics.push_back(metric);
+    }
+  }
+  return metrics;
+}
+
+// A comparison is each task's own; what is allowed of a text holds for the tasks that keep it.
+void read_allows(Context& context, const syntax::Decl& decl,
+                 const std::vector<syntax::TaskStmt>& body, Task& task) {
+  task.allow_confounded.reset();
+  const auto says = [](const syntax::TaskStmt& stmt) {
+    return std::holds_alternative<syntax::SayStmt>(stmt);
+  };
+  task.keeps_absent =
+      (task.allow_absent || task.keeps_absent) && std::none_of(body.begin(), body.end(), says);
+  task.allow_absent = false;
+  for (const syntax::Allow& allow : decl.allows) {
+    const auto code = code_from_slug(allow.what.text);
+    if (!code) {
+      context.report(Code::P0208, allow.what.span,
+                     "`" + std::string(allow.what.text) + "` is nothing that can be allowed");
+    } else if (*code == Code::P0701) {
+      task.allow_confounded = allow.reason.value;
+    } else if (*code == Code::P0404) {
+      task.allow_absent = true;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ObjectId> Task::objects() const {
+  std::vector<ObjectId> all = {source, target};
+  all.insert(all.end(), distractors.begin(), distractors.end());
+  return all;
+}
+
+std::optional<Span> entry_of(const Task& task, ObjectId object) {
+  const auto own = [&](const Span& span) {
+    return !span.is_none() && is_within(span, task.decl_span);
+  };
+  if (object == task.source && own(task.role_span[0])) return task.role_span[0];
+  if (object == task.target && own(task.role_span[1])) return task.role_span[1];
+  for (std::size_t i = 0; i < task.distractors.size() && i < task.distractor_spans.size(); ++i) {
+    if (task.distractors[i] == object && own(task.distractor_spans[i]))
+      return task.distractor_spans[i];
+  }
+  return std::nullopt;
+}
+
+TaskTable::TaskTable(Context& context) : context_(context) {
+  for (std::size_t i = 0; i < context.symbols.task_decls.size(); ++i) add_row();
+}
+
+void TaskTable::add_row() {
+  context_.model.tasks.add({});
+  poison_.push_back(false);
+  defined_.push_back(false);
+}
+
+void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent) {
+  const DeclaredTask& declared = context_.symbols.task_decls[index];
+  Model& model = context_.model;
+  Task task;
+  bool poisoned = !declared.decl->complete || (declared.like && !parent);
+  if (parent) {
+    task = model.tasks[static_cast<TaskId>(*parent)];
+    poisoned = poisoned || poison_[*parent];
+  }
+  task.name = std::string(declared.name.text);
+  task.span = declared.name.span;
+  task.decl_span = declared.decl->span;
+  task.file = declared.file->id;
+  task.abstract = declared.abstract;
+  task.derived = declared.derived;
+  task.like = parent ? static_cast<TaskId>(*parent) : TaskId::kNone;
+  task.baseline = TaskId::kNone;
+  task.axes = 0;
+  const About about(context_, task.decl_span);
+  read_allows(context_, *declared.decl, *declared.body, task);
+  TaskReader reader{context_, declared, task, poisoned};
+  for (const syntax::TaskStmt& stmt : *declared.body) {
+    if (!std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
+  }
+  for (const syntax::TaskStmt& stmt : *declared.body) {
+    if (std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
+  }
+  poisoned = poisoned || has_broken_part(model, task);
+  if (!poisoned) check_refer(context_, task, 0, poisoned);
+  if (!poisoned) check_refer(context_, task, 1, poisoned);
+  const std::string missing = missing_statements(task);
+  if (task.scene != SceneId::kNone) poisoned = poisoned || !model.scenes[task.scene].complete;
+  task.complete = missing.empty() && !poisoned;
+  if (task.complete) check_roles(context_, task, poisoned);
+  if (task.complete) check_cameras(context_, task, poisoned);
+  if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
+  task.complete = task.complete && !poisoned;
+  poison_[index] = poisoned;
+  defined_[index] = true;
+  if (task.complete) {
+    task.prompt = render_prompt(model, task);
+    task.judged = judged_metrics(model, task);
+    task.ood = out_of_distribution(model, task);
+  }
+  model.tasks[static_cast<TaskId>(index)] = std::move(task);
+}
+
+// What a task lacks, its copies lack: said of the first, and once for the copies of an abstract
+// one.
+void TaskTable::report_missing(const Task& task, const std::string& missing) {
+  const bool is_copy = task.like != TaskId::kNone;
+  if (is_copy && !context_.model.tasks[task.like].abstract &&
+      !context_.model.tasks[task.like].complete)
+    return;
+  const auto [first, is_new] = missing_.try_emplace({task.like, missing}, nullptr);
+  if (is_new || !is_copy) {
+    first->second =
+        &context_.report(Code::P0206, task.span, "task `" + task.name + "` has no " + missing);
+  } else if (first->second->notes.empty()) {
+    first->second->note("nor has any other task that lacks it and is `like " +
+                        context_.model.tasks[task.like].name + "`");
+  }
+}
+
+void TaskTable::compare(std::uint32_t index, bool last_chance) {
+  const DeclaredTask& declared = context_.symbols.task_decls[index];
+  Task& task = context_.model.tasks[static_cast<TaskId>(index)];
+  if (!declared.against) return;
+  if (task.baseline == TaskId::kNone) {
+    auto baseline = context_.symbols.tasks.peek(declared.against->text);
+    // A `variant of` names its baseline once; when unknown it has been reported as `like`.
+    const bool reported = declared.like && task.like == TaskId::kNone &&
+                          declared.against->span == declared.like->span;
+    if (!baseline && last_chance && !reported)
+      baseline = context_.symbols.tasks.find(*declared.against, context_.diagnostics);
+    if (baseline) task.baseline = static_cast<TaskId>(*baseline);
+    task.baseline_span = declared.against->span;
+  }
+  if (task.complete && task.baseline != TaskId::kNone &&
+      context_.model.tasks[task.baseline].complete) {
+    task.axes = axes_between(context_.model, task, context_.model.tasks[task.baseline]);
+  }
+}
+
+void define_tasks(Context& context) {
+  for (std::size_t i = 0; i < context.symbols.set_decls.size(); ++i) context.model.sets.add({});
+  TaskTable table(context);
+  const std::size_t written = context.symbols.task_decls.size();
+  const bool derives = !context.symbols.derive_decls.empty();
+  std::vector<std::optional<std::uint32_t>> parents(written);
+  std::vector<bool> later(written, false);  // copies a task that a `derive` may still make
+  for (std::size_t i = 0; i < written; ++i) {
+    const DeclaredTask& declared = context.symbols.task_decls[i];
+    if (!declared.like) continue;
+    parents[i] = context.symbols.tasks.peek(declared.like->text);
+    later[i] = derives && !parents[i];
+    if (!parents[i] && !derives) context.symbols.tasks.find(*declared.like, context.diagnostics);
+  }
+  const auto order = parents_first(context, parents, context.symbols.tasks.names());
+  for (const std::uint32_t i : order) {
+    if (parents[i] && later[*parents[i]]) later[i] = true;
+    if (!later[i]) table.define(i, parents[i]);
+  }
+  for (std::uint32_t i = 0; i < written; ++i) {
+    if (!later[i]) table.compare(i, !derives);
+  }
+  if (!derives) return;
+  expand_derives(context, table);
+  for (const std::uint32_t i : order) {
+    if (!later[i]) continue;
+    const DeclaredTask& declared = context.symbols.task_decls[i];
+    if (!parents[i]) parents[i] = context.symbols.tasks.find(*declared.like, context.diagnostics);
+    table.define(i, parents[i]);
+  }
+  for (std::uint32_t i = 0; i < written; ++i) table.compare(i, true);
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,47 @@
+// The table of tasks while it is being filled: written tasks first, then those of every `derive`.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/names/context.h"
+
+namespace probe::sema {
+
+// More than any suite that is run; less than what fills a memory by accident.
+inline constexpr std::size_t kMaxTasks = 200'000;
+inline constexpr std::size_t kMaxEpisodes = 5'000'000;
+
+class TaskTable {
+ public:
+  // One empty row for each declared task.
+  explicit TaskTable(Context& context);
+
+  void add_row();
+  // Reads declared task `index`; its parent must have been read.
+  void define(std::uint32_t index, std::optional<std::uint32_t> parent);
+  // Finds the baseline and what differs from it. An unknown name is reported at the last chance.
+  void compare(std::uint32_t index, bool last_chance);
+
+  bool is_defined(TaskId id) const { return defined_[static_cast<std::size_t>(id)]; }
+
+ private:
+  void report_missing(const Task& task, const std::string& missing);
+
+  Context& context_;
+  std::map<std::pair<TaskId, std::string>, Diagnostic*> missing_;  // by what is copied
+  std::vector<bool> poison_;  // has a statement that was reported
+  std::vector<bool> defined_;
+};
+
+// Adds the tasks of every `derive`, in the order of the text: each sees all tasks that are written
+// out and those of the derives above it.
+void expand_derives(Context& context, TaskTable& table);
+
+// Where an object came into a task: its name in the task's own declaration, when it stands there.
+std::optional<Span> entry_of(const Task& task, ObjectId object);
+
+}  // namespace probe::sema

@@ -1,0 +1,126 @@
+#include "compiler/define/template.h"
+
+#include <algorithm>
+
+#include "compiler/define/passes.h"
+
+namespace probe::sema {
+namespace {
+
+Truth negate(Truth value) {
+  if (value == Truth::kUnknown) return value;
+  return value == Truth::kYes ? Truth::kNo : Truth::kYes;
+}
+
+Truth has_value(const Object& object, std::uint32_t attribute, std::uint32_t value) {
+  const auto& values = object.values[attribute];
+  if (values.empty()) return Truth::kUnknown;
+  return std::find(values.begin(), values.end(), value) != values.end() ? Truth::kYes : Truth::kNo;
+}
+
+}  // namespace
+
+std::string first_word(const std::vector<Template::Part>& parts) {
+  if (parts.empty() || parts[0].slot) return {};
+  const std::string& text = parts[0].literal;
+  return text.substr(0, text.find(' '));
+}
+
+TemplateId add_template(Context& context, const syntax::TemplateText& text, std::string name,
+                        const Span& span, const std::optional<syntax::Name>& frame) {
+  Template record;
+  record.name = std::move(name);
+  record.span = span;
+  for (const syntax::TemplatePart& part : text.parts) {
+    if (const auto* literal = std::get_if<std::string>(&part)) {
+      record.parts.push_back({*literal, std::nullopt});
+      continue;
+    }
+    const auto& slot = std::get<syntax::Slot>(part);
+    const bool is_role = slot.name.text == "source" || slot.name.text == "target";
+    if (!is_role && !context.symbols.objects.find(slot.name, context.diagnostics))
+      record.broken = true;
+    SlotRef ref{slot.avoid, slot.the, spelled(slot.name), std::nullopt, slot.span};
+    if (slot.category) ref.category = spelled(*slot.category);
+    record.parts.push_back({{}, std::move(ref)});
+  }
+  record.frame = frame ? std::string(frame->text) : first_word(record.parts);
+  return context.model.templates.add(std::move(record));
+}
+
+Referring referring(const Model& model, const Task& task, syntax::Role role) {
+  const bool is_source = role == syntax::Role::kSource;
+  const Object& object = model.objects[is_source ? task.source : task.target];
+  const auto& refer = task.refer[is_source ? 0 : 1];
+  const Phrase* phrase = refer ? object.find_phrase(refer->text) : nullptr;
+  if (phrase != nullptr) return {&phrase->text.text, phrase->bare, phrase};
+  return {&object.text.text, object.bare, nullptr};
+}
+
+std::string render_prompt(const Model& model, const Task& task) {
+  std::string prompt;
+  for (const Template::Part& part : model.templates[task.say].parts) {
+    prompt += part.literal;
+    if (!part.slot) continue;
+    Referring words;
+    if (part.slot->name.text == "source") {
+      words = referring(model, task, syntax::Role::kSource);
+    } else if (part.slot->name.text == "target") {
+      words = referring(model, task, syntax::Role::kTarget);
+    } else {
+      for (const Object& object : model.objects) {
+        if (object.name == part.slot->name.text) words = {&object.text.text, object.bare, nullptr};
+      }
+    }
+    if (words.text == nullptr) continue;
+    if (part.slot->the && !words.bare) prompt += "the ";
+    prompt += *words.text;
+  }
+  return prompt;
+}
+
+Truth evaluate(const Query& query, const Object& object) {
+  std::vector<Truth> stack;
+  const auto pop = [&stack] {
+    const Truth top = stack.back();
+    stack.pop_back();
+    return top;
+  };
+  for (const QueryOp& op : query) {
+    switch (op.kind) {
+      case QueryOp::kFact:
+        stack.push_back(object.facts[op.a]);
+        break;
+      case QueryOp::kValue:
+        stack.push_back(has_value(object, op.a, op.b));
+        break;
+      case QueryOp::kNot:
+        stack.push_back(negate(pop()));
+        break;
+      // Ordered no < unknown < yes, "and" is the least and "or" the largest.
+      case QueryOp::kAnd:
+        stack.push_back(std::min(pop(), pop()));
+        break;
+      case QueryOp::kOr:
+        stack.push_back(std::max(pop(), pop()));
+        break;
+    }
+  }
+  return stack.empty() ? Truth::kUnknown : stack.back();
+}
+
+bool has_negation(const Template& say) {
+  return std::any_of(say.parts.begin(), say.parts.end(),
+                     [](const Template::Part& part) { return part.slot && part.slot->avoid; });
+}
+
+void define_templates(Context& context) {
+  for (const auto& declared : context.symbols.template_decls) {
+    const syntax::TemplateDecl& node = *declared.node;
+    const TemplateId id = add_template(context, node.text, std::string(node.name.text),
+                                       node.text.text.span, node.frame);
+    if (!declared.decl->complete) context.model.templates[id].broken = true;
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,35 @@
+// Instructions and what their phrases mean: rendering of templates, and Kleene evaluation of
+// queries over objects.
+#pragma once
+
+#include <string>
+
+#include "compiler/names/context.h"
+
+namespace probe::sema {
+
+// `frame` absent: the first word of the text is the verb frame.
+TemplateId add_template(Context& context, const syntax::TemplateText& text, std::string name,
+                        const Span& span, const std::optional<syntax::Name>& frame);
+
+// Empty when a slot stands first.
+std::string first_word(const std::vector<Template::Part>& parts);
+
+// The words for one role in one task: the chosen phrase, or the object's name.
+struct Referring {
+  const std::string* text = nullptr;
+  bool bare = false;
+  const Phrase* phrase = nullptr;  // null: the name
+};
+Referring referring(const Model& model, const Task& task, syntax::Role role);
+
+// Slots that name an object which does not exist print nothing; check_language has said so.
+std::string render_prompt(const Model& model, const Task& task);
+
+// Whether the object is what the query describes. An attribute without a value is unknown.
+Truth evaluate(const Query& query, const Object& object);
+
+// An instruction that mentions something it warns against.
+bool has_negation(const Template& say);
+
+}  // namespace probe::sema

@@ -1,0 +1,352 @@
+// The meaning of a suite as plain tables: names resolved, quantities in SI, `like` expanded. Later
+// passes read this and never the tree, except for expressions, which are in expr.h. Spans point at
+// the words that gave a value.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/model/expr.h"
+#include "compiler/model/ids.h"
+#include "compiler/model/units.h"
+#include "compiler/source/source.h"
+#include "runtime/base/result.h"
+#include "runtime/plan/format.h"
+#include "runtime/robot/urdf.h"
+
+namespace probe::sema {
+
+// A text with the place that gave it.
+struct Spelled {
+  std::string text;
+  Span span;
+};
+
+// ---- catalogue
+// ------------------------------------------------------------------------------------------------------
+
+// Kleene's three values.
+enum class Truth : std::uint8_t { kNo, kUnknown, kYes };
+
+struct Dataset {
+  std::string name;
+  std::string title;
+  struct Relation {
+    ObjectId subject, object;
+  };
+  std::vector<Relation> relations;
+};
+
+struct Attribute {
+  std::string name;
+  std::vector<std::string> values;
+};
+
+// A query in postfix order, so that evaluation is a loop over a small stack.
+struct QueryOp {
+  enum Kind : std::uint8_t { kFact, kValue, kNot, kAnd, kOr };
+  Kind kind = kFact;
+  std::uint32_t a = 0;  // fact, or attribute
+  std::uint32_t b = 0;  // value within the attribute
+};
+using Query = std::vector<QueryOp>;
+
+enum class PhraseAxis : std::uint8_t { kAppearance, kCommonsense };
+
+struct Phrase {
+  std::string name;
+  PhraseAxis axis = PhraseAxis::kAppearance;
+  Spelled text;
+  bool bare = false;  // takes no article
+  Query means;
+  std::string means_text;  // as written, for messages
+};
+
+// A turn about the world's axes; unit quaternion (w, x, y, z), exact at multiples of 90 degrees.
+struct Turn {
+  std::array<double, 4> rotation{1, 0, 0, 0};
+  bool operator==(const Turn&) const = default;
+};
+
+struct Object {
+  std::string name;
+  bool broken = false;  // something was reported: what follows from that is not said
+  Span span;            // of its name
+  Spelled mesh;
+  Spelled text;  // in instructions
+  bool bare = false;
+  bool has_box = false, has_density = false, has_friction = false;
+  std::array<double, 3> box_min{}, box_max{};
+  Span box_span;             // of the statement
+  bool box_is_read = false;  // else something was wrong with it, and was reported
+  double density = 0;
+  double friction = 0;
+  std::vector<std::vector<std::uint32_t>> values;  // by attribute; empty: unknown
+  std::vector<Truth> facts;                        // by fact
+  std::vector<DatasetId> seen_in;
+  bool unseen = false;
+  std::vector<Turn> rest;
+  std::vector<Phrase> phrases;
+
+  const Phrase* find_phrase(std::string_view phrase) const;
+};
+
+// ---- stage
+// ----------------------------------------------------------------------------------------------------------
+
+struct Finger {
+  Spelled link;
+  std::array<double, 3> opens{};
+};
+struct Drive {
+  Spelled joint;
+  Quantity stiffness, damping, limit;
+  Span span;
+};
+
+struct Robot {
+  std::string name;
+  bool broken = false;  // as of an object
+  Span span;
+  Spelled urdf;
+  Spelled tcp;
+  std::vector<Finger> fingers;
+  double control_hz = 0;
+  double reach_min = 0, reach_max = 0;
+  std::vector<Drive> drives;
+  double grip_closed = 0, grip_open = 0;
+  double finger_friction = 1, finger_patch = 0;
+  double link_friction = 1;  // of all other links: the reference engine's default material
+  std::optional<robot::RobotModel>
+      model;  // absent when the URDF could not be read; already reported
+};
+
+struct Camera {
+  std::string name;
+  bool broken = false;  // as of an object
+  Span span;
+  Spelled mount_link;
+  RobotId mount_robot = RobotId::kNone;
+  plan::CameraAim aim = plan::CameraAim::kLook;
+  std::array<double, 3> position{};
+  std::array<double, 4> aim_values{};
+  std::uint32_t width = 0, height = 0;
+  std::uint32_t samples = 0;  // a pixel: 4 or 16, 0 for one
+  double fx = 0, fy = 0, cx = 0, cy = 0;
+  bool operator==(const Camera& other) const;  // what is seen through it; the name does not count
+};
+
+struct Light {
+  std::string name;
+  Span span;
+  double ambient = 0;
+  std::uint32_t occlusion = 0;  // rays a sample that find how open it is to ambient light
+  std::vector<plan::SunRecord> suns;
+  bool operator==(const Light& other) const;
+};
+
+// A camera under the name that policies know: it stays when a variant puts another in its place.
+struct View {
+  std::string name;
+  Span span;
+  CameraId camera = CameraId::kNone;
+  std::optional<Spelled> overlay;  // a photo behind its picture
+  bool is_named = false;           // by `as`; else the name is that of the scene's camera
+};
+
+struct Scene {
+  std::string name;
+  Span span;
+  bool complete = false;  // else something was reported, and tasks here are not looked at
+  RobotId robot = RobotId::kNone;
+  std::array<double, 3> base_position{};
+  bool base_on_surface = false;  // no height was written
+  Turn base_turn;
+  std::vector<Quantity> joints;
+  Span joints_span;
+  double surface_z = 0;
+  std::array<double, 4> area{};
+  std::optional<Spelled> fixture;
+  std::array<double, 3> fixture_position{};
+  std::optional<Spelled> backdrop;
+  std::vector<View> views;  // the first is what a policy with one picture sees
+  LightId light = LightId::kNone;
+  double physics_hz = 0;
+  Span physics_span;
+  double friction = 0;
+};
+
+// ---- layouts
+// --------------------------------------------------------------------------------------------------------
+
+struct Cell {
+  double x = 0, y = 0;
+};
+struct Cells {
+  std::string name;
+  Span span;
+  std::vector<std::vector<Cell>> grids;  // one per spread; `distinct` never mixes two
+  struct Spread {
+    double x = 0, y = 0;
+    Span span;
+  };
+  std::vector<Spread> spreads;  // by grid
+};
+struct Place {
+  enum How : std::uint8_t { kAt, kDistinct, kRemaining };
+  How how = kAt;
+  std::vector<Spelled> what;  // source, target, distractors or an object
+  Cell at;                    // kAt
+  std::string cells;          // else
+  Span span;
+};
+struct Orient {
+  Spelled what;
+  std::vector<Turn> turns;
+};
+struct Layout {
+  std::string name;
+  LayoutId like = LayoutId::kNone;
+  bool broken = false;  // as of an object
+  Span span;
+  std::vector<Cells> cells;
+  std::vector<Place> places;
+  bool by_rest = false;
+  std::vector<Orient> orients;
+  double jitter = 0;
+  Span jitter_span;
+  bool has_drop = false;
+  double drop = 0;
+  double settle = 0;
+  std::optional<std::uint64_t> expect;
+  Span expect_span;
+};
+
+// ---- language
+// -------------------------------------------------------------------------------------------------------
+
+struct SlotRef {
+  bool avoid = false;
+  bool the = false;
+  Spelled name;  // source, target or an object
+  std::optional<Spelled> category;
+  Span span;
+};
+struct Template {
+  std::string name;     // empty for words on the spot
+  bool broken = false;  // as of an object
+  Span span;
+  std::string frame;  // the verb frame
+  struct Part {
+    std::string literal;
+    std::optional<SlotRef> slot;
+  };
+  std::vector<Part> parts;
+};
+
+// ---- tasks
+// ----------------------------------------------------------------------------------------------------------
+
+struct PoseOverride {
+  ObjectId object = ObjectId::kNone;
+  std::vector<Turn> turns;
+};
+
+// One configuration of a task.
+struct Start {
+  struct Placed {
+    ObjectId object = ObjectId::kNone;
+    double x = 0, y = 0;
+    Turn turn;
+  };
+  std::vector<Placed> placed;  // source, target, distractors
+};
+
+struct Task {
+  std::string name;
+  Span span;       // of its name
+  Span decl_span;  // of the declaration
+  FileId file;
+  bool abstract = false;
+  bool derived = false;  // by a `derive`, whose name text is `span`
+  TaskId like = TaskId::kNone;
+  TaskId baseline = TaskId::kNone;
+  Span baseline_span;
+
+  SceneId scene = SceneId::kNone;
+  LayoutId layout = LayoutId::kNone;
+  MetricsId metrics = MetricsId::kNone;
+  LightId light = LightId::kNone;  // overrides the scene's
+  struct OtherCamera {
+    CameraId camera = CameraId::kNone;
+    std::optional<Spelled> as;  // the scene's view it takes the place of; else the first
+  };
+  std::vector<OtherCamera> cameras;  // in place of the scene's; a later one wins
+  ObjectId source = ObjectId::kNone, target = ObjectId::kNone;
+  std::vector<ObjectId> distractors;
+  TemplateId say = TemplateId::kNone;
+  std::array<std::optional<Spelled>, 2> refer;  // by role: source, target
+  std::vector<PoseOverride> poses;
+  std::uint64_t horizon = 0;
+  std::vector<Metric> overrides;  // `set`
+
+  Span layout_span, say_span, distractors_span, horizon_span;
+  std::vector<Span> distractor_spans;  // by distractor
+  std::array<Span, 2> role_span;
+  std::optional<std::string> allow_confounded;
+  bool allow_absent = false;  // its text may tell of an object that is not in the scene
+  bool keeps_absent = false;  // it keeps the text of a task that may
+
+  // Computed.
+  bool complete = false;  // every field is there and means something
+  std::string prompt;
+  std::uint32_t axes = 0;
+  std::uint32_t ood = 0;
+  std::vector<Metric> judged;     // the metrics it is judged by, in order
+  std::span<const Start> starts;  // in Model::start_lists; equal tasks share one
+
+  // source, target, distractors
+  std::vector<ObjectId> objects() const;
+};
+
+struct TaskSet {
+  std::string name;
+  Span span;
+  std::vector<TaskId> members;
+};
+
+struct Suite {
+  std::string name;
+  Span span;
+  std::string prefix;
+  DatasetId trained_on = DatasetId::kNone;
+  std::vector<TaskId> members;
+  std::vector<std::uint32_t> seeds;
+};
+
+struct Model {
+  Table<DatasetId, Dataset> datasets;
+  Table<AttributeId, Attribute> attributes;
+  std::vector<std::string> facts;
+  Table<ObjectId, Object> objects;
+  Table<RobotId, Robot> robots;
+  Table<CameraId, Camera> cameras;
+  Table<LightId, Light> lights;
+  Table<SceneId, Scene> scenes;
+  Table<LayoutId, Layout> layouts;
+  Table<TemplateId, Template> templates;
+  ExprArena exprs;
+  Table<PredicateId, Predicate> predicates;
+  Table<MetricsId, Metrics> metrics;
+  Table<TaskId, Task> tasks;
+  Table<SetId, TaskSet> sets;
+  Table<SuiteId, Suite> suites;
+  std::deque<std::vector<Start>> start_lists;  // a deque: spans into it stay valid
+};
+
+}  // namespace probe::sema

@@ -1,0 +1,129 @@
+// Null, random, replayed and noisy policies, and one that may have nothing to do.
+#include "runtime/policy/scripted.h"
+
+#include <utility>
+#include <vector>
+
+namespace probe::policy {
+namespace {
+
+constexpr Action kStill{0, 0, 0, 0, 0, 0, 1};
+
+class NullPolicy final : public Policy {
+ public:
+  Status begin(const EpisodeStart&) override { return {}; }
+  Result<Action> act(const Observation&) override { return kStill; }
+};
+
+class RandomPolicy final : public Policy {
+ public:
+  Status begin(const EpisodeStart& start) override {
+    draws_ = Draws(start.draw_seed);
+    return {};
+  }
+  Result<Action> act(const Observation&) override {
+    Action action{};
+    for (std::size_t i = 0; i < 3; ++i) action[i] = 0.02 * (2 * draws_.uniform() - 1);
+    for (std::size_t i = 3; i < 6; ++i) action[i] = 0.1 * (2 * draws_.uniform() - 1);
+    action[6] = draws_.uniform() < 0.5 ? -1 : 1;
+    return action;
+  }
+
+ private:
+  Draws draws_{0};
+};
+
+class RecordedPolicy final : public Policy {
+ public:
+  RecordedPolicy(std::string dir, RecordedActions recorded)
+      : dir_(std::move(dir)), recorded_(std::move(recorded)) {}
+
+  Status begin(const EpisodeStart& start) override {
+    if (!recorded_) {
+      return Failure{"policy", "nothing here can read stored episodes", dir_};
+    }
+    PROBE_ASSIGN(actions_, recorded_(dir_, start.task, start.index, start.seed));
+    return {};
+  }
+  Result<Action> act(const Observation& observation) override {
+    const auto step = static_cast<std::size_t>(observation.step);
+    if (step >= actions_.size()) {
+      return Failure{"policy",
+                     "the stored episode has " + std::to_string(actions_.size()) +
+                         " actions, this one asks for another",
+                     dir_};
+    }
+    return actions_[step];
+  }
+
+ private:
+  std::string dir_;
+  RecordedActions recorded_;
+  std::vector<Action> actions_;
+};
+
+class StillWithoutPolicy final : public Policy {
+ public:
+  StillWithoutPolicy(int role, std::unique_ptr<Policy> inner)
+      : role_(static_cast<std::size_t>(role)), inner_(std::move(inner)) {}
+
+  Status begin(const EpisodeStart& start) override { return inner_->begin(start); }
+  Result<Action> act(const Observation& observation) override {
+    const Privileged* view = observation.privileged;
+    if (view != nullptr && view->objects.size() <= role_) return kStill;
+    return inner_->act(observation);
+  }
+
+ private:
+  std::size_t role_;
+  std::unique_ptr<Policy> inner_;
+};
+
+class NoisyPolicy final : public Policy {
+ public:
+  NoisyPolicy(std::unique_ptr<Policy> inner, double sigma)
+      : inner_(std::move(inner)), sigma_(sigma) {}
+
+  Status begin(const EpisodeStart& start) override {
+    draws_ = Draws(start.draw_seed);
+    return inner_->begin(start);
+  }
+  Result<Action> act(const Observation& observation) override {
+    PROBE_ASSIGN(Action action, inner_->act(observation));
+    for (std::size_t i = 0; i < 6; ++i) action[i] += (i < 3 ? sigma_ : 2 * sigma_) * normal();
+    return action;
+  }
+
+ private:
+  // Twelve uniforms make a normal to within what a wrist can tell, without the C library's log and
+  // sine, whose last bits depend on the CPU.
+  double normal() {
+    double sum = -6;
+    for (int i = 0; i < 12; ++i) sum += draws_.uniform();
+    return sum;
+  }
+
+  std::unique_ptr<Policy> inner_;
+  double sigma_;
+  Draws draws_{0};
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> make_null() { return std::make_unique<NullPolicy>(); }
+
+std::unique_ptr<Policy> make_random() { return std::make_unique<RandomPolicy>(); }
+
+std::unique_ptr<Policy> make_recorded(std::string dir, RecordedActions recorded) {
+  return std::make_unique<RecordedPolicy>(std::move(dir), std::move(recorded));
+}
+
+std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inner) {
+  return std::make_unique<StillWithoutPolicy>(role, std::move(inner));
+}
+
+std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma) {
+  return std::make_unique<NoisyPolicy>(std::move(inner), sigma);
+}
+
+}  // namespace probe::policy

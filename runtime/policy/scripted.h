@@ -1,0 +1,37 @@
+// Policies that look at nothing: null, random, and the actions of a stored episode.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/policy/policy.h"
+
+namespace probe::policy {
+
+// Stays where it is with an open gripper.
+std::unique_ptr<Policy> make_null();
+
+// Each number uniform: translations within 2 cm, rotation vector within 0.1 rad a component,
+// gripper open or closed.
+std::unique_ptr<Policy> make_random();
+
+// Gives the actions of a stored episode of the run in `dir`.
+using RecordedActions = std::function<Result<std::vector<Action>>(
+    const std::string& dir, std::string_view task, int episode, int seed)>;
+
+// The recorded actions of the episode of the same task, index and seed in `dir`; fails past their
+// end.
+std::unique_ptr<Policy> make_recorded(std::string dir, RecordedActions recorded);
+
+// `inner` where the episode has role `role` (of Privileged::objects); else stays where it is.
+std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inner);
+
+// `inner` with normal noise on the first six numbers: standard deviation `sigma` metres on each
+// translation, 2 `sigma` rad on each component of the rotation vector (10 mm and 1.1 degrees for
+// 0.01). The gripper stays as it is.
+std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma);
+
+}  // namespace probe::policy

@@ -1,0 +1,214 @@
+// The table of policies and the reading of their names.
+#include "runtime/run/policies.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "runtime/base/spelling.h"
+#include "runtime/expert/expert.h"
+#include "runtime/policy/scripted.h"
+#include "runtime/servers/servers.h"
+
+namespace probe::run {
+namespace {
+
+enum class Kind { kExpert, kNull, kRandom, kReach, kWrong, kNoisy, kReplay, kServer };
+
+struct Entry {
+  std::string_view name;      // what stands before ':'
+  std::string_view argument;  // what must follow it, for people; empty: nothing may
+  Kind kind;
+  PolicyTraits traits;
+  std::string_view meaning;
+  servers::Protocol protocol = servers::Protocol::kOpenpi;  // of a server
+};
+
+const std::array kPolicies = {
+    Entry{"expert", "", Kind::kExpert, {}, "the scripted expert, which sees the world's state"},
+    Entry{"null", "", Kind::kNull, {}, "stays where it is, gripper open"},
+    Entry{"random", "", Kind::kRandom, {true, false, false}, "uniform actions"},
+    Entry{"reach", "", Kind::kReach, {}, "goes to the source and never closes"},
+    Entry{"wrong",
+          "",
+          Kind::kWrong,
+          {false, false, true},
+          "takes the first distractor, or stays still"},
+    Entry{"noisy",
+          "SIGMA",
+          Kind::kNoisy,
+          {true, false, false},
+          "the expert with noise, SIGMA in metres"},
+    Entry{
+        "replay", "DIR", Kind::kReplay, {true, true, false}, "the recorded actions of another run"},
+    Entry{"openpi",
+          "//HOST:PORT?profile=NAME",
+          Kind::kServer,
+          {true, false, false},
+          "an openpi server",
+          servers::Protocol::kOpenpi},
+    Entry{"intact",
+          "//HOST:PORT?model=PATH",
+          Kind::kServer,
+          {true, false, false},
+          "an INT-ACT server",
+          servers::Protocol::kIntact},
+    Entry{"roboarena",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "a RoboArena server",
+          servers::Protocol::kRoboArena},
+    Entry{"vlaeval",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "a vla-eval server",
+          servers::Protocol::kVlaEval},
+    Entry{"gr00t",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "a GR00T server",
+          servers::Protocol::kGr00t},
+    Entry{"openvla",
+          "//HOST:PORT",
+          Kind::kServer,
+          {true, false, false},
+          "an OpenVLA server",
+          servers::Protocol::kOpenVla},
+};
+
+std::string form(const Entry& entry) {
+  std::string text(entry.name);
+  if (!entry.argument.empty()) text.append(":").append(entry.argument);
+  return text;
+}
+
+Failure unknown(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Entry& entry : kPolicies) names.emplace_back(entry.name);
+  std::string help = policy_help();
+  help.pop_back();  // the last line's end
+  return {"usage",
+          "unknown policy `" + std::string(name) + "`" + did_you_mean(name, names) +
+              "\nthe policies are:\n" + help,
+          "--policy"};
+}
+
+struct Choice {
+  const Entry* entry = nullptr;
+  std::string argument;
+};
+
+Result<Choice> choose(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const std::string_view name = text.substr(0, colon);
+  for (const Entry& entry : kPolicies) {
+    if (entry.name != name) continue;
+    const std::string argument = policy_argument(text);
+    if (entry.argument.empty() && colon != std::string_view::npos) {
+      return Failure{"usage", "policy `" + std::string(name) + "` takes no argument", "--policy"};
+    }
+    if (!entry.argument.empty() && argument.empty()) {
+      return Failure{"usage", "policy `" + std::string(name) + "` is written `" + form(entry) + "`",
+                     "--policy"};
+    }
+    return Choice{&entry, argument};
+  }
+  return unknown(name);
+}
+
+Result<double> read_sigma(const std::string& text) {
+  double sigma = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sigma);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(sigma) ||
+      sigma < 0 || sigma > 1) {
+    return Failure{"usage",
+                   "SIGMA of `noisy:SIGMA` is a length in metres from 0 to 1, found `" + text + "`",
+                   "--policy"};
+  }
+  return sigma;
+}
+
+// The first distractor among the privileged view's roles.
+constexpr int kDistractor = 2;
+
+Result<std::unique_ptr<policy::Policy>> make_scripted(Kind kind) {
+  expert::ExpertOptions options;
+  if (kind == Kind::kReach) options.close = false;
+  if (kind != Kind::kWrong) return expert::make_expert(options);
+  options.source = kDistractor;
+  PROBE_ASSIGN(std::unique_ptr<policy::Policy> expert, expert::make_expert(options));
+  return policy::make_still_without(kDistractor, std::move(expert));
+}
+
+}  // namespace
+
+Result<PolicyTraits> policy_traits(std::string_view text) {
+  PROBE_ASSIGN(const Choice choice, choose(text));
+  if (choice.entry->kind == Kind::kNoisy) {
+    PROBE_ASSIGN(const double sigma, read_sigma(choice.argument));
+    return PolicyTraits{sigma > 0, false, false};
+  }
+  if (choice.entry->kind == Kind::kServer) {
+    PROBE_ASSIGN(const servers::ServerChoice server,
+                 servers::choose_server(choice.entry->protocol, choice.argument));
+    PolicyTraits traits = choice.entry->traits;
+    traits.content = servers::describe(server);
+    return traits;
+  }
+  return choice.entry->traits;
+}
+
+Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
+                                                    const PolicyContext& context) {
+  PROBE_ASSIGN(const Choice choice, choose(text));
+  switch (choice.entry->kind) {
+    case Kind::kNull:
+      return policy::make_null();
+    case Kind::kRandom:
+      return policy::make_random();
+    case Kind::kReplay:
+      return policy::make_recorded(choice.argument, context.recorded_actions);
+    case Kind::kNoisy: {
+      PROBE_ASSIGN(const double sigma, read_sigma(choice.argument));
+      PROBE_ASSIGN(std::unique_ptr<policy::Policy> expert, make_scripted(Kind::kExpert));
+      return policy::make_noisy(std::move(expert), sigma);
+    }
+    case Kind::kExpert:
+    case Kind::kReach:
+    case Kind::kWrong:
+      return make_scripted(choice.entry->kind);
+    case Kind::kServer:
+      break;
+  }
+  return servers::make_server(choice.entry->protocol, choice.argument, context.queries);
+}
+
+Result<servers::ServerChoice> server_choice(std::string_view text) {
+  PROBE_ASSIGN(const Choice choice, choose(text));
+  if (choice.entry->kind != Kind::kServer) {
+    return Failure{"usage", "policy `" + std::string(text) + "` is no server", "--policy"};
+  }
+  return servers::choose_server(choice.entry->protocol, choice.argument);
+}
+
+std::string policy_argument(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  return std::string(colon == std::string_view::npos ? "" : text.substr(colon + 1));
+}
+
+std::string policy_help() {
+  std::string text;
+  for (const Entry& entry : kPolicies) {
+    std::string line = "  " + form(entry);
+    line.resize(std::max<std::size_t>(line.size() + 2, 36), ' ');
+    text += line + std::string(entry.meaning) + "\n";
+  }
+  return text;
+}
+
+}  // namespace probe::run

@@ -1,0 +1,53 @@
+// From what stands after --policy to a Policy. The list of known policies is here and nowhere else.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/policy/policy.h"
+#include "runtime/policy/scripted.h"
+
+namespace probe::policy {
+class QueryMeter;
+}
+namespace probe::servers {
+struct ServerChoice;
+}
+
+namespace probe::run {
+
+struct PolicyTraits {
+  bool draws = false;             // whether two seeds can give two different episodes
+  bool recorded = false;          // wants PolicyContext::recorded_actions of its argument
+  bool wants_distractor = false;  // stays still in a task without one
+  // Of a policy server what its name alone does not say: "profile NAME sha256 ..."; two runs of one
+  // name and other content are not one run. Empty for a policy in this process.
+  std::string content = {};
+};
+
+// What a policy may need from outside. `recorded_actions` gives the actions of a stored episode
+// (for replay:DIR).
+struct PolicyContext {
+  policy::RecordedActions recorded_actions;
+  policy::QueryMeter* queries = nullptr;  // of the run; told of each query to a server; may be null
+};
+
+// Fail (code "usage") on an unknown policy, with the known ones and the nearest spelling, and on a
+// bad argument.
+Result<PolicyTraits> policy_traits(std::string_view text);
+Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
+                                                    const PolicyContext& context = {});
+
+// Of a policy that is a server; fails (code "usage") on any other.
+Result<servers::ServerChoice> server_choice(std::string_view text);
+
+// What stands after the first ':', or nothing.
+std::string policy_argument(std::string_view text);
+
+// One line each, for --help: "noisy:SIGMA   the expert with ...".
+std::string policy_help();
+
+}  // namespace probe::run

@@ -1,0 +1,41 @@
+// A counter, a mutex and threads.
+#include "runtime/run/workers.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace probe::run {
+
+Status run_jobs(std::size_t count, int workers,
+                const std::function<Result<Worker>()>& make_worker) {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::optional<Failure> first;
+  const auto fail = [&](const Failure& failure) {
+    const std::lock_guard lock(mutex);
+    if (!first) first = failure;
+    next = count;
+  };
+  const auto work = [&] {
+    auto worker = make_worker();
+    if (!worker) return fail(worker.failure());
+    for (;;) {
+      const std::size_t index = next.fetch_add(1);
+      if (index >= count) return;
+      if (auto done = (*worker)(index); !done) return fail(done.failure());
+    }
+  };
+  const auto threads = std::min(count, static_cast<std::size_t>(std::max(workers, 1)));
+  std::vector<std::thread> pool;
+  for (std::size_t i = 1; i < threads; ++i) pool.emplace_back(work);
+  if (threads > 0) work();
+  for (std::thread& thread : pool) thread.join();
+  if (first) return *first;
+  return {};
+}
+
+}  // namespace probe::run

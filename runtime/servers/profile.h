@@ -1,0 +1,153 @@
+// What a policy server wants to be sent and how its answers are meant: a small text file of lines
+// `field = value`, checked whole. Every client of a server follows one. Knows no wire format.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::servers {
+
+enum class Protocol { kOpenpi, kIntact, kRoboArena, kVlaEval, kGr00t, kOpenVla };
+enum class Resize {
+  kNone,
+  kStretch,  // to the size, whatever the shape
+  kPad,      // the whole picture, black bars around it: openpi's resize_with_pad
+  kCrop,     // the middle of the picture in the size's shape, then resized
+};
+enum class PixelLayout {
+  kHwcU8,   // [height, width, 3], 0..255
+  kChwF32,  // [3, height, width], 0..1
+};
+// Numbers of the end effector in the robot's base frame, in this order. Quaternions are w x y z;
+// rpy is R = Rz(yaw) Ry(pitch) Rx(roll), "sxyz"; openness is 0 closed .. 1 open; fingers are the
+// last two joints, m; joints are all driven ones in the plan's order.
+enum class StateLayout {
+  kNone,
+  kXyzWxyzOpenness,    // 8
+  kXyzRpyOpenness,     // 7
+  kXyzRpyPadOpenness,  // 8, the pad is 0
+  kXyzRotvecOpenness,  // 7
+  kXyzRotvecFingers,   // 8
+  kJoints,
+  kJointsOpenness,  // without the fingers
+};
+enum class StateFrame {
+  kBase,
+  kTopDown,  // rotations relative to the tool pointing down, as BridgeData's policies want them:
+             // R * [[0,0,1],[0,1,0],[-1,0,0]]^T
+};
+enum class NumberType { kF32, kF64 };
+// How numbers were made about 1 in size: bound maps [low, high] to [-1, 1], gaussian is
+// (x - mean) / std.
+enum class Normalisation { kNone, kBound, kGaussian };
+enum class RotationForm { kVector, kEuler };  // three numbers, rad; euler is rpy as above
+enum class GripperRange {
+  kSigned,          // -1 closed .. +1 open, as the simulator's
+  kUnit,            // 0 closed .. 1 open
+  kSignedInverted,  // +1 closed
+  kUnitInverted,    // 1 closed
+};
+enum class PromptCase { kAsIs, kLower };
+enum class FullStop { kAsIs, kWithout, kWith };
+enum class Ensemble { kNone, kTemporal };
+enum class ConnectionUse {
+  kKept,
+  kPerEpisode,  // made anew for each episode, for servers that keep something and hear no reset
+};
+
+struct ImageRule {
+  std::string camera;  // empty: the scene's first
+  std::string key;
+  int width = 0, height = 0;  // 0: as rendered
+  Resize resize = Resize::kNone;
+  PixelLayout layout = PixelLayout::kHwcU8;
+  bool operator==(const ImageRule&) const = default;
+};
+
+struct Statistics {
+  Normalisation kind = Normalisation::kNone;
+  std::vector<double> low, high;  // bound: usually the data's first and 99th percentile
+  std::vector<double> mean, std;  // gaussian
+  std::vector<double> mask;       // 1 where it applies, 0 elsewhere; empty: everywhere
+  bool operator==(const Statistics&) const = default;
+};
+
+struct Profile {
+  std::string name;  // of the file, without its ending; not a field
+  Protocol protocol = Protocol::kOpenpi;
+  std::string about;
+
+  std::vector<ImageRule> images;
+
+  std::string prompt_key = "prompt";
+  PromptCase prompt_case = PromptCase::kAsIs;
+  FullStop prompt_full_stop = FullStop::kAsIs;
+
+  std::string state_key = "observation/state";
+  StateLayout state_layout = StateLayout::kNone;
+  StateFrame state_frame = StateFrame::kBase;
+  NumberType state_type = NumberType::kF32;
+  Statistics state_statistics;
+
+  RotationForm action_rotation = RotationForm::kVector;
+  GripperRange action_gripper = GripperRange::kSigned;
+  // Of the gripper's number as it came: above is open (closed, where inverted). None: kept, mapped
+  // to -1 .. +1.
+  std::optional<double> action_threshold;
+  Statistics action_statistics;
+  // A larger change in one control step is refused: something else than m and rad came.
+  double action_limit_m = 1;
+  double action_limit_rad = 6.3;
+
+  int chunk_length = 0;  // actions of an answer; 0: any number
+  int chunk_use = 0;     // how many of them are done before the next question; 0: all
+
+  Ensemble ensemble = Ensemble::kNone;
+  // Temporal: a question every step; an action is the mean of all answers' predictions of it, each
+  // newer one weighing this many times the one before. SimplerEnv's temperature T is exp(-T).
+  double ensemble_ratio = 1;
+
+  ConnectionUse connection = ConnectionUse::kKept;
+
+  // Seconds.
+  double wait_s = 30;       // for a server that is not there, trying again
+  double connect_s = 10;    // one attempt
+  double first_s = 300;     // the first answer of a connection: the server may still compile
+  double answer_s = 60;     // any other
+  int largest_answer = 64;  // MiB
+
+  // Of single protocols; each says which it reads.
+  std::string dialect;
+  std::string unnorm_key;
+
+  bool operator==(const Profile&) const = default;
+};
+
+// `where` names the text in messages. Fails (code "usage", where = "where:line:column") on an
+// unknown field, with the nearest; on a value that is none, with those that are; on a field twice;
+// on fields that do not go together.
+Result<Profile> parse_profile(std::string_view text, std::string_view where);
+
+// One field, as `text` would set it in a file. Fails without a place.
+Status set_field(Profile& profile, std::string_view field, std::string_view value);
+// What set_field cannot see: fields that do not go together.
+Status check_profile(const Profile& profile);
+
+// Every field that differs from an empty profile's, in the table's order, as a file that reads back
+// equal. Equal profiles have equal texts.
+std::string to_text(const Profile& profile);
+
+// 64 hexadecimal digits over everything but `about` and the limits on time and size: profiles that
+// do the same have the same.
+std::string profile_sha256(const Profile& profile);
+
+// A line for each field: its name, the values it takes, what it means.
+std::string profile_help();
+
+std::string_view to_word(Protocol protocol);
+
+}  // namespace probe::servers

@@ -1,0 +1,122 @@
+// Fields of a profile that do not go together.
+#include "runtime/servers/profile_check.h"
+
+#include <algorithm>
+
+namespace probe::servers {
+namespace {
+
+using MaybeMistake = std::optional<Mistake>;
+
+MaybeMistake check_bound(const Statistics& statistics, const std::string& kind,
+                         const std::string& prefix) {
+  const std::string low = prefix + "low", high = prefix + "high";
+  if (statistics.low.empty() || statistics.high.size() != statistics.low.size()) {
+    return Mistake{"bound needs `" + low + "` and `" + high + "`, as many of each",
+                   {kind, low, high}};
+  }
+  for (std::size_t i = 0; i < statistics.low.size(); ++i) {
+    if (statistics.low[i] < statistics.high[i]) continue;
+    if (i < statistics.mask.size() && statistics.mask[i] == 0) continue;
+    return Mistake{
+        "number " + std::to_string(i + 1) + " of `" + low + "` is not below that of `" + high + "`",
+        {low, high}};
+  }
+  return std::nullopt;
+}
+
+MaybeMistake check_gaussian(const Statistics& statistics, const std::string& kind,
+                            const std::string& prefix) {
+  const std::string mean = prefix + "mean", std = prefix + "std";
+  if (statistics.mean.empty() || statistics.std.size() != statistics.mean.size()) {
+    return Mistake{"gaussian needs `" + mean + "` and `" + std + "`, as many of each",
+                   {kind, mean, std}};
+  }
+  for (const double value : statistics.std) {
+    if (value <= 0) return Mistake{"a number of `" + std + "` is not above 0", {std}};
+  }
+  return std::nullopt;
+}
+
+// `kind` is the field that says how; `size` 0 is any.
+MaybeMistake check_statistics(const Statistics& statistics, const std::string& kind,
+                              const std::string& prefix, std::size_t size) {
+  const std::pair<const char*, const std::vector<double>*> lists[] = {{"low", &statistics.low},
+                                                                      {"high", &statistics.high},
+                                                                      {"mean", &statistics.mean},
+                                                                      {"std", &statistics.std},
+                                                                      {"mask", &statistics.mask}};
+  for (const auto& [name, numbers] : lists) {
+    if (numbers->empty() || size == 0 || numbers->size() == size) continue;
+    return Mistake{"`" + prefix + name + "` has " + std::to_string(numbers->size()) +
+                       " numbers, there are " + std::to_string(size),
+                   {prefix + name}};
+  }
+  const std::string mask = prefix + "mask";
+  for (std::size_t i = 0; i < statistics.mask.size(); ++i) {
+    if (statistics.mask[i] == 0 || statistics.mask[i] == 1) continue;
+    return Mistake{"number " + std::to_string(i + 1) + " of `" + mask + "` is neither 0 nor 1",
+                   {mask}};
+  }
+  if (statistics.kind == Normalisation::kNone) return std::nullopt;
+  if (!statistics.mask.empty() && std::ranges::count(statistics.mask, 1.0) == 0) {
+    return Mistake{"`" + kind + "` normalises nothing: `" + mask + "` is 0 everywhere",
+                   {kind, mask}};
+  }
+  return statistics.kind == Normalisation::kBound ? check_bound(statistics, kind, prefix)
+                                                  : check_gaussian(statistics, kind, prefix);
+}
+
+std::size_t size_of(StateLayout layout) {
+  switch (layout) {
+    case StateLayout::kXyzWxyzOpenness:
+    case StateLayout::kXyzRpyPadOpenness:
+    case StateLayout::kXyzRotvecFingers:
+      return 8;
+    case StateLayout::kXyzRpyOpenness:
+    case StateLayout::kXyzRotvecOpenness:
+      return 7;
+    case StateLayout::kNone:
+    case StateLayout::kJoints:
+    case StateLayout::kJointsOpenness:
+      break;
+  }
+  return 0;  // depends on the robot
+}
+
+}  // namespace
+
+std::optional<Mistake> find_mistake(const Profile& profile) {
+  constexpr std::size_t kActionSize = 7;
+  if (auto mistake = check_statistics(profile.action_statistics, "action.normalised", "action.",
+                                      kActionSize)) {
+    return mistake;
+  }
+  if (profile.state_layout == StateLayout::kNone &&
+      profile.state_statistics.kind != Normalisation::kNone) {
+    return Mistake{"`state.normalise` normalises nothing: `state.layout = none` sends no state",
+                   {"state.normalise", "state.layout"}};
+  }
+  if (auto mistake = check_statistics(profile.state_statistics, "state.normalise", "state.",
+                                      size_of(profile.state_layout))) {
+    return mistake;
+  }
+  if (profile.ensemble == Ensemble::kTemporal && profile.chunk_use > 1) {
+    return Mistake{"`ensemble = temporal` asks at every step; `chunk.use` is then 1 or absent",
+                   {"ensemble", "chunk.use"}};
+  }
+  if (profile.chunk_length > 0 && profile.chunk_use > profile.chunk_length) {
+    return Mistake{"`chunk.use` is more than `chunk.length`", {"chunk.use", "chunk.length"}};
+  }
+  if (profile.images.empty()) {
+    return Mistake{"a profile has at least one line `image = ...`", {}};
+  }
+  return find_key_conflict(profile);
+}
+
+Status check_profile(const Profile& profile) {
+  if (auto mistake = find_mistake(profile)) return Failure{"usage", mistake->message, ""};
+  return {};
+}
+
+}  // namespace probe::servers

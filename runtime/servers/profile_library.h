@@ -1,0 +1,25 @@
+// Profiles by name: those of runtime/policy/profiles are part of the program; a path names a file.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "runtime/base/result.h"
+#include "runtime/servers/profile.h"
+
+namespace probe::servers {
+
+struct ProfileText {
+  std::string_view name;
+  std::string_view text;
+};
+
+// Ascending by name.
+std::span<const ProfileText> ready_profiles();
+
+// `name` of a ready profile, or the path of a file (it has a `/` or ends in `.profile`). Fails
+// (code "usage") with the names there are and the nearest, and as parse_profile does.
+Result<Profile> find_profile(std::string_view name);
+
+}  // namespace probe::servers

@@ -1,0 +1,301 @@
+// allenai/vla-evaluation-harness: src/vla_eval/connection.py, model_servers/serve.py. An error is a
+// message like any other there; a text is not.
+#include "runtime/servers/protocols/vlaeval.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "runtime/servers/protocols/vlaeval_messages.h"
+#include "runtime/wire/websocket.h"
+
+namespace probe::servers {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using vlaeval::Message;
+using vlaeval::PictureCoding;
+
+constexpr std::int64_t kProtocolVersion = 1;
+
+Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+
+bool is_this_machine(const std::string& host) {
+  return host == "localhost" || host == "::1" || host.starts_with("127.");
+}
+
+double unix_seconds() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(now).count();
+}
+
+struct Choices {
+  PictureCoding coding = PictureCoding::kPng;
+  std::optional<bool> send_state;  // nothing: as the server asks
+};
+
+Result<Choices> read_choices(const wire::Endpoint& server) {
+  Choices choices;
+  if (is_this_machine(server.host)) choices.coding = PictureCoding::kRaw;
+  if (const auto it = server.options.find("pictures"); it != server.options.end()) {
+    if (it->second == "raw") {
+      choices.coding = PictureCoding::kRaw;
+    } else if (it->second == "png") {
+      choices.coding = PictureCoding::kPng;
+    } else if (it->second == "jpeg") {
+      choices.coding = PictureCoding::kJpeg;
+    } else {
+      return Failure{"usage", "`pictures` is raw, png or jpeg, not `" + it->second + "`",
+                     "--policy"};
+    }
+  }
+  if (const auto it = server.options.find("send_state"); it != server.options.end()) {
+    if (it->second != "true" && it->second != "false") {
+      return Failure{"usage", "`send_state` is true or false, not `" + it->second + "`",
+                     "--policy"};
+    }
+    choices.send_state = it->second == "true";
+  }
+  return choices;
+}
+
+// What a server may ask for in its hello besides state and wrist picture, and what becomes of it.
+struct Wish {
+  std::string_view name;
+  std::string (*what_is_done)(const wire::Value& asked);  // empty: it is as asked
+};
+
+std::string is_true(const wire::Value& asked, const char* otherwise) {
+  return asked == wire::Value(true) ? "" : otherwise;
+}
+
+constexpr Wish kWishes[] = {
+    {"max_episode_steps",
+     [](const wire::Value&) -> std::string { return "episodes are as long as the plan says"; }},
+    {"success_mode",
+     [](const wire::Value&) -> std::string {
+       return "the plan's metrics say what success is, over every control step";
+     }},
+    {"deterministic_episodes",
+     [](const wire::Value& asked) { return is_true(asked, "the plan fixes where things start"); }},
+    {"env_seed",
+     [](const wire::Value&) -> std::string { return "the plan fixes where things start"; }},
+    {"seed", [](const wire::Value&) -> std::string { return "the plan fixes where things start"; }},
+    {"control_mode",
+     [](const wire::Value& asked) -> std::string {
+       if (asked == wire::Value("arm_pd_ee_target_delta_pose_align2_gripper_pd_joint_pos")) {
+         return "";
+       }
+       return "the arm follows changes of the end effector's target pose";
+     }},
+    {"gripper_mode",
+     [](const wire::Value& asked) -> std::string {
+       return asked == wire::Value("binary") ? "" : "the gripper is set anew at every step";
+     }},
+    // States are sent with w >= 0, which is what it asks for.
+    {"quat_no_antipodal",
+     [](const wire::Value& asked) { return is_true(asked, "w is never < 0"); }},
+};
+
+class VlaEval : public Transport {
+ public:
+  VlaEval(const Profile& profile, const wire::Endpoint& server, const Choices& choices)
+      : profile_(profile), server_(server), choices_(choices) {}
+
+  Status open(const Deadlines& deadlines) override {
+    wire::WebSocketOptions options;
+    options.connect_timeout = deadlines.connect;
+    options.largest_message = static_cast<std::size_t>(profile_.largest_answer) << 20;
+    PROBE_ASSIGN(socket_, wire::WebSocket::connect(server_, options));
+    seq_ = 0;
+    PROBE_TRY(send("hello",
+                   wire::Map{{"harness_version", "vlaprobe"},
+                             {"protocol_version", kProtocolVersion},
+                             {"benchmark", "vlaprobe"}},
+                   deadlines.connect));
+    PROBE_ASSIGN(const Message hello,
+                 answer_to(seq_, Clock::now() + deadlines.connect, deadlines.connect));
+    if (hello.type != "hello")
+      return answered("hello: expected a `hello`, got `" + last_lines(hello.type) + "`");
+    hello_ = hello.payload;
+    const wire::Value* version = hello_.find("protocol_version");
+    if (version != nullptr && *version != wire::Value(kProtocolVersion)) {
+      return Failure{
+          "usage",
+          "the server's `protocol_version` is " + wire::describe(*version) + ", vlaprobe speaks 1",
+          ""};
+    }
+    return {};
+  }
+
+  Status adapt(Profile& profile) const override {
+    if (!sends_state()) profile.state_layout = StateLayout::kNone;
+    if (!asks_for("send_wrist_image", true)) {
+      // Explicitly not wanted; a server that says nothing gets what the profile has.
+      if (asked("send_wrist_image") != nullptr) {
+        std::erase_if(profile.images, [](const ImageRule& image) { return is_wrist(image); });
+      }
+      if (profile.images.empty()) {
+        return Failure{"usage", "the server wants no wrist picture, and the profile has no other",
+                       ""};
+      }
+    }
+    return {};
+  }
+
+  void close() override { socket_.reset(); }
+
+  Status begin_episode(const policy::EpisodeStart& start, const Deadlines& deadlines) override {
+    task_ = std::string(start.task);
+    started_ = Clock::now();
+    return send("episode_start",
+                wire::Map{{"task", wire::Map{{"name", task_},
+                                             {"task_name", task_},
+                                             {"task_description", std::string(start.prompt)},
+                                             {"episode_idx", start.index}}}},
+                deadlines.answer);
+  }
+
+  Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
+    const auto until = Clock::now() + deadlines.answer;
+    PROBE_ASSIGN(wire::Value payload,
+                 vlaeval::observation(profile_, request, task_, choices_.coding, sends_state()));
+    PROBE_TRY(send("observation", std::move(payload), deadlines.answer));
+    PROBE_ASSIGN(const Message answer, answer_to(seq_, until, deadlines.answer));
+    if (answer.type != "action") {
+      return bad("expected an `action`, got `" + last_lines(answer.type) + "`");
+    }
+    for (const char* key : {"actions", "action"}) {
+      if (const wire::Value* actions = answer.payload.find(key)) return to_actions(*actions);
+    }
+    return bad("expected an action with `actions` or `action`, got " +
+               wire::describe(answer.payload));
+  }
+
+  Status end_episode(const policy::EpisodeEnd& end, const Deadlines& deadlines) override {
+    const double elapsed = std::chrono::duration<double>(Clock::now() - started_).count();
+    return send("episode_end",
+                wire::Map{{"metrics", wire::Map{{"success", end.success}}},
+                          {"steps", end.steps},
+                          {"elapsed_sec", elapsed}},
+                deadlines.answer);
+  }
+
+  std::vector<std::string> notes() const override {
+    std::vector<std::string> lines;
+    const auto* wishes = params() == nullptr ? nullptr : params()->as<wire::Map>();
+    if (wishes == nullptr) return lines;
+    for (const auto& [name, asked] : *wishes) {
+      std::string done = what_is_done(name, asked);
+      if (done.empty()) continue;
+      lines.push_back("the server asks for " + last_lines(name) + " = " + wire::describe(asked) +
+                      ": " + done);
+    }
+    return lines;
+  }
+
+  std::vector<std::string> remarks() const override {
+    std::vector<std::string> lines;
+    const auto* map = hello_.as<wire::Map>();
+    if (map == nullptr) return lines;
+    for (const auto& [key, value] : *map) {
+      const auto* parts = value.as<wire::Map>();
+      if (parts == nullptr) {
+        lines.push_back(last_lines(key) + ": " + wire::describe(value));
+        continue;
+      }
+      for (const auto& [name, part] : *parts) {
+        lines.push_back(last_lines(key) + " " + last_lines(name) + ": " + wire::describe(part));
+      }
+    }
+    return lines;
+  }
+
+ private:
+  const wire::Value* params() const { return hello_.find("observation_params"); }
+  const wire::Value* asked(std::string_view name) const {
+    return params() == nullptr ? nullptr : params()->find(name);
+  }
+  bool asks_for(std::string_view name, bool what) const {
+    const wire::Value* value = asked(name);
+    return value != nullptr && *value == wire::Value(what);
+  }
+  static bool is_wrist(const ImageRule& image) {
+    return image.key.find("wrist") != std::string::npos;
+  }
+
+  // SimplerEnv's benchmark there sends no state unless it is asked to.
+  bool sends_state() const { return choices_.send_state.value_or(asks_for("send_state", true)); }
+
+  std::string what_is_done(std::string_view name, const wire::Value& wanted) const {
+    if (name == "send_state") {
+      if (wanted != wire::Value(sends_state())) {
+        return sends_state() ? "it is sent, because `send_state` says so"
+                             : "it is not sent, because `send_state` says so";
+      }
+      return sends_state() && profile_.state_layout == StateLayout::kNone
+                 ? "the poses are sent, and no state, because the profile has `state.layout = none`"
+                 : "";
+    }
+    if (name == "send_wrist_image") {
+      const bool has = std::any_of(profile_.images.begin(), profile_.images.end(), is_wrist);
+      return wanted == wire::Value(true) && !has
+                 ? "none is sent; a line `image = CAMERA -> wrist` of a profile would"
+                 : "";
+    }
+    for (const Wish& wish : kWishes) {
+      if (wish.name == name) return wish.what_is_done(wanted);
+    }
+    return "vlaprobe does not know it";
+  }
+
+  Status send(std::string type, wire::Value payload, wire::Duration timeout) {
+    if (!socket_) return bad("there is no connection");
+    const Message message{std::move(type), std::move(payload), ++seq_};
+    return socket_->send(vlaeval::to_bytes(message, unix_seconds()), timeout);
+  }
+
+  // The message with that number. An error is the answer to whatever it was sent for: an announced
+  // episode that failed is heard of here.
+  Result<Message> answer_to(std::int64_t seq, Clock::time_point until, wire::Duration stated) {
+    while (true) {
+      const auto left = std::chrono::ceil<wire::Duration>(until - Clock::now());
+      if (left <= wire::Duration::zero()) return bad("no answer in " + wire::seconds_text(stated));
+      auto received = socket_->receive(left);
+      if (!received && Clock::now() >= until) {
+        return bad("no answer in " + wire::seconds_text(stated));
+      }
+      if (!received) return received.failure();
+      if (received->is_text) return answered("the server failed: " + last_lines(received->text()));
+      auto read = vlaeval::from_bytes(received->bytes);
+      if (!read) return answered(read.failure().message);
+      Message message = std::move(*read);
+      if (message.type == "error") {
+        const wire::Value* error = message.payload.find("error");
+        const auto* text = error == nullptr ? nullptr : error->as<std::string>();
+        return answered("the server failed: " +
+                        (text == nullptr ? wire::describe(message.payload) : last_lines(*text)));
+      }
+      if (message.seq == seq) return message;
+    }
+  }
+
+  Profile profile_;
+  wire::Endpoint server_;
+  Choices choices_;
+  std::unique_ptr<wire::WebSocket> socket_;
+  std::int64_t seq_ = 0;
+  wire::Value hello_;
+  std::string task_;
+  Clock::time_point started_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Transport>> make_vlaeval(const Profile& profile,
+                                                const wire::Endpoint& server) {
+  PROBE_ASSIGN(const Choices choices, read_choices(server));
+  return std::unique_ptr<Transport>(std::make_unique<VlaEval>(profile, server, choices));
+}
+
+}  // namespace probe::servers

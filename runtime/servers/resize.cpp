@@ -1,0 +1,174 @@
+// Pillow's separable resampling for 8-bit RGB, and what is built on it.
+#include "runtime/servers/resize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace probe::servers {
+namespace {
+
+// Resample.c: PRECISION_BITS = 32 - 8 - 2.
+constexpr int kPrecision = 22;
+
+// For each output pixel: the first input pixel, and a fixed-point weight for it and those after.
+struct Weights {
+  std::size_t width = 0;  // of a row of `values`
+  std::vector<int> first, count, values;
+};
+
+// Resample.c, precompute_coeffs and normalize_coeffs_8bpc with the triangle of support 1.
+Weights weights_of(int in, int out) {
+  const double scale = static_cast<double>(in) / out;
+  const double support = std::max(scale, 1.0);
+  const double inverse = 1.0 / support;
+  Weights weights;
+  weights.width = static_cast<std::size_t>(std::ceil(support)) * 2 + 1;
+  std::vector<double> row(weights.width);
+  for (int i = 0; i < out; ++i) {
+    const double center = (i + 0.5) * scale;
+    const int first = std::max(static_cast<int>(center - support + 0.5), 0);
+    const int last = std::min(static_cast<int>(center + support + 0.5), in);
+    const int count = last - first;
+    double sum = 0;
+    for (int x = 0; x < count; ++x) {
+      const double distance = std::abs((x + first - center + 0.5) * inverse);
+      row[static_cast<std::size_t>(x)] = distance < 1.0 ? 1.0 - distance : 0.0;
+      sum += row[static_cast<std::size_t>(x)];
+    }
+    for (std::size_t x = 0; x < weights.width; ++x) {
+      double value = x < static_cast<std::size_t>(count) ? row[x] : 0.0;
+      if (sum != 0) value /= sum;
+      weights.values.push_back(static_cast<int>(0.5 + value * (1 << kPrecision)));
+    }
+    weights.first.push_back(first);
+    weights.count.push_back(count);
+  }
+  return weights;
+}
+
+std::uint8_t clipped(int sum) {
+  return static_cast<std::uint8_t>(std::clamp(sum >> kPrecision, 0, 255));
+}
+
+// `lines` lines of `in` pixels become lines of `weights.first.size()`; `step` bytes from a pixel to
+// the next, `stride` from a line to the next.
+struct Axis {
+  std::size_t lines = 0, in_step = 0, in_stride = 0, out_step = 0, out_stride = 0;
+};
+void resample(const std::uint8_t* in, const Weights& weights, const Axis& axis, std::uint8_t* out) {
+  for (std::size_t line = 0; line < axis.lines; ++line) {
+    for (std::size_t i = 0; i < weights.first.size(); ++i) {
+      const int* weight = weights.values.data() + i * weights.width;
+      const std::uint8_t* from =
+          in + line * axis.in_stride + static_cast<std::size_t>(weights.first[i]) * axis.in_step;
+      int red = 1 << (kPrecision - 1), green = red, blue = red;
+      for (int x = 0; x < weights.count[i]; ++x, from += axis.in_step) {
+        red += from[0] * weight[x];
+        green += from[1] * weight[x];
+        blue += from[2] * weight[x];
+      }
+      std::uint8_t* to = out + line * axis.out_stride + i * axis.out_step;
+      to[0] = clipped(red);
+      to[1] = clipped(green);
+      to[2] = clipped(blue);
+    }
+  }
+}
+
+std::size_t bytes_of(int width, int height) {
+  return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3;
+}
+
+// A part of a picture, row by row.
+wire::Bytes cut(const policy::Image& image, int left, int top, int width, int height) {
+  wire::Bytes part(bytes_of(width, height));
+  const std::size_t row = static_cast<std::size_t>(width) * 3;
+  for (int y = 0; y < height; ++y) {
+    const std::size_t from = bytes_of(image.width, top + y) + static_cast<std::size_t>(left) * 3;
+    std::memcpy(part.data() + static_cast<std::size_t>(y) * row, image.rgb.data() + from, row);
+  }
+  return part;
+}
+
+// openpi_client.image_tools.resize_with_pad.
+wire::Bytes pad(const policy::Image& image, int width, int height) {
+  const double ratio = std::max(static_cast<double>(image.width) / width,
+                                static_cast<double>(image.height) / height);
+  const int inner_width = std::max(1, static_cast<int>(image.width / ratio));
+  const int inner_height = std::max(1, static_cast<int>(image.height / ratio));
+  const wire::Bytes inner = resize_bilinear(image, inner_width, inner_height);
+  wire::Bytes whole(bytes_of(width, height), 0);
+  const int left = (width - inner_width) / 2, top = (height - inner_height) / 2;
+  const std::size_t row = static_cast<std::size_t>(inner_width) * 3;
+  for (int y = 0; y < inner_height; ++y) {
+    std::memcpy(whole.data() + bytes_of(width, top + y) + static_cast<std::size_t>(left) * 3,
+                inner.data() + static_cast<std::size_t>(y) * row, row);
+  }
+  return whole;
+}
+
+wire::Bytes crop(const policy::Image& image, int width, int height) {
+  // The largest part of the size's shape; integers, so that every machine cuts the same.
+  const std::int64_t wide = std::int64_t{image.width} * height;
+  const std::int64_t high = std::int64_t{image.height} * width;
+  int part_width = image.width, part_height = image.height;
+  if (wide > high) part_width = std::max(1, static_cast<int>(high / height));
+  if (wide < high) part_height = std::max(1, static_cast<int>(wide / width));
+  const wire::Bytes part = cut(image, (image.width - part_width) / 2,
+                               (image.height - part_height) / 2, part_width, part_height);
+  return resize_bilinear({part_width, part_height, part}, width, height);
+}
+
+wire::Array to_chw_f32(const wire::Bytes& rgb, int width, int height) {
+  const std::size_t pixels = rgb.size() / 3;
+  wire::Array array{"<f4", {3, height, width}, wire::Bytes(rgb.size() * sizeof(float))};
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    for (std::size_t i = 0; i < pixels; ++i) {
+      const float value = static_cast<float>(rgb[i * 3 + channel]) / 255.0F;
+      std::memcpy(array.bytes.data() + (channel * pixels + i) * sizeof value, &value, sizeof value);
+    }
+  }
+  return array;
+}
+
+}  // namespace
+
+wire::Bytes resize_bilinear(const policy::Image& image, int width, int height) {
+  wire::Bytes across(image.rgb.begin(), image.rgb.end());
+  if (width != image.width) {
+    wire::Bytes out(bytes_of(width, image.height));
+    resample(across.data(), weights_of(image.width, width),
+             {static_cast<std::size_t>(image.height), 3, bytes_of(image.width, 1), 3,
+              bytes_of(width, 1)},
+             out.data());
+    across = std::move(out);
+  }
+  if (height == image.height) return across;
+  wire::Bytes out(bytes_of(width, height));
+  resample(across.data(), weights_of(image.height, height),
+           {static_cast<std::size_t>(width), bytes_of(width, 1), 3, bytes_of(width, 1), 3},
+           out.data());
+  return out;
+}
+
+wire::Array to_pixels(const policy::Image& image, const ImageRule& rule) {
+  int width = rule.width, height = rule.height;
+  wire::Bytes rgb;
+  const bool as_rendered = width == 0 || (width == image.width && height == image.height);
+  if (as_rendered) {
+    width = image.width;
+    height = image.height;
+    rgb.assign(image.rgb.begin(), image.rgb.end());
+  } else if (rule.resize == Resize::kPad) {
+    rgb = pad(image, width, height);
+  } else if (rule.resize == Resize::kCrop) {
+    rgb = crop(image, width, height);
+  } else {
+    rgb = resize_bilinear(image, width, height);
+  }
+  if (rule.layout == PixelLayout::kChwF32) return to_chw_f32(rgb, width, height);
+  return wire::array_u8({height, width, 3}, std::move(rgb));
+}
+
+}  // namespace probe::servers

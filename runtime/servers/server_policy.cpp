@@ -1,0 +1,170 @@
+#include "runtime/servers/server_policy.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "runtime/base/sha256.h"
+#include "runtime/servers/conversion.h"
+#include "runtime/servers/resize.h"
+#include "runtime/servers/servers.h"
+
+namespace probe::servers {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr wire::Duration kFirstPause{100};
+constexpr wire::Duration kLongestPause{5000};
+
+wire::Duration to_duration(double seconds) {
+  return wire::Duration(static_cast<std::int64_t>(seconds * 1000));
+}
+
+Result<policy::Image> camera_image(const policy::Observation& observation,
+                                   const std::string& camera) {
+  if (camera.empty()) return observation.image;
+  std::string known;
+  for (const policy::CameraImage& shown : observation.cameras) {
+    if (shown.camera == camera) return shown.image;
+    known += (known.empty() ? "`" : ", `") + std::string(shown.camera) + "`";
+  }
+  return Failure{"policy",
+                 "the profile wants camera `" + camera + "`, the scene has " +
+                     (known.empty() ? "only its first" : known),
+                 ""};
+}
+
+}  // namespace
+
+Result<Request> to_request(const Profile& profile, const policy::Observation& observation) {
+  Request request;
+  request.prompt = to_prompt(profile, observation.prompt);
+  for (const ImageRule& rule : profile.images) {
+    PROBE_ASSIGN(const policy::Image image, camera_image(observation, rule.camera));
+    const auto sides =
+        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    if (sides == 0 || image.rgb.size() != sides * 3) {
+      return Failure{"policy", "a picture has not width x height x 3 bytes", ""};
+    }
+    request.images.push_back({rule.key, to_pixels(image, rule)});
+  }
+  PROBE_ASSIGN(request.state, to_state(profile, observation.proprioception));
+  request.proprioception = observation.proprioception;
+  request.step = observation.step;
+  return request;
+}
+
+policy::Delivery delivery_of(const Request& request) {
+  Hasher pixels;
+  for (const RequestImage& image : request.images)
+    pixels.bytes(std::as_bytes(std::span(image.pixels.bytes)));
+  return {to_hex(sha256(request.prompt)), to_hex(pixels.finish())};
+}
+
+ServerPolicy::ServerPolicy(Profile profile, std::string server,
+                           std::unique_ptr<Transport> transport, policy::QueryMeter* queries)
+    : given_(std::move(profile)),
+      profile_(given_),
+      server_(std::move(server)),
+      transport_(std::move(transport)),
+      queries_(queries),
+      queue_(profile_) {}
+
+ServerPolicy::~ServerPolicy() { drop(); }
+
+Status ServerPolicy::begin(const policy::EpisodeStart& start) {
+  delivery_.reset();
+  queue_.clear();
+  in_episode_ = false;
+  if (!is_open_) PROBE_TRY(connect());
+  if (auto begun = transport_->begin_episode(start, deadlines()); !begun) {
+    drop();
+    return named(begun.failure());
+  }
+  in_episode_ = true;
+  return {};
+}
+
+Result<policy::Action> ServerPolicy::act(const policy::Observation& observation) {
+  if (queue_.wants_answer()) {
+    if (auto asked = ask(observation); !asked) {
+      drop();
+      return named(asked.failure());
+    }
+  }
+  auto action = to_action(profile_, queue_.take());
+  if (!action) return named(action.failure());
+  return action;
+}
+
+void ServerPolicy::end(const policy::EpisodeEnd& end) {
+  if (!in_episode_) return;
+  in_episode_ = false;
+  const auto ended = transport_->end_episode(end, deadlines());
+  if (!ended || profile_.connection == ConnectionUse::kPerEpisode) drop();
+}
+
+Status ServerPolicy::connect() {
+  const auto limit = Clock::now() + to_duration(given_.wait_s);
+  has_answered_ = false;
+  wire::Duration pause = kFirstPause;
+  for (int attempt = 1;; ++attempt) {
+    profile_ = given_;
+    auto opened = transport_->open(deadlines());
+    bool is_answer = opened.ok();
+    if (opened) opened = transport_->adapt(profile_);
+    if (opened) break;
+    transport_->close();
+    is_answer = is_answer || opened.failure().code == kAnswered;
+    Failure failure = named(opened.failure());
+    if (is_answer || failure.code == "usage") return failure;
+    if (Clock::now() + pause > limit) {
+      if (attempt > 1) failure.message += " (tried " + std::to_string(attempt) + " times)";
+      return failure;
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, kLongestPause);
+  }
+  is_open_ = true;
+  notes_ = transport_->notes();
+  queue_ = ChunkQueue(profile_);
+  return {};
+}
+
+Status ServerPolicy::ask(const policy::Observation& observation) {
+  if (!in_episode_) return Failure{"policy", "the connection was lost in this episode", ""};
+  PROBE_ASSIGN(const Request request, to_request(profile_, observation));
+  if (!delivery_) delivery_ = delivery_of(request);
+  auto answer = [&] {
+    const policy::QueryMeter::InFlight flight(queries_);
+    return transport_->ask(request, deadlines());
+  }();
+  if (!answer) return answer.failure();
+  has_answered_ = true;
+  return queue_.put(std::move(*answer));
+}
+
+Deadlines ServerPolicy::deadlines() const {
+  return {to_duration(profile_.connect_s),
+          to_duration(has_answered_ ? profile_.answer_s
+                                    : std::max(profile_.first_s, profile_.answer_s))};
+}
+
+Failure ServerPolicy::named(Failure failure) const {
+  if (failure.where.empty()) failure.where = server_;
+  if (failure.code == kAnswered) failure.code = "policy";
+  // A server may repeat the key that it refuses; this text is stored.
+  if (const std::string key = api_key(); !key.empty()) {
+    for (std::size_t at = 0; (at = failure.message.find(key, at)) != std::string::npos; ++at) {
+      failure.message.replace(at, key.size(), "*");
+    }
+  }
+  return failure;
+}
+
+void ServerPolicy::drop() {
+  if (is_open_) transport_->close();
+  is_open_ = in_episode_ = false;
+}
+
+}  // namespace probe::servers

@@ -1,0 +1,64 @@
+// A policy that is asked over a wire: the part that all servers share. Requests in the profile's
+// form, chunks, conversions, connections that are made again; what goes over the wire is a
+// Transport's.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/policy/policy.h"
+#include "runtime/policy/query_meter.h"
+#include "runtime/servers/chunk.h"
+#include "runtime/servers/profile.h"
+#include "runtime/servers/transport.h"
+
+namespace probe::servers {
+
+// The request that the profile makes of an observation. Fails (code "policy") naming the cameras
+// there are when one is missing, and as to_state does.
+Result<Request> to_request(const Profile& profile, const policy::Observation& observation);
+
+// Of what a request carries.
+policy::Delivery delivery_of(const Request& request);
+
+// One connection, used by one world. A failure in act() ends the episode: the connection is
+// dropped, and the next begin() makes another.
+class ServerPolicy : public policy::Policy {
+ public:
+  // `server` is HOST:PORT, for messages. `queries` may be null, and outlives this.
+  ServerPolicy(Profile profile, std::string server, std::unique_ptr<Transport> transport,
+               policy::QueryMeter* queries);
+  ~ServerPolicy() override;
+
+  // Connects if there is no connection, trying again with growing pauses until the profile's
+  // `timeout.wait_s` have passed. Fails (code "policy", at once where a server answers with an
+  // error; or "usage", at once, where the profile and the server do not go together).
+  Status begin(const policy::EpisodeStart& start) override;
+  Result<policy::Action> act(const policy::Observation& observation) override;
+  void end(const policy::EpisodeEnd& end) override;
+  std::optional<policy::Delivery> delivery() const override { return delivery_; }
+  std::vector<std::string> notes() const override { return notes_; }
+
+ private:
+  Status connect();
+  Status ask(const policy::Observation& observation);
+  Deadlines deadlines() const;
+  Failure named(Failure failure) const;
+  void drop();
+
+  Profile given_;    // as chosen
+  Profile profile_;  // as the connected server has adapted it
+  std::string server_;
+  std::unique_ptr<Transport> transport_;
+  policy::QueryMeter* queries_;
+  ChunkQueue queue_;
+  std::optional<policy::Delivery> delivery_;
+  std::vector<std::string> notes_;  // of the transport, once there was a connection
+  bool is_open_ = false;
+  bool has_answered_ = false;  // this connection, once
+  bool in_episode_ = false;    // begin_episode was fine and the connection stands since
+};
+
+}  // namespace probe::servers

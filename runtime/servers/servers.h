@@ -1,0 +1,43 @@
+// Policies that are servers: from //HOST:PORT?profile=NAME to a ServerPolicy. The table of
+// protocols is here and nowhere else.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/policy/policy.h"
+#include "runtime/policy/query_meter.h"
+#include "runtime/servers/profile.h"
+#include "runtime/servers/transport.h"
+#include "runtime/wire/endpoint.h"
+
+namespace probe::servers {
+
+// Where a server is and how it is spoken to. `server.options` are those of the protocol alone
+// (intact's `model`); the profile has taken the others.
+struct ServerChoice {
+  Profile profile;
+  wire::Endpoint server;
+};
+
+// `argument` is what stands after "openpi:". Options are `profile` (default: the protocol's own),
+// any field of a profile, which then stands for the file's, and those of the protocol. Fails (code
+// "usage") on others, with the nearest, and on a profile of another protocol.
+Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument);
+
+// Without the address: what does the same at another address has the same.
+std::string describe(const ServerChoice& choice);
+
+Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice);
+
+Result<std::unique_ptr<policy::Policy>> make_server(Protocol protocol, std::string_view argument,
+                                                    policy::QueryMeter* queries);
+
+// What is sent as the Api-Key, from the environment's VLAPROBE_API_KEY; empty: none. It must not
+// get into messages or files.
+std::string api_key();
+
+}  // namespace probe::servers

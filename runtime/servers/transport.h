@@ -1,0 +1,98 @@
+// What every policy server is asked and answers, whatever it speaks: a Transport turns these into
+// its protocol's messages. One small class a protocol; profile, chunks and conversions are
+// ServerPolicy's.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/policy/policy.h"
+#include "runtime/servers/profile.h"
+#include "runtime/wire/duration.h"
+#include "runtime/wire/endpoint.h"
+#include "runtime/wire/value.h"
+
+namespace probe::servers {
+
+struct RequestImage {
+  std::string key;
+  wire::Array pixels;  // resized and laid out as the profile asks: u8 [h, w, 3] or f32 [3, h, w]
+};
+
+struct Request {
+  std::string prompt;                // in the profile's form
+  std::vector<RequestImage> images;  // in the profile's order, at least one
+  std::vector<double> state;         // in the profile's layout, normalised if it asks; may be empty
+  // As measured, for protocols with a state of their own form.
+  policy::Proprioception proprioception;
+  int step = 0;  // control steps done in the episode
+};
+
+// [dx dy dz, three numbers of rotation, gripper] as the server sent them, one a control step.
+using RawAction = std::array<double, 7>;
+
+// The times a Transport is given for one exchange; it must be back when they are over.
+struct Deadlines {
+  wire::Duration connect{10'000};
+  wire::Duration answer{60'000};
+};
+
+// The code of a failure that is an answer: a server is there and says no, so that asking it the
+// same again is of no use. ServerPolicy makes "policy" of it.
+inline constexpr const char* kAnswered = "answered";
+Failure answered(std::string message);
+
+// Any method that fails (code "policy" or kAnswered, where = the server's HOST:PORT) has left the
+// connection in an unknown state: the caller closes and opens again. No message holds a secret.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+
+  // Connects and does what the protocol wants first (metadata, hello, which model). One attempt.
+  virtual Status open(const Deadlines& deadlines) = 0;
+  // After open(): what the server said it wants, where the profile leaves it open (a picture's
+  // size). Fails (code "usage") where the two do not go together.
+  virtual Status adapt(Profile& /*profile*/) const { return {}; }
+  // Drops the connection, if there is one; returns at once.
+  virtual void close() = 0;
+
+  virtual Status begin_episode(const policy::EpisodeStart& /*start*/,
+                               const Deadlines& /*deadlines*/) {
+    return {};
+  }
+  // At least one action, each of finite numbers; see to_actions.
+  virtual Result<std::vector<RawAction>> ask(const Request& request,
+                                             const Deadlines& deadlines) = 0;
+  // After an episode whose begin_episode was fine and whose connection still stands.
+  virtual Status end_episode(const policy::EpisodeEnd& /*end*/, const Deadlines& /*deadlines*/) {
+    return {};
+  }
+
+  // Sentences for the end of a run: what the server asked for that is not done. After open().
+  virtual std::vector<std::string> notes() const { return {}; }
+  // What the server said of itself, a line each, for `policy test`; after open().
+  virtual std::vector<std::string> remarks() const { return {}; }
+};
+
+// An answer's numbers as actions: shapes [7], [n, 7], and those with leading dimensions of 1. Fails
+// (code "policy") on other shapes, on nothing, on more than 1000 actions, on numbers that are not
+// finite; the message says what was expected and what came.
+Result<std::vector<RawAction>> to_actions(const wire::Value& answer);
+
+// The end of a text that a server sent, a traceback usually: its last lines on one, without what
+// could repaint a terminal, a few hundred characters at most.
+std::string last_lines(std::string_view text);
+
+// Fails (code "policy") where a map in it has a key twice: servers read the last and never see the
+// others.
+Status check_distinct_keys(const wire::Value& request);
+
+// A state as the array that is sent, of the profile's type.
+wire::Array state_array(const Profile& profile, const std::vector<double>& state);
+
+}  // namespace probe::servers

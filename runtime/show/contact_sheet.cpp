@@ -1,0 +1,97 @@
+// First and last pictures of stored episodes, drawn again from the poses in their traces: no
+// physics, no policy.
+#include "runtime/show/contact_sheet.h"
+
+#include <algorithm>
+
+#include "runtime/base/glob.h"
+#include "runtime/scene/image.h"
+#include "runtime/show/picture_grid.h"
+#include "runtime/stage/assets.h"
+#include "runtime/stage/scene_view.h"
+#include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
+
+namespace probe::show {
+namespace {
+
+constexpr std::array<std::uint8_t, 3> kGood = {110, 230, 120}, kBad = {255, 150, 110};
+
+Result<Picture> draw(stage::SceneView& view, std::span<const double> q,
+                     const vm::StepSample& sample, std::size_t objects,
+                     const SheetOptions& options) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < std::min(objects, sample.bodies.size()); ++i) {
+    poses.push_back({sample.bodies[i].origin, sample.bodies[i].rotation});
+  }
+  PROBE_ASSIGN(const auto frames, view.render_all(q, poses));
+  PROBE_ASSIGN(const Picture shown, show_frames(frames, options.camera));
+  return shrink_to(shown, options.cell_width);
+}
+
+std::string caption(const store::ResultRow& row) {
+  std::string text =
+      row.task + " " + std::to_string(row.episode) + "/" + std::to_string(row.seed) + ":";
+  if (row.invalid) return text + " invalid";
+  for (const store::MetricValue& metric : row.metrics) {
+    if (metric.is_bool && metric.value != 0) text += " " + metric.name;
+  }
+  return text;
+}
+
+bool succeeded(const store::ResultRow& row) {
+  return !row.invalid &&
+         std::any_of(row.metrics.begin(), row.metrics.end(), [](const store::MetricValue& m) {
+           return m.name == "success" && m.value != 0;
+         });
+}
+
+}  // namespace
+
+Status write_contact_sheet(const std::string& dir, const std::string& png_path,
+                           const SheetOptions& options) {
+  PROBE_ASSIGN(auto rows, store::read_results(dir));
+  std::erase_if(
+      rows, [&](const store::ResultRow& row) { return !matches_glob(options.tasks, row.task); });
+  if (rows.empty()) return Failure{"usage", "no stored episode of `" + options.tasks + "`", dir};
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
+  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
+
+  // Rows are ordered by task: one view at a time is enough.
+  std::string task_name;
+  std::unique_ptr<stage::SceneView> view;
+  std::size_t objects = 0;
+  std::vector<GridCell> cells;
+  for (const store::ResultRow& row : rows) {
+    if (row.task != task_name) {
+      const auto task = plan.find_task(row.task);
+      if (!task)
+        return Failure{"store", "its plan has no task `" + row.task + "`", store::plan_path(dir)};
+      const std::uint32_t tasks[] = {*task};
+      PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
+      PROBE_ASSIGN(view, stage::SceneView::create(plan, *task, std::move(assets)));
+      objects = 2 + plan.tasks()[*task].distractors;
+      task_name = row.task;
+    }
+    // An invalid episode may have ended before its start: then there is nothing to draw.
+    auto read = row.invalid ? store::read_trace_prefix(row.trace) : store::read_stored_trace(row);
+    if (!read && !row.invalid) return read.failure();
+    if (!read || !read->start || read->header.task != row.task) continue;
+    const store::Trace& trace = *read;
+    GridCell cell;
+    cell.caption = caption(row);
+    cell.color = succeeded(row) ? kGood : kBad;
+    PROBE_ASSIGN(Picture first, draw(*view, trace.start->q, trace.start->sample, objects, options));
+    cell.pictures.assign(2, std::move(first));
+    if (!trace.steps.empty()) {
+      const store::TraceStep& last = trace.steps.back();
+      PROBE_ASSIGN(cell.pictures[1], draw(*view, last.q, last.sample, objects, options));
+    }
+    cells.push_back(std::move(cell));
+  }
+  if (cells.empty()) return Failure{"usage", "no stored episode got as far as its start", dir};
+  const Picture sheet = lay_out_grid(cells, options.columns);
+  return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
+}
+
+}  // namespace probe::show

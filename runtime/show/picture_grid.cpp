@@ -1,0 +1,70 @@
+// Arithmetic of a contact sheet.
+#include "runtime/show/picture_grid.h"
+
+#include <algorithm>
+
+#include "runtime/base/check.h"
+
+namespace probe::show {
+namespace {
+
+constexpr int kMargin = 4, kCaption = kGlyphHeight + 4;
+
+}  // namespace
+
+Picture lay_out_grid(const std::vector<GridCell>& cells, int columns) {
+  PROBE_CHECK(!cells.empty() && !cells[0].pictures.empty(), "a grid has pictures");
+  columns = std::max(1, std::min(columns, static_cast<int>(cells.size())));
+  const int rows = (static_cast<int>(cells.size()) + columns - 1) / columns;
+  const int width = cells[0].pictures[0].width, height = cells[0].pictures[0].height;
+  const int strip = static_cast<int>(cells[0].pictures.size()) * (width + 1) - 1;
+  const int step_x = strip + kMargin, step_y = height + kCaption + kMargin;
+  Picture sheet = make_picture(columns * step_x + kMargin, rows * step_y + kMargin, {24, 24, 28});
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    int x = kMargin + static_cast<int>(i) % columns * step_x;
+    const int y = kMargin + static_cast<int>(i) / columns * step_y;
+    draw_text(sheet, x, y + height + 3, fit_text(cells[i].caption, strip, 1), cells[i].color);
+    for (const Picture& picture : cells[i].pictures) {
+      paste(sheet, picture, x, y);
+      x += width + 1;
+    }
+  }
+  return sheet;
+}
+
+Picture shrink_to(const Picture& picture, int cell_width) {
+  cell_width = std::clamp(cell_width, 1, picture.width);
+  return shrink(picture, cell_width, std::max(1, cell_width * picture.height / picture.width));
+}
+
+Picture join_frames(std::span<const stage::CameraFrame> frames) {
+  PROBE_CHECK(!frames.empty(), "a task has a camera");
+  constexpr int kGap = 2;
+  int width = -kGap, height = 0;
+  for (const stage::CameraFrame& seen : frames) {
+    width += kGap + seen.frame.width;
+    height = std::max(height, seen.frame.height);
+  }
+  Picture all = make_picture(width, height, {0, 0, 0});
+  int x = 0;
+  for (const stage::CameraFrame& seen : frames) {
+    // A small one in the middle of the height: there no strip of words lies over it.
+    paste(all, copy_picture(seen.frame.width, seen.frame.height, seen.frame.rgb), x,
+          (height - seen.frame.height) / 2);
+    x += seen.frame.width + kGap;
+  }
+  return all;
+}
+
+Result<Picture> show_frames(std::span<const stage::CameraFrame> frames, const std::string& camera) {
+  if (camera.empty()) return join_frames(frames);
+  std::string names;
+  for (const stage::CameraFrame& seen : frames) {
+    if (seen.camera == camera)
+      return copy_picture(seen.frame.width, seen.frame.height, seen.frame.rgb);
+    names.append(names.empty() ? "`" : ", `").append(seen.camera).append("`");
+  }
+  return Failure{"usage", "the task has no camera `" + camera + "`, it has " + names, "--camera"};
+}
+
+}  // namespace probe::show

@@ -1,0 +1,32 @@
+// Pictures of one size in rows and columns, with a line of words under each cell.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/show/overlay.h"
+#include "runtime/stage/scene_view.h"
+
+namespace probe::show {
+
+struct GridCell {
+  std::vector<Picture> pictures;  // side by side; as many in every cell, all of one size
+  std::string caption;
+  std::array<std::uint8_t, 3> color{200, 200, 200};
+};
+
+// `cells` is not empty.
+Picture lay_out_grid(const std::vector<GridCell>& cells, int columns);
+
+// A picture as wide as a cell's.
+Picture shrink_to(const Picture& picture, int cell_width);
+
+// What people are shown of the cameras of a task: their pictures side by side, or the one called
+// `camera` if that is not empty.
+Picture join_frames(std::span<const stage::CameraFrame> frames);
+Result<Picture> show_frames(std::span<const stage::CameraFrame> frames, const std::string& camera);
+
+}  // namespace probe::show

@@ -1,0 +1,59 @@
+// Drop, settle, one picture: for every start of a task.
+#include "runtime/show/preview.h"
+
+#include "runtime/scene/image.h"
+#include "runtime/show/picture_grid.h"
+#include "runtime/stage/episode_world.h"
+#include "runtime/stage/scene_view.h"
+
+namespace probe::show {
+
+Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::string& png_path,
+                     const SheetOptions& options) {
+  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
+  const std::uint32_t tasks[] = {task};
+  PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
+  PROBE_ASSIGN(auto world, stage::EpisodeWorld::create(plan, task, assets));
+  PROBE_ASSIGN(auto view, stage::SceneView::create(plan, task, assets));
+  const plan::TaskRecord& record = plan.tasks()[task];
+  std::vector<GridCell> cells;
+  for (std::uint32_t index = 0; index < plan.episodes(record).size(); ++index) {
+    PROBE_TRY(world->reset(index));
+    PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
+    PROBE_ASSIGN(const Picture shown, show_frames(frames, options.camera));
+    GridCell cell;
+    cell.pictures.push_back(shrink_to(shown, options.cell_width));
+    cell.caption = std::to_string(index);
+    if (index == 0) cell.caption.append("  ").append(plan.text(record.prompt));
+    cells.push_back(std::move(cell));
+  }
+  if (cells.empty()) {
+    return Failure{"usage", "task `" + std::string(plan.text(record.name)) + "` has no starts", ""};
+  }
+  const Picture sheet = lay_out_grid(cells, options.columns);
+  return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
+}
+
+Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t index,
+                   const std::string& png_path, const std::string& assets_folder,
+                   const std::string& camera) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  const std::size_t count = plan.episodes(record).size();
+  if (index >= count) {
+    return Failure{"usage",
+                   "task `" + std::string(plan.text(record.name)) + "` has " +
+                       std::to_string(count) + " starts, counted from 0",
+                   ""};
+  }
+  PROBE_ASSIGN(const std::string root, stage::find_asset_root(assets_folder));
+  const std::uint32_t tasks[] = {task};
+  PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
+  PROBE_ASSIGN(auto world, stage::EpisodeWorld::create(plan, task, assets));
+  PROBE_ASSIGN(auto view, stage::SceneView::create(plan, task, assets));
+  PROBE_TRY(world->reset(index));
+  PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
+  PROBE_ASSIGN(const Picture shown, show_frames(frames, camera));
+  return scene::write_png(png_path, shown.width, shown.height, shown.rgb);
+}
+
+}  // namespace probe::show

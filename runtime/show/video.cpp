@@ -1,0 +1,203 @@
+// libx264 through libavcodec, one thread, constant quality; the mp4 muxer in bit-exact mode with
+// its index in front.
+#include "runtime/show/video.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/imgutils.h>
+#include <libavutil/opt.h>
+#include <libswscale/swscale.h>
+}
+
+#include <cstring>
+
+namespace probe::show {
+namespace {
+
+std::string said(int code) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(code, text, sizeof text);
+  return text;
+}
+
+class Mp4Writer final : public VideoWriter {
+ public:
+  explicit Mp4Writer(std::string path) : path_(std::move(path)) {}
+  ~Mp4Writer() override {
+    sws_freeContext(scaler_);
+    av_packet_free(&packet_);
+    av_frame_free(&frame_);
+    avcodec_free_context(&codec_);
+    if (format_ != nullptr && format_->pb != nullptr) avio_closep(&format_->pb);
+    avformat_free_context(format_);
+  }
+
+  Status begin(int width, int height, int frames_per_second) {
+    if (width <= 0 || height <= 0 || width % 2 != 0 || height % 2 != 0) {
+      return failed("a video has even sides", 0);
+    }
+    int code = avformat_alloc_output_context2(&format_, nullptr, "mp4", path_.c_str());
+    if (code < 0) return failed("no mp4 muxer", code);
+    format_->flags |= AVFMT_FLAG_BITEXACT;
+    const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
+    if (encoder == nullptr) return failed("libavcodec has no libx264", 0);
+    codec_ = avcodec_alloc_context3(encoder);
+    frame_ = av_frame_alloc();
+    packet_ = av_packet_alloc();
+    stream_ = avformat_new_stream(format_, nullptr);
+    if (codec_ == nullptr || frame_ == nullptr || packet_ == nullptr || stream_ == nullptr) {
+      return failed("no memory", 0);
+    }
+    codec_->width = width;
+    codec_->height = height;
+    codec_->pix_fmt = AV_PIX_FMT_YUV420P;
+    codec_->time_base = {1, frames_per_second};
+    codec_->framerate = {frames_per_second, 1};
+    codec_->thread_count = 1;
+    codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT;
+    av_opt_set(codec_->priv_data, "preset", "veryfast", 0);
+    av_opt_set(codec_->priv_data, "crf", "20", 0);
+    // x264's own threads would cut the picture by the number of cores.
+    av_opt_set(codec_->priv_data, "x264-params", "threads=1:lookahead-threads=1:sliced-threads=0",
+               0);
+    code = avcodec_open2(codec_, encoder, nullptr);
+    if (code < 0) return failed("libx264 does not open", code);
+    stream_->time_base = codec_->time_base;
+    stream_->avg_frame_rate = codec_->framerate;
+    code = avcodec_parameters_from_context(stream_->codecpar, codec_);
+    if (code < 0) return failed("stream parameters", code);
+
+    frame_->format = codec_->pix_fmt;
+    frame_->width = width;
+    frame_->height = height;
+    code = av_frame_get_buffer(frame_, 0);
+    if (code < 0) return failed("no memory", code);
+    scaler_ =
+        sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
+                       SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
+    if (scaler_ == nullptr) return failed("no colour conversion", 0);
+
+    code = avio_open(&format_->pb, path_.c_str(), AVIO_FLAG_WRITE);
+    if (code < 0) return failed("cannot be made", code);
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "movflags", "faststart", 0);
+    code = avformat_write_header(format_, &options);
+    av_dict_free(&options);
+    if (code < 0) return failed("cannot be written", code);
+    return {};
+  }
+
+  Status add(std::span<const std::uint8_t> rgb) override {
+    const std::size_t wanted =
+        3 * static_cast<std::size_t>(codec_->width) * static_cast<std::size_t>(codec_->height);
+    if (rgb.size() != wanted) return failed("a frame of another size", 0);
+    int code = av_frame_make_writable(frame_);
+    if (code < 0) return failed("no memory", code);
+    const std::uint8_t* rows[] = {rgb.data()};
+    const int strides[] = {3 * codec_->width};
+    sws_scale(scaler_, rows, strides, 0, codec_->height, frame_->data, frame_->linesize);
+    frame_->pts = next_++;
+    return encode(frame_);
+  }
+
+  Status finish() override {
+    PROBE_TRY(encode(nullptr));
+    int code = av_write_trailer(format_);
+    if (code < 0) return failed("cannot be written", code);
+    code = avio_closep(&format_->pb);
+    if (code < 0) return failed("cannot be written", code);
+    return {};
+  }
+
+ private:
+  Failure failed(const char* what, int code) const {
+    return {"video", code == 0 ? std::string(what) : std::string(what) + ": " + said(code), path_};
+  }
+
+  Status encode(const AVFrame* frame) {
+    int code = avcodec_send_frame(codec_, frame);
+    if (code < 0) return failed("cannot be encoded", code);
+    for (;;) {
+      code = avcodec_receive_packet(codec_, packet_);
+      if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return {};
+      if (code < 0) return failed("cannot be encoded", code);
+      packet_->duration = 1;
+      packet_->stream_index = stream_->index;
+      av_packet_rescale_ts(packet_, codec_->time_base, stream_->time_base);
+      code = av_interleaved_write_frame(format_, packet_);
+      if (code < 0) return failed("cannot be written", code);
+    }
+  }
+
+  std::string path_;
+  AVFormatContext* format_ = nullptr;
+  AVCodecContext* codec_ = nullptr;
+  AVStream* stream_ = nullptr;
+  AVFrame* frame_ = nullptr;
+  AVPacket* packet_ = nullptr;
+  SwsContext* scaler_ = nullptr;
+  std::int64_t next_ = 0;
+};
+
+// Owns what decoding needs, so that every way out frees it.
+struct Decoder {
+  AVFormatContext* format = nullptr;
+  AVCodecContext* codec = nullptr;
+  AVPacket* packet = av_packet_alloc();
+  AVFrame* frame = av_frame_alloc();
+  ~Decoder() {
+    av_frame_free(&frame);
+    av_packet_free(&packet);
+    avcodec_free_context(&codec);
+    avformat_close_input(&format);
+  }
+};
+
+}  // namespace
+
+Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path, int width,
+                                                         int height, int frames_per_second) {
+  av_log_set_level(AV_LOG_ERROR);  // x264 tells its settings on stderr otherwise
+  auto writer = std::make_unique<Mp4Writer>(path);
+  PROBE_TRY(writer->begin(width, height, frames_per_second));
+  return std::unique_ptr<VideoWriter>(std::move(writer));
+}
+
+Result<VideoInfo> inspect_video(const std::string& path) {
+  const auto failed = [&](const char* what, int code) {
+    return Failure{"video", std::string(what) + ": " + said(code), path};
+  };
+  Decoder d;
+  int code = avformat_open_input(&d.format, path.c_str(), nullptr, nullptr);
+  if (code < 0) return failed("cannot be opened", code);
+  code = avformat_find_stream_info(d.format, nullptr);
+  if (code < 0) return failed("no streams", code);
+  const int index = av_find_best_stream(d.format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (index < 0) return failed("no video stream", index);
+  const AVStream* stream = d.format->streams[index];
+  const AVCodec* decoder = avcodec_find_decoder(stream->codecpar->codec_id);
+  d.codec = avcodec_alloc_context3(decoder);
+  if (d.codec == nullptr) return failed("no memory", AVERROR(ENOMEM));
+  avcodec_parameters_to_context(d.codec, stream->codecpar);
+  code = avcodec_open2(d.codec, decoder, nullptr);
+  if (code < 0) return failed("no decoder", code);
+
+  VideoInfo info{stream->codecpar->width, stream->codecpar->height, 0,
+                 av_q2d(stream->avg_frame_rate), avcodec_get_name(stream->codecpar->codec_id)};
+  bool reading = true;
+  while (reading) {
+    reading = av_read_frame(d.format, d.packet) >= 0;
+    if (reading && d.packet->stream_index != index) {
+      av_packet_unref(d.packet);
+      continue;
+    }
+    code = avcodec_send_packet(d.codec, reading ? d.packet : nullptr);
+    av_packet_unref(d.packet);
+    if (code < 0) return failed("cannot be decoded", code);
+    while (avcodec_receive_frame(d.codec, d.frame) >= 0) ++info.frames;
+  }
+  return info;
+}
+
+}  // namespace probe::show

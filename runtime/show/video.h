@@ -1,0 +1,32 @@
+// H.264 in an mp4 file: yuv420p, index in front. Same frames, same bytes. The only user of FFmpeg's
+// headers is video.cpp.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "runtime/base/result.h"
+
+namespace probe::show {
+
+class VideoWriter {
+ public:
+  // Sizes in pixels, even; fails (code "video") naming the path.
+  static Result<std::unique_ptr<VideoWriter>> create(const std::string& path, int width, int height,
+                                                     int frames_per_second);
+  virtual ~VideoWriter() = default;
+  virtual Status add(std::span<const std::uint8_t> rgb) = 0;  // width * height * 3, row 0 on top
+  virtual Status finish() = 0;
+};
+
+struct VideoInfo {
+  int width = 0, height = 0, frames = 0;
+  double frames_per_second = 0;
+  std::string codec;  // "h264"
+};
+// Decodes the whole file; for tests and `doctor`.
+Result<VideoInfo> inspect_video(const std::string& path);
+
+}  // namespace probe::show

@@ -1,0 +1,276 @@
+// Reads, checks and shares the files of a plan. A file's bytes are checked before anything parses
+// them.
+#include "runtime/stage/assets.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "runtime/plan/plan.h"
+#include "runtime/scene/collision_mesh.h"
+#include "runtime/scene/hull.h"
+#include "runtime/scene/image.h"
+#include "runtime/scene/mesh_cache.h"
+
+namespace probe::stage {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Read {
+  std::string bytes;
+  bool ok = false;
+};
+
+Read read_bytes(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || fs::is_directory(path)) return {};
+  std::ostringstream all;
+  all << file.rdbuf();
+  return {std::move(all).str(), file.good() || file.eof()};
+}
+
+std::string folder_of_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? std::string() : program.parent_path().string();
+}
+
+scene::CollisionShape make_primitive(const robot::Primitive& primitive) {
+  switch (primitive.kind) {
+    case robot::Primitive::Kind::kSphere:
+      return scene::make_sphere_shape(primitive.half.x());
+    case robot::Primitive::Kind::kCylinder:
+      return scene::make_cylinder_shape(primitive.half.x(), primitive.half.z());
+    case robot::Primitive::Kind::kBox:
+      break;
+  }
+  return scene::make_box_shape(primitive.half);
+}
+
+// Each collision mesh of a link, one convex part a mesh, and its primitives, in the link's frame.
+Result<std::shared_ptr<const scene::CollisionShape>> load_link_shape(
+    const robot::Link& link, const std::string& urdf_folder, const scene::MeshLimits& limits) {
+  std::vector<std::vector<Vec3>> components;
+  for (const robot::MeshRef& ref : link.collisions) {
+    PROBE_ASSIGN(scene::TriangleSoup soup,
+                 scene::load_triangles(urdf_folder + ref.path, ref.scale, limits));
+    for (Vec3& point : soup.vertices) point = ref.origin.apply(point);
+    components.push_back(std::move(soup.vertices));
+  }
+  scene::CollisionShape shape;
+  if (!components.empty()) {
+    PROBE_ASSIGN(shape, scene::make_collision_shape(components, link.name));
+  }
+  if (!link.primitives.empty()) {
+    std::vector<scene::PlacedShape> all;
+    if (!components.empty()) all.push_back({std::move(shape), Pose{}});
+    for (const robot::Primitive& primitive : link.primitives) {
+      all.push_back({make_primitive(primitive), primitive.origin});
+    }
+    shape = scene::join_shapes(std::move(all));
+  }
+  return std::shared_ptr<const scene::CollisionShape>(
+      std::make_shared<scene::CollisionShape>(std::move(shape)));
+}
+
+}  // namespace
+
+Result<std::string> find_asset_root(std::string_view chosen) {
+  // A place that somebody named is the only one looked at.
+  const auto only = [](std::string_view path, const char* who) -> Result<std::string> {
+    if (fs::is_directory(path)) return std::string(path);
+    return Failure{"asset", std::string("the asset folder given by ") + who + " is not there",
+                   std::string(path)};
+  };
+  if (!chosen.empty()) return only(chosen, "--assets");
+  if (const char* named = std::getenv("VLAPROBE_ASSETS"); named != nullptr && *named != '\0') {
+    return only(named, "VLAPROBE_ASSETS");
+  }
+  std::string looked;
+  const std::string beside = folder_of_program();
+  for (const std::string& place : {beside.empty() ? beside : beside + "/../assets",
+                                   std::string(VLAPROBE_BUILT_FROM) + "/assets"}) {
+    if (place.empty()) continue;
+    // A build folder has an `assets` too, without a manifest.
+    if (fs::exists(place + "/manifest.json")) return fs::path(place).lexically_normal().string();
+    looked += (looked.empty() ? "" : ", ") + place;
+  }
+  return Failure{
+      "asset",
+      "no asset folder; looked at " + looked + "; name one with --assets or VLAPROBE_ASSETS", ""};
+}
+
+class SharedAssets::Loader {
+ public:
+  Loader(const plan::Plan& plan, SharedAssets& assets) : plan_(plan), assets_(assets) {}
+
+  Status task(const plan::TaskRecord& task) {
+    const plan::SceneRecord& scene = plan_.scenes()[task.scene];
+    for (const std::uint32_t visual : {scene.backdrop, scene.fixture_visual}) {
+      if (visual != plan::kNone) PROBE_TRY(mesh(visual));
+    }
+    if (scene.fixture_collision != plan::kNone) PROBE_TRY(shape(scene.fixture_collision));
+    for (const plan::ViewRecord& view : plan_.views(task)) {
+      if (view.photo != plan::kNone) PROBE_TRY(photo(view.photo));
+    }
+    for (const plan::BodyRecord& body : plan_.bodies(task)) {
+      if (body.kind != static_cast<std::uint32_t>(plan::BodyKind::kObject)) continue;
+      const plan::ObjectRecord& object = plan_.objects()[body.index];
+      if (object.visual != plan::kNone) PROBE_TRY(mesh(object.visual));
+      if (object.collision != plan::kNone) PROBE_TRY(shape(object.collision));
+    }
+    return robot(plan_.robots()[scene.robot]);
+  }
+
+ private:
+  std::string path_of(std::uint32_t asset) const {
+    return (fs::path(assets_.root_) / plan_.text(plan_.assets()[asset].path)).string();
+  }
+
+  // That the file is there with the plan's bytes. Each file once.
+  Status verify(std::uint32_t asset) {
+    if (!verified_.insert(asset).second) return {};
+    const plan::AssetRecord& record = plan_.assets()[asset];
+    const std::string name(plan_.text(record.path));
+    if (fs::path(name).is_absolute() ||
+        fs::path(name).lexically_normal().string().starts_with("..")) {
+      return Failure{"asset", "the plan names a file outside the asset folder", name};
+    }
+    const Read file = read_bytes(path_of(asset));
+    if (!file.ok)
+      return Failure{
+          "asset",
+          "this file of the plan is not in " + assets_.root_ + "; --assets names another folder",
+          name};
+    const Sha256 hash = sha256(std::string_view(file.bytes));
+    if (file.bytes.size() != record.byte_size || hash.bytes != record.sha256) {
+      return Failure{"asset", "its bytes are not the ones the plan was built with", name};
+    }
+    return {};
+  }
+
+  Status mesh(std::uint32_t asset) {
+    if (assets_.meshes_.contains(asset)) return {};
+    PROBE_TRY(verify(asset));
+    PROBE_ASSIGN(assets_.meshes_[asset], scene::shared_mesh(path_of(asset), {1, 1, 1}, limits()));
+    return {};
+  }
+
+  Status shape(std::uint32_t asset) {
+    if (assets_.shapes_.contains(asset)) return {};
+    PROBE_TRY(verify(asset));
+    PROBE_ASSIGN(scene::CollisionShape shape,
+                 scene::load_collision_mesh(path_of(asset), {1, 1, 1}, limits()));
+    assets_.shapes_[asset] = std::make_shared<scene::CollisionShape>(std::move(shape));
+    return {};
+  }
+
+  Status photo(std::uint32_t asset) {
+    if (assets_.photos_.contains(asset)) return {};
+    PROBE_TRY(verify(asset));
+    PROBE_ASSIGN(scene::Texture texture, scene::load_image(path_of(asset)));
+    assets_.photos_[asset] = std::make_shared<scene::Texture>(std::move(texture));
+    return {};
+  }
+
+  Status robot(const plan::RobotRecord& record) {
+    if (assets_.robots_.contains(record.urdf)) return {};
+    PROBE_TRY(verify(record.urdf));
+    std::set<std::string> known;
+    for (const std::uint32_t asset : plan_.meshes(record)) {
+      PROBE_TRY(verify(asset));
+      known.insert(fs::path(plan_.text(plan_.assets()[asset].path)).lexically_normal().string());
+    }
+    auto parts = std::make_unique<RobotParts>();
+    PROBE_ASSIGN(parts->model, robot::load_urdf(path_of(record.urdf)));
+    const fs::path folder = fs::path(plan_.text(plan_.assets()[record.urdf].path)).parent_path();
+    const std::string prefix = (fs::path(assets_.root_) / folder).string() + "/";
+    for (std::size_t i = 0; i < parts->model.links.size(); ++i) {
+      const robot::Link& link = parts->model.links[i];
+      for (const auto* refs : {&link.visuals, &link.collisions}) {
+        for (const robot::MeshRef& ref : *refs) {
+          const std::string name = (folder / ref.path).lexically_normal().string();
+          if (known.contains(name)) continue;
+          return Failure{
+              "asset",
+              "link `" + link.name + "` has the mesh `" + name + "`, which the plan does not name",
+              std::string(plan_.text(plan_.assets()[record.urdf].path))};
+        }
+      }
+      for (const robot::MeshRef& ref : link.visuals) {
+        RobotParts::LinkVisual visual;
+        visual.link = static_cast<int>(i);
+        visual.origin = ref.origin;
+        PROBE_ASSIGN(visual.mesh, scene::shared_mesh(prefix + ref.path, ref.scale, limits()));
+        parts->visuals.push_back(std::move(visual));
+      }
+      parts->shapes.emplace_back();
+      if (link.can_collide()) {
+        PROBE_ASSIGN(parts->shapes.back(), load_link_shape(link, prefix, limits()));
+      }
+    }
+    assets_.robots_[record.urdf] = std::move(parts);
+    return {};
+  }
+
+  scene::MeshLimits limits() const {
+    scene::MeshLimits limits;
+    limits.asset_root = assets_.root_;
+    limits.self_contained = true;
+    return limits;
+  }
+
+  const plan::Plan& plan_;
+  SharedAssets& assets_;
+  std::set<std::uint32_t> verified_;
+};
+
+Result<std::shared_ptr<const SharedAssets>> SharedAssets::load(
+    const plan::Plan& plan, const std::string& root, std::span<const std::uint32_t> tasks) {
+  auto assets = std::make_shared<SharedAssets>();
+  assets->root_ = root;
+  Loader loader(plan, *assets);
+  for (const std::uint32_t task : tasks) PROBE_TRY(loader.task(plan.tasks()[task]));
+  return std::shared_ptr<const SharedAssets>(std::move(assets));
+}
+
+namespace {
+
+template <typename T>
+std::shared_ptr<const T> find(const std::map<std::uint32_t, std::shared_ptr<const T>>& map,
+                              std::uint32_t asset) {
+  const auto found = map.find(asset);
+  return found == map.end() ? nullptr : found->second;
+}
+
+}  // namespace
+
+std::shared_ptr<const scene::Mesh> SharedAssets::mesh(std::uint32_t asset) const {
+  return find(meshes_, asset);
+}
+
+std::shared_ptr<const scene::CollisionShape> SharedAssets::shape(std::uint32_t asset) const {
+  return find(shapes_, asset);
+}
+
+std::shared_ptr<const scene::Texture> SharedAssets::photo(std::uint32_t asset) const {
+  return find(photos_, asset);
+}
+
+const RobotParts* SharedAssets::robot(std::uint32_t urdf_asset) const {
+  const auto found = robots_.find(urdf_asset);
+  return found == robots_.end() ? nullptr : found->second.get();
+}
+
+Sha256 asset_digest(const plan::Plan& plan) {
+  Hasher hasher;
+  for (const plan::AssetRecord& asset : plan.assets()) {
+    hasher.text(plan.text(asset.path)).hash(Sha256{asset.sha256});
+  }
+  return hasher.finish();
+}
+
+}  // namespace probe::stage

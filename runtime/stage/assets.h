@@ -1,0 +1,71 @@
+// The files a plan names, loaded once per process and shared read-only by all worlds. A file is
+// used only if its bytes are the ones the plan was built with.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/base/sha256.h"
+#include "runtime/robot/urdf.h"
+#include "runtime/scene/collision_shape.h"
+#include "runtime/scene/mesh.h"
+
+namespace probe::plan {
+class Plan;
+}
+
+namespace probe::stage {
+
+// The folder that the plan's asset paths are relative to: `chosen` if not empty, else the
+// environment's VLAPROBE_ASSETS, else `assets` beside the program's folder, else that of the source
+// tree it was built from. Fails (code "asset") naming every place it looked at.
+Result<std::string> find_asset_root(std::string_view chosen = {});
+
+// What a URDF's links look like and collide with. A link's collision meshes are merged into one
+// shape in link frame.
+struct RobotParts {
+  struct LinkVisual {
+    int link = 0;  // RobotModel::links
+    Pose origin;   // mesh frame in the link frame
+    std::shared_ptr<const scene::Mesh> mesh;
+  };
+  robot::RobotModel model;
+  std::vector<LinkVisual> visuals;
+  std::vector<std::shared_ptr<const scene::CollisionShape>>
+      shapes;  // one per link, null without collision
+};
+
+class SharedAssets {
+ public:
+  // Loads what `tasks` (indices of the plan's tasks) need. Fails (code "asset") naming a file that
+  // is absent or has other bytes, and with the loaders' failures.
+  static Result<std::shared_ptr<const SharedAssets>> load(const plan::Plan& plan,
+                                                          const std::string& root,
+                                                          std::span<const std::uint32_t> tasks);
+
+  const std::string& root() const { return root_; }
+  // By index into the plan's assets; null for an index that was not loaded.
+  std::shared_ptr<const scene::Mesh> mesh(std::uint32_t asset) const;
+  std::shared_ptr<const scene::CollisionShape> shape(std::uint32_t asset) const;
+  std::shared_ptr<const scene::Texture> photo(std::uint32_t asset) const;
+  const RobotParts* robot(std::uint32_t urdf_asset) const;
+
+ private:
+  class Loader;
+  std::string root_;
+  std::map<std::uint32_t, std::shared_ptr<const scene::Mesh>> meshes_;
+  std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> shapes_;
+  std::map<std::uint32_t, std::shared_ptr<const scene::Texture>> photos_;
+  std::map<std::uint32_t, std::unique_ptr<const RobotParts>> robots_;
+};
+
+// Of every file the plan names, by path and content: equal digests, equal inputs.
+Sha256 asset_digest(const plan::Plan& plan);
+
+}  // namespace probe::stage

@@ -1,0 +1,254 @@
+// Plan records to a render::SceneSpec, and poses to frames.
+#include "runtime/stage/scene_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "runtime/base/check.h"
+
+namespace probe::stage {
+namespace {
+
+Vec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+// The mount link's pose in the base frame does not depend on q: no joint on the way moves.
+bool is_fixed(const robot::RobotModel& model, int link) {
+  while (model.links[static_cast<std::size_t>(link)].parent_joint >= 0) {
+    const auto joint =
+        static_cast<std::size_t>(model.links[static_cast<std::size_t>(link)].parent_joint);
+    if (model.joints[joint].kind != robot::JointKind::kFixed) return false;
+    link = model.joints[joint].parent_link;
+  }
+  return true;
+}
+
+// In the frame of its mount.
+Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRecord& record) {
+  render::Camera camera;
+  Mat3 axes;
+  const auto& aim = record.aim_values;
+  if (record.aim == static_cast<std::uint32_t>(plan::CameraAim::kLook)) {
+    auto look = render::look_along({aim[0], aim[1], aim[2]});
+    if (!look) {
+      return Failure{"render", look.failure().message,
+                     "camera `" + std::string(plan.text(record.name)) + "`"};
+    }
+    axes = *look;
+  } else {
+    axes = Quat(aim[0], aim[1], aim[2], aim[3]).normalized().toRotationMatrix();
+  }
+  camera.position = to_vec(record.position);
+  camera.forward_left_up = axes;
+  camera.width = static_cast<int>(record.width);
+  camera.height = static_cast<int>(record.height);
+  camera.fx = record.fx;
+  camera.fy = record.fy;
+  camera.cx = record.cx;
+  camera.cy = record.cy;
+  return camera;
+}
+
+render::Camera carried(const render::Camera& on_mount, const Pose& mount) {
+  render::Camera camera = on_mount;
+  camera.position = mount.apply(on_mount.position);
+  camera.forward_left_up = mount.rotation.toRotationMatrix() * on_mount.forward_left_up;
+  return camera;
+}
+
+void resize(render::Camera& camera, ImageSize size) {
+  if (size.width == 0 || size.height == 0) return;
+  const double x = static_cast<double>(size.width) / camera.width;
+  const double y = static_cast<double>(size.height) / camera.height;
+  camera.fx *= x;
+  camera.cx *= x;
+  camera.fy *= y;
+  camera.cy *= y;
+  camera.width = size.width;
+  camera.height = size.height;
+}
+
+render::Lights make_lights(const plan::Plan& plan, const plan::LightRecord& record) {
+  render::Lights lights;
+  lights.ambient = record.ambient;
+  for (const plan::SunRecord& sun : plan.suns(record)) {
+    lights.suns.push_back({to_vec(sun.direction), sun.power, sun.shadow != 0});
+  }
+  return lights;
+}
+
+// Task-local index of the body that shows link `name`, or none.
+std::uint16_t body_of_link(const plan::Plan& plan, const plan::TaskRecord& task,
+                           std::string_view name) {
+  const auto bodies = plan.bodies(task);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].kind == static_cast<std::uint32_t>(plan::BodyKind::kLink) &&
+        plan.text(bodies[i].name) == name) {
+      return static_cast<std::uint16_t>(i);
+    }
+  }
+  return render::kBackdrop;
+}
+
+}  // namespace
+
+std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot) {
+  std::vector<std::string> names;
+  for (const plan::DriveRecord& drive : plan.drives(robot))
+    names.emplace_back(plan.text(drive.joint));
+  return names;
+}
+
+Pose base_pose(const plan::SceneRecord& scene) {
+  const auto& q = scene.base_rotation;
+  return {to_vec(scene.base_position), Quat(q[0], q[1], q[2], q[3])};
+}
+
+Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
+                                                     std::uint32_t task_index,
+                                                     std::shared_ptr<const SharedAssets> assets,
+                                                     ImageSize size) {
+  const plan::TaskRecord& task = plan.tasks()[task_index];
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  const plan::RobotRecord& robot = plan.robots()[scene.robot];
+  const RobotParts* parts = assets->robot(robot.urdf);
+  PROBE_CHECK(parts != nullptr, "assets are loaded for the tasks that run");
+
+  PROBE_ASSIGN(robot::Tree tree, robot::Tree::create(parts->model, drive_joints(plan, robot)));
+  auto view = std::unique_ptr<SceneView>(new SceneView(assets, std::move(tree)));
+  view->base_ = base_pose(scene);
+  view->links_.resize(view->tree_.link_count());
+
+  render::SceneSpec spec;
+  if (scene.backdrop != plan::kNone) {
+    spec.statics.push_back(
+        {assets->mesh(scene.backdrop), {}, render::kBackdrop, "backdrop", false});
+  }
+  const auto bodies = plan.bodies(task);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto kind = static_cast<plan::BodyKind>(bodies[i].kind);
+    const std::string name(plan.text(bodies[i].name));
+    const auto body = static_cast<std::uint16_t>(i);
+    if (kind == plan::BodyKind::kObject) {
+      const std::uint32_t visual = plan.objects()[bodies[i].index].visual;
+      if (visual == plan::kNone) {
+        return Failure{"asset", "object `" + name + "` has no mesh to draw", ""};
+      }
+      spec.dynamics.push_back({assets->mesh(visual), {}, body, name, false});
+      ++view->objects_;
+    }
+    if (kind == plan::BodyKind::kFixture && scene.fixture_visual != plan::kNone) {
+      spec.statics.push_back({assets->mesh(scene.fixture_visual),
+                              {to_vec(scene.fixture_position), Quat::Identity()},
+                              body,
+                              name,
+                              false});
+    }
+  }
+  for (const RobotParts::LinkVisual& visual : parts->visuals) {
+    const std::string& name = parts->model.links[static_cast<std::size_t>(visual.link)].name;
+    spec.dynamics.push_back(
+        {visual.mesh, visual.origin, body_of_link(plan, task, name), name, true});
+    view->visual_links_.push_back(visual.link);
+  }
+
+  const plan::LightRecord& light = plan.lights()[task.light];
+  spec.lights = make_lights(plan, light);
+  spec.occlusion_rays = static_cast<int>(light.occlusion);
+  for (const plan::ViewRecord& record : plan.views(task)) {
+    PROBE_ASSIGN(Eye eye, view->open_eye(plan, scene, record, spec, size));
+    view->eyes_.push_back(std::move(eye));
+  }
+  return view;
+}
+
+// A photo is scaled to the picture, so it has the picture's shape; a pixel of rounding is fine.
+Status check_shape(const scene::Texture& photo, const plan::CameraRecord& camera,
+                   const std::string& where) {
+  const double across = static_cast<double>(photo.width) * camera.height;
+  const double down = static_cast<double>(photo.height) * camera.width;
+  const double rounding = 1.5 * std::max(camera.width, camera.height);
+  if (std::abs(across - down) <= std::max(rounding, 0.01 * down)) return {};
+  const auto size = [](auto width, auto height) {
+    return std::to_string(width) + " x " + std::to_string(height);
+  };
+  return Failure{"render",
+                 "the photo is " + size(photo.width, photo.height) +
+                     " pixels, the camera's picture " + size(camera.width, camera.height) +
+                     ": a photo of another size is scaled, one of another shape must be cut first",
+                 where};
+}
+
+// `seen` is the scene as every camera sees it.
+Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
+                                           const plan::ViewRecord& record,
+                                           const render::SceneSpec& seen, ImageSize size) {
+  const robot::RobotModel& model = assets_->robot(plan.robots()[scene.robot].urdf)->model;
+  const plan::CameraRecord& camera = plan.cameras()[record.camera];
+  Eye eye;
+  eye.name = std::string(plan.text(record.name));
+  const std::string mount_name(plan.text(camera.mount_link));
+  const int mount = model.find_link(mount_name);
+  const std::string where = "camera `" + std::string(plan.text(camera.name)) + "`";
+  if (mount < 0) return Failure{"render", "the robot has no link `" + mount_name + "`", where};
+  if (!is_fixed(model, mount)) eye.moving_mount = mount;
+  tree_.link_poses(plan.joints(scene), links_);
+  const Pose mount_pose = base_ * links_[static_cast<std::size_t>(mount)];
+  PROBE_ASSIGN(eye.on_mount, make_camera(plan, camera));
+  resize(eye.on_mount, size);
+  render::SceneSpec spec = seen;
+  spec.camera = carried(eye.on_mount, mount_pose);
+  spec.samples = camera.samples == 0 ? 1 : camera.samples == 4 ? 2 : 4;  // a side
+  // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
+  if (record.photo != plan::kNone && eye.moving_mount < 0) {
+    spec.photo = assets_->photo(record.photo);
+    PROBE_TRY(check_shape(*spec.photo, camera, where));
+  }
+  PROBE_ASSIGN(eye.renderer, render::Renderer::create(std::move(spec)));
+  return eye;
+}
+
+// Fills links_ and poses_.
+void SceneView::place(std::span<const double> q, std::span<const Pose> objects) {
+  PROBE_CHECK(objects.size() == objects_ && q.size() == tree_.joint_count(),
+              "one pose an object and one position a driven joint");
+  tree_.link_poses(q, links_);
+  poses_.assign(objects.begin(), objects.end());
+  for (const int link : visual_links_) {
+    poses_.push_back(base_ * links_[static_cast<std::size_t>(link)]);
+  }
+}
+
+Result<render::FrameView> SceneView::look(Eye& eye, bool full) {
+  if (eye.moving_mount >= 0) {
+    const Pose mount = base_ * links_[static_cast<std::size_t>(eye.moving_mount)];
+    return eye.renderer->render_from(carried(eye.on_mount, mount), poses_);
+  }
+  return full ? eye.renderer->render_full(poses_) : eye.renderer->render(poses_);
+}
+
+Result<render::FrameView> SceneView::render(std::span<const double> q,
+                                            std::span<const Pose> objects, std::size_t camera) {
+  place(q, objects);
+  return look(eyes_[camera], false);
+}
+
+Result<std::span<const CameraFrame>> SceneView::render_all(std::span<const double> q,
+                                                           std::span<const Pose> objects) {
+  place(q, objects);
+  frames_.clear();
+  for (Eye& eye : eyes_) {
+    PROBE_ASSIGN(const render::FrameView frame, look(eye, false));
+    frames_.push_back({eye.name, frame});
+  }
+  return std::span<const CameraFrame>(frames_);
+}
+
+Result<render::FrameView> SceneView::render_full(std::span<const double> q,
+                                                 std::span<const Pose> objects,
+                                                 std::size_t camera) {
+  place(q, objects);
+  return look(eyes_[camera], true);
+}
+
+}  // namespace probe::stage

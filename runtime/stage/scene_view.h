@@ -1,0 +1,83 @@
+// What the cameras of a task see: the plan's scene as a renderer's, given joint positions and
+// object poses. Knows no physics, so stored episodes can be drawn with it too.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+#include "runtime/render/renderer.h"
+#include "runtime/robot/kinematics.h"
+#include "runtime/stage/assets.h"
+
+namespace probe::stage {
+
+// Pixels. Zero: the camera's own size; another one squeezes the picture, intrinsics with it.
+struct ImageSize {
+  int width = 0, height = 0;
+};
+
+// A camera's picture under the name that policies know it by.
+struct CameraFrame {
+  std::string_view camera;
+  render::FrameView frame;
+};
+
+class SceneView {
+ public:
+  // `assets` were loaded for this task; the plan may go afterwards.
+  static Result<std::unique_ptr<SceneView>> create(const plan::Plan& plan, std::uint32_t task,
+                                                   std::shared_ptr<const SharedAssets> assets,
+                                                   ImageSize size = {});
+
+  // The task's cameras in its scene's order, at least one.
+  std::size_t camera_count() const { return eyes_.size(); }
+  const std::string& camera_name(std::size_t camera) const { return eyes_[camera].name; }
+
+  // `q` in drive order; `objects` are model poses in world, in the order source, target,
+  // distractors. A picture is valid until the same camera's next.
+  Result<render::FrameView> render(std::span<const double> q, std::span<const Pose> objects,
+                                   std::size_t camera = 0);
+  // Every camera's picture, valid until the next call.
+  Result<std::span<const CameraFrame>> render_all(std::span<const double> q,
+                                                  std::span<const Pose> objects);
+  // Every pixel traced again: the same picture, for tests.
+  Result<render::FrameView> render_full(std::span<const double> q, std::span<const Pose> objects,
+                                        std::size_t camera = 0);
+
+ private:
+  struct Eye {
+    std::string name;
+    int moving_mount = -1;    // the link that carries it, where that moves
+    render::Camera on_mount;  // its place in the link, its picture's size and lens
+    std::unique_ptr<render::Renderer> renderer;
+  };
+
+  Result<Eye> open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
+                       const plan::ViewRecord& record, const render::SceneSpec& seen,
+                       ImageSize size);
+  void place(std::span<const double> q, std::span<const Pose> objects);
+  Result<render::FrameView> look(Eye& eye, bool full);
+  SceneView(std::shared_ptr<const SharedAssets> assets, robot::Tree tree)
+      : assets_(std::move(assets)), tree_(std::move(tree)) {}
+
+  std::shared_ptr<const SharedAssets> assets_;
+  robot::Tree tree_;
+  Pose base_;
+  std::size_t objects_ = 0;
+  std::vector<int> visual_links_;  // of the dynamic visuals after the objects
+  std::vector<Pose> links_, poses_;
+  std::vector<Eye> eyes_;
+  std::vector<CameraFrame> frames_;
+};
+
+// Shared with the physics side: names of the driven joints in order, and the robot's base in world.
+std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot);
+Pose base_pose(const plan::SceneRecord& scene);
+
+}  // namespace probe::stage

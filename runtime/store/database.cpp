@@ -1,0 +1,97 @@
+// The adapter to SQLite.
+#include "runtime/store/database.h"
+
+#include <sqlite3.h>
+
+namespace probe::store {
+namespace {
+
+// What SQLite said, with what to do about it: the traces do not depend on the database.
+Failure sqlite_failure(sqlite3* database, Database::Access access, const std::string& where) {
+  const int code = sqlite3_errcode(database);
+  const std::string said = sqlite3_errmsg(database);
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
+    return {"store",
+            "results.sqlite cannot be read (" + said +
+                "); the traces are intact: move this file away and run again",
+            where};
+  }
+  return {"store",
+          std::string("the results cannot be ") +
+              (access == Database::Access::kRead ? "read: " : "stored: ") + said,
+          where};
+}
+
+}  // namespace
+
+Result<Database> Database::open(const std::string& path, Access access) {
+  Database database;
+  database.path_ = path;
+  // Without write permission SQLite falls back to read-only by itself.
+  const int flags = SQLITE_OPEN_READWRITE | (access == Access::kWrite ? SQLITE_OPEN_CREATE : 0);
+  if (sqlite3_open_v2(path.c_str(), &database.handle_, flags, nullptr) != SQLITE_OK) {
+    return Failure{"store", std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_),
+                   path};
+  }
+  sqlite3_busy_timeout(database.handle_, 10000);
+  if (access == Access::kWrite) PROBE_TRY(database.execute("pragma synchronous = full"));
+  return database;
+}
+
+Database::~Database() { sqlite3_close(handle_); }
+
+Status Database::execute(const char* sql) {
+  if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) == SQLITE_OK) return {};
+  return sqlite_failure(handle_, Access::kWrite, path_);
+}
+
+Statement::Statement(Database& database, const char* sql, Database::Access access)
+    : database_(database), access_(access) {
+  code_ = sqlite3_prepare_v2(database.handle_, sql, -1, &statement_, nullptr);
+}
+
+Statement::~Statement() { sqlite3_finalize(statement_); }
+
+Statement& Statement::bind(const std::string& value) {
+  if (code_ == SQLITE_OK) {
+    code_ = sqlite3_bind_text(statement_, ++bound_, value.data(), static_cast<int>(value.size()),
+                              SQLITE_TRANSIENT);
+  }
+  return *this;
+}
+
+Statement& Statement::bind(int value) {
+  if (code_ == SQLITE_OK) code_ = sqlite3_bind_int(statement_, ++bound_, value);
+  return *this;
+}
+
+Statement& Statement::bind(const std::optional<std::string>& value) {
+  if (value) return bind(*value);
+  if (code_ == SQLITE_OK) code_ = sqlite3_bind_null(statement_, ++bound_);
+  return *this;
+}
+
+bool Statement::next() {
+  if (code_ == SQLITE_OK || code_ == SQLITE_ROW) code_ = sqlite3_step(statement_);
+  return code_ == SQLITE_ROW;
+}
+
+std::string Statement::text(int column) const {
+  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+  if (bytes == nullptr) return {};
+  return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
+}
+
+std::optional<std::string> Statement::optional_text(int column) const {
+  if (sqlite3_column_type(statement_, column) == SQLITE_NULL) return std::nullopt;
+  return text(column);
+}
+
+int Statement::number(int column) const { return sqlite3_column_int(statement_, column); }
+
+Status Statement::done() const {
+  if (code_ == SQLITE_DONE || code_ == SQLITE_OK || code_ == SQLITE_ROW) return {};
+  return sqlite_failure(database_.handle_, access_, database_.path());
+}
+
+}  // namespace probe::store

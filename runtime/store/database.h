@@ -1,0 +1,67 @@
+// SQLite behind two classes whose failures are ours. database.cpp is the only file that includes
+// SQLite. Knows nothing of runs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "runtime/base/result.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace probe::store {
+
+class Database {
+ public:
+  enum class Access { kRead, kWrite };
+
+  // Readers too may have to roll back what a killed writer left. A writer makes the file if it is
+  // absent and waits for the disk after each transaction. Fails with code "store", where = path.
+  static Result<Database> open(const std::string& path, Access access);
+  ~Database();
+  Database(Database&& other) noexcept
+      : handle_(std::exchange(other.handle_, nullptr)), path_(std::move(other.path_)) {}
+  Database& operator=(Database&&) = delete;
+
+  Status execute(const char* sql);
+  const std::string& path() const { return path_; }
+
+ private:
+  friend class Statement;
+  Database() = default;
+  sqlite3* handle_ = nullptr;
+  std::string path_;
+};
+
+// A prepared statement: values are bound from left to right, then next() goes from row to row.
+class Statement {
+ public:
+  Statement(Database& database, const char* sql, Database::Access access = Database::Access::kRead);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  Statement& bind(const std::string& value);
+  Statement& bind(int value);
+  Statement& bind(const std::optional<std::string>& value);
+
+  // True while there is a row.
+  bool next();
+  std::string text(int column) const;
+  std::optional<std::string> optional_text(int column) const;
+  int number(int column) const;
+
+  // After the last next(); the failure's place is the database's file.
+  Status done() const;
+
+ private:
+  Database& database_;
+  Database::Access access_;
+  sqlite3_stmt* statement_ = nullptr;
+  int code_ = 0;
+  int bound_ = 0;
+};
+
+}  // namespace probe::store

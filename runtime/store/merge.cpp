@@ -1,0 +1,198 @@
+// Reads everything, compares, then copies.
+#include "runtime/store/merge.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "runtime/plan/plan.h"
+#include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
+
+namespace probe::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Source {
+  std::string dir;
+  RunRecord record;
+  std::vector<Fingerprint> builds;  // of the folder's first call and of all that are known
+  std::vector<ResultRow> rows;
+};
+
+using EpisodeKey = std::tuple<std::string, int, int>;
+
+// The best row of an episode so far.
+struct Chosen {
+  ResultRow row;
+  const Source* source = nullptr;
+};
+
+std::string text_of(const ResultRow& row) {
+  return row.task + " episode " + std::to_string(row.episode) + " seed " + std::to_string(row.seed);
+}
+
+Result<Source> read_source(const std::string& dir) {
+  Source source;
+  source.dir = dir;
+  auto record = read_run_record(dir);
+  if (!record) return Failure{"usage", "cannot be merged: " + record.failure().message, dir};
+  source.record = std::move(*record);
+  source.builds.push_back(source.record.fingerprint);
+  PROBE_ASSIGN(const auto calls, read_run_calls(dir));
+  for (const RunCall& call : calls) source.builds.push_back(call.fingerprint);
+  PROBE_ASSIGN(source.rows, read_results(dir));
+  return source;
+}
+
+// Every folder against the first; the first difference is told.
+Status check_same_run(const std::vector<Source>& sources, bool mixed_builds,
+                      std::vector<std::string>& notes) {
+  const Source& first = sources.front();
+  const auto differ = [&](const Source& source, const std::string& change) {
+    return Failure{"usage", change + ", as " + first.dir + " does; they are not parts of one run",
+                   source.dir};
+  };
+  std::set<std::string> told;
+  for (const Source& source : sources) {
+    RunRecord other = source.record;
+    for (const Fingerprint& build : source.builds) {
+      other.fingerprint = build;
+      const RunChanges changes = changes_between(other, first.record);
+      if (!changes.identity.empty()) return differ(source, changes.identity);
+      if (!changes.policy_content.empty()) {
+        return Failure{"usage", changes.policy_content + " than " + first.dir, source.dir};
+      }
+      if (changes.build.empty()) continue;
+      if (!mixed_builds) {
+        return Failure{"usage",
+                       changes.build + " than " + first.dir +
+                           "; their bits may differ; --mixed-builds joins them all the same",
+                       source.dir};
+      }
+      const std::string note = source.dir + " " + changes.build + " than " + first.dir;
+      if (told.insert(note).second) notes.push_back(note);
+    }
+  }
+  return {};
+}
+
+// A valid row whose trace shows it, or an invalid one with a trace of whatever length.
+bool is_proven(const ResultRow& row, std::vector<std::string>& notes) {
+  if (row.invalid && fs::exists(row.trace)) return true;
+  const auto trace = read_stored_trace(row);
+  if (trace) return true;
+  notes.push_back(text_of(row) + " is left out: " + to_text(trace.failure()));
+  return false;
+}
+
+Status choose_rows(const std::vector<Source>& sources, std::map<EpisodeKey, Chosen>& chosen,
+                   MergeSummary& summary) {
+  for (const Source& source : sources) {
+    for (const ResultRow& row : source.rows) {
+      if (!is_proven(row, summary.notes)) continue;
+      const auto [at, is_new] =
+          chosen.try_emplace({row.task, row.episode, row.seed}, Chosen{row, &source});
+      if (is_new) continue;
+      Chosen& best = at->second;
+      ++summary.duplicates;
+      if (row.invalid) continue;
+      if (best.row.invalid) {
+        best = {row, &source};
+        continue;
+      }
+      if (best.row.trace_sha256 == row.trace_sha256) continue;
+      return Failure{"store",
+                     text_of(row) + " has the trace " + row.trace_sha256.substr(0, 12) +
+                         " here and " + best.row.trace_sha256.substr(0, 12) + " in " +
+                         best.source->dir + "; nothing was merged",
+                     source.dir};
+    }
+  }
+  return {};
+}
+
+Status copy(const std::string& from, const std::string& to) {
+  std::error_code error;
+  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+  if (error) return Failure{"store", "cannot be copied to " + to + ": " + error.message(), from};
+  return {};
+}
+
+// The trace first, then the row; a video goes along.
+Status take_over(const Chosen& chosen, Store& store, const std::string& out, int task_order) {
+  const ResultRow& row = chosen.row;
+  const std::string temporary = store.temporary_trace(row.task, row.episode, row.seed);
+  PROBE_TRY(copy(row.trace, temporary));
+  const fs::path folder = chosen.source->dir;
+  const fs::path video = fs::path("videos") / row.task /
+                         (std::to_string(row.episode) + "-" + std::to_string(row.seed) + ".mp4");
+  if (fs::exists(folder / video)) {
+    std::error_code ignored;  // the copy says what is wrong
+    fs::create_directories((out / video).parent_path(), ignored);
+    const std::string part = (out / video).string() + ".tmp";
+    PROBE_TRY(copy((folder / video).string(), part));
+    fs::rename(part, out / video, ignored);
+  }
+  return store.commit(row, task_order);
+}
+
+std::vector<std::string> folders_of(const MergeOptions& options, bool with_out) {
+  std::vector<std::string> folders;
+  std::set<fs::path> known;
+  const auto add = [&](const std::string& dir) {
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(dir, error);
+    if (known.insert(error ? fs::path(dir) : place).second) folders.push_back(dir);
+  };
+  if (with_out) add(options.out);
+  for (const std::string& dir : options.dirs) add(dir);
+  return folders;
+}
+
+}  // namespace
+
+Result<MergeSummary> merge(const MergeOptions& options) {
+  MergeSummary summary;
+  if (options.dirs.empty()) return Failure{"usage", "no folder to merge", "DIR"};
+  // What is in `out` already goes first, so that it stays as it is wherever it is as good.
+  std::vector<Source> sources;
+  PROBE_ASSIGN(const auto there, find_run_record(options.out));
+  for (const std::string& dir : folders_of(options, there.has_value())) {
+    PROBE_ASSIGN(Source source, read_source(dir));
+    sources.push_back(std::move(source));
+  }
+  PROBE_TRY(check_same_run(sources, options.mixed_builds, summary.notes));
+  std::map<EpisodeKey, Chosen> chosen;
+  PROBE_TRY(choose_rows(sources, chosen, summary));
+
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(plan_path(sources.front().dir)));
+  RunRecord record = sources.front().record;
+  std::set<int> seeds;
+  for (const Source& source : sources) {
+    seeds.insert(source.record.seeds.begin(), source.record.seeds.end());
+    if (source.record.suite != record.suite) {
+      summary.notes.push_back(source.dir + " holds episodes of suite `" + source.record.suite +
+                              "`, " + sources.front().dir + " of `" + record.suite + "`");
+    }
+  }
+  record.seeds.assign(seeds.begin(), seeds.end());
+  PROBE_ASSIGN(auto store, Store::open(options.out, record, plan.bytes()));
+  for (const auto& [key, best] : chosen) {
+    ++summary.rows;
+    if (best.row.invalid) ++summary.invalid;
+    if (there && best.source == &sources.front()) continue;
+    const auto task = plan.find_task(best.row.task);
+    if (!task) {
+      return Failure{"store", "its plan has no task `" + best.row.task + "`", best.source->dir};
+    }
+    PROBE_TRY(take_over(best, *store, options.out, static_cast<int>(*task)));
+    ++summary.added;
+  }
+  return summary;
+}
+
+}  // namespace probe::store

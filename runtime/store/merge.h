@@ -1,0 +1,32 @@
+// `vlaprobe merge`: the rows and traces of several folders in one, each episode once. What comes
+// out has the rows that a single run of the same episodes has.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::store {
+
+struct MergeOptions {
+  std::vector<std::string> dirs;  // folders of runs; one named twice counts once
+  std::string out;                // made if absent; a run there counts as one more of `dirs`
+  bool mixed_builds = false;      // join shards of other builds and machines too
+};
+
+struct MergeSummary {
+  int rows = 0;        // in `out` now
+  int added = 0;       // of them new or better than what was there
+  int duplicates = 0;  // rows that another folder had too, or had valid
+  int invalid = 0;     // rows in `out` that are not valid
+  std::vector<std::string> notes;
+};
+
+// Fails (code "usage") when a folder holds no run, or one of another plan, policy, profile or
+// (unless mixed_builds) build than the first, and (code "store") when two folders have the same
+// episode with different traces; nothing is written then. Valid rows win over invalid ones; a valid
+// row whose trace is not whole counts as absent, with a note. Called again it continues.
+Result<MergeSummary> merge(const MergeOptions& options);
+
+}  // namespace probe::store

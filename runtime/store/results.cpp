@@ -1,0 +1,128 @@
+// Rows as JSON and as comma-separated values.
+#include "runtime/store/results.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace probe::store {
+namespace {
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string out(1, '"');
+  for (const char c : text) {
+    if (c == '"') out.push_back('"');
+    out.push_back(c);
+  }
+  out.push_back('"');
+  return out;
+}
+
+std::string line_of(const std::vector<std::string>& cells) {
+  std::string line;
+  for (const std::string& cell : cells) {
+    if (&cell != cells.data()) line.push_back(',');
+    line += quoted(cell);
+  }
+  line.push_back('\n');
+  return line;
+}
+
+std::string cell(const ResultRow& row, const std::string& metric) {
+  if (row.invalid) return "";
+  for (const MetricValue& value : row.metrics) {
+    if (value.name != metric) continue;
+    if (value.is_bool) return value.value != 0 ? "true" : "false";
+    return number(value.value);
+  }
+  return "";
+}
+
+nlohmann::ordered_json or_null(const std::optional<std::string>& text) {
+  return text ? nlohmann::ordered_json(*text) : nullptr;
+}
+
+// Every metric that some row has, in order of first use.
+std::vector<std::string> metric_names(std::span<const ResultRow> rows) {
+  std::vector<std::string> names;
+  for (const ResultRow& row : rows) {
+    for (const MetricValue& metric : row.metrics) {
+      if (std::find(names.begin(), names.end(), metric.name) == names.end()) {
+        names.push_back(metric.name);
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string results_to_json(std::span<const ResultRow> rows) {
+  const std::vector<std::string> names = metric_names(rows);
+  auto array = nlohmann::ordered_json::array();
+  for (const ResultRow& row : rows) {
+    nlohmann::ordered_json json;
+    json["task"] = row.task;
+    json["episode"] = row.episode;
+    json["seed"] = row.seed;
+    json["policy"] = row.policy;
+    for (const std::string& name : names) json[name] = nullptr;
+    for (const MetricValue& metric : row.metrics) {
+      if (row.invalid) continue;
+      if (metric.is_bool) {
+        json[metric.name] = metric.value != 0;
+      } else {
+        json[metric.name] = metric.value;
+      }
+    }
+    json["steps"] = row.steps;
+    json["invalid"] = or_null(row.invalid);
+    json["prompt_sha256"] = row.prompt_sha256;
+    json["image_sha256"] = row.image_sha256;
+    json["frames_sha256"] = row.frames_sha256;
+    json["sent_prompt_sha256"] = or_null(row.sent_prompt_sha256);
+    json["sent_image_sha256"] = or_null(row.sent_image_sha256);
+    json["trace_sha256"] = row.trace_sha256;
+    json["episode_id"] = row.episode_id;
+    json["start_id"] = row.start_id;
+    json["trace"] = row.trace;
+    array.push_back(std::move(json));
+  }
+  // A policy's error text may hold any bytes; what is not UTF-8 is replaced, never thrown.
+  return array.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string results_to_csv(std::span<const ResultRow> rows) {
+  const std::vector<std::string> names = metric_names(rows);
+  std::vector<std::string> header = {"task", "episode", "seed", "policy"};
+  header.insert(header.end(), names.begin(), names.end());
+  for (const char* name :
+       {"steps", "invalid", "prompt_sha256", "image_sha256", "frames_sha256", "sent_prompt_sha256",
+        "sent_image_sha256", "trace_sha256", "episode_id", "start_id", "trace"}) {
+    header.emplace_back(name);
+  }
+  std::string text = line_of(header);
+  for (const ResultRow& row : rows) {
+    std::vector<std::string> cells = {row.task, std::to_string(row.episode),
+                                      std::to_string(row.seed), row.policy};
+    for (const std::string& name : names) cells.push_back(cell(row, name));
+    cells.push_back(std::to_string(row.steps));
+    for (const std::string& value :
+         {row.invalid.value_or(""), row.prompt_sha256, row.image_sha256, row.frames_sha256,
+          row.sent_prompt_sha256.value_or(""), row.sent_image_sha256.value_or(""), row.trace_sha256,
+          row.episode_id, row.start_id, row.trace}) {
+      cells.push_back(value);
+    }
+    text += line_of(cells);
+  }
+  return text;
+}
+
+}  // namespace probe::store

@@ -1,0 +1,49 @@
+// Rows of results: one object per episode, as `vlaprobe results` prints them and the store keeps
+// them.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::store {
+
+struct MetricValue {
+  std::string name;
+  bool is_bool = true;
+  double value = 0;  // a truth is 0 or 1
+  bool operator==(const MetricValue&) const = default;
+};
+
+struct ResultRow {
+  std::string task;  // the plan's name, without a suite's prefix
+  int episode = 0;
+  int seed = 0;
+  std::string policy;
+  std::vector<MetricValue> metrics;    // in the plan's order; of no meaning when invalid
+  int steps = 0;                       // control steps done
+  std::optional<std::string> invalid;  // why the episode counts neither as success nor as failure
+  std::string prompt_sha256;           // of the instruction's bytes
+  std::string image_sha256;            // of the first picture's RGB bytes
+  std::string frames_sha256;  // of the concatenated hashes of all pictures shown to the policy
+  // Of what the first request to a policy server carried; none for a policy in this process.
+  std::optional<std::string> sent_prompt_sha256, sent_image_sha256;
+  std::string trace_sha256;  // of the trace's content without timing
+  std::string episode_id, start_id;
+  std::string trace;  // path of the trace; read_results gives an absolute one
+  bool operator==(const ResultRow&) const = default;
+};
+
+// The rows stored in `dir`, ascending by the plan's task order, episode and seed. Fails (code
+// "store") if there is no run in `dir`.
+Result<std::vector<ResultRow>> read_results(const std::string& dir);
+
+// A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.
+std::string results_to_json(std::span<const ResultRow> rows);
+// The same as comma-separated values with a header line; truths as true/false.
+std::string results_to_csv(std::span<const ResultRow> rows);
+
+}  // namespace probe::store

@@ -1,0 +1,162 @@
+// Records as JSON.
+#include "runtime/store/run_record.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace probe::store {
+namespace {
+
+Failure failed(const std::string& message, const std::string& where) {
+  return {"store", message, where};
+}
+
+Failure bad_record(const std::string& key, const char* wanted, const std::string& where) {
+  return failed(
+      "`" + key + "` of its run record is not " + wanted + "; move this file away and run again",
+      where);
+}
+
+Result<std::string> record_text(const nlohmann::json& json, const char* key,
+                                const std::string& where) {
+  const auto found = json.find(key);
+  if (found == json.end() || !found->is_string()) return bad_record(key, "a text", where);
+  return found->get<std::string>();
+}
+
+std::string short_form(const std::string& text, std::size_t length) {
+  return text.substr(0, length);
+}
+
+std::string rounded(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string percent(double part, double whole) {
+  return rounded(whole > 0 ? 100 * part / whole : 0, 1) + " %";
+}
+
+}  // namespace
+
+std::string record_to_text(const RunRecord& record) {
+  const nlohmann::json json = {{"schema", std::to_string(record.schema)},
+                               {"plan_root", record.identity.plan_root},
+                               {"policy", record.identity.policy},
+                               {"policy_content", record.identity.policy_content},
+                               {"suite", record.suite},
+                               {"seeds", record.seeds},
+                               {"fingerprint", to_json(record.fingerprint)}};
+  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+Result<RunRecord> record_from_text(const std::string& text, const std::string& where) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object()) {
+    return failed("its run record is no JSON object; move this file away and run again", where);
+  }
+  RunRecord record;
+  PROBE_ASSIGN(const std::string schema, record_text(json, "schema", where));
+  if (schema != "1" && schema != std::to_string(kSchemaVersion)) {
+    return failed("was written by a program with another layout of results (" + schema + ")",
+                  where);
+  }
+  record.schema = schema == "1" ? 1 : kSchemaVersion;
+  PROBE_ASSIGN(record.identity.plan_root, record_text(json, "plan_root", where));
+  PROBE_ASSIGN(record.identity.policy, record_text(json, "policy", where));
+  if (record.schema > 1) {
+    PROBE_ASSIGN(record.identity.policy_content, record_text(json, "policy_content", where));
+  }
+  PROBE_ASSIGN(record.suite, record_text(json, "suite", where));
+  const auto seeds = json.find("seeds");
+  if (seeds == json.end() || !seeds->is_array()) {
+    return bad_record("seeds", "a list of whole numbers", where);
+  }
+  for (const auto& seed : *seeds) {
+    if (!seed.is_number_integer()) return bad_record("seeds", "a list of whole numbers", where);
+    record.seeds.push_back(seed.get<int>());
+  }
+  PROBE_ASSIGN(const std::string fingerprint, record_text(json, "fingerprint", where));
+  auto read = fingerprint_from_json(fingerprint);
+  if (!read) return bad_record("fingerprint", "an object of texts", where);
+  record.fingerprint = std::move(*read);
+  return record;
+}
+
+RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
+  RunChanges changes;
+  const RunIdentity& there = stored.identity;
+  const RunIdentity& here = asked.identity;
+  if (there.policy != here.policy) {
+    changes.identity = "holds a run of policy `" + there.policy + "`, not `" + here.policy + "`";
+  } else if (there.plan_root != here.plan_root) {
+    changes.identity = "holds a run of another plan (root " + short_form(there.plan_root, 12) +
+                       ", this one is " + short_form(here.plan_root, 12) + ")";
+  }
+  if (there.policy_content != here.policy_content) {
+    const auto said = [](const std::string& text) { return text.empty() ? "nothing" : text; };
+    changes.policy_content = "was begun with another profile (recorded " +
+                             said(there.policy_content) + ", now " + said(here.policy_content) +
+                             ")";
+  }
+  for (const std::string& line : differences(stored.fingerprint, asked.fingerprint)) {
+    changes.build +=
+        (changes.build.empty() ? "was begun by another build or machine (" : "; ") + line;
+  }
+  if (!changes.build.empty()) changes.build += ")";
+  return changes;
+}
+
+std::string to_text(const RunCall& call) {
+  const auto rate = [&](double count) {
+    return rounded(call.elapsed_s > 0 ? count / call.elapsed_s : 0, 1);
+  };
+  std::string text = rate(static_cast<double>(call.observations)) + " observations/s";
+  if (call.queries.queries == 0) return text;
+  return text + ", " + rate(static_cast<double>(call.queries.queries)) +
+         " queries/s; server busy " + percent(call.queries.busy_s, call.elapsed_s) +
+         " of the time, simulators waiting for it " +
+         percent(call.queries.waiting_s, call.elapsed_s * call.worlds) + " of theirs";
+}
+
+std::string call_to_json(const RunCall& call) {
+  const nlohmann::json json = {{"fingerprint", to_json(call.fingerprint)},
+                               {"worlds", call.worlds},
+                               {"ended", call.ended},
+                               {"episodes", call.episodes},
+                               {"retried", call.retried},
+                               {"observations", call.observations},
+                               {"elapsed_s", call.elapsed_s},
+                               {"queries", call.queries.queries},
+                               {"server_busy_s", call.queries.busy_s},
+                               {"worlds_waiting_s", call.queries.waiting_s},
+                               {"queries_at_once", call.queries.most_at_once}};
+  return json.dump();
+}
+
+Result<RunCall> call_from_json(const std::string& text, const std::string& where) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  RunCall call;
+  try {
+    PROBE_ASSIGN(call.fingerprint,
+                 fingerprint_from_json(json.at("fingerprint").get<std::string>()));
+    call.worlds = json.at("worlds").get<int>();
+    call.ended = json.at("ended").get<bool>();
+    call.episodes = json.at("episodes").get<int>();
+    call.retried = json.at("retried").get<int>();
+    call.observations = json.at("observations").get<std::int64_t>();
+    call.elapsed_s = json.at("elapsed_s").get<double>();
+    call.queries.elapsed_s = call.elapsed_s;
+    call.queries.queries = json.at("queries").get<std::int64_t>();
+    call.queries.busy_s = json.at("server_busy_s").get<double>();
+    call.queries.waiting_s = json.at("worlds_waiting_s").get<double>();
+    call.queries.most_at_once = json.at("queries_at_once").get<int>();
+  } catch (const nlohmann::json::exception& error) {
+    return failed(std::string("the figures of a call cannot be read: ") + error.what(), where);
+  }
+  return call;
+}
+
+}  // namespace probe::store

@@ -1,0 +1,69 @@
+// What a run's folder says of the run as a whole: of which plan and policy it is, by which build,
+// and what each call of `run` did. Texts in, texts out; knows no files.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/policy/query_meter.h"
+#include "runtime/store/fingerprint.h"
+
+namespace probe::store {
+
+// Raised when the tables or the record change. Version 1 had neither `policy_content` nor calls nor
+// the hashes of what was sent; it is read, and raised to 2 when it is written.
+inline constexpr int kSchemaVersion = 2;
+
+// What must not change between two calls that write into one folder.
+struct RunIdentity {
+  std::string plan_root;  // hex
+  std::string policy;
+  std::string policy_content = "";  // PolicyTraits::content: what the name alone does not say
+  bool operator==(const RunIdentity&) const = default;
+};
+
+struct RunRecord {
+  RunIdentity identity;
+  std::string suite;
+  std::vector<int> seeds;
+  Fingerprint fingerprint;  // of the call that made the folder
+  int schema = kSchemaVersion;
+};
+
+std::string record_to_text(const RunRecord& record);
+// Fails (code "store", at `where`) naming the key that is missing or of another type, and on a
+// schema that this program does not know.
+Result<RunRecord> record_from_text(const std::string& text, const std::string& where);
+
+// The kinds of change between the record of a folder and a new call, as sentences without the
+// folder's name ("holds a run of policy `a`, not `b`"), empty where equal. A folder cannot be
+// continued over `identity`, which is another plan or policy; it can be over the others, if the
+// user wants that.
+struct RunChanges {
+  std::string identity, policy_content, build;
+  bool any() const { return !identity.empty() || !policy_content.empty() || !build.empty(); }
+};
+RunChanges changes_between(const RunRecord& stored, const RunRecord& asked);
+
+// One call of `run`, as far as it got: what it did is known when it `ended` by itself.
+struct RunCall {
+  Fingerprint fingerprint;
+  int worlds = 1;
+  bool ended = false;
+  int episodes = 0;               // stored
+  int retried = 0;                // attempts that a policy's failure spoiled and that were repeated
+  std::int64_t observations = 0;  // of all attempts
+  double elapsed_s = 0;           // of the episodes, without what comes before the first
+  policy::QueryFigures queries;
+};
+
+// "212.0 observations/s; ..., with shares of busy server and waiting worlds where there was a
+// server".
+std::string to_text(const RunCall& call);
+
+std::string call_to_json(const RunCall& call);
+Result<RunCall> call_from_json(const std::string& text, const std::string& where);
+
+}  // namespace probe::store

@@ -1,0 +1,330 @@
+// Tables and file names. The database is small: one row a finished episode, in one transaction each
+// with full sync.
+#include "runtime/store/store.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "runtime/base/file.h"
+#include "runtime/store/database.h"
+#include "runtime/store/stored_trace.h"
+
+namespace probe::store {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSchema = R"(
+create table if not exists run (name text primary key, value text not null) without rowid;
+create table if not exists episodes (
+  task text not null, episode integer not null, seed integer not null,
+  task_order integer not null, episode_id text not null, start_id text not null,
+  policy text not null, metrics text not null, steps integer not null, invalid text,
+  prompt_sha256 text not null, image_sha256 text not null, frames_sha256 text not null,
+  trace_sha256 text not null, trace text not null,
+  sent_prompt_sha256 text, sent_image_sha256 text,
+  primary key (task, episode, seed)) without rowid;
+create table if not exists calls (number integer primary key, value text not null);
+)";
+// Of version 1.
+constexpr const char* kRaiseSchema = R"(
+alter table episodes add column sent_prompt_sha256 text;
+alter table episodes add column sent_image_sha256 text;
+)";
+
+Failure failed(const std::string& message, const std::string& where) {
+  return {"store", message, where};
+}
+
+using Access = Database::Access;
+
+std::string database_path(const std::string& dir) {
+  return (fs::path(dir) / "results.sqlite").string();
+}
+
+std::string relative_trace(const std::string& task, int episode, int seed) {
+  return "traces/" + task + "/" + std::to_string(episode) + "-" + std::to_string(seed) + ".trace";
+}
+
+// Nothing when the database has no run yet.
+Result<std::optional<RunRecord>> load_record(Database& database) {
+  Statement table(database, "select 1 from sqlite_master where name = 'run'");
+  const bool begun = table.next();
+  PROBE_TRY(table.done());
+  if (!begun) return std::optional<RunRecord>();
+  Statement select(database, "select value from run where name = 'record'");
+  if (!select.next()) {
+    PROBE_TRY(select.done());
+    return std::optional<RunRecord>();
+  }
+  PROBE_ASSIGN(RunRecord record, record_from_text(select.text(0), database.path()));
+  return std::optional(std::move(record));
+}
+
+void sync_folder(const fs::path& folder) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  ::fsync(file);
+  ::close(file);
+}
+
+std::string metrics_to_text(const std::vector<MetricValue>& metrics) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const MetricValue& metric : metrics) {
+    json.push_back({metric.name, metric.is_bool ? 1 : 0, metric.value});
+  }
+  return json.dump();
+}
+
+std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_array()) return std::nullopt;
+  std::vector<MetricValue> metrics;
+  for (const auto& entry : json) {
+    if (!entry.is_array() || entry.size() != 3 || !entry[0].is_string() || !entry[1].is_number() ||
+        !entry[2].is_number()) {
+      return std::nullopt;
+    }
+    metrics.push_back(
+        {entry[0].get<std::string>(), entry[1].get<int>() != 0, entry[2].get<double>()});
+  }
+  return metrics;
+}
+
+Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
+  PROBE_ASSIGN(const auto record, load_record(database));
+  if (!record) return failed("no run here: results.sqlite is empty", dir);
+  std::string sql =
+      "select task, episode, seed, policy, metrics, steps, invalid, prompt_sha256, image_sha256, "
+      "frames_sha256, trace_sha256, episode_id, start_id, trace, ";
+  sql += record->schema == 1 ? "null, null" : "sent_prompt_sha256, sent_image_sha256";
+  sql += " from episodes order by task_order, task, episode, seed";
+  Statement select(database, sql.c_str());
+  std::vector<ResultRow> rows;
+  while (select.next()) {
+    ResultRow row;
+    row.task = select.text(0);
+    row.episode = select.number(1);
+    row.seed = select.number(2);
+    row.policy = select.text(3);
+    auto metrics = metrics_from_text(select.text(4));
+    if (metrics) row.metrics = std::move(*metrics);
+    row.steps = select.number(5);
+    row.invalid = select.optional_text(6);
+    if (!row.invalid && !metrics) {
+      // One damaged row must not hide the others; the next run makes it anew.
+      row.invalid = "store: its metrics in results.sqlite cannot be read";
+    }
+    row.prompt_sha256 = select.text(7);
+    row.image_sha256 = select.text(8);
+    row.frames_sha256 = select.text(9);
+    row.trace_sha256 = select.text(10);
+    row.episode_id = select.text(11);
+    row.start_id = select.text(12);
+    row.trace = fs::absolute(fs::path(dir) / select.text(13)).lexically_normal().string();
+    row.sent_prompt_sha256 = select.optional_text(14);
+    row.sent_image_sha256 = select.optional_text(15);
+    rows.push_back(std::move(row));
+  }
+  PROBE_TRY(select.done());
+  return rows;
+}
+
+class FolderStore final : public Store {
+ public:
+  FolderStore(std::string dir, int lock, Database database)
+      : dir_(std::move(dir)), lock_(lock), database_(std::move(database)) {}
+  ~FolderStore() override { ::close(lock_); }
+
+  Status begin(const RunRecord& record, std::span<const std::byte> plan_bytes) {
+    PROBE_TRY(database_.execute(kSchema));
+    PROBE_ASSIGN(auto stored, load_record(database_));
+    if (stored) {
+      const RunChanges changes = changes_between(*stored, record);
+      for (const std::string& change : {changes.identity, changes.policy_content}) {
+        if (change.empty()) continue;
+        return failed(change + "; take another folder or remove this one", dir_);
+      }
+    }
+    remove_leftovers();
+    if (stored) {
+      record_ = std::move(*stored);
+      return record_.schema < kSchemaVersion ? raise_schema() : Status();
+    }
+    // The plan goes first: a folder with a record always has its plan.
+    PROBE_TRY(write_file(plan_path(dir_), plan_bytes));
+    sync_folder(dir_);
+    record_ = record;
+    record_.schema = kSchemaVersion;
+    return write_record("insert into run values ('record', ?)");
+  }
+
+  const RunRecord& record() const override { return record_; }
+
+  Result<std::vector<StoredEpisode>> episodes() override {
+    PROBE_ASSIGN(const auto rows, load_rows(database_, dir_));
+    std::vector<StoredEpisode> episodes;
+    for (const ResultRow& row : rows) {
+      StoredEpisode episode{row.task, row.episode, row.seed, !row.invalid,
+                            row.invalid.value_or("")};
+      // A row is worth what its trace can show for it.
+      if (episode.valid) {
+        if (const auto trace = read_stored_trace(row); !trace) {
+          episode.valid = false;
+          episode.why = to_text(trace.failure());
+        }
+      }
+      episodes.push_back(std::move(episode));
+    }
+    return episodes;
+  }
+
+  std::string temporary_trace(const std::string& task, int episode, int seed) const override {
+    std::error_code ignored;  // the trace's own opening says what is wrong
+    fs::create_directories(fs::path(dir_) / "traces" / task, ignored);
+    return trace_path(dir_, task, episode, seed) + ".tmp";
+  }
+
+  Status commit(const ResultRow& row, int task_order) override {
+    const std::string trace = trace_path(dir_, row.task, row.episode, row.seed);
+    if (::rename((trace + ".tmp").c_str(), trace.c_str()) != 0) {
+      return failed(std::string("cannot be renamed: ") + std::strerror(errno), trace + ".tmp");
+    }
+    sync_folder(fs::path(trace).parent_path());
+    Statement insert(database_,
+                     "insert or replace into episodes (task, episode, seed, task_order, "
+                     "episode_id, start_id, policy, metrics, steps, invalid, prompt_sha256, "
+                     "image_sha256, frames_sha256, trace_sha256, trace, sent_prompt_sha256, "
+                     "sent_image_sha256) values (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
+                     Access::kWrite);
+    insert.bind(row.task).bind(row.episode).bind(row.seed).bind(task_order);
+    insert.bind(row.episode_id).bind(row.start_id).bind(row.policy);
+    insert.bind(metrics_to_text(row.metrics)).bind(row.steps).bind(row.invalid);
+    insert.bind(row.prompt_sha256).bind(row.image_sha256).bind(row.frames_sha256);
+    insert.bind(row.trace_sha256).bind(relative_trace(row.task, row.episode, row.seed));
+    insert.bind(row.sent_prompt_sha256).bind(row.sent_image_sha256);
+    insert.next();
+    return insert.done();
+  }
+
+  Status write_call(const RunCall& call) override {
+    if (call_ == 0) {
+      Statement last(database_, "select coalesce(max(number), 0) from calls");
+      if (last.next()) call_ = last.number(0) + 1;
+      PROBE_TRY(last.done());
+    }
+    Statement insert(database_, "insert or replace into calls values (?, ?)", Access::kWrite);
+    insert.bind(call_).bind(call_to_json(call)).next();
+    return insert.done();
+  }
+
+ private:
+  Status write_record(const char* sql) {
+    Statement write(database_, sql, Access::kWrite);
+    write.bind(record_to_text(record_)).next();
+    return write.done();
+  }
+
+  Status raise_schema() {
+    record_.schema = kSchemaVersion;
+    PROBE_TRY(database_.execute("begin immediate"));
+    PROBE_TRY(database_.execute(kRaiseSchema));
+    PROBE_TRY(write_record("update run set value = ? where name = 'record'"));
+    return database_.execute("commit");
+  }
+
+  // Traces and videos that a killed process did not finish.
+  void remove_leftovers() const {
+    for (const char* folder : {"traces", "videos"}) {
+      std::error_code error;
+      for (fs::recursive_directory_iterator at(fs::path(dir_) / folder, error), end;
+           !error && at != end; at.increment(error)) {
+        std::error_code ignored;
+        if (at->path().extension() == ".tmp") fs::remove(at->path(), ignored);
+      }
+    }
+  }
+
+  std::string dir_;
+  int lock_;
+  Database database_;
+  RunRecord record_;
+  int call_ = 0;  // of this object in the table of calls; 0: not written yet
+};
+
+}  // namespace
+
+std::string plan_path(const std::string& dir) { return (fs::path(dir) / "suite.plan").string(); }
+
+std::string trace_path(const std::string& dir, const std::string& task, int episode, int seed) {
+  return (fs::path(dir) / relative_trace(task, episode, seed)).string();
+}
+
+Result<std::unique_ptr<Store>> Store::open(const std::string& dir, const RunRecord& record,
+                                           std::span<const std::byte> plan_bytes) {
+  if (dir.empty()) return failed("no folder to write into", "-o");
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) return failed("the folder cannot be made: " + error.message(), dir);
+  const std::string lock_path = (fs::path(dir) / "lock").string();
+  const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock < 0) {
+    return failed(std::string("the folder cannot be written: ") + std::strerror(errno), dir);
+  }
+  // The kernel drops this lock with the process, however it ends.
+  if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock);
+    return failed("another run is writing into this folder", dir);
+  }
+  auto database = Database::open(database_path(dir), Access::kWrite);
+  if (!database) {
+    ::close(lock);
+    return database.failure();
+  }
+  auto store = std::make_unique<FolderStore>(dir, lock, std::move(*database));
+  PROBE_TRY(store->begin(record, plan_bytes));
+  return std::unique_ptr<Store>(std::move(store));
+}
+
+Result<std::optional<RunRecord>> find_run_record(const std::string& dir) {
+  if (!fs::exists(database_path(dir))) return std::optional<RunRecord>();
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  return load_record(database);
+}
+
+Result<RunRecord> read_run_record(const std::string& dir) {
+  if (!fs::exists(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
+  PROBE_ASSIGN(auto record, find_run_record(dir));
+  if (!record) return failed("no run here: results.sqlite is empty", dir);
+  return std::move(*record);
+}
+
+Result<std::vector<RunCall>> read_run_calls(const std::string& dir) {
+  PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
+  std::vector<RunCall> calls;
+  if (record.schema < 2) return calls;
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  Statement select(database, "select value from calls order by number");
+  while (select.next()) {
+    PROBE_ASSIGN(RunCall call, call_from_json(select.text(0), database.path()));
+    calls.push_back(std::move(call));
+  }
+  PROBE_TRY(select.done());
+  return calls;
+}
+
+Result<std::vector<ResultRow>> read_results(const std::string& dir) {
+  if (!fs::exists(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  return load_rows(database, dir);
+}
+
+}  // namespace probe::store

@@ -1,0 +1,59 @@
+// A run's folder: results.sqlite, traces/, suite.plan, lock. Rows and traces are committed
+// together: a trace gets its final name before its row is written, and a row without its own trace
+// counts as absent.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/store/results.h"
+#include "runtime/store/run_record.h"
+
+namespace probe::store {
+
+// What has been stored of an episode.
+struct StoredEpisode {
+  std::string task;
+  int episode = 0, seed = 0;
+  bool valid = false;  // an invalid one is run again, and so is one whose trace is not its own
+  std::string why;     // it is not valid
+};
+
+// One process writes a folder at a time; the methods may be called from any thread, one at a time.
+class Store {
+ public:
+  // Makes the folder or continues it, whatever the build. Fails (code "store") when the folder
+  // cannot be written, another process writes it, or it holds a run of another identity; the
+  // message says which part differs.
+  static Result<std::unique_ptr<Store>> open(const std::string& dir, const RunRecord& record,
+                                             std::span<const std::byte> plan_bytes);
+  virtual ~Store() = default;
+
+  // The record that the folder was made with.
+  virtual const RunRecord& record() const = 0;
+  // Reads every stored trace to see that it is whole and its row's.
+  virtual Result<std::vector<StoredEpisode>> episodes() = 0;
+
+  // Where the trace of this episode is to be written before commit().
+  virtual std::string temporary_trace(const std::string& task, int episode, int seed) const = 0;
+  // Renames the temporary trace and writes the row, replacing an invalid one. `task_order` sorts
+  // rows.
+  virtual Status commit(const ResultRow& row, int task_order) = 0;
+
+  // What this call of `run` has done so far; each write replaces the one before.
+  virtual Status write_call(const RunCall& call) = 0;
+};
+
+// Nothing when no run was begun in `dir`; fails (code "store") on one that cannot be read.
+Result<std::optional<RunRecord>> find_run_record(const std::string& dir);
+// All calls that wrote into `dir`, oldest first.
+Result<std::vector<RunCall>> read_run_calls(const std::string& dir);
+// The run in `dir`, for readers; fails (code "store") if there is none.
+Result<RunRecord> read_run_record(const std::string& dir);
+std::string plan_path(const std::string& dir);
+std::string trace_path(const std::string& dir, const std::string& task, int episode, int seed);
+
+}  // namespace probe::store

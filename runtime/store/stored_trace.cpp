@@ -1,0 +1,58 @@
+// Three proofs: the hash that the row keeps, whose trace the header says it is, and its last words.
+#include "runtime/store/stored_trace.h"
+
+#include "runtime/base/spelling.h"
+
+namespace probe::store {
+
+Result<Trace> read_stored_trace(const ResultRow& row) {
+  PROBE_ASSIGN(Trace trace, read_trace(row.trace));
+  const TraceHeader& header = trace.header;
+  if (to_hex(trace.hash) != row.trace_sha256 || header.task != row.task ||
+      header.episode != row.episode || header.seed != row.seed || header.policy != row.policy ||
+      to_hex(header.start_id) != row.start_id || to_hex(header.episode_id) != row.episode_id) {
+    return Failure{"trace",
+                   "this trace is not the one its result row was made with (it is of " +
+                       header.task + " episode " + std::to_string(header.episode) + " seed " +
+                       std::to_string(header.seed) + ", policy `" + header.policy + "`)",
+                   row.trace};
+  }
+  if (trace.end->invalid != row.invalid || (!row.invalid && trace.end->metrics != row.metrics)) {
+    return Failure{"trace", "this trace ended with other verdicts than its result row says",
+                   row.trace};
+  }
+  return trace;
+}
+
+Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, int episode,
+                               std::optional<int> seed) {
+  PROBE_ASSIGN(const auto rows, read_results(dir));
+  const ResultRow* found = nullptr;
+  bool has_task = false, has_episode = false;
+  for (const ResultRow& row : rows) {
+    if (row.task != task) continue;
+    has_task = true;
+    if (row.episode != episode) continue;
+    has_episode = true;
+    if (seed ? row.seed == *seed : found == nullptr) found = &row;
+  }
+  if (found == nullptr) {
+    const std::string name = "task `" + task + "`";
+    if (!has_task) {
+      std::vector<std::string> names;
+      for (const ResultRow& row : rows) names.push_back(row.task);
+      return Failure{"usage", "this run has no " + name + did_you_mean(task, names), dir};
+    }
+    if (!has_episode) {
+      return Failure{"usage", name + " has no stored episode " + std::to_string(episode), dir};
+    }
+    return Failure{"usage",
+                   "episode " + std::to_string(episode) + " of " + name + " has no seed " +
+                       std::to_string(*seed),
+                   dir};
+  }
+  PROBE_ASSIGN(Trace trace, read_stored_trace(*found));
+  return StoredTrace{*found, std::move(trace)};
+}
+
+}  // namespace probe::store

@@ -1,0 +1,373 @@
+// The container of a trace: chunks with check words inside one zstd stream that is flushed after
+// every step.
+#include "runtime/store/trace.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "runtime/store/trace_codec.h"
+
+namespace probe::store {
+namespace {
+
+using codec::Tag;
+
+// A forged stream must not fill the memory: what a file may expand to is bounded by its own size.
+// Every step has hashes, check words and times that do not compress, so no real trace comes near.
+constexpr std::size_t kMaxContent = std::size_t{1} << 30;
+constexpr std::size_t kMaxExpansion = 1024;
+constexpr std::size_t kFreeExpansion = std::size_t{1} << 20;
+// The writer's window is 2 MiB; the decoder allocates what the file asks for.
+constexpr int kMaxWindowLog = 23;
+
+std::size_t allowed_content(std::size_t file_bytes) {
+  return std::min(kMaxContent, kFreeExpansion + kMaxExpansion * file_bytes);
+}
+
+constexpr std::size_t kCheckBytes = 8;
+
+// The first bytes of a chunk's hash, tag and size included.
+std::array<std::byte, kCheckBytes> check_of(std::span<const std::byte> chunk) {
+  const Sha256 hash = sha256(chunk);
+  std::array<std::byte, kCheckBytes> check;
+  std::memcpy(check.data(), hash.bytes.data(), kCheckBytes);
+  return check;
+}
+
+class FileTraceWriter final : public TraceWriter {
+ public:
+  FileTraceWriter(std::string path, int file) : path_(std::move(path)), file_(file) {
+    stream_ = ZSTD_createCCtx();
+    ZSTD_CCtx_setParameter(stream_, ZSTD_c_compressionLevel, 3);
+    ZSTD_CCtx_setParameter(stream_, ZSTD_c_checksumFlag, 1);
+  }
+  ~FileTraceWriter() override {
+    ZSTD_freeCCtx(stream_);
+    if (file_ >= 0) ::close(file_);
+  }
+
+  Status begin(const TraceHeader& header) {
+    ByteWriter head;
+    for (const std::uint8_t byte : codec::kMagic) head.u8(byte);
+    head.u32(codec::kVersion);
+    head.u32(0);
+    PROBE_TRY(compress(head.bytes(), ZSTD_e_continue));
+    ByteWriter payload;
+    codec::put_header(payload, header);
+    PROBE_TRY(chunk(Tag::kHead, payload.bytes()));
+    ByteWriter fingerprint;
+    fingerprint.text(header.fingerprint);
+    PROBE_TRY(chunk(Tag::kFingerprint, fingerprint.bytes()));
+    return flush();
+  }
+
+  Status start(const TraceStart& start) override {
+    ByteWriter payload;
+    codec::put_start(payload, start);
+    PROBE_TRY(chunk(Tag::kSettled, payload.bytes()));
+    return flush();
+  }
+
+  Status step(const TraceStep& step) override {
+    ByteWriter payload;
+    codec::put_step(payload, step);
+    ByteWriter timing;
+    for (const double seconds : {step.render_s, step.policy_s, step.physics_s}) timing.f64(seconds);
+    // The timing goes first, so that a whole step in the file has it.
+    PROBE_TRY(chunk(Tag::kTime, timing.bytes()));
+    PROBE_TRY(chunk(Tag::kStep, payload.bytes()));
+    return flush();
+  }
+
+  Result<Sha256> finish(const TraceEnd& end) override {
+    ByteWriter payload;
+    codec::put_end(payload, end);
+    PROBE_TRY(chunk(Tag::kDone, payload.bytes()));
+    const Sha256 hash = hasher_.finish();
+    ByteWriter sum;
+    sum.hash(hash);
+    PROBE_TRY(chunk(Tag::kHash, sum.bytes()));
+    PROBE_TRY(compress({}, ZSTD_e_end));
+    if (::fsync(file_) != 0) return failed("cannot be forced to the disk");
+    const int file = file_;
+    file_ = -1;
+    if (::close(file) != 0) return failed("cannot be closed");
+    return hash;
+  }
+
+ private:
+  Failure failed(const char* what) const {
+    return {"store", std::string(what) + ": " + std::strerror(errno), path_};
+  }
+
+  Status chunk(Tag tag, std::span<const std::byte> payload) {
+    ByteWriter bytes;
+    bytes.u32(static_cast<std::uint32_t>(tag));
+    bytes.u32(static_cast<std::uint32_t>(payload.size()));
+    std::vector<std::byte> whole = bytes.bytes();
+    whole.insert(whole.end(), payload.begin(), payload.end());
+    if (is_hashed(tag)) hasher_.bytes(whole);
+    const auto check = check_of(whole);
+    whole.insert(whole.end(), check.begin(), check.end());
+    return compress(whole, ZSTD_e_continue);
+  }
+
+  Status flush() { return compress({}, ZSTD_e_flush); }
+
+  Status compress(std::span<const std::byte> bytes, ZSTD_EndDirective directive) {
+    ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+    std::vector<char> buffer(ZSTD_CStreamOutSize());
+    for (;;) {
+      ZSTD_outBuffer out{buffer.data(), buffer.size(), 0};
+      const std::size_t left = ZSTD_compressStream2(stream_, &out, &in, directive);
+      if (ZSTD_isError(left) != 0) {
+        return Failure{"store", std::string("zstd: ") + ZSTD_getErrorName(left), path_};
+      }
+      PROBE_TRY(write(std::span(buffer).first(out.pos)));
+      if (directive == ZSTD_e_continue ? in.pos == in.size : left == 0) return {};
+    }
+  }
+
+  Status write(std::span<const char> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return failed("cannot be written");
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+    return {};
+  }
+
+  std::string path_;
+  int file_;
+  ZSTD_CCtx* stream_ = nullptr;
+  Hasher hasher_;
+};
+
+struct Content {
+  std::vector<std::byte> bytes;
+  std::string incomplete;
+};
+
+// What can be decompressed from the front, and why not more.
+Result<Content> decompress(const std::string& path) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (file == nullptr) {
+    return Failure{"trace", std::string("cannot be opened: ") + std::strerror(errno), path};
+  }
+  ZSTD_DCtx* stream = ZSTD_createDCtx();
+  ZSTD_DCtx_setParameter(stream, ZSTD_d_windowLogMax, kMaxWindowLog);
+  std::vector<char> packed(ZSTD_DStreamInSize());
+  std::vector<char> plain(ZSTD_DStreamOutSize());
+  Content content;
+  bool ended = false;
+  std::size_t total = 0;
+  for (;;) {
+    const std::size_t got = std::fread(packed.data(), 1, packed.size(), file);
+    if (got == 0) break;
+    ZSTD_inBuffer in{packed.data(), got, 0};
+    while (content.incomplete.empty()) {
+      if (ended && in.pos < in.size) {
+        content.incomplete = "bytes after the end, at byte " + std::to_string(total + in.pos);
+        break;
+      }
+      ZSTD_outBuffer out{plain.data(), plain.size(), 0};
+      const std::size_t code = ZSTD_decompressStream(stream, &out, &in);
+      if (ZSTD_isError(code) != 0) {
+        content.incomplete = "damaged before byte " + std::to_string(total + in.pos) + " (" +
+                             ZSTD_getErrorName(code) + ")";
+        break;
+      }
+      const auto* begin = reinterpret_cast<const std::byte*>(plain.data());
+      content.bytes.insert(content.bytes.end(), begin, begin + out.pos);
+      if (content.bytes.size() > allowed_content(total + in.pos)) {
+        content.incomplete =
+            "expanding beyond any episode at byte " + std::to_string(total + in.pos);
+      }
+      if (code == 0) ended = true;
+      if (in.pos == in.size && out.pos < out.size) break;
+    }
+    total += got;
+    if (!content.incomplete.empty()) break;
+  }
+  const bool read_error = std::ferror(file) != 0;
+  std::fclose(file);
+  ZSTD_freeDCtx(stream);
+  if (read_error) return Failure{"trace", "cannot be read", path};
+  if (content.incomplete.empty() && !ended) {
+    content.incomplete = "truncated at byte " + std::to_string(total);
+  }
+  return content;
+}
+
+std::string after(const Trace& trace) {
+  return trace.steps.empty() ? std::string(trace.start ? "after the settled start" : "at the start")
+                             : "after step " + std::to_string(trace.steps.size());
+}
+
+bool is_known(Tag tag) {
+  return is_hashed(tag) || tag == Tag::kFingerprint || tag == Tag::kTime || tag == Tag::kHash;
+}
+
+// What a record must have of what its header names: nobody behind the reader counts again.
+bool fits(const TraceHeader& header, const vm::StepSample& sample) {
+  const std::size_t bodies = header.bodies.size();
+  return sample.bodies.size() == bodies &&
+         std::ranges::all_of(sample.contacts, [&](const vm::ContactSample& contact) {
+           return contact.a < contact.b && contact.b < bodies;
+         });
+}
+bool fits(const TraceHeader& header, const TraceStart& start) {
+  return start.starts.size() == header.bodies.size() && start.q.size() == header.joints.size() &&
+         fits(header, start.sample);
+}
+bool fits(const TraceHeader& header, const TraceStep& step) {
+  return step.q.size() == header.joints.size() && step.u.size() == header.joints.size() &&
+         step.metrics.size() == header.metrics.size() && fits(header, step.sample);
+}
+bool fits(const TraceHeader& header, const TraceEnd& end) {
+  const auto is_same = [](const MetricValue& value, const TraceHeader::Metric& metric) {
+    return value.name == metric.name && value.is_bool == metric.is_bool;
+  };
+  return end.invalid || std::ranges::equal(end.metrics, header.metrics, is_same);
+}
+
+// One chunk into the trace; what is wrong with it, if anything is.
+std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing, Tag tag,
+                   std::span<const std::byte> payload) {
+  if (!is_known(tag)) return "a chunk of unknown kind";
+  if ((tag == Tag::kHead) == has_header) return has_header ? "a second header" : "no header";
+  if (tag != Tag::kHead && tag != Tag::kFingerprint && tag != Tag::kSettled && !trace.start) {
+    return "a step before the settled start";
+  }
+  if (trace.end && tag != Tag::kHash) return "a chunk after the end";
+  ByteReader from(payload);
+  switch (tag) {
+    case Tag::kHead: {
+      auto header = codec::get_header(payload);
+      if (!header) return "a header of another form";
+      trace.header = std::move(*header);
+      has_header = true;
+      return {};
+    }
+    case Tag::kFingerprint:
+      trace.header.fingerprint = from.text();
+      return from.ok() && from.left() == 0 ? "" : "a fingerprint of another form";
+    case Tag::kSettled: {
+      if (trace.start) return "a second settled start";
+      auto start = codec::get_start(payload);
+      if (!start) return "a settled start of another form";
+      if (!fits(trace.header, *start)) return "a settled start of other things than its header's";
+      trace.start = std::move(start);
+      return {};
+    }
+    case Tag::kTime:
+      for (double& seconds : timing) seconds = from.f64();
+      return from.ok() && from.left() == 0 ? "" : "a timing of another form";
+    case Tag::kStep: {
+      auto step = codec::get_step(payload);
+      if (!step) return "a step of another form";
+      if (!fits(trace.header, *step)) return "a step of other things than its header's";
+      step->render_s = timing[0];
+      step->policy_s = timing[1];
+      step->physics_s = timing[2];
+      trace.steps.push_back(std::move(*step));
+      return {};
+    }
+    case Tag::kDone:
+      trace.end = codec::get_end(payload);
+      if (!trace.end) return "an end of another form";
+      if (!fits(trace.header, *trace.end)) return "an end with other metrics than its header's";
+      return trace.end->steps == trace.steps.size() ? ""
+                                                    : "another number of steps than its end says";
+    case Tag::kHash:
+      if (!trace.end) return "a hash before the end";
+      return payload.size() == sizeof(Sha256) ? "" : "a hash of another form";
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<TraceWriter>> TraceWriter::create(const std::string& path,
+                                                         const TraceHeader& header) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) {
+    return Failure{"store", std::string("cannot be made: ") + std::strerror(errno), path};
+  }
+  auto writer = std::make_unique<FileTraceWriter>(path, file);
+  PROBE_TRY(writer->begin(header));
+  return std::unique_ptr<TraceWriter>(std::move(writer));
+}
+
+Result<Trace> read_trace_prefix(const std::string& path) {
+  PROBE_ASSIGN(const Content content, decompress(path));
+  ByteReader from(content.bytes);
+  const auto magic = from.take(codec::kMagic.size());
+  if (magic.empty() || std::memcmp(magic.data(), codec::kMagic.data(), magic.size()) != 0) {
+    return Failure{
+        "trace",
+        content.incomplete.empty() ? "not a trace" : "not a trace, or " + content.incomplete, path};
+  }
+  const std::uint32_t version = from.u32();
+  const std::uint32_t zero = from.u32();
+  if (from.ok() && version != codec::kVersion) {
+    return Failure{"trace", "trace format " + std::to_string(version) + ", this program reads 1",
+                   path};
+  }
+
+  if (zero != 0) return Failure{"trace", "reserved bytes after the version are not zero", path};
+
+  Trace trace;
+  Hasher hasher;
+  bool has_header = false, has_hash = false;
+  Sha256 recorded;
+  std::array<double, 3> timing{};
+  std::string wrong;
+  while (wrong.empty() && from.left() > 0 && !has_hash) {
+    const std::size_t begin = from.position();
+    const Tag tag{from.u32()};
+    const auto payload = from.take(from.u32());
+    const std::size_t size = from.position() - begin;
+    const auto check = from.take(kCheckBytes);
+    if (!from.ok()) break;  // the rest of a truncated file
+    const auto chunk = std::span(content.bytes).subspan(begin, size);
+    if (std::memcmp(check_of(chunk).data(), check.data(), kCheckBytes) != 0) {
+      wrong = "a chunk with another check word";
+      break;
+    }
+    wrong = accept(trace, has_header, timing, tag, payload);
+    if (!wrong.empty()) break;
+    if (is_hashed(tag)) hasher.bytes(chunk);
+    if (tag == Tag::kHash) {
+      recorded = ByteReader(payload).hash();
+      has_hash = true;
+    }
+  }
+  if (!has_header) {
+    return Failure{"trace", "no readable header: " + (wrong.empty() ? content.incomplete : wrong),
+                   path};
+  }
+  trace.hash = hasher.finish();
+  if (wrong.empty()) wrong = content.incomplete;
+  if (wrong.empty() && !has_hash) wrong = "truncated";
+  if (wrong.empty() && from.left() > 0) wrong = "bytes after the end";
+  if (wrong.empty() && recorded != trace.hash)
+    wrong = "content that has another hash than recorded";
+  if (!wrong.empty()) trace.incomplete = wrong + ", " + after(trace);
+  return trace;
+}
+
+Result<Trace> read_trace(const std::string& path) {
+  PROBE_ASSIGN(Trace trace, read_trace_prefix(path));
+  if (!trace.incomplete.empty()) return Failure{"trace", trace.incomplete, path};
+  return trace;
+}
+
+}  // namespace probe::store

@@ -1,0 +1,44 @@
+// The payloads of a trace's chunks: records to bytes and back. Private to the trace reader and
+// writer.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/base/bytes.h"
+#include "runtime/store/trace.h"
+
+namespace probe::store::codec {
+
+inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'T', 'R', 'C', '\r', '\n', 0x1a, '\n'};
+
+// Four letters each, as they stand in the file.
+enum class Tag : std::uint32_t {
+  kHead = 0x44414548,         // HEAD
+  kFingerprint = 0x474e4946,  // FING, not hashed
+  kSettled = 0x4c544553,      // SETL
+  kStep = 0x50455453,         // STEP
+  kTime = 0x454d4954,         // TIME, not hashed
+  kDone = 0x454e4f44,         // DONE
+  kHash = 0x48534148,         // HASH, not hashed
+};
+
+inline bool is_hashed(Tag tag) {
+  return tag == Tag::kHead || tag == Tag::kSettled || tag == Tag::kStep || tag == Tag::kDone;
+}
+
+void put_header(ByteWriter& to, const TraceHeader& header);
+void put_start(ByteWriter& to, const TraceStart& start);
+void put_step(ByteWriter& to, const TraceStep& step);
+void put_end(ByteWriter& to, const TraceEnd& end);
+
+// Nothing if the bytes do not have the form of the record, all of them.
+std::optional<TraceHeader> get_header(std::span<const std::byte> bytes);
+std::optional<TraceStart> get_start(std::span<const std::byte> bytes);
+std::optional<TraceStep> get_step(std::span<const std::byte> bytes);
+std::optional<TraceEnd> get_end(std::span<const std::byte> bytes);
+
+}  // namespace probe::store::codec

@@ -1,0 +1,199 @@
+// Conventions of servers against the simulator's.
+#include "runtime/servers/conversion.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "runtime/robot/rotation.h"
+
+namespace probe::servers {
+using namespace probe::policy;
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::string refused(const Profile& profile, const RawAction& raw) {
+  const auto action = to_action(profile, raw);
+  REQUIRE_FALSE(action.ok());
+  return action.failure().message;
+}
+
+}  // namespace
+
+TEST_CASE("numbers that already are ours come back bit for bit") {
+  const RawAction raw{0.012345678901234567, -0.1, 1e-300, 0.3, -0.2, 0.1, -0.73};
+  const auto action = to_action(Profile{}, raw);
+  REQUIRE(action.ok());
+  CHECK(*action == raw);
+}
+
+// transforms3d: euler2axangle(0.1, 0.2, 0.3, 'sxyz') = axis * angle.
+TEST_CASE("roll pitch yaw becomes a rotation vector") {
+  Profile profile;
+  profile.action_rotation = RotationForm::kEuler;
+  const auto action = to_action(profile, {0, 0, 0, 0.1, 0.2, 0.3, 1});
+  REQUIRE(action.ok());
+  const double roll = 0.1, pitch = 0.2, yaw = 0.3;
+  const Mat3 expected =
+      (Eigen::AngleAxisd(yaw, Vec3::UnitZ()) * Eigen::AngleAxisd(pitch, Vec3::UnitY()) *
+       Eigen::AngleAxisd(roll, Vec3::UnitX()))
+          .toRotationMatrix();
+  const Vec3 vector((*action)[3], (*action)[4], (*action)[5]);
+  CHECK((robot::from_rotation_vector(vector).toRotationMatrix() - expected).norm() < 1e-12);
+  CHECK(std::abs(vector.x() - 0.1) > 0.01);  // it is another one than roll pitch yaw
+}
+
+TEST_CASE("the gripper opens above the threshold, and the other way round where it is inverted") {
+  Profile profile;
+  const auto gripper = [&](GripperRange range, std::optional<double> threshold, double raw) {
+    profile.action_gripper = range;
+    profile.action_threshold = threshold;
+    const auto action = to_action(profile, {0, 0, 0, 0, 0, 0, raw});
+    REQUIRE(action.ok());
+    return (*action)[6];
+  };
+  CHECK(gripper(GripperRange::kUnit, 0.5, 0.9) == 1);
+  CHECK(gripper(GripperRange::kUnit, 0.5, 0.5) == -1);
+  CHECK(gripper(GripperRange::kUnit, std::nullopt, 0.75) == 0.5);
+  CHECK(gripper(GripperRange::kUnitInverted, 0.5, 0.9) == -1);
+  CHECK(gripper(GripperRange::kUnitInverted, std::nullopt, 0) == 1);
+  CHECK(gripper(GripperRange::kSignedInverted, 0.0, 0.2) == -1);
+  CHECK(gripper(GripperRange::kSignedInverted, std::nullopt, 1) == -1);
+  CHECK(gripper(GripperRange::kSigned, 0.0, 0.2) == 1);
+  CHECK(gripper(GripperRange::kSigned, std::nullopt, 1.02) == 1);
+}
+
+TEST_CASE("raw numbers are taken back by the profile's statistics") {
+  Profile profile;
+  profile.action_statistics.kind = Normalisation::kBound;
+  profile.action_statistics.low = {-0.02, -1, -1, -1, -1, -1, 0};
+  profile.action_statistics.high = {0.06, 1, 1, 1, 1, 1, 1};
+  profile.action_statistics.mask = {1, 1, 1, 1, 1, 1, 0};
+  auto action = to_action(profile, {0.5, 0, 0, 0, 0, 0, 0.25});
+  REQUIRE(action.ok());
+  CHECK((*action)[0] == doctest::Approx(0.04));
+  CHECK((*action)[6] == 0.25);
+  profile.action_statistics.kind = Normalisation::kGaussian;
+  profile.action_statistics.mean.assign(7, 0.01);
+  profile.action_statistics.std.assign(7, 0.1);
+  action = to_action(profile, {1, 0, 0, 0, 0, 0, 0.25});
+  REQUIRE(action.ok());
+  CHECK((*action)[0] == doctest::Approx(0.11));
+}
+
+TEST_CASE("what cannot be metres, radians or a gripper is refused with the field at fault") {
+  CHECK(refused(Profile{}, {0.9, 0.9, 0, 0, 0, 0, 1}).find("`action.limit_m`") !=
+        std::string::npos);
+  CHECK(refused(Profile{}, {0, 0, 0, 0, 7, 0, 1}).find("`action.limit_rad`") != std::string::npos);
+  CHECK(refused(Profile{}, {0, 0, 0, 0, 0, 0, 255}).find("`action.gripper`") != std::string::npos);
+}
+
+TEST_CASE("states come in every layout") {
+  Proprioception measured;
+  measured.tcp_in_base = {{0.1, 0.2, 0.3}, robot::from_rpy({0.1, 0.2, 0.3})};
+  measured.openness = 0.75;
+  measured.joints = {1, 2, 3, 4, 5, 6, 0.02, 0.03};
+  Profile profile;
+  const auto state = [&](StateLayout layout) {
+    profile.state_layout = layout;
+    const auto numbers = to_state(profile, measured);
+    REQUIRE(numbers.ok());
+    return *numbers;
+  };
+  CHECK(state(StateLayout::kNone).empty());
+  const Quat q = measured.tcp_in_base.rotation;
+  CHECK(state(StateLayout::kXyzWxyzOpenness) ==
+        std::vector<double>{0.1, 0.2, 0.3, q.w(), q.x(), q.y(), q.z(), 0.75});
+  const auto padded = state(StateLayout::kXyzRpyPadOpenness);
+  REQUIRE(padded.size() == 8);
+  CHECK(padded[3] == doctest::Approx(0.1));
+  CHECK(padded[5] == doctest::Approx(0.3));
+  CHECK(padded[6] == 0);
+  CHECK(state(StateLayout::kXyzRpyOpenness).size() == 7);
+  CHECK(state(StateLayout::kXyzRotvecFingers).back() == 0.03);
+  CHECK(state(StateLayout::kJoints) == measured.joints);
+  CHECK(state(StateLayout::kJointsOpenness) == std::vector<double>{1, 2, 3, 4, 5, 6, 0.75});
+  measured.joints.clear();
+  profile.state_layout = StateLayout::kJointsOpenness;
+  CHECK_FALSE(to_state(profile, measured).ok());
+}
+
+TEST_CASE("Bridge counts rotations from the tool pointing down") {
+  Mat3 down;
+  down << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  Proprioception measured;
+  measured.tcp_in_base.rotation =
+      Quat(Eigen::AngleAxisd(0.4, Vec3::UnitZ()).toRotationMatrix() * down);
+  Profile profile;
+  profile.state_layout = StateLayout::kXyzRpyOpenness;
+  profile.state_frame = StateFrame::kTopDown;
+  const auto state = to_state(profile, measured);
+  REQUIRE(state.ok());
+  CHECK((*state)[3] == doctest::Approx(0).epsilon(1e-9));
+  CHECK((*state)[4] == doctest::Approx(0).epsilon(1e-9));
+  CHECK((*state)[5] == doctest::Approx(0.4));
+}
+
+TEST_CASE("a normalised state is clipped and has as many numbers as the statistics") {
+  Proprioception measured;
+  measured.tcp_in_base.position = {0.5, 5, 0};
+  Profile profile;
+  profile.state_layout = StateLayout::kXyzRpyOpenness;
+  profile.state_statistics = {Normalisation::kBound,
+                              {0, 0, -1, -kPi, -kPi, -kPi, 0},
+                              {1, 1, 1, kPi, kPi, kPi, 1},
+                              {},
+                              {},
+                              {}};
+  const auto state = to_state(profile, measured);
+  REQUIRE(state.ok());
+  CHECK(*state == std::vector<double>{0, 1, 0, 0, 0, 0, 1});
+  profile.state_layout = StateLayout::kXyzRpyPadOpenness;
+  CHECK(to_state(profile, measured).failure().message ==
+        "the profile has statistics of 7 numbers, the state has 8");
+}
+
+TEST_CASE("prompts follow the profile's text rule") {
+  Profile profile;
+  CHECK(to_prompt(profile, "Put carrot on plate") == "Put carrot on plate");
+  profile.prompt_case = PromptCase::kLower;
+  profile.prompt_full_stop = FullStop::kWith;
+  CHECK(to_prompt(profile, "Put carrot on plate") == "put carrot on plate.");
+  profile.prompt_full_stop = FullStop::kWithout;
+  CHECK(to_prompt(profile, "Put carrot on plate.") == "put carrot on plate");
+}
+
+TEST_CASE("answers of every honest shape are actions, others say what was expected") {
+  const std::vector<double> row{1, 2, 3, 4, 5, 6, 7};
+  const wire::Array flat = wire::array_f64({7}, row);
+  CHECK(to_actions(flat)->size() == 1);
+  CHECK(to_actions(wire::array_f32({1, 1, 7}, row))->size() == 1);
+  CHECK(to_actions(wire::List{flat, flat, flat})->size() == 3);
+  CHECK(to_actions(wire::List{1, 2, 3, 4, 5, 6, 7})->front()[6] == 7);
+  const auto wrong = to_actions(wire::array_f64({6}, {1, 2, 3, 4, 5, 6}));
+  REQUIRE_FALSE(wrong.ok());
+  CHECK(wrong.failure().message ==
+        "expected actions of 7 numbers, an array 7 or N x 7; got an array 6 of <f8");
+  CHECK_FALSE(to_actions(wire::Value("text")).ok());
+  CHECK_FALSE(to_actions(wire::List{}).ok());
+  CHECK_FALSE(to_actions(wire::array_f64({0, 7}, {})).ok());
+  CHECK_FALSE(to_actions(wire::array_f64({2, 1, 7}, std::vector<double>(14))).ok());
+  CHECK_FALSE(to_actions(wire::List{flat, wire::List{1, 2}}).ok());
+  const auto infinite = to_actions(
+      wire::array_f64({7}, {0, 0, std::numeric_limits<double>::quiet_NaN(), 0, 0, 0, 0}));
+  REQUIRE_FALSE(infinite.ok());
+  CHECK(infinite.failure().message == "number 3 of action 1 of 1 is not a number");
+}
+
+TEST_CASE("a server's text is shown by its last lines, on one and without control characters") {
+  CHECK(last_lines("Traceback (most recent call last):\n  File \"a.py\", line 3\n    x = "
+                   "o['k']\nKeyError: 'k'\n\n") ==
+        "File \"a.py\", line 3 | x = o['k'] | KeyError: 'k'");
+  CHECK(last_lines("").empty());
+  CHECK(last_lines("a\x1b[2Jb\n") == "a [2Jb");
+  CHECK(last_lines(std::string(10000, 'x')).size() == 303);  // with "..."
+}
+
+}  // namespace probe::servers

@@ -1,0 +1,278 @@
+// The openpi client against a server of the same rules, byte by byte and by what it does.
+#include "runtime/servers/protocols/openpi.h"
+
+#include <doctest/doctest.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "runtime/base/sha256.h"
+#include "runtime/run/policies.h"
+#include "runtime/servers/server_policy.h"
+#include "runtime/servers/servers.h"
+#include "runtime/wire/msgpack.h"
+#include "tests/runtime/servers/asking.h"
+#include "tests/servers/python_server.h"
+
+namespace probe::servers {
+using namespace probe::run;
+using namespace probe::policy;
+namespace {
+
+using test::PythonServer;
+
+struct Picture {
+  wire::Bytes bytes = wire::Bytes(8 * 6 * 3, 7);
+  Observation observation(int step = 0) {
+    Observation seen;
+    seen.image = {8, 6, bytes};
+    seen.prompt = "put carrot on plate";
+    seen.step = step;
+    return seen;
+  }
+};
+
+std::unique_ptr<Policy> made(const std::string& name, const PythonServer& server,
+                             const std::string& options = "") {
+  REQUIRE_MESSAGE(!server.port().empty(), "python3-websockets and python3-msgpack are installed");
+  auto policy =
+      make_policy(name + "://127.0.0.1:" + server.port() + "?timeout.wait_s=0.05" + options);
+  REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
+  return std::move(policy).value();
+}
+
+EpisodeStart start() {
+  EpisodeStart start;
+  start.task = "carrot_on_plate";
+  start.index = 3;
+  start.seed = 42;
+  return start;
+}
+
+void require_begin(Policy& policy) {
+  const auto begun = policy.begin(start());
+  REQUIRE_MESSAGE(begun.ok(), to_text(begun.failure()));
+}
+
+double first_number(Policy& policy, const Observation& seen) {
+  const auto action = policy.act(seen);
+  REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+  return (*action)[0];
+}
+
+std::string hex(std::string_view bytes) {
+  std::string text;
+  for (const char c : bytes) {
+    const auto byte = static_cast<unsigned char>(c);
+    text += "0123456789abcdef"[byte >> 4];
+    text += "0123456789abcdef"[byte & 15];
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("openpi's request has its keys in order and its arrays with keys of bytes") {
+  const ServerRecord record;
+  const PythonServer server("openpi_server.py", {"openpi", record.option()});
+  const auto policy = made("openpi", server);
+  require_begin(*policy);
+  Picture picture;
+  CHECK(first_number(*policy, picture.observation()) == 0);
+  const auto lines = record.lines();
+  REQUIRE(lines.size() == 1);
+  const std::string array_begin = "84c40b" + hex("__ndarray__") + "c3c404" + hex("data");
+  const std::string u1 = "c405" + hex("dtype") + "a3" + hex("|u1") + "c405" + hex("shape");
+  const std::string f4 = "c405" + hex("dtype") + "a3" + hex("<f4") + "c405" + hex("shape");
+  std::string pixels;
+  for (std::size_t i = 0; i < picture.bytes.size(); ++i) pixels += "07";
+  // The pose of an observation without one: the identity, open.
+  const std::string state =
+      "000000000000000000000000"
+      "0000803f"
+      "000000000000000000000000"
+      "0000803f";
+  CHECK(lines[0] == "83b1" + hex("observation/image") + array_begin + "c490" + pixels + u1 +
+                        "93060803" + "b1" + hex("observation/state") + array_begin + "c420" +
+                        state + f4 + "9108" + "a6" + hex("prompt") + "b3" +
+                        hex("put carrot on plate"));
+}
+
+TEST_CASE("a chunk is done without asking again, and the first request is proved") {
+  const PythonServer server("openpi_server.py", {"openpi", "chunk=4"});
+  const auto policy = made("openpi", server);
+  QueryMeter meter;
+  require_begin(*policy);
+  CHECK_FALSE(policy->delivery().has_value());
+  Picture picture;
+  for (int step = 0; step < 6; ++step) {
+    picture.bytes[0] = static_cast<std::uint8_t>(step);
+    CHECK(first_number(*policy, picture.observation(step)) == step / 1000.0);
+  }
+  picture.bytes[0] = 0;
+  REQUIRE(policy->delivery().has_value());
+  CHECK(policy->delivery()->image_sha256 ==
+        to_hex(sha256(std::as_bytes(std::span(picture.bytes)))));
+  CHECK(policy->delivery()->prompt_sha256 == to_hex(sha256("put carrot on plate")));
+  policy->end({true, true, 6});
+  require_begin(*policy);  // what was left of the chunk is forgotten
+  CHECK(first_number(*policy, picture.observation()) == 8 / 1000.0);
+}
+
+TEST_CASE("INT-ACT hears the model first, infers, and a reset after each episode") {
+  const ServerRecord record;
+  const PythonServer server("openpi_server.py", {"intact", record.option()});
+  const auto policy = made("intact", server, "&model=/m");
+  Picture picture;
+  for (int episode = 0; episode < 2; ++episode) {
+    require_begin(*policy);
+    CHECK(first_number(*policy, picture.observation()) == 0);
+    CHECK(first_number(*policy, picture.observation(1)) == 1 / 1000.0);
+    policy->end({true, false, 2});
+  }
+  const auto lines = record.lines();
+  REQUIRE(lines.size() == 7);
+  CHECK(lines[0] == "81ae6e65775f6d6f64656c5f70617468a22f6d");
+  CHECK(lines[3] == "81a57265736574c3");
+  CHECK(lines[6] == lines[3]);
+  CHECK(lines[1].find("b1" + hex("observation.state") + "81a5" + hex("agent") + "81a7" +
+                      hex("eef_pos") + "84c40b") != std::string::npos);
+  CHECK(lines[1].find("a4" + hex("task") + "b3") != std::string::npos);
+}
+
+TEST_CASE("INT-ACT's chunks are bare arrays") {
+  const PythonServer server("openpi_server.py", {"intact", "chunk=4"});
+  const auto policy = made("intact", server, "&model=/m&profile=pi0_bridge");
+  require_begin(*policy);
+  Picture picture;
+  for (int step = 0; step < 5; ++step) {
+    CHECK(first_number(*policy, picture.observation(step)) == step / 1000.0);
+  }
+  CHECK(make_policy("intact://localhost:1").failure().message.find("?model=PATH") !=
+        std::string::npos);
+}
+
+TEST_CASE("RoboArena's server says what it wants") {
+  const PythonServer server("openpi_server.py", {"roboarena"});
+  const auto policy = made("roboarena", server);
+  Picture picture;
+  for (int episode = 0; episode < 2; ++episode) {
+    require_begin(*policy);
+    CHECK(first_number(*policy, picture.observation()) == 0);
+    CHECK(first_number(*policy, picture.observation(1)) == 1 / 1000.0);
+    policy->end({true, false, 2});
+  }
+}
+
+TEST_CASE("a traceback is shown by its last lines, and the next episode connects again") {
+  const PythonServer server("openpi_server.py", {"openpi"});
+  const auto policy = made("openpi", server, "&state.layout=none");
+  require_begin(*policy);
+  Picture picture;
+  const auto action = policy->act(picture.observation());
+  REQUIRE_FALSE(action.ok());
+  CHECK(action.failure().where == "127.0.0.1:" + server.port());
+  CHECK(action.failure().message.find("the server failed: ") == 0);
+  CHECK(action.failure().message.find("AssertionError: {'") != std::string::npos);
+  CHECK_FALSE(policy->act(picture.observation(1)).ok());
+  policy->end({false, false, 0});
+  require_begin(*policy);
+}
+
+TEST_CASE("a server that is not there is tried for as long as the profile says") {
+  std::string port;
+  {
+    const PythonServer server("openpi_server.py", {"openpi"});
+    port = server.port();
+  }
+  auto policy = make_policy("openpi://127.0.0.1:" + port + "?timeout.wait_s=0.4");
+  REQUIRE(policy.ok());
+  const auto begun = (*policy)->begin(start());
+  REQUIRE_FALSE(begun.ok());
+  CHECK(begun.failure().message.find("Connection refused") != std::string::npos);
+  CHECK(begun.failure().message.find("(tried 3 times)") != std::string::npos);
+}
+
+TEST_CASE("a server that answers connecting with an error is told at once") {
+  const PythonServer server("openpi_server.py", {"intact", "lacks=/nowhere"});
+  // Trying again would take 100 s.
+  auto made_here =
+      make_policy("intact://127.0.0.1:" + server.port() + "?model=/nowhere&timeout.wait_s=100");
+  REQUIRE_MESSAGE(made_here.ok(), to_text(made_here.failure()));
+  const auto policy = std::move(made_here).value();
+  const auto before = std::chrono::steady_clock::now();
+  const auto begun = policy->begin(start());
+  REQUIRE_FALSE(begun.ok());
+  CHECK(begun.failure().code == "policy");
+  CHECK(begun.failure().message.find("FileNotFoundError: /nowhere") != std::string::npos);
+  CHECK(begun.failure().message.find("tried") == std::string::npos);
+  CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(20));
+}
+
+TEST_CASE("a request in which two things have one key is not sent") {
+  Profile profile;
+  profile.images = {{"", "prompt"}};
+  for (const auto make : {make_openpi, make_roboarena}) {
+    auto transport = make(profile, {});
+    REQUIRE(transport.ok());
+    Request request;
+    request.images.push_back({"prompt", wire::array_u8({1, 1, 3}, {1, 2, 3})});
+    const auto answer = (*transport)->ask(request, {});
+    REQUIRE_FALSE(answer.ok());
+    CHECK(answer.failure().message ==
+          "the request has the key `prompt` twice: one of the two would not arrive");
+  }
+  const wire::Value nested =
+      wire::Map{{"a", wire::Map{{"x", 1}, {"x", 2}}}, {"b", wire::Map{{"x", 1}}}};
+  CHECK_FALSE(check_distinct_keys(nested).ok());
+  CHECK(check_distinct_keys(wire::Map{{"x", 1}, {"b", wire::Map{{"x", 1}}}}).ok());
+}
+
+TEST_CASE("a restarted server is found again at the next episode") {
+  auto server =
+      std::make_unique<PythonServer>("openpi_server.py", std::vector<std::string>{"openpi"});
+  const auto policy = made("openpi", *server);
+  require_begin(*policy);
+  Picture picture;
+  first_number(*policy, picture.observation());
+  server->stop();
+  CHECK_FALSE(policy->act(picture.observation(1)).ok());
+  policy->end({false, false, 1});
+  CHECK_FALSE(policy->begin(start()).ok());
+}
+
+TEST_CASE("the key comes from the environment and is in no message") {
+  const PythonServer server("openpi_server.py", {"openpi", "key=sesame-7"});
+  // Long before the time to connect is over: declined is declined.
+  const auto without = made("openpi", server, "&timeout.connect_s=600");
+  const auto refused = without->begin(start());
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().message.find("/healthz says OK") != std::string::npos);
+  setenv("VLAPROBE_API_KEY", "wrong-key-9", 1);
+  const auto wrong = made("openpi", server)->begin(start());
+  REQUIRE_FALSE(wrong.ok());
+  CHECK(to_text(wrong.failure()).find("wrong-key-9") == std::string::npos);
+  setenv("VLAPROBE_API_KEY", "sesame-7", 1);
+  const auto policy = made("openpi", server);
+  require_begin(*policy);
+  Picture picture;
+  first_number(*policy, picture.observation());
+  unsetenv("VLAPROBE_API_KEY");
+}
+
+TEST_CASE("a camera that the scene does not have is named with those that it has") {
+  const PythonServer server("openpi_server.py", {"openpi"});
+  const auto policy = made("openpi", server, "&image=wrist%20-%3E%20observation/image");
+  require_begin(*policy);
+  Picture picture;
+  Observation seen = picture.observation();
+  const CameraImage cameras[] = {{"base", seen.image}, {"side", seen.image}};
+  seen.cameras = cameras;
+  CHECK(policy->act(seen).failure().message ==
+        "the profile wants camera `wrist`, the scene has `base`, `side`");
+}
+
+}  // namespace probe::servers

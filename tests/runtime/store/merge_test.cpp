@@ -1,0 +1,149 @@
+// Folders joined: each episode once, the better row, and refusal of what does not belong together.
+#include "runtime/store/merge.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runtime/base/check.h"
+#include "runtime/run/run.h"
+#include "runtime/store/store.h"
+#include "tests/runtime/run/run_checks.h"
+#include "tests/runtime/run/table_plan.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::store {
+using namespace probe::run;
+namespace {
+
+namespace fs = std::filesystem;
+
+MergeSummary must_merge(const MergeOptions& options) {
+  const auto summary = merge(options);
+  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+  return *summary;
+}
+
+// All of a row but the place of its trace.
+std::vector<ResultRow> rows_of(const std::string& dir) {
+  const auto rows = read_results(dir);
+  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
+  std::vector<ResultRow> all = *rows;
+  for (ResultRow& row : all) {
+    CHECK(fs::exists(row.trace));
+    row.trace = "";
+  }
+  return all;
+}
+
+void make_invalid(const std::string& dir, const ResultRow& row) {
+  PROBE_CHECK(fs::exists(row.trace), "a stored row has its trace");
+  auto record = read_run_record(dir);
+  auto store = Store::open(dir, *record, {});
+  REQUIRE(store.ok());
+  fs::copy_file(row.trace, (*store)->temporary_trace(row.task, row.episode, row.seed));
+  ResultRow changed = row;
+  changed.invalid = "policy: gone";
+  REQUIRE((*store)->commit(changed, 0).ok());
+}
+
+TEST_CASE("merged shards are a single run, in any order, once or twice") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(4, 2);
+  must_run(plan, options_for(folder / "single"));
+  std::vector<std::string> shards;
+  for (int shard = 1; shard <= 3; ++shard) {
+    RunOptions options = options_for(folder / std::to_string(shard));
+    options.shard = shard;
+    options.shards = 3;
+    options.video = shard == 1 ? VideoChoice::kAll : VideoChoice::kNone;
+    must_run(plan, options);
+    if (fs::exists(options.out)) shards.push_back(options.out);
+  }
+  REQUIRE(shards.size() > 1);
+  const std::vector<ResultRow> expected = rows_of(folder / "single");
+  REQUIRE(expected.size() == 8);
+
+  std::vector<std::string> twice = shards;
+  twice.push_back(shards[0] + "/");
+  CHECK(must_merge({twice, folder / "merged"}).added == 8);
+  CHECK(rows_of(folder / "merged") == expected);
+  CHECK(read_run_record(folder / "merged")->seeds == read_run_record(folder / "single")->seeds);
+  CHECK(fs::exists(folder / "merged/videos") == fs::exists(folder / "1/videos"));
+  std::reverse(shards.begin(), shards.end());
+  const MergeSummary again = must_merge({shards, folder / "merged"});
+  CHECK(again.added == 0);
+  CHECK(again.duplicates == 8);
+  CHECK(rows_of(folder / "merged") == expected);
+  // The single run overlaps all of them.
+  shards.push_back(folder / "single");
+  CHECK(must_merge({shards, folder / "all"}).duplicates == 8);
+  CHECK(rows_of(folder / "all") == expected);
+  // And the merged folder is a run that can be continued.
+  RunOptions more = options_for(folder / "merged");
+  const auto continued = run::run(plan, more);
+  REQUIRE_MESSAGE(continued.ok(), to_text(continued.failure()));
+  CHECK(continued->done == 0);
+}
+
+TEST_CASE("a valid row wins over an invalid one wherever it stands, and damage counts as absent") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  for (const char* name : {"a", "b"}) must_run(plan, options_for(folder / name, "null"));
+  const std::vector<ResultRow> expected = rows_of(folder / "a");
+  make_invalid(folder / "a", read_results(folder / "a")->at(0));
+  make_invalid(folder / "b", read_results(folder / "b")->at(1));
+  must_merge({{folder / "a", folder / "b"}, folder / "ab"});
+  CHECK(rows_of(folder / "ab") == expected);
+  // Into a folder that is one of them.
+  must_merge({{folder / "a", folder / "b"}, folder / "a"});
+  CHECK(rows_of(folder / "a") == expected);
+
+  fs::resize_file(read_results(folder / "b")->at(0).trace, 100);
+  const MergeSummary half = must_merge({{folder / "b"}, folder / "half"});
+  CHECK(half.rows == 1);
+  CHECK(half.invalid == 1);
+  REQUIRE(half.notes.size() == 1);
+  CHECK(half.notes[0].starts_with("carrot_on_plate episode 0 seed 42 is left out: "));
+}
+
+TEST_CASE("what does not belong together is refused before anything is written") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 2);
+  must_run(plan, options_for(folder / "a", "null"));
+  must_run(table_plan(1, 3), options_for(folder / "plan", "null"));
+  RunOptions reach = options_for(folder / "trace", "reach");
+  reach.name = "null";
+  must_run(plan, reach);
+  must_run(plan, options_for(folder / "policy", "reach"));
+  const auto refusal = [&](const std::string& other) {
+    const auto merged = merge({{folder / "a", folder / other}, folder / "out"});
+    REQUIRE_FALSE(merged.ok());
+    CHECK_FALSE(fs::exists(folder / "out"));
+    CHECK(merged.failure().where == folder / other);
+    return merged.failure().message;
+  };
+  CHECK(refusal("plan").starts_with("holds a run of another plan (root "));
+  CHECK(refusal("policy").starts_with("holds a run of policy `reach`, not `null`, as " +
+                                      (folder / "a") + " does"));
+  CHECK(refusal("trace").starts_with("carrot_on_plate episode 0 seed 42 has the trace "));
+  CHECK(refusal("nothing").starts_with("cannot be merged: no run here"));
+
+  RunRecord record = *read_run_record(folder / "a");
+  record.fingerprint = {{{"program", "another"}}};
+  REQUIRE(Store::open(folder / "build", record, plan.bytes()).ok());
+  CHECK(refusal("build").find("; their bits may differ; --mixed-builds joins them all the same") !=
+        std::string::npos);
+  const MergeSummary mixed = must_merge({{folder / "a", folder / "build"}, folder / "mixed", true});
+  CHECK(mixed.rows == 1);
+  REQUIRE(mixed.notes.size() == 1);
+  CHECK(mixed.notes[0].starts_with((folder / "build") + " was begun by another build"));
+  record = *read_run_record(folder / "a");
+  record.identity.policy_content = "profile b";
+  REQUIRE(Store::open(folder / "profile", record, plan.bytes()).ok());
+  CHECK(refusal("profile").starts_with("was begun with another profile (recorded profile b, "));
+}
+
+}  // namespace
+}  // namespace probe::store

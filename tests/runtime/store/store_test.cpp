@@ -1,0 +1,340 @@
+// A run's folder: resume, refusal, and what a killed process leaves.
+#include "runtime/store/store.h"
+
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/store/sample_trace.h"
+
+namespace probe::store {
+using namespace probe::run;
+namespace {
+
+namespace fs = std::filesystem;
+
+RunRecord record_of(const std::string& policy = "null", const std::string& root = "aa") {
+  return {{root, policy}, "smoke", {42}, {{{"cpu", "test"}}}};
+}
+
+std::span<const std::byte> plan_bytes() {
+  static constexpr std::byte kBytes[] = {std::byte{1}, std::byte{2}};
+  return kBytes;
+}
+
+ResultRow row_of(int episode, std::optional<std::string> invalid = std::nullopt) {
+  ResultRow row;
+  row.task = "carrot_on_plate";
+  row.episode = episode;
+  row.seed = 42;
+  row.policy = "null";
+  row.metrics = {{"success", true, 1}, {"height", false, 0.1}};
+  row.steps = 60;
+  row.invalid = std::move(invalid);
+  row.prompt_sha256 = to_hex(sha256(std::string_view("put carrot on plate")));
+  return row;
+}
+
+Status store_episode(Store& store, ResultRow row) {
+  TraceHeader header = sample_header();
+  header.task = row.task;
+  header.episode = row.episode;
+  header.seed = row.seed;
+  row.start_id = to_hex(header.start_id);
+  row.episode_id = to_hex(header.episode_id);
+  PROBE_ASSIGN(auto trace,
+               TraceWriter::create(store.temporary_trace(row.task, row.episode, row.seed), header));
+  PROBE_TRY(trace->start(sample_start()));
+  PROBE_TRY(trace->step(sample_step(1)));
+  PROBE_ASSIGN(const Sha256 hash, trace->finish({1, row.metrics, row.invalid}));
+  row.trace_sha256 = to_hex(hash);
+  return store.commit(row, 0);
+}
+
+// What a stranger's hand does to results.sqlite.
+void change_database(const std::string& dir, const std::string& sql) {
+  sqlite3* database = nullptr;
+  REQUIRE(sqlite3_open((dir + "/results.sqlite").c_str(), &database) == SQLITE_OK);
+  CHECK(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(database);
+}
+
+TEST_CASE("rows come back in order, with an absolute trace path") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
+    for (const int episode : {2, 0, 1}) REQUIRE(store_episode(**store, row_of(episode)).ok());
+  }
+  const auto rows = read_results(dir);
+  REQUIRE(rows.ok());
+  REQUIRE(rows->size() == 3);
+  for (int i = 0; i < 3; ++i) {
+    const ResultRow& row = (*rows)[static_cast<std::size_t>(i)];
+    CHECK(row.episode == i);
+    CHECK(fs::path(row.trace).is_absolute());
+    CHECK(fs::exists(row.trace));
+    CHECK(row.metrics == row_of(i).metrics);
+  }
+  CHECK(fs::file_size(plan_path(dir)) == 2);
+  CHECK(read_run_record(dir)->identity == record_of().identity);
+}
+
+TEST_CASE("valid rows are kept, invalid ones and lost traces are run again") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    REQUIRE(store_episode(**store, row_of(0)).ok());
+    REQUIRE(store_episode(**store, row_of(1, "policy: gone")).ok());
+    REQUIRE(store_episode(**store, row_of(2)).ok());
+  }
+  fs::remove(trace_path(dir, "carrot_on_plate", 2, 42));
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  const auto episodes = (*store)->episodes();
+  REQUIRE(episodes.ok());
+  REQUIRE(episodes->size() == 3);
+  for (const StoredEpisode& episode : *episodes) CHECK(episode.valid == (episode.episode == 0));
+  REQUIRE(store_episode(**store, row_of(1)).ok());
+  const auto rows = read_results(dir);
+  CHECK(rows->size() == 3);
+  CHECK_FALSE((*rows)[1].invalid.has_value());
+}
+
+TEST_CASE("a truncated, swapped or foreign trace does not count as stored") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  for (int episode = 0; episode < 4; ++episode) {
+    REQUIRE(store_episode(**store, row_of(episode)).ok());
+  }
+  const auto path = [&](int episode) { return trace_path(dir, "carrot_on_plate", episode, 42); };
+  fs::resize_file(path(1), fs::file_size(path(1)) - 20);
+  fs::copy_file(path(0), path(2), fs::copy_options::overwrite_existing);
+  REQUIRE(write_sample_trace(path(3), 2).ok());  // of the right episode, but other content
+  const auto episodes = (*store)->episodes();
+  REQUIRE(episodes.ok());
+  REQUIRE(episodes->size() == 4);
+  CHECK(episodes->at(0).valid);
+  CHECK(episodes->at(1).why.find("truncated") != std::string::npos);
+  for (const int episode : {1, 2, 3}) {
+    CHECK_FALSE(episodes->at(static_cast<std::size_t>(episode)).valid);
+    CHECK(episodes->at(static_cast<std::size_t>(episode)).why.starts_with(path(episode)));
+  }
+  CHECK(episodes->at(2).why.find("of carrot_on_plate episode 0 seed 42") != std::string::npos);
+}
+
+TEST_CASE("a row with metrics that cannot be read is invalid, and the others are there") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  REQUIRE(store_episode(**store, row_of(0)).ok());
+  REQUIRE(store_episode(**store, row_of(1)).ok());
+  change_database(dir, "update episodes set metrics = '[[1,2]' where episode = 1");
+  const auto rows = read_results(dir);
+  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
+  CHECK_FALSE(rows->at(0).invalid);
+  CHECK(rows->at(1).invalid == "store: its metrics in results.sqlite cannot be read");
+  CHECK_FALSE((*store)->episodes()->at(1).valid);
+}
+
+TEST_CASE("a run record of another form names the file and the key") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  REQUIRE(Store::open(dir, record_of(), plan_bytes()).ok());
+  for (const auto& [key, json] :
+       std::vector<std::pair<std::string, std::string>>{{"plan_root", "5"},
+                                                        {"schema", "1"},
+                                                        {"policy", "null"},
+                                                        {"suite", "[]"},
+                                                        {"seeds", "[\"a\"]"},
+                                                        {"seeds", "7"},
+                                                        {"fingerprint", "{}"},
+                                                        {"fingerprint", "\"5\""}}) {
+    CAPTURE(key);
+    CAPTURE(json);
+    auto record = nlohmann::json{{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
+                                 {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
+    record[key] = nlohmann::json::parse(json);
+    change_database(dir, "update run set value = '" + record.dump() + "'");
+    const auto read = read_run_record(dir);
+    REQUIRE_FALSE(read.ok());
+    CHECK(read.failure().code == "store");
+    CHECK(read.failure().where == dir + "/results.sqlite");
+    CHECK(read.failure().message.find("`" + key + "`") != std::string::npos);
+    CHECK_FALSE(Store::open(dir, record_of(), plan_bytes()).ok());
+  }
+}
+
+TEST_CASE("another plan or policy is refused, and so is a second writer") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    const auto second = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE_FALSE(second.ok());
+    CHECK(second.failure().message == "another run is writing into this folder");
+  }
+  const auto policy = Store::open(dir, record_of("expert"), plan_bytes());
+  REQUIRE_FALSE(policy.ok());
+  CHECK(policy.failure().code == "store");
+  CHECK(policy.failure().where == dir);
+  CHECK(policy.failure().message.find("policy `null`, not `expert`") != std::string::npos);
+  CHECK(Store::open(dir, record_of("null", "bb"), plan_bytes())
+            .failure()
+            .message.find("another plan") != std::string::npos);
+  CHECK(Store::open(dir, record_of(), plan_bytes()).ok());
+}
+
+TEST_CASE("a folder of the first schema is read, and raised when it is written") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    REQUIRE(store_episode(**store, row_of(0)).ok());
+  }
+  // As a program of that time left it.
+  change_database(dir, "alter table episodes drop column sent_prompt_sha256");
+  change_database(dir, "alter table episodes drop column sent_image_sha256");
+  change_database(dir, "drop table calls");
+  const nlohmann::json old = {{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
+                              {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
+  change_database(dir, "update run set value = '" + old.dump() + "'");
+  REQUIRE_MESSAGE(read_results(dir).ok(), to_text(read_results(dir).failure()));
+  CHECK(read_results(dir)->size() == 1);
+  CHECK(read_run_calls(dir)->empty());
+  CHECK(read_run_record(dir)->schema == 1);
+
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
+  ResultRow row = row_of(1);
+  row.sent_prompt_sha256 = "p";
+  REQUIRE(store_episode(**store, row).ok());
+  CHECK(read_run_record(dir)->schema == 2);
+  const auto rows = read_results(dir);
+  CHECK_FALSE(rows->at(0).sent_prompt_sha256);
+  CHECK(rows->at(1).sent_prompt_sha256 == "p");
+  CHECK_FALSE(rows->at(1).sent_image_sha256);
+}
+
+TEST_CASE("each call leaves its figures, the last state of each") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  RunCall call;
+  call.fingerprint = {{{"cpu", "test"}}};
+  call.worlds = 8;
+  for (int i = 0; i < 2; ++i) {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    call.ended = false;
+    REQUIRE((*store)->write_call(call).ok());
+    call.ended = true;
+    call.observations = 100 + i;
+    call.elapsed_s = 10;
+    call.queries = {25, 10, 9, 60, 8};
+    REQUIRE((*store)->write_call(call).ok());
+  }
+  const auto calls = read_run_calls(dir);
+  REQUIRE_MESSAGE(calls.ok(), to_text(calls.failure()));
+  REQUIRE(calls->size() == 2);
+  CHECK(calls->at(0).observations == 100);
+  CHECK(calls->at(1).ended);
+  CHECK(calls->at(1).queries.most_at_once == 8);
+  CHECK(to_text(calls->at(0)) ==
+        "10.0 observations/s, 2.5 queries/s; server busy 90.0 % of the time, simulators waiting "
+        "for it 75.0 % of theirs");
+}
+
+TEST_CASE("a folder that cannot be written is named") {
+  TemporaryFolder folder;
+  std::ofstream(folder / "file") << "x";
+  const auto store = Store::open(folder / "file/run", record_of(), plan_bytes());
+  REQUIRE_FALSE(store.ok());
+  CHECK(store.failure().code == "store");
+  CHECK(store.failure().where == folder / "file/run");
+  CHECK_FALSE(read_results(folder / "nothing").ok());
+  std::ofstream(folder / "results.sqlite") << "this is no database, and it is longer than a header";
+  CHECK(read_results(folder.path).failure().code == "store");
+  CHECK(read_results(folder.path).failure().message.find("move this file away and run again") !=
+        std::string::npos);
+  CHECK(
+      read_run_record(folder.path).failure().message.starts_with("results.sqlite cannot be read"));
+  CHECK(Store::open(folder.path, record_of(), plan_bytes()).failure().code == "store");
+}
+
+// What a worker does until it is killed: episode after episode.
+[[noreturn]] void write_until_killed(const std::string& dir) {
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  if (!store) ::_exit(1);
+  const auto stored = (*store)->episodes();
+  for (int episode = static_cast<int>(stored->size());; ++episode) {
+    if (!store_episode(**store, row_of(episode)).ok()) ::_exit(2);
+  }
+}
+
+TEST_CASE("kill -9 at any time leaves whole rows with whole traces, each once") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  std::size_t before = 0;
+  for (int round = 0; round < 6; ++round) {
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) write_until_killed(dir);
+    ::usleep(static_cast<useconds_t>(20000 + 9000 * round));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    REQUIRE(WIFSIGNALED(status));
+    const auto rows = read_results(dir);
+    if (!rows.ok()) continue;  // killed before the folder had a run
+    CHECK(rows->size() >= before);
+    before = rows->size();
+    for (std::size_t i = 0; i < rows->size(); ++i) {
+      CHECK((*rows)[i].episode == static_cast<int>(i));
+      CHECK(read_trace((*rows)[i].trace).ok());
+    }
+  }
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  for (const auto& entry : fs::recursive_directory_iterator(dir)) {
+    CHECK(entry.path().extension() != ".tmp");
+  }
+}
+
+TEST_CASE("rows print as JSON with the promised keys") {
+  std::vector<ResultRow> rows = {row_of(0), row_of(1, "policy: \xff closed, \"late\"")};
+  const auto json = nlohmann::json::parse(results_to_json(rows));
+  REQUIRE(json.size() == 2);
+  CHECK(json[0]["success"] == true);
+  CHECK(json[0]["height"] == 0.1);
+  CHECK(json[0]["invalid"].is_null());
+  CHECK(json[1]["success"].is_null());
+  CHECK(json[1]["invalid"].is_string());
+  for (const char* key : {"task", "episode", "seed", "policy", "steps", "prompt_sha256",
+                          "image_sha256", "trace_sha256", "episode_id", "trace"}) {
+    CHECK(json[0].contains(key));
+  }
+  CHECK(results_to_json({}) == "[]\n");
+  rows[1].invalid = "a, \"b\"";
+  const std::string csv = results_to_csv(rows);
+  CHECK(csv.starts_with("task,episode,seed,policy,success,height,steps,invalid,"));
+  CHECK(csv.find("carrot_on_plate,0,42,null,true,0.10000000000000001,60,,") != std::string::npos);
+  CHECK(csv.find("\"a, \"\"b\"\"\"") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace probe::store

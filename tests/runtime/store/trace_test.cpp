@@ -1,0 +1,143 @@
+// Traces: what goes in comes out, and damage is told.
+#include "runtime/store/trace.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "runtime/store/trace_codec.h"
+#include "runtime/store/trace_compare.h"
+#include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/store/sample_trace.h"
+
+namespace probe::store {
+using namespace probe::run;
+namespace {
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_file(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+TEST_CASE("a trace comes back as it was written") {
+  TemporaryFolder folder;
+  const auto hash = write_sample_trace(folder / "a.trace", 4);
+  REQUIRE(hash.ok());
+  const auto trace = read_trace(folder / "a.trace");
+  REQUIRE_MESSAGE(trace.ok(), to_text(trace.failure()));
+  CHECK(trace->hash == *hash);
+  CHECK(trace->header.prompt == "put carrot on plate");
+  CHECK(trace->header.episode == 3);
+  CHECK(trace->header.metrics == sample_header().metrics);
+  CHECK(trace->header.fingerprint == R"({"cpu":"test"})");
+  REQUIRE(trace->steps.size() == 4);
+  CHECK(trace->steps[2].action == sample_step(3).action);
+  CHECK(trace->steps[2].sample.contacts[0].push.z() == -1e-3 * 3);
+  CHECK(std::signbit(trace->steps[2].sample.tcp.y()));
+  CHECK(trace->steps[2].render_s == 0.006);
+  CHECK(trace->end->metrics[1].value == 0.5);
+  TraceComparer comparer(*trace);
+  CHECK(comparer.start(sample_start()).ok());
+  for (int i = 1; i <= 4; ++i) CHECK(comparer.step(sample_step(i)).ok());
+  CHECK(comparer.difference() == "");
+}
+
+TEST_CASE("the hash covers everything but the clock") {
+  TemporaryFolder folder;
+  const auto a = write_sample_trace(folder / "a.trace", 3, 0.006);
+  const auto b = write_sample_trace(folder / "b.trace", 3, 0.123);
+  const auto c = write_sample_trace(folder / "c.trace", 2, 0.006);
+  CHECK(*a == *b);
+  CHECK(*a != *c);
+}
+
+TEST_CASE("a truncated trace is refused, and readable up to its last whole step") {
+  TemporaryFolder folder;
+  REQUIRE(write_sample_trace(folder / "a.trace", 5).ok());
+  const std::string bytes = read_file(folder / "a.trace");
+  std::size_t most = 0;
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    write_file(folder / "cut.trace", bytes.substr(0, size));
+    const auto strict = read_trace(folder / "cut.trace");
+    REQUIRE_FALSE(strict.ok());
+    CHECK(strict.failure().code == "trace");
+    CHECK(strict.failure().where == folder / "cut.trace");
+    CHECK(strict.failure().message.find("truncated") != std::string::npos);
+    const auto prefix = read_trace_prefix(folder / "cut.trace");
+    if (!prefix.ok()) continue;
+    CHECK(prefix->steps.size() >= most);
+    most = prefix->steps.size();
+    for (std::size_t i = 0; i < most; ++i) {
+      CHECK(prefix->steps[i].action == sample_step(static_cast<int>(i) + 1).action);
+    }
+  }
+  CHECK(most == 5);
+}
+
+TEST_CASE("a flipped bit is found, wherever it is") {
+  TemporaryFolder folder;
+  REQUIRE(write_sample_trace(folder / "a.trace", 2).ok());
+  const std::string bytes = read_file(folder / "a.trace");
+  const Sha256 hash = read_trace(folder / "a.trace")->hash;
+  int refused = 0, tried = 0;
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); bit += 5) {
+    std::string damaged = bytes;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+    write_file(folder / "flip.trace", damaged);
+    const auto trace = read_trace(folder / "flip.trace");
+    ++tried;
+    if (!trace.ok()) {
+      ++refused;
+      CHECK_FALSE(trace.failure().message.empty());
+      continue;
+    }
+    // zstd's frame header has bits that change nothing; the content must then be the same.
+    CHECK(trace->hash == hash);
+    CHECK(trace->steps.size() == 2);
+  }
+  CHECK(refused > tried * 99 / 100);
+}
+
+TEST_CASE("other files are not traces") {
+  TemporaryFolder folder;
+  CHECK(read_trace(folder / "absent.trace").failure().message ==
+        "cannot be opened: No such file or directory");
+  write_file(folder / "text", "put carrot on plate");
+  CHECK(read_trace(folder / "text").failure().message.starts_with("not a trace"));
+  REQUIRE(write_sample_trace(folder / "a.trace", 1).ok());
+  write_file(folder / "more.trace", read_file(folder / "a.trace") + "x");
+  CHECK(read_trace(folder / "more.trace").failure().message.find("bytes after the end") !=
+        std::string::npos);
+  CHECK_FALSE(read_trace(folder.path).ok());
+}
+
+TEST_CASE("a full disk is told") {
+  const auto hash = write_sample_trace("/dev/full", 3);
+  REQUIRE_FALSE(hash.ok());
+  CHECK(hash.failure().code == "store");
+  CHECK(hash.failure().message == "cannot be written: No space left on device");
+}
+
+TEST_CASE("a repeated episode names the first thing that differs") {
+  TemporaryFolder folder;
+  REQUIRE(write_sample_trace(folder / "a.trace", 2).ok());
+  const auto trace = read_trace(folder / "a.trace");
+  TraceComparer comparer(*trace);
+  CHECK(comparer.start(sample_start()).ok());
+  TraceStep step = sample_step(1);
+  step.q[0] = std::nextafter(step.q[0], 2);
+  step.sample.tcp.x() = 7;
+  CHECK(comparer.step(step).ok());
+  CHECK(comparer.difference() == "step 1: q of `waist` is 1.5000000000000002, recorded 1.5");
+  CHECK(comparer.step(sample_step(1)).ok());
+  CHECK(comparer.difference().starts_with("step 1:"));
+}
+
+}  // namespace
+}  // namespace probe::store
