@@ -12,6 +12,8 @@ namespace probe::render {
 
 class BlockMarks {
  public:
+  // None is marked.
+  BlockMarks() = default;
   BlockMarks(const Camera& camera, const CameraRays& rays);
 
   void clear();
@@ -36,9 +38,9 @@ class BlockMarks {
   void mark_clipped(const float (&corners)[3][3]);
 
   Camera camera_;  // of the samples
-  float nearest_;
-  float max_x_, max_y_;  // last pixel
-  int blocks_x_, blocks_y_;
+  float nearest_ = 0;
+  float max_x_ = 0, max_y_ = 0;  // last pixel
+  int blocks_x_ = 0, blocks_y_ = 0;
   std::vector<std::uint8_t> marks_;
   std::vector<float> x_, y_, z_;  // projected vertices of one part: pixels, pixels, metres
 };

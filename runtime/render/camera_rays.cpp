@@ -3,11 +3,33 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/render/clones.h"
+
 namespace probe::render {
 namespace {
 
 Failure camera_failure(const std::string& message) {
   return {.code = "render", .message = message, .where = "camera"};
+}
+
+// Of one tile, not yet of unit length.
+struct Directions {
+  alignas(64) std::array<double, kTileSamples> x, y, z;
+};
+
+PROBE_CLONES void normalise(const Directions& __restrict d, const double* __restrict axis,
+                            float* __restrict dx, float* __restrict dy, float* __restrict dz,
+                            float* __restrict cosine) {
+  const double ax = axis[0], ay = axis[1], az = axis[2];
+  for (std::size_t s = 0; s < kTileSamples; ++s) {
+    const double x = d.x[s], y = d.y[s], z = d.z[s];
+    const double length = std::sqrt(x * x + y * y + z * z);
+    const double ux = x / length, uy = y / length, uz = z / length;
+    dx[s] = static_cast<float>(ux);
+    dy[s] = static_cast<float>(uy);
+    dz[s] = static_cast<float>(uz);
+    cosine[s] = static_cast<float>(ux * ax + uy * ay + uz * az);
+  }
 }
 
 }  // namespace
@@ -39,7 +61,7 @@ Camera sample_camera(Camera camera, int samples) {
   return camera;
 }
 
-Result<CameraRays> make_camera_rays(const Camera& camera) {
+Status check_camera(const Camera& camera) {
   constexpr int kMaxSide = 8192;
   if (camera.width < 1 || camera.height < 1 || camera.width > kMaxSide ||
       camera.height > kMaxSide) {
@@ -55,8 +77,11 @@ Result<CameraRays> make_camera_rays(const Camera& camera) {
       (axes.transpose() * axes - Mat3::Identity()).norm() > 1e-6) {
     return camera_failure("the pose is not finite or its axes are not orthonormal");
   }
+  return {};
+}
 
-  CameraRays rays;
+Status make_camera_rays(const Camera& camera, CameraRays& rays) {
+  PROBE_TRY(check_camera(camera));
   rays.width = camera.width;
   rays.height = camera.height;
   rays.tiles_x = (camera.width + kTileSide - 1) / kTileSide;
@@ -69,27 +94,37 @@ Result<CameraRays> make_camera_rays(const Camera& camera) {
   rays.dy.resize(samples);
   rays.dz.resize(samples);
   rays.cosine.resize(samples);
+
+  // forward + (x - cx) / fx right is the same for a whole column, (y - cy) / fy down for a row.
+  const Mat3& axes = camera.forward_left_up;
   const Vec3 forward = axes.col(0), right = -axes.col(1), down = -axes.col(2);
-  float least = 1;
-  for (int ty = 0; ty < rays.tiles_y; ++ty) {
-    for (int tx = 0; tx < rays.tiles_x; ++tx) {
-      const std::size_t base = static_cast<std::size_t>(ty * rays.tiles_x + tx) * kTileSamples;
-      for (std::size_t s = 0; s < kTileSamples; ++s) {
-        const double x = tx * kTileSide + kTileOffsets[s].x + 0.5;
-        const double y = ty * kTileSide + kTileOffsets[s].y + 0.5;
-        const Vec3 d =
-            (forward + (x - camera.cx) / camera.fx * right + (y - camera.cy) / camera.fy * down)
-                .normalized();
-        rays.dx[base + s] = static_cast<float>(d.x());
-        rays.dy[base + s] = static_cast<float>(d.y());
-        rays.dz[base + s] = static_cast<float>(d.z());
-        rays.cosine[base + s] = static_cast<float>(d.dot(forward));
-        least = std::min(least, rays.cosine[base + s]);
-      }
-    }
+  std::vector<Vec3> columns(static_cast<std::size_t>(rays.tiles_x) * kTileSide);
+  std::vector<Vec3> rows(static_cast<std::size_t>(rays.tiles_y) * kTileSide);
+  for (std::size_t x = 0; x < columns.size(); ++x) {
+    columns[x] = forward + (static_cast<double>(x) + 0.5 - camera.cx) / camera.fx * right;
   }
-  rays.nearest_depth = kNearest * least;
-  return rays;
+  for (std::size_t y = 0; y < rows.size(); ++y) {
+    rows[y] = (static_cast<double>(y) + 0.5 - camera.cy) / camera.fy * down;
+  }
+  const double axis[3] = {forward.x(), forward.y(), forward.z()};
+  Directions d;
+  for (std::size_t tile = 0; tile < static_cast<std::size_t>(rays.tiles()); ++tile) {
+    const Vec3* left = columns.data() + tile % static_cast<std::size_t>(rays.tiles_x) * kTileSide;
+    const Vec3* top = rows.data() + tile / static_cast<std::size_t>(rays.tiles_x) * kTileSide;
+    for (std::size_t s = 0; s < kTileSamples; ++s) {
+      const Vec3& column = left[kTileOffsets[s].x];
+      const Vec3& row = top[kTileOffsets[s].y];
+      d.x[s] = column.x() + row.x();
+      d.y[s] = column.y() + row.y();
+      d.z[s] = column.z() + row.z();
+    }
+    const std::size_t base = tile * kTileSamples;
+    normalise(d, axis, rays.dx.data() + base, rays.dy.data() + base, rays.dz.data() + base,
+              rays.cosine.data() + base);
+  }
+  rays.nearest_depth =
+      kNearest * std::min(1.0f, *std::min_element(rays.cosine.begin(), rays.cosine.end()));
+  return {};
 }
 
 }  // namespace probe::render

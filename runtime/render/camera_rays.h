@@ -53,6 +53,9 @@ Camera sample_camera(Camera camera, int samples);
 
 // Fails (code "render") on sizes outside 1 .. 8192, focal lengths that are not positive, numbers
 // that are not finite or axes that are not orthonormal.
-Result<CameraRays> make_camera_rays(const Camera& camera);
+Status check_camera(const Camera& camera);
+
+// Fills `rays` anew, in the memory that it has. Fails as check_camera does.
+Status make_camera_rays(const Camera& camera, CameraRays& rays);
 
 }  // namespace probe::render

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "runtime/scene/color.h"
 
@@ -24,30 +26,39 @@ constexpr std::array<float, 256> make_display_thresholds() {
 // The least linear value that shows as byte k: (k/255)^2.2.
 inline constexpr std::array<float, 256> kDisplayThresholds = make_display_thresholds();
 
-inline constexpr int kGuesses = 4096;
+// One entry for each power of two and 128th within it, which are the top 16 bits of a float. Two
+// thresholds lie at least a factor 1.0086 = (255/254)^2.2 apart and an entry spans at most 129/128
+// = 1.0078, so that at most one lies within: the entry's least byte and one comparison give the
+// byte.
+inline constexpr float kDarkest = 0x1p-18f;  // below the threshold of byte 1, 5.1e-6
+inline constexpr std::uint32_t kFirstStep = std::bit_cast<std::uint32_t>(kDarkest) >> 16;
+inline constexpr std::uint32_t kSteps = (std::bit_cast<std::uint32_t>(1.0f) >> 16) - kFirstStep + 1;
 
-constexpr std::array<std::uint8_t, kGuesses> make_display_guesses() {
-  std::array<std::uint8_t, kGuesses> table{};
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < kGuesses; ++i) {
-    const float least = static_cast<float>(i) / kGuesses;
+struct DisplayStep {
+  float next = 0;  // threshold of the byte after `byte`
+  std::uint32_t byte = 0;
+};
+
+constexpr std::array<DisplayStep, kSteps> make_display_steps() {
+  std::array<DisplayStep, kSteps> table{};
+  std::uint32_t k = 0;
+  for (std::uint32_t i = 0; i < kSteps; ++i) {
+    const float least = std::bit_cast<float>((kFirstStep + i) << 16);
     while (k < 255 && kDisplayThresholds[k + 1] <= least) ++k;
-    table[i] = static_cast<std::uint8_t>(k);
+    const float next = k < 255 ? kDisplayThresholds[k + 1] : std::numeric_limits<float>::infinity();
+    table[i] = {next, k};
   }
   return table;
 }
-
-// The byte of the least value in each 4096th of [0, 1): a lower bound, from which a few comparisons
-// lead to the byte.
-inline constexpr std::array<std::uint8_t, kGuesses> kDisplayGuesses = make_display_guesses();
+inline constexpr std::array<DisplayStep, kSteps> kDisplaySteps = make_display_steps();
 
 // NaN and negative values give 0, values above 1 give 255.
 inline std::uint8_t to_display_byte(float linear) {
-  if (!(linear > 0)) return 0;
-  if (linear >= 1) return 255;
-  std::size_t k = kDisplayGuesses[static_cast<std::size_t>(linear * static_cast<float>(kGuesses))];
-  while (linear >= kDisplayThresholds[k + 1]) ++k;  // ends: threshold 255 is 1
-  return static_cast<std::uint8_t>(k);
+  const float above = linear > kDarkest ? linear : kDarkest;
+  const float inside = above < 1 ? above : 1;
+  const DisplayStep& step =
+      kDisplaySteps[(std::bit_cast<std::uint32_t>(inside) >> 16) - kFirstStep];
+  return static_cast<std::uint8_t>(step.byte + (inside >= step.next ? 1 : 0));
 }
 
 // What a sample counts in the mean of a pixel: light above 1 shows as 1, NaN as 0.

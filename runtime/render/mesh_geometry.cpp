@@ -1,8 +1,6 @@
 #include "runtime/render/mesh_geometry.h"
 
 #include <cmath>
-#include <map>
-#include <mutex>
 
 namespace probe::render {
 namespace {
@@ -82,7 +80,10 @@ TriangleData make_triangle(const scene::MeshPart& part, std::size_t first) {
   return t;
 }
 
-Result<std::shared_ptr<const MeshGeometry>> build(std::shared_ptr<const scene::Mesh> mesh) {
+}  // namespace
+
+Result<std::shared_ptr<const MeshGeometry>> MeshGeometry::build(
+    std::shared_ptr<const scene::Mesh> mesh) {
   auto geometry = std::make_shared<MeshGeometry>();
   PROBE_ASSIGN(geometry->device, EmbreeDevice::shared());
   const FlushDenormals guard;
@@ -140,25 +141,6 @@ Result<std::shared_ptr<const MeshGeometry>> build(std::shared_ptr<const scene::M
   PROBE_TRY(geometry->device->check("building the ray structure of " + mesh->name));
   geometry->mesh = std::move(mesh);
   return std::shared_ptr<const MeshGeometry>(std::move(geometry));
-}
-
-}  // namespace
-
-Result<std::shared_ptr<const MeshGeometry>> MeshGeometry::shared(
-    std::shared_ptr<const scene::Mesh> mesh) {
-  static std::mutex mutex;
-  static std::map<const scene::Mesh*, std::weak_ptr<const MeshGeometry>> cache;
-  const std::scoped_lock lock(mutex);
-  std::erase_if(cache, [](const auto& entry) { return entry.second.expired(); });
-  const auto found = cache.find(mesh.get());
-  if (found != cache.end()) {
-    // A live entry holds its mesh, so the address cannot have been given to another one.
-    if (auto known = found->second.lock()) return known;
-  }
-  const scene::Mesh* key = mesh.get();
-  PROBE_ASSIGN(std::shared_ptr<const MeshGeometry> made, build(std::move(mesh)));
-  cache[key] = made;
-  return made;
 }
 
 }  // namespace probe::render

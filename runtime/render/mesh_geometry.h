@@ -1,5 +1,5 @@
-// A mesh ready for rays: its committed Embree scene and, per triangle, what a hit needs. Read-only,
-// shared by worlds.
+// A mesh ready for rays: its committed Embree scene and, per triangle, what a hit needs. Read-only;
+// SceneStore shares it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace probe::render {
 
-// Two cache lines, read in one go by the gather.
+// Two cache lines, read in one go by the gather; vectors are read as four floats, so none is last.
 struct alignas(64) TriangleData {
   float p0[3], e1[3], e2[3];  // a corner and the edges from it
   float n0[3], n1[3], n2[3];  // corner normals
@@ -32,15 +32,12 @@ struct MeshGeometry {
   };
 
   std::shared_ptr<EmbreeDevice> device;
-  std::shared_ptr<const scene::Mesh>
-      mesh;                 // keeps textures, and its address names this in the cache
-  std::vector<Part> parts;  // geomID is the index
+  std::shared_ptr<const scene::Mesh> mesh;  // keeps textures, and its address names this
+  std::vector<Part> parts;                  // geomID is the index
   ScenePtr scene;
 
-  // The one for this mesh while anybody holds it; made at the first call. Safe to call from any
-  // thread. Fails (code "render") on a mesh whose arrays do not fit together.
-  static Result<std::shared_ptr<const MeshGeometry>> shared(
-      std::shared_ptr<const scene::Mesh> mesh);
+  // Fails (code "render") on a mesh whose arrays do not fit together.
+  static Result<std::shared_ptr<const MeshGeometry>> build(std::shared_ptr<const scene::Mesh> mesh);
 };
 
 }  // namespace probe::render

@@ -1,6 +1,6 @@
 // Pictures of a scene: RGB, depth and segmentation, every visibility question an Embree ray. One
-// Renderer per world and thread; meshes and their ray structures (SharedScene) are read-only and
-// shared. Contracts and the shading law are in README.md of this folder.
+// Renderer per world, camera and thread; what stands still and the meshes' ray structures are
+// read-only and shared (SceneStore). Contracts and the shading law are in README.md of this folder.
 #pragma once
 
 #include <array>
@@ -68,15 +68,20 @@ struct FrameView {
   std::span<const std::uint16_t> segmentation;  // 0 nothing, 1 + body, 65535 backdrop
 };
 
+class SceneStore;
+
 class Renderer {
  public:
-  static Result<std::unique_ptr<Renderer>> create(SceneSpec spec);
+  // `store` is where meshes' ray structures and static pictures are shared; null: this renderer has
+  // its own. Fails (code "render") on whatever cannot be drawn, naming it.
+  static Result<std::unique_ptr<Renderer>> create(SceneSpec spec,
+                                                  std::shared_ptr<SceneStore> store = nullptr);
   virtual ~Renderer() = default;
   // `poses`: one per dynamic visual, world. Fails (code "render") on a non-finite pose, naming the
-  // visual.
+  // visual. The first call traces the static picture, if no renderer of the store has yet.
   virtual Result<FrameView> render(std::span<const Pose> poses) = 0;
-  // The same through another camera of the spec's size, for one that moves: everything is traced
-  // again, which takes as long as render_full.
+  // The same through another camera of the spec's size, for one that moves: the static picture is
+  // traced again, from structures that stay.
   virtual Result<FrameView> render_from(const Camera& camera, std::span<const Pose> poses) = 0;
   // Traces every pixel again, without the block cache: the picture must be the same. For tests and
   // golden frames.

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
+#include "runtime/render/clones.h"
+#include "runtime/render/vec4.h"
 #include "runtime/scene/color.h"
 
 namespace probe::render {
@@ -12,50 +15,58 @@ namespace {
 constexpr float kRobotRoughness = 0.3f;
 constexpr float kRobotF0 = 0.9f * 0.08f;
 
-struct V3 {
-  float x, y, z;
-};
-inline V3 load(const float* p) { return {p[0], p[1], p[2]}; }
-inline V3 cross(V3 a, V3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline float dot(V3 a, V3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline V3 to_mesh(const float* m, V3 d) {
-  return {m[0] * d.x + m[3] * d.y + m[6] * d.z, m[1] * d.x + m[4] * d.y + m[7] * d.z,
-          m[2] * d.x + m[5] * d.y + m[8] * d.z};
-}
-inline V3 to_world(const float* m, V3 d) {
-  return {m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-          m[6] * d.x + m[7] * d.y + m[8] * d.z};
-}
-
 // Moller and Trumbore in the mesh frame. A grazing hit whose numbers cannot be trusted keeps
 // Embree's.
-inline void refine(const TriangleData& triangle, V3 origin, V3 d, float& t, float& u, float& v) {
-  const V3 e1 = load(triangle.e1), e2 = load(triangle.e2), p0 = load(triangle.p0);
-  const V3 p = cross(d, e2);
-  const float determinant = dot(e1, p);
-  const V3 s{origin.x - p0.x, origin.y - p0.y, origin.z - p0.z};
-  const V3 q = cross(s, e1);
-  const float inverse = 1.0f / determinant;
-  const float exact_t = dot(e2, q) * inverse;
+inline void refine(const TriangleData& triangle, Vec4 origin, Vec4 d, float& t, float& u,
+                   float& v) {
+  const Vec4 e1 = load4(triangle.e1), e2 = load4(triangle.e2);
+  const Vec4 p = cross3(d, e2);
+  const Vec4 s = origin - load4(triangle.p0);
+  const Vec4 q = cross3(s, e1);
+  const float inverse = 1.0f / dot3(e1, p);
+  const float exact_t = dot3(e2, q) * inverse;
   if (!(std::abs(exact_t - t) < 1e-3f)) return;
   t = exact_t;
-  u = std::clamp(dot(s, p) * inverse, 0.0f, 1.0f);
-  v = std::clamp(dot(d, q) * inverse, 0.0f, 1.0f - u);
+  u = std::clamp(dot3(s, p) * inverse, 0.0f, 1.0f);
+  v = std::clamp(dot3(d, q) * inverse, 0.0f, 1.0f - u);
+}
+
+// A direction in world, in the mesh frame.
+inline Vec4 to_mesh(const Instance& instance, float x, float y, float z) {
+  return load4(instance.rows[0]) * splat(x) + load4(instance.rows[1]) * splat(y) +
+         load4(instance.rows[2]) * splat(z);
+}
+inline Vec4 to_world(const Instance& instance, Vec4 d) {
+  return load4(instance.columns[0]) * splat(d[0]) + load4(instance.columns[1]) * splat(d[1]) +
+         load4(instance.columns[2]) * splat(d[2]);
+}
+
+// Normals, not yet of unit length, are divided by their length; `side` is -1 where they turn away
+// from the viewer.
+PROBE_CLONES void normalise(float* __restrict nx, float* __restrict ny, float* __restrict nz,
+                            const float* __restrict side, int count) {
+  for (int i = 0; i < count; ++i) {
+    const float x = nx[i], y = ny[i], z = nz[i];
+    const float square = x * x + y * y + z * z;
+    const float scale = side[i] / std::sqrt(square < 1e-20f ? 1e-20f : square);
+    nx[i] = x * scale;
+    ny[i] = y * scale;
+    nz[i] = z * scale;
+  }
 }
 
 }  // namespace
 
-void TileTracer::trace(const TopScene& scene, const CameraRays& rays, int tile, unsigned blocks,
-                       const float* farthest) {
-  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
-  alignas(32) static constexpr int kAll[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+// Every lane's numbers are written, and the place moves on only behind a hit: no branch to guess.
+void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
+                               unsigned blocks, const float* farthest) {
+  constexpr std::size_t n = 8;
+  alignas(32) static constexpr int kAll[n] = {-1, -1, -1, -1, -1, -1, -1, -1};
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   alignas(32) RTCRayHit8 packet;
-  for (std::size_t k = 0; k < 8; ++k) {
+  for (std::size_t k = 0; k < n; ++k) {
     packet.ray.org_x[k] = rays.origin[0];
     packet.ray.org_y[k] = rays.origin[1];
     packet.ray.org_z[k] = rays.origin[2];
@@ -68,19 +79,16 @@ void TileTracer::trace(const TopScene& scene, const CameraRays& rays, int tile, 
   std::size_t count = 0;
   for (unsigned block = 0; block < 4; ++block) {
     if ((blocks >> block & 1u) == 0) continue;
-    for (std::size_t first = 64 * block; first < 64 * (block + 1); first += 8) {
+    for (std::size_t first = 64 * block; first < 64 * (block + 1); first += n) {
       const std::size_t from = base + first;
-      for (std::size_t k = 0; k < 8; ++k) {
-        packet.ray.dir_x[k] = rays.dx[from + k];
-        packet.ray.dir_y[k] = rays.dy[from + k];
-        packet.ray.dir_z[k] = rays.dz[from + k];
-        packet.ray.tfar[k] = farthest[first + k];
-        packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-        packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-      }
-      rtcIntersect8(kAll, scene.scene(), &context, &packet);
-      for (std::size_t k = 0; k < 8; ++k) {
-        if (packet.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+      std::memcpy(packet.ray.dir_x, rays.dx.data() + from, sizeof(float) * n);
+      std::memcpy(packet.ray.dir_y, rays.dy.data() + from, sizeof(float) * n);
+      std::memcpy(packet.ray.dir_z, rays.dz.data() + from, sizeof(float) * n);
+      std::memcpy(packet.ray.tfar, farthest + first, sizeof(float) * n);
+      std::fill_n(packet.hit.geomID, n, RTC_INVALID_GEOMETRY_ID);
+      std::fill_n(packet.hit.instID[0], n, RTC_INVALID_GEOMETRY_ID);
+      rtcIntersect8(kAll, scene, &context, &packet);
+      for (std::size_t k = 0; k < n; ++k) {
         hits_.sample[count] = static_cast<std::uint8_t>(first + k);
         hits_.instance[count] = packet.hit.instID[0][k];
         hits_.part[count] = packet.hit.geomID[k];
@@ -88,18 +96,24 @@ void TileTracer::trace(const TopScene& scene, const CameraRays& rays, int tile, 
         hits_.t[count] = packet.ray.tfar[k];
         hits_.u[count] = packet.hit.u[k];
         hits_.v[count] = packet.hit.v[k];
-        ++count;
+        count += packet.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID ? 1 : 0;
       }
     }
   }
   hits_.count = static_cast<int>(count);
-  for (std::size_t i = 0; i < count; ++i) {
+}
+
+void TileTracer::trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
+                       int tile, unsigned blocks, const float* farthest) {
+  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
+  trace_packets(scene.scene(), rays, base, blocks, farthest);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
     const Instance& instance = scene.instances()[hits_.instance[i]];
     const TriangleData& triangle =
         instance.geometry->parts[hits_.part[i]].triangles[hits_.primitive[i]];
     const std::size_t ray = base + hits_.sample[i];
-    const V3 d = to_mesh(instance.rotation, {rays.dx[ray], rays.dy[ray], rays.dz[ray]});
-    refine(triangle, load(instance.camera_in_mesh), d, hits_.t[i], hits_.u[i], hits_.v[i]);
+    const Vec4 d = to_mesh(instance, rays.dx[ray], rays.dy[ray], rays.dz[ray]);
+    refine(triangle, load4(origins.of(hits_.instance[i])), d, hits_.t[i], hits_.u[i], hits_.v[i]);
   }
 }
 
@@ -138,20 +152,19 @@ void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile,
     const MeshGeometry::Part& part = instance.geometry->parts[hits_.part[i]];
     const TriangleData& tri = part.triangles[hits_.primitive[i]];
     const std::size_t ray = base + hits_.sample[i];
-    const V3 d{rays.dx[ray], rays.dy[ray], rays.dz[ray]};
     const float u = hits_.u[i], v = hits_.v[i], w = 1 - u - v;
-    const V3 g = to_world(instance.rotation, load(tri.g));
-    const float side = dot(g, d) > 0 ? -1.0f : 1.0f;
-    const V3 n = to_world(instance.rotation, {w * tri.n0[0] + u * tri.n1[0] + v * tri.n2[0],
-                                              w * tri.n0[1] + u * tri.n1[1] + v * tri.n2[1],
-                                              w * tri.n0[2] + u * tri.n1[2] + v * tri.n2[2]});
-    const float scale = side / std::sqrt(std::max(dot(n, n), 1e-20f));
-    input_.nx[i] = n.x * scale;
-    input_.ny[i] = n.y * scale;
-    input_.nz[i] = n.z * scale;
-    input_.vx[i] = -d.x;
-    input_.vy[i] = -d.y;
-    input_.vz[i] = -d.z;
+    const Vec4 d{rays.dx[ray], rays.dy[ray], rays.dz[ray], 0};
+    const Vec4 g = to_world(instance, load4(tri.g));
+    const float side = dot3(g, d) > 0 ? -1.0f : 1.0f;
+    const Vec4 n = to_world(
+        instance, splat(w) * load4(tri.n0) + splat(u) * load4(tri.n1) + splat(v) * load4(tri.n2));
+    side_[i] = side;
+    input_.nx[i] = n[0];
+    input_.ny[i] = n[1];
+    input_.nz[i] = n[2];
+    input_.vx[i] = -d[0];
+    input_.vy[i] = -d[1];
+    input_.vz[i] = -d[2];
 
     const scene::Material& material = part.material;
     scene::LinearRgb albedo{material.base_color[0], material.base_color[1], material.base_color[2]};
@@ -173,17 +186,17 @@ void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile,
     input_.metallic[i] = instance.robot ? 0.0f : material.metallic;
 
     if (points) {
-      const V3 p = to_world(instance.rotation, {tri.p0[0] + u * tri.e1[0] + v * tri.e2[0],
-                                                tri.p0[1] + u * tri.e1[1] + v * tri.e2[1],
-                                                tri.p0[2] + u * tri.e1[2] + v * tri.e2[2]});
-      points_.px[i] = p.x + instance.translation[0];
-      points_.py[i] = p.y + instance.translation[1];
-      points_.pz[i] = p.z + instance.translation[2];
-      points_.gx[i] = g.x * side;
-      points_.gy[i] = g.y * side;
-      points_.gz[i] = g.z * side;
+      const Vec4 p =
+          to_world(instance, load4(tri.p0) + splat(u) * load4(tri.e1) + splat(v) * load4(tri.e2));
+      points_.px[i] = p[0] + instance.translation[0];
+      points_.py[i] = p[1] + instance.translation[1];
+      points_.pz[i] = p[2] + instance.translation[2];
+      points_.gx[i] = g[0] * side;
+      points_.gy[i] = g[1] * side;
+      points_.gz[i] = g[2] * side;
     }
   }
+  normalise(input_.nx.data(), input_.ny.data(), input_.nz.data(), side_.data(), hits_.count);
   pad(input_, hits_.count);
 }
 

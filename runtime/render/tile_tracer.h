@@ -18,9 +18,11 @@ namespace probe::render {
 // Nearest hits of a tile, compacted in sample order; after shade() with colours.
 struct TileHits {
   int count = 0;
-  std::array<std::uint8_t, kTileSamples> sample;
-  std::array<std::uint32_t, kTileSamples> instance, part, primitive;
-  alignas(64) std::array<float, kTileSamples> t, u, v;
+  // Lanes that missed are written behind the last hit, so there is room for one more.
+  static constexpr std::size_t kRoom = kTileSamples + 1;
+  std::array<std::uint8_t, kRoom> sample;
+  std::array<std::uint32_t, kRoom> instance, part, primitive;
+  alignas(64) std::array<float, kRoom> t, u, v;
 };
 
 // Hits kept for later, tile after tile.
@@ -41,8 +43,8 @@ class TileTracer {
   // Traces the blocks of `blocks` (bit b: samples 64 b .. 64 b + 63) up to `farthest[sample]`, then
   // recomputes t, u and v of every hit in our own code, so that only the choice of the triangle is
   // Embree's.
-  void trace(const TopScene& scene, const CameraRays& rays, int tile, unsigned blocks,
-             const float* farthest);
+  void trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays, int tile,
+             unsigned blocks, const float* farthest);
   // Takes hits of that tile and blocks which were traced before, leaving out samples in `hidden`.
   void take(const StoredHits& stored, int tile, unsigned blocks,
             const std::array<bool, kTileSamples>& hidden);
@@ -59,11 +61,14 @@ class TileTracer {
   const std::array<float, kTileSamples>& light_left() const { return light_left_; }
 
  private:
+  void trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base, unsigned blocks,
+                     const float* farthest);
   void gather(const TopScene& scene, const CameraRays& rays, int tile, bool points);
   void test_suns(const LightTable& lights, const Casters& casters);
 
   TileHits hits_{};
   ShadeInput input_{};
+  std::array<float, kTileSamples> side_{};  // of the normals, see normalise()
   ShadeOutput output_{};
   SurfacePoints points_{};  // of the hits, only where light is traced
   LightFactors factors_;

@@ -4,7 +4,9 @@
 
 namespace probe::render {
 
-Result<TopScene> TopScene::create(const std::vector<Visual>& visuals, Kind kind) {
+Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
+                                  std::vector<std::shared_ptr<const MeshGeometry>> meshes,
+                                  Kind kind) {
   TopScene top;
   PROBE_ASSIGN(top.device_, EmbreeDevice::shared());
   RTCDevice device = top.device_->get();
@@ -15,17 +17,15 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals, Kind kind)
                                              : RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(top.scene_.get(),
                           dynamic ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_HIGH);
-  for (const Visual& visual : visuals) {
-    if (!visual.mesh) {
-      return Failure{.code = "render", .message = "the visual has no mesh", .where = visual.name};
-    }
+  for (std::size_t i = 0; i < visuals.size(); ++i) {
+    const Visual& visual = visuals[i];
     if (!is_finite(visual.origin) || std::abs(visual.origin.rotation.norm() - 1) > 1e-6) {
       return Failure{.code = "render",
                      .message = "the visual's origin is not finite or not a rotation",
                      .where = visual.name};
     }
     Instance instance;
-    PROBE_ASSIGN(instance.geometry, MeshGeometry::shared(visual.mesh));
+    instance.geometry = std::move(meshes[i]);
     instance.origin = visual.origin;
     instance.id = static_cast<std::uint16_t>(visual.body + 1);
     instance.robot = visual.robot;
@@ -41,7 +41,7 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals, Kind kind)
   return top;
 }
 
-Status TopScene::place(std::span<const Pose> poses, const std::array<float, 3>& camera) {
+Status TopScene::place(std::span<const Pose> poses) {
   if (poses.size() != instances_.size()) {
     return Failure{.code = "render",
                    .message = std::to_string(poses.size()) + " poses for " +
@@ -60,17 +60,17 @@ Status TopScene::place(std::span<const Pose> poses, const std::array<float, 3>& 
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Instance& instance = instances_[i];
     const Pose pose = poses[i] * instance.origin;
-    const Mat3 rotation = pose.rotation.toRotationMatrix();
-    const Vec3 eye = rotation.transpose() * (Vec3(camera[0], camera[1], camera[2]) - pose.position);
+    instance.exact_rotation = pose.rotation.toRotationMatrix();
+    instance.exact_translation = pose.position;
     float columns[12];
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
-        const float value = static_cast<float>(rotation(r, c));
+        const float value = static_cast<float>(instance.exact_rotation(r, c));
         instance.rotation[3 * r + c] = value;
+        instance.rows[r][c] = instance.columns[c][r] = value;
         columns[3 * c + r] = value;
       }
       instance.translation[r] = static_cast<float>(pose.position[r]);
-      instance.camera_in_mesh[r] = static_cast<float>(eye[r]);
       columns[9 + r] = instance.translation[r];
     }
     rtcSetGeometryTransform(handles_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
@@ -78,6 +78,17 @@ Status TopScene::place(std::span<const Pose> poses, const std::array<float, 3>& 
   }
   rtcCommitScene(scene_.get());
   return device_->check("placing instances");
+}
+
+void RayOrigins::set(const TopScene& scene, const std::array<float, 3>& point) {
+  points_.resize(scene.instances().size());
+  const Vec3 from(point[0], point[1], point[2]);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Instance& instance = scene.instances()[i];
+    const Vec3 eye = instance.exact_rotation.transpose() * (from - instance.exact_translation);
+    for (int k = 0; k < 3; ++k)
+      points_[i][static_cast<std::size_t>(k)] = static_cast<float>(eye[k]);
+  }
 }
 
 }  // namespace probe::render

@@ -1,7 +1,8 @@
-// Instances of meshes under one Embree scene, and what shading must know of each. One thread at a
-// time.
+// Instances of meshes under one Embree scene, and what shading must know of each. Placing is for
+// one thread at a time; a scene that is no longer placed is read-only and may be shared.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -20,22 +21,28 @@ struct Instance {
   std::uint16_t id = 0;  // what segmentation shows
   bool robot = false;
   std::string name;
-  float rotation[9] = {};  // row by row, mesh to world
+  // Mesh to world, as Embree was given it, and as it was before rounding.
+  float rotation[9] = {};  // row by row
   float translation[3] = {};
-  float camera_in_mesh[3] = {};  // the rays' origin in the mesh frame
+  Mat3 exact_rotation = Mat3::Identity();
+  Vec3 exact_translation = Vec3::Zero();
+  // The rotation's rows and columns again, four floats each, for the loops over hits.
+  alignas(16) float rows[3][4] = {}, columns[3][4] = {};
 };
 
 class TopScene {
  public:
   enum class Kind { kStatic, kDynamic };
 
-  // Loads the ray structures of all meshes. Fails (code "render"), naming the visual, on one
-  // without a mesh or with an origin that is not finite.
-  static Result<TopScene> create(const std::vector<Visual>& visuals, Kind kind);
+  // `meshes`: one a visual. Fails (code "render"), naming the visual, on an origin that is not
+  // finite.
+  static Result<TopScene> create(const std::vector<Visual>& visuals,
+                                 std::vector<std::shared_ptr<const MeshGeometry>> meshes,
+                                 Kind kind);
 
   // Poses one a visual (static visuals: identity). Fails on a non-finite pose, naming the visual,
   // before any change.
-  Status place(std::span<const Pose> poses, const std::array<float, 3>& camera);
+  Status place(std::span<const Pose> poses);
 
   RTCScene scene() const { return scene_.get(); }
   const std::vector<Instance>& instances() const { return instances_; }
@@ -46,6 +53,17 @@ class TopScene {
   std::vector<Instance> instances_;
   std::vector<GeometryPtr> handles_;
   ScenePtr scene_;
+};
+
+// A point that rays come from, in the frame of every instance's mesh: what recomputing a hit needs.
+// Belongs to a camera, since many look at the same scene.
+class RayOrigins {
+ public:
+  void set(const TopScene& scene, const std::array<float, 3>& point);
+  const float* of(std::size_t instance) const { return points_[instance].data(); }
+
+ private:
+  std::vector<std::array<float, 4>> points_;
 };
 
 }  // namespace probe::render

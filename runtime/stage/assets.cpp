@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "runtime/plan/plan.h"
+#include "runtime/render/scene_store.h"
 #include "runtime/scene/collision_mesh.h"
 #include "runtime/scene/hull.h"
 #include "runtime/scene/image.h"
@@ -232,6 +233,7 @@ Result<std::shared_ptr<const SharedAssets>> SharedAssets::load(
     const plan::Plan& plan, const std::string& root, std::span<const std::uint32_t> tasks) {
   auto assets = std::make_shared<SharedAssets>();
   assets->root_ = root;
+  assets->pictures_ = std::make_shared<render::SceneStore>();
   Loader loader(plan, *assets);
   for (const std::uint32_t task : tasks) PROBE_TRY(loader.task(plan.tasks()[task]));
   return std::shared_ptr<const SharedAssets>(std::move(assets));

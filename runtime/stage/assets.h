@@ -19,6 +19,9 @@
 namespace probe::plan {
 class Plan;
 }
+namespace probe::render {
+class SceneStore;
+}
 
 namespace probe::stage {
 
@@ -55,10 +58,14 @@ class SharedAssets {
   std::shared_ptr<const scene::CollisionShape> shape(std::uint32_t asset) const;
   std::shared_ptr<const scene::Texture> photo(std::uint32_t asset) const;
   const RobotParts* robot(std::uint32_t urdf_asset) const;
+  // The meshes' ray structures and what stands still, for every world and task; made as they are
+  // first drawn.
+  const std::shared_ptr<render::SceneStore>& pictures() const { return pictures_; }
 
  private:
   class Loader;
   std::string root_;
+  std::shared_ptr<render::SceneStore> pictures_;
   std::map<std::uint32_t, std::shared_ptr<const scene::Mesh>> meshes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> shapes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::Texture>> photos_;

@@ -204,7 +204,7 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
     spec.photo = assets_->photo(record.photo);
     PROBE_TRY(check_shape(*spec.photo, camera, where));
   }
-  PROBE_ASSIGN(eye.renderer, render::Renderer::create(std::move(spec)));
+  PROBE_ASSIGN(eye.renderer, render::Renderer::create(std::move(spec), assets_->pictures()));
   return eye;
 }
 

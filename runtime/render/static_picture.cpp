@@ -1,9 +1,7 @@
-#include "runtime/render/static_pass.h"
+#include "runtime/render/static_picture.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
 
 #include "runtime/base/sha256.h"
 #include "runtime/render/encode.h"
@@ -106,82 +104,87 @@ std::size_t count_of(int width, int height) {
   return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
-// Fills a static pass tile by tile.
+// Fills a static picture tile by tile.
 class StaticTracer {
  public:
-  StaticTracer(StaticPass& pass, const SceneSpec& spec)
-      : pass_(pass), occlusion_rays_(spec.occlusion_rays) {
+  StaticTracer(StaticPicture& out, const SceneSpec& spec, const Camera& camera)
+      : out_(out), occlusion_rays_(spec.occlusion_rays) {
+    const CameraRays& rays = out.rays;
+    out.hits = {};
+    out.receivers = {};
+    if (!out.casts()) return;
     // Shadows keep their place in a plane; a grid round a point before the camera holds the scene.
-    const Vec3 centre = spec.camera.position + spec.camera.forward_left_up.col(0);
-    const CameraRays& rays = pass.rays;
-    if (pass.casts()) {
-      pass.receivers.prepare(pass.lights,
-                             {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
-                              static_cast<float>(centre.z())},
-                             4 * static_cast<std::size_t>(rays.tiles()));
-    }
+    const Vec3 centre = camera.position + camera.forward_left_up.col(0);
+    out.receivers.prepare(out.lights,
+                          {static_cast<float>(centre.x()), static_cast<float>(centre.y()),
+                           static_cast<float>(centre.z())},
+                          4 * static_cast<std::size_t>(rays.tiles()));
   }
 
   void trace() {
-    const std::size_t samples = static_cast<std::size_t>(pass_.rays.tiles()) * kTileSamples;
-    pass_.farthest.assign(samples, kFarthest);
-    if (pass_.samples > 1 && !pass_.photo) pass_.linear.assign(samples, {0, 0, 0});
-    for (int tile = 0; tile < pass_.rays.tiles(); ++tile) {
-      if (!pass_.scene.empty()) trace_tile(tile);
-      if (pass_.casts()) keep(tile);
+    const std::size_t samples = static_cast<std::size_t>(out_.rays.tiles()) * kTileSamples;
+    out_.farthest.assign(samples, kFarthest);
+    out_.linear.clear();
+    if (out_.samples > 1 && !out_.photo) out_.linear.assign(samples, {0, 0, 0});
+    for (int tile = 0; tile < out_.rays.tiles(); ++tile) {
+      if (!statics().empty()) trace_tile(tile);
+      if (out_.casts()) keep(tile);
     }
-    if (!pass_.linear.empty()) average();
+    if (!out_.linear.empty()) average();
   }
 
  private:
+  const TopScene& statics() const { return out_.scene->top; }
+
   void trace_tile(int tile) {
-    const CameraRays& rays = pass_.rays;
+    const CameraRays& rays = out_.rays;
+    Picture& picture = out_.picture;
     const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
-    tracer_->trace(pass_.scene, rays, tile, 0xF, pass_.farthest.data() + base);
-    if (!pass_.photo) {
-      const Casters statics{nullptr, &pass_.scene};
-      tracer_->shade(pass_.scene, rays, tile, pass_.lights, {statics, statics, occlusion_rays_});
+    tracer_->trace(statics(), out_.origins, rays, tile, 0xF, out_.farthest.data() + base);
+    if (!out_.photo) {
+      const Casters casters{nullptr, &statics()};
+      tracer_->shade(statics(), rays, tile, out_.lights, {casters, casters, occlusion_rays_});
     }
     const TileHits& hits = tracer_->hits();
     const ShadeOutput& colors = tracer_->colors();
+    const int n = out_.samples;
+    const int left = tile % rays.tiles_x * kTileSide, top = tile / rays.tiles_x * kTileSide;
     for (std::size_t i = 0; i < static_cast<std::size_t>(hits.count); ++i) {
       const std::size_t sample = hits.sample[i];
-      pass_.farthest[base + sample] = hits.t[i];
-      const int x = tile % rays.tiles_x * kTileSide + kTileOffsets[sample].x;
-      const int y = tile / rays.tiles_x * kTileSide + kTileOffsets[sample].y;
+      out_.farthest[base + sample] = hits.t[i];
+      const int x = left + kTileOffsets[sample].x, y = top + kTileOffsets[sample].y;
       if (x >= rays.width || y >= rays.height) continue;
-      if (!pass_.linear.empty()) {
-        pass_.linear[base + sample] = {capped(colors.r[i]), capped(colors.g[i]),
-                                       capped(colors.b[i])};
+      if (!out_.linear.empty()) {
+        out_.linear[base + sample] = {capped(colors.r[i]), capped(colors.g[i]),
+                                      capped(colors.b[i])};
       }
-      if (x % pass_.samples != 0 || y % pass_.samples != 0) continue;
-      const std::size_t pixel =
-          count_of(pass_.width, y / pass_.samples) + static_cast<std::size_t>(x / pass_.samples);
-      pass_.depth[pixel] = hits.t[i] * rays.cosine[base + sample];
-      pass_.segmentation[pixel] = pass_.scene.instances()[hits.instance[i]].id;
-      if (pass_.photo || pass_.samples > 1) continue;
-      pass_.rgb[3 * pixel] = to_display_byte(colors.r[i]);
-      pass_.rgb[3 * pixel + 1] = to_display_byte(colors.g[i]);
-      pass_.rgb[3 * pixel + 2] = to_display_byte(colors.b[i]);
+      if (n > 1 && (x % n != 0 || y % n != 0)) continue;
+      const std::size_t pixel = n > 1 ? pixel_at(x / n, y / n) : pixel_at(x, y);
+      picture.depth[pixel] = hits.t[i] * rays.cosine[base + sample];
+      picture.segmentation[pixel] = statics().instances()[hits.instance[i]].id;
+      if (out_.photo || n > 1) continue;
+      picture.rgb[3 * pixel] = to_display_byte(colors.r[i]);
+      picture.rgb[3 * pixel + 1] = to_display_byte(colors.g[i]);
+      picture.rgb[3 * pixel + 2] = to_display_byte(colors.b[i]);
     }
   }
 
   // The static surface of a tile, for shadows to fall on.
   void keep(int tile) {
-    if (pass_.scene.empty()) {
-      pass_.hits.first.push_back(0);
+    if (statics().empty()) {
+      out_.hits.first.push_back(0);
       return;
     }
-    const CameraRays& rays = pass_.rays;
+    const CameraRays& rays = out_.rays;
     const TileHits& hits = tracer_->hits();
-    pass_.hits.add_tile(hits);
+    out_.hits.add_tile(hits);
     const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
     for (std::size_t i = 0; i < static_cast<std::size_t>(hits.count); ++i) {
       const std::size_t ray = base + hits.sample[i];
       const int block = hits.sample[i] / 64;
       const auto bx = static_cast<std::size_t>(2 * (tile % rays.tiles_x) + block % 2);
       const auto by = static_cast<std::size_t>(2 * (tile / rays.tiles_x) + block / 2);
-      pass_.receivers.add(
+      out_.receivers.add(
           by * 2 * static_cast<std::size_t>(rays.tiles_x) + bx,
           {rays.origin[0] + hits.t[i] * rays.dx[ray], rays.origin[1] + hits.t[i] * rays.dy[ray],
            rays.origin[2] + hits.t[i] * rays.dz[ray]});
@@ -189,40 +192,79 @@ class StaticTracer {
   }
 
   void average() {
-    const CameraRays& rays = pass_.rays;
-    const int n = pass_.samples;
-    std::vector<std::array<float, 3>> sums(count_of(pass_.width, pass_.height), {0, 0, 0});
+    const CameraRays& rays = out_.rays;
+    const int n = out_.samples;
+    Picture& picture = out_.picture;
+    std::vector<std::array<float, 3>> sums(count_of(picture.width, picture.height), {0, 0, 0});
     for (int tile = 0; tile < rays.tiles(); ++tile) {
       for (std::size_t sample = 0; sample < kTileSamples; ++sample) {
         const int x = tile % rays.tiles_x * kTileSide + kTileOffsets[sample].x;
         const int y = tile / rays.tiles_x * kTileSide + kTileOffsets[sample].y;
         if (x >= rays.width || y >= rays.height) continue;
-        auto& sum = sums[count_of(pass_.width, y / n) + static_cast<std::size_t>(x / n)];
-        const auto& c = pass_.linear[static_cast<std::size_t>(tile) * kTileSamples + sample];
+        auto& sum = sums[pixel_at(x / n, y / n)];
+        const auto& c = out_.linear[static_cast<std::size_t>(tile) * kTileSamples + sample];
         for (std::size_t k = 0; k < 3; ++k) sum[k] += c[k];
       }
     }
     const float share = 1.0f / static_cast<float>(n * n);
     for (std::size_t pixel = 0; pixel < sums.size(); ++pixel) {
       for (std::size_t k = 0; k < 3; ++k) {
-        pass_.rgb[3 * pixel + k] = to_display_byte(share * sums[pixel][k]);
+        picture.rgb[3 * pixel + k] = to_display_byte(share * sums[pixel][k]);
       }
     }
   }
 
-  StaticPass& pass_;
+  std::size_t pixel_at(int x, int y) const {
+    return count_of(out_.picture.width, y) + static_cast<std::size_t>(x);
+  }
+
+  StaticPicture& out_;
   int occlusion_rays_;
   std::unique_ptr<TileTracer> tracer_ = std::make_unique<TileTracer>();
 };
 
-Sha256 key_of(const SceneSpec& spec) {
+}  // namespace
+
+Status StaticPicture::check(const SceneSpec& spec) {
+  PROBE_TRY(check_quality(spec));
+  PROBE_TRY(check_camera(sample_camera(spec.camera, spec.samples)));
+  PROBE_TRY(make_lights(spec.lights));
+  if (spec.photo) PROBE_TRY(check_photo(*spec.photo));
+  return {};
+}
+
+Status StaticPicture::trace(const SceneSpec& spec, const Camera& camera,
+                            std::shared_ptr<const StaticScene> seen) {
+  PROBE_TRY(check_quality(spec));
+  scene = std::move(seen);
+  samples = spec.samples;
+  PROBE_TRY(make_camera_rays(sample_camera(camera, spec.samples), rays));
+  PROBE_ASSIGN(lights, make_lights(spec.lights));
+  origins.set(scene->top, rays.origin);
+
+  const std::size_t pixels = count_of(camera.width, camera.height);
+  picture.width = camera.width;
+  picture.height = camera.height;
+  picture.depth.assign(pixels, 0);
+  picture.segmentation.assign(pixels, 0);
+  if (spec.photo) {
+    PROBE_TRY(check_photo(*spec.photo));
+    picture.rgb = fit_photo(*spec.photo, picture.width, picture.height);
+  } else {
+    picture.rgb.assign(3 * pixels, 0);
+  }
+  photo = spec.photo;
+  const FlushDenormals guard;
+  StaticTracer(*this, spec, camera).trace();
+  return {};
+}
+
+Sha256 StaticPicture::key_of(const SceneSpec& spec) {
   Hasher hasher;
-  const auto pointer = [&hasher](const void* p) {
-    hasher.u64(reinterpret_cast<std::uintptr_t>(p));
-  };
   const auto vec3 = [&hasher](const Vec3& v) {
     for (int k = 0; k < 3; ++k) hasher.f64(v[k]);
   };
+  hasher.hash(StaticScene::key_of(spec.statics));
   const Camera& camera = spec.camera;
   vec3(camera.position);
   for (int k = 0; k < 3; ++k) vec3(camera.forward_left_up.col(k));
@@ -234,60 +276,10 @@ Sha256 key_of(const SceneSpec& spec) {
     vec3(sun.direction);
     hasher.f64(sun.power).u8(sun.shadow ? 1 : 0);
   }
-  pointer(spec.photo.get());
+  hasher.u64(reinterpret_cast<std::uintptr_t>(spec.photo.get()));
   hasher.u32(static_cast<std::uint32_t>(spec.samples));
   hasher.u32(static_cast<std::uint32_t>(spec.occlusion_rays));
-  hasher.u64(spec.statics.size());
-  for (const Visual& visual : spec.statics) {
-    pointer(visual.mesh.get());
-    vec3(visual.origin.position);
-    for (int k = 0; k < 4; ++k) hasher.f64(visual.origin.rotation.coeffs()[k]);
-    hasher.u32(visual.body).u8(visual.robot ? 1 : 0);
-  }
   return hasher.finish();
-}
-
-}  // namespace
-
-Result<std::shared_ptr<const StaticPass>> StaticPass::make(const SceneSpec& spec) {
-  PROBE_TRY(check_quality(spec));
-  auto pass = std::make_shared<StaticPass>();
-  pass->samples = spec.samples;
-  pass->width = spec.camera.width;
-  pass->height = spec.camera.height;
-  PROBE_ASSIGN(pass->rays, make_camera_rays(sample_camera(spec.camera, spec.samples)));
-  PROBE_ASSIGN(pass->lights, make_lights(spec.lights));
-  PROBE_ASSIGN(pass->scene, TopScene::create(spec.statics, TopScene::Kind::kStatic));
-  const FlushDenormals guard;
-  PROBE_TRY(pass->scene.place(std::vector<Pose>(spec.statics.size()), pass->rays.origin));
-
-  const std::size_t pixels = count_of(pass->width, pass->height);
-  pass->depth.assign(pixels, 0);
-  pass->segmentation.assign(pixels, 0);
-  if (spec.photo) {
-    PROBE_TRY(check_photo(*spec.photo));
-    pass->photo = spec.photo;
-    pass->rgb = fit_photo(*spec.photo, pass->width, pass->height);
-  } else {
-    pass->rgb.assign(3 * pixels, 0);
-  }
-  StaticTracer(*pass, spec).trace();
-  return std::shared_ptr<const StaticPass>(std::move(pass));
-}
-
-Result<std::shared_ptr<const StaticPass>> StaticPass::shared(const SceneSpec& spec) {
-  static std::mutex mutex;
-  static std::map<Sha256, std::weak_ptr<const StaticPass>> cache;
-  const std::scoped_lock lock(mutex);
-  std::erase_if(cache, [](const auto& entry) { return entry.second.expired(); });
-  const Sha256 key = key_of(spec);
-  const auto found = cache.find(key);
-  if (found != cache.end()) {
-    if (auto known = found->second.lock()) return known;
-  }
-  PROBE_ASSIGN(std::shared_ptr<const StaticPass> made, make(spec));
-  cache[key] = made;
-  return made;
 }
 
 }  // namespace probe::render

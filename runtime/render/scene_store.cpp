@@ -1,0 +1,55 @@
+#include "runtime/render/scene_store.h"
+
+#include "runtime/render/mesh_geometry.h"
+#include "runtime/render/static_picture.h"
+#include "runtime/render/static_scene.h"
+
+namespace probe::render {
+
+SceneStore::SceneStore() = default;
+SceneStore::~SceneStore() = default;
+
+Result<std::vector<std::shared_ptr<const MeshGeometry>>> SceneStore::geometries(
+    std::span<const Visual> visuals) {
+  const std::scoped_lock lock(mutex_);
+  std::vector<std::shared_ptr<const MeshGeometry>> found;
+  for (const Visual& visual : visuals) {
+    if (!visual.mesh) {
+      return Failure{.code = "render", .message = "the visual has no mesh", .where = visual.name};
+    }
+    std::shared_ptr<const MeshGeometry>& known = geometries_[visual.mesh.get()];
+    if (!known) {
+      PROBE_ASSIGN(known, MeshGeometry::build(visual.mesh));
+    }
+    found.push_back(known);
+  }
+  return found;
+}
+
+Result<std::shared_ptr<const StaticScene>> SceneStore::static_scene(
+    const std::vector<Visual>& statics) {
+  PROBE_ASSIGN(auto meshes, geometries(statics));
+  const std::scoped_lock lock(mutex_);
+  std::shared_ptr<const StaticScene>& known = scenes_[StaticScene::key_of(statics)];
+  if (!known) {
+    PROBE_ASSIGN(known, StaticScene::make(statics, std::move(meshes)));
+  }
+  return known;
+}
+
+Result<std::shared_ptr<const StaticPicture>> SceneStore::static_picture(const SceneSpec& spec) {
+  PROBE_ASSIGN(auto scene, static_scene(spec.statics));
+  const Sha256 key = StaticPicture::key_of(spec);
+  const std::scoped_lock lock(mutex_);
+  std::erase_if(pictures_, [](const auto& entry) { return entry.second.expired(); });
+  // A live picture holds its photo, so that no other can have its address.
+  if (const auto found = pictures_.find(key); found != pictures_.end()) {
+    if (auto known = found->second.lock()) return known;
+  }
+  auto made = std::make_shared<StaticPicture>();
+  PROBE_TRY(made->trace(spec, spec.camera, std::move(scene)));
+  pictures_[key] = made;
+  return std::shared_ptr<const StaticPicture>(std::move(made));
+}
+
+}  // namespace probe::render

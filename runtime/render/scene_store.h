@@ -1,0 +1,45 @@
+// What pictures of the same things share: the ray structure of each mesh, the scenes that stand
+// still, and what cameras that stand still see of them. Whoever owns the meshes owns one (the
+// assets of a process), so that no change of task or world builds anything twice.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/base/sha256.h"
+#include "runtime/render/renderer.h"
+
+namespace probe::render {
+
+struct MeshGeometry;
+struct StaticScene;
+struct StaticPicture;
+
+// Every call may come from any thread. A mesh is known by its address and kept as long as the
+// store, so it must not be changed after it was given.
+class SceneStore {
+ public:
+  SceneStore();
+  ~SceneStore();
+
+  // One a visual; made at the first call for a mesh. Fails (code "render"), naming the visual, on
+  // one without a mesh, or with a mesh whose arrays do not fit together.
+  Result<std::vector<std::shared_ptr<const MeshGeometry>>> geometries(
+      std::span<const Visual> visuals);
+  Result<std::shared_ptr<const StaticScene>> static_scene(const std::vector<Visual>& statics);
+  // What `spec`'s camera sees of its statics. Kept only while somebody holds it: a sweep over
+  // cameras would fill the memory, 9 MB at 640 x 480 each.
+  Result<std::shared_ptr<const StaticPicture>> static_picture(const SceneSpec& spec);
+
+ private:
+  std::mutex mutex_;
+  std::map<const scene::Mesh*, std::shared_ptr<const MeshGeometry>> geometries_;
+  std::map<Sha256, std::shared_ptr<const StaticScene>> scenes_;
+  std::map<Sha256, std::weak_ptr<const StaticPicture>> pictures_;
+};
+
+}  // namespace probe::render
