@@ -117,11 +117,12 @@ Status write_files(const std::string& folder, std::vector<OutputFile> files) {
     const std::filesystem::path path = std::filesystem::path(folder) / file.path;
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
-    if (error) return Failure{"io", "cannot make the folder: " + error.message(), path.string()};
+    if (error)
+      return Failure{Fault::kIo, "cannot make the folder: " + error.message(), path.string()};
     std::ofstream out(path, std::ios::binary);
     out.write(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size()));
     out.close();
-    if (!out) return Failure{"io", "cannot write the file", path.string()};
+    if (!out) return Failure{Fault::kIo, "cannot write the file", path.string()};
   }
   return {};
 }

@@ -64,7 +64,7 @@ struct Audit {
 
 // `plan` is that of `compilation`, with all its suites; `suite` indexes plan.suites(). `files` are
 // those that were named: comparisons that they declare and no suite holds are findings too.
-// A Failure (code "audit") is a plan that cannot be judged.
+// A Failure (kJudge) is a plan that cannot be judged.
 Result<Audit> audit(const Compilation& compilation, const plan::Plan& plan, std::uint32_t suite,
                     std::span<const std::string> files);
 

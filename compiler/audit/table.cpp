@@ -147,7 +147,7 @@ Status check_table(Audit& audit, const Compilation& compilation, const plan::Pla
     finding.place = place_of_set(compilation, column.name);
     audit.findings.push_back(std::move(finding));
   }
-  if (!any) return Failure{"table", "no column is called as a set of the suite", name};
+  if (!any) return Failure{Fault::kTable, "no column is called as a set of the suite", name};
   std::stable_sort(audit.findings.begin(), audit.findings.end(),
                    [](const Finding& a, const Finding& b) { return a.kind < b.kind; });
   return {};

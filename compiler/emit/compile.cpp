@@ -54,7 +54,7 @@ Status check_suite_exists(const sema::Model& model, const std::string& suite) {
   } else {
     message += known.empty() ? ", the files declare none" : ", the files declare " + known;
   }
-  return Failure{"usage", message, ""};
+  return Failure{Fault::kUsage, message, ""};
 }
 
 // Everything but the bytes. The model's spans point into `compilation.sources`.
@@ -101,7 +101,7 @@ std::vector<ReferringWords> referring_words(const sema::Model& model) {
 }
 
 Status analyze(std::span<const std::string> files, const CompileOptions& options, Analyzed& out) {
-  if (files.empty()) return Failure{"usage", "no file to compile", ""};
+  if (files.empty()) return Failure{Fault::kUsage, "no file to compile", ""};
   for (const std::string& file : files) {
     std::string root = std::filesystem::path(file).lexically_normal().string();
     if (std::find(out.roots.begin(), out.roots.end(), root) != out.roots.end()) continue;

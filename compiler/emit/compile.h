@@ -54,8 +54,8 @@ struct Compilation {
 
 // Diagnoses the files and everything they use. Each file that no other named one uses is a program
 // of its own, so two of them may declare the same names. Assets are looked for and inspected, not
-// hashed. A Failure is only for the outside: a root file that cannot be read (code "io"), a suite
-// that no file declares (code "usage").
+// hashed. A Failure is only for the outside: a root file that cannot be read (kIo), a suite
+// that no file declares (kUsage).
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options);
 
 // The same, and when nothing is wrong the verified plan. Same text and assets, same bytes, from any

@@ -89,7 +89,8 @@ Result<std::optional<std::string>> format_file(const SourceSet& sources, FileId 
   const FileId copy = formatted.add(source.name(), text);
   const syntax::ParseResult again = syntax::parse(formatted, copy, none);
   if (!again.ok || !says_the_same(source, parsed.tokens, formatted.file(copy), again.tokens)) {
-    return Failure{"internal", "the formatted text would not say the same, so nothing is written",
+    return Failure{Fault::kInternal,
+                   "the formatted text would not say the same, so nothing is written",
                    source.name()};
   }
   return std::optional<std::string>(std::move(text));

@@ -27,7 +27,7 @@ bool says_the_same(const SourceFile& a, const syntax::TokenStream& a_stream, con
                    const syntax::TokenStream& b_stream);
 
 // Parses, formats and makes sure that the result says the same. No text when the file has errors:
-// they are in `diagnostics`. A Failure (code "internal") is our mistake; the file is then better
+// they are in `diagnostics`. A Failure (kInternal) is our mistake; the file is then better
 // left alone.
 Result<std::optional<std::string>> format_file(const SourceSet& sources, FileId id,
                                                Diagnostics& diagnostics);

@@ -74,18 +74,18 @@ Result<FileId> SourceSet::load(const std::string& path) {
   // A folder opens and cannot be read, a device may never end: only regular files are sources.
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) {
-    return Failure{"io", std::string("cannot read: ") + std::strerror(errno), path};
+    return Failure{Fault::kIo, std::string("cannot read: ") + std::strerror(errno), path};
   }
-  if (!S_ISREG(status.st_mode)) return Failure{"io", "cannot read: not a regular file", path};
+  if (!S_ISREG(status.st_mode)) return Failure{Fault::kIo, "cannot read: not a regular file", path};
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"),
                                                                std::fclose);
   if (stream == nullptr) {
-    return Failure{"io", std::string("cannot read: ") + std::strerror(errno), path};
+    return Failure{Fault::kIo, std::string("cannot read: ") + std::strerror(errno), path};
   }
   const auto size = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
   std::string text(std::min(size, kMaxSourceBytes + 1), '\0');
   text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
-  if (std::ferror(stream.get()) != 0) return Failure{"io", "cannot read: input error", path};
+  if (std::ferror(stream.get()) != 0) return Failure{Fault::kIo, "cannot read: input error", path};
   return add(path, std::move(text));
 }
 

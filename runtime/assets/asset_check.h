@@ -13,7 +13,7 @@ namespace probe::assets {
 
 class AssetCheck {
  public:
-  // Fails (code "asset") on a manifest that cannot be read.
+  // Fails (kAsset) on a manifest that cannot be read.
   static Result<AssetCheck> open(const std::string& root);
 
   // Reads the file as a run would and says what is wrong with it, without its path. A file whose

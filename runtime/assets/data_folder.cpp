@@ -119,7 +119,7 @@ void read_model_database(const fs::path& file, DataFolder& data) {
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   const Json root = Json::parse(text, nullptr, false);
   if (!root.is_object()) {
-    data.odd.push_back({"asset", "is not a JSON object of models", file.string()});
+    data.odd.push_back({Fault::kAsset, "is not a JSON object of models", file.string()});
     return;
   }
   for (const auto& [id, entry] : root.items()) {
@@ -129,14 +129,14 @@ void read_model_database(const fs::path& file, DataFolder& data) {
     if (wrong.empty()) {
       data.infos.try_emplace(id, std::move(info));
     } else {
-      data.odd.push_back({"asset", "`" + id + "` " + wrong, file.string()});
+      data.odd.push_back({Fault::kAsset, "`" + id + "` " + wrong, file.string()});
     }
   }
 }
 
 Result<DataFolder> find_data(const std::string& folder) {
   std::error_code error;
-  if (!fs::is_directory(folder, error)) return Failure{"asset", "is not a folder", folder};
+  if (!fs::is_directory(folder, error)) return Failure{Fault::kAsset, "is not a folder", folder};
   DataFolder data;
   Finder finder{data};
   // The folder itself may be one of the parts.
@@ -148,7 +148,7 @@ Result<DataFolder> find_data(const std::string& folder) {
                    });
   for (const fs::path& file : finder.databases) read_model_database(file, data);
   if (data.models.empty() && data.photos.empty() && !data.urdf && data.stages.empty()) {
-    return Failure{"asset",
+    return Failure{Fault::kAsset,
                    "no SimplerEnv data in it: looked six folders deep for `models` (a folder a "
                    "model), `real_inpainting`, `stages` and `wx250s.urdf`",
                    folder};

@@ -28,7 +28,7 @@ struct DataFolder {
   std::vector<Failure> odd;  // databases and entries that cannot be used
 };
 
-// Looks at most six folders deep. Fails (code "asset") when `folder` is not there, and when it
+// Looks at most six folders deep. Fails (kAsset) when `folder` is not there, and when it
 // holds none of these, saying what was looked for.
 Result<DataFolder> find_data(const std::string& folder);
 

@@ -72,7 +72,7 @@ class Import {
       say(Verdict::kOdd, "database", short_text(odd, options_.from));
     }
     if (report_.files == 0) {
-      return Failure{"asset", "nothing in it can be used: " + report_.lines.front().text,
+      return Failure{Fault::kAsset, "nothing in it can be used: " + report_.lines.front().text,
                      options_.from};
     }
     PROBE_TRY(write("objects.probe", catalogue_text(objects_), "the model databases"));

@@ -32,8 +32,8 @@ struct ImportReport {
   std::uint64_t bytes = 0;
 };
 
-// OUT appears whole or not at all. What cannot be read is a line, not a failure. Fails (codes
-// "asset", "io") when `from` holds no such data, nothing of it can be used, or `to` is there
+// OUT appears whole or not at all. What cannot be read is a line, not a failure. Fails
+// (kAsset, kIo) when `from` holds no such data, nothing of it can be used, or `to` is there
 // already.
 Result<ImportReport> import_data(const ImportOptions& options);
 

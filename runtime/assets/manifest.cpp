@@ -28,7 +28,8 @@ Result<Manifest> read_manifest(const std::string& folder) {
   if (!file) return Manifest{};
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const auto root = nlohmann::json::parse(text, nullptr, false);
-  const Failure malformed{"asset", "is not a manifest of files with path, bytes and sha256", path};
+  const Failure malformed{Fault::kAsset, "is not a manifest of files with path, bytes and sha256",
+                          path};
   if (!root.is_object() || !root.contains("files") || !root["files"].is_array()) return malformed;
   Manifest manifest;
   for (const auto& entry : root["files"]) {

@@ -24,7 +24,7 @@ struct Manifest {
   std::string to_json() const;  // sorted by path
 };
 
-// Of a folder without a manifest: empty. Fails (code "asset", where = the file) on one that is not
+// Of a folder without a manifest: empty. Fails (kAsset, where = the file) on one that is not
 // JSON of this form.
 Result<Manifest> read_manifest(const std::string& folder);
 

@@ -16,13 +16,13 @@ Result<OutputFolder> OutputFolder::create(const std::string& path) {
   const fs::path target = fs::absolute(path).lexically_normal();
   if (fs::exists(target, error) &&
       (!fs::is_directory(target, error) || !fs::is_empty(target, error))) {
-    return Failure{"io", "is there already; assets are written to a new folder", path};
+    return Failure{Fault::kIo, "is there already; assets are written to a new folder", path};
   }
   // A name with a slash at its end has no last part.
   const fs::path named = target.has_filename() ? target : target.parent_path();
   const std::string temporary = named.string() + ".tmp" + std::to_string(::getpid());
   fs::create_directories(temporary, error);
-  if (error) return Failure{"io", "cannot make the folder: " + error.message(), temporary};
+  if (error) return Failure{Fault::kIo, "cannot make the folder: " + error.message(), temporary};
   return OutputFolder(named.string(), temporary);
 }
 
@@ -44,7 +44,7 @@ Status OutputFolder::write(const std::string& path, std::string_view bytes,
   std::ofstream out(file, std::ios::binary);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (!out) return Failure{"io", "cannot write the file", file.string()};
+  if (!out) return Failure{Fault::kIo, "cannot write the file", file.string()};
   manifest_.files[path] = {bytes.size(), to_hex(sha256(bytes)), source};
   return {};
 }
@@ -60,12 +60,13 @@ Status OutputFolder::finish(bool with_manifest) {
     std::ofstream out(fs::path(temporary_) / "manifest.json", std::ios::binary);
     out << manifest_.to_json();
     out.close();
-    if (!out) return Failure{"io", "cannot write the manifest", temporary_};
+    if (!out) return Failure{Fault::kIo, "cannot write the manifest", temporary_};
   }
   std::error_code error;
   fs::remove(target_, error);  // an empty folder of that name
   fs::rename(temporary_, target_, error);
-  if (error) return Failure{"io", "cannot rename the finished folder: " + error.message(), target_};
+  if (error)
+    return Failure{Fault::kIo, "cannot rename the finished folder: " + error.message(), target_};
   temporary_.clear();
   return {};
 }

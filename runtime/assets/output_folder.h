@@ -11,7 +11,7 @@ namespace probe::assets {
 
 class OutputFolder {
  public:
-  // Fails (code "io") when `path` is there and not an empty folder.
+  // Fails (kIo) when `path` is there and not an empty folder.
   static Result<OutputFolder> create(const std::string& path);
   OutputFolder(OutputFolder&& other) noexcept;
   OutputFolder& operator=(OutputFolder&&) = delete;

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 
 Result<std::string> pack_robot(const PackOptions& options, const scene::MeshLimits& limits) {
   if (options.scale != 1 || !options.collision.empty()) {
-    return Failure{"usage", "a URDF says the scale and collision meshes itself", options.from};
+    return Failure{Fault::kUsage, "a URDF says the scale and collision meshes itself",
+                   options.from};
   }
   PROBE_ASSIGN(const RobotFiles robot, convert_robot(options.from, limits));
   PROBE_ASSIGN(OutputFolder out, OutputFolder::create(options.to));
@@ -46,7 +47,7 @@ std::string find_collision(const PackOptions& options) {
 
 Result<std::string> pack_asset(const PackOptions& options) {
   if (!(options.scale > 0) || !std::isfinite(options.scale)) {
-    return Failure{"usage", "the scale must be above 0", ""};
+    return Failure{Fault::kUsage, "the scale must be above 0", ""};
   }
   const fs::path folder = fs::absolute(options.from).lexically_normal().parent_path();
   scene::MeshLimits limits;

@@ -15,7 +15,7 @@ struct PackOptions {
   double scale = 1;       // 0.001 for millimetres; not for a URDF, which says its own
 };
 
-// A sentence on what was made: size, triangles, convex parts. Fails (codes "asset", "urdf", "io",
+// A sentence on what was made: size, triangles, convex parts. Fails (kAsset, kUrdf, kIo,
 // "usage") as the readers do, and when `to` is there already.
 Result<std::string> pack_asset(const PackOptions& options);
 

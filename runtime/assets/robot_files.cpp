@@ -44,7 +44,7 @@ Result<std::string> replace_meshes(
     if (open == text.size()) break;
     const bool is_comment = text.compare(open, 4, "<!--") == 0;
     std::size_t end = is_comment ? text.find("-->", open) : text.find('>', open);
-    if (end == text.npos) return Failure{"urdf", "an element is not closed", ""};
+    if (end == text.npos) return Failure{Fault::kUrdf, "an element is not closed", ""};
     end += is_comment ? 3 : 1;
     const std::string_view element(text.data() + open, end - open);
     if (element.starts_with("<collision")) in_collision = true;
@@ -73,7 +73,8 @@ Result<std::string> resolve_urdf_file(const std::string& folder, const std::stri
     if (above.filename() != package) continue;
     return resolve_inside(above.parent_path(), inside, root);
   }
-  return Failure{"asset", "no folder above the description is called `" + package + "`", written};
+  return Failure{Fault::kAsset, "no folder above the description is called `" + package + "`",
+                 written};
 }
 
 Result<RobotFiles> convert_robot(const std::string& urdf, const scene::MeshLimits& limits) {
@@ -92,7 +93,7 @@ Result<RobotFiles> convert_robot(const std::string& urdf, const scene::MeshLimit
     Vec3 scale(1, 1, 1);
     if (!element.scale.empty() &&
         std::sscanf(element.scale.c_str(), "%lf %lf %lf", &scale[0], &scale[1], &scale[2]) != 3) {
-      return Failure{"urdf", "a mesh has the scale `" + element.scale + "`", urdf};
+      return Failure{Fault::kUrdf, "a mesh has the scale `" + element.scale + "`", urdf};
     }
     const std::string stem = "meshes/" + fs::path(path).stem().string();
     name = stem + use;

@@ -25,7 +25,7 @@ std::string lower_extension(const fs::path& path) {
 Result<std::string> resolve_inside(const fs::path& folder, const std::string& written,
                                    const fs::path& root) {
   const auto refuse = [&](std::string message) {
-    return Failure{"asset", std::move(message), written};
+    return Failure{Fault::kAsset, std::move(message), written};
   };
   std::string relative = written;
   std::replace(relative.begin(), relative.end(), '\\', '/');

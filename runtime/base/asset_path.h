@@ -12,7 +12,7 @@
 namespace probe {
 
 // The absolute path of `written`, read from a file in `folder`, backslashes taken as slashes. Fails
-// (code "asset", where = written) on an absolute path, a drive or a URL, on one that leads out of
+// (kAsset, where = written) on an absolute path, a drive or a URL, on one that leads out of
 // `root` as written or through a symbolic link, and where no file is.
 Result<std::string> resolve_inside(const std::filesystem::path& folder, const std::string& written,
                                    const std::filesystem::path& root);

@@ -14,7 +14,7 @@ namespace probe {
 namespace {
 
 Failure io_failure(const std::string& what, const std::string& path) {
-  return {.code = "io", .message = what + ": " + std::strerror(errno), .where = path};
+  return {.code = Fault::kIo, .message = what + ": " + std::strerror(errno), .where = path};
 }
 
 // Two threads may write one file.
@@ -57,7 +57,7 @@ Status PendingFile::keep() {
   const auto present = std::filesystem::status(target_, ignored).type();
   if (present != std::filesystem::file_type::regular &&
       present != std::filesystem::file_type::not_found) {
-    return {Failure{.code = "io",
+    return {Failure{.code = Fault::kIo,
                     .message = "is a folder, a device or a pipe and is not replaced",
                     .where = path_}};
   }
@@ -84,15 +84,15 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
 Result<std::string> read_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    return Failure{.code = "io", .message = "there is no such file", .where = path};
+    return Failure{.code = Fault::kIo, .message = "there is no such file", .where = path};
   }
   std::ifstream stream(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
-  if (size < 0) return Failure{.code = "io", .message = "cannot be opened", .where = path};
+  if (size < 0) return Failure{.code = Fault::kIo, .message = "cannot be opened", .where = path};
   std::string bytes(static_cast<std::size_t>(size), '\0');
   stream.seekg(0);
   stream.read(bytes.data(), size);
-  if (!stream) return Failure{.code = "io", .message = "cannot be read", .where = path};
+  if (!stream) return Failure{.code = Fault::kIo, .message = "cannot be read", .where = path};
   return bytes;
 }
 

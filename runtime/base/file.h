@@ -23,7 +23,7 @@ class PendingFile {
   const std::string& path() const { return path_; }
   const std::string& temporary() const { return temporary_; }
 
-  // After the last byte was written and the file closed. Fails (code "io", where = path); the file
+  // After the last byte was written and the file closed. Fails (kIo, where = path); the file
   // is then gone. What is no regular file (a device, a pipe, a folder) is never replaced.
   Status keep();
 
@@ -32,10 +32,10 @@ class PendingFile {
   bool kept_ = false;
 };
 
-// Fails (code "io", where = path) on a folder that is not there or a full disk.
+// Fails (kIo, where = path) on a folder that is not there or a full disk.
 Status write_file(const std::string& path, std::span<const std::byte> bytes);
 
-// Fails (code "io", where = path) when the file is missing, no regular file or cannot be read.
+// Fails (kIo, where = path) when the file is missing, no regular file or cannot be read.
 Result<std::string> read_file(const std::string& path);
 
 }  // namespace probe

@@ -1,18 +1,38 @@
-// How the outside fails: files, plans, assets, sockets. A user's wrong text is a Diagnostic (compiler/diag) instead,
-// and our own mistakes are PROBE_CHECK. No exception crosses a function of ours.
+// How the outside fails: files, plans, assets, sockets. A user's wrong text is a Diagnostic
+// (compiler/diag) instead, and our own mistakes are PROBE_CHECK. No exception crosses a function of
+// ours.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
 namespace probe {
 
-// A failure names the thing and the place. `code` is a short stable word for programs ("io", "plan", "asset", "urdf",
-// "world", "judge", "render", "policy", "store", "usage"); `message` is lower case, no full stop; `where` is a path, a path with
-// line, or a section with offset; it may be empty when the message already says it.
+// What kind of thing failed, so that callers can decide; its words are for programs. faults.def
+// says what each stands for.
+enum class Fault : std::uint8_t {
+#define PROBE_FAULT(name, word) name,
+#include "runtime/base/faults.def"
+#undef PROBE_FAULT
+};
+
+constexpr std::string_view to_word(Fault fault) {
+  constexpr std::string_view kWords[] = {
+#define PROBE_FAULT(name, word) word,
+#include "runtime/base/faults.def"
+#undef PROBE_FAULT
+  };
+  return kWords[static_cast<std::size_t>(fault)];
+}
+
+// A failure names the thing and the place. `message` is lower case, no full stop; `where` is a
+// path, a path with line, or a section with offset; it may be empty when the message already says
+// it.
 struct Failure {
-  std::string code;
+  Fault code = Fault::kInternal;
   std::string message;
   std::string where;
 };

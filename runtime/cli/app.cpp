@@ -43,8 +43,8 @@ int report_unknown(const CLI::App& app, const CLI::ParseError& error, std::span<
 
 int report(const Failure& failure) {
   fmt::print(stderr, "vlaprobe: {}\n", to_text(failure));
-  if (failure.code == "usage") return kUser;
-  return failure.code == "internal" ? kOurs : kOutside;
+  if (failure.code == Fault::kUsage) return kUser;
+  return failure.code == Fault::kInternal ? kOurs : kOutside;
 }
 
 void add_asset_option(CLI::App& verb, AssetOptions& options) {
@@ -111,13 +111,13 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return report_unknown(app, error, std::span(argv + 1, static_cast<std::size_t>(argc - 1)));
   } catch (const std::system_error& error) {  // fmt, when a stream takes no more
-    return report({"io", error.what(), "standard output"});
+    return report({Fault::kIo, error.what(), "standard output"});
   } catch (const std::exception& error) {
-    return report({"internal", error.what(), ""});
+    return report({Fault::kInternal, error.what(), ""});
   }
   // A full disk behind a redirection shows only now.
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    return report({"io", "cannot be written", "standard output"});
+    return report({Fault::kIo, "cannot be written", "standard output"});
   }
   if (app.get_subcommands().empty()) {
     fmt::print("{}", app.help());

@@ -34,7 +34,7 @@ int audit_verb(const Arguments& arguments) {
   auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
   if (!plan) return report(plan.failure());
   if (plan->suites().empty())
-    return report({"usage", "no suite to audit: `suite` lists tasks", arguments.file});
+    return report({Fault::kUsage, "no suite to audit: `suite` lists tasks", arguments.file});
   int exit = kFine;
   std::uint32_t suite = 0;
   if (!arguments.suite.empty()) {

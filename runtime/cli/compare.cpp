@@ -20,8 +20,8 @@ int compare_verb(const Arguments& arguments) {
   const auto benchmark = report::load(dirs, {.sets = arguments.sets, .join = false});
   if (!benchmark) return report(benchmark.failure());
   if (benchmark->policies.size() < 2) {
-    return report(
-        Failure{"usage", "is the same folder twice: there is nothing to compare", arguments.a});
+    return report(Failure{Fault::kUsage, "is the same folder twice: there is nothing to compare",
+                          arguments.a});
   }
   const auto compared = report::compare(*benchmark, 0, 1, {.metrics = arguments.metrics});
   if (!compared) return report(compared.failure());

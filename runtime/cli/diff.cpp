@@ -32,7 +32,7 @@ int diff_two_plans(const Arguments& arguments) {
   LoadedPlan a = load_plan(arguments.file, arguments.assets);
   if (!a.plan) return a.exit;
   if (!std::filesystem::exists(arguments.a) && a.plan->find_task(arguments.a)) {
-    return report({"usage",
+    return report({Fault::kUsage,
                    "`" + arguments.a + "` is one task of it; name another one to compare it with",
                    arguments.file});
   }

@@ -17,12 +17,12 @@ struct Arguments {
 // The shipped suite with the assets at hand.
 Result<plan::Plan> compile_suite(const std::string& asset_root) {
   const std::string file = doctor::golden_suite();
-  if (file.empty()) return Failure{"usage", "the suite's text is not here", ""};
+  if (file.empty()) return Failure{Fault::kUsage, "the suite's text is not here", ""};
   AssetOptions assets;
   assets.root = asset_root;
   CompiledText text = compile_quietly({file}, assets, {}, true);
   if (text.plan.empty())
-    return Failure{"asset", "the suite does not compile with these assets", file};
+    return Failure{Fault::kAsset, "the suite does not compile with these assets", file};
   return plan::Plan::from_bytes(std::move(text.plan));
 }
 

@@ -35,7 +35,8 @@ Result<std::vector<show::PhraseRow>> phrase_rows(const LoadedPlan& loaded,
     ++at->second.second;
     if (is_new) rows.push_back({*task, said.words, said.object, said.task});
   }
-  if (rows.empty()) return Failure{"usage", "no task `" + glob + "` that names an object", ""};
+  if (rows.empty())
+    return Failure{Fault::kUsage, "no task `" + glob + "` that names an object", ""};
   for (const auto& [said, place] : known) {
     show::PhraseRow& row = rows[place.first];
     row.note = fmt::format("`{}` in {}{}", row.object, row.note,
@@ -46,10 +47,11 @@ Result<std::vector<show::PhraseRow>> phrase_rows(const LoadedPlan& loaded,
 
 int draw_phrases(const Arguments& arguments, const LoadedPlan& loaded) {
   if (!loaded.is_text) {
-    return report({"usage", "a plan does not keep which words mean which object; give the text",
+    return report({Fault::kUsage,
+                   "a plan does not keep which words mean which object; give the text",
                    arguments.file});
   }
-  if (arguments.out.empty()) return report({"usage", "--phrases needs -o X.png", ""});
+  if (arguments.out.empty()) return report({Fault::kUsage, "--phrases needs -o X.png", ""});
   auto rows = phrase_rows(loaded, arguments.task);
   if (!rows) return report(rows.failure());
   const auto written =

@@ -51,7 +51,7 @@ int explain(const std::string& word, bool json) {
     for (const Code each : all_codes()) known.push_back(info(each).text);
     for (const Code each : all_codes()) known.push_back(info(each).slug);
     const auto close = nearest(word, known);
-    return report({"usage",
+    return report({Fault::kUsage,
                    fmt::format("no code `{}`{}; `vlaprobe explain` lists them", word,
                                close ? fmt::format(", did you mean `{}`?", *close) : ""),
                    ""});

@@ -172,7 +172,8 @@ void print_by_task(const std::vector<rejudge::Reading>& readings, const std::str
 
 int judge_under_several(const Arguments& arguments, const plan::Plan& plan) {
   if (!arguments.options.out.empty()) {
-    return report({"usage", "a results folder is written under one suite; name it whole", "--out"});
+    return report(
+        {Fault::kUsage, "a results folder is written under one suite; name it whole", "--out"});
   }
   const auto readings =
       rejudge::read_under(arguments.dir, plan, arguments.suites, arguments.options.tasks);
@@ -182,7 +183,7 @@ int judge_under_several(const Arguments& arguments, const plan::Plan& plan) {
            reading.metrics.end();
   };
   if (!arguments.metric.empty() && std::ranges::none_of(*readings, has_metric))
-    return report({"usage", "no metric is called `" + arguments.metric + "`", "--metric"});
+    return report({Fault::kUsage, "no metric is called `" + arguments.metric + "`", "--metric"});
   if (arguments.json) {
     print_json(*readings, plan);
   } else if (arguments.metric.empty()) {

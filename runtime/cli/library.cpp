@@ -25,7 +25,7 @@ std::vector<std::string> with_suite(const fs::path& folder) {
 // A place that somebody named is the only one looked at.
 Result<std::vector<std::string>> only(std::string_view folder, const char* who) {
   if (holds_library(folder)) return with_suite(folder);
-  return Failure{"usage", std::string("the folder given by ") + who + " holds no std/",
+  return Failure{Fault::kUsage, std::string("the folder given by ") + who + " holds no std/",
                  std::string(folder)};
 }
 

@@ -11,7 +11,7 @@ namespace probe::cli {
 
 // The folders that hold `std/`: `chosen` if not empty, else the environment's VLAPROBE_STD, else
 // `dsl` beside the program's folder, else that of the source tree it was built from; empty when
-// there is none. Fails (code "usage") when a place that somebody named has no `std/`.
+// there is none. Fails (kUsage) when a place that somebody named has no `std/`.
 Result<std::vector<std::string>> find_library_folders(std::string_view chosen = {});
 
 }  // namespace probe::cli

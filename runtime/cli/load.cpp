@@ -12,7 +12,7 @@ namespace {
 void report_unknown(const char* kind, const std::string& name,
                     const std::vector<std::string_view>& known, int& exit) {
   const auto close = nearest(name, known);
-  exit = report({"usage",
+  exit = report({Fault::kUsage,
                  fmt::format("no {} `{}` here{}", kind, name,
                              close ? fmt::format(", did you mean `{}`?", *close) : ""),
                  ""});
@@ -64,7 +64,7 @@ std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string
   const auto index = plan.find_task(name);
   if (index) return index;
   if (is_abstract(plan, name)) {
-    exit = report({"usage",
+    exit = report({Fault::kUsage,
                    "task `" + name + "` is abstract: it is copied with `like` and has no episodes",
                    ""});
     return std::nullopt;

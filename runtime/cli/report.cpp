@@ -57,7 +57,7 @@ Status spare_runs(const std::string& out) {
     const std::string part = path.lexically_relative(dir).begin()->string();
     if (part.starts_with("results.sqlite") || part == "suite.plan" || part == "lock" ||
         part == "traces" || part == "videos") {
-      return Failure{"usage",
+      return Failure{Fault::kUsage,
                      fmt::format("belongs to the run in `{}` and is not written over; give -o "
                                  "another name",
                                  dir.string()),
@@ -116,8 +116,8 @@ Status write_report(const Arguments& arguments) {
 
 int report_verb(Arguments& arguments) {
   if (arguments.out.empty() && !arguments.json && arguments.format.empty()) {
-    return report(
-        Failure{"usage", "nothing to write: give -o page.html, or --json, or --format csv", ""});
+    return report(Failure{Fault::kUsage,
+                          "nothing to write: give -o page.html, or --json, or --format csv", ""});
   }
   arguments.command = "vlaprobe report";
   for (const std::string& dir : arguments.dirs) arguments.command += " " + dir;

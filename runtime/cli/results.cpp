@@ -19,7 +19,7 @@ struct Arguments {
 // Whether what makes tasks different reached the policy.
 int delivery_verb(const Arguments& arguments, std::span<const store::ResultRow> rows) {
   const auto plan = rejudge::stored_plan(arguments.dir);
-  if (!plan) return report({"store", "its plan cannot be read", arguments.dir});
+  if (!plan) return report({Fault::kStore, "its plan cannot be read", arguments.dir});
   const auto findings = run::check_delivery(*plan, rows);
   if (arguments.json) {
     fmt::print("{}\n", run::to_json(findings));

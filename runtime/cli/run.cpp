@@ -28,8 +28,8 @@ Result<std::pair<int, int>> parse_shard(const std::string& text) {
     const auto parts = to_int(std::string_view(text).substr(slash + 1));
     if (part && parts && *part >= 1 && *part <= *parts) return std::pair(*part, *parts);
   }
-  return Failure{"usage", fmt::format("--shard `{}` is not of the form I/N with 1 <= I <= N", text),
-                 ""};
+  return Failure{Fault::kUsage,
+                 fmt::format("--shard `{}` is not of the form I/N with 1 <= I <= N", text), ""};
 }
 
 double now_s() {

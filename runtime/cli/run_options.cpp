@@ -12,7 +12,7 @@
 namespace probe::cli {
 namespace {
 
-Failure usage(std::string message) { return Failure{"usage", std::move(message), ""}; }
+Failure usage(std::string message) { return Failure{Fault::kUsage, std::move(message), ""}; }
 
 // "A-B" or "A".
 Result<std::pair<int, int>> parse_range(const std::string& text) {
@@ -45,7 +45,7 @@ Failure no_own_suite(const plan::Plan& plan, const std::string& file) {
   std::string names;
   for (const plan::SuiteRecord& suite : plan.suites())
     names += (names.empty() ? "" : ", ") + std::string(plan.text(suite.name));
-  return {"usage",
+  return {Fault::kUsage,
           "declares no suite; add `suite mine { tasks { ... }; seeds 42 }`, or take one of a used "
           "file with "
           "--suite: " +
@@ -68,7 +68,7 @@ Result<run::RunOptions> to_options(const RunArguments& arguments) {
   if (!is_printable(arguments.name)) {
     constexpr std::size_t kShown = 100;
     return Failure{
-        "usage",
+        Fault::kUsage,
         fmt::format("a name is UTF-8 text without control characters (line breaks, tabs, "
                     "escapes), which `{}` is not",
                     printable(arguments.name, kShown)),

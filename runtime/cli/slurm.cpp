@@ -20,7 +20,8 @@ struct Arguments {
 
 int slurm_verb(const Arguments& arguments) {
   if ((arguments.array > 0) == (arguments.nodes > 0)) {
-    return report({"usage", "one of --array N and --nodes N says how many tasks there are", ""});
+    return report(
+        {Fault::kUsage, "one of --array N and --nodes N says how many tasks there are", ""});
   }
   auto run_options = to_options(arguments.run);
   if (!run_options) return report(run_options.failure());

@@ -6,7 +6,9 @@ namespace {
 
 constexpr std::string_view kPort = "{port}";
 
-Failure usage(const std::string& message, const char* where) { return {"usage", message, where}; }
+Failure usage(const std::string& message, const char* where) {
+  return {Fault::kUsage, message, where};
+}
 
 // Output goes to a log by the script itself: file names in #SBATCH lines have a quoting of their
 // own.

@@ -25,7 +25,7 @@ struct JobScript {
   std::vector<std::string> sbatch;         // further options of sbatch, "--partition=gpu"
 };
 
-// Fails (code "usage") on what cannot be written down: line breaks in an sbatch option or the
+// Fails (kUsage) on what cannot be written down: line breaks in an sbatch option or the
 // server's command, `{port}` in the policy without a server's command.
 Result<std::string> to_text(const JobScript& script);
 

@@ -17,7 +17,7 @@ namespace probe::cluster {
 namespace {
 
 Failure failed(const std::string& program, int error) {
-  return {"io", std::string("cannot be started: ") + std::strerror(error), program};
+  return {Fault::kIo, std::string("cannot be started: ") + std::strerror(error), program};
 }
 
 struct Pipe {

@@ -13,7 +13,7 @@ struct ProgramOutput {
   std::string out, err;
 };
 
-// Looks `words[0]` up in PATH. Fails (code "io", where = its name) when it cannot be started.
+// Looks `words[0]` up in PATH. Fails (kIo, where = its name) when it cannot be started.
 Result<ProgramOutput> run_program(const std::vector<std::string>& words);
 
 }  // namespace probe::cluster

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Failure failed(const std::string& message, const std::string& where) {
-  return {"cluster", message, where};
+  return {Fault::kCluster, message, where};
 }
 
 std::string trimmed(std::string text) {
@@ -67,7 +67,7 @@ Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
   if (const auto at = policy.find("{port}"); at != std::string::npos) policy.replace(at, 6, "1");
   PROBE_ASSIGN(const auto traits, run::policy_traits(policy));
   if (traits.recorded) {
-    return Failure{"usage", "a replay needs no cluster; `vlaprobe run` does it", "--policy"};
+    return Failure{Fault::kUsage, "a replay needs no cluster; `vlaprobe run` does it", "--policy"};
   }
   run::RunOptions whole = options;
   whole.shard = whole.shards = 1;
@@ -94,7 +94,7 @@ Status write_plan(const fs::path& path, const plan::Plan& plan) {
   if (fs::exists(path)) {
     PROBE_ASSIGN(const plan::Plan there, plan::Plan::open(path.string()));
     if (there.root() == plan.root()) return {};
-    return Failure{"store",
+    return Failure{Fault::kStore,
                    "was begun with another plan (root " + to_hex(there.root()).substr(0, 12) +
                        ", this one is " + to_hex(plan.root()).substr(0, 12) +
                        "); take another folder or remove this one",
@@ -112,7 +112,7 @@ Status check_same_run(const std::string& out, const plan::Plan& plan, const std:
   asked.identity.policy = name;
   const std::string change = store::changes_between(*record, asked).identity;
   if (change.empty()) return {};
-  return Failure{"store", change + "; take another folder or remove this one", out};
+  return Failure{Fault::kStore, change + "; take another folder or remove this one", out};
 }
 
 // "3 RUNNING, 1 PENDING" of a job's tasks, or nothing when it is over.
@@ -238,7 +238,7 @@ Result<SlurmReport> run_on_slurm(const plan::Plan& plan, const SlurmOptions& opt
   PROBE_TRY(check_same_run(out, plan, script.name));
   std::error_code error;
   fs::create_directories(folder / "log", error);
-  if (error) return Failure{"io", "cannot be made: " + error.message(), folder.string()};
+  if (error) return Failure{Fault::kIo, "cannot be made: " + error.message(), folder.string()};
   PROBE_TRY(write_plan(folder / "suite.plan", plan));
   PROBE_TRY(write_file(report.script, std::as_bytes(std::span(text))));
   fs::permissions(report.script, fs::perms::owner_exec, fs::perm_options::add, error);

@@ -35,8 +35,8 @@ struct SlurmReport {
   std::vector<std::string> notes;  // what each unfinished shard said last
 };
 
-// Fails (code "usage") on arguments that no task could run with, (code "store") when the folder is
-// of another plan or policy, (code "cluster") when Slurm refuses the job or does not answer. A job
+// Fails (kUsage) on arguments that no task could run with, (kStore) when the folder is
+// of another plan or policy, (kCluster) when Slurm refuses the job or does not answer. A job
 // that was submitted into this folder before and has not ended is waited for, not submitted again.
 Result<SlurmReport> run_on_slurm(const plan::Plan& plan, const SlurmOptions& options);
 

@@ -38,7 +38,7 @@ Result<Sha256> check_manifest(const std::string& root, DoctorReport& report) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   const auto files = json.is_object() ? json.value("files", nlohmann::json()) : nlohmann::json();
   if (!files.is_array() && !files.is_object()) {
-    return Failure{"asset", "is no manifest of assets", path};
+    return Failure{Fault::kAsset, "is no manifest of assets", path};
   }
   const auto check = [&](const std::string& name, const nlohmann::json& entry) {
     ++report.asset_files;

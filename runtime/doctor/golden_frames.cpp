@@ -54,7 +54,7 @@ Result<GoldenFrame> load_golden(const std::string& folder, const std::string& na
   const std::string path = file_of(folder, name);
   PROBE_ASSIGN(const scene::Texture image, scene::load_image(path));
   if (image.height % 3 != 0) {
-    return Failure{"asset", "is no golden picture: its height is not three times one", path};
+    return Failure{Fault::kAsset, "is no golden picture: its height is not three times one", path};
   }
   GoldenFrame frame;
   frame.name = name;
@@ -173,7 +173,7 @@ Result<GoldenReport> check_golden(const std::string& folder, std::span<const Gol
   PROBE_ASSIGN(const std::string text, read_file(index));
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("fingerprint") || !json.contains("frames")) {
-    return Failure{"asset", "is not the index of golden pictures", index};
+    return Failure{Fault::kAsset, "is not the index of golden pictures", index};
   }
   PROBE_ASSIGN(const store::Fingerprint stored,
                store::fingerprint_from_json(json["fingerprint"].dump()));
@@ -213,7 +213,7 @@ Status write_golden_difference(const std::string& folder, const GoldenFrame& fra
                                const std::string& png) {
   PROBE_ASSIGN(const GoldenFrame golden, load_golden(folder, frame.name));
   if (golden.rgb.size() != frame.rgb.size()) {
-    return Failure{"asset", "the stored picture has another size", frame.name};
+    return Failure{Fault::kAsset, "the stored picture has another size", frame.name};
   }
   std::vector<std::uint8_t> rows = golden.rgb;
   rows.insert(rows.end(), frame.rgb.begin(), frame.rgb.end());

@@ -63,7 +63,7 @@ Result<GoldenFrame> draw_object(const std::string& root, const std::string& name
       radius = std::max(radius, p.norm());
     }
   }
-  if (!(radius > 0)) return Failure{"asset", "the mesh has no size", object.name};
+  if (!(radius > 0)) return Failure{Fault::kAsset, "the mesh has no size", object.name};
   const Vec3 view = Vec3(-1, -0.6, -1.1).normalized();
   spec.camera.position = -4 * radius * view;
   PROBE_ASSIGN(spec.camera.forward_left_up, render::look_along(view));
@@ -187,7 +187,7 @@ Result<std::vector<GoldenFrame>> draw_golden_frames(const std::string& root) {
   for (const auto& entry : fs::directory_iterator(fs::path(root) / "objects", error)) {
     if (fs::exists(entry.path() / "visual.glb")) names.push_back(entry.path().filename().string());
   }
-  if (names.empty()) return Failure{"asset", "has no objects with a visual.glb", root};
+  if (names.empty()) return Failure{Fault::kAsset, "has no objects with a visual.glb", root};
   std::sort(names.begin(), names.end());
   std::vector<GoldenFrame> frames;
   for (const std::string& name : names) {

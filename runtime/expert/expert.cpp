@@ -106,21 +106,21 @@ class Expert final : public policy::Policy {
  private:
   Status check(const policy::Observation& observation) const {
     if (!reach_)
-      return Failure{"policy", "the expert was asked to act before an episode began", ""};
+      return Failure{Fault::kPolicy, "the expert was asked to act before an episode began", ""};
     if (observation.privileged == nullptr) {
-      return Failure{"policy", "the expert needs the privileged view and got none", ""};
+      return Failure{Fault::kPolicy, "the expert needs the privileged view and got none", ""};
     }
     const auto count = int(observation.privileged->objects.size());
     const bool lacks_target = options_.close && (options_.target < 0 || options_.target >= count);
     if (options_.source < 0 || options_.source >= count || lacks_target) {
-      return Failure{"policy",
+      return Failure{Fault::kPolicy,
                      fmt::format("the expert works on roles {} and {}, the episode has {} objects",
                                  options_.source, options_.target, count),
                      ""};
     }
     if (observation.proprioception.joints.size() < reach_->chain().joint_count()) {
       return Failure{
-          "policy",
+          Fault::kPolicy,
           fmt::format("the expert needs {} joint positions and got {}",
                       reach_->chain().joint_count(), observation.proprioception.joints.size()),
           ""};
@@ -399,7 +399,7 @@ Result<std::unique_ptr<policy::Policy>> make_expert(const ExpertOptions& options
   if (options.source < 0 ||
       (options.close && (options.target < 0 || options.target == options.source))) {
     return Failure{
-        "policy",
+        Fault::kPolicy,
         fmt::format("the expert cannot take role {} to role {}", options.source, options.target),
         ""};
   }

@@ -15,7 +15,7 @@ struct ExpertOptions {
   bool close = true;  // false: goes to the source and stays there with open fingers
 };
 
-// act() fails (code "policy") without the privileged view or if a role has no object.
+// act() fails (kPolicy) without the privileged view or if a role has no object.
 Result<std::unique_ptr<policy::Policy>> make_expert(const ExpertOptions& options);
 
 }  // namespace probe::expert

@@ -16,7 +16,8 @@ namespace probe::expert {
 Result<Reach> Reach::create(const std::string& urdf_path, std::string_view tcp_link) {
   PROBE_ASSIGN(const robot::RobotModel model, robot::load_urdf(urdf_path));
   const int tcp = model.find_link(tcp_link);
-  if (tcp < 0) return Failure{"urdf", fmt::format("no link is named `{}`", tcp_link), urdf_path};
+  if (tcp < 0)
+    return Failure{Fault::kUrdf, fmt::format("no link is named `{}`", tcp_link), urdf_path};
   std::vector<std::string> joints;
   for (int l = tcp; model.links[std::size_t(l)].parent_joint >= 0;) {
     const robot::Joint& joint = model.joints[std::size_t(model.links[std::size_t(l)].parent_joint)];
@@ -26,7 +27,7 @@ Result<Reach> Reach::create(const std::string& urdf_path, std::string_view tcp_l
   std::reverse(joints.begin(), joints.end());
   PROBE_ASSIGN(robot::Chain chain, robot::Chain::create(model, tcp_link, joints));
   if (chain.joint_count() == 0) {
-    return Failure{"urdf", fmt::format("no joint moves the link `{}`", tcp_link), urdf_path};
+    return Failure{Fault::kUrdf, fmt::format("no joint moves the link `{}`", tcp_link), urdf_path};
   }
   return Reach(std::move(chain));
 }

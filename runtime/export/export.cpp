@@ -12,7 +12,8 @@ namespace {
 Result<std::unique_ptr<Sink>> open_sink(const std::string& path, const std::string& temporary) {
   if (path.ends_with(".jsonl")) return open_json_lines(temporary);
   if (path.ends_with(".h5") || path.ends_with(".hdf5")) return open_hdf5(temporary);
-  return Failure{"usage", "traces are exported to a file ending in .jsonl, .h5 or .hdf5", path};
+  return Failure{Fault::kUsage, "traces are exported to a file ending in .jsonl, .h5 or .hdf5",
+                 path};
 }
 
 Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportOptions& options) {
@@ -26,7 +27,7 @@ Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportO
     report.steps += static_cast<int>(trace.steps.size());
   }
   if (report.episodes == 0) {
-    return Failure{"usage", "no stored episode matches `" + options.tasks + "`", dir};
+    return Failure{Fault::kUsage, "no stored episode matches `" + options.tasks + "`", dir};
   }
   PROBE_TRY(sink.finish());
   return report;

@@ -21,7 +21,7 @@ struct ExportReport {
 };
 
 // Writes `path` whole or not at all; its ending decides the form: .jsonl, or .h5 or .hdf5. Fails
-// with code "usage" for another ending or when no stored episode matches.
+// with kUsage for another ending or when no stored episode matches.
 Result<ExportReport> export_run(const std::string& dir, const std::string& path,
                                 const ExportOptions& options = {});
 

@@ -59,7 +59,7 @@ class Hdf5 final : public Sink {
   }
 
  private:
-  Failure failed() const { return {"io", "cannot be written as HDF5", path_}; }
+  Failure failed() const { return {Fault::kIo, "cannot be written as HDF5", path_}; }
 
   void attributes(hid_t group, const store::ResultRow& row, const store::Trace& trace) {
     const store::TraceHeader& header = trace.header;
@@ -242,7 +242,7 @@ Result<std::unique_ptr<Sink>> open_hdf5(const std::string& path) {
   // Failures are told by us, not by the library's own printing.
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (file < 0) return Failure{"io", "cannot be made as HDF5", path};
+  if (file < 0) return Failure{Fault::kIo, "cannot be made as HDF5", path};
   return std::unique_ptr<Sink>(std::make_unique<Hdf5>(file, path));
 }
 

@@ -135,7 +135,7 @@ class JsonLines final : public Sink {
 
  private:
   Failure failed() const {
-    return {"io", std::string("cannot be written: ") + std::strerror(errno), path_};
+    return {Fault::kIo, std::string("cannot be written: ") + std::strerror(errno), path_};
   }
   Status line(const Json& json) {
     // What is not UTF-8 in a recorded text is replaced, never thrown.
@@ -153,7 +153,7 @@ class JsonLines final : public Sink {
 Result<std::unique_ptr<Sink>> open_json_lines(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (file == nullptr)
-    return Failure{"io", std::string("cannot be made: ") + std::strerror(errno), path};
+    return Failure{Fault::kIo, std::string("cannot be made: ") + std::strerror(errno), path};
   return std::unique_ptr<Sink>(std::make_unique<JsonLines>(file, path));
 }
 

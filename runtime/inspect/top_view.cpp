@@ -94,9 +94,9 @@ Pinhole pinhole_of(const plan::CameraRecord& camera, const Pose& mount) {
 Status check_urdf(const plan::AssetRecord& asset, const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!file.is_open()) return Failure{"asset", "cannot be read", path};
+  if (!file.is_open()) return Failure{Fault::kAsset, "cannot be read", path};
   if (sha256(bytes) == plan::to_sha256(asset.sha256)) return {};
-  return Failure{"asset", "has other bytes than when the plan was built", path};
+  return Failure{Fault::kAsset, "has other bytes than when the plan was built", path};
 }
 
 // The cameras as they stand when the robot is in its initial position.
@@ -122,7 +122,7 @@ Result<std::vector<Pinhole>> cameras_of(const plan::Plan& plan, const plan::Task
     const int link = model.find_link(mount);
     if (link < 0) {
       return Failure{
-          "urdf",
+          Fault::kUrdf,
           "no link `" + mount + "` for camera `" + std::string(plan.text(camera.name)) + "`", path};
     }
     cameras.push_back(pinhole_of(camera, base * links[static_cast<std::size_t>(link)]));

@@ -51,8 +51,8 @@ struct TopView {
   std::vector<TopCamera> cameras;  // in the scene's order
 };
 
-// `asset_root` as the plan's paths are relative to. Fails (code "asset") when the URDF is not the
-// one the plan was built with, (code "urdf") when it cannot be used.
+// `asset_root` as the plan's paths are relative to. Fails (kAsset) when the URDF is not the
+// one the plan was built with, (kUrdf) when it cannot be used.
 Result<TopView> top_view(const plan::Plan& plan, std::uint32_t task, const std::string& asset_root);
 
 // A box seen from above after a turn: its outline around (0, 0) without edges shorter than a

@@ -49,7 +49,7 @@ class File {
 };
 
 Failure io_failure(const std::string& path) {
-  return {"io", std::string("cannot read the plan: ") + std::strerror(errno), path};
+  return {Fault::kIo, std::string("cannot read the plan: ") + std::strerror(errno), path};
 }
 
 template <typename Record>
@@ -79,9 +79,9 @@ Result<Plan> Plan::open(const std::string& path, const VerifyOptions& options) {
   if (file.fd() < 0) return io_failure(path);
   struct stat info {};
   if (::fstat(file.fd(), &info) != 0) return io_failure(path);
-  if (!S_ISREG(info.st_mode)) return Failure{"io", "a plan is a regular file", path};
+  if (!S_ISREG(info.st_mode)) return Failure{Fault::kIo, "a plan is a regular file", path};
   const auto size = static_cast<std::size_t>(info.st_size);
-  if (size == 0) return Failure{"plan", "the file is empty", path};
+  if (size == 0) return Failure{Fault::kPlan, "the file is empty", path};
   void* mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd(), 0);
   if (mapping == MAP_FAILED) return io_failure(path);
   Result<Plan> plan = adopt(std::make_unique<Storage>(mapping, size), options);

@@ -21,7 +21,7 @@ namespace probe::plan {
 
 class Plan {
  public:
-  // Fails with code "io" when the file cannot be read, with code "plan" when it breaks a rule of
+  // Fails with kIo when the file cannot be read, with kPlan when it breaks a rule of
   // FORMAT.md; `where` starts with the path. The file must not be changed while the plan lives
   // (write a new one and rename it).
   static Result<Plan> open(const std::string& path, const VerifyOptions& options = {});

@@ -27,13 +27,14 @@ std::span<const RuleInfo> all_rules() { return kRules; }
 
 Failure plan_failure(Rule rule, std::string message, std::string where) {
   const std::string_view id = kRules[static_cast<std::size_t>(rule)].id;
-  return {"plan", std::move(message) + " [" + std::string(id) + "]", std::move(where)};
+  return {Fault::kPlan, std::move(message) + " [" + std::string(id) + "]", std::move(where)};
 }
 
 const RuleInfo* rule_of(const Failure& failure) {
   const std::string& text = failure.message;
   const std::size_t open = text.rfind('[');
-  if (failure.code != "plan" || open == std::string::npos || !text.ends_with(']')) return nullptr;
+  if (failure.code != Fault::kPlan || open == std::string::npos || !text.ends_with(']'))
+    return nullptr;
   const std::string_view id = std::string_view(text).substr(open + 1, text.size() - open - 2);
   for (const RuleInfo& info : kRules) {
     if (info.id == id) return &info;

@@ -25,7 +25,7 @@ struct RuleInfo {
 // All rules in the order of rules.def, which is that of Rule.
 std::span<const RuleInfo> all_rules();
 
-// How every refusal of the verifier reads: "message [rule-id]", code "plan".
+// How every refusal of the verifier reads: "message [rule-id]", kPlan.
 Failure plan_failure(Rule rule, std::string message, std::string where);
 // The rule that a refusal names; null for other failures.
 const RuleInfo* rule_of(const Failure& failure);

@@ -28,7 +28,7 @@ inline constexpr std::size_t kMaxMeshes = 256;
 inline constexpr std::uint32_t kMaxPixels = 8192;  // a side of an image
 inline constexpr double kMaxSubsteps = 100000;     // physics steps in a control step
 
-// All four stages. A Failure has code "plan", a message that ends with the id of the rule in
+// All four stages. A Failure has kPlan, a message that ends with the id of the rule in
 // brackets, and `where` = "SECTION at byte N".
 Status verify(std::span<const std::byte> bytes, const VerifyOptions& options = {});
 

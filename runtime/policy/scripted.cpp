@@ -40,7 +40,7 @@ class RecordedPolicy final : public Policy {
 
   Status begin(const EpisodeStart& start) override {
     if (!recorded_) {
-      return Failure{"policy", "nothing here can read stored episodes", dir_};
+      return Failure{Fault::kPolicy, "nothing here can read stored episodes", dir_};
     }
     PROBE_ASSIGN(actions_, recorded_(dir_, start.task, start.index, start.seed));
     return {};
@@ -48,7 +48,7 @@ class RecordedPolicy final : public Policy {
   Result<Action> act(const Observation& observation) override {
     const auto step = static_cast<std::size_t>(observation.step);
     if (step >= actions_.size()) {
-      return Failure{"policy",
+      return Failure{Fault::kPolicy,
                      "the stored episode has " + std::to_string(actions_.size()) +
                          " actions, this one asks for another",
                      dir_};

@@ -309,8 +309,8 @@ Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t tas
   }
   if (chosen.empty() && !metric.empty()) {
     return Failure{
-        "usage", "task `" + trace.header.task + "` has no metric `" + metric + "`; it has " + known,
-        ""};
+        Fault::kUsage,
+        "task `" + trace.header.task + "` has no metric `" + metric + "`; it has " + known, ""};
   }
   if (!trace.start) return std::vector<MetricWhy>();
   return Explainer(plan, task).run(trace, chosen, score.steps.size());
@@ -319,14 +319,14 @@ Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t tas
 Result<EpisodeWhy> why(const std::string& dir, const std::string& task, int episode,
                        std::optional<int> seed, const std::string& metric) {
   if (!std::filesystem::exists(store::plan_path(dir)))
-    return Failure{"store", "no run here: its plan is absent", dir};
+    return Failure{Fault::kStore, "no run here: its plan is absent", dir};
   PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
   // Names with a suite's prefix are understood here too.
   const auto index = plan.find_task(task);
   const std::string name(index ? plan.text(plan.tasks()[*index].name) : std::string_view(task));
   PROBE_ASSIGN(const store::StoredTrace stored, store::find_trace(dir, name, episode, seed));
   if (!index || stored.trace.header.plan_root != plan.root()) {
-    return Failure{"store", "its plan is not the one of its traces", store::plan_path(dir)};
+    return Failure{Fault::kStore, "its plan is not the one of its traces", store::plan_path(dir)};
   }
   EpisodeWhy out{.task = name,
                  .episode = episode,

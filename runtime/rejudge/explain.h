@@ -42,7 +42,7 @@ struct MetricWhy {
 };
 
 // Judges the trace again as `task` of `plan`, step by step. Fails where rescore() does, and when
-// `metric` is not empty and not one of the task's (code "usage").
+// `metric` is not empty and not one of the task's (kUsage).
 Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t task,
                                        const store::Trace& trace, const std::string& metric = {});
 

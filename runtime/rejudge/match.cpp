@@ -53,7 +53,7 @@ Result<std::optional<std::uint32_t>> find_judge(const plan::Plan& plan,
   }
   if (variants.empty()) return std::optional<std::uint32_t>();
   if (variants.size() == 1) return std::optional(variants.front());
-  return Failure{"usage",
+  return Failure{Fault::kUsage,
                  fmt::format("tasks `{}` and `{}` both stand for it; name a suite with one of them",
                              plan.text(plan.tasks()[variants[0]].name),
                              plan.text(plan.tasks()[variants[1]].name)),
@@ -66,13 +66,13 @@ Result<Match> match_start(const plan::Plan& plan, std::uint32_t task, const stor
   const auto episodes = plan.episodes(plan.tasks()[task]);
   const auto index = static_cast<std::uint32_t>(row.episode);
   if (row.episode < 0 || index >= episodes.size()) {
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    fmt::format("task `{}` of the judging plan has {} episodes",
                                plan.text(plan.tasks()[task].name), episodes.size()),
                    where};
   }
   if (to_hex(Sha256{episodes[index].start_id}) == row.start_id) return Match{task, index};
-  return Failure{"usage",
+  return Failure{Fault::kUsage,
                  "it began at another start than the judging plan's; " +
                      difference(plan, task, index, recorded, row),
                  where};

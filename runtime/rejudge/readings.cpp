@@ -33,8 +33,9 @@ Result<std::vector<SuiteJobs>> jobs_of(const plan::Plan& plan, const plan::Plan&
     PROBE_ASSIGN(one.jobs, match_rows(plan, recorded, rows, name, tasks, one.reading.left_out));
     if (!one.jobs.empty()) all.push_back(std::move(one));
   }
-  if (!any) return Failure{"usage", "no suite of the judging plan is meant; it has " + known, ""};
-  if (all.empty()) return Failure{"usage", "none of these suites judges a stored task", ""};
+  if (!any)
+    return Failure{Fault::kUsage, "no suite of the judging plan is meant; it has " + known, ""};
+  if (all.empty()) return Failure{Fault::kUsage, "none of these suites judges a stored task", ""};
   return all;
 }
 

@@ -26,7 +26,7 @@ struct Reading {
 };
 
 // The suites of `plan` that match one of the globs, in the plan's order; those that judge none of
-// the stored tasks are passed over. Fails (code "usage") when no suite matches or judges anything,
+// the stored tasks are passed over. Fails (kUsage) when no suite matches or judges anything,
 // and where rejudge() does.
 Result<std::vector<Reading>> read_under(const std::string& dir, const plan::Plan& plan,
                                         std::span<const std::string> suites,

@@ -47,7 +47,7 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
   if (!options.out.empty()) {
     std::error_code error;
     if (fs::equivalent(options.out, dir, error)) {
-      return Failure{"usage", "the folder that is judged is not overwritten", options.out};
+      return Failure{Fault::kUsage, "the folder that is judged is not overwritten", options.out};
     }
   }
   RejudgeReport report;

@@ -25,7 +25,7 @@ struct RejudgeReport {
   bool same_plan = false;             // judged under the plan they were made with
 };
 
-// Refuses (code "usage") the whole folder if an episode of a judged task began at another start,
+// Refuses (kUsage) the whole folder if an episode of a judged task began at another start,
 // with another instruction or at another rate than the plan says; nothing is written then.
 Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
                               const RejudgeOptions& options = {});

@@ -12,7 +12,7 @@ Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::T
   const std::string where =
       fmt::format("{} episode {} seed {}", header.task, header.episode, header.seed);
   const auto refuse = [&](std::string message) {
-    return Failure{"usage", std::move(message), where};
+    return Failure{Fault::kUsage, std::move(message), where};
   };
   const auto bodies = plan.bodies(record);
   if (bodies.size() != header.bodies.size()) {

@@ -21,7 +21,7 @@ struct Rescored {
   std::optional<std::string> invalid;  // as recorded, or because a metric was not finite
 };
 
-// Judges the first `horizon` steps of the trace as `task` of `plan`. Fails (code "usage") when what
+// Judges the first `horizon` steps of the trace as `task` of `plan`. Fails (kUsage) when what
 // was measured is not what the task judges: other bodies, another control rate, another
 // instruction, or fewer steps than the horizon without having been invalid.
 Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace);

@@ -17,7 +17,7 @@ Result<std::vector<std::uint32_t>> candidates_of(const plan::Plan& plan, const s
     return tasks;
   }
   const auto index = plan.find_suite(suite);
-  if (!index) return Failure{"usage", "the judging plan has no such suite", suite};
+  if (!index) return Failure{Fault::kUsage, "the judging plan has no such suite", suite};
   const auto members = plan.members(plan.suites()[*index]);
   tasks.assign(members.begin(), members.end());
   return tasks;
@@ -48,8 +48,8 @@ Result<std::vector<Job>> match_rows(const plan::Plan& plan, const plan::Plan& re
 
 Failure nothing_judged(const std::string& suite, const std::string& tasks,
                        std::span<const std::string> left_out) {
-  if (left_out.empty()) return {"usage", "no stored episode matches `" + tasks + "`", ""};
-  return {"usage",
+  if (left_out.empty()) return {Fault::kUsage, "no stored episode matches `" + tasks + "`", ""};
+  return {Fault::kUsage,
           "the judging plan has none of the stored tasks, such as `" + left_out.front() + "`",
           suite};
 }
@@ -58,14 +58,14 @@ Result<store::Trace> proven_trace(const plan::Plan& recorded, const store::Resul
   PROBE_ASSIGN(store::Trace trace, store::read_stored_trace(row));
   const auto task = recorded.find_task(row.task);
   if (!task || trace.header.plan_root != recorded.root())
-    return Failure{"trace", "this trace was not made under the stored plan", row.trace};
+    return Failure{Fault::kTrace, "this trace was not made under the stored plan", row.trace};
   if (row.invalid) return trace;
   PROBE_ASSIGN(const Rescored again, rescore(recorded, *task, trace));
   bool is_same = again.metrics == row.metrics && again.steps.size() == trace.steps.size();
   for (std::size_t i = 0; is_same && i < again.steps.size(); ++i)
     is_same = again.steps[i] == trace.steps[i].metrics;
   if (!is_same) {
-    return Failure{"trace", "its verdicts are not what its own plan says of its measurements",
+    return Failure{Fault::kTrace, "its verdicts are not what its own plan says of its measurements",
                    row.trace};
   }
   return trace;

@@ -18,7 +18,7 @@ struct Job {
 };
 
 // Every stored episode that the plan judges, as far as `tasks`, a glob over the stored names,
-// allows; tasks that it does not judge are left out and named. Fails (code "usage") when a start
+// allows; tasks that it does not judge are left out and named. Fails (kUsage) when a start
 // differs. `suite` is whose tasks judge; empty: all tasks of the plan.
 Result<std::vector<Job>> match_rows(const plan::Plan& plan, const plan::Plan& recorded,
                                     std::span<const store::ResultRow> rows,
@@ -29,7 +29,7 @@ Result<std::vector<Job>> match_rows(const plan::Plan& plan, const plan::Plan& re
 Failure nothing_judged(const std::string& suite, const std::string& tasks,
                        std::span<const std::string> left_out);
 
-// The row's trace. Fails (code "trace") unless it is whole, the one the row was made with, and its
+// The row's trace. Fails (kTrace) unless it is whole, the one the row was made with, and its
 // verdicts after every step are what the plan it was recorded under says of its measurements.
 Result<store::Trace> proven_trace(const plan::Plan& recorded, const store::ResultRow& row);
 

@@ -9,7 +9,7 @@ namespace probe::render {
 namespace {
 
 Failure camera_failure(const std::string& message) {
-  return {.code = "render", .message = message, .where = "camera"};
+  return {.code = Fault::kRender, .message = message, .where = "camera"};
 }
 
 // Of one tile, not yet of unit length.

@@ -51,7 +51,7 @@ struct CameraRays {
 // The camera whose pixels are the samples of this one's.
 Camera sample_camera(Camera camera, int samples);
 
-// Fails (code "render") on sizes outside 1 .. 8192, focal lengths that are not positive, numbers
+// Fails (kRender) on sizes outside 1 .. 8192, focal lengths that are not positive, numbers
 // that are not finite or axes that are not orthonormal.
 Status check_camera(const Camera& camera);
 

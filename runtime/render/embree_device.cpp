@@ -26,7 +26,7 @@ Result<std::shared_ptr<EmbreeDevice>> EmbreeDevice::shared() {
   if (auto device = current.lock()) return device;
   RTCDevice handle = rtcNewDevice("threads=1");
   if (handle == nullptr) {
-    return Failure{.code = "render",
+    return Failure{.code = Fault::kRender,
                    .message = "Embree does not start (error " +
                               std::to_string(rtcGetDeviceError(nullptr)) + ")",
                    .where = ""};
@@ -57,7 +57,7 @@ EmbreeDevice::~EmbreeDevice() { rtcReleaseDevice(device_); }
 Status EmbreeDevice::check(const std::string& doing) const {
   const RTCError error = rtcGetDeviceError(device_);
   if (error == RTC_ERROR_NONE) return {};
-  return Failure{.code = "render",
+  return Failure{.code = Fault::kRender,
                  .message = doing + " failed in Embree: " + last_message() + " (error " +
                             std::to_string(error) + ")",
                  .where = ""};

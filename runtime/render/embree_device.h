@@ -20,7 +20,7 @@ class EmbreeDevice {
   EmbreeDevice& operator=(const EmbreeDevice&) = delete;
 
   RTCDevice get() const { return device_; }
-  // Fails (code "render") if a call of this thread failed since the last check; `doing` names the
+  // Fails (kRender) if a call of this thread failed since the last check; `doing` names the
   // work.
   Status check(const std::string& doing) const;
 

@@ -6,7 +6,7 @@ namespace probe::render {
 namespace {
 
 Failure mesh_failure(const scene::Mesh& mesh, const std::string& message) {
-  return {.code = "render", .message = message, .where = mesh.name};
+  return {.code = Fault::kRender, .message = message, .where = mesh.name};
 }
 
 Status check_texture(const scene::Mesh& mesh, int index) {

@@ -74,7 +74,7 @@ class EmbreeRenderer final : public Renderer {
   Status retrace(const Camera& camera) {
     if (camera.width != spec_.camera.width || camera.height != spec_.camera.height) {
       return Failure{
-          .code = "render", .message = "a renderer keeps its picture's size", .where = "camera"};
+          .code = Fault::kRender, .message = "a renderer keeps its picture's size", .where = "camera"};
     }
     return moving_.trace(spec_, camera, scene_);
   }

@@ -13,13 +13,13 @@ Result<LightTable> make_lights(const Lights& lights) {
   LightTable table;
   if (!std::isfinite(lights.ambient) || lights.ambient < 0) {
     return Failure{
-        .code = "render", .message = "ambient light must be finite, 0 or more", .where = ""};
+        .code = Fault::kRender, .message = "ambient light must be finite, 0 or more", .where = ""};
   }
   table.ambient = static_cast<float>(lights.ambient);
   for (const Sun& sun : lights.suns) {
     const double length = sun.direction.norm();
     if (!sun.direction.allFinite() || !(length > 0) || !std::isfinite(sun.power) || sun.power < 0) {
-      return Failure{.code = "render",
+      return Failure{.code = Fault::kRender,
                      .message = "a sun needs a direction and a power of 0 or more",
                      .where = ""};
     }
@@ -82,13 +82,14 @@ Status check_photo(const scene::Texture& photo) {
           4 * static_cast<std::size_t>(photo.width) * static_cast<std::size_t>(photo.height)) {
     return {};
   }
-  return Failure{
-      .code = "render", .message = "the photo has not width x height pixels", .where = "photo"};
+  return Failure{.code = Fault::kRender,
+                 .message = "the photo has not width x height pixels",
+                 .where = "photo"};
 }
 
 Status check_quality(const SceneSpec& spec) {
   const auto refuse = [](std::string message) -> Status {
-    return Failure{.code = "render", .message = std::move(message), .where = "camera"};
+    return Failure{.code = Fault::kRender, .message = std::move(message), .where = "camera"};
   };
   if (spec.samples != 1 && spec.samples != 2 && spec.samples != 4) {
     return refuse("a pixel has 1, 2 or 4 samples a side, not " + std::to_string(spec.samples));

@@ -20,7 +20,7 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
   for (std::size_t i = 0; i < visuals.size(); ++i) {
     const Visual& visual = visuals[i];
     if (!is_finite(visual.origin) || std::abs(visual.origin.rotation.norm() - 1) > 1e-6) {
-      return Failure{.code = "render",
+      return Failure{.code = Fault::kRender,
                      .message = "the visual's origin is not finite or not a rotation",
                      .where = visual.name};
     }
@@ -43,7 +43,7 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
 
 Status TopScene::place(std::span<const Pose> poses) {
   if (poses.size() != instances_.size()) {
-    return Failure{.code = "render",
+    return Failure{.code = Fault::kRender,
                    .message = std::to_string(poses.size()) + " poses for " +
                               std::to_string(instances_.size()) + " visuals",
                    .where = ""};
@@ -53,7 +53,7 @@ Status TopScene::place(std::span<const Pose> poses) {
         poses[i].position.norm() < 1e6) {
       continue;
     }
-    return Failure{.code = "render",
+    return Failure{.code = Fault::kRender,
                    .message = "the pose is not finite, not rigid or farther than 1000 km",
                    .where = instances_[i].name};
   }

@@ -68,7 +68,7 @@ class Loader {
   explicit Loader(const LoadOptions& options) : options_(options) {}
 
   Result<Benchmark> load(std::span<const std::string> dirs) {
-    if (dirs.empty()) return Failure{"usage", "no results folder is named", "DIR"};
+    if (dirs.empty()) return Failure{Fault::kUsage, "no results folder is named", "DIR"};
     std::set<std::string> seen;
     for (const std::string& dir : dirs) {
       std::error_code error;
@@ -99,7 +99,7 @@ class Loader {
     if (!benchmark_.episodes.empty()) return {};
     std::string names;
     for (const std::string& dir : dirs) names += (names.empty() ? "" : ", ") + dir;
-    return Failure{"usage", "no episode has been run yet: there is nothing to report", names};
+    return Failure{Fault::kUsage, "no episode has been run yet: there is nothing to report", names};
   }
 
   Status add_folder(const std::string& dir) {
@@ -127,7 +127,7 @@ class Loader {
     if (!plan) return plan.failure();
     const std::string root = to_hex(plan->root());
     if (root != record.identity.plan_root) {
-      return Failure{"store", "the folder's plan is not the one its results were made with",
+      return Failure{Fault::kStore, "the folder's plan is not the one its results were made with",
                      store::plan_path(dir)};
     }
     for (std::size_t i = 0; i < benchmark_.plans.size(); ++i) {

@@ -57,7 +57,7 @@ Failure nothing_shared(const Benchmark& benchmark, int a, int b, const Shared& s
   } else if (benchmark.plans.size() > 1) {
     why = "their plans have no task with the same instruction, rule, objects and starts";
   }
-  return {"usage",
+  return {Fault::kUsage,
           fmt::format("`{}` and `{}` share no episode: {}", first.label, second.label, why), ""};
 }
 
@@ -302,7 +302,8 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
     if (metric == kAbsent) {
       std::string known;
       for (const Metric& m : benchmark.metrics) known += (known.empty() ? "" : ", ") + m.name;
-      return Failure{"usage", fmt::format("no metric is called `{}`; there are {}", name, known),
+      return Failure{Fault::kUsage,
+                     fmt::format("no metric is called `{}`; there are {}", name, known),
                      "--metrics"};
     }
     metrics.push_back(metric);

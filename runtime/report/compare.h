@@ -38,7 +38,7 @@ struct Comparison {
   std::size_t common_starts = 0, only_a = 0, only_b = 0;
 };
 
-// Policy a against policy b of a loaded benchmark. Fails (code "usage") when they share no start,
+// Policy a against policy b of a loaded benchmark. Fails (kUsage) when they share no start,
 // and says why.
 Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
                            const CompareOptions& options = {});

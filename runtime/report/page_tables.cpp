@@ -354,7 +354,7 @@ Status add_floors(const std::string& path, Benchmark& benchmark, Tables& tables)
       names = cells;
       if (cells.size() > 3 && cells[0] == "task" && cells[1] == "policy" && cells[2] == "episodes")
         continue;
-      return Failure{"usage", "floors begin with `task,policy,episodes,` and metrics",
+      return Failure{Fault::kUsage, "floors begin with `task,policy,episodes,` and metrics",
                      fmt::format("{}:{}", path, number)};
     }
     const auto whole = [](std::string_view cell) {
@@ -364,7 +364,7 @@ Status add_floors(const std::string& path, Benchmark& benchmark, Tables& tables)
     };
     const std::int64_t n = cells.size() == names.size() ? whole(cells[2]) : -1;
     if (n < 0) {
-      return Failure{"usage", "is no line of task, policy and counts",
+      return Failure{Fault::kUsage, "is no line of task, policy and counts",
                      fmt::format("{}:{}", path, number)};
     }
     const bool is_floor = cells[1] == "null", is_ceiling = cells[1] == "expert";

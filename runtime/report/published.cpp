@@ -91,7 +91,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
     std::vector<std::string> cells = cells_of(line);
     if (!has_header) {
       if (cells.size() < 3 || cells[0] != "policy" || cells[1] != "metric") {
-        return Failure{"usage",
+        return Failure{Fault::kUsage,
                        "a table of published numbers begins with `policy,metric,` and its columns, "
                        "as in policy,metric,avg,original,ood_source",
                        where};
@@ -101,7 +101,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
         if (!kept.back()) continue;
         if (std::find(table.columns.begin(), table.columns.end(), cells[i]) !=
             table.columns.end()) {
-          return Failure{"usage", fmt::format("column `{}` stands twice", cells[i]), where};
+          return Failure{Fault::kUsage, fmt::format("column `{}` stands twice", cells[i]), where};
         }
         table.columns.push_back(cells[i]);
       }
@@ -111,13 +111,13 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
     }
     if (cells.size() != kept.size() + 2) {
       return Failure{
-          "usage",
+          Fault::kUsage,
           fmt::format("{} cells where the first line has {}", cells.size(), kept.size() + 2),
           where};
     }
     PublishedRow row{printable(cells[0], kLongestName), cells[1], {}, number};
     if (!seen.emplace(row.policy, row.metric).second) {
-      return Failure{"usage", fmt::format("`{}`, `{}` stands twice", row.policy, row.metric),
+      return Failure{Fault::kUsage, fmt::format("`{}`, `{}` stands twice", row.policy, row.metric),
                      where};
     }
     for (std::size_t i = 2; i < cells.size(); ++i) {
@@ -128,7 +128,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
       }
       auto percentage = percentage_of(cells[i]);
       if (!percentage) {
-        return Failure{"usage",
+        return Failure{Fault::kUsage,
                        fmt::format("`{}` under `{}` is no percentage from 0 to 100", cells[i],
                                    table.columns[row.cells.size()]),
                        where};
@@ -137,7 +137,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
     }
     table.rows.push_back(std::move(row));
   }
-  if (table.rows.empty()) return Failure{"usage", "holds no row of numbers", source};
+  if (table.rows.empty()) return Failure{Fault::kUsage, "holds no row of numbers", source};
   return table;
 }
 

@@ -33,7 +33,7 @@ struct PublishedTable {
 
 // `policy,metric,COLUMN,...` and a line a policy and metric, percentages with or without "%"; the
 // counts and intervals of our own tables are passed over.
-// Fails (code "usage", where = source:line) on another layout, on a cell that is no percentage and
+// Fails (kUsage, where = source:line) on another layout, on a cell that is no percentage and
 // on a row or column that stands twice.
 Result<PublishedTable> parse_published(std::string_view csv, const std::string& source);
 Result<PublishedTable> read_published(const std::string& path);

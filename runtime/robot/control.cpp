@@ -30,16 +30,18 @@ Result<EeDeltaPoseController> EeDeltaPoseController::create(const RobotModel& mo
                                                             const EeControlSpec& spec) {
   PROBE_ASSIGN(Chain chain, Chain::create(model, spec.tcp_link, spec.arm_joints));
   if (spec.arm_joints.empty()) {
-    return Failure{"urdf", fmt::format("no joint moves the link `{}`", spec.tcp_link), model.path};
+    return Failure{Fault::kUrdf, fmt::format("no joint moves the link `{}`", spec.tcp_link),
+                   model.path};
   }
   EeDeltaPoseController controller(std::move(chain));
   for (std::size_t i = 0; i < spec.finger_joints.size(); ++i) {
     const std::string& name = spec.finger_joints[i];
     const int j = model.find_joint(name);
-    if (j < 0) return Failure{"urdf", fmt::format("no joint is named `{}`", name), model.path};
+    if (j < 0)
+      return Failure{Fault::kUrdf, fmt::format("no joint is named `{}`", name), model.path};
     const Joint& joint = model.joints[std::size_t(j)];
     if (joint.kind != JointKind::kPrismatic && joint.kind != JointKind::kRevolute) {
-      return Failure{"urdf",
+      return Failure{Fault::kUrdf,
                      fmt::format("the finger joint `{}` has no limits to move within", name),
                      model.path};
     }
@@ -48,7 +50,7 @@ Result<EeDeltaPoseController> EeDeltaPoseController::create(const RobotModel& mo
     controller.finger_upper_ = joint.upper;
   }
   if (!std::isfinite(spec.grip_closed) || !std::isfinite(spec.grip_open)) {
-    return Failure{"urdf", "the gripper's targets are not finite", model.path};
+    return Failure{Fault::kUrdf, "the gripper's targets are not finite", model.path};
   }
   controller.grip_closed_ = spec.grip_closed;
   controller.grip_open_ = spec.grip_open;
@@ -83,7 +85,7 @@ Result<std::span<const double>> EeDeltaPoseController::targets(const std::array<
   PROBE_CHECK(measured_q.size() == joint_targets_.size(), "one measured position a drive");
   for (std::size_t i = 0; i < action.size(); ++i) {
     if (std::isfinite(action[i]) && std::abs(action[i]) <= kAbsurd) continue;
-    return Failure{"policy",
+    return Failure{Fault::kPolicy,
                    fmt::format("action[{}] is {}, wanted {}", i, action[i],
                                i < 3   ? "a shift in metres"
                                : i < 6 ? "a rotation vector in radians"

@@ -27,7 +27,7 @@ struct EeControlSpec {
 
 class EeDeltaPoseController {
  public:
-  // Copies what it needs; the model may go. Fails on names that are not there (code "urdf").
+  // Copies what it needs; the model may go. Fails on names that are not there (kUrdf).
   static Result<EeDeltaPoseController> create(const RobotModel& model, const EeControlSpec& spec);
 
   // A new episode at the joint positions q (drive order): targets are q, the target pose is where
@@ -36,7 +36,7 @@ class EeDeltaPoseController {
 
   // The joint targets for an action [dx dy dz, rotation vector (3), gripper], given the measured
   // joint positions. The span lives until the next call. The target pose moves even if no joint
-  // positions reach it; the arm's targets then stay. Fails (code "policy") on a number that is not
+  // positions reach it; the arm's targets then stay. Fails (kPolicy) on a number that is not
   // finite or is beyond 1000 in size; nothing has changed then.
   Result<std::span<const double>> targets(const std::array<double, 7>& action,
                                           std::span<const double> measured_q);

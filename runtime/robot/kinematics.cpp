@@ -44,14 +44,14 @@ Status check_names(const RobotModel& model, std::span<const std::string> names) 
   for (std::size_t i = 0; i < names.size(); ++i) {
     const int j = model.find_joint(names[i]);
     if (j < 0) {
-      return Failure{"urdf", fmt::format("no joint is named `{}`", names[i]), model.path};
+      return Failure{Fault::kUrdf, fmt::format("no joint is named `{}`", names[i]), model.path};
     }
     if (model.joints[std::size_t(j)].kind == JointKind::kFixed) {
-      return Failure{"urdf", fmt::format("joint `{}` is fixed, it has no position", names[i]),
+      return Failure{Fault::kUrdf, fmt::format("joint `{}` is fixed, it has no position", names[i]),
                      model.path};
     }
     if (index_of(names.first(i), names[i]) >= 0) {
-      return Failure{"urdf", fmt::format("joint `{}` is named twice", names[i]), model.path};
+      return Failure{Fault::kUrdf, fmt::format("joint `{}` is named twice", names[i]), model.path};
     }
   }
   return {};
@@ -123,10 +123,10 @@ Result<Chain> Chain::create(const RobotModel& model, std::string_view link,
                             std::span<const std::string> joints) {
   PROBE_TRY(check_names(model, joints));
   const int end = model.find_link(link);
-  if (end < 0) return Failure{"urdf", fmt::format("no link is named `{}`", link), model.path};
+  if (end < 0) return Failure{Fault::kUrdf, fmt::format("no link is named `{}`", link), model.path};
   if (joints.size() > std::size_t(kMaxChainJoints)) {
     return Failure{
-        "urdf",
+        Fault::kUrdf,
         fmt::format("{} joints in a chain, at most {} are handled", joints.size(), kMaxChainJoints),
         model.path};
   }
@@ -150,7 +150,7 @@ Result<Chain> Chain::create(const RobotModel& model, std::string_view link,
     const Drive drive = drive_of(model, joint, joints);
     if (drive.source < 0) {
       return Failure{
-          "urdf",
+          Fault::kUrdf,
           fmt::format("joint `{}` lies on the way to `{}`, but is not driven", joint.name, link),
           model.path};
     }
@@ -167,7 +167,7 @@ Result<Chain> Chain::create(const RobotModel& model, std::string_view link,
   }
   // Mimics can make more segments than joints; pose() keeps its axes on the stack.
   if (chain.segments_.size() > kMaxChainSegments) {
-    return Failure{"urdf",
+    return Failure{Fault::kUrdf,
                    fmt::format("{} moving joints on the way to `{}`, at most {} are handled",
                                chain.segments_.size(), link, kMaxChainSegments),
                    model.path};
@@ -176,7 +176,7 @@ Result<Chain> Chain::create(const RobotModel& model, std::string_view link,
   chain.last_shift_ = fixed.position;
   const auto stray = std::find(used.begin(), used.end(), false);
   if (stray != used.end()) {
-    return Failure{"urdf",
+    return Failure{Fault::kUrdf,
                    fmt::format("joint `{}` is not on the way to the link `{}`",
                                joints[std::size_t(stray - used.begin())], link),
                    model.path};

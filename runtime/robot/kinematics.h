@@ -24,7 +24,7 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kM
 class Tree {
  public:
   // A joint that is not named follows the joint it mimics, or stands still at the position nearest
-  // 0 within its limits. Fails (code "urdf") on a name that is not there, is fixed, or comes twice.
+  // 0 within its limits. Fails (kUrdf) on a name that is not there, is fixed, or comes twice.
   static Result<Tree> create(const RobotModel& model, std::span<const std::string> joints);
 
   std::size_t joint_count() const { return joints_; }
@@ -56,7 +56,7 @@ class Tree {
 // The joints between the root and one link, fixed ones folded away.
 class Chain {
  public:
-  // Fails (code "urdf") if the link is not there, a joint on the way moves and is not named (a
+  // Fails (kUrdf) if the link is not there, a joint on the way moves and is not named (a
   // mimic of a named one is fine), a name is not on the way, or there are more than
   // kMaxChainJoints.
   static Result<Chain> create(const RobotModel& model, std::string_view link,

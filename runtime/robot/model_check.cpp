@@ -11,7 +11,7 @@ namespace probe::robot {
 namespace {
 
 Failure wrong(const RobotModel& model, std::string message) {
-  return Failure{"urdf", std::move(message), model.path};
+  return Failure{Fault::kUrdf, std::move(message), model.path};
 }
 
 Status check_joint(const RobotModel& model, const Joint& joint) {

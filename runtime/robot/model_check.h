@@ -7,7 +7,7 @@
 
 namespace probe::robot {
 
-// Failures have code "urdf" and the model's path; the message names link or joint.
+// Failures have kUrdf and the model's path; the message names link or joint.
 Status check_model(const RobotModel& model);
 
 }  // namespace probe::robot

@@ -50,17 +50,19 @@ class Listener : public console_bridge::OutputHandler {
 
 Result<std::string> read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) return Failure{"urdf", "no such file, or not readable", path};
+  if (!file) return Failure{Fault::kUrdf, "no such file, or not readable", path};
   std::string text;
   text.reserve(1 << 16);
   std::array<char, 1 << 14> block;
   while (file.read(block.data(), block.size()) || file.gcount() > 0) {
     text.append(block.data(), std::size_t(file.gcount()));
-    if (text.size() > kLargestFile) return Failure{"urdf", "larger than 16 MB, not a URDF", path};
+    if (text.size() > kLargestFile)
+      return Failure{Fault::kUrdf, "larger than 16 MB, not a URDF", path};
   }
-  if (file.bad() || text.empty()) return Failure{"urdf", "the file is empty or a folder", path};
+  if (file.bad() || text.empty())
+    return Failure{Fault::kUrdf, "the file is empty or a folder", path};
   // TinyXML reads a C string and would not see what follows a zero byte.
-  if (text.find('\0') != std::string::npos) return Failure{"urdf", "not text", path};
+  if (text.find('\0') != std::string::npos) return Failure{Fault::kUrdf, "not text", path};
   return text;
 }
 
@@ -92,7 +94,7 @@ Status add_shapes(const Elements& elements, const std::vector<Quat>& turns, cons
                   const std::string& path, std::vector<MeshRef>* meshes,
                   std::vector<Primitive>* primitives) {
   if (elements.size() != turns.size()) {
-    return Failure{"urdf", fmt::format("link `{}` has a shape that was not understood", link),
+    return Failure{Fault::kUrdf, fmt::format("link `{}` has a shape that was not understood", link),
                    path};
   }
   for (std::size_t i = 0; i < elements.size(); ++i) {
@@ -107,7 +109,7 @@ Status add_shapes(const Elements& elements, const std::vector<Quat>& turns, cons
       primitives->push_back(*primitive);
       continue;
     }
-    return Failure{"urdf",
+    return Failure{Fault::kUrdf,
                    fmt::format("link `{}` has a visual shape that is no mesh; boxes, spheres and "
                                "cylinders are read as collision shapes only",
                                link),
@@ -173,7 +175,7 @@ Status add_mimic(const urdf::Joint& from, RobotModel& model, Joint& joint) {
   joint.mimic_scale = from.mimic->multiplier;
   joint.mimic_offset = from.mimic->offset;
   if (joint.mimic >= 0) return {};
-  return Failure{"urdf",
+  return Failure{Fault::kUrdf,
                  fmt::format("joint `{}` mimics the joint `{}`, which is not there", joint.name,
                              from.mimic->joint_name),
                  model.path};
@@ -226,11 +228,11 @@ Result<RobotModel> load_urdf(const std::string& path) {
     parsed = urdf::parseURDF(text);
     said = listener.text;
   } catch (const std::exception& e) {
-    return Failure{"urdf", fmt::format("urdfdom gave up: {}", e.what()), path};
+    return Failure{Fault::kUrdf, fmt::format("urdfdom gave up: {}", e.what()), path};
   }
   if (!parsed) {
-    return Failure{"urdf", said.empty() ? "urdfdom could not read it and did not say why" : said,
-                   path};
+    return Failure{Fault::kUrdf,
+                   said.empty() ? "urdfdom could not read it and did not say why" : said, path};
   }
   PROBE_ASSIGN(RobotModel model, to_model(*parsed, scanned, path));
   PROBE_TRY(check_model(model));

@@ -62,7 +62,7 @@ struct RobotModel {
   int find_joint(std::string_view name) const;  // -1 if absent
 };
 
-// Fails (code "urdf", where = path) on a missing file, text that is not URDF, a link named by a
+// Fails (kUrdf, where = path) on a missing file, text that is not URDF, a link named by a
 // joint that is not there, a loop, non-finite numbers, non-positive mass of a moving link, inertia
 // no body can have.
 Result<RobotModel> load_urdf(const std::string& path);

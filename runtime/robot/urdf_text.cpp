@@ -29,13 +29,13 @@ class Scanner {
     TiXmlDocument document;
     document.Parse(text_.c_str(), nullptr, TIXML_ENCODING_UTF8);
     if (document.Error()) {
-      return Failure{"urdf", fmt::format("not XML: {}", document.ErrorDesc()),
+      return Failure{Fault::kUrdf, fmt::format("not XML: {}", document.ErrorDesc()),
                      at(document.ErrorRow())};
     }
     const TiXmlElement* robot = document.RootElement();
-    if (robot == nullptr) return Failure{"urdf", "not XML: no element in it", path_};
+    if (robot == nullptr) return Failure{Fault::kUrdf, "not XML: no element in it", path_};
     if (robot->ValueStr() != "robot") {
-      return Failure{"urdf",
+      return Failure{Fault::kUrdf,
                      fmt::format("the outermost element is `{}`, not `robot`", robot->ValueStr()),
                      at(robot->Row())};
     }
@@ -57,7 +57,8 @@ class Scanner {
       if (text_[i] == '<' && std::isalpha(static_cast<unsigned char>(next))) ++depth;
       if ((text_[i] == '<' && next == '/') || (text_[i] == '/' && next == '>')) --depth;
       if (depth > kDeepest) {
-        return Failure{"urdf", fmt::format("elements nested deeper than {}", kDeepest), path_};
+        return Failure{Fault::kUrdf, fmt::format("elements nested deeper than {}", kDeepest),
+                       path_};
       }
     }
     return {};
@@ -66,7 +67,7 @@ class Scanner {
   Result<std::string> named(const TiXmlElement& e, const char* attribute) const {
     const char* value = e.Attribute(attribute);
     if (value == nullptr || *value == '\0') {
-      return Failure{"urdf", fmt::format("a `{}` without its `{}`", e.ValueStr(), attribute),
+      return Failure{Fault::kUrdf, fmt::format("a `{}` without its `{}`", e.ValueStr(), attribute),
                      at(e.Row())};
     }
     return std::string(value);
@@ -93,7 +94,8 @@ class Scanner {
   }
 
   Failure not_angles(const TiXmlElement& origin, const char* rpy) const {
-    return Failure{"urdf", fmt::format("`rpy` is `{}`, not three angles", rpy), at(origin.Row())};
+    return Failure{Fault::kUrdf, fmt::format("`rpy` is `{}`, not three angles", rpy),
+                   at(origin.Row())};
   }
 
   Status add_link(const TiXmlElement& e) {
@@ -101,7 +103,7 @@ class Scanner {
     PROBE_ASSIGN(link.name, named(e, "name"));
     const auto [old, fresh] = links_.try_emplace(link.name, int(result_.links.size()));
     if (!fresh)
-      return Failure{"urdf", fmt::format("two links are named `{}`", link.name), at(e.Row())};
+      return Failure{Fault::kUrdf, fmt::format("two links are named `{}`", link.name), at(e.Row())};
     if (const TiXmlElement* inertial = e.FirstChildElement("inertial")) {
       PROBE_ASSIGN(link.inertial, rotation_of(*inertial));
     }
@@ -123,11 +125,12 @@ class Scanner {
     JointText joint;
     PROBE_ASSIGN(joint.name, named(e, "name"));
     if (!joints_.try_emplace(joint.name, int(result_.joints.size())).second) {
-      return Failure{"urdf", fmt::format("two joints are named `{}`", joint.name), at(e.Row())};
+      return Failure{Fault::kUrdf, fmt::format("two joints are named `{}`", joint.name),
+                     at(e.Row())};
     }
     PROBE_ASSIGN(const std::string type, named(e, "type"));
     if (type != "fixed" && type != "revolute" && type != "continuous" && type != "prismatic") {
-      return Failure{"urdf",
+      return Failure{Fault::kUrdf,
                      fmt::format("joint `{}` is of type `{}`, only fixed, revolute, continuous and "
                                  "prismatic ones are moved here",
                                  joint.name, type),
@@ -136,7 +139,8 @@ class Scanner {
     for (const char* end : {"parent", "child"}) {
       const TiXmlElement* link = e.FirstChildElement(end);
       if (link == nullptr) {
-        return Failure{"urdf", fmt::format("joint `{}` has no `{}`", joint.name, end), at(e.Row())};
+        return Failure{Fault::kUrdf, fmt::format("joint `{}` has no `{}`", joint.name, end),
+                       at(e.Row())};
       }
       PROBE_ASSIGN((end[0] == 'p' ? joint.parent : joint.child), named(*link, "link"));
     }
@@ -152,27 +156,27 @@ class Scanner {
     const TiXmlElement* limit = joint.FirstChildElement("limit");
     for (const char* attribute : {"lower", "upper"}) {
       if (limit != nullptr && limit->Attribute(attribute) != nullptr) continue;
-      return Failure{"urdf", fmt::format("joint `{}` has no `{}` limit", name, attribute),
+      return Failure{Fault::kUrdf, fmt::format("joint `{}` has no `{}` limit", name, attribute),
                      at((limit ? limit : &joint)->Row())};
     }
     return {};
   }
 
   Status check_tree() {
-    if (result_.links.empty()) return Failure{"urdf", "a robot without links", path_};
+    if (result_.links.empty()) return Failure{Fault::kUrdf, "a robot without links", path_};
     std::vector<int> parent(result_.links.size(), -1);  // link -> the joint above
     for (std::size_t j = 0; j < result_.joints.size(); ++j) {
       const JointText& joint = result_.joints[j];
       for (const std::string& link : {joint.parent, joint.child}) {
         if (links_.count(link)) continue;
         return Failure{
-            "urdf",
+            Fault::kUrdf,
             fmt::format("joint `{}` names the link `{}`, which is not there", joint.name, link),
             at(lines_[j])};
       }
       int& above = parent[std::size_t(links_[joint.child])];
       if (above >= 0) {
-        return Failure{"urdf",
+        return Failure{Fault::kUrdf,
                        fmt::format("link `{}` hangs on two joints, `{}` and `{}`", joint.child,
                                    result_.joints[std::size_t(above)].name, joint.name),
                        at(lines_[j])};
@@ -184,7 +188,7 @@ class Scanner {
     const auto second = std::find(root + 1, parent.end(), -1);
     result_.root = int(root - parent.begin());
     if (second == parent.end()) return {};
-    return Failure{"urdf",
+    return Failure{Fault::kUrdf,
                    fmt::format("several roots: no joint leads to `{}` nor to `{}`",
                                result_.links[std::size_t(result_.root)].name,
                                result_.links[std::size_t(second - parent.begin())].name),
@@ -198,7 +202,7 @@ class Scanner {
       for (std::size_t steps = 0; parent[link] >= 0; ++steps) {
         const JointText& joint = result_.joints[std::size_t(parent[link])];
         if (steps > parent.size()) {
-          return Failure{"urdf",
+          return Failure{Fault::kUrdf,
                          fmt::format("a loop: joint `{}` leads from `{}` back to `{}`", joint.name,
                                      joint.parent, joint.child),
                          at(lines_[std::size_t(parent[link])])};

@@ -92,7 +92,7 @@ Failure unknown(std::string_view name) {
   for (const Entry& entry : kPolicies) names.emplace_back(entry.name);
   std::string help = policy_help();
   help.pop_back();  // the last line's end
-  return {"usage",
+  return {Fault::kUsage,
           "unknown policy `" + std::string(name) + "`" + did_you_mean(name, names) +
               "\nthe policies are:\n" + help,
           "--policy"};
@@ -110,10 +110,12 @@ Result<Choice> choose(std::string_view text) {
     if (entry.name != name) continue;
     const std::string argument = policy_argument(text);
     if (entry.argument.empty() && colon != std::string_view::npos) {
-      return Failure{"usage", "policy `" + std::string(name) + "` takes no argument", "--policy"};
+      return Failure{Fault::kUsage, "policy `" + std::string(name) + "` takes no argument",
+                     "--policy"};
     }
     if (!entry.argument.empty() && argument.empty()) {
-      return Failure{"usage", "policy `" + std::string(name) + "` is written `" + form(entry) + "`",
+      return Failure{Fault::kUsage,
+                     "policy `" + std::string(name) + "` is written `" + form(entry) + "`",
                      "--policy"};
     }
     return Choice{&entry, argument};
@@ -126,7 +128,7 @@ Result<double> read_sigma(const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sigma);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(sigma) ||
       sigma < 0 || sigma > 1) {
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "SIGMA of `noisy:SIGMA` is a length in metres from 0 to 1, found `" + text + "`",
                    "--policy"};
   }
@@ -191,7 +193,7 @@ Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
 Result<servers::ServerChoice> server_choice(std::string_view text) {
   PROBE_ASSIGN(const Choice choice, choose(text));
   if (choice.entry->kind != Kind::kServer) {
-    return Failure{"usage", "policy `" + std::string(text) + "` is no server", "--policy"};
+    return Failure{Fault::kUsage, "policy `" + std::string(text) + "` is no server", "--policy"};
   }
   return servers::choose_server(choice.entry->protocol, choice.argument);
 }

@@ -35,13 +35,13 @@ struct PolicyContext {
   policy::QueryMeter* queries = nullptr;  // of the run; told of each query to a server; may be null
 };
 
-// Fail (code "usage") on an unknown policy, with the known ones and the nearest spelling, and on a
+// Fail (kUsage) on an unknown policy, with the known ones and the nearest spelling, and on a
 // bad argument.
 Result<PolicyTraits> policy_traits(std::string_view text);
 Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
                                                     const PolicyContext& context = {});
 
-// Of a policy that is a server; fails (code "usage") on any other.
+// Of a policy that is a server; fails (kUsage) on any other.
 Result<servers::ServerChoice> server_choice(std::string_view text);
 
 // What stands after the first ':', or nothing.

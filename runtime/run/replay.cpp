@@ -53,13 +53,15 @@ class ReplayPictures final : public show::FrameSink {
 Status check_folder_of(const std::string& file, const char* option) {
   const auto folder = std::filesystem::path(file).parent_path();
   if (file.empty() || folder.empty() || std::filesystem::is_directory(folder)) return {};
-  return Failure{"usage", "there is no folder `" + folder.string() + "` to write into", option};
+  return Failure{Fault::kUsage, "there is no folder `" + folder.string() + "` to write into",
+                 option};
 }
 
 Result<EpisodeJob> find_job(const plan::Plan& plan, const store::Trace& trace,
                             const std::string& dir) {
   const auto task = plan.find_task(trace.header.task);
-  const Failure stranger{"store", "its plan is not the one of its traces", store::plan_path(dir)};
+  const Failure stranger{Fault::kStore, "its plan is not the one of its traces",
+                         store::plan_path(dir)};
   if (!task || trace.header.plan_root != plan.root()) return stranger;
   const auto index = static_cast<std::uint32_t>(trace.header.episode);
   if (index >= plan.episodes(plan.tasks()[*task]).size()) return stranger;
@@ -82,7 +84,7 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
   const store::Trace& trace = stored.trace;
   const int steps = static_cast<int>(trace.steps.size());
   if (!options.png.empty() && (options.png_step < 0 || options.png_step > steps)) {
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "the episode has pictures 0 .. " + std::to_string(steps) + ", not " +
                        std::to_string(options.png_step),
                    "--step"};

@@ -156,7 +156,7 @@ class EpisodeWorker {
   Failure give_up(const std::string& last) const {
     const RunSummary& summary = shared_.summary;
     const int stored = summary.skipped + summary.done - summary.invalid;
-    return {"policy",
+    return {Fault::kPolicy,
             "the policy failed in " + std::to_string(shared_.lost_in_a_row) +
                 " episodes in a row, the last time so: " + last + "\n  " + std::to_string(stored) +
                 " of " + std::to_string(summary.total) + " episodes are stored in " + summary.out +
@@ -182,7 +182,8 @@ Result<std::vector<store::ResultRow>> recorded_rows(const std::string& dir) {
   for (const Failure* failure :
        {record ? nullptr : &record.failure(), rows ? nullptr : &rows.failure()}) {
     if (failure == nullptr) continue;
-    return Failure{"usage", "DIR of `replay:DIR` is the folder of a run, but " + to_text(*failure),
+    return Failure{Fault::kUsage,
+                   "DIR of `replay:DIR` is the folder of a run, but " + to_text(*failure),
                    "--policy"};
   }
   std::erase_if(*rows, [](const store::ResultRow& row) { return row.invalid.has_value(); });
@@ -304,7 +305,7 @@ Result<std::string> choose_folder(const RunOptions& options, store::RunRecord& r
       return dir;
     }
     return Failure{
-        "store",
+        Fault::kStore,
         said + "; take another folder, or --if-changed fork, which starts one beside it" +
             (may_continue ? ", or --if-changed continue, which mixes them in this one" : ""),
         dir};

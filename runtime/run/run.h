@@ -76,7 +76,7 @@ struct RunSummary {
   store::RunCall call;             // speed, and how busy server and simulators were
 };
 
-// Fails with code "policy" when it gave up on a policy server; what was done until then is stored.
+// Fails with kPolicy when it gave up on a policy server; what was done until then is stored.
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options);
 
 }  // namespace probe::run

@@ -12,7 +12,9 @@
 namespace probe::run {
 namespace {
 
-Failure usage(const std::string& message, const char* where) { return {"usage", message, where}; }
+Failure usage(const std::string& message, const char* where) {
+  return {Fault::kUsage, message, where};
+}
 
 // The suite to run: the named one, else the first, else none.
 Result<const plan::SuiteRecord*> choose_suite(const plan::Plan& plan, const std::string& name) {

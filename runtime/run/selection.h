@@ -25,7 +25,7 @@ int shard_of(const Sha256& episode_id, int seed, int shards);
 
 // `draws`: whether the policy can do two different things with two seeds. `recorded`: rows of the
 // run whose actions are repeated; then only episodes and seeds that it holds are chosen, with
-// `options.seeds` only narrowing them. Fails (code "usage") on an unknown suite, a glob that no
+// `options.seeds` only narrowing them. Fails (kUsage) on an unknown suite, a glob that no
 // task matches, episodes that no chosen task has, and a shard outside 1/1 .. N/N.
 Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,
                               const std::vector<store::ResultRow>* recorded = nullptr);

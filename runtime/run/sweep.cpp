@@ -23,7 +23,9 @@ constexpr const char* kRule =
     "highest mean over the original tasks of the share of successes; of equals the one with the "
     "higher mean share of intentions; of these the first named";
 
-Failure usage(const std::string& message, const char* where) { return {"usage", message, where}; }
+Failure usage(const std::string& message, const char* where) {
+  return {Fault::kUsage, message, where};
+}
 
 std::string with_checkpoint(std::string text, const std::string& checkpoint) {
   for (std::size_t at = 0; (at = text.find(kPlace, at)) != std::string::npos;) {
@@ -95,7 +97,7 @@ Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
     ++score.episodes;
   }
   if (static_cast<std::size_t>(score.episodes) != chosen.size()) {
-    return Failure{"policy",
+    return Failure{Fault::kPolicy,
                    std::to_string(chosen.size() - static_cast<std::size_t>(score.episodes)) +
                        " of " + std::to_string(chosen.size()) +
                        " episodes are invalid, so no checkpoint is chosen; the same command runs "

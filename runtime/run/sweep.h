@@ -35,7 +35,7 @@ struct SweepSummary {
 };
 
 // Runs what is missing, also when it was killed before. Writes OUT/sweep.json with scores, rule and
-// choice. Fails (code "usage") without a `{}` or with a checkpoint named twice, (code "policy")
+// choice. Fails (kUsage) without a `{}` or with a checkpoint named twice, (kPolicy)
 // when an episode of the original tasks is invalid: nothing is chosen by halves.
 Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options);
 

@@ -61,7 +61,7 @@ Result<CollisionShape> load_collision_mesh(const std::string& path, const Vec3& 
   PROBE_ASSIGN(const TriangleSoup soup, load_triangles(path, scale, limits));
   PROBE_ASSIGN(CollisionShape shape, make_mesh_shape(soup, path, {.max_vertices = 64}));
   if (shape.parts.size() > kMaxCollisionParts) {
-    return Failure{"asset",
+    return Failure{Fault::kAsset,
                    "falls into " + std::to_string(shape.parts.size()) +
                        " separate pieces, at most " + std::to_string(kMaxCollisionParts) +
                        " are taken; a collision.obj of convex parts beside it says what is felt",

@@ -37,13 +37,13 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
   std::ifstream file(path);
   std::error_code error;
   if (!file || !std::filesystem::is_regular_file(path, error)) {
-    return Failure{"asset", "there is no such mesh file", path};
+    return Failure{Fault::kAsset, "there is no such mesh file", path};
   }
   TriangleSoup soup;
   std::string line, word;
   for (int number = 1; std::getline(file, line); ++number) {
     const auto fail = [&](const char* what) {
-      return Failure{"asset", what, path + ":" + std::to_string(number)};
+      return Failure{Fault::kAsset, what, path + ":" + std::to_string(number)};
     };
     std::istringstream words(line);
     words >> word;
@@ -81,7 +81,7 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
       }
     }
   }
-  if (soup.indices.empty()) return Failure{"asset", "the mesh has no faces", path};
+  if (soup.indices.empty()) return Failure{Fault::kAsset, "the mesh has no faces", path};
   return soup;
 }
 
@@ -92,7 +92,7 @@ Result<CollisionShape> make_mesh_shape(const TriangleSoup& mesh, const std::stri
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const std::uint32_t i : mesh.indices) {
     if (i >= mesh.vertices.size())
-      return Failure{"asset", "a face names a vertex that is not there", name};
+      return Failure{Fault::kAsset, "a face names a vertex that is not there", name};
     used[i] = true;
   }
   for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {

@@ -277,22 +277,22 @@ bool is_flat_or_tiny(const std::vector<Vec3>& points_mm) {
 Result<HullPart> make_hull(std::span<const Vec3> points, const std::string& name,
                            int max_vertices) {
   if (max_vertices < 4 || max_vertices > static_cast<int>(kMaxVertices)) {
-    return Failure{"asset",
+    return Failure{Fault::kAsset,
                    "a hull may have 4 to 64 vertices, asked for " + std::to_string(max_vertices),
                    name};
   }
   std::vector<Vec3> mm;
   mm.reserve(points.size());
   for (const Vec3& p : points) {
-    if (!p.allFinite()) return Failure{"asset", "a vertex is not a finite number", name};
+    if (!p.allFinite()) return Failure{Fault::kAsset, "a vertex is not a finite number", name};
     mm.push_back(p * kMillimetres);
   }
   if (is_flat_or_tiny(mm))
-    return Failure{"asset", "points are flat or closer than 0.2 mm, no solid", name};
+    return Failure{Fault::kAsset, "points are flat or closer than 0.2 mm, no solid", name};
 
   RawHull full;
   if (!closed_hull(mm, &full))
-    return Failure{"asset", "no convex hull can be made of the points", name};
+    return Failure{Fault::kAsset, "no convex hull can be made of the points", name};
   std::vector<Vec3> corners;
   for (const int i : used_points(full)) corners.push_back(mm[static_cast<std::size_t>(i)]);
 
@@ -313,10 +313,10 @@ Result<HullPart> make_hull(std::span<const Vec3> points, const std::string& name
           std::max(out.reduction_error, distance_outside(chosen, hull, p) / kMillimetres);
     }
     constexpr double kTinyVolume = 1e-10;  // 0.1 mm3
-    if (!(out.volume > kTinyVolume)) return Failure{"asset", "the hull has no volume", name};
+    if (!(out.volume > kTinyVolume)) return Failure{Fault::kAsset, "the hull has no volume", name};
     return out;
   }
-  return Failure{"asset", "the hull cannot be reduced to its vertex limit", name};
+  return Failure{Fault::kAsset, "the hull cannot be reduced to its vertex limit", name};
 }
 
 CollisionShape assemble_shape(std::vector<HullPart> parts) {
@@ -349,7 +349,7 @@ Result<CollisionShape> make_collision_shape(const std::vector<std::vector<Vec3>>
   if (options.single_hull) groups.emplace_back();
   for (const std::vector<Vec3>& component : components) {
     for (const Vec3& p : component) {
-      if (!p.allFinite()) return Failure{"asset", "a vertex is not a finite number", name};
+      if (!p.allFinite()) return Failure{Fault::kAsset, "a vertex is not a finite number", name};
     }
     if (options.single_hull) {
       groups[0].insert(groups[0].end(), component.begin(), component.end());
@@ -364,8 +364,8 @@ Result<CollisionShape> make_collision_shape(const std::vector<std::vector<Vec3>>
     if (part) parts.push_back(std::move(part).value());
   }
   if (parts.empty()) {
-    return Failure{"asset", "no component of the mesh is a solid: all are flat, tiny or empty",
-                   name};
+    return Failure{Fault::kAsset,
+                   "no component of the mesh is a solid: all are flat, tiny or empty", name};
   }
   return assemble_shape(std::move(parts));
 }

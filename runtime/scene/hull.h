@@ -18,7 +18,7 @@ struct HullOptions {
 };
 
 // One convex part per component (its points, metres, model frame). Components that are flat or
-// smaller than 0.2 mm are dropped. Fails (code "asset", where = name) when a number is not finite
+// smaller than 0.2 mm are dropped. Fails (kAsset, where = name) when a number is not finite
 // or nothing solid is left.
 Result<CollisionShape> make_collision_shape(const std::vector<std::vector<Vec3>>& components,
                                             const std::string& name,

@@ -24,11 +24,11 @@ namespace probe::scene {
 namespace {
 
 Failure asset_failure(std::string message, const std::string& where) {
-  return {.code = "asset", .message = std::move(message), .where = where};
+  return {.code = Fault::kAsset, .message = std::move(message), .where = where};
 }
 
 Failure io_failure(const std::string& what, const std::string& path) {
-  return {.code = "io", .message = what + ": " + std::strerror(errno), .where = path};
+  return {.code = Fault::kIo, .message = what + ": " + std::strerror(errno), .where = path};
 }
 
 struct FileCloser {
@@ -78,7 +78,7 @@ Status check_size(int width, int height, std::size_t bytes_per_pixel, std::size_
   const std::size_t expected = static_cast<std::size_t>(width > 0 ? width : 0) *
                                static_cast<std::size_t>(height > 0 ? height : 0) * bytes_per_pixel;
   if (expected != 0 && bytes == expected) return {};
-  return Failure{.code = "io",
+  return Failure{.code = Fault::kIo,
                  .message = "a picture of " + std::to_string(width) + " x " +
                             std::to_string(height) + " needs " + std::to_string(expected) +
                             " bytes, got " + std::to_string(bytes),
@@ -93,7 +93,7 @@ Result<std::string> png_in_memory(int width, int height, const PngFormat& format
   bool fine = file && encode_png(file.get(), width, height, format, pixels);
   if (file) fine = std::fclose(file.release()) == 0 && fine;
   const std::unique_ptr<char, void (*)(void*)> owned(data, std::free);
-  if (!fine) return Failure{"io", "no memory to write a picture", ""};
+  if (!fine) return Failure{Fault::kIo, "no memory to write a picture", ""};
   return std::string(data, size);
 }
 
@@ -188,7 +188,7 @@ Result<std::string> jpeg_bytes(int width, int height, std::span<const std::uint8
                                           static_cast<std::size_t>(size));
   };
   if (stbi_write_jpg_to_func(append, &bytes, width, height, 3, rgb.data(), quality) == 0) {
-    return Failure{"io", "a picture cannot be written as JPEG", ""};
+    return Failure{Fault::kIo, "a picture cannot be written as JPEG", ""};
   }
   return bytes;
 }

@@ -15,7 +15,7 @@ namespace probe::scene {
 // 268 MB already, and more than any picture of ours can show.
 inline constexpr int kMaxImageSide = 8192;
 
-// Fails (code "asset", where = path) on a missing file, a format that cannot be read, damage, or a
+// Fails (kAsset, where = path) on a missing file, a format that cannot be read, damage, or a
 // side above the limit.
 Result<Texture> load_image(const std::string& path);
 // The same for an encoded image in memory; `where` is for messages.
@@ -30,14 +30,14 @@ Result<ImageSize> image_size(std::span<const std::byte> encoded, const std::stri
 // A texture as the bytes of a PNG file.
 Result<std::string> png_bytes(const Texture& texture);
 // A picture of 3 bytes a pixel, rows from the top, as the bytes of a PNG or a JPEG file; quality
-// 1 to 100, above 90 with the colours at full resolution. Same picture, same bytes. Fails (code
-// "io") when `rgb` has another size.
+// 1 to 100, above 90 with the colours at full resolution. Same picture, same bytes. Fails
+// (kIo) when `rgb` has another size.
 Result<std::string> png_bytes(int width, int height, std::span<const std::uint8_t> rgb);
 Result<std::string> jpeg_bytes(int width, int height, std::span<const std::uint8_t> rgb,
                                int quality);
 
 // Writes beside the target and renames, so that the file is whole or absent; a full disk is a
-// Failure (code "io"). Rows from the top. `rgb` has 3 bytes a pixel, `gray` 1 byte or 1 16-bit
+// Failure (kIo). Rows from the top. `rgb` has 3 bytes a pixel, `gray` 1 byte or 1 16-bit
 // number a pixel.
 Status write_png(const std::string& path, int width, int height, std::span<const std::uint8_t> rgb);
 Status write_png_gray(const std::string& path, int width, int height,

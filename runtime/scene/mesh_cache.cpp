@@ -31,7 +31,7 @@ Result<Sha256> key_of(const std::string& path, const Vec3& scale, const MeshLimi
   hasher.text(fs::path(path).extension().string());
   const auto feed = [&hasher](const std::string& file) -> Status {
     auto bytes = read_file(file);
-    if (!bytes) return Failure{"asset", bytes.failure().message, file};
+    if (!bytes) return Failure{Fault::kAsset, bytes.failure().message, file};
     hasher.text(*bytes);
     return {};
   };

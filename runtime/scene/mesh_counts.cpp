@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Failure no_mesh(const std::string& what) { return {"asset", what, ""}; }
+Failure no_mesh(const std::string& what) { return {Fault::kAsset, what, ""}; }
 
 // ---- glTF
 

@@ -8,7 +8,7 @@
 
 namespace probe::scene {
 
-// Of a glb, gltf or dae file; other formats count nothing that is believed. Fails (code "asset",
+// Of a glb, gltf or dae file; other formats count nothing that is believed. Fails (kAsset,
 // where = path), naming what does not fit.
 Status check_counts(const std::string& path);
 

@@ -35,7 +35,7 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_GenNormals | aiPro
                             aiProcess_SortByPType | aiProcess_ImproveCacheLocality;
 
 Failure asset_failure(std::string message, const std::string& path) {
-  return {.code = "asset", .message = std::move(message), .where = path};
+  return {.code = Fault::kAsset, .message = std::move(message), .where = path};
 }
 
 // Lets assimp open the mesh and the files it names inside the asset folder, nothing else.

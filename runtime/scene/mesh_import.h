@@ -32,7 +32,7 @@ struct MeshLimits {
 
 // Scale, node transforms and Collada's <unit> are baked into positions (and normals), so that poses
 // stay rigid and lengths are metres. glTF, OBJ and STL are taken in the axes they are written in.
-// Fails (code "asset", where = path) on a missing, unreadable or oversized file, no triangles or
+// Fails (kAsset, where = path) on a missing, unreadable or oversized file, no triangles or
 // more than the limit, a coordinate that is not finite or beyond the extent, no size at all, a file
 // it names that is missing or lies outside the asset root, a texture above kMaxImageSide; the
 // message names that file.

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<std::string> read_text(const std::string& path) {
-  const auto fail = [&](const char* what) { return Failure{"asset", what, path}; };
+  const auto fail = [&](const char* what) { return Failure{Fault::kAsset, what, path}; };
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return fail("the file cannot be opened");
   const std::streamoff size = file.tellg();

@@ -24,13 +24,13 @@ bool ChunkQueue::wants_answer() const { return blends_ ? !has_answer_ : next_ >=
 
 Status ChunkQueue::put(std::vector<RawAction> actions) {
   if (length_ > 0 && actions.size() != static_cast<std::size_t>(length_)) {
-    return Failure{"policy",
+    return Failure{Fault::kPolicy,
                    "expected a chunk of " + std::to_string(length_) + " actions, got " +
                        std::to_string(actions.size()) + " (profile field `chunk.length`)",
                    ""};
   }
   if (actions.size() < static_cast<std::size_t>(std::max(use_, 1))) {
-    return Failure{"policy",
+    return Failure{Fault::kPolicy,
                    "expected at least " + std::to_string(std::max(use_, 1)) + " actions, got " +
                        std::to_string(actions.size()) + " (profile field `chunk.use`)",
                    ""};

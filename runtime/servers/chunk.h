@@ -21,7 +21,7 @@ class ChunkQueue {
   // Whether the next action needs an answer first.
   bool wants_answer() const;
 
-  // An answer's actions, the first for this control step. Fails (code "policy") when they are not
+  // An answer's actions, the first for this control step. Fails (kPolicy) when they are not
   // as many as the profile says.
   Status put(std::vector<RawAction> actions);
 

@@ -38,7 +38,7 @@ struct Conformance {
 };
 
 // Bounded by the profile's time limits. A server that cannot be reached or fails is a finding, not
-// a Failure; that (code "usage") is what make_transport refuses.
+// a Failure; that (kUsage) is what make_transport refuses.
 Result<Conformance> test_server(const ServerChoice& choice);
 
 // What a list of answers shows; the part of test_server without a wire. `chunks` are the answers to

@@ -9,7 +9,7 @@
 namespace probe::servers {
 namespace {
 
-Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 bool is_masked(const Statistics& statistics, std::size_t i) {
   return i < statistics.mask.size() && statistics.mask[i] == 0;

@@ -14,7 +14,7 @@ namespace probe::servers {
 
 std::string to_prompt(const Profile& profile, std::string_view prompt);
 
-// Fails (code "policy") when the robot has too few joints for the layout, or as many other numbers
+// Fails (kPolicy) when the robot has too few joints for the layout, or as many other numbers
 // than the profile has statistics.
 Result<std::vector<double>> to_state(const Profile& profile,
                                      const policy::Proprioception& measured);
@@ -23,7 +23,7 @@ Result<std::vector<double>> to_state(const Profile& profile,
 RawAction denormalised(const Profile& profile, const RawAction& raw);
 
 // Denormalised, the rotation as a rotation vector, the gripper -1 .. +1. Numbers that already are
-// ours come back bit for bit. Fails (code "policy"), naming the field that would be at fault, on a
+// ours come back bit for bit. Fails (kPolicy), naming the field that would be at fault, on a
 // shift or turn above the profile's limits and on a gripper's number far outside its range.
 Result<policy::Action> to_action(const Profile& profile, const RawAction& raw);
 

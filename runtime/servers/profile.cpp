@@ -182,7 +182,7 @@ std::string shortest(double value) {
   return {text, end};
 }
 
-Failure bad(std::string message) { return {"usage", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kUsage, std::move(message), ""}; }
 
 std::string found(std::string_view value) { return ", found `" + std::string(value) + "`"; }
 

@@ -127,7 +127,7 @@ struct Profile {
   bool operator==(const Profile&) const = default;
 };
 
-// `where` names the text in messages. Fails (code "usage", where = "where:line:column") on an
+// `where` names the text in messages. Fails (kUsage, where = "where:line:column") on an
 // unknown field, with the nearest; on a value that is none, with those that are; on a field twice;
 // on fields that do not go together.
 Result<Profile> parse_profile(std::string_view text, std::string_view where);

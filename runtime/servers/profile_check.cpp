@@ -115,7 +115,7 @@ std::optional<Mistake> find_mistake(const Profile& profile) {
 }
 
 Status check_profile(const Profile& profile) {
-  if (auto mistake = find_mistake(profile)) return Failure{"usage", mistake->message, ""};
+  if (auto mistake = find_mistake(profile)) return Failure{Fault::kUsage, mistake->message, ""};
   return {};
 }
 

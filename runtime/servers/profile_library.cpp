@@ -11,7 +11,7 @@ Result<Profile> find_profile(std::string_view name) {
   if (name.find('/') != std::string_view::npos || name.ends_with(".profile")) {
     const std::filesystem::path path(name);
     auto text = read_file(path.string());
-    if (!text) return Failure{"usage", text.failure().message, path.string()};
+    if (!text) return Failure{Fault::kUsage, text.failure().message, path.string()};
     PROBE_ASSIGN(Profile profile, parse_profile(*text, path.string()));
     profile.name = path.stem().string();
     return profile;
@@ -27,7 +27,7 @@ Result<Profile> find_profile(std::string_view name) {
     names.emplace_back(ready.name);
     list += (list.empty() ? "" : ", ") + std::string(ready.name);
   }
-  return Failure{"usage",
+  return Failure{Fault::kUsage,
                  "there is no profile `" + std::string(name) + "`" + did_you_mean(name, names) +
                      "; ready ones are " + list + "; a path, as in ./mine.profile, names a file",
                  "--policy"};

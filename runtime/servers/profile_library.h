@@ -19,7 +19,7 @@ struct ProfileText {
 std::span<const ProfileText> ready_profiles();
 
 // `name` of a ready profile, or the path of a file (it has a `/` or ends in `.profile`). Fails
-// (code "usage") with the names there are and the nearest, and as parse_profile does.
+// (kUsage) with the names there are and the nearest, and as parse_profile does.
 Result<Profile> find_profile(std::string_view name);
 
 }  // namespace probe::servers

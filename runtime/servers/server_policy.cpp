@@ -28,7 +28,7 @@ Result<policy::Image> camera_image(const policy::Observation& observation,
     if (shown.camera == camera) return shown.image;
     known += (known.empty() ? "`" : ", `") + std::string(shown.camera) + "`";
   }
-  return Failure{"policy",
+  return Failure{Fault::kPolicy,
                  "the profile wants camera `" + camera + "`, the scene has " +
                      (known.empty() ? "only its first" : known),
                  ""};
@@ -44,7 +44,7 @@ Result<Request> to_request(const Profile& profile, const policy::Observation& ob
     const auto sides =
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
     if (sides == 0 || image.rgb.size() != sides * 3) {
-      return Failure{"policy", "a picture has not width x height x 3 bytes", ""};
+      return Failure{Fault::kPolicy, "a picture has not width x height x 3 bytes", ""};
     }
     request.images.push_back({rule.key, to_pixels(image, rule)});
   }
@@ -115,9 +115,9 @@ Status ServerPolicy::connect() {
     if (opened) opened = transport_->adapt(profile_);
     if (opened) break;
     transport_->close();
-    is_answer = is_answer || opened.failure().code == kAnswered;
+    is_answer = is_answer || opened.failure().code == Fault::kAnswered;
     Failure failure = named(opened.failure());
-    if (is_answer || failure.code == "usage") return failure;
+    if (is_answer || failure.code == Fault::kUsage) return failure;
     if (Clock::now() + pause > limit) {
       if (attempt > 1) failure.message += " (tried " + std::to_string(attempt) + " times)";
       return failure;
@@ -132,7 +132,7 @@ Status ServerPolicy::connect() {
 }
 
 Status ServerPolicy::ask(const policy::Observation& observation) {
-  if (!in_episode_) return Failure{"policy", "the connection was lost in this episode", ""};
+  if (!in_episode_) return Failure{Fault::kPolicy, "the connection was lost in this episode", ""};
   PROBE_ASSIGN(const Request request, to_request(profile_, observation));
   if (!delivery_) delivery_ = delivery_of(request);
   auto answer = [&] {
@@ -152,7 +152,7 @@ Deadlines ServerPolicy::deadlines() const {
 
 Failure ServerPolicy::named(Failure failure) const {
   if (failure.where.empty()) failure.where = server_;
-  if (failure.code == kAnswered) failure.code = "policy";
+  if (failure.code == Fault::kAnswered) failure.code = Fault::kPolicy;
   // A server may repeat the key that it refuses; this text is stored.
   if (const std::string key = api_key(); !key.empty()) {
     for (std::size_t at = 0; (at = failure.message.find(key, at)) != std::string::npos; ++at) {

@@ -16,7 +16,7 @@
 
 namespace probe::servers {
 
-// The request that the profile makes of an observation. Fails (code "policy") naming the cameras
+// The request that the profile makes of an observation. Fails (kPolicy) naming the cameras
 // there are when one is missing, and as to_state does.
 Result<Request> to_request(const Profile& profile, const policy::Observation& observation);
 
@@ -33,7 +33,7 @@ class ServerPolicy : public policy::Policy {
   ~ServerPolicy() override;
 
   // Connects if there is no connection, trying again with growing pauses until the profile's
-  // `timeout.wait_s` have passed. Fails (code "policy", at once where a server answers with an
+  // `timeout.wait_s` have passed. Fails (kPolicy, at once where a server answers with an
   // error; or "usage", at once, where the profile and the server do not go together).
   Status begin(const policy::EpisodeStart& start) override;
   Result<policy::Action> act(const policy::Observation& observation) override;

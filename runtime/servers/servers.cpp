@@ -36,7 +36,7 @@ const Entry& entry_of(Protocol protocol) {
   return kEntries[0];
 }
 
-Failure usage(std::string message) { return {"usage", std::move(message), "--policy"}; }
+Failure usage(std::string message) { return {Fault::kUsage, std::move(message), "--policy"}; }
 
 }  // namespace
 

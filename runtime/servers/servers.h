@@ -24,8 +24,8 @@ struct ServerChoice {
 };
 
 // `argument` is what stands after "openpi:". Options are `profile` (default: the protocol's own),
-// any field of a profile, which then stands for the file's, and those of the protocol. Fails (code
-// "usage") on others, with the nearest, and on a profile of another protocol.
+// any field of a profile, which then stands for the file's, and those of the protocol. Fails
+// (kUsage) on others, with the nearest, and on a profile of another protocol.
 Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument);
 
 // Without the address: what does the same at another address has the same.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostActions = 1000;
 
-Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 }  // namespace
 
@@ -69,7 +69,7 @@ std::string last_lines(std::string_view text) {
   return joined;
 }
 
-Failure answered(std::string message) { return {kAnswered, std::move(message), ""}; }
+Failure answered(std::string message) { return {Fault::kAnswered, std::move(message), ""}; }
 
 Status check_distinct_keys(const wire::Value& request) {
   const auto* map = request.as<wire::Map>();

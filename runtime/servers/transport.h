@@ -42,12 +42,11 @@ struct Deadlines {
   wire::Duration answer{60'000};
 };
 
-// The code of a failure that is an answer: a server is there and says no, so that asking it the
-// same again is of no use. ServerPolicy makes "policy" of it.
-inline constexpr const char* kAnswered = "answered";
+// A failure (kAnswered) that is an answer: a server is there and says no. ServerPolicy makes
+// kPolicy of it.
 Failure answered(std::string message);
 
-// Any method that fails (code "policy" or kAnswered, where = the server's HOST:PORT) has left the
+// Any method that fails (kPolicy or kAnswered, where = the server's HOST:PORT) has left the
 // connection in an unknown state: the caller closes and opens again. No message holds a secret.
 class Transport {
  public:
@@ -56,7 +55,7 @@ class Transport {
   // Connects and does what the protocol wants first (metadata, hello, which model). One attempt.
   virtual Status open(const Deadlines& deadlines) = 0;
   // After open(): what the server said it wants, where the profile leaves it open (a picture's
-  // size). Fails (code "usage") where the two do not go together.
+  // size). Fails (kUsage) where the two do not go together.
   virtual Status adapt(Profile& /*profile*/) const { return {}; }
   // Drops the connection, if there is one; returns at once.
   virtual void close() = 0;
@@ -80,7 +79,7 @@ class Transport {
 };
 
 // An answer's numbers as actions: shapes [7], [n, 7], and those with leading dimensions of 1. Fails
-// (code "policy") on other shapes, on nothing, on more than 1000 actions, on numbers that are not
+// (kPolicy) on other shapes, on nothing, on more than 1000 actions, on numbers that are not
 // finite; the message says what was expected and what came.
 Result<std::vector<RawAction>> to_actions(const wire::Value& answer);
 
@@ -88,7 +87,7 @@ Result<std::vector<RawAction>> to_actions(const wire::Value& answer);
 // could repaint a terminal, a few hundred characters at most.
 std::string last_lines(std::string_view text);
 
-// Fails (code "policy") where a map in it has a key twice: servers read the last and never see the
+// Fails (kPolicy) where a map in it has a key twice: servers read the last and never see the
 // others.
 Status check_distinct_keys(const wire::Value& request);
 

@@ -53,7 +53,8 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
   PROBE_ASSIGN(auto rows, store::read_results(dir));
   std::erase_if(
       rows, [&](const store::ResultRow& row) { return !matches_glob(options.tasks, row.task); });
-  if (rows.empty()) return Failure{"usage", "no stored episode of `" + options.tasks + "`", dir};
+  if (rows.empty())
+    return Failure{Fault::kUsage, "no stored episode of `" + options.tasks + "`", dir};
   PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
   PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
 
@@ -66,7 +67,8 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
     if (row.task != task_name) {
       const auto task = plan.find_task(row.task);
       if (!task)
-        return Failure{"store", "its plan has no task `" + row.task + "`", store::plan_path(dir)};
+        return Failure{Fault::kStore, "its plan has no task `" + row.task + "`",
+                       store::plan_path(dir)};
       const std::uint32_t tasks[] = {*task};
       PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
       PROBE_ASSIGN(view, stage::SceneView::create(plan, *task, std::move(assets)));
@@ -89,7 +91,8 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
     }
     cells.push_back(std::move(cell));
   }
-  if (cells.empty()) return Failure{"usage", "no stored episode got as far as its start", dir};
+  if (cells.empty())
+    return Failure{Fault::kUsage, "no stored episode got as far as its start", dir};
   const Picture sheet = lay_out_grid(cells, options.columns);
   return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
 }

@@ -70,7 +70,7 @@ std::optional<std::uint16_t> body_of(const plan::Plan& plan, std::uint32_t task,
 
 Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
                      const std::string& png_path, const std::string& assets_folder) {
-  if (rows.empty()) return Failure{"usage", "no phrase refers to an object", ""};
+  if (rows.empty()) return Failure{Fault::kUsage, "no phrase refers to an object", ""};
   PROBE_ASSIGN(const std::string root, stage::find_asset_root(assets_folder));
   const int step = kCrop + kMargin;
   Picture sheet = make_picture(kCrop + kWordsWidth + 3 * kMargin,
@@ -91,7 +91,7 @@ Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
     }
     const auto body = body_of(plan, row.task, row.object);
     if (!body) {
-      return Failure{"usage",
+      return Failure{Fault::kUsage,
                      "`" + row.object + "` is not in the scene of `" +
                          std::string(plan.text(plan.tasks()[row.task].name)) + "`",
                      ""};

@@ -18,7 +18,7 @@ struct PhraseRow {
 };
 
 // A PNG with a row a phrase: a crop of the object in the first picture of the task's first start,
-// the words beside it. Rows of one task stand together. Fails (code "usage") without rows or when
+// the words beside it. Rows of one task stand together. Fails (kUsage) without rows or when
 // the object is no body of the task.
 Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
                      const std::string& png_path, const std::string& assets = {});

@@ -64,7 +64,8 @@ Result<Picture> show_frames(std::span<const stage::CameraFrame> frames, const st
       return copy_picture(seen.frame.width, seen.frame.height, seen.frame.rgb);
     names.append(names.empty() ? "`" : ", `").append(seen.camera).append("`");
   }
-  return Failure{"usage", "the task has no camera `" + camera + "`, it has " + names, "--camera"};
+  return Failure{Fault::kUsage, "the task has no camera `" + camera + "`, it has " + names,
+                 "--camera"};
 }
 
 }  // namespace probe::show

@@ -28,7 +28,8 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
     cells.push_back(std::move(cell));
   }
   if (cells.empty()) {
-    return Failure{"usage", "task `" + std::string(plan.text(record.name)) + "` has no starts", ""};
+    return Failure{Fault::kUsage,
+                   "task `" + std::string(plan.text(record.name)) + "` has no starts", ""};
   }
   const Picture sheet = lay_out_grid(cells, options.columns);
   return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
@@ -40,7 +41,7 @@ Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t ind
   const plan::TaskRecord& record = plan.tasks()[task];
   const std::size_t count = plan.episodes(record).size();
   if (index >= count) {
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "task `" + std::string(plan.text(record.name)) + "` has " +
                        std::to_string(count) + " starts, counted from 0",
                    ""};

@@ -112,7 +112,8 @@ class Mp4Writer final : public VideoWriter {
 
  private:
   Failure failed(const char* what, int code) const {
-    return {"video", code == 0 ? std::string(what) : std::string(what) + ": " + said(code), path_};
+    return {Fault::kVideo, code == 0 ? std::string(what) : std::string(what) + ": " + said(code),
+            path_};
   }
 
   Status encode(const AVFrame* frame) {
@@ -166,7 +167,7 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::create(const std::string& path
 
 Result<VideoInfo> inspect_video(const std::string& path) {
   const auto failed = [&](const char* what, int code) {
-    return Failure{"video", std::string(what) + ": " + said(code), path};
+    return Failure{Fault::kVideo, std::string(what) + ": " + said(code), path};
   };
   Decoder d;
   int code = avformat_open_input(&d.format, path.c_str(), nullptr, nullptr);

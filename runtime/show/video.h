@@ -13,7 +13,7 @@ namespace probe::show {
 
 class VideoWriter {
  public:
-  // Sizes in pixels, even; fails (code "video") naming the path.
+  // Sizes in pixels, even; fails (kVideo) naming the path.
   static Result<std::unique_ptr<VideoWriter>> create(const std::string& path, int width, int height,
                                                      int frames_per_second);
   virtual ~VideoWriter() = default;

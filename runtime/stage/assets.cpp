@@ -83,7 +83,7 @@ Result<std::string> find_asset_root(std::string_view chosen) {
   // A place that somebody named is the only one looked at.
   const auto only = [](std::string_view path, const char* who) -> Result<std::string> {
     if (fs::is_directory(path)) return std::string(path);
-    return Failure{"asset", std::string("the asset folder given by ") + who + " is not there",
+    return Failure{Fault::kAsset, std::string("the asset folder given by ") + who + " is not there",
                    std::string(path)};
   };
   if (!chosen.empty()) return only(chosen, "--assets");
@@ -100,7 +100,7 @@ Result<std::string> find_asset_root(std::string_view chosen) {
     looked += (looked.empty() ? "" : ", ") + place;
   }
   return Failure{
-      "asset",
+      Fault::kAsset,
       "no asset folder; looked at " + looked + "; name one with --assets or VLAPROBE_ASSETS", ""};
 }
 
@@ -138,17 +138,17 @@ class SharedAssets::Loader {
     const std::string name(plan_.text(record.path));
     if (fs::path(name).is_absolute() ||
         fs::path(name).lexically_normal().string().starts_with("..")) {
-      return Failure{"asset", "the plan names a file outside the asset folder", name};
+      return Failure{Fault::kAsset, "the plan names a file outside the asset folder", name};
     }
     const Read file = read_bytes(path_of(asset));
     if (!file.ok)
       return Failure{
-          "asset",
+          Fault::kAsset,
           "this file of the plan is not in " + assets_.root_ + "; --assets names another folder",
           name};
     const Sha256 hash = sha256(std::string_view(file.bytes));
     if (file.bytes.size() != record.byte_size || hash.bytes != record.sha256) {
-      return Failure{"asset", "its bytes are not the ones the plan was built with", name};
+      return Failure{Fault::kAsset, "its bytes are not the ones the plan was built with", name};
     }
     return {};
   }
@@ -196,7 +196,7 @@ class SharedAssets::Loader {
           const std::string name = (folder / ref.path).lexically_normal().string();
           if (known.contains(name)) continue;
           return Failure{
-              "asset",
+              Fault::kAsset,
               "link `" + link.name + "` has the mesh `" + name + "`, which the plan does not name",
               std::string(plan_.text(plan_.assets()[record.urdf].path))};
         }

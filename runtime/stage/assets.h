@@ -27,7 +27,7 @@ namespace probe::stage {
 
 // The folder that the plan's asset paths are relative to: `chosen` if not empty, else the
 // environment's VLAPROBE_ASSETS, else `assets` beside the program's folder, else that of the source
-// tree it was built from. Fails (code "asset") naming every place it looked at.
+// tree it was built from. Fails (kAsset) naming every place it looked at.
 Result<std::string> find_asset_root(std::string_view chosen = {});
 
 // What a URDF's links look like and collide with. A link's collision meshes are merged into one
@@ -46,7 +46,7 @@ struct RobotParts {
 
 class SharedAssets {
  public:
-  // Loads what `tasks` (indices of the plan's tasks) need. Fails (code "asset") naming a file that
+  // Loads what `tasks` (indices of the plan's tasks) need. Fails (kAsset) naming a file that
   // is absent or has other bytes, and with the loaders' failures.
   static Result<std::shared_ptr<const SharedAssets>> load(const plan::Plan& plan,
                                                           const std::string& root,

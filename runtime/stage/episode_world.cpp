@@ -48,9 +48,10 @@ Result<robot::EeDeltaPoseController> make_controller(const plan::Plan& plan,
   for (const plan::FingerRecord& finger : robot.fingers) {
     const std::string name(plan.text(finger.link));
     const int link = model.find_link(name);
-    if (link < 0) return Failure{"urdf", "no link `" + name + "`", model.path};
+    if (link < 0) return Failure{Fault::kUrdf, "no link `" + name + "`", model.path};
     const int joint = model.links[static_cast<std::size_t>(link)].parent_joint;
-    if (joint < 0) return Failure{"urdf", "finger `" + name + "` hangs on no joint", model.path};
+    if (joint < 0)
+      return Failure{Fault::kUrdf, "finger `" + name + "` hangs on no joint", model.path};
     spec.finger_joints.push_back(model.joints[static_cast<std::size_t>(joint)].name);
   }
   for (const std::string& joint : joints) {
@@ -62,7 +63,7 @@ Result<robot::EeDeltaPoseController> make_controller(const plan::Plan& plan,
   std::vector<std::string> order = spec.arm_joints;
   order.insert(order.end(), spec.finger_joints.begin(), spec.finger_joints.end());
   if (order != joints) {
-    return Failure{"plan", "drives stand in another order than arm joints, then the fingers'",
+    return Failure{Fault::kPlan, "drives stand in another order than arm joints, then the fingers'",
                    where};
   }
   return robot::EeDeltaPoseController::create(model, spec);
@@ -112,7 +113,8 @@ Status EpisodeWorld::read_bodies() {
     if (is_kind(bodies[i], plan::BodyKind::kObject)) {
       const plan::ObjectRecord& object = plan_.objects()[bodies[i].index];
       const auto shape = assets_->shape(object.collision);
-      if (!shape) return Failure{"asset", "object `" + name + "` has no collision mesh", where};
+      if (!shape)
+        return Failure{Fault::kAsset, "object `" + name + "` has no collision mesh", where};
       policy::PrivilegedObject view;
       view.name = name;
       for (const scene::ConvexPart& part : shape->parts) {
@@ -130,7 +132,8 @@ Status EpisodeWorld::read_bodies() {
     if (is_kind(bodies[i], plan::BodyKind::kFixture)) {
       fixture_ = static_cast<std::uint16_t>(i);
       const auto shape = assets_->shape(scene_->fixture_collision);
-      if (!shape) return Failure{"asset", "fixture `" + name + "` has no collision mesh", where};
+      if (!shape)
+        return Failure{Fault::kAsset, "fixture `" + name + "` has no collision mesh", where};
       for (const scene::ConvexPart& part : shape->parts) {
         privileged_.fixtures.emplace_back();
         for (const Vec3& vertex : part.vertices) {
@@ -142,12 +145,12 @@ Status EpisodeWorld::read_bodies() {
     if (is_kind(bodies[i], plan::BodyKind::kLink)) {
       if (links_.empty()) first_link_ = static_cast<std::uint16_t>(i);
       const int link = parts_->model.find_link(name);
-      if (link < 0) return Failure{"urdf", "no link `" + name + "`", parts_->model.path};
+      if (link < 0) return Failure{Fault::kUrdf, "no link `" + name + "`", parts_->model.path};
       links_.push_back(link);
     }
   }
   if (privileged_.objects.size() != object_count_) {
-    return Failure{"plan", "bodies and distractors do not add up", where};
+    return Failure{Fault::kPlan, "bodies and distractors do not add up", where};
   }
   return {};
 }
@@ -218,7 +221,8 @@ Status EpisodeWorld::reset(std::uint32_t index) {
     placed.push_back({to_vec(placement.position), Quat(q[0], q[1], q[2], q[3])});
   }
   if (placed.size() != object_count_) {
-    return Failure{"plan", "episode " + std::to_string(index) + " places another number of objects",
+    return Failure{Fault::kPlan,
+                   "episode " + std::to_string(index) + " places another number of objects",
                    "task `" + std::string(plan_.text(task_->name)) + "`"};
   }
   PROBE_ASSIGN(const std::vector<Pose> settled, settle(placed));

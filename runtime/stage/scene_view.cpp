@@ -31,7 +31,7 @@ Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRec
   if (record.aim == static_cast<std::uint32_t>(plan::CameraAim::kLook)) {
     auto look = render::look_along({aim[0], aim[1], aim[2]});
     if (!look) {
-      return Failure{"render", look.failure().message,
+      return Failure{Fault::kRender, look.failure().message,
                      "camera `" + std::string(plan.text(record.name)) + "`"};
     }
     axes = *look;
@@ -132,7 +132,7 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
     if (kind == plan::BodyKind::kObject) {
       const std::uint32_t visual = plan.objects()[bodies[i].index].visual;
       if (visual == plan::kNone) {
-        return Failure{"asset", "object `" + name + "` has no mesh to draw", ""};
+        return Failure{Fault::kAsset, "object `" + name + "` has no mesh to draw", ""};
       }
       spec.dynamics.push_back({assets->mesh(visual), {}, body, name, false});
       ++view->objects_;
@@ -172,7 +172,7 @@ Status check_shape(const scene::Texture& photo, const plan::CameraRecord& camera
   const auto size = [](auto width, auto height) {
     return std::to_string(width) + " x " + std::to_string(height);
   };
-  return Failure{"render",
+  return Failure{Fault::kRender,
                  "the photo is " + size(photo.width, photo.height) +
                      " pixels, the camera's picture " + size(camera.width, camera.height) +
                      ": a photo of another size is scaled, one of another shape must be cut first",
@@ -190,7 +190,8 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   const std::string mount_name(plan.text(camera.mount_link));
   const int mount = model.find_link(mount_name);
   const std::string where = "camera `" + std::string(plan.text(camera.name)) + "`";
-  if (mount < 0) return Failure{"render", "the robot has no link `" + mount_name + "`", where};
+  if (mount < 0)
+    return Failure{Fault::kRender, "the robot has no link `" + mount_name + "`", where};
   if (!is_fixed(model, mount)) eye.moving_mount = mount;
   tree_.link_poses(plan.joints(scene), links_);
   const Pose mount_pose = base_ * links_[static_cast<std::size_t>(mount)];

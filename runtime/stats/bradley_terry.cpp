@@ -40,8 +40,8 @@ bool has_maximum(const Eigen::MatrixXd& wins) {
 Result<Ranking> bradley_terry(const Eigen::MatrixXd& wins, double prior_wins) {
   const Eigen::Index n = wins.rows();
   if (n < 2 || wins.cols() != n || !wins.allFinite() || wins.minCoeff() < 0) {
-    return Failure{"usage", "a ranking needs a square table of wins, none negative, of two or more",
-                   ""};
+    return Failure{Fault::kUsage,
+                   "a ranking needs a square table of wins, none negative, of two or more", ""};
   }
   Eigen::MatrixXd w = wins;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -54,8 +54,8 @@ Result<Ranking> bradley_terry(const Eigen::MatrixXd& wins, double prior_wins) {
     }
   }
   if (!has_maximum(w)) {
-    return Failure{"usage", "some policies are not linked by comparisons, so they cannot be ranked",
-                   ""};
+    return Failure{Fault::kUsage,
+                   "some policies are not linked by comparisons, so they cannot be ranked", ""};
   }
   Ranking ranking{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   // The information matrix has the constant vector as its null space; adding ones/n makes the

@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Failure failed(const std::string& message) { return {"stats", message, ""}; }
+Failure failed(const std::string& message) { return {Fault::kStats, message, ""}; }
 
 Status check(const MixedData& data) {
   const Index n = data.fixed.rows();

@@ -38,7 +38,7 @@ struct MixedFit {
 // Maximum likelihood with the Laplace approximation, as lme4's glmer (Bates et al. 2015, J.
 // Statist. Software 67:1): penalised iteratively reweighted least squares for the modes of the
 // random effects by sparse Cholesky factors (CHOLMOD) inside a quasi-Newton search over effects and
-// standard deviations, with exact gradients. Fails (code "stats") on sizes that do not agree,
+// standard deviations, with exact gradients. Fails (kStats) on sizes that do not agree,
 // columns that depend on each other, outcomes that fixed effects separate without a prior, or a
 // search that does not settle.
 Result<MixedFit> fit_mixed_logistic(const MixedData& data, const MixedOptions& options = {});

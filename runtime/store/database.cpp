@@ -11,12 +11,12 @@ Failure sqlite_failure(sqlite3* database, Database::Access access, const std::st
   const int code = sqlite3_errcode(database);
   const std::string said = sqlite3_errmsg(database);
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
-    return {"store",
+    return {Fault::kStore,
             "results.sqlite cannot be read (" + said +
                 "); the traces are intact: move this file away and run again",
             where};
   }
-  return {"store",
+  return {Fault::kStore,
           std::string("the results cannot be ") +
               (access == Database::Access::kRead ? "read: " : "stored: ") + said,
           where};
@@ -30,8 +30,8 @@ Result<Database> Database::open(const std::string& path, Access access) {
   // Without write permission SQLite falls back to read-only by itself.
   const int flags = SQLITE_OPEN_READWRITE | (access == Access::kWrite ? SQLITE_OPEN_CREATE : 0);
   if (sqlite3_open_v2(path.c_str(), &database.handle_, flags, nullptr) != SQLITE_OK) {
-    return Failure{"store", std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_),
-                   path};
+    return Failure{Fault::kStore,
+                   std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_), path};
   }
   sqlite3_busy_timeout(database.handle_, 10000);
   if (access == Access::kWrite) PROBE_TRY(database.execute("pragma synchronous = full"));

@@ -18,7 +18,7 @@ class Database {
   enum class Access { kRead, kWrite };
 
   // Readers too may have to roll back what a killed writer left. A writer makes the file if it is
-  // absent and waits for the disk after each transaction. Fails with code "store", where = path.
+  // absent and waits for the disk after each transaction. Fails with kStore, where = path.
   static Result<Database> open(const std::string& path, Access access);
   ~Database();
   Database(Database&& other) noexcept

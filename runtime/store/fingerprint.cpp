@@ -126,10 +126,10 @@ std::string to_json(const Fingerprint& fingerprint) {
 Result<Fingerprint> fingerprint_from_json(std::string_view text) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   Fingerprint fingerprint;
-  if (!json.is_object()) return Failure{"store", "a fingerprint is not a JSON object", ""};
+  if (!json.is_object()) return Failure{Fault::kStore, "a fingerprint is not a JSON object", ""};
   for (const auto& [name, value] : json.items()) {
     if (!value.is_string())
-      return Failure{"store", "fingerprint entry `" + name + "` is no text", ""};
+      return Failure{Fault::kStore, "fingerprint entry `" + name + "` is no text", ""};
     fingerprint.entries.emplace_back(name, value.get<std::string>());
   }
   std::sort(fingerprint.entries.begin(), fingerprint.entries.end());

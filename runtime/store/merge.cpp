@@ -39,7 +39,7 @@ Result<Source> read_source(const std::string& dir) {
   Source source;
   source.dir = dir;
   auto record = read_run_record(dir);
-  if (!record) return Failure{"usage", "cannot be merged: " + record.failure().message, dir};
+  if (!record) return Failure{Fault::kUsage, "cannot be merged: " + record.failure().message, dir};
   source.record = std::move(*record);
   source.builds.push_back(source.record.fingerprint);
   PROBE_ASSIGN(const auto calls, read_run_calls(dir));
@@ -53,7 +53,8 @@ Status check_same_run(const std::vector<Source>& sources, bool mixed_builds,
                       std::vector<std::string>& notes) {
   const Source& first = sources.front();
   const auto differ = [&](const Source& source, const std::string& change) {
-    return Failure{"usage", change + ", as " + first.dir + " does; they are not parts of one run",
+    return Failure{Fault::kUsage,
+                   change + ", as " + first.dir + " does; they are not parts of one run",
                    source.dir};
   };
   std::set<std::string> told;
@@ -64,11 +65,11 @@ Status check_same_run(const std::vector<Source>& sources, bool mixed_builds,
       const RunChanges changes = changes_between(other, first.record);
       if (!changes.identity.empty()) return differ(source, changes.identity);
       if (!changes.policy_content.empty()) {
-        return Failure{"usage", changes.policy_content + " than " + first.dir, source.dir};
+        return Failure{Fault::kUsage, changes.policy_content + " than " + first.dir, source.dir};
       }
       if (changes.build.empty()) continue;
       if (!mixed_builds) {
-        return Failure{"usage",
+        return Failure{Fault::kUsage,
                        changes.build + " than " + first.dir +
                            "; their bits may differ; --mixed-builds joins them all the same",
                        source.dir};
@@ -105,7 +106,7 @@ Status choose_rows(const std::vector<Source>& sources, std::map<EpisodeKey, Chos
         continue;
       }
       if (best.row.trace_sha256 == row.trace_sha256) continue;
-      return Failure{"store",
+      return Failure{Fault::kStore,
                      text_of(row) + " has the trace " + row.trace_sha256.substr(0, 12) +
                          " here and " + best.row.trace_sha256.substr(0, 12) + " in " +
                          best.source->dir + "; nothing was merged",
@@ -118,7 +119,8 @@ Status choose_rows(const std::vector<Source>& sources, std::map<EpisodeKey, Chos
 Status copy(const std::string& from, const std::string& to) {
   std::error_code error;
   fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-  if (error) return Failure{"store", "cannot be copied to " + to + ": " + error.message(), from};
+  if (error)
+    return Failure{Fault::kStore, "cannot be copied to " + to + ": " + error.message(), from};
   return {};
 }
 
@@ -157,7 +159,7 @@ std::vector<std::string> folders_of(const MergeOptions& options, bool with_out) 
 
 Result<MergeSummary> merge(const MergeOptions& options) {
   MergeSummary summary;
-  if (options.dirs.empty()) return Failure{"usage", "no folder to merge", "DIR"};
+  if (options.dirs.empty()) return Failure{Fault::kUsage, "no folder to merge", "DIR"};
   // What is in `out` already goes first, so that it stays as it is wherever it is as good.
   std::vector<Source> sources;
   PROBE_ASSIGN(const auto there, find_run_record(options.out));
@@ -187,7 +189,8 @@ Result<MergeSummary> merge(const MergeOptions& options) {
     if (there && best.source == &sources.front()) continue;
     const auto task = plan.find_task(best.row.task);
     if (!task) {
-      return Failure{"store", "its plan has no task `" + best.row.task + "`", best.source->dir};
+      return Failure{Fault::kStore, "its plan has no task `" + best.row.task + "`",
+                     best.source->dir};
     }
     PROBE_TRY(take_over(best, *store, options.out, static_cast<int>(*task)));
     ++summary.added;

@@ -23,8 +23,8 @@ struct MergeSummary {
   std::vector<std::string> notes;
 };
 
-// Fails (code "usage") when a folder holds no run, or one of another plan, policy, profile or
-// (unless mixed_builds) build than the first, and (code "store") when two folders have the same
+// Fails (kUsage) when a folder holds no run, or one of another plan, policy, profile or
+// (unless mixed_builds) build than the first, and (kStore) when two folders have the same
 // episode with different traces; nothing is written then. Valid rows win over invalid ones; a valid
 // row whose trace is not whole counts as absent, with a note. Called again it continues.
 Result<MergeSummary> merge(const MergeOptions& options);

@@ -37,8 +37,8 @@ struct ResultRow {
   bool operator==(const ResultRow&) const = default;
 };
 
-// The rows stored in `dir`, ascending by the plan's task order, episode and seed. Fails (code
-// "store") if there is no run in `dir`.
+// The rows stored in `dir`, ascending by the plan's task order, episode and seed. Fails
+// (kStore) if there is no run in `dir`.
 Result<std::vector<ResultRow>> read_results(const std::string& dir);
 
 // A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.

@@ -9,7 +9,7 @@ namespace probe::store {
 namespace {
 
 Failure failed(const std::string& message, const std::string& where) {
-  return {"store", message, where};
+  return {Fault::kStore, message, where};
 }
 
 Failure bad_record(const std::string& key, const char* wanted, const std::string& where) {

@@ -33,7 +33,7 @@ struct RunRecord {
 };
 
 std::string record_to_text(const RunRecord& record);
-// Fails (code "store", at `where`) naming the key that is missing or of another type, and on a
+// Fails (kStore, at `where`) naming the key that is missing or of another type, and on a
 // schema that this program does not know.
 Result<RunRecord> record_from_text(const std::string& text, const std::string& where);
 

@@ -41,7 +41,7 @@ alter table episodes add column sent_image_sha256 text;
 )";
 
 Failure failed(const std::string& message, const std::string& where) {
-  return {"store", message, where};
+  return {Fault::kStore, message, where};
 }
 
 using Access = Database::Access;

@@ -25,7 +25,7 @@ struct StoredEpisode {
 // One process writes a folder at a time; the methods may be called from any thread, one at a time.
 class Store {
  public:
-  // Makes the folder or continues it, whatever the build. Fails (code "store") when the folder
+  // Makes the folder or continues it, whatever the build. Fails (kStore) when the folder
   // cannot be written, another process writes it, or it holds a run of another identity; the
   // message says which part differs.
   static Result<std::unique_ptr<Store>> open(const std::string& dir, const RunRecord& record,
@@ -47,11 +47,11 @@ class Store {
   virtual Status write_call(const RunCall& call) = 0;
 };
 
-// Nothing when no run was begun in `dir`; fails (code "store") on one that cannot be read.
+// Nothing when no run was begun in `dir`; fails (kStore) on one that cannot be read.
 Result<std::optional<RunRecord>> find_run_record(const std::string& dir);
 // All calls that wrote into `dir`, oldest first.
 Result<std::vector<RunCall>> read_run_calls(const std::string& dir);
-// The run in `dir`, for readers; fails (code "store") if there is none.
+// The run in `dir`, for readers; fails (kStore) if there is none.
 Result<RunRecord> read_run_record(const std::string& dir);
 std::string plan_path(const std::string& dir);
 std::string trace_path(const std::string& dir, const std::string& task, int episode, int seed);

@@ -11,14 +11,14 @@ Result<Trace> read_stored_trace(const ResultRow& row) {
   if (to_hex(trace.hash) != row.trace_sha256 || header.task != row.task ||
       header.episode != row.episode || header.seed != row.seed || header.policy != row.policy ||
       to_hex(header.start_id) != row.start_id || to_hex(header.episode_id) != row.episode_id) {
-    return Failure{"trace",
+    return Failure{Fault::kTrace,
                    "this trace is not the one its result row was made with (it is of " +
                        header.task + " episode " + std::to_string(header.episode) + " seed " +
                        std::to_string(header.seed) + ", policy `" + header.policy + "`)",
                    row.trace};
   }
   if (trace.end->invalid != row.invalid || (!row.invalid && trace.end->metrics != row.metrics)) {
-    return Failure{"trace", "this trace ended with other verdicts than its result row says",
+    return Failure{Fault::kTrace, "this trace ended with other verdicts than its result row says",
                    row.trace};
   }
   return trace;
@@ -41,12 +41,13 @@ Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, 
     if (!has_task) {
       std::vector<std::string> names;
       for (const ResultRow& row : rows) names.push_back(row.task);
-      return Failure{"usage", "this run has no " + name + did_you_mean(task, names), dir};
+      return Failure{Fault::kUsage, "this run has no " + name + did_you_mean(task, names), dir};
     }
     if (!has_episode) {
-      return Failure{"usage", name + " has no stored episode " + std::to_string(episode), dir};
+      return Failure{Fault::kUsage, name + " has no stored episode " + std::to_string(episode),
+                     dir};
     }
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "episode " + std::to_string(episode) + " of " + name + " has no seed " +
                        std::to_string(*seed),
                    dir};

@@ -6,13 +6,13 @@
 
 namespace probe::store {
 
-// Reads `row.trace` whole. Fails (code "trace", naming the file) when it is absent, truncated or
+// Reads `row.trace` whole. Fails (kTrace, naming the file) when it is absent, truncated or
 // damaged, when its hash is not the row's, when it is of another task, episode, seed, policy or
 // start, or when its verdicts are not the row's.
 Result<Trace> read_stored_trace(const ResultRow& row);
 
-// The stored row's trace of an episode; without a seed the one with the lowest. Fails (code
-// "usage") when the run has no such task, episode or seed, naming what it has.
+// The stored row's trace of an episode; without a seed the one with the lowest. Fails
+// (kUsage) when the run has no such task, episode or seed, naming what it has.
 struct StoredTrace {
   ResultRow row;
   Trace trace;

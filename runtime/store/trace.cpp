@@ -103,7 +103,7 @@ class FileTraceWriter final : public TraceWriter {
 
  private:
   Failure failed(const char* what) const {
-    return {"store", std::string(what) + ": " + std::strerror(errno), path_};
+    return {Fault::kStore, std::string(what) + ": " + std::strerror(errno), path_};
   }
 
   Status chunk(Tag tag, std::span<const std::byte> payload) {
@@ -127,7 +127,7 @@ class FileTraceWriter final : public TraceWriter {
       ZSTD_outBuffer out{buffer.data(), buffer.size(), 0};
       const std::size_t left = ZSTD_compressStream2(stream_, &out, &in, directive);
       if (ZSTD_isError(left) != 0) {
-        return Failure{"store", std::string("zstd: ") + ZSTD_getErrorName(left), path_};
+        return Failure{Fault::kStore, std::string("zstd: ") + ZSTD_getErrorName(left), path_};
       }
       PROBE_TRY(write(std::span(buffer).first(out.pos)));
       if (directive == ZSTD_e_continue ? in.pos == in.size : left == 0) return {};
@@ -159,7 +159,7 @@ struct Content {
 Result<Content> decompress(const std::string& path) {
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) {
-    return Failure{"trace", std::string("cannot be opened: ") + std::strerror(errno), path};
+    return Failure{Fault::kTrace, std::string("cannot be opened: ") + std::strerror(errno), path};
   }
   ZSTD_DCtx* stream = ZSTD_createDCtx();
   ZSTD_DCtx_setParameter(stream, ZSTD_d_windowLogMax, kMaxWindowLog);
@@ -199,7 +199,7 @@ Result<Content> decompress(const std::string& path) {
   const bool read_error = std::ferror(file) != 0;
   std::fclose(file);
   ZSTD_freeDCtx(stream);
-  if (read_error) return Failure{"trace", "cannot be read", path};
+  if (read_error) return Failure{Fault::kTrace, "cannot be read", path};
   if (content.incomplete.empty() && !ended) {
     content.incomplete = "truncated at byte " + std::to_string(total);
   }
@@ -299,7 +299,7 @@ Result<std::unique_ptr<TraceWriter>> TraceWriter::create(const std::string& path
                                                          const TraceHeader& header) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) {
-    return Failure{"store", std::string("cannot be made: ") + std::strerror(errno), path};
+    return Failure{Fault::kStore, std::string("cannot be made: ") + std::strerror(errno), path};
   }
   auto writer = std::make_unique<FileTraceWriter>(path, file);
   PROBE_TRY(writer->begin(header));
@@ -312,17 +312,18 @@ Result<Trace> read_trace_prefix(const std::string& path) {
   const auto magic = from.take(codec::kMagic.size());
   if (magic.empty() || std::memcmp(magic.data(), codec::kMagic.data(), magic.size()) != 0) {
     return Failure{
-        "trace",
+        Fault::kTrace,
         content.incomplete.empty() ? "not a trace" : "not a trace, or " + content.incomplete, path};
   }
   const std::uint32_t version = from.u32();
   const std::uint32_t zero = from.u32();
   if (from.ok() && version != codec::kVersion) {
-    return Failure{"trace", "trace format " + std::to_string(version) + ", this program reads 1",
-                   path};
+    return Failure{Fault::kTrace,
+                   "trace format " + std::to_string(version) + ", this program reads 1", path};
   }
 
-  if (zero != 0) return Failure{"trace", "reserved bytes after the version are not zero", path};
+  if (zero != 0)
+    return Failure{Fault::kTrace, "reserved bytes after the version are not zero", path};
 
   Trace trace;
   Hasher hasher;
@@ -351,8 +352,8 @@ Result<Trace> read_trace_prefix(const std::string& path) {
     }
   }
   if (!has_header) {
-    return Failure{"trace", "no readable header: " + (wrong.empty() ? content.incomplete : wrong),
-                   path};
+    return Failure{Fault::kTrace,
+                   "no readable header: " + (wrong.empty() ? content.incomplete : wrong), path};
   }
   trace.hash = hasher.finish();
   if (wrong.empty()) wrong = content.incomplete;
@@ -366,7 +367,7 @@ Result<Trace> read_trace_prefix(const std::string& path) {
 
 Result<Trace> read_trace(const std::string& path) {
   PROBE_ASSIGN(Trace trace, read_trace_prefix(path));
-  if (!trace.incomplete.empty()) return Failure{"trace", trace.incomplete, path};
+  if (!trace.incomplete.empty()) return Failure{Fault::kTrace, trace.incomplete, path};
   return trace;
 }
 

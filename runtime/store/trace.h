@@ -86,7 +86,7 @@ struct Trace {
   std::string incomplete;  // why the reader stopped early; empty for a whole trace
 };
 
-// The whole trace; fails (code "trace") on a truncated or damaged one, saying where and after which
+// The whole trace; fails (kTrace) on a truncated or damaged one, saying where and after which
 // step.
 Result<Trace> read_trace(const std::string& path);
 // As far as whole steps go: `incomplete` says why it ended. Fails only if not even the header is

@@ -137,7 +137,7 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
 Status Judge::begin(std::span<const BodyStart> starts) {
   begun_ = false;
   if (starts.size() != bodies_) {
-    return Failure{"judge",
+    return Failure{Fault::kJudge,
                    "the start has " + std::to_string(starts.size()) + " bodies, the task has " +
                        std::to_string(bodies_),
                    task_name_};
@@ -148,7 +148,7 @@ Status Judge::begin(std::span<const BodyStart> starts) {
     check.see(starts[i].half);
     check.see(starts[i].opening);
     if (!check.ok()) {
-      return Failure{"judge", "the start of body " + std::to_string(i) + " is not finite",
+      return Failure{Fault::kJudge, "the start of body " + std::to_string(i) + " is not finite",
                      task_name_};
     }
   }
@@ -162,16 +162,16 @@ Status Judge::begin(std::span<const BodyStart> starts) {
 }
 
 Status Judge::check(const StepSample& sample) const {
-  if (!begun_) return Failure{"judge", "a step before the episode began", task_name_};
+  if (!begun_) return Failure{Fault::kJudge, "a step before the episode began", task_name_};
   if (sample.bodies.size() != bodies_) {
-    return Failure{"judge",
+    return Failure{Fault::kJudge,
                    "a step measures " + std::to_string(sample.bodies.size()) +
                        " bodies, the task has " + std::to_string(bodies_),
                    task_name_};
   }
   for (std::size_t i = 0; i < sample.bodies.size(); ++i) {
     if (!is_finite(sample.bodies[i])) {
-      return Failure{"judge", "a measurement of body " + std::to_string(i) + " is not finite",
+      return Failure{Fault::kJudge, "a measurement of body " + std::to_string(i) + " is not finite",
                      task_name_};
     }
   }
@@ -180,7 +180,7 @@ Status Judge::check(const StepSample& sample) const {
     FiniteCheck contact;
     contact.see(c.push);
     if (!contact.ok()) {
-      return Failure{"judge",
+      return Failure{Fault::kJudge,
                      "the impulse between bodies " + std::to_string(c.a) + " and " +
                          std::to_string(c.b) + " is not finite",
                      task_name_};
@@ -188,7 +188,7 @@ Status Judge::check(const StepSample& sample) const {
     const bool ascends =
         previous == nullptr || std::pair(previous->a, previous->b) < std::pair(c.a, c.b);
     if (c.a >= c.b || c.b >= bodies_ || !ascends) {
-      return Failure{"judge", "contacts ascend by pair, the smaller body first", task_name_};
+      return Failure{Fault::kJudge, "contacts ascend by pair, the smaller body first", task_name_};
     }
     previous = &c;
   }
@@ -198,7 +198,8 @@ Status Judge::check(const StepSample& sample) const {
   rest.see(sample.step);
   rest.see(sample.time);
   if (!rest.ok())
-    return Failure{"judge", "a measurement of the robot or the clock is not finite", task_name_};
+    return Failure{Fault::kJudge, "a measurement of the robot or the clock is not finite",
+                   task_name_};
   return {};
 }
 
@@ -221,7 +222,7 @@ Status Judge::step(const StepSample& sample) {
   run(each_, sample);
   FiniteCheck check;
   for (double value : emitted_) check.see(value);
-  if (!check.ok()) return Failure{"judge", "the value of a metric is not finite", task_name_};
+  if (!check.ok()) return Failure{Fault::kJudge, "the value of a metric is not finite", task_name_};
   std::ranges::copy(emitted_, values_.begin());
   return {};
 }

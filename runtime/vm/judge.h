@@ -23,10 +23,10 @@ class Judge {
   Judge(const plan::Plan& plan, std::uint32_t task);
 
   // Starts an episode: clears all monitors; `starts` holds one entry a body of the task, in the
-  // plan's order. Fails (code "judge") when the number of bodies differs or a number is not finite.
+  // plan's order. Fails (kJudge) when the number of bodies differs or a number is not finite.
   Status begin(std::span<const BodyStart> starts);
 
-  // One control step, after physics. Fails (code "judge") when the sample does not fit the task or
+  // One control step, after physics. Fails (kJudge) when the sample does not fit the task or
   // holds a number that is not finite: the episode is invalid then, and the values are those of the
   // step before.
   Status step(const StepSample& sample);

@@ -51,9 +51,10 @@ Status finish(boost::asio::io_context& io, boost::beast::tcp_stream& stream,
               Start start) {
   const auto result = run_until(io, stream, deadline.at, std::move(start));
   if (!result) {
-    return Failure{"policy", doing + " took more than " + seconds_text(deadline.stated), server};
+    return Failure{Fault::kPolicy, doing + " took more than " + seconds_text(deadline.stated),
+                   server};
   }
-  if (*result) return Failure{"policy", doing + ": " + result->message(), server};
+  if (*result) return Failure{Fault::kPolicy, doing + ": " + result->message(), server};
   return {};
 }
 

@@ -6,7 +6,7 @@ namespace probe::wire {
 namespace {
 
 Failure bad(std::string_view text, const std::string& what) {
-  return {"usage", "`" + std::string(text) + "`: " + what, "--policy"};
+  return {Fault::kUsage, "`" + std::string(text) + "`: " + what, "--policy"};
 }
 
 bool is_port(std::string_view text) {
@@ -28,7 +28,7 @@ Result<std::string> decoded(std::string_view text) {
     const auto [end, error] =
         std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
     if (digits.size() < 2 || error != std::errc() || end != digits.data() + 2) {
-      return Failure{"usage", "`%` is not followed by two hexadecimal digits", "--policy"};
+      return Failure{Fault::kUsage, "`%` is not followed by two hexadecimal digits", "--policy"};
     }
     plain += static_cast<char>(byte);
     i += 2;
@@ -54,7 +54,7 @@ bool is_secret(std::string_view option) {
 }
 
 Failure secret(const std::string& what) {
-  return {"usage",
+  return {Fault::kUsage,
           what +
               " would be stored with every result: give it in the environment, as "
               "VLAPROBE_API_KEY",
@@ -100,7 +100,7 @@ Status read_options(std::string_view text, std::map<std::string, std::string>* o
     const std::size_t equals = pair.find('=');
     if (equals == std::string_view::npos || equals == 0) {
       // Not shown: it may be the rest of a password with `&`.
-      return Failure{"usage",
+      return Failure{Fault::kUsage,
                      "option " + std::to_string(number) + " of the address is not `name=value`",
                      "--policy"};
     }
@@ -130,7 +130,8 @@ Result<Endpoint> parse_endpoint(std::string_view text, std::string_view default_
   for (const char c : text) {
     // They would end a line of an HTTP request.
     if (static_cast<unsigned char>(c) <= 0x20 || c == 0x7f) {
-      return Failure{"usage", "a server's address has a blank or a control character; write %20",
+      return Failure{Fault::kUsage,
+                     "a server's address has a blank or a control character; write %20",
                      "--policy"};
     }
   }

@@ -22,7 +22,7 @@ struct Endpoint {
 };
 
 // `text` begins with "//". A missing port is `default_port`; a host in brackets is an IPv6 address.
-// Fails (code "usage", place "--policy") naming what is missing or twice there, and on whatever
+// Fails (kUsage, place "--policy") naming what is missing or twice there, and on whatever
 // looks like a secret: an option or a parameter inside an option's value with such a name, a name
 // or a password in a URL. No message shows it.
 Result<Endpoint> parse_endpoint(std::string_view text, std::string_view default_port);

@@ -57,7 +57,8 @@ Result<HttpResponse> exchange(const Endpoint& server, const HttpRequest& request
     http::async_write(stream, message, [done](error_code error, std::size_t) { done(error); });
   });
   if (!written) {
-    return Failure{"policy", "took no message for " + seconds_text(options.timeout), server.name()};
+    return Failure{Fault::kPolicy, "took no message for " + seconds_text(options.timeout),
+                   server.name()};
   }
   // A server may answer "too large" and close while we still write: its answer counts.
   http::response_parser<http::string_body> parser;
@@ -81,9 +82,9 @@ Result<HttpResponse> exchange(const Endpoint& server, const HttpRequest& request
     });
   }
   if (!read) {
-    return Failure{"policy", "no answer in " + seconds_text(options.timeout), server.name()};
+    return Failure{Fault::kPolicy, "no answer in " + seconds_text(options.timeout), server.name()};
   }
-  if (*read) return Failure{"policy", reason(*read, options), server.name()};
+  if (*read) return Failure{Fault::kPolicy, reason(*read, options), server.name()};
   return HttpResponse{
       parser.get().result_int() > 999 ? 0 : static_cast<int>(parser.get().result_int()),
       std::move(parser.get().body())};
@@ -96,7 +97,7 @@ Result<HttpResponse> http_exchange(const Endpoint& server, const HttpRequest& re
   try {
     return exchange(server, request, options);
   } catch (const std::exception& error) {
-    return Failure{"policy", error.what(), server.name()};
+    return Failure{Fault::kPolicy, error.what(), server.name()};
   }
 }
 

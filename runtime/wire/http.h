@@ -32,7 +32,7 @@ struct HttpResponse {
   std::string body;
 };
 
-// Whatever status the server answers with is a response. Fails (code "policy") naming the server
+// Whatever status the server answers with is a response. Fails (kPolicy) naming the server
 // and what happened: unknown host, refused, no answer in time, closed before or in the middle of
 // its answer, more than the largest body, no HTTP. `server.path` is not used.
 Result<HttpResponse> http_exchange(const Endpoint& server, const HttpRequest& request,

@@ -13,7 +13,7 @@ using Json = nlohmann::json;
 
 constexpr int kDepth = 64;
 
-Failure failed(const std::string& message) { return {"policy", message, ""}; }
+Failure failed(const std::string& message) { return {Fault::kPolicy, message, ""}; }
 
 // ---- writing ----------------------------------------------------------------------------------
 

@@ -14,7 +14,7 @@ namespace probe::wire {
 // Bytes are written as base64 text; numbers that are not finite as Python writes them.
 std::string to_json(const Value& value);
 
-// One whole document. Maps that mark an array become Array. Fails (code "policy") on what is no
+// One whole document. Maps that mark an array become Array. Fails (kPolicy) on what is no
 // JSON, on more than 64 levels, on a marked array whose bytes do not fit its shape.
 Result<Value> from_json(std::string_view text);
 

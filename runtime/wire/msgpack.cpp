@@ -14,7 +14,7 @@ constexpr std::size_t kDepth = 64;
 // at a level.
 constexpr std::size_t kElements = 65536;
 
-Failure failed(const std::string& message) { return {"policy", message, ""}; }
+Failure failed(const std::string& message) { return {Fault::kPolicy, message, ""}; }
 
 // ---- writing ----------------------------------------------------------------------------------
 

@@ -21,7 +21,7 @@ enum class ArrayStyle {
 Bytes to_msgpack(const Value& value, ArrayStyle style);
 
 // One whole message. Maps that mark an array or a numpy scalar become Array and number; keys are
-// text or bin. Fails (code "policy") on trailing or missing bytes, on more than 64 levels, on a
+// text or bin. Fails (kPolicy) on trailing or missing bytes, on more than 64 levels, on a
 // marked array whose bytes do not fit its shape, on keys that are no texts. Memory is bounded by
 // the message's own size.
 Result<Value> from_msgpack(std::span<const std::uint8_t> bytes);

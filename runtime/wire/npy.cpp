@@ -11,7 +11,9 @@ namespace {
 constexpr std::string_view kMagic("\x93NUMPY", 6);
 constexpr std::size_t kAlignment = 64;  // of the data, from numpy 1.14 on
 
-Failure failed(const std::string& message) { return {"policy", "a .npy array " + message, ""}; }
+Failure failed(const std::string& message) {
+  return {Fault::kPolicy, "a .npy array " + message, ""};
+}
 
 std::string shape_text(const std::vector<std::int64_t>& shape) {
   std::string text = "(";

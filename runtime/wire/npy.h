@@ -8,7 +8,7 @@ namespace probe::wire {
 
 Bytes to_npy(const Array& array);
 
-// Fails (code "policy") on another magic, a header that is no header, Fortran order, a dtype that
+// Fails (kPolicy) on another magic, a header that is no header, Fortran order, a dtype that
 // is not read, or bytes that do not fit the shape.
 Result<Array> from_npy(const Bytes& file);
 

@@ -83,7 +83,8 @@ Status append_numbers(const Value& value, std::vector<double>* numbers) {
     return {};
   }
   const auto* array = value.as<Array>();
-  if (array == nullptr) return Failure{"policy", "expected numbers, got " + describe(value), ""};
+  if (array == nullptr)
+    return Failure{Fault::kPolicy, "expected numbers, got " + describe(value), ""};
   PROBE_TRY(check_fit(*array));
   const Reader& reader = *reader_of(array->dtype);
   const std::size_t count = array->bytes.size() / reader.size;
@@ -153,7 +154,8 @@ Array array_f64(std::vector<std::int64_t> shape, const std::vector<double>& valu
 Status check_fit(const Array& array) {
   const Reader* reader = reader_of(array.dtype);
   if (reader == nullptr) {
-    return Failure{"policy", "an array of dtype `" + shown(array.dtype) + "` is not read", ""};
+    return Failure{Fault::kPolicy, "an array of dtype `" + shown(array.dtype) + "` is not read",
+                   ""};
   }
   // A product that passes the number of bytes need not be followed further.
   std::uint64_t count = 1;
@@ -162,7 +164,7 @@ Status check_fit(const Array& array) {
     if (count > array.bytes.size()) break;
   }
   if (count * reader->size == array.bytes.size()) return {};
-  return Failure{"policy",
+  return Failure{Fault::kPolicy,
                  "an array of shape " + joined(array.shape) + " and dtype " + array.dtype +
                      " has " + std::to_string(array.bytes.size()) + " bytes",
                  ""};

@@ -66,11 +66,11 @@ Array array_u8(std::vector<std::int64_t> shape, Bytes bytes);
 Array array_f32(std::vector<std::int64_t> shape, const std::vector<double>& values);
 Array array_f64(std::vector<std::int64_t> shape, const std::vector<double>& values);
 
-// Fails (code "policy") unless the bytes are what shape and dtype need.
+// Fails (kPolicy) unless the bytes are what shape and dtype need.
 Status check_fit(const Array& array);
 
-// The elements as numbers. Also of a plain number, a list of numbers, nested lists. Fails (code
-// "policy") on anything else or when bytes do not fit the shape.
+// The elements as numbers. Also of a plain number, a list of numbers, nested lists. Fails
+// (kPolicy) on anything else or when bytes do not fit the shape.
 Result<std::vector<double>> to_numbers(const Value& value);
 // The shape of what to_numbers reads; empty for a plain number.
 std::vector<std::int64_t> shape_of(const Value& value);

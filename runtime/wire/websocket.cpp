@@ -105,7 +105,7 @@ class WebSocket::Connection {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, timeout, [this] { return !inbox_.empty() || broken_; })) {
       is_late_ = true;
-      return Failure{"policy", "no answer in " + seconds_text(timeout), name_};
+      return Failure{Fault::kPolicy, "no answer in " + seconds_text(timeout), name_};
     }
     if (inbox_.empty()) return *broken_;
     Message message = std::move(inbox_.front());
@@ -132,7 +132,7 @@ class WebSocket::Connection {
         response->result() == beast::http::status::unauthorized ||
         response->result() == beast::http::status::forbidden;  // others may be a server that starts
     return Failure{
-        is_declined_for_good ? "answered" : "policy",
+        is_declined_for_good ? Fault::kAnswered : Fault::kPolicy,
         "opening a WebSocket: answered with HTTP status " + std::to_string(response->result_int()),
         name_};
   }
@@ -185,7 +185,7 @@ class WebSocket::Connection {
 
   // Under mutex_. The first reason is the one that counts.
   void break_off(const std::string& why) {
-    if (!broken_) broken_ = Failure{"policy", why, name_};
+    if (!broken_) broken_ = Failure{Fault::kPolicy, why, name_};
   }
 
   std::string name_;
@@ -214,7 +214,7 @@ Result<std::unique_ptr<WebSocket>> WebSocket::connect(const Endpoint& server,
     PROBE_TRY(connection->open(server));
     return std::unique_ptr<WebSocket>(new WebSocket(std::move(connection)));
   } catch (const std::exception& error) {
-    return Failure{"policy", error.what(), server.name()};
+    return Failure{Fault::kPolicy, error.what(), server.name()};
   }
 }
 

@@ -32,7 +32,7 @@ struct Message {
 
 class WebSocket {
  public:
-  // Fails (code "policy") naming the server and what happened: unknown host, refused, no answer in
+  // Fails (kPolicy) naming the server and what happened: unknown host, refused, no answer in
   // time, no WebSocket.
   static Result<std::unique_ptr<WebSocket>> connect(const Endpoint& server,
                                                     const WebSocketOptions& options = {});
@@ -40,7 +40,7 @@ class WebSocket {
 
   // One binary message, whole; returns when it is handed to the system.
   Status send(std::span<const std::uint8_t> bytes, Duration timeout);
-  // The next message in order, fragments joined. Fails (code "policy") when none comes in time,
+  // The next message in order, fragments joined. Fails (kPolicy) when none comes in time,
   // when the server closes (with its code and reason) or sends more than the largest message. After
   // a failure only the destructor is of use.
   Result<Message> receive(Duration timeout);

@@ -147,7 +147,9 @@ class ZmqRequester::Sockets {
     return "the server went away";
   }
 
-  Failure failed(const std::string& message) const { return {"policy", message, server_.name()}; }
+  Failure failed(const std::string& message) const {
+    return {Fault::kPolicy, message, server_.name()};
+  }
 
   Endpoint server_;
   ZmqOptions options_;
@@ -168,7 +170,7 @@ Result<std::unique_ptr<ZmqRequester>> ZmqRequester::create(const Endpoint& serve
     return std::unique_ptr<ZmqRequester>(
         new ZmqRequester(std::make_unique<Sockets>(server, options)));
   } catch (const std::exception& error) {
-    return Failure{"policy", error.what(), server.name()};
+    return Failure{Fault::kPolicy, error.what(), server.name()};
   }
 }
 
@@ -177,7 +179,7 @@ Result<Bytes> ZmqRequester::ask(std::span<const std::uint8_t> message, Duration 
     return sockets_->ask(message, timeout);
   } catch (const std::exception& error) {
     sockets_->close();
-    return Failure{"policy", error.what(), sockets_->server()};
+    return Failure{Fault::kPolicy, error.what(), sockets_->server()};
   }
 }
 

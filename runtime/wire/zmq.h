@@ -20,13 +20,13 @@ struct ZmqOptions {
 
 class ZmqRequester {
  public:
-  // Fails (code "policy") only when the system gives no socket; the server is met by ask().
+  // Fails (kPolicy) only when the system gives no socket; the server is met by ask().
   static Result<std::unique_ptr<ZmqRequester>> create(const Endpoint& server,
                                                       const ZmqOptions& options = {});
   ~ZmqRequester();
 
-  // Sends one message and waits for its answer, connecting first where that is needed. Fails (code
-  // "policy") naming the server and what happened: nobody there, no ZeroMQ, no answer in `timeout`,
+  // Sends one message and waits for its answer, connecting first where that is needed. Fails
+  // (kPolicy) naming the server and what happened: nobody there, no ZeroMQ, no answer in `timeout`,
   // closed before it answered, more than the largest message. After a failure the next call begins
   // with a new socket, because an unanswered REQ socket can never send again.
   Result<Bytes> ask(std::span<const std::uint8_t> message, Duration timeout);

@@ -39,7 +39,7 @@ SimTK::MassProperties to_mass(double mass, const Vec3& moment, const Mat3& i) {
           SimTK::Inertia(i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2))};
 }
 
-Failure world_failure(std::string message) { return {"world", std::move(message), ""}; }
+Failure world_failure(std::string message) { return {Fault::kWorld, std::move(message), ""}; }
 
 }  // namespace
 

@@ -33,14 +33,14 @@ struct MultibodyBuild {
   bool library_asserts = true, adapter_asserts = true;
 };
 MultibodyBuild multibody_build();
-// Fails (code "world") if they differ; each robot that is made checks it.
+// Fails (kWorld) if they differ; each robot that is made checks it.
 Status check_layout(const MultibodyBuild& build);
 
 class ArmDynamics {
  public:
   // `joints`: indices into model.joints, in the order wanted for q. A joint that is not among them
   // must be fixed or mimic one that is. Fixed links are merged into the link they hang on. Fails
-  // (code "world") on missing or surplus joints and impossible inertia.
+  // (kWorld) on missing or surplus joints and impossible inertia.
   static Result<std::unique_ptr<ArmDynamics>> create(const robot::RobotModel& model,
                                                      const Pose& base,
                                                      const std::vector<int>& joints);

@@ -142,11 +142,12 @@ Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
   bool tilt_locked = false;
   get(magic), get(joints_count), get(bodies_count), get(records_count), get(substep),
       get(tilt_locked);
-  if (!in.good() || magic != kMagic) return Failure{"world", "the bytes are not a saved world", ""};
+  if (!in.good() || magic != kMagic)
+    return Failure{Fault::kWorld, "the bytes are not a saved world", ""};
   if (joints_count != static_cast<std::uint32_t>(stepper->drives.count) ||
       bodies_count != stepper->bodies.size() || records_count != stepper->table.records.size()) {
-    return Failure{"world", "the saved state is of a world with other joints, bodies or shapes",
-                   ""};
+    return Failure{Fault::kWorld,
+                   "the saved state is of a world with other joints, bodies or shapes", ""};
   }
   Joints joints;
   joint_fields(get, joints);
@@ -161,11 +162,11 @@ Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
     std::uint32_t index = 0;
     get(index);
     if (index >= records.size())
-      return Failure{"world", "the saved state names a pair that is not there", ""};
+      return Failure{Fault::kWorld, "the saved state names a pair that is not there", ""};
     PairRecord& record = records[index];
     get(record.frozen), get(record.count);
     if (record.count < 0 || record.count > kMaxPoints) {
-      return Failure{"world", "the saved state has a pair with too many points", ""};
+      return Failure{Fault::kWorld, "the saved state has a pair with too many points", ""};
     }
     get(record.axes), get(record.offset), get(record.impulse);
     for (size_t k = 0; k < static_cast<size_t>(record.count); ++k)
@@ -174,7 +175,7 @@ Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
     record.last = substep - 1;
   }
   if (!in.at_end())
-    return Failure{"world", "the saved state is cut short or has bytes left over", ""};
+    return Failure{Fault::kWorld, "the saved state is cut short or has bytes left over", ""};
 
   stepper->substep = substep;
   stepper->ambient.tilt_locked = tilt_locked;

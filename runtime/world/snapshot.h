@@ -12,7 +12,7 @@
 namespace probe::world {
 
 std::vector<std::byte> save_state(const Stepper& stepper);
-// Fails (code "world") on bytes of another world or of no world; the stepper is then unchanged.
+// Fails (kWorld) on bytes of another world or of no world; the stepper is then unchanged.
 Status restore_state(std::span<const std::byte> bytes, Stepper* stepper);
 Sha256 hash_state(const Stepper& stepper);
 

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMaxResolves = 5;
 
 Failure stiff_failure() {
-  return {"world", "the robot's mass matrix is not positive definite", ""};
+  return {Fault::kWorld, "the robot's mass matrix is not positive definite", ""};
 }
 
 }  // namespace

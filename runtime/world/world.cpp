@@ -19,7 +19,7 @@ constexpr double kTooDeep = 1.0;       // m below the surface
 constexpr double kTooFar = 100.0;      // m from the world's origin
 constexpr double kBeyondLimit = 1e-3;  // m or rad that a joint may start past a limit, by rounding
 
-Failure fail(std::string message) { return {"world", std::move(message), ""}; }
+Failure fail(std::string message) { return {Fault::kWorld, std::move(message), ""}; }
 
 bool is_solid(const scene::CollisionShape& shape) {
   if (shape.parts.empty() || !(shape.volume > 0) || !std::isfinite(shape.volume)) return false;

@@ -101,7 +101,7 @@ struct ContactImpulse {
 
 class World {
  public:
-  // Fails (code "world") on mass or inertia that no body can have, unknown joints or links,
+  // Fails (kWorld) on mass or inertia that no body can have, unknown joints or links,
   // non-finite numbers.
   static Result<std::unique_ptr<World>> create(WorldSpec spec);
   virtual ~World() = default;
@@ -125,7 +125,7 @@ class World {
   virtual void lock_tilt(bool locked) = 0;
   virtual void stop_bodies() = 0;  // zero velocities
 
-  // Advances n substeps. Fails (code "world") when a number is not finite, or a body is faster than
+  // Advances n substeps. Fails (kWorld) when a number is not finite, or a body is faster than
   // 50 m/s, far below the floor or 100 m away; the message names the body. The world must not be
   // used after that.
   virtual Status step(int substeps) = 0;

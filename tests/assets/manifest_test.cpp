@@ -54,7 +54,7 @@ TEST_CASE("making the assets again gives the bytes that are checked in") {
 TEST_CASE("files that cannot be written are a failure that names the place") {
   const Status status = make::write_files("/dev/null/assets", {{"a/b.txt", "text"}});
   REQUIRE(!status.ok());
-  CHECK(status.failure().code == "io");
+  CHECK(status.failure().code == Fault::kIo);
   CHECK(status.failure().where.find("/dev/null/assets") == 0);
 }
 

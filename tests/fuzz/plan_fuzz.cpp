@@ -60,7 +60,7 @@ void judge(const plan::Plan& plan, std::uint32_t task) {
     sample.contacts = {{0, 1, {0, 0, 0.1}}};
     const Status status = judge.step(sample);
     // Only a metric that is not finite may end an episode here.
-    need(status.ok() || status.failure().code == "judge");
+    need(status.ok() || status.failure().code == Fault::kJudge);
     for (const double value : judge.values()) need(std::isfinite(value));
   }
 }

@@ -139,7 +139,7 @@ TEST_CASE(
     const Status status = verify(*bytes);
     REQUIRE(!status.ok());
     const Failure& failure = status.failure();
-    CHECK(failure.code == "plan");
+    CHECK(failure.code == Fault::kPlan);
     CHECK(failure.where == comment(text, "where"));
     CHECK(failure.message == comment(text, "message"));
     CHECK(failure.where.find(" at byte ") != std::string::npos);

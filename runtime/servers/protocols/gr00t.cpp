@@ -17,7 +17,7 @@ constexpr std::array<std::string_view, 7> kStateNames = kActionNames;
 constexpr std::array<std::string_view, 8> kPaddedStateNames = {"x",     "y",   "z",   "roll",
                                                                "pitch", "yaw", "pad", "gripper"};
 
-Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 // The array with leading dimensions of 1: batch and, from n1.6 on, time.
 wire::Array led(wire::Array array, Gr00tForm form) {
@@ -179,14 +179,14 @@ Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile,
   } else if (profile.dialect == "n1.6_nested") {
     form = Gr00tForm::kN16Nested;
   } else if (!profile.dialect.empty() && profile.dialect != "n1.6") {
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "the `dialect` of a GR00T server is n1.6, n1.6_nested or n1.5, not `" +
                        profile.dialect + "`",
                    "--policy"};
   }
   if (profile.state_layout != StateLayout::kNone &&
       gr00t_state_names(profile.state_layout).empty()) {
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "GR00T is sent its state number by number: `state.layout` is "
                    "xyz_rpy_pad_openness, xyz_rpy_openness or none",
                    "--policy"};

@@ -27,11 +27,11 @@ std::span<const std::string_view> gr00t_state_names(StateLayout layout);
 std::string gr00t_nested_image_key(std::string_view key);
 
 // The actions of an answer: arrays x, y, z, roll, pitch, yaw and gripper of one length, with or
-// without "action." before their names. Fails (code "policy") on an error map, with what the server
+// without "action." before their names. Fails (kPolicy) on an error map, with what the server
 // said, and on anything else.
 Result<std::vector<RawAction>> gr00t_actions(const wire::Value& answer);
 
-// Fails (code "usage") on another `dialect` and on a state that cannot be sent number by number.
+// Fails (kUsage) on another `dialect` and on a state that cannot be sent number by number.
 Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile, const wire::Endpoint& server);
 
 }  // namespace probe::servers

@@ -13,7 +13,7 @@
 namespace probe::servers {
 namespace {
 
-Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 // One connection and its messages.
 class OpenpiConnection {
@@ -281,7 +281,7 @@ class RoboArena : public Transport {
   Status check_action_space() const {
     const wire::Value* space = config_.find("action_space");
     if (space == nullptr || *space == wire::Value("cartesian_velocity")) return {};
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "the server's `action_space` is " + wire::describe(*space) +
                        "; only \"cartesian_velocity\", changes of the end effector, can be "
                        "done here",
@@ -309,7 +309,7 @@ class RoboArena : public Transport {
                                      [&](const ImageRule& image) { return image.key == key; });
       if (rule == profile.images.end()) {
         return Failure{
-            "usage",
+            Fault::kUsage,
             "the server wants the picture `" + key + "`, for which the profile has no `image` line",
             ""};
       }
@@ -336,7 +336,7 @@ Result<std::unique_ptr<Transport>> make_intact(const Profile& profile,
                                                const wire::Endpoint& server) {
   const auto model = server.options.find("model");
   if (model == server.options.end() || model->second.empty()) {
-    return Failure{"usage",
+    return Failure{Fault::kUsage,
                    "an INT-ACT server begins without a model: write "
                    "`intact://HOST:PORT?model=PATH`, PATH as the server sees it",
                    "--policy"};

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kEncoded = "encoded";
 
-Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 class OpenVla : public Transport {
  public:
@@ -85,7 +85,7 @@ Result<std::unique_ptr<Transport>> make_openvla(const Profile& profile,
                                                 const wire::Endpoint& server) {
   if (!profile.dialect.empty() && profile.dialect != kEncoded && profile.dialect != "plain") {
     return Failure{
-        "usage",
+        Fault::kUsage,
         "the `dialect` of an OpenVLA server is plain or encoded, not `" + profile.dialect + "`",
         "--policy"};
   }

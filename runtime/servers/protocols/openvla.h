@@ -16,11 +16,11 @@ namespace probe::servers {
 // has one}.
 Result<std::string> openvla_request(const Profile& profile, const Request& request);
 
-// The actions of an answer's body, in either form. Fails (code "policy") on the text "error", which
+// The actions of an answer's body, in either form. Fails (kPolicy) on the text "error", which
 // is all that OpenVLA says when it fails, and on what to_actions refuses.
 Result<std::vector<RawAction>> openvla_actions(std::string_view body);
 
-// Fails (code "usage") on another `dialect`. The path is the server's, or /act.
+// Fails (kUsage) on another `dialect`. The path is the server's, or /act.
 Result<std::unique_ptr<Transport>> make_openvla(const Profile& profile,
                                                 const wire::Endpoint& server);
 

@@ -18,7 +18,7 @@ using vlaeval::PictureCoding;
 
 constexpr std::int64_t kProtocolVersion = 1;
 
-Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 bool is_this_machine(const std::string& host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
@@ -45,13 +45,13 @@ Result<Choices> read_choices(const wire::Endpoint& server) {
     } else if (it->second == "jpeg") {
       choices.coding = PictureCoding::kJpeg;
     } else {
-      return Failure{"usage", "`pictures` is raw, png or jpeg, not `" + it->second + "`",
+      return Failure{Fault::kUsage, "`pictures` is raw, png or jpeg, not `" + it->second + "`",
                      "--policy"};
     }
   }
   if (const auto it = server.options.find("send_state"); it != server.options.end()) {
     if (it->second != "true" && it->second != "false") {
-      return Failure{"usage", "`send_state` is true or false, not `" + it->second + "`",
+      return Failure{Fault::kUsage, "`send_state` is true or false, not `" + it->second + "`",
                      "--policy"};
     }
     choices.send_state = it->second == "true";
@@ -121,7 +121,7 @@ class VlaEval : public Transport {
     const wire::Value* version = hello_.find("protocol_version");
     if (version != nullptr && *version != wire::Value(kProtocolVersion)) {
       return Failure{
-          "usage",
+          Fault::kUsage,
           "the server's `protocol_version` is " + wire::describe(*version) + ", vlaprobe speaks 1",
           ""};
     }
@@ -136,8 +136,8 @@ class VlaEval : public Transport {
         std::erase_if(profile.images, [](const ImageRule& image) { return is_wrist(image); });
       }
       if (profile.images.empty()) {
-        return Failure{"usage", "the server wants no wrist picture, and the profile has no other",
-                       ""};
+        return Failure{Fault::kUsage,
+                       "the server wants no wrist picture, and the profile has no other", ""};
       }
     }
     return {};

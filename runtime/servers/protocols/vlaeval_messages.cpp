@@ -7,7 +7,7 @@
 namespace probe::servers::vlaeval {
 namespace {
 
-Failure bad(std::string message) { return {"policy", std::move(message), ""}; }
+Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 // Above 90 the colours keep their resolution.
 constexpr int kJpegQuality = 95;

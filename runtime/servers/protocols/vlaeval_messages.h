@@ -23,7 +23,7 @@ struct Message {
 // `timestamp` in seconds since 1970.
 wire::Bytes to_bytes(const Message& message, double timestamp);
 
-// Fails (code "policy") naming the field that is missing or of another kind.
+// Fails (kPolicy) naming the field that is missing or of another kind.
 Result<Message> from_bytes(std::span<const std::uint8_t> bytes);
 
 enum class PictureCoding { kRaw, kPng, kJpeg };

@@ -65,7 +65,7 @@ TEST_CASE("a missing file and a folder are failures that name the path") {
   SourceSet sources;
   const Result<FileId> missing = sources.load("/nowhere/a.probe");
   REQUIRE(!missing.ok());
-  CHECK(missing.failure().code == "io");
+  CHECK(missing.failure().code == Fault::kIo);
   CHECK(missing.failure().where == "/nowhere/a.probe");
   const Result<FileId> folder = sources.load("/");
   REQUIRE(!folder.ok());

@@ -55,7 +55,7 @@ TEST_CASE("what cannot be written or read is a failure with the path") {
   const std::string inside = folder.file("no/such/place");
   const Status status = write_file(inside, bytes_of("x"));
   REQUIRE_FALSE(status.ok());
-  CHECK(status.failure().code == "io");
+  CHECK(status.failure().code == Fault::kIo);
   CHECK(to_text(status.failure()) == inside + ": cannot be created: No such file or directory");
   fs::create_directories(folder.file("folder/full"));
   CHECK_FALSE(write_file(folder.file("folder"), bytes_of("x")).ok());

@@ -88,7 +88,7 @@ TEST_CASE("what no job could do is refused") {
   const auto refusal = [&] {
     const auto text = to_text(script);
     REQUIRE_FALSE(text.ok());
-    CHECK(text.failure().code == "usage");
+    CHECK(text.failure().code == Fault::kUsage);
     return to_text(text.failure());
   };
   script.policy = "openpi://127.0.0.1:{port}";

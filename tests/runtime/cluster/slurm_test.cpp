@@ -211,7 +211,7 @@ TEST_CASE("a job that cannot work is told with its log, and stays to be continue
   options.run.out = folder / "other";
   const auto refused = run_on_slurm(plan, options);
   REQUIRE_FALSE(refused.ok());
-  CHECK(refused.failure().code == "cluster");
+  CHECK(refused.failure().code == Fault::kCluster);
   CHECK(refused.failure().message.find("partition") != std::string::npos);
 }
 

@@ -163,7 +163,7 @@ TEST_CASE("an action costs little") {
 TEST_CASE("without what it needs the expert says so") {
   const auto message = [](const Result<policy::Action>& action) {
     REQUIRE(!action.ok());
-    CHECK(action.failure().code == "policy");
+    CHECK(action.failure().code == Fault::kPolicy);
     return action.failure().message;
   };
   test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));

@@ -123,10 +123,10 @@ TEST_CASE("JSON lines have an episode line and a line a step with exact numbers"
 
 TEST_CASE("what cannot be written is told") {
   const TemporaryFolder folder;
-  CHECK(open_hdf5(folder / "no/such/x.h5").failure().code == "io");
-  CHECK(open_json_lines(folder / "no/such/x.jsonl").failure().code == "io");
-  CHECK(export_run(folder / "absent", folder / "x.h5").failure().code == "store");
-  CHECK(export_run(folder / "absent", folder / "x.csv").failure().code == "usage");
+  CHECK(open_hdf5(folder / "no/such/x.h5").failure().code == Fault::kIo);
+  CHECK(open_json_lines(folder / "no/such/x.jsonl").failure().code == Fault::kIo);
+  CHECK(export_run(folder / "absent", folder / "x.h5").failure().code == Fault::kStore);
+  CHECK(export_run(folder / "absent", folder / "x.csv").failure().code == Fault::kUsage);
   Recorded in = recorded(folder);
   in.trace.steps[1].q.pop_back();  // a forged trace whose steps do not have what its header names
   auto sink = open_hdf5(folder / "y.h5");

@@ -115,6 +115,6 @@ TEST_CASE("characters that mean something in SVG are written as text") {
 TEST_CASE("an arm that is not the plan's is named") {
   const auto view = top_view(test::small_plan(), test::task("base"), "/nowhere");
   REQUIRE_FALSE(view.ok());
-  CHECK(view.failure().code == "asset");
+  CHECK(view.failure().code == Fault::kAsset);
   CHECK(view.failure().where.find("wx250s.urdf") != std::string::npos);
 }

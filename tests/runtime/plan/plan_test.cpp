@@ -72,14 +72,14 @@ TEST_CASE("a plan is mapped from its file, and failures name the file") {
   REQUIRE(write_file(path, bytes).ok());
   const auto damaged = Plan::open(path);
   REQUIRE(!damaged.ok());
-  CHECK(damaged.failure().code == "plan");
+  CHECK(damaged.failure().code == Fault::kPlan);
   CHECK(damaged.failure().where.starts_with(path));
 
   REQUIRE(write_file(path, {}).ok());
-  CHECK(Plan::open(path).failure().code == "plan");
-  CHECK(Plan::open(path + ".absent").failure().code == "io");
-  CHECK(Plan::open(folder.string()).failure().code == "io");
-  CHECK(write_file((folder / "absent" / "x.plan").string(), bytes).failure().code == "io");
+  CHECK(Plan::open(path).failure().code == Fault::kPlan);
+  CHECK(Plan::open(path + ".absent").failure().code == Fault::kIo);
+  CHECK(Plan::open(folder.string()).failure().code == Fault::kIo);
+  CHECK(write_file((folder / "absent" / "x.plan").string(), bytes).failure().code == Fault::kIo);
   std::filesystem::remove_all(folder);
 }
 

@@ -23,7 +23,7 @@ void check_defects(const std::vector<Defect>& defects) {
     const Failure failure = failure_after(defect.make);
     CAPTURE(failure.message);
     CAPTURE(failure.where);
-    CHECK(failure.code == "plan");
+    CHECK(failure.code == Fault::kPlan);
     CHECK(failure.message.find(defect.rule) != std::string::npos);
     CHECK(failure.where.starts_with(std::string(defect.section) + " at byte "));
   }

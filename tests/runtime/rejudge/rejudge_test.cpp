@@ -42,7 +42,7 @@ TEST_CASE("measurements that are not the task's are refused with the reason") {
     change(trace);
     const auto score = rescore(plan, 0, trace);
     REQUIRE(!score.ok());
-    CHECK(score.failure().code == "usage");
+    CHECK(score.failure().code == Fault::kUsage);
     return score.failure().message;
   };
   using store::Trace;
@@ -144,7 +144,7 @@ TEST_CASE("an explanation names the deciding step and the numbers measured there
   REQUIRE(never->size() == 1);
   CHECK((*never)[0].when.starts_with("never, nearest at step"));
   CHECK(!(*never)[0].conditions[0].truth);
-  CHECK(explain(plan, 0, far, "nearly").failure().code == "usage");
+  CHECK(explain(plan, 0, far, "nearly").failure().code == Fault::kUsage);
 }
 
 TEST_CASE("a number stands at the line that declares its metric, and is neither true nor false") {

@@ -59,7 +59,7 @@ TEST_CASE("a trace is proven by its row, its header and the verdicts of its own 
   const std::string path = folder / "a.trace";
   const auto message = [&](const store::ResultRow& row) {
     const auto trace = proven_trace(plan, row);
-    return trace.ok() ? std::string() : trace.failure().code + ": " + trace.failure().message;
+    return trace.ok() ? std::string() : std::string(to_word(trace.failure().code)) + ": " + trace.failure().message;
   };
   const store::ResultRow good = stored(plan, path).row;
   CHECK(message(good).empty());

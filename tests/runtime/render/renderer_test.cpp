@@ -547,7 +547,7 @@ TEST_CASE("what cannot be drawn is refused by name, and the renderer goes on") {
   const Copy before(draw(*renderer, {at(0.9, 0, 0)}));
   const Result<FrameView> nan = renderer->render(std::vector<Pose>{at(0.9, std::nan(""), 0)});
   REQUIRE_FALSE(nan.ok());
-  CHECK(nan.failure().code == "render");
+  CHECK(nan.failure().code == Fault::kRender);
   CHECK(to_text(nan.failure()).find("square") != std::string::npos);
   CHECK_FALSE(renderer->render(std::vector<Pose>{}).ok());
   CHECK(Copy(draw(*renderer, {at(0.9, 0, 0)})) == before);

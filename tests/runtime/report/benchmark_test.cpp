@@ -71,7 +71,7 @@ TEST_CASE("a folder named twice counts once, two runs of a policy stand apart, s
 TEST_CASE("no folder, no run and no episode are told apart") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;
-  CHECK(load({}).failure().code == "usage");
+  CHECK(load({}).failure().code == Fault::kUsage);
   const std::vector<std::string> nowhere = {folder / "nowhere"};
   CHECK(to_text(load(nowhere).failure()).find("no run here") != std::string::npos);
   fake_run(folder / "empty", plan, "pi0", {}, always(true));

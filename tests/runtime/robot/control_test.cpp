@@ -115,7 +115,7 @@ TEST_CASE("an action that is no number or absurd is named and changes nothing") 
   const auto message = [&](const Action& action) {
     const auto targets = controller.targets(action, test::kTableStart);
     REQUIRE(!targets.ok());
-    CHECK(targets.failure().code == "policy");
+    CHECK(targets.failure().code == Fault::kPolicy);
     return targets.failure().message;
   };
   CHECK(message(Action{0, nan, 0, 0, 0, 0, 0}) == "action[1] is nan, wanted a shift in metres");

@@ -15,7 +15,7 @@ std::string load_message(const std::string& text) {
   const TextFile file(text);
   const auto loaded = load_urdf(file.path());
   REQUIRE(!loaded.ok());
-  CHECK(loaded.failure().code == "urdf");
+  CHECK(loaded.failure().code == Fault::kUrdf);
   CHECK(loaded.failure().where.starts_with(file.path()));
   return loaded.failure().message;
 }

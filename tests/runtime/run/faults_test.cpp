@@ -33,7 +33,8 @@ class Unsteady final : public policy::Policy {
   }
   Result<policy::Action> act(const policy::Observation& observation) override {
     const policy::QueryMeter::InFlight flight(meter_);
-    if (failing_ && observation.step == 1) return Failure{"policy", "closed in mid-message", "h:1"};
+    if (failing_ && observation.step == 1)
+      return Failure{Fault::kPolicy, "closed in mid-message", "h:1"};
     return policy::Action{0, 0, 0, 0, 0, 0, 1};
   }
 
@@ -95,7 +96,7 @@ TEST_CASE("a server that is gone ends the run with words that help, and the run 
   options.give_up_after = 3;
   const auto stopped = run(plan, options);
   REQUIRE_FALSE(stopped.ok());
-  CHECK(stopped.failure().code == "policy");
+  CHECK(stopped.failure().code == Fault::kPolicy);
   CHECK(stopped.failure().where == "served");
   CHECK(stopped.failure().message ==
         "the policy failed in 3 episodes in a row, the last time so: policy: h:1: closed in "
@@ -138,7 +139,7 @@ TEST_CASE("another plan, profile or build is refused, forked or continued, as th
   const auto refusal = [&](const plan::Plan& asked, const RunOptions& options) {
     const auto summary = run(asked, options);
     REQUIRE_FALSE(summary.ok());
-    CHECK(summary.failure().code == "store");
+    CHECK(summary.failure().code == Fault::kStore);
     CHECK(summary.failure().where == folder / "run");
     return summary.failure().message;
   };

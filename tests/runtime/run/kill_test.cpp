@@ -100,7 +100,7 @@ TEST_CASE("a full disk ends the run with its reason and loses nothing that was s
     disk.grow(size);
     const auto full = run(plan, options);
     REQUIRE_FALSE(full.ok());
-    CHECK_MESSAGE(full.failure().code == "store", to_text(full.failure()));
+    CHECK_MESSAGE(full.failure().code == Fault::kStore, to_text(full.failure()));
     const auto rows = read_results(options.out);
     REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
     CHECK(rows->size() >= stored);

@@ -21,7 +21,7 @@ EpisodeStart start_with(std::uint64_t draw_seed) {
 TEST_CASE("a misspelt policy names the nearest and the known ones") {
   const auto made = make_policy("exprt");
   REQUIRE_FALSE(made.ok());
-  CHECK(made.failure().code == "usage");
+  CHECK(made.failure().code == Fault::kUsage);
   CHECK(made.failure().message.starts_with(
       "unknown policy `exprt`, did you mean `expert`?\nthe policies are:\n  expert "));
   CHECK_FALSE(made.failure().message.ends_with("\n"));
@@ -90,7 +90,7 @@ TEST_CASE("a replay gives the stored actions and fails past their end") {
   PolicyContext context;
   context.recorded_actions = [](const std::string& dir, std::string_view task, int,
                                 int) -> Result<std::vector<Action>> {
-    if (dir != "runs/a") return Failure{"store", "no run here", dir};
+    if (dir != "runs/a") return Failure{Fault::kStore, "no run here", dir};
     CHECK(task == "carrot_on_plate");
     return std::vector<Action>{{1}, {2}};
   };

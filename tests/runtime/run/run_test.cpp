@@ -102,7 +102,7 @@ TEST_CASE("a stored episode repeats bit for bit, and a changed one is told") {
   ReplayOptions quiet;
   quiet.assets = options.assets;
   CHECK(replay(folder / "run", "widowx_carrot_on_plate", 0, 7, quiet).ok());
-  CHECK(replay(folder / "nothing", "carrot_on_plate", 0, 7, quiet).failure().code == "store");
+  CHECK(replay(folder / "nothing", "carrot_on_plate", 0, 7, quiet).failure().code == Fault::kStore);
   // A damaged trace is refused before anything is repeated.
   const std::string trace_file = read_results(folder / "run")->at(0).trace;
   fs::copy_file(trace_file, folder / "whole.trace");
@@ -112,8 +112,8 @@ TEST_CASE("a stored episode repeats bit for bit, and a changed one is told") {
   CHECK(cut.failure().where == trace_file);
   CHECK(cut.failure().message.starts_with("truncated"));
   fs::copy_file(folder / "whole.trace", trace_file, fs::copy_options::overwrite_existing);
-  CHECK(replay(folder / "run", "carrot", 0, 7, replaying).failure().code == "usage");
-  CHECK(replay(folder / "run", "carrot_on_plate", 3, 7, replaying).failure().code == "usage");
+  CHECK(replay(folder / "run", "carrot", 0, 7, replaying).failure().code == Fault::kUsage);
+  CHECK(replay(folder / "run", "carrot_on_plate", 3, 7, replaying).failure().code == Fault::kUsage);
 
   // The policy replay:DIR does the same things, under its own name.
   RunOptions copy = options_for(folder / "copy", "replay:" + (folder / "run"));
@@ -230,7 +230,8 @@ TEST_CASE("a damaged trace is run again with a note, and videos that were not ma
             .failure()
             .message.ends_with("did you mean `carrot_on_plate`?"));
   replaying.video = folder / "absent/x.mp4";
-  CHECK(replay(folder / "run", "carrot_on_plate", 0, 42, replaying).failure().code == "usage");
+  CHECK(replay(folder / "run", "carrot_on_plate", 0, 42, replaying).failure().code ==
+        Fault::kUsage);
   CHECK_FALSE(fs::exists(folder / "absent"));
 }
 
@@ -322,7 +323,7 @@ TEST_CASE("a disk that fills up is told, leaves no partial file, and the run con
     const rlimit size{limit, limit};
     ::setrlimit(RLIMIT_FSIZE, &size);
     const auto summary = run(plan, options);
-    ::_exit(summary.ok() ? 0 : summary.failure().code == "store" ? 42 : 1);
+    ::_exit(summary.ok() ? 0 : summary.failure().code == Fault::kStore ? 42 : 1);
   }
   int status = 0;
   ::waitpid(child, &status, 0);

@@ -40,14 +40,16 @@ TEST_CASE("every job runs once, with the same results for any number of workers"
   CHECK(std::set<std::uint64_t>(one.begin(), one.end()).size() == one.size());
   CHECK(run_fake(2) == one);
   CHECK(run_fake(7) == one);
-  CHECK(run_jobs(0, 2, []() -> Result<Worker> { return Failure{"x", "never made", ""}; }).ok());
+  CHECK(run_jobs(0, 2, []() -> Result<Worker> {
+          return Failure{Fault::kInternal, "never made", ""};
+        }).ok());
 }
 
 TEST_CASE("the first failure stops the hand-out and is returned") {
   std::atomic<int> done{0};
   const Status status = run_jobs(1000, 2, [&]() -> Result<Worker> {
     return Worker([&](std::size_t index) -> Status {
-      if (index == 5) return Failure{"store", "disk full", "dir"};
+      if (index == 5) return Failure{Fault::kStore, "disk full", "dir"};
       ++done;
       return {};
     });
@@ -56,7 +58,7 @@ TEST_CASE("the first failure stops the hand-out and is returned") {
   CHECK(status.failure().message == "disk full");
   CHECK(done < 999);
   const Status unmade = run_jobs(3, 2, []() -> Result<Worker> {
-    return Failure{"policy", "no server", ""};
+    return Failure{Fault::kPolicy, "no server", ""};
   });
   CHECK(unmade.failure().message == "no server");
 }

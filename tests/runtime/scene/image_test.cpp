@@ -63,7 +63,7 @@ TEST_CASE("a picture that cannot be written leaves nothing behind") {
   setrlimit(RLIMIT_FSIZE, &old);
   std::signal(SIGXFSZ, handler);
   REQUIRE_FALSE(written.ok());
-  CHECK(written.failure().code == "io");
+  CHECK(written.failure().code == Fault::kIo);
   CHECK(written.failure().where == path);
   for (const auto& entry : fs::directory_iterator(fs::path(path).parent_path())) {
     CHECK(entry.path().filename().string().find("limited") == std::string::npos);
@@ -111,7 +111,7 @@ TEST_CASE("images that are missing, cut off or too large are refused by name") {
   fs::resize_file(path, fs::file_size(path) / 2);
   const Result<Texture> cut = load_image(path);
   REQUIRE_FALSE(cut.ok());
-  CHECK(cut.failure().code == "asset");
+  CHECK(cut.failure().code == Fault::kAsset);
 
   // A header may promise any size: 20000 x 1 here.
   const std::vector<std::uint8_t> line(20'000 * 3, 1);

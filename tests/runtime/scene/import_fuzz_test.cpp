@@ -104,7 +104,7 @@ TEST_CASE("thousands of damaged meshes and pictures are taken whole or refused w
         return;
       }
       ++refused;
-      CHECK(read.failure().code == "asset");
+      CHECK(read.failure().code == Fault::kAsset);
       CHECK(!read.failure().message.empty());
       CHECK_MESSAGE(read.failure().where.starts_with(path), read.failure().where);
     };

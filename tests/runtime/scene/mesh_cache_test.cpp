@@ -95,7 +95,7 @@ TEST_CASE("a cache that cannot be written costs nothing but time; missing source
   CHECK(load(cache, folder.mesh(0))->parts.size() == 1);
   const auto missing = cache.load("/no/such/mesh.glb");
   REQUIRE_FALSE(missing.ok());
-  CHECK(missing.failure().code == "asset");
+  CHECK(missing.failure().code == Fault::kAsset);
   CHECK(MeshCache("").load(folder.mesh(0)).ok());
 }
 

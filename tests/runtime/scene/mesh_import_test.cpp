@@ -29,7 +29,7 @@ std::shared_ptr<const Mesh> load(const std::string& path, const Vec3& scale = {1
 std::string refusal(const std::string& path, const MeshLimits& limits = {}) {
   const Result<std::shared_ptr<const Mesh>> mesh = load_mesh(path, {1, 1, 1}, limits);
   REQUIRE_FALSE(mesh.ok());
-  CHECK(mesh.failure().code == "asset");
+  CHECK(mesh.failure().code == Fault::kAsset);
   CHECK(mesh.failure().where.find(path) == 0);
   return to_text(mesh.failure());
 }

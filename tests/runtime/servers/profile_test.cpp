@@ -14,7 +14,7 @@ constexpr std::string_view kSmall = "protocol = openpi\nimage = first -> observa
 std::string failure_of(const std::string& more) {
   const auto read = parse_profile(std::string(kSmall) + more, "mine.profile");
   REQUIRE_FALSE(read.ok());
-  CHECK(read.failure().code == "usage");
+  CHECK(read.failure().code == Fault::kUsage);
   return to_text(read.failure());
 }
 

@@ -60,7 +60,7 @@ TEST_CASE("a video that cannot be written names its file") {
   TemporaryFolder folder;
   const auto absent = VideoWriter::create(folder / "no/such/a.mp4", 320, 240, 5);
   REQUIRE_FALSE(absent.ok());
-  CHECK(absent.failure().code == "video");
+  CHECK(absent.failure().code == Fault::kVideo);
   CHECK(absent.failure().where == folder / "no/such/a.mp4");
   CHECK_FALSE(VideoWriter::create(folder / "odd.mp4", 321, 240, 5).ok());
   auto video = VideoWriter::create(folder / "a.mp4", 320, 240, 5);

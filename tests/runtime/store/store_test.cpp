@@ -171,7 +171,7 @@ TEST_CASE("a run record of another form names the file and the key") {
     change_database(dir, "update run set value = '" + record.dump() + "'");
     const auto read = read_run_record(dir);
     REQUIRE_FALSE(read.ok());
-    CHECK(read.failure().code == "store");
+    CHECK(read.failure().code == Fault::kStore);
     CHECK(read.failure().where == dir + "/results.sqlite");
     CHECK(read.failure().message.find("`" + key + "`") != std::string::npos);
     CHECK_FALSE(Store::open(dir, record_of(), plan_bytes()).ok());
@@ -190,7 +190,7 @@ TEST_CASE("another plan or policy is refused, and so is a second writer") {
   }
   const auto policy = Store::open(dir, record_of("expert"), plan_bytes());
   REQUIRE_FALSE(policy.ok());
-  CHECK(policy.failure().code == "store");
+  CHECK(policy.failure().code == Fault::kStore);
   CHECK(policy.failure().where == dir);
   CHECK(policy.failure().message.find("policy `null`, not `expert`") != std::string::npos);
   CHECK(Store::open(dir, record_of("null", "bb"), plan_bytes())
@@ -264,16 +264,16 @@ TEST_CASE("a folder that cannot be written is named") {
   std::ofstream(folder / "file") << "x";
   const auto store = Store::open(folder / "file/run", record_of(), plan_bytes());
   REQUIRE_FALSE(store.ok());
-  CHECK(store.failure().code == "store");
+  CHECK(store.failure().code == Fault::kStore);
   CHECK(store.failure().where == folder / "file/run");
   CHECK_FALSE(read_results(folder / "nothing").ok());
   std::ofstream(folder / "results.sqlite") << "this is no database, and it is longer than a header";
-  CHECK(read_results(folder.path).failure().code == "store");
+  CHECK(read_results(folder.path).failure().code == Fault::kStore);
   CHECK(read_results(folder.path).failure().message.find("move this file away and run again") !=
         std::string::npos);
   CHECK(
       read_run_record(folder.path).failure().message.starts_with("results.sqlite cannot be read"));
-  CHECK(Store::open(folder.path, record_of(), plan_bytes()).failure().code == "store");
+  CHECK(Store::open(folder.path, record_of(), plan_bytes()).failure().code == Fault::kStore);
 }
 
 // What a worker does until it is killed: episode after episode.

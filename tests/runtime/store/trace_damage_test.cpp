@@ -62,7 +62,7 @@ TEST_CASE("cut at any byte, a trace is readable up to its last whole step and st
     write_file(folder / "cut.trace", bytes.substr(0, size));
     const auto strict = read_trace(folder / "cut.trace");
     REQUIRE_FALSE(strict.ok());
-    CHECK(strict.failure().code == "trace");
+    CHECK(strict.failure().code == Fault::kTrace);
     const auto prefix = read_trace_prefix(folder / "cut.trace");
     if (!prefix.ok()) {
       CHECK(steps == 0);  // nothing that was readable is lost again

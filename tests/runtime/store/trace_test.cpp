@@ -66,7 +66,7 @@ TEST_CASE("a truncated trace is refused, and readable up to its last whole step"
     write_file(folder / "cut.trace", bytes.substr(0, size));
     const auto strict = read_trace(folder / "cut.trace");
     REQUIRE_FALSE(strict.ok());
-    CHECK(strict.failure().code == "trace");
+    CHECK(strict.failure().code == Fault::kTrace);
     CHECK(strict.failure().where == folder / "cut.trace");
     CHECK(strict.failure().message.find("truncated") != std::string::npos);
     const auto prefix = read_trace_prefix(folder / "cut.trace");
@@ -120,7 +120,7 @@ TEST_CASE("other files are not traces") {
 TEST_CASE("a full disk is told") {
   const auto hash = write_sample_trace("/dev/full", 3);
   REQUIRE_FALSE(hash.ok());
-  CHECK(hash.failure().code == "store");
+  CHECK(hash.failure().code == Fault::kStore);
   CHECK(hash.failure().message == "cannot be written: No space left on device");
 }
 

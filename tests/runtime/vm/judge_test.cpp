@@ -143,7 +143,7 @@ TEST_CASE("a measurement that is not finite makes the episode invalid and change
     change(s);
     const Status status = judge.step(s);
     CHECK(judge.truth(0));
-    return !status.ok() && status.failure().code == "judge" &&
+    return !status.ok() && status.failure().code == Fault::kJudge &&
            status.failure().where == "carrot_on_plate";
   };
   const double nan = std::nan("");

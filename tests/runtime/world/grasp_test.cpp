@@ -133,7 +133,7 @@ TEST_CASE("worlds and actions that cannot be are refused with a reason") {
     change(spec);
     const auto world = World::create(spec);
     REQUIRE(!world.ok());
-    CHECK(world.failure().code == "world");
+    CHECK(world.failure().code == Fault::kWorld);
     return world.failure().message;
   };
   CHECK(refused([](WorldSpec& s) { s.bodies[0].density = 0; }).find("cube") != std::string::npos);

@@ -204,7 +204,7 @@ TEST_CASE("impossible bodies, fixtures and robots are refused by name") {
   const auto refused = [](const WorldSpec& spec) {
     const auto world = World::create(spec);
     REQUIRE(!world.ok());
-    CHECK(world.failure().code == "world");
+    CHECK(world.failure().code == Fault::kWorld);
     return world.failure().message;
   };
   for (const double density : {0.0, -1.0, std::nan(""), HUGE_VAL}) {

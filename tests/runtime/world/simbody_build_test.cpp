@@ -22,7 +22,7 @@ TEST_CASE("a Simbody of the other layout is refused with both sides named") {
   for (const bool library : {false, true}) {
     const Status status = check_layout({"3.7", library, !library});
     REQUIRE(!status.ok());
-    CHECK(status.failure().code == "world");
+    CHECK(status.failure().code == Fault::kWorld);
     CHECK(status.failure().message ==
           std::string("the linked Simbody 3.7 is built ") + (library ? "without" : "with") +
               " NDEBUG, but vlaprobe was compiled for one " + (library ? "with" : "without") +

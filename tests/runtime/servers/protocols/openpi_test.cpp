@@ -206,7 +206,7 @@ TEST_CASE("a server that answers connecting with an error is told at once") {
   const auto before = std::chrono::steady_clock::now();
   const auto begun = policy->begin(start());
   REQUIRE_FALSE(begun.ok());
-  CHECK(begun.failure().code == "policy");
+  CHECK(begun.failure().code == Fault::kPolicy);
   CHECK(begun.failure().message.find("FileNotFoundError: /nowhere") != std::string::npos);
   CHECK(begun.failure().message.find("tried") == std::string::npos);
   CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(20));

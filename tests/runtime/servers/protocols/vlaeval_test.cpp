@@ -173,7 +173,7 @@ TEST_CASE("another version of vla-eval's protocol is refused at once") {
   const auto policy = policy_at("vlaeval", server);
   const auto begun = policy->begin(asking_start());
   REQUIRE_FALSE(begun.ok());
-  CHECK(begun.failure().code == "usage");
+  CHECK(begun.failure().code == Fault::kUsage);
   CHECK(to_text(begun.failure()) ==
         "127.0.0.1:" + server.port() +
             ": the server's `protocol_version` is the number 2, vlaprobe speaks 1");
