@@ -29,9 +29,14 @@ struct FakeRun {
   std::vector<FakeTask> tasks;
   // By policy and task * starts + start: bit i is the success with seed i.
   std::array<std::vector<unsigned>, kPolicies> successes;
+  // The chance of a success, in the same order.
+  std::array<std::vector<double>, kPolicies> rates;
 
   unsigned bits(std::size_t policy, std::size_t task, std::size_t start) const {
     return successes[policy][task * starts + start];
+  }
+  double rate(std::size_t policy, std::size_t task, std::size_t start) const {
+    return rates[policy][task * starts + start];
   }
   Count count(std::size_t policy, std::size_t task, std::size_t start) const {
     return {std::popcount(bits(policy, task, start)), seeds};
@@ -48,8 +53,10 @@ struct FakeRun {
 
 struct FakeDesign {
   std::int64_t seeds = 1;
+  std::size_t starts = 24;
   double task_sd = 1.2;        // log-odds
   double start_sd = 1.0;       // shared by the variants of a baseline and by both policies
+  double place_sd = 0;         // of a place under one policy, shared by the tasks that lie there
   double own_sd = 0.6;         // of a start in one task under one policy
   double null_variants = 0.5;  // share of categories whose variants are as their baselines
   double null_policies = 0.5;  // share of categories in which both policies are alike
@@ -84,7 +91,8 @@ inline FakeRun draw_run(const FakeDesign& design, std::mt19937_64& bits) {
   std::uniform_real_distribution<> uniform;
   FakeRun run;
   run.seeds = design.seeds;
-  const double spread = std::hypot(design.start_sd, design.own_sd);
+  run.starts = design.starts;
+  const double spread = std::hypot(design.start_sd, design.place_sd, design.own_sd);
   for (std::size_t category = 0; category < kCategorySizes.size(); ++category) {
     const bool same_as_baseline = uniform(bits) < design.null_variants;
     const bool same_policies = uniform(bits) < design.null_policies;
@@ -109,16 +117,21 @@ inline FakeRun draw_run(const FakeDesign& design, std::mt19937_64& bits) {
   std::vector<double> shared(kCategorySizes[0] * run.starts);
   for (double& effect : shared) effect = design.start_sd * normal(bits);
   for (std::size_t p = 0; p < kPolicies; ++p) {
+    std::vector<double> place = shared;
+    if (design.place_sd > 0) {
+      for (double& effect : place) effect += design.place_sd * normal(bits);
+    }
     for (const FakeTask& task : run.tasks) {
       for (std::size_t s = 0; s < run.starts; ++s) {
         const double odds =
-            task.mean[p] + shared[task.baseline * run.starts + s] + design.own_sd * normal(bits);
+            task.mean[p] + place[task.baseline * run.starts + s] + design.own_sd * normal(bits);
         const double rate = 1 / (1 + std::exp(-odds));
         unsigned successes = 0;
         for (std::int64_t seed = 0; seed < run.seeds; ++seed) {
           successes |= (uniform(bits) < rate ? 1U : 0U) << seed;
         }
         run.successes[p].push_back(successes);
+        run.rates[p].push_back(rate);
       }
     }
   }
