@@ -12,10 +12,14 @@ std::string percent_text(std::int64_t k, std::int64_t n) {
   return fmt::format("{}.{}", tenths / 10, tenths % 10);
 }
 
-std::string decimal_text(double value, int digits) {
+double rounded(double value, int digits) {
   const double scale = std::pow(10.0, digits);
   const double size = std::floor(std::abs(value) * scale + 0.5 + 1e-9) / scale;
-  return fmt::format("{:.{}f}", value < 0 && size > 0 ? -size : size, digits);
+  return value < 0 && size > 0 ? -size : size;
+}
+
+std::string decimal_text(double value, int digits) {
+  return fmt::format("{:.{}f}", rounded(value, digits), digits);
 }
 
 std::string signed_text(double value, int digits) {

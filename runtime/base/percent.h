@@ -12,8 +12,9 @@ namespace probe {
 // printf, halves to even, has 5.2. "0.0" for n = 0.
 std::string percent_text(std::int64_t k, std::int64_t n);
 
-// A finite value with `digits` decimals, halves away from zero; what is within 1e-9 of a half is
-// one, since 100 times a rate is seldom exact. Never "-0".
+// A finite value to `digits` decimals, halves away from zero; what is within 1e-9 of a half is one,
+// since 100 times a rate is seldom exact. Never -0. As a number for JSON, and as text.
+double rounded(double value, int digits);
 std::string decimal_text(double value, int digits);
 // The same with a sign: "+5.3", "-0.1", "+0.0".
 std::string signed_text(double value, int digits);

@@ -150,9 +150,13 @@ void add_report(CLI::App& app, int& exit) {
       ->delimiter(',');
   CLI::Option* json =
       verb->add_flag("--json", arguments->json, "the page's numbers as JSON on stdout");
+  std::vector<std::string> formats;
+  for (const report::TableFormatName& known : report::kTableFormats)
+    formats.emplace_back(known.name);
   verb->add_option("--format", arguments->format,
-                   "only the tables, as csv, json or latex, to stdout or -o")
-      ->check(CLI::IsMember({"csv", "json", "latex"}))
+                   "only the tables, as csv (rates), csv-differences (tests), json or latex, to "
+                   "stdout or -o")
+      ->check(CLI::IsMember(formats))
       ->excludes(json);
   verb->add_flag("--no-traces", arguments->no_traces, "no timelines and no explained verdicts");
   verb->add_option("--jobs", arguments->jobs, "threads that read traces (default: all cores)")

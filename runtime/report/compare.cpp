@@ -11,17 +11,12 @@
 #include "runtime/plan/axis_names.h"
 #include "runtime/report/models.h"
 #include "runtime/report/page_data.h"
-#include "runtime/stats/design.h"
-#include "runtime/stats/multiplicity.h"
 
 namespace probe::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using Scope = ComparedRow::Scope;
-
-constexpr double kAlpha = 0.05;
-constexpr double kPower = 0.8;
 
 struct Shared {
   std::size_t common = 0, only_a = 0, only_b = 0;
@@ -76,28 +71,29 @@ class Comparer {
 
   std::vector<ComparedRow> rows(const std::vector<int>& metrics) {
     for (const int m : metrics) add(Scope::kAll, m, "all tasks", tasks_);
-    adjust(0, true);
+    adjust(0, Adjustment::kHolm);
     for (const int m : metrics) {
       std::size_t first = rows_.size();
       for (const Category& c : benchmark_.categories)
         add(Scope::kCategory, m, c.label, both(tasks_, c.tasks));
-      adjust(first, true);
+      adjust(first, Adjustment::kHolm);
       first = rows_.size();
       add_axes(m);
-      adjust(first, true);
+      adjust(first, Adjustment::kHolm);
       first = rows_.size();
       for (const int t : tasks_)
         add(Scope::kTask, m, benchmark_.tasks[static_cast<std::size_t>(t)].name, {t});
-      adjust(first, false);
+      adjust(first, Adjustment::kBenjaminiHochberg);
     }
-    for (ComparedRow& row : rows_) what_would_tell(row);
+    for (ComparedRow& row : rows_) {
+      if (row.scope != Scope::kTask) say_what_would_tell(row.contrast);
+    }
     return std::move(rows_);
   }
 
  private:
   void add(Scope scope, int metric, const std::string& name, const std::vector<int>& tasks) {
-    ComparedRow row{scope, metric, name, policy_contrast(benchmark_, a_, b_, metric, tasks),
-                    {},    {}};
+    ComparedRow row{scope, metric, name, policy_contrast(benchmark_, a_, b_, metric, tasks)};
     if (row.contrast.first.n > 0) rows_.push_back(std::move(row));
   }
 
@@ -113,22 +109,10 @@ class Comparer {
     }
   }
 
-  void adjust(std::size_t first, bool family_wise) {
-    std::vector<double> p;
-    for (std::size_t i = first; i < rows_.size(); ++i) p.push_back(rows_[i].contrast.p);
-    const auto adjusted = family_wise ? stats::holm(p) : stats::benjamini_hochberg(p);
-    for (std::size_t i = first; i < rows_.size(); ++i)
-      rows_[i].contrast.adjusted = adjusted[i - first];
-  }
-
-  static void what_would_tell(ComparedRow& row) {
-    if (row.is_real() || row.scope == Scope::kTask) return;
-    row.detectable = detectable(row.contrast);
-    const PlaceDesign design = place_design(row.contrast);
-    if (design.differ == 0) return;
-    const auto needed =
-        places_needed(std::abs(row.contrast.difference) / design.episodes, design.discordance);
-    if (needed && *needed > design.places) row.more_places = *needed - design.places;
+  void adjust(std::size_t first, Adjustment method) {
+    std::vector<Contrast*> family;
+    for (std::size_t i = first; i < rows_.size(); ++i) family.push_back(&rows_[i].contrast);
+    report::adjust(family, method);
   }
 
   const Benchmark& benchmark_;
@@ -137,14 +121,14 @@ class Comparer {
   std::vector<ComparedRow> rows_;
 };
 
-// What the test counts; every place is one start where one task was run.
+// Where every place has one start, both questions have one answer.
+bool is_one_start_a_place(const Contrast& c) { return c.anew.nets.size() == c.here.nets.size(); }
+
+// What was tried: "96 starts in 24 places".
 std::string places(const Contrast& c) {
-  const auto count = static_cast<std::int64_t>(c.place_nets.size());
-  if (count == c.starts) return fmt::format("{} {}", count, count == 1 ? "start" : "starts");
+  const auto count = static_cast<std::int64_t>(c.anew.nets.size());
+  if (is_one_start_a_place(c)) return fmt::format("{} {}", count, count == 1 ? "start" : "starts");
   return fmt::format("{} starts in {} {}", c.starts, count, count == 1 ? "place" : "places");
-}
-bool is_one_start_a_place(const Contrast& c) {
-  return static_cast<std::int64_t>(c.place_nets.size()) == c.starts;
 }
 
 bool differs_anywhere(const Contrast& c) { return c.pairs.only_a + c.pairs.only_b > 0; }
@@ -153,52 +137,93 @@ std::string rate(const stats::Count& count) {
   return fmt::format("{} of {} ({} %)", count.k, count.n, percent_text(count.k, count.n));
 }
 
-std::string p_text(double p) {
-  if (p < 1e-4) return "p < 0.0001";
-  return fmt::format("p = {:.2g}", p);
-}
-
 std::string points(double difference) { return signed_text(100 * difference, 1); }
 
-std::string range(const Contrast& c) {
-  return fmt::format("{} points, {} to {}", points(c.difference), points(c.interval.low),
-                     points(c.interval.high));
+std::string from_to(const Answer& answer) {
+  return fmt::format("{} to {}", points(answer.interval.low), points(answer.interval.high));
 }
 
-// "more" is not "better" for every metric.
+// "+24.9 to +29.9; p < 0.0001"
+std::string interval_and_p(const Answer& answer) {
+  return fmt::format("{}; {}", from_to(answer), p_text(answer.adjusted));
+}
+
+// "24 of 24 (100.0 %) against 6 of 24 (25.0 %); +75.0 points"
+std::string seen(const Contrast& c) {
+  return fmt::format("{} against {}; {} points", rate(c.first), rate(c.second),
+                     points(c.difference));
+}
+
+constexpr char kHere[] = "on these starts";
+constexpr char kAnew[] = "for starts never tried";
+
+// What would have shown a difference in new places, as further sentences.
+std::string what_would_tell(const Contrast& c) {
+  std::string text;
+  if (c.anew.detectable) {
+    text += fmt::format(" {} show differences from {} points on, four times in five.", places(c),
+                        decimal_text(100 * *c.anew.detectable, 1));
+  } else {
+    const std::int64_t differ = unit_design(c, c.anew).differ;
+    text += fmt::format(" {}, of which {} {}, cannot show a difference reliably.", places(c),
+                        differ, differ == 1 ? "differs" : "differ");
+  }
+  if (c.anew.more) {
+    text += fmt::format(" If the difference is what was seen, about {} more {} would show it.",
+                        *c.anew.more, is_one_start_a_place(c) ? "starts" : "places of start");
+  }
+  return text;
+}
+
+std::string no_difference(const Metric& metric, const Contrast& c) {
+  std::string text = fmt::format(
+      "{}: no difference was seen in any of {} episodes ({}). {} exclude a true difference of more "
+      "than {} points (95 %)",
+      metric.name, c.pairs.pairs(), rate(c.first), places(c),
+      decimal_text(100 * c.anew.interval.high, 1));
+  if (!is_one_start_a_place(c)) {
+    text += fmt::format(" {}, and of more than {} {}", kAnew,
+                        decimal_text(100 * c.here.interval.high, 1), kHere);
+  }
+  return text + ".";
+}
+
 std::string verdict(const Benchmark& benchmark, const Comparison& comparison,
                     const ComparedRow& row) {
   const Metric& metric = benchmark.metrics[static_cast<std::size_t>(row.metric)];
   const Contrast& c = row.contrast;
-  const std::string numbers = fmt::format("{} against {}; {}; {}", rate(c.first), rate(c.second),
-                                          range(c), p_text(c.adjusted));
-  if (row.is_real()) {
-    const bool a_more = c.difference > 0;
-    const bool a_better = a_more == (metric.good >= 0);
-    return fmt::format("{}: {} is {} ({}).", metric.name, a_better ? comparison.a : comparison.b,
-                       metric.good == 0 ? "higher" : "better", numbers);
+  if (!differs_anywhere(c)) return no_difference(metric, c);
+  const bool here = c.here.is_real(), anew = c.anew.is_real();
+  const bool one_answer = is_one_start_a_place(c);
+  if (!here && !anew) {
+    const std::string aside =
+        one_answer ? "" : fmt::format("; {} {}", kHere, interval_and_p(c.here));
+    return fmt::format("{}: the data cannot tell them apart ({}, {}{}).{}", metric.name, seen(c),
+                       interval_and_p(c.anew), aside, what_would_tell(c));
   }
-  if (c.pairs.only_a + c.pairs.only_b == 0) {
-    return fmt::format(
-        "{}: no difference was seen in any of {} episodes ({}). {} exclude a true difference of "
-        "more "
-        "than {} points (95 %).",
-        metric.name, c.pairs.pairs(), rate(c.first), places(c),
-        decimal_text(100 * c.interval.high, 1));
+  // "more" is not "better" for every metric.
+  const bool a_better = (c.difference > 0) == (metric.good >= 0);
+  const std::string who =
+      fmt::format("{}: {} is {}", metric.name, a_better ? comparison.a : comparison.b,
+                  metric.good == 0 ? "higher" : "better");
+  if (one_answer)
+    return fmt::format("{} ({}, {}), {} and {}.", who, seen(c), interval_and_p(c.anew), kHere,
+                       kAnew);
+  if (here && anew) {
+    return fmt::format("{} ({}), {} ({}) and {} ({}).", who, seen(c), kHere, interval_and_p(c.here),
+                       kAnew, interval_and_p(c.anew));
   }
-  std::string text = fmt::format("{}: the data cannot tell them apart ({}).", metric.name, numbers);
-  if (row.detectable) {
-    text += fmt::format(" {} show differences from {} points on, four times in five.", places(c),
-                        decimal_text(100 * *row.detectable, 1));
-  } else {
-    text += fmt::format(" {}, of which {} {}, cannot show a difference reliably.", places(c),
-                        place_design(c).differ, place_design(c).differ == 1 ? "differs" : "differ");
+  if (here) {
+    const std::string missing = c.anew.more
+                                    ? fmt::format(", about {} more {} of start would", *c.anew.more,
+                                                  *c.anew.more == 1 ? "place" : "places")
+                                    : "";
+    return fmt::format("{} {} ({}, {}); {} the data cannot tell ({}){}.{}", who, kHere, seen(c),
+                       interval_and_p(c.here), kAnew, interval_and_p(c.anew), missing,
+                       c.anew.more ? "" : what_would_tell(c));
   }
-  if (row.more_places) {
-    text += fmt::format(" If the difference is what was seen, about {} more {} would show it.",
-                        *row.more_places, is_one_start_a_place(c) ? "starts" : "places of start");
-  }
-  return text;
+  return fmt::format("{} {} ({}, {}); {}, exchanged one by one, the data cannot tell ({}).", who,
+                     kAnew, seen(c), interval_and_p(c.anew), kHere, interval_and_p(c.here));
 }
 
 std::string listed(const std::vector<const ComparedRow*>& rows) {
@@ -212,17 +237,62 @@ std::string listed(const std::vector<const ComparedRow*>& rows) {
   return text;
 }
 
-// Of what was found: when a look after every place would have stopped.
+// Of what was found: when a look after every place, and after every start, would have stopped.
 void say_when_enough(const Benchmark& benchmark, int a, int b, Comparison& comparison,
                      const ComparedRow& row) {
-  if (!row.is_real()) return;
-  for (const SequentialRow& looked : sequential(benchmark, row.metric)) {
-    if (looked.a != a || looked.b != b || !looked.stopped) continue;
+  const bool one_answer = is_one_start_a_place(row.contrast);
+  const auto add = [&](const Looked& looked, const Answer& answer, const char* unit,
+                       const std::string& question) {
+    if (!looked.stopped || !answer.is_real()) return;
     comparison.words.push_back(
-        fmt::format("  looked at after every {0}, {1} of {2} {0}s would have been enough "
-                    "(anytime-valid, {3}).",
-                    is_one_start_a_place(row.contrast) ? "start" : "place", looked.used,
-                    looked.places, p_text(looked.p)));
+        fmt::format("  looked at after every {0}, {1} of {2} {0}s would have been enough{3} "
+                    "(anytime-valid, {4}).",
+                    unit, looked.used, looked.units, question, p_text(looked.p)));
+  };
+  for (const SequentialRow& looked : sequential(benchmark, row.metric)) {
+    if (looked.a != a || looked.b != b) continue;
+    if (one_answer) {
+      add(looked.anew, row.contrast.anew, "start", "");
+      continue;
+    }
+    add(looked.anew, row.contrast.anew, "place", std::string(" ") + kAnew);
+    add(looked.here, row.contrast.here, "start", std::string(" ") + kHere);
+  }
+}
+
+using Rows = std::vector<const ComparedRow*>;
+
+// Those that are real for a question, largest first.
+Rows real_rows(const Rows& rows, Answer Contrast::*question) {
+  Rows real;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(real),
+               [&](const ComparedRow* row) { return (row->contrast.*question).is_real(); });
+  std::stable_sort(real.begin(), real.end(), [](const ComparedRow* x, const ComparedRow* y) {
+    return std::abs(x->contrast.difference) > std::abs(y->contrast.difference);
+  });
+  return real;
+}
+
+// "  3 of 11 categories differ on these starts (Holm): ...", for both questions at once where the
+// same ones do.
+void say_which(const Rows& rows, const char* one, const char* many, const char* method,
+               Comparison& comparison) {
+  if (rows.empty()) return;
+  const Rows here = real_rows(rows, &Contrast::here), anew = real_rows(rows, &Contrast::anew);
+  const auto add = [&](const Rows& real, const std::string& question) {
+    comparison.words.push_back(
+        real.empty() ? fmt::format("  no {} of {} differs for certain{} ({}).", one, rows.size(),
+                                   question, method)
+                     : fmt::format("  {} of {} {} differ{} ({}): {}.", real.size(), rows.size(),
+                                   many, question, method, listed(real)));
+  };
+  if (here.empty() && anew.empty()) {
+    add(here, "");
+  } else if (here == anew) {
+    add(here, fmt::format(" {} and {}", kHere, kAnew));
+  } else {
+    add(here, fmt::format(" {}", kHere));
+    add(anew, fmt::format(" {}", kAnew));
   }
 }
 
@@ -233,21 +303,11 @@ void say(const Benchmark& benchmark, int a, int b, Comparison& comparison) {
     if (!differs_anywhere(row.contrast)) continue;
     say_when_enough(benchmark, a, b, comparison, row);
     const auto add = [&](Scope scope, const char* one, const char* many, const char* method) {
-      std::vector<const ComparedRow*> real;
-      std::size_t total = 0;
+      Rows rows;
       for (const ComparedRow& other : comparison.rows) {
-        if (other.scope != scope || other.metric != row.metric) continue;
-        ++total;
-        if (other.is_real()) real.push_back(&other);
+        if (other.scope == scope && other.metric == row.metric) rows.push_back(&other);
       }
-      if (total == 0) return;
-      std::stable_sort(real.begin(), real.end(), [](const ComparedRow* x, const ComparedRow* y) {
-        return std::abs(x->contrast.difference) > std::abs(y->contrast.difference);
-      });
-      comparison.words.push_back(
-          real.empty() ? fmt::format("  no {} of {} differs for certain ({}).", one, total, method)
-                       : fmt::format("  {} of {} {} differ ({}): {}.", real.size(), total, many,
-                                     method, listed(real)));
+      say_which(rows, one, many, method, comparison);
     };
     add(Scope::kCategory, "category", "categories", "Holm");
     add(Scope::kAxis, "kind of variant", "kinds of variant", "Holm");
@@ -276,20 +336,6 @@ const char* scope_name(Scope scope) {
 }
 
 }  // namespace
-
-std::optional<std::int64_t> places_needed(double difference, double discordance) {
-  constexpr std::int64_t kMost = 1'000'000;
-  if (difference <= 0 || discordance < difference) return std::nullopt;
-  // McNemar's test: n pairs see d with power 1 - b when n = (z_a sqrt(q) + z_b sqrt(q - d^2))^2 /
-  // d^2, q the share that differ (Connor 1987, Biometrics 43:207).
-  const double alpha = stats::normal_two_sided(1 - kAlpha);
-  const double beta = stats::normal_two_sided(2 * kPower - 1);
-  const double root = alpha * std::sqrt(discordance) +
-                      beta * std::sqrt(std::max(0.0, discordance - difference * difference));
-  const double n = std::ceil(root * root / (difference * difference));
-  if (n > static_cast<double>(kMost)) return std::nullopt;
-  return static_cast<std::int64_t>(n);
-}
 
 Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
                            const CompareOptions& options) {
@@ -343,23 +389,29 @@ std::string to_text(const Benchmark& benchmark, const Comparison& comparison) {
     if (row.scope == Scope::kAll || (row.scope == Scope::kTask && !row.is_real())) continue;
     if (!differs_somewhere(comparison, row.metric)) continue;
     if (row.metric != last) {
-      text += fmt::format("\n{:<32} {:>16} {:>16} {:>8} {:>17} {:>9}\n",
+      text += fmt::format("\n{:<32} {:>16} {:>16} {:>8} {:>17} {:>10} {:>10}\n",
                           benchmark.metrics[static_cast<std::size_t>(row.metric)].name, "A", "B",
-                          "points", "95 %", "p adj.");
+                          "points", "95 %", "p, these", "p, new");
       last = row.metric;
     }
     const Contrast& c = row.contrast;
     const auto of = [](const stats::Count& count) {
       return fmt::format("{}/{} {} %", count.k, count.n, percent_text(count.k, count.n));
     };
-    text += fmt::format("{:<32} {:>16} {:>16} {:>8} {:>7} to {:>6} {:>9.2g}{}\n", row.name,
-                        of(c.first), of(c.second), points(c.difference), points(c.interval.low),
-                        points(c.interval.high), c.adjusted, row.is_real() ? " *" : "");
+    const auto p = [](const Answer& answer) {
+      return fmt::format("{:.2g}{}", answer.adjusted, answer.is_real() ? "*" : "");
+    };
+    text +=
+        fmt::format("{:<32} {:>16} {:>16} {:>8} {:>7} to {:>6} {:>10} {:>10}\n", row.name,
+                    of(c.first), of(c.second), points(c.difference), points(c.anew.interval.low),
+                    points(c.anew.interval.high), p(c.here), p(c.anew));
   }
   if (last != kAbsent) {
     text +=
-        "\n* differs; p exact by sign flips of places of start, adjusted over categories and kinds "
-        "of variant (Holm) and tasks (Benjamini-Hochberg, only those that differ are listed)\n";
+        "\n* differs. p, these: on these starts, exact by sign flips of starts; p, new and 95 %: "
+        "for "
+        "starts never tried, by places of start; adjusted over categories and kinds of variant "
+        "(Holm) and tasks (Benjamini-Hochberg, only those that differ are listed)\n";
   }
   for (const std::string& note : comparison.notes) text += "\nnote: " + note;
   return text + "\n";
@@ -387,15 +439,16 @@ Json to_json(const Benchmark& benchmark, const Comparison& comparison) {
                   {"only_b", c.pairs.only_b},
                   {"neither", c.pairs.neither}}},
                 {"starts", c.starts},
-                {"places", c.place_nets.size()},
+                {"places", c.anew.nets.size()},
                 {"difference", rounded(c.difference)},
-                {"low", rounded(c.interval.low)},
-                {"high", rounded(c.interval.high)},
-                {"p", c.p},
-                {"p_adjusted", c.adjusted},
-                {"real", row.is_real()}};
-    one["detectable"] = row.detectable ? Json(rounded(*row.detectable)) : Json();
-    one["more_places"] = row.more_places ? Json(*row.more_places) : Json();
+                {"low", rounded(c.anew.interval.low)},
+                {"high", rounded(c.anew.interval.high)},
+                {"p", c.anew.p},
+                {"p_adjusted", c.anew.adjusted},
+                {"real", c.anew.is_real()}};
+    one["detectable"] = c.anew.detectable ? Json(rounded(*c.anew.detectable)) : Json();
+    one["more_places"] = c.anew.more ? Json(*c.anew.more) : Json();
+    put_answers(one, c);
     json["rows"].push_back(std::move(one));
   }
   return json;

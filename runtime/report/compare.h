@@ -1,5 +1,5 @@
-// Two policies: which differences are real, how large, on which axes; plain words first, then
-// numbers, and what the data cannot tell.
+// Two policies: which differences are real, on the starts that were run and for starts never tried,
+// how large, on which axes; plain words first, then numbers, and what the data cannot tell.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,19 +15,16 @@ struct CompareOptions {
   std::vector<std::string> metrics = {};  // empty: those of the tables
 };
 
-// One line of the comparison. `adjusted` after Holm over the categories (or axes, or metrics) of a
-// metric, after Benjamini and Hochberg over its tasks.
+// One line of the comparison. Adjusted after Holm over the categories (or axes, or metrics) of a
+// metric, after Benjamini and Hochberg over its tasks; each question for itself.
 struct ComparedRow {
   enum class Scope : std::uint8_t { kAll, kCategory, kAxis, kTask };
   Scope scope = Scope::kAll;
   int metric = 0;
   std::string name;  // of category, axis or task
   Contrast contrast;
-  std::optional<double> detectable;         // where no difference was found
-  std::optional<std::int64_t> more_places;  // of start, that would find the difference seen, with
-                                            // 80 % power
 
-  bool is_real() const { return contrast.adjusted <= 0.05; }
+  bool is_real() const { return contrast.here.is_real() || contrast.anew.is_real(); }
 };
 
 struct Comparison {
@@ -45,9 +42,5 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
 
 std::string to_text(const Benchmark& benchmark, const Comparison& comparison);
 nlohmann::ordered_json to_json(const Benchmark& benchmark, const Comparison& comparison);
-
-// How many paired places of the same kind would find `difference` with 80 % power, when a share
-// `discordance` of them differ; nothing when a million would not.
-std::optional<std::int64_t> places_needed(double difference, double discordance);
 
 }  // namespace probe::report

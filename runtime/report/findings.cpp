@@ -11,8 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kAlpha = 0.05;
-
 Json finding(const char* level, std::string text, const char* see) {
   return {{"level", level}, {"text", std::move(text)}, {"see", see}};
 }
@@ -30,24 +28,28 @@ void add_categories(const Benchmark& benchmark, const Tables& tables, int metric
   for (std::size_t p = 0; p < benchmark.policies.size(); ++p) {
     if (!is_tested(benchmark, static_cast<int>(p))) continue;
     const CategoryDeltaRow* worst = nullptr;
-    int real = 0, rows = 0;
+    int here = 0, anew = 0, rows = 0;
     for (const CategoryDeltaRow& row : tables.category_deltas) {
       if (row.policy != static_cast<int>(p) || row.metric != metric) continue;
       ++rows;
-      if (row.contrast.adjusted > kAlpha) continue;
-      ++real;
+      here += row.contrast.here.is_real() ? 1 : 0;
+      anew += row.contrast.anew.is_real() ? 1 : 0;
+      if (!row.contrast.here.is_real() && !row.contrast.anew.is_real()) continue;
       if (worst == nullptr || row.contrast.difference < worst->contrast.difference) worst = &row;
     }
     if (worst == nullptr) continue;
     const Contrast& c = worst->contrast;
     found.push_back(finding(
         c.difference < 0 ? "warn" : "note",
-        fmt::format("{}: {} of {} categories differ from their baselines in {}; the largest is {}, "
-                    "{} ({} of {} against {} of {}, p = {:.2g} after Holm)",
-                    benchmark.policies[p].label, real, rows,
-                    benchmark.metrics[static_cast<std::size_t>(metric)].name,
-                    benchmark.categories[static_cast<std::size_t>(worst->category)].label,
-                    points(c.difference), c.first.k, c.first.n, c.second.k, c.second.n, c.adjusted),
+        fmt::format(
+            "{}: {} of {} categories differ from their baselines in {} on these starts, {} "
+            "for starts never tried; the largest is {}, {} ({} of {} against {} of {}; after "
+            "Holm {} on these starts, {} for starts never tried)",
+            benchmark.policies[p].label, here, rows,
+            benchmark.metrics[static_cast<std::size_t>(metric)].name, anew,
+            benchmark.categories[static_cast<std::size_t>(worst->category)].label,
+            points(c.difference), c.first.k, c.first.n, c.second.k, c.second.n,
+            p_text(c.here.adjusted), p_text(c.anew.adjusted)),
         "deltas"));
   }
 }
@@ -64,7 +66,8 @@ void add_gap(const Benchmark& benchmark, const Tables& tables, Json& found) {
                     "of {} points ({} to {})",
                     benchmark.policies[static_cast<std::size_t>(row.policy)].label, c.first.k,
                     c.first.n, c.second.k, decimal_text(100 * c.difference, 1),
-                    decimal_text(100 * c.interval.low, 1), decimal_text(100 * c.interval.high, 1)),
+                    decimal_text(100 * c.anew.interval.low, 1),
+                    decimal_text(100 * c.anew.interval.high, 1)),
         "gap"));
   }
 }

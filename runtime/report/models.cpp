@@ -22,7 +22,6 @@ namespace probe::report {
 namespace {
 
 constexpr double kPriorSd = 3;  // log-odds
-constexpr double kAlpha = 0.05;
 
 constexpr std::array<const char*, 3> kFactors = {"task", "source", "start"};
 
@@ -271,6 +270,27 @@ std::vector<int> outcomes(const Benchmark& benchmark, int a, int b, int metric) 
   return signs;
 }
 
+Looked look(const std::vector<std::int64_t>& nets) {
+  Looked looked;
+  looked.units = static_cast<std::int64_t>(nets.size());
+  stats::SequentialComparison comparison;
+  std::vector<stats::Cluster> seen;
+  for (const std::int64_t net : nets) {
+    ++looked.used;
+    if (net == 0) continue;  // no news
+    comparison.add(net);
+    seen.push_back(
+        {.only_a = std::max<std::int64_t>(net, 0), .only_b = std::max<std::int64_t>(-net, 0)});
+    // Signs and sums may disagree where units hold unlike numbers of episodes.
+    looked.stopped = comparison.p_value() <= kAlpha && stats::clustered_exact(seen) <= kAlpha;
+    if (looked.stopped) break;
+  }
+  looked.a_wins = comparison.a_wins();
+  looked.b_wins = comparison.b_wins();
+  looked.p = comparison.p_value();
+  return looked;
+}
+
 }  // namespace
 
 std::vector<MixedModel> mixed_models(const Benchmark& benchmark, const std::vector<int>& metrics) {
@@ -313,25 +333,9 @@ std::vector<SequentialRow> sequential(const Benchmark& benchmark, int metric) {
   const int n = static_cast<int>(benchmark.policies.size());
   for (int a = 0; a < n; ++a) {
     for (int b = a + 1; b < n; ++b) {
-      SequentialRow row{a, b, metric, 0, 0, 0, 0, 1, false};
-      stats::SequentialComparison comparison;
-      std::vector<stats::Cluster> seen;
-      for (const std::int64_t net :
-           policy_contrast(benchmark, a, b, metric, benchmark.all_tasks()).place_nets) {
-        ++row.places;
-        if (row.stopped) continue;
-        comparison.add(net);
-        seen.push_back(
-            {.only_a = std::max<std::int64_t>(net, 0), .only_b = std::max<std::int64_t>(-net, 0)});
-        ++row.used;
-        // Signs and sums may disagree where places hold unlike numbers of episodes.
-        row.stopped = comparison.p_value() <= kAlpha && stats::clustered_exact(seen) <= kAlpha;
-      }
-      if (row.places == 0) continue;
-      row.a_wins = comparison.a_wins();
-      row.b_wins = comparison.b_wins();
-      row.p = comparison.p_value();
-      rows.push_back(row);
+      const Contrast contrast = policy_contrast(benchmark, a, b, metric, benchmark.all_tasks());
+      if (contrast.anew.nets.empty()) continue;
+      rows.push_back({a, b, metric, look(contrast.here.nets), look(contrast.anew.nets)});
     }
   }
   return rows;

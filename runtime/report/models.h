@@ -39,20 +39,26 @@ struct RankRow {
 };
 
 // Bradley and Terry on the starts that two policies share: the better rate over seeds wins, equal
-// ones are half a win each.
+// ones are half a win each. Its intervals take starts for independent, so they are of these starts.
 std::vector<RankRow> ranking(const Benchmark& benchmark, int metric);
 
-struct SequentialRow {
-  int a = 0, b = 0, metric = 0;
-  std::int64_t places = 0, used = 0;  // of the shared places of start, how many were looked at
+// One question of a comparison, looked at after every unit: a start or a place.
+struct Looked {
+  std::int64_t units = 0, used = 0;  // that both have, and how many were looked at
   std::int64_t a_wins = 0, b_wins = 0;
   double p = 1;  // anytime-valid, at the stop or the end
   bool stopped = false;
 };
 
-// Policies in pairs, looked at after every place of start with all its tasks and seeds, which are
-// one outcome: the sign of their sum, as in the paired test. Stopped as soon as the anytime-valid p
-// is at most 0.05 and the paired test of the places so far agrees.
+struct SequentialRow {
+  int a = 0, b = 0, metric = 0;
+  Looked here;  // on these starts: a start with its seeds is one outcome
+  Looked anew;  // for starts never tried: a place with all its tasks and seeds is one outcome
+};
+
+// Policies in pairs. An outcome is the sign of a unit's sum, as in the paired tests; starts come
+// place by place. Stopped as soon as the anytime-valid p is at most 0.05 and the paired test of the
+// units so far agrees.
 std::vector<SequentialRow> sequential(const Benchmark& benchmark, int metric);
 
 }  // namespace probe::report

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <set>
 
+#include "runtime/base/percent.h"
+
 namespace probe::report {
 namespace {
 
@@ -55,7 +57,7 @@ Json starts_json(const Task& task) {
   for (const StartPlace& start : task.starts) {
     Json bodies = Json::array();
     for (const auto& body : start.bodies)
-      bodies.push_back({rounded(body[0]), rounded(body[1]), std::round(body[2] * 10) / 10});
+      bodies.push_back({rounded(body[0]), rounded(body[1]), probe::rounded(body[2], 1)});
     starts.push_back(std::move(bodies));
   }
   return starts;
@@ -166,9 +168,28 @@ const char kIntervalText[] =
     "95 % intervals: Wilson's, with episodes counted as what they are worth: starts in one place "
     "form a cluster, tasks are strata (with one task and one seed, Wilson's own)";
 
-double rounded(double value) {
-  const double scaled = std::round(value * 1e4) / 1e4;
-  return scaled == 0 ? 0 : scaled;  // no negative zero
+double rounded(double value) { return probe::rounded(value, 4); }
+
+std::string p_text(double p) {
+  if (p < 1e-4) return "p < 0.0001";
+  return fmt::format("p = {:.2g}", p);
+}
+
+void put_answers(Json& json, const Contrast& contrast, double scale, bool adjusted) {
+  const auto answer = [&](const Answer& a) {
+    Json one = {{"units", a.nets.size()},
+                {"low", rounded(scale * a.interval.low)},
+                {"high", rounded(scale * a.interval.high)},
+                {"p", a.p}};
+    if (!adjusted) return one;
+    one["p_adjusted"] = a.adjusted;
+    one["real"] = a.is_real();
+    if (a.detectable) one["detectable"] = rounded(scale * *a.detectable);
+    if (a.more) one["more"] = *a.more;
+    return one;
+  };
+  json[kOnTheseStarts] = answer(contrast.here);
+  json[kForStartsNeverTried] = answer(contrast.anew);
 }
 
 Json to_json(const std::optional<Estimate>& estimate) {

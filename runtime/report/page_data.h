@@ -43,6 +43,15 @@ nlohmann::ordered_json findings(const Benchmark& benchmark, const Tables& tables
 // [k, n, low, high], ends rounded to four digits; null without an episode.
 nlohmann::ordered_json to_json(const std::optional<Estimate>& estimate);
 double rounded(double value);  // to four digits behind the point
+// "p = 0.19", "p < 0.0001".
+std::string p_text(double p);
+
+// Adds both answers of a contrast by name, the same in every document: {units, low, high, p,
+// p_adjusted?, real?, detectable?, more?}; `scale` of differences (1: rates, 100: points).
+void put_answers(nlohmann::ordered_json& json, const Contrast& contrast, double scale = 1,
+                 bool adjusted = true);
+inline constexpr char kOnTheseStarts[] = "on_these_starts";
+inline constexpr char kForStartsNeverTried[] = "for_starts_never_tried";
 
 // What an interval of these tables is, in one sentence.
 extern const char kIntervalText[];

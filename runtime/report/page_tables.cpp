@@ -23,16 +23,19 @@ Json pair_json(const Contrast& c) {
   return {c.pairs.both, c.pairs.only_a, c.pairs.only_b, c.pairs.neither};
 }
 
-void put(Json& json, const Contrast& c, const char* adjusted = "q") {
+// Keys without a question's name are older than the two questions: the interval is of starts never
+// tried, p and q are of `tested`.
+void put(Json& json, const Contrast& c, const Answer& tested, const char* adjusted = "q") {
   json["pairs"] = pair_json(c);
   json["first"] = {c.first.k, c.first.n};
   json["second"] = {c.second.k, c.second.n};
   json["starts"] = c.starts;
   json["diff"] = rounded(c.difference);
-  json["low"] = rounded(c.interval.low);
-  json["high"] = rounded(c.interval.high);
-  json["p"] = p_value(c.p);
-  if (adjusted != nullptr) json[adjusted] = p_value(c.adjusted);
+  json["low"] = rounded(c.anew.interval.low);
+  json["high"] = rounded(c.anew.interval.high);
+  json["p"] = p_value(tested.p);
+  if (adjusted != nullptr) json[adjusted] = p_value(tested.adjusted);
+  put_answers(json, c, 1, adjusted != nullptr);
 }
 
 Json main_json(const Tables& tables) {
@@ -69,7 +72,7 @@ Json language_json(const Benchmark& benchmark, const Tables& tables) {
   for (const CategoryDeltaRow& row : tables.category_deltas) {
     if (!is_worded(benchmark, row.category)) continue;
     Json json = {{"policy", row.policy}, {"metric", row.metric}, {"category", row.category}};
-    put(json, row.contrast);
+    put(json, row.contrast, row.contrast.here);
     rows.push_back(std::move(json));
   }
   return rows;
@@ -83,12 +86,17 @@ Json compare_json(const Benchmark& benchmark, const Tables& tables) {
                         ? std::string("all")
                         : benchmark.categories[static_cast<std::size_t>(row.category)].label;
     json["category"] = row.category;
-    put(json, row.contrast);
-    json["real"] = row.contrast.adjusted <= 0.05;
-    if (row.detectable) json["detectable"] = rounded(*row.detectable);
+    put(json, row.contrast, row.contrast.anew);
+    json["real"] = row.contrast.anew.is_real();
+    if (row.contrast.anew.detectable) json["detectable"] = rounded(*row.contrast.anew.detectable);
     rows.push_back(std::move(json));
   }
   return rows;
+}
+
+Json looked_json(const Looked& looked) {
+  return {{"units", looked.units},   {"used", looked.used},    {"a_wins", looked.a_wins},
+          {"b_wins", looked.b_wins}, {"p", p_value(looked.p)}, {"stopped", looked.stopped}};
 }
 
 Json delivery_json(const Benchmark& benchmark) {
@@ -238,14 +246,14 @@ Json tables_json(const Benchmark& benchmark, const Tables& tables, const PageOpt
                   {"task", row.task},
                   {"baseline", benchmark.tasks[static_cast<std::size_t>(row.task)].baseline},
                   {"metric", row.metric}};
-    put(delta, row.contrast);
+    put(delta, row.contrast, row.contrast.anew);
     delta["floor"] = row.at_floor;
     json["deltas"].push_back(std::move(delta));
   }
   json["category_deltas"] = Json::array();
   for (const CategoryDeltaRow& row : tables.category_deltas) {
     Json delta = {{"policy", row.policy}, {"category", row.category}, {"metric", row.metric}};
-    put(delta, row.contrast);
+    put(delta, row.contrast, row.contrast.here);
     delta["left_out"] = row.left_out;
     json["category_deltas"].push_back(std::move(delta));
   }
@@ -274,7 +282,7 @@ Json tables_json(const Benchmark& benchmark, const Tables& tables, const PageOpt
                 {"category", row.category},
                 {"intention", to_json(row.intention)},
                 {"success", to_json(row.success)}};
-    put(gap, row.contrast, nullptr);
+    put(gap, row.contrast, row.contrast.anew, nullptr);
     json["gap"].push_back(std::move(gap));
   }
   json["floors"] = Json::array();
@@ -300,15 +308,18 @@ Json tables_json(const Benchmark& benchmark, const Tables& tables, const PageOpt
     }
     if (count * (count - 1) / 2 <= kMostPairs) {
       for (const SequentialRow& row : sequential(benchmark, success)) {
-        json["sequential"].push_back({{"a", row.a},
-                                      {"b", row.b},
-                                      {"metric", row.metric},
-                                      {"places", row.places},
-                                      {"used", row.used},
-                                      {"a_wins", row.a_wins},
-                                      {"b_wins", row.b_wins},
-                                      {"p", p_value(row.p)},
-                                      {"stopped", row.stopped}});
+        Json one = {{"a", row.a},
+                    {"b", row.b},
+                    {"metric", row.metric},
+                    {"places", row.anew.units},
+                    {"used", row.anew.used},
+                    {"a_wins", row.anew.a_wins},
+                    {"b_wins", row.anew.b_wins},
+                    {"p", p_value(row.anew.p)},
+                    {"stopped", row.anew.stopped}};
+        one[kOnTheseStarts] = looked_json(row.here);
+        one[kForStartsNeverTried] = looked_json(row.anew);
+        json["sequential"].push_back(std::move(one));
       }
     }
   }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runtime/base/file.h"
+#include "runtime/base/percent.h"
 #include "runtime/base/printable.h"
 
 namespace probe::report {
@@ -168,10 +169,11 @@ std::optional<std::string> impossible(const Percentage& percentage, std::int64_t
   if (found.fits) return std::nullopt;
   const int digits = percentage.decimals;
   std::string text =
-      fmt::format("{} % is no count of {} episodes; nearest: {} ({:.{}f} %)", percentage.value, n,
-                  found.below, percent(found.below, n), digits + 1);
+      fmt::format("{} % is no count of {} episodes; nearest: {} ({} %)", percentage.value, n,
+                  found.below, decimal_text(percent(found.below, n), digits + 1));
   if (found.above != found.below) {
-    text += fmt::format(" and {} ({:.{}f} %)", found.above, percent(found.above, n), digits + 1);
+    text += fmt::format(" and {} ({} %)", found.above,
+                        decimal_text(percent(found.above, n), digits + 1));
   }
   for (const std::int64_t other : {tasks + 1, tasks - 1, tasks + 2}) {
     if (other <= 0) continue;

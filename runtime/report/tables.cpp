@@ -9,15 +9,16 @@
 #include "runtime/inspect/axes.h"
 #include "runtime/stats/design.h"
 #include "runtime/stats/multiplicity.h"
+#include "runtime/stats/questions.h"
 
 namespace probe::report {
 namespace {
 
 using stats::Count;
 using stats::PairTable;
+using stats::PlacedPairs;
 using stats::StartArms;
 using stats::StartCount;
-using stats::StartPairs;
 
 // Small numbers for whatever must be told apart.
 template <typename Key>
@@ -26,7 +27,6 @@ class Ids {
   std::uint32_t operator()(const Key& key) {
     return ids_.try_emplace(key, static_cast<std::uint32_t>(ids_.size())).first->second;
   }
-  std::int64_t size() const { return static_cast<std::int64_t>(ids_.size()); }
 
  private:
   std::map<Key, std::uint32_t> ids_;
@@ -100,36 +100,59 @@ void count_pair(PairTable& table, bool a, bool b) {
   ++(a ? (b ? table.both : table.only_a) : (b ? table.only_b : table.neither));
 }
 
-// Pairs of tasks, a row a start; and the contrast's sums.
-struct PairRows {
-  std::vector<StartPairs> rows;
-  Ids<std::uint32_t> clusters;
-  Ids<int> tasks;
-
-  PairTable& at(int task, std::uint32_t cluster, bool fresh) {
-    if (fresh) rows.push_back({{}, tasks(task), clusters(cluster)});
-    return rows.back().pairs;
+// Pairs of tasks, a row a start. `group` tells starts of one place apart: they are exchanged one by
+// one unless their rows share it.
+class PairRows {
+ public:
+  PairTable& at(int task, std::uint32_t place, int group, bool fresh) {
+    if (fresh) {
+      rows_.push_back({{}, tasks_(task), 0, places_(place)});
+      groups_.push_back(group);
+    }
+    return rows_.back().pairs;
   }
-};
+  bool empty() const { return rows_.empty(); }
 
-Contrast paired(const PairRows& pairs) {
-  Contrast contrast;
-  for (const StartPairs& row : pairs.rows) contrast.pairs = contrast.pairs + row.pairs;
-  const PairTable& all = contrast.pairs;
-  contrast.first = {all.both + all.only_a, all.pairs()};
-  contrast.second = {all.both + all.only_b, all.pairs()};
-  contrast.starts = static_cast<std::int64_t>(pairs.rows.size());
-  const stats::Difference d = stats::clustered_difference(pairs.rows);
-  contrast.difference = d.estimate;
-  contrast.interval = d.interval;
-  // Signs are flipped by place, as the interval counts: starts of several tasks in one place are
-  // not independent.
-  std::vector<stats::Cluster> places(static_cast<std::size_t>(pairs.clusters.size()));
-  for (const StartPairs& row : pairs.rows) places[row.cluster] = places[row.cluster] + row.pairs;
-  contrast.p = stats::clustered_exact(places);
-  for (const stats::Cluster& place : places) contrast.place_nets.push_back(place.net());
-  return contrast;
-}
+  Contrast contrast() const {
+    Contrast contrast;
+    for (const PlacedPairs& row : rows_) contrast.pairs = contrast.pairs + row.pairs;
+    const PairTable& all = contrast.pairs;
+    contrast.first = {all.both + all.only_a, all.pairs()};
+    contrast.second = {all.both + all.only_b, all.pairs()};
+    contrast.starts = static_cast<std::int64_t>(rows_.size());
+    stats::Answers answers = stats::ask(by_place());
+    contrast.difference = answers.difference;
+    contrast.here = of(std::move(answers.here));
+    contrast.anew = of(std::move(answers.anew));
+    return contrast;
+  }
+
+ private:
+  static Answer of(stats::Answer&& answered) {
+    Answer answer;
+    answer.interval = answered.interval;
+    answer.p = answered.p;
+    answer.nets = std::move(answered.nets);
+    return answer;
+  }
+
+  // Rows with their starts numbered place by place.
+  std::vector<PlacedPairs> by_place() const {
+    std::map<std::pair<std::uint32_t, int>, std::uint32_t> starts;
+    for (std::size_t i = 0; i < rows_.size(); ++i) starts[{rows_[i].place, groups_[i]}] = 0;
+    std::uint32_t next = 0;
+    for (auto& [key, id] : starts) id = next++;
+    std::vector<PlacedPairs> rows = rows_;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      rows[i].start = starts[{rows[i].place, groups_[i]}];
+    return rows;
+  }
+
+  std::vector<PlacedPairs> rows_;
+  std::vector<int> groups_;  // by row
+  Ids<std::uint32_t> places_;
+  Ids<int> tasks_;
+};
 
 Contrast unpaired(const std::vector<StartCount>& a, const std::vector<StartCount>& b) {
   Contrast contrast;
@@ -139,11 +162,14 @@ Contrast unpaired(const std::vector<StartCount>& a, const std::vector<StartCount
   contrast.starts = static_cast<std::int64_t>(std::min(a.size(), b.size()));
   const stats::Difference d = stats::unpaired_difference(a, b);
   contrast.difference = d.estimate;
-  contrast.interval = d.interval;
   std::vector<Count> first, second;
   for (const StartCount& row : a) first.push_back(row.count);
   for (const StartCount& row : b) second.push_back(row.count);
-  contrast.p = stats::unpaired_exact(first, second);
+  // Starts that do not correspond cannot be exchanged one for one: dealing them out anew answers
+  // both questions.
+  contrast.here.interval = d.interval;
+  contrast.here.p = stats::unpaired_exact(first, second);
+  contrast.anew = contrast.here;
   return contrast;
 }
 
@@ -160,18 +186,12 @@ bool is_plain(const Benchmark& benchmark, int task) {
   return true;
 }
 
-// Adjusts the p values of consecutive rows for which `family` is equal.
-template <typename Rows, typename Family, typename Adjust>
-void adjust(Rows& rows, Family family, Adjust method) {
-  std::map<decltype(family(rows.front())), std::vector<std::size_t>> families;
-  for (std::size_t i = 0; i < rows.size(); ++i) families[family(rows[i])].push_back(i);
-  for (const auto& [key, members] : families) {
-    std::vector<double> p;
-    for (const std::size_t i : members) p.push_back(rows[i].contrast.p);
-    const std::vector<double> adjusted = method(p);
-    for (std::size_t i = 0; i < members.size(); ++i)
-      rows[members[i]].contrast.adjusted = adjusted[i];
-  }
+// Adjusts the rows for which `family` is equal.
+template <typename Rows, typename Family>
+void adjust_rows(Rows& rows, Adjustment method, Family family) {
+  std::map<std::pair<int, int>, std::vector<Contrast*>> families;
+  for (auto& row : rows) families[family(row)].push_back(&row.contrast);
+  for (const auto& [key, members] : families) adjust(members, method);
 }
 
 class Maker {
@@ -192,24 +212,13 @@ class Maker {
     floors();
     compare_policies();
     const auto of = [](const auto& row) { return std::pair(row.policy, row.metric); };
-    if (!tables_.deltas.empty()) {
-      adjust(tables_.deltas, of,
-             [](const std::vector<double>& p) { return stats::benjamini_hochberg(p); });
-    }
-    if (!tables_.category_deltas.empty()) {
-      adjust(tables_.category_deltas, of,
-             [](const std::vector<double>& p) { return stats::holm(p); });
-    }
-    if (!tables_.policies.empty()) {
-      adjust(
-          tables_.policies,
-          [](const PolicyRow& row) { return std::pair(row.metric, row.category == kAbsent); },
-          [](const std::vector<double>& p) { return stats::holm(p); });
-      // Only where nothing was found is it asked what could have been.
-      for (PolicyRow& row : tables_.policies) {
-        if (row.contrast.adjusted > 0.05 && policies() <= kFewPolicies)
-          row.detectable = detectable(row.contrast);
-      }
+    adjust_rows(tables_.deltas, Adjustment::kBenjaminiHochberg, of);
+    adjust_rows(tables_.category_deltas, Adjustment::kHolm, of);
+    adjust_rows(tables_.policies, Adjustment::kHolm, [](const PolicyRow& row) {
+      return std::pair(row.metric, row.category == kAbsent ? 1 : 0);
+    });
+    if (policies() <= kFewPolicies) {
+      for (PolicyRow& row : tables_.policies) say_what_would_tell(row.contrast);
     }
     return std::move(tables_);
   }
@@ -293,13 +302,13 @@ class Maker {
         int start = kAbsent;
         for (const Episode& e : benchmark_.of(policy, t)) {
           if (!e.valid()) continue;
-          count_pair(pairs.at(t, cluster_at(benchmark_, t, e.start), e.start != start),
+          count_pair(pairs.at(t, cluster_at(benchmark_, t, e.start), t, e.start != start),
                      e.is(intention), e.is(success));
           start = e.start;
         }
       }
-      if (pairs.rows.empty()) return;
-      tables_.gap.push_back({policy, category, paired(pairs),
+      if (pairs.empty()) return;
+      tables_.gap.push_back({policy, category, pairs.contrast(),
                              estimate(benchmark_, policy, intention, tasks),
                              estimate(benchmark_, policy, success, tasks)});
     };
@@ -348,7 +357,7 @@ class Maker {
   }
 
   void compare(int a, int b, int metric, int category, const std::vector<int>& tasks) {
-    PolicyRow row{a, b, metric, category, policy_contrast(benchmark_, a, b, metric, tasks), {}};
+    PolicyRow row{a, b, metric, category, policy_contrast(benchmark_, a, b, metric, tasks)};
     if (is_empty(row.contrast)) return;
     tables_.policies.push_back(std::move(row));
   }
@@ -390,12 +399,13 @@ Contrast variant_contrast(const Benchmark& benchmark, int policy, int metric, in
     int last = kAbsent;
     for_each_pair(benchmark.of(policy, task), benchmark.of(policy, variant.baseline),
                   [&](int start, const Episode& a, const Episode& b) {
-                    count_pair(pairs.at(task, cluster_at(benchmark, task, start), start != last),
-                               a.is(metric), b.is(metric));
+                    count_pair(
+                        pairs.at(task, cluster_at(benchmark, task, start), task, start != last),
+                        a.is(metric), b.is(metric));
                     last = start;
                   });
   }
-  return paired(pairs);
+  return pairs.contrast();
 }
 
 Contrast category_contrast(const Benchmark& benchmark, int policy, int metric,
@@ -415,7 +425,8 @@ Contrast category_contrast(const Benchmark& benchmark, int policy, int metric,
     int last = kAbsent;
     for_each_pair(benchmark.of(policy, task), benchmark.of(policy, variant.baseline),
                   [&](int start, const Episode& a, const Episode& b) {
-                    count_pair(pairs.at(task, cluster_at(benchmark, task, start), start != last),
+                    count_pair(pairs.at(task, cluster_at(benchmark, task, start), variant.baseline,
+                                        start != last),
                                a.is(metric), b.is(metric));
                     last = start;
                     auto& [ours, theirs] = by_start[start];
@@ -431,11 +442,11 @@ Contrast category_contrast(const Benchmark& benchmark, int policy, int metric,
       of_start.push_back(counts.first);
     }
   }
-  Contrast contrast = paired(pairs);
+  Contrast contrast = pairs.contrast();
   std::vector<StartArms> starts;
   for (auto& [key, of_start] : arms) starts.push_back(std::move(of_start));
   contrast.starts = static_cast<std::int64_t>(starts.size());
-  contrast.p = stats::shared_baseline_exact(starts);
+  contrast.here.p = stats::shared_baseline_exact(starts);
   return contrast;
 }
 
@@ -447,41 +458,62 @@ Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
     int last = kAbsent;
     for_each_pair(benchmark.of(a, task), benchmark.of(b, task),
                   [&](int start, const Episode& of_a, const Episode& of_b) {
-                    count_pair(pairs.at(task, cluster_at(benchmark, task, start), start != last),
-                               of_a.is(metric), of_b.is(metric));
+                    count_pair(
+                        pairs.at(task, cluster_at(benchmark, task, start), task, start != last),
+                        of_a.is(metric), of_b.is(metric));
                     last = start;
                   });
   }
-  return paired(pairs);
+  return pairs.contrast();
 }
 
-PlaceDesign place_design(const Contrast& contrast) {
-  PlaceDesign design;
-  design.places = static_cast<std::int64_t>(contrast.place_nets.size());
-  if (design.places == 0) return design;
+UnitDesign unit_design(const Contrast& contrast, const Answer& answer) {
+  UnitDesign design;
+  design.units = static_cast<std::int64_t>(answer.nets.size());
+  if (design.units == 0) return design;
   double squares = 0;
-  for (const std::int64_t net : contrast.place_nets) {
+  for (const std::int64_t net : answer.nets) {
     design.differ += net == 0 ? 0 : 1;
     squares += static_cast<double>(net * net);
   }
-  const double places = static_cast<double>(design.places);
+  const double units = static_cast<double>(design.units);
   const double differ = static_cast<double>(design.differ);
-  // A share of 0 is what was seen, not what can be: half a place.
-  design.discordance = std::max(differ, 0.5) / places;
-  // Places of unlike sums are worth less than their number: the root of the mean square, not the
+  // A share of 0 is what was seen, not what can be: half a unit.
+  design.discordance = std::max(differ, 0.5) / units;
+  // Units of unlike sums are worth less than their number: the root of the mean square, not the
   // mean, is what the variance of the flipped total holds.
-  const double per_place = design.differ == 0 ? 1 : std::sqrt(squares / differ);
-  design.episodes = per_place * places / static_cast<double>(contrast.pairs.pairs());
+  const double per_unit = design.differ == 0 ? 1 : std::sqrt(squares / differ);
+  design.episodes = per_unit * units / static_cast<double>(contrast.pairs.pairs());
   return design;
 }
 
-std::optional<double> detectable(const Contrast& contrast) {
-  const PlaceDesign design = place_design(contrast);
-  if (design.places == 0) return std::nullopt;
-  const auto share = stats::minimum_detectable_difference(
-      {.pairs = design.places, .discordance = design.discordance});
-  if (!share) return std::nullopt;
-  return std::min(1.0, *share * design.episodes);
+void say_what_would_tell(Contrast& contrast) {
+  for (Answer* const answer : {&contrast.here, &contrast.anew}) {
+    const UnitDesign design = unit_design(contrast, *answer);
+    if (answer->is_real() || design.units == 0) continue;
+    if (const auto share = stats::minimum_detectable_difference(
+            {.pairs = design.units, .discordance = design.discordance}))
+      answer->detectable = std::min(1.0, *share * design.episodes);
+    if (design.differ == 0) continue;
+    // Adjusted, the first of a family is held to that part of the level.
+    const auto needed =
+        stats::pairs_needed(std::abs(contrast.difference) / design.episodes, design.discordance,
+                            kAlpha / static_cast<double>(answer->family));
+    if (needed && *needed > design.units) answer->more = *needed - design.units;
+  }
+}
+
+void adjust(std::span<Contrast* const> family, Adjustment method) {
+  for (Answer Contrast::*const question : {&Contrast::here, &Contrast::anew}) {
+    std::vector<double> p;
+    for (const Contrast* c : family) p.push_back((c->*question).p);
+    const auto adjusted =
+        method == Adjustment::kHolm ? stats::holm(p) : stats::benjamini_hochberg(p);
+    for (std::size_t i = 0; i < family.size(); ++i) {
+      (family[i]->*question).adjusted = adjusted[i];
+      (family[i]->*question).family = static_cast<std::int64_t>(family.size());
+    }
+  }
 }
 
 Tables make_tables(const Benchmark& benchmark) { return Maker(benchmark).make(); }

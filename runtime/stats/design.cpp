@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/base/check.h"
+#include "runtime/stats/intervals.h"
 
 namespace probe::stats {
 namespace {
@@ -90,6 +91,26 @@ std::optional<double> minimum_detectable_difference(const PairedDesign& design,
     (power_of(discordant, share_won(design, middle)) < wanted_power ? low : high) = middle;
   }
   return high;
+}
+
+std::optional<std::int64_t> pairs_needed(double difference, double discordance, double alpha,
+                                         double wanted_power) {
+  constexpr double kMost = 1'000'000, kMostExact = 5'000;
+  if (difference <= 0 || discordance < difference) return std::nullopt;
+  // n = (z_a sqrt(q) + z_b sqrt(q - d^2))^2 / d^2, q the share that differ.
+  const double root = normal_two_sided(1 - alpha) * std::sqrt(discordance) +
+                      normal_two_sided(2 * wanted_power - 1) *
+                          std::sqrt(std::max(0.0, discordance - difference * difference));
+  double n = std::ceil(root * root / (difference * difference));
+  // Fewer pairs cannot reject, whoever wins them all.
+  n = std::max(n, std::ceil(1 - std::log2(alpha)));
+  while (n <= kMostExact) {
+    const PairedDesign design{static_cast<std::int64_t>(n), discordance, alpha};
+    if (power(design, difference) >= wanted_power) break;
+    n += std::max(1.0, std::floor(n / 50));
+  }
+  if (n > kMost) return std::nullopt;
+  return static_cast<std::int64_t>(n);
 }
 
 }  // namespace probe::stats

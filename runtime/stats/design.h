@@ -25,4 +25,11 @@ double power(const PairedDesign& design, double difference);
 std::optional<double> minimum_detectable_difference(const PairedDesign& design,
                                                     double wanted_power = 0.8);
 
+// About how many pairs find `difference` (> 0) with `wanted_power` when a share `discordance` of
+// them end differently, at two-sided level `alpha`; nothing when a million would not. By exact
+// power from Connor's formula on (1987, Biometrics 43:207), which gives too few where pairs are
+// few; beyond 5,000 pairs Connor's number itself.
+std::optional<std::int64_t> pairs_needed(double difference, double discordance, double alpha = 0.05,
+                                         double wanted_power = 0.8);
+
 }  // namespace probe::stats

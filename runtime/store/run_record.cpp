@@ -2,8 +2,9 @@
 #include "runtime/store/run_record.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "runtime/base/percent.h"
 
 namespace probe::store {
 namespace {
@@ -29,14 +30,8 @@ std::string short_form(const std::string& text, std::size_t length) {
   return text.substr(0, length);
 }
 
-std::string rounded(double value, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
 std::string percent(double part, double whole) {
-  return rounded(whole > 0 ? 100 * part / whole : 0, 1) + " %";
+  return decimal_text(whole > 0 ? 100 * part / whole : 0, 1) + " %";
 }
 
 }  // namespace
@@ -111,7 +106,7 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
 
 std::string to_text(const RunCall& call) {
   const auto rate = [&](double count) {
-    return rounded(call.elapsed_s > 0 ? count / call.elapsed_s : 0, 1);
+    return decimal_text(call.elapsed_s > 0 ? count / call.elapsed_s : 0, 1);
   };
   std::string text = rate(static_cast<double>(call.observations)) + " observations/s";
   if (call.queries.queries == 0) return text;

@@ -7,7 +7,7 @@ if(NOT VLAPROBE_NPM OR NOT VLAPROBE_NODE)
 endif()
 set(page_source ${CMAKE_CURRENT_LIST_DIR})
 set(VLAPROBE_PAGE_BUILD ${CMAKE_BINARY_DIR}/report_page)
-file(GLOB page_inputs CONFIGURE_DEPENDS ${page_source}/src/*.ts ${page_source}/src/*.css)
+file(GLOB_RECURSE page_inputs CONFIGURE_DEPENDS ${page_source}/src/*.ts ${page_source}/src/*.css)
 # puppeteer-core and TypeScript are for tests only.
 set(page_omit $<$<NOT:$<BOOL:${VLAPROBE_TESTS}>>:--omit=dev>)
 set(page_fetch "${VLAPROBE_NPM} ci --ignore-scripts --prefer-offline --no-audit --no-fund --loglevel=error ${page_omit} >npm.log 2>&1 || { cat npm.log >&2; echo 'the packages of runtime/report/page could not be installed (npm above): connect this machine to a registry once, or copy a filled npm cache' >&2; exit 2; }")

@@ -1,6 +1,9 @@
 #include "runtime/base/percent.h"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
 
 namespace probe {
 
@@ -23,6 +26,14 @@ TEST_CASE("a rate as a number is rounded as its count is") {
   CHECK(decimal_text(-0.01, 1) == "0.0");
   CHECK(signed_text(0.25, 1) == "+0.3");
   CHECK(signed_text(-0.01, 1) == "+0.0");
+}
+
+TEST_CASE("a number is rounded as its text is") {
+  CHECK(rounded(0.05245, 4) == 0.0525);
+  CHECK(rounded(-0.00005, 4) == -0.0001);
+  CHECK(!std::signbit(rounded(-0.00001, 4)));
+  for (int i = -1000; i <= 1000; ++i)
+    CHECK(fmt::format("{:.1f}", rounded(i / 40.0, 1)) == decimal_text(i / 40.0, 1));
 }
 
 TEST_CASE("an interval that has width shows it") {

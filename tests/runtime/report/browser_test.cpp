@@ -62,6 +62,9 @@ TEST_CASE("fifty policies make a page that opens") { check("many"); }
 TEST_CASE("halves are rounded away from zero and an interval with width shows it") {
   check("numbers");
 }
+TEST_CASE("the page says what holds on these starts and what for starts never tried") {
+  check("questions");
+}
 TEST_CASE("the page fits a narrow window") { check("narrow"); }
 
 TEST_CASE("the page's sources have the types they claim") {

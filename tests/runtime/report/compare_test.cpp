@@ -1,5 +1,8 @@
 #include "runtime/report/compare.h"
 
+#include <cmath>
+
+#include "runtime/stats/design.h"
 #include "tests/runtime/report/fake_runs.h"
 
 namespace probe::report {
@@ -61,8 +64,8 @@ TEST_CASE("when the data cannot tell, it says what they could have shown and how
   const Comparison c = two.compared({.metrics = {"success"}});
   CHECK(c.words[0].find("success: the data cannot tell them apart") == 0);
   CHECK(c.words[0].find("more starts would show it") != std::string::npos);
-  REQUIRE(c.rows[0].more_places);
-  CHECK(*c.rows[0].more_places > 10);
+  REQUIRE(c.rows[0].contrast.anew.more);
+  CHECK(*c.rows[0].contrast.anew.more > 10);
 }
 
 TEST_CASE("equal outcomes are said to be equal, with what they exclude") {
@@ -77,8 +80,8 @@ TEST_CASE("an early stop counts places, as the test does") {
   const FakeRunOptions one_place{.tasks = kSamePlaces, .last = 0};
   const Two first(one_place, below(24), one_place, below(0));
   const Comparison nothing = first.compared({.metrics = {"success"}});
-  CHECK(nothing.rows[0].contrast.p == 1);
-  CHECK(nothing.rows[0].contrast.place_nets == std::vector<std::int64_t>{4});
+  CHECK(nothing.rows[0].contrast.anew.p == 1);
+  CHECK(nothing.rows[0].contrast.anew.nets == std::vector<std::int64_t>{4});
   CHECK(nothing.words[0].find("4 starts in 1 place, of which 1 differs, cannot show") !=
         std::string::npos);
   for (const std::string& words : nothing.words) {
@@ -99,18 +102,20 @@ TEST_CASE("what could have been seen counts places, as the test does") {
   const Two four({.tasks = kSamePlaces}, below(12), {.tasks = kSamePlaces}, below(9));
   const ComparedRow few = one.compared({.metrics = {"success"}}).rows[0];
   const ComparedRow copies = four.compared({.metrics = {"success"}}).rows[0];
-  CHECK(copies.contrast.p == few.contrast.p);
-  CHECK(copies.detectable.has_value() == few.detectable.has_value());
-  REQUIRE(copies.more_places);
-  CHECK(*copies.more_places == *few.more_places);
+  const Answer &of_copies = copies.contrast.anew, &of_few = few.contrast.anew;
+  CHECK(of_copies.p == of_few.p);
+  CHECK(of_copies.detectable.has_value() == of_few.detectable.has_value());
+  REQUIRE(of_copies.more);
+  CHECK(*of_copies.more == *of_few.more);
 }
 
 TEST_CASE("equal runs exclude no more than their places can") {
   const Two one({.tasks = {kTask}}, below(12), {.tasks = {kTask}}, below(12));
   const Two four({.tasks = kSamePlaces}, below(12), {.tasks = kSamePlaces}, below(12));
-  const stats::Interval of_one = one.compared({.metrics = {"success"}}).rows[0].contrast.interval;
+  const stats::Interval of_one =
+      one.compared({.metrics = {"success"}}).rows[0].contrast.anew.interval;
   const Comparison c = four.compared({.metrics = {"success"}});
-  CHECK(c.rows[0].contrast.interval.high == doctest::Approx(of_one.high));
+  CHECK(c.rows[0].contrast.anew.interval.high == doctest::Approx(of_one.high));
   CHECK(c.words[0].find("96 starts in 24 places exclude a true difference of more than") !=
         std::string::npos);
 }
@@ -155,18 +160,68 @@ TEST_CASE("JSON says the same words and all numbers") {
 }
 
 TEST_CASE("the number of places needed has about the power it promises") {
-  const auto n = places_needed(0.1, 0.3);
+  const auto n = stats::pairs_needed(0.1, 0.3);
   REQUIRE(n);
   Contrast contrast;
   contrast.pairs.only_a = *n * 3 / 10;
   contrast.pairs.neither = *n - contrast.pairs.only_a;
-  contrast.place_nets.assign(static_cast<std::size_t>(*n), 0);
-  std::fill_n(contrast.place_nets.begin(), contrast.pairs.only_a, 1);
-  const auto found = detectable(contrast);
-  REQUIRE(found);
-  CHECK(*found == doctest::Approx(0.1).epsilon(0.08));
-  CHECK(!places_needed(0, 0.3));
-  CHECK(!places_needed(0.4, 0.3));
+  contrast.anew.nets.assign(static_cast<std::size_t>(*n), 0);
+  std::fill_n(contrast.anew.nets.begin(), contrast.pairs.only_a, 1);
+  say_what_would_tell(contrast);
+  REQUIRE(contrast.anew.detectable);
+  CHECK(*contrast.anew.detectable == doctest::Approx(0.1).epsilon(0.08));
+}
+
+// Four tasks in six places, all won: 2 / 2^24 and 2 / 2^6, after Holm over four metrics. Two places
+// more, 2 / 2^8, are real.
+TEST_CASE("a difference that is certain on these starts and not for new ones is said to be so") {
+  const FakeRunOptions six{.tasks = kSamePlaces, .last = 5};
+  const Two few(six, below(24), six, below(0));
+  const Comparison c = few.compared();
+  const Contrast& success = c.rows[0].contrast;
+  CHECK(success.here.p == doctest::Approx(std::ldexp(1, -23)));
+  CHECK(success.anew.p == doctest::Approx(std::ldexp(1, -5)));
+  CHECK(success.anew.adjusted == doctest::Approx(4 * std::ldexp(1, -5)));
+  CHECK(success.here.is_real());
+  CHECK(!success.anew.is_real());
+  CHECK(c.words[0].find("success: first is better on these starts (24 of 24 (100.0 %) against 0 of "
+                        "24 (0.0 %); +100.0 points, ") == 0);
+  CHECK(c.words[0].find("; for starts never tried the data cannot tell (") != std::string::npos);
+  CHECK(c.words[0].find("p = 0.12), about 2 more places of start would.") != std::string::npos);
+  CHECK(c.words[1].find("  looked at after every start, 7 of 24 starts would have been enough on "
+                        "these starts") == 0);
+
+  const FakeRunOptions eight{.tasks = kSamePlaces, .last = 7};
+  const Two enough(eight, below(24), eight, below(0));
+  const Comparison both = enough.compared();
+  CHECK(both.rows[0].contrast.anew.is_real());
+  CHECK(both.words[0].find("success: first is better (32 of 32 (100.0 %) against 0 of 32 (0.0 %); "
+                           "+100.0 points), on these starts (") == 0);
+  CHECK(both.words[0].find(" and for starts never tried (") != std::string::npos);
+}
+
+TEST_CASE("JSON answers both questions by name, and the old keys are of starts never tried") {
+  const FakeRunOptions six{.tasks = kSamePlaces, .last = 5};
+  const Two two(six, below(24), six, below(0));
+  const auto row = to_json(*two.benchmark, two.compared())["rows"][0];
+  CHECK(row["on_these_starts"]["units"] == 24);
+  CHECK(row["on_these_starts"]["real"] == true);
+  CHECK(row["for_starts_never_tried"]["units"] == 6);
+  CHECK(row["for_starts_never_tried"]["real"] == false);
+  CHECK(row["for_starts_never_tried"]["more"] == 2);
+  for (const char* key : {"p", "p_adjusted", "low", "high", "real"})
+    CHECK(row[key] == row["for_starts_never_tried"][key]);
+  CHECK(row["places"] == 6);
+  CHECK(row["more_places"] == 2);
+}
+
+TEST_CASE("the table of words has a p for each question") {
+  const FakeRunOptions six{.tasks = kSamePlaces, .last = 5};
+  const Two two(six, below(24), six, below(0));
+  const std::string text = to_text(*two.benchmark, two.compared({.metrics = {"success"}}));
+  CHECK(text.find("p, these") != std::string::npos);
+  CHECK(text.find("p, new\n") != std::string::npos);
+  CHECK(text.find("* differs. p, these: on these starts") != std::string::npos);
 }
 
 }  // namespace probe::report

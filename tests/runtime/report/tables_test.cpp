@@ -41,8 +41,10 @@ TEST_CASE("a variant is compared with its baseline start by start") {
   CHECK(c.pairs.both == 8);
   CHECK(c.pairs.only_b == 16);
   CHECK(c.difference == doctest::Approx(-16.0 / 24));
-  CHECK(c.p == doctest::Approx(2.0 / 65536));
-  CHECK(c.interval.high < 0);
+  CHECK(c.here.p == doctest::Approx(2.0 / 65536));
+  CHECK(c.anew.p == doctest::Approx(2.0 / 65536));
+  CHECK(c.here.interval.high < 0);
+  CHECK(c.anew.interval.high < 0);
 }
 
 TEST_CASE("seeds that repeat a start add no evidence") {
@@ -52,7 +54,8 @@ TEST_CASE("seeds that repeat a start add no evidence") {
       variant_contrast(made.benchmark, 0, success, made.benchmark.find_task(kVariant));
   CHECK(c.pairs.pairs() == 72);
   CHECK(c.starts == 24);
-  CHECK(c.p == doctest::Approx(2.0 / 65536));
+  CHECK(c.here.p == doctest::Approx(2.0 / 65536));
+  CHECK(c.anew.p == doctest::Approx(2.0 / 65536));
 }
 
 TEST_CASE("a task of another scene is compared unpaired, and left out of its category") {
@@ -66,7 +69,8 @@ TEST_CASE("a task of another scene is compared unpaired, and left out of its cat
   const Contrast c = variant_contrast(b, 0, success, task);
   CHECK(!c.paired);
   CHECK(c.difference == -1);
-  CHECK(c.p < 1e-9);
+  CHECK(c.here.p < 1e-9);
+  CHECK(c.anew.p == c.here.p);
   int left_out = 0;
   CHECK(category_contrast(b, 0, success, {task}, left_out).first.n == 0);
   CHECK(left_out == 1);
@@ -76,9 +80,14 @@ TEST_CASE("adjusted values are at least the raw ones, and every percentage has i
   const Made made(loses_words, {.tasks = {kBase, kVariant, "carrot_on_plate_distract"}});
   const Tables tables = make_tables(made.benchmark);
   REQUIRE(!tables.deltas.empty());
-  for (const DeltaRow& row : tables.deltas) CHECK(row.contrast.adjusted >= row.contrast.p);
-  for (const CategoryDeltaRow& row : tables.category_deltas)
-    CHECK(row.contrast.adjusted >= row.contrast.p);
+  for (const DeltaRow& row : tables.deltas) {
+    CHECK(row.contrast.here.adjusted >= row.contrast.here.p);
+    CHECK(row.contrast.anew.adjusted >= row.contrast.anew.p);
+  }
+  for (const CategoryDeltaRow& row : tables.category_deltas) {
+    CHECK(row.contrast.here.adjusted >= row.contrast.here.p);
+    CHECK(row.contrast.anew.adjusted >= row.contrast.anew.p);
+  }
   const std::string csv = table_text(made.benchmark, tables, {}, TableFormat::kCsv);
   CHECK(csv.find("policy,metric,avg,original,ood_source") == 0);
   CHECK(csv.find("pi0,success,") != std::string::npos);
@@ -124,6 +133,42 @@ TEST_CASE("LaTeX and JSON hold the names as text") {
       nlohmann::json::parse(table_text(made.benchmark, tables, {}, TableFormat::kJson));
   CHECK(json["main"][0]["policy"] == "my_policy & 50% {x}");
   CHECK(json["task_differences"][0]["pairs"].contains("both"));
+}
+
+// The baseline wins all of 24 starts against three variants that lie in the same places.
+TEST_CASE("every table of differences answers both questions by name") {
+  const Made made(
+      [](const std::string& task, int, int) { return Outcome{.success = task == kBase}; },
+      {.tasks = {kBase, kVariant, "carrot_on_plate_lang_color"}});
+  const Tables tables = make_tables(made.benchmark);
+  const auto json =
+      nlohmann::json::parse(table_text(made.benchmark, tables, {}, TableFormat::kJson));
+  REQUIRE(!json["category_differences"].empty());
+  for (const char* table : {"category_differences", "task_differences"}) {
+    for (const auto& row : json[table]) {
+      for (const char* question : {"on_these_starts", "for_starts_never_tried"}) {
+        CHECK(row[question].contains("p_adjusted"));
+        CHECK(row[question]["low"] <= row["points"]);
+      }
+    }
+  }
+  // The older keys of a category: p of these starts, the interval of starts never tried.
+  const auto& category = json["category_differences"][0];
+  CHECK(category["p"] == category["on_these_starts"]["p"]);
+  CHECK(category["low"] == category["for_starts_never_tried"]["low"]);
+  const std::string csv = table_text(made.benchmark, tables, {}, TableFormat::kDifferencesCsv);
+  CHECK(csv.find("kind,of,against,scope,metric,k,n,against_k,against_n,points,"
+                 "on_these_starts_units,") == 0);
+  CHECK(csv.find("task,pi0,carrot_on_plate,carrot_on_plate_lang_action,success,0,24,24,24,-100.0,"
+                 "24,-100.0,") != std::string::npos);
+  const std::string latex = table_text(made.benchmark, tables, {}, TableFormat::kLatex);
+  CHECK(latex.find("$p$, these & $p$, new") != std::string::npos);
+  const auto page = page_data(made.benchmark, tables, {.title = "", .models = false});
+  for (const char* table : {"deltas", "category_deltas", "language", "gap"}) {
+    REQUIRE(!page["tables"][table].empty());
+    CHECK(page["tables"][table][0]["on_these_starts"].contains("p"));
+    CHECK(page["tables"][table][0]["for_starts_never_tried"]["units"] == 24);
+  }
 }
 
 TEST_CASE("the gap is that of the same episodes") {

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <vector>
 
 #include "runtime/stats/paired.h"
@@ -45,6 +46,26 @@ TEST_CASE("24 starts see large differences only, 1,200 see small ones") {
 
 TEST_CASE("a design that cannot find even the largest difference says so") {
   CHECK_FALSE(minimum_detectable_difference({.pairs = 5, .discordance = 1}));
+}
+
+TEST_CASE("as many pairs as are needed find the difference, and a tenth fewer do not") {
+  for (const auto& [difference, discordance, alpha] :
+       {std::array{0.1, 0.3, 0.05}, {0.5, 0.6, 0.05}, {0.25, 0.25, 0.01}, {0.05, 0.1, 0.005}}) {
+    CAPTURE(difference);
+    const auto n = pairs_needed(difference, discordance, alpha);
+    REQUIRE(n);
+    CHECK(power({*n, discordance, alpha}, difference) >= 0.8);
+    CHECK(power({*n * 9 / 10, discordance, alpha}, difference) < 0.8);
+  }
+  CHECK_FALSE(pairs_needed(0, 0.3));
+  CHECK_FALSE(pairs_needed(0.4, 0.3));
+  CHECK_FALSE(pairs_needed(1e-4, 0.5));
+}
+
+// All won: 2 / 2^6 = 0.031 suffices at 5 %, and 2 / 2^8 at a sixth of that.
+TEST_CASE("where every pair is won, only their number is missing") {
+  CHECK(pairs_needed(1, 1) == 6);
+  CHECK(pairs_needed(1, 1, 0.05 / 6) == 8);
 }
 
 }  // namespace probe::stats

@@ -26,7 +26,10 @@ export interface MainRow { policy: number; metric: number; all: Estimate; cells:
 export interface ExternalRow {
   policy: string; metric: string; all: number | null; cells: (number | null)[]; n?: (number | null)[]; flags?: (string | null)[];
 }
-export interface Difference { diff: number; low: number; high: number; p?: number | null; q?: number | null }
+// The answer to one of the two questions of a difference: whether it is one on these starts, and for starts never tried.
+// `units` are starts or places, `more` places that are missing for an answer.
+export interface Answer { units: number; low: number; high: number; p: number; p_adjusted?: number; real?: boolean; detectable?: number; more?: number }
+export interface Difference { diff: number; low: number; high: number; on_these_starts: Answer; for_starts_never_tried: Answer }
 // `first` minus `second`, counts of both; `pairs` is null where starts do not correspond.
 export interface Contrast extends Difference { first: [k: number, n: number]; second: [k: number, n: number]; pairs: number[] | null; starts: number }
 export interface Delta extends Contrast { policy: number; task: number; baseline: number; metric: number; floor?: boolean }
@@ -36,9 +39,10 @@ export interface ObjectCell { policy: number; object: number; role: "source" | "
 export interface Gap extends Difference { policy: number; category: number; intention: Estimate; success: Estimate }
 export interface Floor { task: number; metric: number; floor: Estimate; ceiling: Estimate; note?: string }
 export interface Comparison extends Difference {
-  a: number; b: number; metric: number; scope: string; starts: number; real: boolean; detectable?: number | null;
+  a: number; b: number; metric: number; scope: string; starts: number;
 }
-export interface Sequential { a: number; b: number; metric: number; places: number; used: number; a_wins: number; b_wins: number; p: number; stopped: boolean }
+export interface Looked { units: number; used: number; a_wins: number; b_wins: number; p: number; stopped: boolean }
+export interface Sequential { a: number; b: number; metric: number; on_these_starts: Looked; for_starts_never_tried: Looked }
 export interface Ranking { policy: number; metric: number; score: number; low?: number | null; high?: number | null }
 export interface MixedTerm { term: string; kind: string; odds: number | null; low: number | null; high: number | null; p: number | null; note?: string }
 export interface Mixed { metric: number; model?: string; rows: MixedTerm[]; random?: { factor: string; sd: number }[]; n?: number; note?: string }

@@ -1,7 +1,7 @@
 // Pieces that several panels share.
 import { type Child, h, s } from "./dom";
-import { count, percent, points, range, rate, signedRange, spoken } from "./format";
-import type { Data, Difference, Estimate, Level, Note } from "./model";
+import { count, percent, points, probability, range, rate, signedRange, spoken } from "./format";
+import type { Answer, Data, Difference, Estimate, Level, Note } from "./model";
 import type { State } from "./state";
 import { mark } from "./theme";
 
@@ -50,15 +50,40 @@ export function shortCell(e: Estimate): Child {
   return e ? h("span", { class: "short", title: spoken(e) }, h("b", {}, percent(rate(e))), h("small", {}, `${e[0]}/${e[1]}`)) : h("span", { class: "none" }, "\u2013");
 }
 
-// A difference and its interval around zero.
+// A difference around zero: the thick line is its interval on these starts, the thin one for starts never tried.
 export function differenceBar(d: Difference): SVGElement {
   const at = (x: number) => 100 + 100 * x;
-  const sure = d.low > 0 || d.high < 0;
-  return s("svg", { class: "difference" + (sure ? " sure" : ""), viewBox: "0 0 200 14", role: "img", "aria-label": `${points(d.diff)} points, ${signedRange(d.low, d.high)}` },
+  const { on_these_starts: here, for_starts_never_tried: anew } = d;
+  const sure = (a: Answer): string => (a.low > 0 || a.high < 0 ? " sure" : "");
+  return s("svg", { class: "difference" + sure(anew), viewBox: "0 0 200 14", role: "img",
+    "aria-label": `${points(d.diff)} points, ${signedRange(here.low, here.high)} on these starts, ${signedRange(anew.low, anew.high)} for starts never tried` },
     s("line", { class: "ground", x1: 0, y1: 7, x2: 200, y2: 7 }),
     s("line", { class: "zero", x1: 100, y1: 0, x2: 100, y2: 14 }),
-    s("line", { class: "span", x1: at(d.low), y1: 7, x2: at(d.high), y2: 7 }),
+    s("line", { class: "span", x1: at(anew.low), y1: 7, x2: at(anew.high), y2: 7 }),
+    s("line", { class: "span here" + sure(here), x1: at(here.low), y1: 7, x2: at(here.high), y2: 7 }),
     s("circle", { class: "point", cx: at(d.diff), cy: 7, r: 3.6 }));
+}
+
+// The heads of two questions' columns, over the heads of each; `first` columns come before, `last` after.
+export function questionHead(first: string[], of: string[], last: string[]): HTMLElement {
+  const single = (text: string) => h("th", { scope: "col", rowspan: 2 }, text);
+  return h("thead", {},
+    h("tr", {}, first.map(single), ["On these starts", "For starts never tried"].map((text) => h("th", { scope: "colgroup", colspan: of.length, class: "question" }, text)), last.map(single)),
+    h("tr", {}, ["Starts", "Places"].map((units) => of.map((text, i) => h("th", { scope: "col", class: i === 0 ? "begins" : null }, text === "units" ? units : text)))));
+}
+// Units, interval, and q with the p that it was made from.
+export const kQuestionColumns = ["units", "Interval", "q"];
+export function questionCells(a: Answer): HTMLElement[] {
+  return [h("td", { class: "number begins" }, count(a.units)), h("td", { class: "number" }, signedRange(a.low, a.high)),
+    h("td", { class: "number" + (a.real ? " strong" : "") }, probability(a.p_adjusted), h("small", {}, `p ${probability(a.p)}`))];
+}
+export const isReal = (d: Difference): boolean => !!d.on_these_starts.real || !!d.for_starts_never_tried.real;
+// One star for these starts, two where it holds for starts never tried too.
+export function stars(d: Difference): HTMLElement | null {
+  const here = !!d.on_these_starts.real, anew = !!d.for_starts_never_tried.real;
+  if (!here && !anew) return null;
+  const where = here && anew ? "on these starts and for starts never tried" : here ? "on these starts only" : "for starts never tried only";
+  return h("span", { class: "star", title: `real ${where} (q \u2264 0.05)` }, here && anew ? "\u2217\u2217" : here ? "\u2217" : "(\u2217)", h("span", { class: "unseen" }, `real ${where}`));
 }
 
 // Words between backticks are code.

@@ -228,6 +228,25 @@ const kCases = {
     expect(/5\.3\s+63\/1,200/.test(text), `63 of 1200 is not 5.3 in: ${text.slice(0, 400)}`);
     expect(text.includes("99.7\u2013100.0"), `an interval with width looks as if it had none in: ${text.slice(0, 400)}`);
   },
+  // What is certain on these starts and not elsewhere is said so, in words and in numbers.
+  async questions() {
+    const edit = (data) => {
+      const row = data.tables.compare[0];
+      row.on_these_starts = { units: 144, low: 0.97, high: 1, p: 1.8e-43, p_adjusted: 5e-42, real: true };
+      row.for_starts_never_tried = { units: 6, low: 0.45, high: 1, p: 0.03125, p_adjusted: 0.1875, real: false, more: 2 };
+      row.diff = 1;
+    };
+    const { page } = await open(written("questions.html", { policies: 3 }, edit));
+    const text = await page.$eval("section#compare tbody tr", (e) => e.innerText.replace(/\s+/g, " "));
+    expect(text.includes("144 +97 to +100 < 0.001 p < 0.001 6 +45 to +100 0.19 p 0.031 real on these starts; elsewhere cannot tell, about 2 more places would"), `the pair reads: ${text}`);
+    for (const id of ["compare", "deltas"]) {
+      const head = await page.$eval(`section#${id} table.questions thead`, (e) => e.innerText);
+      expect(/On these starts/i.test(head) && /For starts never tried/i.test(head), `${id} does not name both questions: ${head}`);
+      const wide = await page.$eval(`section#${id} table.questions`, (e) => e.offsetWidth - e.closest(".scroller").clientWidth);
+      expect(wide <= 0, `the table of ${id} is ${wide} px wider than a laptop's window`);
+    }
+    await shots(page, "questions", ["compare", "deltas", "gap"]);
+  },
   // A page that the program wrote.
   async given() {
     const { page, ready } = await open(given);

@@ -23,6 +23,13 @@ function estimate(k, n) {
   return [k, n, round(Math.max(0, mid - half)), round(Math.min(1, mid + half))];
 }
 
+// Both questions of a difference: `wide` is by how much more is open for starts never tried.
+function answers(low, high, p, units, wide = 0.02) {
+  const answer = (a, b, chance, n) => ({ units: n, low: round(Math.max(-1, a)), high: round(Math.min(1, b)), p: chance, p_adjusted: Math.min(1, 2 * chance),
+    real: 2 * chance <= 0.05, ...(2 * chance <= 0.05 ? {} : { detectable: 0.021, more: 3 }) });
+  return { on_these_starts: answer(low, high, p, units), for_starts_never_tried: answer(low - wide, high + wide, Math.min(1, wide ? 40 * p : p), wide ? Math.max(1, Math.floor(units / 4)) : units) };
+}
+
 export const kHostile = [
   `<img src=x onerror="window.pwned=1">`,
   `</script><script>window.pwned=2</script>`,
@@ -148,7 +155,7 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
   const shown = [1, 2, 0];
   const main = { all_label: "All", rows: [] };
   const by_task = Object.fromEntries(metrics.map((m) => [m.name, []]));
-  const deltas = [], pairs = [], things = [], gap = [], floors = [], compare = [];
+  const deltas = [], pairs = [], things = [], gap = [], floors = [], compare = [], sequential = [], category_deltas = [];
   list.forEach((_, p) => {
     const cells = categories.map((c) => tally(c.tasks.flatMap((t) => rows[p][t])));
     const all = tally(rows[p].flat());
@@ -169,7 +176,8 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
         const diff = (four[1] - four[2]) / n, se = Math.sqrt(Math.max(four[1] + four[2], 1)) / n;
         const prob = Math.min(1, Math.exp(-0.7 * (diff / se) ** 2));
         deltas.push({ policy: p, task: t, baseline: task.baseline, metric: m, pairs: task.name === "carrot_on_wheel" ? null : four, first: [four[0] + four[1], n], second: [four[0] + four[2], n], floor: four[0] + four[2] === 0, starts: n, diff: round(diff),
-          low: round(Math.max(-1, diff - 1.96 * se)), high: round(Math.min(1, diff + 1.96 * se)), p: prob, q: Math.min(1, prob * 2) });
+          low: round(Math.max(-1, diff - 1.96 * se)), high: round(Math.min(1, diff + 1.96 * se)), p: prob, q: Math.min(1, prob * 2),
+          ...answers(diff - 1.96 * se, diff + 1.96 * se, prob, n, 0) });
       }
     });
     const plain = tasks.flatMap((task, t) => (task.distractors.length || task.axes.some((a) => a.startsWith("language")) ? [] : [t]));
@@ -182,7 +190,8 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
     }
     for (const c of [-1, ...categories.keys()]) {
       const [s, i] = (c < 0 ? all : cells[c]);
-      if (s) gap.push({ policy: p, category: c, intention: i, success: s, diff: round((i[0] - s[0]) / s[1]), low: round(i[2] - s[3] > -1 ? Math.max(-1, (i[0] - s[0]) / s[1] - 0.05) : -1), high: round(Math.min(1, (i[0] - s[0]) / s[1] + 0.05)), p: 0.001 });
+      if (s) gap.push({ policy: p, category: c, intention: i, success: s, diff: round((i[0] - s[0]) / s[1]), low: round(i[2] - s[3] > -1 ? Math.max(-1, (i[0] - s[0]) / s[1] - 0.05) : -1), high: round(Math.min(1, (i[0] - s[0]) / s[1] + 0.05)), p: 0.001,
+        ...answers((i[0] - s[0]) / s[1] - 0.05, (i[0] - s[0]) / s[1] + 0.05, 0.001, i[1]) });
     }
   });
   const ceiling = list.findIndex((p) => p.role === "ceiling"), floor = list.findIndex((p) => p.role === "floor");
@@ -195,7 +204,18 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
     if (!x || !y) continue;
     const diff = x[0] / x[1] - y[0] / y[1];
     compare.push({ a, b, metric: 0, scope: "all", pairs: x[1], starts: x[1], diff: round(diff), low: round(Math.max(-1, diff - 0.03)), high: round(Math.min(1, diff + 0.03)),
-      p: Math.abs(diff) > 0.03 ? 0.0001 : 0.4, q: Math.abs(diff) > 0.03 ? 0.0003 : 0.5, real: Math.abs(diff) > 0.03, detectable: 0.021 });
+      p: Math.abs(diff) > 0.03 ? 0.0001 : 0.4, q: Math.abs(diff) > 0.03 ? 0.0003 : 0.5, real: Math.abs(diff) > 0.03, detectable: 0.021,
+      ...answers(diff - 0.03, diff + 0.03, Math.abs(diff) > 0.5 ? 1e-6 : Math.abs(diff) > 0.03 ? 0.002 : 0.4, x[1], 0.2) });
+    const looked = (units, used) => ({ units, used, a_wins: used, b_wins: 0, p: used < units ? 0.037 : 0.4, stopped: used < units });
+    sequential.push({ a, b, metric: 0, on_these_starts: looked(x[1], Math.min(x[1], 7)), for_starts_never_tried: looked(Math.ceil(x[1] / 4), Math.ceil(x[1] / 4)) });
+  }
+  for (let p = 0; p < list.length; ++p) for (const c of categories.keys()) for (const m of [0, 1, 2]) {
+    const own = deltas.filter((d) => d.policy === p && d.metric === m && d.pairs && tasks[d.task].categories.includes(c));
+    if (!own.length) continue;
+    const four = [0, 1, 2, 3].map((i) => own.reduce((sum, d) => sum + d.pairs[i], 0)), n = four[0] + four[1] + four[2] + four[3];
+    const diff = (four[1] - four[2]) / n, se = Math.sqrt(Math.max(four[1] + four[2], 1)) / n;
+    category_deltas.push({ policy: p, category: c, metric: m, pairs: four, first: [four[0] + four[1], n], second: [four[0] + four[2], n], starts: n, diff: round(diff),
+      ...answers(diff - 1.96 * se, diff + 1.96 * se, Math.min(1, Math.exp(-0.7 * (diff / se) ** 2)), n, 0.05) });
   }
   const named = (t) => tasks[t].name;
   const data = {
@@ -213,7 +233,7 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
     policies: list.map(({ name, label, role }, p) => ({ name, label, role, runs: [{ dir: hostile ? kHostile[5] : `runs/${name}`, plan: 0, fingerprint: 0, seeds, done: rows[p].flat().length,
       expected: tasks.length * starts * seeds.length, invalid: rows[p].flat().filter((i) => episodes.reason[i] >= 0).length, videos: 3 }] })),
     tasks, episodes,
-    tables: { main, by_task, deltas, pairs, objects: things, gap, floors, compare,
+    tables: { main, by_task, deltas, category_deltas, pairs, objects: things, gap, floors, compare, sequential,
       external: count === 0 ? [] : [{ source: "published.csv", rows: [{ policy: hostile ? kHostile[0] : "pi0 fintune", metric: "success", all: 30.4,
         cells: [47.6, 49.3, 24.4, 21.5, 39.6, 38.5, 22.2, 43.1, 25.2, 26.4, 10.6], flags: Array.from({ length: 12 }, (_, i) => (i === 3 ? "49.3 % is no count of 120 episodes" : null)) }] }],
       delivery: count === 0 ? [] : [{ level: "good", text: "Every prompt that was sent has the hash of its plan's instruction." }],

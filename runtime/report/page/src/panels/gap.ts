@@ -45,9 +45,10 @@ export function gap(state: State): Panel {
     replace(holder, h("div", { class: "controls" },
       select("Show", ["all policies", ...state.chosen.map((p) => `${data.policies[p]!.label}, by category`)], by, (i) => { by = i; draw(); })),
       h("p", { class: "key" }, "Filled mark: success. Hollow mark: intention."), dumbbells(rows, label),
-      scroller("Gap as a table", h("table", { class: "plain" }, h("caption", {}, "The gap in numbers"), h("thead", {}, h("tr", {}, [by === 0 ? "Policy" : "Category", "Intention", "Success", "Gap", "", "Interval", "p"].map((t) => h("th", { scope: "col" }, t)))),
+      scroller("Gap as a table", h("table", { class: "plain" }, h("caption", {}, "The gap in numbers"), h("thead", {}, h("tr", {}, [by === 0 ? "Policy" : "Category", "Intention", "Success", "Gap", "", "Interval on these starts", "for starts never tried"].map((t) => h("th", { scope: "col" }, t)))),
         h("tbody", {}, rows.map((r) => h("tr", {}, h("th", { scope: "row" }, by === 0 ? policyLabel(state, r.policy) : r.name), h("td", {}, shortCell(r.gap.intention)), h("td", {}, shortCell(r.gap.success)),
-          h("td", { class: "number strong" }, points(r.gap.diff) || "0"), h("td", { class: "bar" }, differenceBar(r.gap)), h("td", { class: "number" }, signedRange(r.gap.low, r.gap.high)), h("td", { class: "number" }, probability(r.gap.p))))))));
+          h("td", { class: "number strong" }, points(r.gap.diff) || "0"), h("td", { class: "bar" }, differenceBar(r.gap)), 
+          [r.gap.on_these_starts, r.gap.for_starts_never_tried].map((a) => h("td", { class: "number" }, signedRange(a.low, a.high), h("small", {}, ` p ${probability(a.p)}`)))))))));
   };
   state.watch(draw);
   return panel("gap", "Intention\u2013action gap", "Episodes where the policy went for the right object and still did not finish, in points of all episodes.", holder);

@@ -2,7 +2,7 @@
 import { type Child, h, replace, scroller, select } from "../dom";
 import { percent, plural, points, probability } from "../format";
 import { type Contrast, metricIndex, taskName } from "../model";
-import { details, kConfounded, mainMetrics, nothing, type Panel, panel, policyLabel, shortCell } from "../parts";
+import { details, isReal, kConfounded, mainMetrics, nothing, type Panel, panel, policyLabel, shortCell, stars } from "../parts";
 import type { State } from "../state";
 
 const isLanguage = (axis: string): boolean => axis.startsWith("language");
@@ -14,8 +14,8 @@ const share = ([k, n]: [number, number]): Child => h("span", { class: "short" },
 
 function change(d: Contrast | undefined): HTMLElement | null {
   if (!d) return null;
-  const real = (d.q ?? 1) <= 0.05;
-  return h("span", { class: "change" + (real ? " real" : ""), title: `p ${probability(d.p)}, q ${probability(d.q)}` }, points(d.diff) || "0", real ? "\u2217" : "");
+  return h("span", { class: "change" + (isReal(d) ? " real" : ""),
+    title: `q ${probability(d.on_these_starts.p_adjusted)} on these starts, ${probability(d.for_starts_never_tried.p_adjusted)} for starts never tried` }, points(d.diff) || "0", stars(d));
 }
 
 export function language(state: State): Panel {
@@ -58,5 +58,5 @@ export function language(state: State): Panel {
       small.length ? details(`${plural(small.length, "further task")}, with fewer wordings`, small.map(([base, variants]) => group(base, variants))) : null);
   };
   state.watch(draw);
-  return panel("language", "The same task in other words", `Percent, count, and the change against the original wording in points; \u2217 where it is real (q \u2264 0.05), ${kConfounded} where something besides the words changed.`, holder);
+  return panel("language", "The same task in other words", `Percent, count, and the change against the original wording in points; \u2217 where it is real on these starts (q \u2264 0.05), \u2217\u2217 for starts never tried too, ${kConfounded} where something besides the words changed.`, holder);
 }

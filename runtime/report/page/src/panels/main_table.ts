@@ -1,5 +1,6 @@
 // Policies x metrics x categories, with counts and intervals; other people's numbers below ours, marked.
 import { h, replace, scroller } from "../dom";
+import { fixed, percent } from "../format";
 import type { Data, ExternalRow } from "../model";
 import { estimateCell, nothing, type Panel, panel, policyLabel } from "../parts";
 import type { State } from "../state";
@@ -43,7 +44,7 @@ function theirs(data: Data, flags: string[]): HTMLElement[] {
         [row.all, ...data.categories.map((_, c) => row.cells[c] ?? null)].map((value, c) => {
           const flag = row.flags?.[c];
           if (flag) flags.push(`${policy}, ${row.metric}, ${c === 0 ? "all" : data.categories[c - 1]!.label}: ${flag}`);
-          return h("td", { class: c === 0 ? "all" : null }, value === null ? h("span", { class: "none" }, "\u2013") : h("span", { class: "rate" }, value.toFixed(1)),
+          return h("td", { class: c === 0 ? "all" : null }, value === null ? h("span", { class: "none" }, "\u2013") : h("span", { class: "rate" }, fixed(value, 1)),
             row.n?.[c] ? h("span", { class: "count" }, `of ${row.n[c]}`) : null,
             flag ? h("span", { class: "flag", title: flag }, "\u2691 ", h("span", { class: "unseen" }, flag)) : null);
         })))));
@@ -65,5 +66,5 @@ export function mainTable(state: State): Panel {
       flags.length ? h("div", { class: "flags" }, h("h3", {}, "\u2691 Published numbers that no count of episodes gives"), h("ul", {}, flags.map((flag) => h("li", {}, flag)))) : null);
   });
   return panel("main", "Main table",
-    ["Percent of valid episodes, beneath it their count and the interval. ", data.interval ?? `Intervals: ${Math.round(100 * (data.confidence ?? 0.95))} %.`], holder);
+    ["Percent of valid episodes, beneath it their count and the interval. ", data.interval ?? `Intervals: ${percent(data.confidence ?? 0.95)} %.`], holder);
 }

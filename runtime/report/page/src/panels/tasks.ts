@@ -90,7 +90,7 @@ function taskView(state: State, task: number, open: (row: number) => void): Chil
   if (t.rule) facts.push(["Rule of success", [h("code", {}, t.rule.text), h("span", { class: "sub" }, `${t.rule.file}:${t.rule.line}`)]]);
   const deltas = (data.tables.deltas ?? []).filter((d) => d.task === task && state.chosen.includes(d.policy) && data.metrics[d.metric]?.name === "success");
   return [h("h3", { id: "task-title", tabindex: -1 }, t.name), h("dl", { class: "facts" }, facts.map(([name, value]) => [h("dt", {}, name), h("dd", {}, value)])),
-    deltas.length ? h("p", { class: "key" }, "Success against the baseline, in points: ", deltas.map((d, i) => [i ? "; " : "", policyLabel(state, d.policy), ` ${points(d.diff) || "0"} (p ${probability(d.p)})`])) : null,
+    deltas.length ? h("p", { class: "key" }, "Success against the baseline, in points: ", deltas.map((d, i) => [i ? "; " : "", policyLabel(state, d.policy), ` ${points(d.diff) || "0"} (p ${probability(d.for_starts_never_tried.p)})`])) : null,
     startGrid(state, task, open)];
 }
 
