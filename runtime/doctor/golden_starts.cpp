@@ -4,8 +4,7 @@
 #include <set>
 
 #include "runtime/stage/assets.h"
-#include "runtime/stage/episode_world.h"
-#include "runtime/stage/scene_view.h"
+#include "runtime/stage/stage.h"
 
 namespace probe::doctor {
 namespace {
@@ -15,17 +14,16 @@ Result<std::vector<GoldenFrame>> draw_task(const plan::Plan& plan, const std::st
   const plan::TaskRecord& task = plan.tasks()[index];
   const std::uint32_t tasks[] = {index};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
-  PROBE_ASSIGN(const auto world, stage::EpisodeWorld::create(plan, index, assets));
   const plan::CameraRecord& camera = plan.cameras()[task.camera];
   const stage::ImageSize half{static_cast<int>(camera.width + 1) / 2,
                               static_cast<int>(camera.height + 1) / 2};
-  PROBE_ASSIGN(const auto view, stage::SceneView::create(plan, index, assets, half));
-  PROBE_TRY(world->reset(0));
-  PROBE_ASSIGN(const auto seen, view->render_all(world->q(), world->objects()));
+  PROBE_ASSIGN(const auto stage, stage::Stage::create(plan, index, assets, {.image = half}));
+  PROBE_TRY(stage->reset(0));
+  PROBE_TRY(stage->observe());
   std::string name = "start_";
   name.append(plan.text(plan.scenes()[task.scene].name)).append("_").append(plan.text(task.name));
   std::vector<GoldenFrame> frames;
-  for (const stage::CameraFrame& picture : seen) {
+  for (const stage::CameraFrame& picture : stage->frames()) {
     const render::FrameView& frame = picture.frame;
     frames.push_back({frames.empty() ? name : name + "_" + std::string(picture.camera),
                       frame.width,

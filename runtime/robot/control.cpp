@@ -67,6 +67,19 @@ void EeDeltaPoseController::reset(std::span<const double> q) {
   reached_ = true;
 }
 
+Status EeDeltaPoseController::restore(const ControlState& state) {
+  if (state.joint_targets.size() != joint_targets_.size()) {
+    return Failure{"policy",
+                   fmt::format("the controller's state is of {} joints, the robot has {}",
+                               state.joint_targets.size(), joint_targets_.size()),
+                   ""};
+  }
+  target_ = state.target;
+  joint_targets_ = state.joint_targets;
+  reached_ = state.reached;
+  return {};
+}
+
 Pose EeDeltaPoseController::tcp_pose(std::span<const double> q) const {
   return chain_.pose(q.first(chain_.joint_count()));
 }

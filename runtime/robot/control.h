@@ -25,6 +25,13 @@ struct EeControlSpec {
   double grip_open = 0.038;                // m, at +1
 };
 
+// What a controller remembers from one control step to the next.
+struct ControlState {
+  Pose target;                        // of the tcp link, in the root link's frame
+  std::vector<double> joint_targets;  // rad and m, drive order
+  bool reached = true;                // whether the last action had joint positions
+};
+
 class EeDeltaPoseController {
  public:
   // Copies what it needs; the model may go. Fails on names that are not there (kUrdf).
@@ -40,6 +47,10 @@ class EeDeltaPoseController {
   // finite or is beyond 1000 in size; nothing has changed then.
   Result<std::span<const double>> targets(const std::array<double, 7>& action,
                                           std::span<const double> measured_q);
+
+  ControlState save() const { return {target_, joint_targets_, reached_}; }
+  // Goes on from there. Fails (code "policy") on the state of a robot with other joints.
+  Status restore(const ControlState& state);
 
   // Of the tcp link in the root link's frame.
   const Pose& target_pose() const { return target_; }

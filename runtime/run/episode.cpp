@@ -32,13 +32,9 @@ Sha256 hash_of(std::span<const stage::CameraFrame> frames) {
   return all.finish();
 }
 
-policy::Image image_of(const render::FrameView& frame) {
-  return {frame.width, frame.height, frame.rgb};
-}
-
 class Loop {
  public:
-  Loop(TaskStage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
+  Loop(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
        store::TraceWriter& trace, show::FrameSink* frames, store::ResultRow& row)
       : stage_(stage),
         plan_(plan),
@@ -83,61 +79,44 @@ class Loop {
   }
 
  private:
+  // The judge is the stage's, but a row says whose failure it was.
+  static Outcome stage_failed(const Failure& failure) {
+    return {reason(failure.code == "judge" ? "judge" : "world", failure), {}};
+  }
+
   Outcome begin() {
-    stage::EpisodeWorld& world = stage_.world();
-    if (auto reset = world.reset(job_.index); !reset) return {reason("world", reset.failure()), {}};
-    if (auto begun = stage_.judge().begin(world.starts()); !begun) {
-      return {reason("judge", begun.failure()), {}};
-    }
+    if (auto reset = stage_.reset(job_.index); !reset) return stage_failed(reset.failure());
     store::TraceStart start;
-    start.q.assign(world.q().begin(), world.q().end());
-    start.starts.assign(world.starts().begin(), world.starts().end());
-    start.sample = world.sample();
-    start.state_hash = world.state_hash();
+    start.q.assign(stage_.q().begin(), stage_.q().end());
+    start.starts.assign(stage_.body_starts().begin(), stage_.body_starts().end());
+    start.sample = stage_.sample();
+    start.state_hash = stage_.state_hash();
     if (auto written = trace_.start(start); !written) return {{}, written.failure()};
 
-    policy::EpisodeStart first;
-    first.task = plan_.text(task_.name);
-    first.prompt = prompt_;
-    first.index = static_cast<int>(job_.index);
+    policy::EpisodeStart first = stage_.introduction();
     first.seed = job_.seed;
     first.draw_seed = draw_seed(job_.seed, Sha256{episode_.episode_id});
-    first.horizon = static_cast<int>(task_.horizon);
-    first.robot_urdf = world.urdf_path();
-    first.tcp_link = world.tcp_link();
     policy_begun_ = true;
     if (auto begun = policy_.begin(first); !begun) return {reason("policy", begun.failure()), {}};
     return {};
   }
 
   Outcome step(int number) {
-    stage::EpisodeWorld& world = stage_.world();
     store::TraceStep record;
     auto clock = Clock::now();
-    const auto frames = stage_.view().render_all(world.q(), world.objects());
-    if (!frames) return {reason("picture", frames.failure()), {}};
-    record.image_hash = hash_of(*frames);
+    const auto observation = stage_.observe();
+    if (!observation) return {reason("picture", observation.failure()), {}};
+    record.image_hash = hash_of(stage_.frames());
     record.prompt_hash = prompt_hash_;
     record.render_s = seconds_since(clock);
     if (number == 0) row_.image_sha256 = to_hex(record.image_hash);
     if (frames_ != nullptr) {
-      if (auto shown = frames_->frame(*frames, number, row_.metrics); !shown)
+      if (auto shown = frames_->frame(stage_.frames(), number, row_.metrics); !shown)
         return {{}, shown.failure()};
     }
 
     clock = Clock::now();
-    policy::Observation observation;
-    images_.clear();
-    for (const stage::CameraFrame& seen : *frames)
-      images_.push_back({seen.camera, image_of(seen.frame)});
-    observation.image = images_.front().image;
-    observation.cameras = images_;
-    observation.prompt = prompt_;
-    observation.proprioception = world.proprioception();
-    observation.privileged = &world.privileged();
-    observation.step = number;
-    observation.horizon = static_cast<int>(task_.horizon);
-    const auto action = policy_.act(observation);
+    const auto action = policy_.act(*observation);
     if (!action) return {reason("policy", action.failure()), {}};
     for (const double value : *action) {
       if (!std::isfinite(value)) return {"policy: an action with a number that is not finite", {}};
@@ -146,18 +125,15 @@ class Loop {
     record.policy_s = seconds_since(clock);
 
     clock = Clock::now();
-    if (auto acted = world.act(*action); !acted) return {reason("world", acted.failure()), {}};
+    if (auto stepped = stage_.step(*action); !stepped) return stage_failed(stepped.failure());
     record.physics_s = seconds_since(clock);
-    if (auto judged = stage_.judge().step(world.sample()); !judged) {
-      return {reason("judge", judged.failure()), {}};
-    }
     const auto values = stage_.judge().values();
     for (std::size_t i = 0; i < values.size(); ++i) row_.metrics[i].value = values[i];
     record.metrics.assign(values.begin(), values.end());
-    record.q.assign(world.q().begin(), world.q().end());
-    record.u.assign(world.u().begin(), world.u().end());
-    record.sample = world.sample();
-    record.state_hash = world.state_hash();
+    record.q.assign(stage_.q().begin(), stage_.q().end());
+    record.u.assign(stage_.u().begin(), stage_.u().end());
+    record.sample = stage_.sample();
+    record.state_hash = stage_.state_hash();
     if (auto written = trace_.step(record); !written) return {{}, written.failure()};
     frames_hash_.hash(record.image_hash);
     row_.steps = number + 1;
@@ -165,14 +141,13 @@ class Loop {
   }
 
   Outcome last_frame(int number) {
-    const auto frames = stage_.view().render_all(stage_.world().q(), stage_.world().objects());
-    if (!frames) return {reason("picture", frames.failure()), {}};
-    if (auto shown = frames_->frame(*frames, number, row_.metrics); !shown)
+    if (const auto seen = stage_.observe(); !seen) return {reason("picture", seen.failure()), {}};
+    if (auto shown = frames_->frame(stage_.frames(), number, row_.metrics); !shown)
       return {{}, shown.failure()};
     return {};
   }
 
-  TaskStage& stage_;
+  stage::Stage& stage_;
   const plan::Plan& plan_;
   const plan::TaskRecord& task_;
   const plan::EpisodeRecord& episode_;
@@ -180,7 +155,6 @@ class Loop {
   policy::Policy& policy_;
   store::TraceWriter& trace_;
   show::FrameSink* frames_;
-  std::vector<policy::CameraImage> images_;  // of the observation in hand
   store::ResultRow& row_;
   bool policy_begun_ = false;
   std::string_view prompt_;
@@ -218,14 +192,6 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
   return value;
 }
 
-Result<std::unique_ptr<TaskStage>> TaskStage::create(
-    const plan::Plan& plan, std::uint32_t task, std::shared_ptr<const stage::SharedAssets> assets) {
-  auto stage = std::unique_ptr<TaskStage>(new TaskStage(plan, task));
-  PROBE_ASSIGN(stage->world_, stage::EpisodeWorld::create(plan, task, assets));
-  PROBE_ASSIGN(stage->view_, stage::SceneView::create(plan, task, std::move(assets)));
-  return stage;
-}
-
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
                                      const std::string& policy, const std::string& fingerprint) {
   const plan::TaskRecord& task = plan.tasks()[job.task];
@@ -253,7 +219,7 @@ store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& j
   return header;
 }
 
-Result<store::ResultRow> run_episode(TaskStage& stage, const plan::Plan& plan,
+Result<store::ResultRow> run_episode(stage::Stage& stage, const plan::Plan& plan,
                                      const EpisodeJob& job, const std::string& policy_name,
                                      policy::Policy& policy, store::TraceWriter& trace,
                                      show::FrameSink* frames, int steps) {

@@ -101,7 +101,7 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
   PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
   const std::uint32_t tasks[] = {job.task};
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
-  PROBE_ASSIGN(auto stage, TaskStage::create(plan, job.task, std::move(assets)));
+  PROBE_ASSIGN(auto stage, stage::Stage::create(plan, job.task, std::move(assets)));
 
   TraceActions actions(trace);
   store::TraceComparer comparer(trace);

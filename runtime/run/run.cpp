@@ -83,7 +83,7 @@ class EpisodeWorker {
     const EpisodeJob& job = shared_.jobs[index];
     if (!stage_ || stage_->task() != job.task) {
       stage_.reset();  // frees the old before the new is made
-      PROBE_ASSIGN(stage_, TaskStage::create(shared_.plan, job.task, shared_.assets));
+      PROBE_ASSIGN(stage_, stage::Stage::create(shared_.plan, job.task, shared_.assets));
     }
     const store::TraceHeader header =
         make_trace_header(shared_.plan, job, shared_.options.name, shared_.fingerprint);
@@ -166,7 +166,7 @@ class EpisodeWorker {
 
   Shared& shared_;
   std::unique_ptr<policy::Policy> policy_;
-  std::unique_ptr<TaskStage> stage_;
+  std::unique_ptr<stage::Stage> stage_;
 };
 
 std::vector<std::uint32_t> tasks_of(const std::vector<EpisodeJob>& jobs) {

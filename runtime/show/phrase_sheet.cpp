@@ -6,8 +6,7 @@
 #include "runtime/scene/image.h"
 #include "runtime/show/overlay.h"
 #include "runtime/stage/assets.h"
-#include "runtime/stage/episode_world.h"
-#include "runtime/stage/scene_view.h"
+#include "runtime/stage/stage.h"
 
 namespace probe::show {
 namespace {
@@ -76,17 +75,16 @@ Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
   Picture sheet = make_picture(kCrop + kWordsWidth + 3 * kMargin,
                                static_cast<int>(rows.size()) * step + kMargin, kGround);
   std::optional<std::uint32_t> shown;
-  std::unique_ptr<stage::EpisodeWorld> world;
-  std::unique_ptr<stage::SceneView> view;
+  std::unique_ptr<stage::Stage> stage;
   int y = kMargin;
   for (const PhraseRow& row : rows) {
     if (row.task != shown) {
-      world.reset();
+      stage.reset();  // frees the old before the new is made
       const std::uint32_t tasks[] = {row.task};
       PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
-      PROBE_ASSIGN(world, stage::EpisodeWorld::create(plan, row.task, assets));
-      PROBE_ASSIGN(view, stage::SceneView::create(plan, row.task, assets));
-      PROBE_TRY(world->reset(0));
+      PROBE_ASSIGN(stage, stage::Stage::create(plan, row.task, assets));
+      PROBE_TRY(stage->reset(0));
+      PROBE_TRY(stage->observe());
       shown = row.task;
     }
     const auto body = body_of(plan, row.task, row.object);
@@ -97,7 +95,7 @@ Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
                      ""};
     }
     // In the first camera's picture that shows it.
-    PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
+    const auto frames = stage->frames();
     std::optional<Square> square;
     for (std::size_t i = 0; i < frames.size() && !square; ++i) {
       square = square_round(frames[i].frame, static_cast<std::uint16_t>(*body + 1));

@@ -3,8 +3,7 @@
 
 #include "runtime/scene/image.h"
 #include "runtime/show/picture_grid.h"
-#include "runtime/stage/episode_world.h"
-#include "runtime/stage/scene_view.h"
+#include "runtime/stage/stage.h"
 
 namespace probe::show {
 
@@ -13,14 +12,13 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
   PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
   const std::uint32_t tasks[] = {task};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
-  PROBE_ASSIGN(auto world, stage::EpisodeWorld::create(plan, task, assets));
-  PROBE_ASSIGN(auto view, stage::SceneView::create(plan, task, assets));
+  PROBE_ASSIGN(auto stage, stage::Stage::create(plan, task, assets));
   const plan::TaskRecord& record = plan.tasks()[task];
   std::vector<GridCell> cells;
   for (std::uint32_t index = 0; index < plan.episodes(record).size(); ++index) {
-    PROBE_TRY(world->reset(index));
-    PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
-    PROBE_ASSIGN(const Picture shown, show_frames(frames, options.camera));
+    PROBE_TRY(stage->reset(index));
+    PROBE_TRY(stage->observe());
+    PROBE_ASSIGN(const Picture shown, show_frames(stage->frames(), options.camera));
     GridCell cell;
     cell.pictures.push_back(shrink_to(shown, options.cell_width));
     cell.caption = std::to_string(index);
@@ -49,11 +47,10 @@ Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t ind
   PROBE_ASSIGN(const std::string root, stage::find_asset_root(assets_folder));
   const std::uint32_t tasks[] = {task};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
-  PROBE_ASSIGN(auto world, stage::EpisodeWorld::create(plan, task, assets));
-  PROBE_ASSIGN(auto view, stage::SceneView::create(plan, task, assets));
-  PROBE_TRY(world->reset(index));
-  PROBE_ASSIGN(const auto frames, view->render_all(world->q(), world->objects()));
-  PROBE_ASSIGN(const Picture shown, show_frames(frames, camera));
+  PROBE_ASSIGN(auto stage, stage::Stage::create(plan, task, assets));
+  PROBE_TRY(stage->reset(index));
+  PROBE_TRY(stage->observe());
+  PROBE_ASSIGN(const Picture shown, show_frames(stage->frames(), camera));
   return scene::write_png(png_path, shown.width, shown.height, shown.rgb);
 }
 

@@ -243,6 +243,27 @@ Status EpisodeWorld::act(const policy::Action& action) {
   return {};
 }
 
+WorldState EpisodeWorld::save() const {
+  return {world_->save(), controller_.save(), starts_, steps_};
+}
+
+Status EpisodeWorld::restore(const WorldState& state) {
+  if (state.starts.size() != plan_.bodies(*task_).size()) {
+    return Failure{"world", "the saved state is of a task with other bodies",
+                   "task `" + std::string(plan_.text(task_->name)) + "`"};
+  }
+  if (!world_) {
+    const std::vector<Pose> anywhere(object_count_);
+    PROBE_ASSIGN(world_, world::World::create(spec_at(anywhere, true)));
+  }
+  PROBE_TRY(world_->restore(state.physics));
+  PROBE_TRY(controller_.restore(state.control));
+  starts_ = state.starts;
+  steps_ = state.steps;
+  measure();
+  return {};
+}
+
 policy::Proprioception EpisodeWorld::proprioception() const {
   const auto q = world_->joints();
   return {controller_.tcp_pose(q), controller_.openness(q), {q.begin(), q.end()}};

@@ -3,6 +3,7 @@
 // world's parties here and nowhere else.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,6 +20,14 @@
 
 namespace probe::stage {
 
+// All that changes in the physics of an episode.
+struct WorldState {
+  std::vector<std::byte> physics;  // world::World::save()
+  robot::ControlState control;
+  std::vector<vm::BodyStart> starts;  // as the judge was told them after settling
+  int steps = 0;                      // control steps done
+};
+
 class EpisodeWorld {
  public:
   // `assets` were loaded for this task; the plan must live as long.
@@ -32,7 +41,13 @@ class EpisodeWorld {
   // One control step. The world must not be used after a failure, until the next reset.
   Status act(const policy::Action& action);
 
+  // restore() works without a reset() before it. It fails (codes "world", "policy") on the state of
+  // another task; only reset() and restore() may be called then.
+  WorldState save() const;
+  Status restore(const WorldState& state);
+
   // After reset() and after each act().
+  int steps() const { return steps_; }
   const vm::StepSample& sample() const { return sample_; }
   std::span<const vm::BodyStart> starts() const { return starts_; }
   const policy::Privileged& privileged() const { return privileged_; }

@@ -153,11 +153,22 @@ Status Judge::begin(std::span<const BodyStart> starts) {
     }
   }
   std::ranges::copy(starts, starts_.begin());
-  std::ranges::fill(states_, State{});
+  std::ranges::fill(states_, JudgeState::Monitor{});
   std::ranges::fill(values_, 0.0);
   std::ranges::fill(emitted_, 0.0);
   run(once_, StepSample{});
   begun_ = true;
+  return {};
+}
+
+Status Judge::restore(std::span<const BodyStart> starts, const JudgeState& state) {
+  PROBE_TRY(begin(starts));
+  if (state.monitors.size() != states_.size() || state.values.size() != values_.size()) {
+    begun_ = false;
+    return Failure{"judge", "the saved state is of a task with other metrics", task_name_};
+  }
+  states_ = state.monitors;
+  values_ = state.values;
   return {};
 }
 
@@ -383,14 +394,14 @@ void Judge::run(std::span<const Step> steps, const StepSample& sample) {
         break;
       }
       case Op::kFIRST: {
-        State& first = states_[s.b];
+        JudgeState::Monitor& first = states_[s.b];
         if (a.x != 0.0 && !first.started) first = {sample.step, true};
         d.x = first.started ? first.value : -1.0;
         break;
       }
       case Op::kMAXR:
       case Op::kMINR: {
-        State& best = states_[s.b];
+        JudgeState::Monitor& best = states_[s.b];
         const bool better = s.op == Op::kMAXR ? best.value < a.x : a.x < best.value;
         if (!best.started || better) best = {a.x, true};
         d.x = best.value;

@@ -17,6 +17,16 @@
 
 namespace probe::vm {
 
+// What a judge remembers of an episode so far. Of no meaning to the judge of another task.
+struct JudgeState {
+  struct Monitor {
+    double value = 0;
+    bool started = false;
+  };
+  std::vector<Monitor> monitors;
+  std::vector<double> values;  // by metric
+};
+
 class Judge {
  public:
   // `task` indexes plan.tasks(). Keeps no reference to the plan.
@@ -30,6 +40,11 @@ class Judge {
   // holds a number that is not finite: the episode is invalid then, and the values are those of the
   // step before.
   Status step(const StepSample& sample);
+
+  // The episode as it stands, and back to it: `starts` are those it began with. restore() fails
+  // (code "judge") as begin() does, and on the state of another task.
+  JudgeState save() const { return {states_, values_}; }
+  Status restore(std::span<const BodyStart> starts, const JudgeState& state);
 
   // By metric index, as last emitted; truths are 0 or 1. Zero before the first step.
   std::span<const double> values() const { return values_; }
@@ -58,10 +73,6 @@ class Judge {
   struct Register {
     double x = 0, y = 0, z = 0;
   };
-  struct State {
-    double value = 0;
-    bool started = false;
-  };
   // A pair of bodies some instruction asks about, a < b, and at this step what a exerts on b and b
   // on a. Both are kept, because without contact both are +0.
   struct Pair {
@@ -83,7 +94,7 @@ class Judge {
   std::vector<Pair> pairs_;  // ascending
   std::vector<BodyStart> starts_;
   std::vector<Register> registers_;
-  std::vector<State> states_;
+  std::vector<JudgeState::Monitor> states_;
   std::vector<double> values_, emitted_;
   bool begun_ = false;
 };

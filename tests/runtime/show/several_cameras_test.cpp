@@ -63,7 +63,7 @@ Episode watch(const plan::Plan& plan, const std::string& task, const std::string
   const std::uint32_t tasks[] = {index};
   auto assets = SharedAssets::load(plan, kAssets, tasks);
   REQUIRE(assets.ok());
-  auto stage = TaskStage::create(plan, index, *assets);
+  auto stage = stage::Stage::create(plan, index, *assets);
   REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
   const EpisodeJob job{index, 0, 42};
   const TraceHeader header = make_trace_header(plan, job, "watcher", "{}");

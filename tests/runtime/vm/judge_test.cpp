@@ -115,6 +115,48 @@ TEST_CASE("a metric keeps the value last emitted, and monitors start again with 
   CHECK(!judge.truth(0));
 }
 
+TEST_CASE("a judge restored in mid-episode says what the one that went on says, bit for bit") {
+  std::size_t compared = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    const Plan plan = RandomProgram(seed + 9000).make(20 + seed % 60);
+    RandomWorld world(seed + 10);
+    const auto starts = world.starts();
+    Judge judge(plan, 1), other(plan, 1);
+    REQUIRE(judge.begin(starts).ok());
+    for (int step = 1; step <= 4; ++step) REQUIRE(judge.step(world.step(step)).ok());
+    const JudgeState saved = judge.save();
+    REQUIRE(other.begin(world.starts()).ok());  // another episode leaves no trace
+    REQUIRE(other.step(world.step(1)).ok());
+    REQUIRE(other.restore(starts, saved).ok());
+    for (int step = 4; step <= 8; ++step) {
+      if (step > 4) {
+        const StepSample sample = world.step(step);
+        REQUIRE(judge.step(sample).ok());
+        REQUIRE(other.step(sample).ok());
+      }
+      for (std::uint32_t m = 0; m < judge.metric_count(); ++m, ++compared) {
+        CHECK(std::bit_cast<std::uint64_t>(judge.value(m)) ==
+              std::bit_cast<std::uint64_t>(other.value(m)));
+      }
+    }
+  }
+  CHECK(compared > 1000);
+}
+
+TEST_CASE("the state of a judge of other metrics is refused, and no step may follow") {
+  const Plan plan = open_small();
+  Judge judge(plan, 0);
+  const std::vector<BodyStart> starts(kBodies);
+  REQUIRE(judge.begin(starts).ok());
+  JudgeState state = judge.save();
+  state.values.pop_back();
+  const Status refused = judge.restore(starts, state);
+  REQUIRE(!refused.ok());
+  CHECK(refused.failure().code == "judge");
+  CHECK(refused.failure().message == "the saved state is of a task with other metrics");
+  CHECK(!judge.step(resting(1)).ok());
+}
+
 TEST_CASE("a condition that must hold for five steps is true at the fifth and breaks at once") {
   const Plan plan = open_small();
   Judge judge(plan, 0);

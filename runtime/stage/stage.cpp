@@ -1,0 +1,72 @@
+// The order of an episode: settle, look, act, measure, judge.
+#include "runtime/stage/stage.h"
+
+#include <utility>
+
+namespace probe::stage {
+
+Result<std::unique_ptr<Stage>> Stage::create(const plan::Plan& plan, std::uint32_t task,
+                                             std::shared_ptr<const SharedAssets> assets,
+                                             const StageOptions& options) {
+  auto stage = std::unique_ptr<Stage>(new Stage(plan, task));
+  PROBE_ASSIGN(stage->world_, EpisodeWorld::create(plan, task, assets));
+  if (options.pictures) {
+    PROBE_ASSIGN(stage->view_, SceneView::create(plan, task, std::move(assets), options.image));
+  }
+  return stage;
+}
+
+Status Stage::reset(std::uint32_t index) {
+  frames_ = {};
+  start_ = index;
+  PROBE_TRY(world_->reset(index));
+  return judge_.begin(world_->starts());
+}
+
+Result<policy::Observation> Stage::observe() {
+  const plan::TaskRecord& task = plan_.tasks()[task_];
+  policy::Observation seen;
+  images_.clear();
+  if (view_) {
+    PROBE_ASSIGN(frames_, view_->render_all(world_->q(), world_->objects()));
+    for (const CameraFrame& frame : frames_) {
+      images_.push_back({frame.camera, {frame.frame.width, frame.frame.height, frame.frame.rgb}});
+    }
+    seen.image = images_.front().image;
+  }
+  seen.cameras = images_;
+  seen.prompt = plan_.text(task.prompt);
+  seen.proprioception = world_->proprioception();
+  seen.privileged = &world_->privileged();
+  seen.step = world_->steps();
+  seen.horizon = static_cast<int>(task.horizon);
+  return seen;
+}
+
+Status Stage::step(const policy::Action& action) {
+  PROBE_TRY(world_->act(action));
+  return judge_.step(world_->sample());
+}
+
+StageState Stage::save() const { return {start_, world_->save(), judge_.save()}; }
+
+Status Stage::restore(const StageState& state) {
+  frames_ = {};
+  PROBE_TRY(world_->restore(state.world));
+  start_ = state.start;
+  return judge_.restore(world_->starts(), state.judge);
+}
+
+policy::EpisodeStart Stage::introduction() const {
+  const plan::TaskRecord& task = plan_.tasks()[task_];
+  policy::EpisodeStart start;
+  start.task = plan_.text(task.name);
+  start.prompt = plan_.text(task.prompt);
+  start.index = static_cast<int>(start_);
+  start.horizon = static_cast<int>(task.horizon);
+  start.robot_urdf = world_->urdf_path();
+  start.tcp_link = world_->tcp_link();
+  return start;
+}
+
+}  // namespace probe::stage

@@ -1,0 +1,100 @@
+// A task made real: its world, its cameras and its judge, stepped from a start to the verdicts.
+// Runs, replays, previews and the doctor stand on it. Knows nothing of policies' insides, of files
+// that last, or of what happens between episodes. One stage is used by one thread at a time; stages
+// share the plan and the assets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/base/sha256.h"
+#include "runtime/plan/plan.h"
+#include "runtime/policy/policy.h"
+#include "runtime/stage/assets.h"
+#include "runtime/stage/episode_world.h"
+#include "runtime/stage/scene_view.h"
+#include "runtime/vm/judge.h"
+
+namespace probe::stage {
+
+struct StageOptions {
+  ImageSize image{};     // of every camera; zero: each camera's own
+  bool pictures = true;  // false: observe() has no pictures, and nothing of them is set up
+};
+
+// All that changes while an episode goes on. Of no meaning to a stage of another plan or task.
+struct StageState {
+  std::uint32_t start = 0;  // within the task
+  WorldState world;         // bodies, joints, contacts, the controller's target, steps done
+  vm::JudgeState judge;     // monitors and verdicts so far
+};
+
+class Stage {
+ public:
+  // `assets` were loaded for this task; the plan must live as long as the stage. Fails with the
+  // codes of what it is made of ("plan", "asset", "urdf", "world", "render").
+  static Result<std::unique_ptr<Stage>> create(const plan::Plan& plan, std::uint32_t task,
+                                               std::shared_ptr<const SharedAssets> assets,
+                                               const StageOptions& options = {});
+
+  // Begins an episode: the objects of the task's start `index` are dropped and settle with the arm
+  // out of the way, then the judge begins. Failures of the judge have code "judge".
+  Status reset(std::uint32_t index);
+
+  // What a policy sees now: a picture of each camera, proprioception, the privileged view. What it
+  // points to lives until the next call of observe(), step(), reset() or restore().
+  Result<policy::Observation> observe();
+
+  // One control step: action to joint targets, substeps, measurement, verdicts. After a failure
+  // (code "policy" for an action that is none, "judge", "world") only reset() and restore() may be
+  // called.
+  Status step(const policy::Action& action);
+
+  // The episode as it is now, and back to it: what follows is the same bit for bit, in this stage
+  // or in another of the same plan and task. restore() fails (code "world" or "judge") on a state
+  // of another task.
+  StageState save() const;
+  Status restore(const StageState& state);
+
+  // What a policy is told at the beginning of an episode, but for what the run draws (its seeds).
+  policy::EpisodeStart introduction() const;
+
+  // The pictures of the last observe(), with depth and segmentation.
+  std::span<const CameraFrame> frames() const { return frames_; }
+
+  // Since reset(), in control steps.
+  int steps() const { return world_->steps(); }
+  // What the judge reads, after reset() and after each step().
+  const vm::StepSample& sample() const { return world_->sample(); }
+  std::span<const vm::BodyStart> body_starts() const { return world_->starts(); }
+  const vm::Judge& judge() const { return judge_; }
+  const policy::Privileged& privileged() const { return world_->privileged(); }
+  std::span<const double> q() const { return world_->q(); }  // rad and m, in drive order
+  std::span<const double> u() const { return world_->u(); }  // rad/s and m/s
+  // Model poses in world: source, target, distractors.
+  std::span<const Pose> objects() const { return world_->objects(); }
+  Sha256 state_hash() const { return world_->state_hash(); }
+
+  std::uint32_t task() const { return task_; }
+  // Null in a stage without pictures.
+  SceneView* view() { return view_.get(); }
+
+ private:
+  Stage(const plan::Plan& plan, std::uint32_t task)
+      : plan_(plan), task_(task), judge_(plan, task) {}
+
+  const plan::Plan& plan_;
+  std::uint32_t task_;
+  std::uint32_t start_ = 0;
+  std::unique_ptr<EpisodeWorld> world_;
+  std::unique_ptr<SceneView> view_;
+  vm::Judge judge_;
+  std::span<const CameraFrame> frames_;
+  std::vector<policy::CameraImage> images_;  // of the last observation
+};
+
+}  // namespace probe::stage
