@@ -9,15 +9,13 @@
 #include <set>
 
 #include "compiler/audit/rules.h"
-#include "runtime/plan/axis_names.h"
+#include "runtime/plan/axes.h"
 
 namespace probe::audit {
 namespace {
 
 // `what` of SpanRecord.
 constexpr std::uint32_t kTaskSpan = 2, kMetricSpan = 4;
-
-constexpr std::uint32_t bit(plan::Axis axis) { return static_cast<std::uint32_t>(axis); }
 
 struct KindName {
   Kind kind;
@@ -106,9 +104,8 @@ class Auditor {
     finding.kind = kind;
     finding.tasks = {name_of(task)};
     finding.baseline = name_of(record.baseline);
-    for (const auto& [axis, name] : plan::kAxisNames) {
-      if ((record.axes & bit(axis)) != 0) finding.axes.emplace_back(name);
-    }
+    for (const std::string_view name : plan::axis_names(record.axes))
+      finding.axes.emplace_back(name);
     finding.message = std::move(message);
     finding.place = task_place(task);
     if (record.allow.length != 0) finding.allowed = std::string(plan_.text(record.allow));
@@ -154,13 +151,13 @@ class Auditor {
     if (all.axes.size() < 2) return;
     all.message = fmt::format("{} moves {}", pair, fmt::join(all.axes, ", "));
     add(std::move(all));
-    if ((task.axes & bit(plan::Axis::kScene)) != 0) {
+    if (moves(task.axes, plan::Axis::kScene)) {
       add(comparison(Kind::kAcrossScenes, index,
                      fmt::format("{}: scene `{}` against `{}`", pair,
                                  plan_.text(plan_.scenes()[task.scene].name),
                                  plan_.text(plan_.scenes()[baseline.scene].name))));
     }
-    if ((task.axes & bit(plan::Axis::kLayout)) != 0)
+    if (moves(task.axes, plan::Axis::kLayout))
       add(comparison(Kind::kAcrossLayouts, index, pair + ": the starts are other"));
     if (task.horizon != baseline.horizon) {
       add(comparison(Kind::kHorizon, index,
@@ -178,12 +175,8 @@ class Auditor {
 
   // A comparison of words whose words are the same.
   void check_words(std::uint32_t index, const std::string& pair) {
-    constexpr std::uint32_t kWords =
-        bit(plan::Axis::kLanguageAction) | bit(plan::Axis::kLanguageNegation) |
-        bit(plan::Axis::kLanguageAppearance) | bit(plan::Axis::kLanguageCommonsense) |
-        bit(plan::Axis::kLanguageParaphrase);
     const plan::TaskRecord& task = plan_.tasks()[index];
-    if ((task.axes & kWords) == 0) return;
+    if ((task.axes & plan::kLanguageAxes) == 0) return;
     const std::string_view prompt = plan_.text(task.prompt);
     if (prompt != plan_.text(plan_.tasks()[task.baseline].prompt)) return;
     add(comparison(Kind::kSamePrompt, index, fmt::format("{}: both say \"{}\"", pair, prompt)));

@@ -1,5 +1,6 @@
 // P07xx: is every variant compared with something that it differs from in one way?
 #include <algorithm>
+#include <bit>
 #include <set>
 
 #include "compiler/define/axes.h"
@@ -11,8 +12,8 @@ namespace {
 
 std::string axis_list(std::uint32_t mask) {
   std::string text;
-  for (const plan::Axis axis : axes_in(mask))
-    text += (text.empty() ? "" : ", ") + std::string(axis_name(axis));
+  for (const std::string_view name : plan::axis_names(mask))
+    text += (text.empty() ? "" : ", ") + std::string(name);
   return text;
 }
 
@@ -41,27 +42,48 @@ void break_cycles(Context& context) {
   }
 }
 
+// The statement of a task that says what is compared along an axis; null where several have a say.
+const Span* statement_of(const Task& task, plan::Axis axis) {
+  switch (axis) {
+    case plan::Axis::kObjectSource:
+      return &task.role_span[0];
+    case plan::Axis::kObjectTarget:
+      return &task.role_span[1];
+    case plan::Axis::kDistractors:
+      return &task.distractors_span;
+    case plan::Axis::kLanguageAction:
+    case plan::Axis::kLanguageNegation:
+    case plan::Axis::kLanguageParaphrase:
+      return &task.say_span;
+    case plan::Axis::kLayout:
+      return &task.layout_span;
+    case plan::Axis::kLanguageAppearance:
+    case plan::Axis::kLanguageCommonsense:
+    case plan::Axis::kScene:
+    case plan::Axis::kLight:
+    case plan::Axis::kCamera:
+    case plan::Axis::kGoal:
+      break;
+  }
+  return nullptr;
+}
+
 // Marks the statements of this declaration that moved an axis; what was copied has no mark.
 void label_axes(const Context& context, const Task& task, const Task& baseline,
                 Diagnostic& diagnostic) {
-  const auto mark = [&](plan::Axis axis, const Span& span, std::string text) {
-    const bool moved = (task.axes & static_cast<std::uint32_t>(axis)) != 0;
-    if (moved && is_within(span, task.decl_span)) diagnostic.also(span, std::move(text));
-  };
   std::string others;
   for (const ObjectId id : task.distractors) {
     const auto& known = baseline.distractors;
     if (std::find(known.begin(), known.end(), id) == known.end())
       others += (others.empty() ? "distractors: + " : ", ") + context.model.objects[id].name;
   }
-  if (others.empty()) others = "distractors";
-  mark(plan::Axis::kObjectSource, task.role_span[0], "object.source");
-  mark(plan::Axis::kObjectTarget, task.role_span[1], "object.target");
-  mark(plan::Axis::kDistractors, task.distractors_span, others);
-  mark(plan::Axis::kLayout, task.layout_span, "layout");
-  mark(plan::Axis::kLanguageAction, task.say_span, "language.action");
-  mark(plan::Axis::kLanguageNegation, task.say_span, "language.negation");
-  mark(plan::Axis::kLanguageParaphrase, task.say_span, "language.paraphrase");
+  if (others.empty()) others = plan::axis_name(plan::Axis::kDistractors);
+  for (const plan::Axis axis : plan::axes_in(task.axes)) {
+    const Span* span = statement_of(task, axis);
+    if (span == nullptr || !is_within(*span, task.decl_span)) continue;
+    diagnostic.also(*span,
+                    axis == plan::Axis::kDistractors ? others : std::string(plan::axis_name(axis)));
+  }
 }
 
 void check_edge(Context& context, const Task& task) {
@@ -74,7 +96,7 @@ void check_edge(Context& context, const Task& task) {
     return;
   }
   if (!baseline.complete) return;
-  const std::size_t axes = axes_in(task.axes).size();
+  const int axes = std::popcount(task.axes);
   if (axes == 0) {
     context.report(Code::P0702, task.span,
                    "`" + task.name + "` does not differ from its baseline `" + baseline.name + "`");
@@ -91,7 +113,7 @@ void check_edge(Context& context, const Task& task) {
       context.model.tasks[task.like].complete && !context.model.tasks[task.like].abstract) {
     const Task& like = context.model.tasks[task.like];
     const std::uint32_t closer = axes_between(context.model, task, like);
-    if (axes_in(closer).size() == 1) {
+    if (std::popcount(closer) == 1) {
       diagnostic.help("compare with `" + like.name + "`, where only " + axis_list(closer) +
                       " moves");
     }

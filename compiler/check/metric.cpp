@@ -4,6 +4,7 @@
 #include <set>
 
 #include "compiler/define/passes.h"
+#include "runtime/plan/readouts.h"
 
 namespace probe::sema {
 namespace {
@@ -70,6 +71,18 @@ struct LatchLint {
   }
 };
 
+// The read-outs whose metrics are true or false: "`at end`, `once` or `always`".
+std::string words_of_truths() {
+  std::vector<std::string> words;
+  for (const plan::ReadoutInfo& info : plan::kReadoutTable) {
+    if (info.is_truth()) words.push_back("`" + std::string(info.words) + "`");
+  }
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
+  return text;
+}
+
 // `success` is what an episode is scored by: a condition, in every task.
 void check_success(Context& context, const Task& task,
                    std::set<std::pair<std::uint32_t, std::uint32_t>>& reported) {
@@ -88,10 +101,7 @@ void check_success(Context& context, const Task& task,
   }
   const Metrics& metrics = context.model.metrics[id];
   const Span& place = success == task.judged.end() ? metrics.span : success->span;
-  const bool is_condition =
-      success != task.judged.end() &&
-      (success->readout == plan::Readout::kAtEnd || success->readout == plan::Readout::kOnce ||
-       success->readout == plan::Readout::kAlways);
+  const bool is_condition = success != task.judged.end() && plan::info(success->readout).is_truth();
   if (is_condition || !reported.insert({place.file.value, place.begin}).second) return;
   if (success == task.judged.end()) {
     context.report(Code::P0206, place, "metrics `" + metrics.name + "` have no `success`")
@@ -99,7 +109,7 @@ void check_success(Context& context, const Task& task,
         .help("an episode is scored by `success = at end ...`");
   } else {
     context.report(Code::P0601, success->readout_span, "expected `success` to be true or false")
-        .help("an episode is scored by it: `at end`, `once` or `always` a condition");
+        .help("an episode is scored by it: " + words_of_truths() + " a condition");
   }
 }
 

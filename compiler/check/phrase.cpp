@@ -8,6 +8,7 @@
 
 #include "compiler/define/passes.h"
 #include "compiler/define/task.h"
+#include "compiler/define/axes.h"
 #include "compiler/define/template.h"
 #include "compiler/names/allow.h"
 
@@ -147,7 +148,7 @@ struct TaskLanguage {
     if (!is("target", task.target) || task.baseline == TaskId::kNone) return true;
     const Task& baseline = model().tasks[task.baseline];
     if (!baseline.complete || baseline.abstract || has_negation(model().templates[baseline.say]) ||
-        (task.axes & static_cast<std::uint32_t>(plan::Axis::kGoal)) != 0)
+        plan::moves(task.axes, plan::Axis::kGoal))
       return true;
     context
         .report(Code::P0404, slot.span,

@@ -2,6 +2,7 @@
 // tasks of its own, is a library: what it offers need not be used by whoever checks it.
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <unordered_map>
 
 #include "compiler/define/passes.h"
@@ -69,7 +70,7 @@ bool is_used_file(const Context& context, const syntax::File& file) {
 // uses every phrase of it.
 struct PhraseUse {
   Counts declared;
-  bool all[2] = {false, false};
+  std::set<std::string_view> axes;  // of which all phrases are used
 };
 
 // So does one over a frame with its templates.
@@ -95,7 +96,7 @@ PhraseUse phrase_use(const Context& context) {
   for (const auto& derive : context.symbols.derive_decls) {
     for (const syntax::Binder& binder : derive.node->binders) {
       if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over))
-        use.all[phrases->axis.text == "commonsense" ? 1 : 0] = true;
+        use.axes.insert(phrases->axis.text);
     }
   }
   return use;
@@ -135,8 +136,7 @@ void check_unused(Context& context, std::span<const FileId> roots) {
         if (words[object->name.text] <= 1) report("object", object->name);
         for (const syntax::ObjectStmt& stmt : object->body) {
           const auto* phrase = std::get_if<syntax::PhraseStmt>(&stmt);
-          if (phrase == nullptr || phrases.all[phrase->axis.text == "commonsense" ? 1 : 0])
-            continue;
+          if (phrase == nullptr || phrases.axes.contains(phrase->axis.text)) continue;
           const auto declared = phrases.declared.find(phrase->name.text);
           if (words[phrase->name.text] <= declared->second) report("phrase", phrase->name);
         }

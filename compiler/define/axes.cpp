@@ -3,15 +3,11 @@
 #include <algorithm>
 
 #include "compiler/define/template.h"
-#include "runtime/plan/axis_names.h"
+#include "compiler/names/context.h"
+#include "runtime/plan/axes.h"
 
 namespace probe::sema {
 namespace {
-
-plan::Axis axis_of(PhraseAxis axis) {
-  return axis == PhraseAxis::kAppearance ? plan::Axis::kLanguageAppearance
-                                         : plan::Axis::kLanguageCommonsense;
-}
 
 bool same_cells(const Layout& a, const std::string& name_a, const Layout& b,
                 const std::string& name_b) {
@@ -227,72 +223,105 @@ LightId light_of(const Model& model, const Task& task) {
   return task.light != LightId::kNone ? task.light : model.scenes[task.scene].light;
 }
 
-std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline) {
-  if (is_same_experiment(model, task, baseline)) return 0;
-  std::uint32_t mask = 0;
-  const auto move = [&mask](plan::Axis axis) { mask |= static_cast<std::uint32_t>(axis); };
-  if (task.source != baseline.source) move(plan::Axis::kObjectSource);
-  if (task.target != baseline.target) move(plan::Axis::kObjectTarget);
+namespace {
 
-  std::vector<ObjectId> here = task.distractors;
-  std::vector<ObjectId> there = baseline.distractors;
-  std::sort(here.begin(), here.end());
-  std::sort(there.begin(), there.end());
-  if (here != there) move(plan::Axis::kDistractors);
+// How a task differs from its baseline, one axis at a time.
+class Comparison {
+ public:
+  Comparison(const Model& model, const Task& task, const Task& baseline)
+      : model_(model),
+        task_(task),
+        baseline_(baseline),
+        scene_moves_(task.scene != baseline.scene &&
+                     !same_scene(model.scenes[task.scene], model.scenes[baseline.scene])) {}
 
-  const Template& say = model.templates[task.say];
-  const Template& said = model.templates[baseline.say];
-  if (say.frame != said.frame) move(plan::Axis::kLanguageAction);
-  if (has_negation(say) != has_negation(said)) move(plan::Axis::kLanguageNegation);
-  if (says_otherwise(model, task, baseline)) move(plan::Axis::kLanguageParaphrase);
-  for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
+  bool moves(plan::Axis axis) const {
+    const Template& say = model_.templates[task_.say];
+    const Template& said = model_.templates[baseline_.say];
+    switch (axis) {
+      case plan::Axis::kObjectSource:
+        return task_.source != baseline_.source;
+      case plan::Axis::kObjectTarget:
+        return task_.target != baseline_.target;
+      case plan::Axis::kDistractors:
+        return sorted(task_.distractors) != sorted(baseline_.distractors);
+      case plan::Axis::kLanguageAction:
+        return say.frame != said.frame;
+      case plan::Axis::kLanguageNegation:
+        return has_negation(say) != has_negation(said);
+      case plan::Axis::kLanguageAppearance:
+      case plan::Axis::kLanguageCommonsense:
+        return phrase_moves(axis, syntax::Role::kSource) ||
+               phrase_moves(axis, syntax::Role::kTarget);
+      case plan::Axis::kLanguageParaphrase:
+        return says_otherwise(model_, task_, baseline_);
+      case plan::Axis::kLayout:
+        return !same_layout(model_.layouts[task_.layout], model_.layouts[baseline_.layout]) ||
+               !same_poses(model_, task_, baseline_);
+      case plan::Axis::kScene:
+        return scene_moves_;
+      // Another scene comes with its own camera and light; only an override makes them a change of
+      // their own.
+      case plan::Axis::kLight:
+        return (!scene_moves_ || task_.light != LightId::kNone ||
+                baseline_.light != LightId::kNone) &&
+               !(model_.lights[light_of(model_, task_)] ==
+                 model_.lights[light_of(model_, baseline_)]);
+      case plan::Axis::kCamera:
+        return (!scene_moves_ || !task_.cameras.empty() || !baseline_.cameras.empty()) &&
+               !same_cameras(model_, task_, baseline_);
+      case plan::Axis::kGoal:
+        return !same_goal(task_, baseline_);
+    }
+    return false;
+  }
+
+ private:
+  static std::vector<ObjectId> sorted(std::vector<ObjectId> objects) {
+    std::sort(objects.begin(), objects.end());
+    return objects;
+  }
+
+  bool phrase_moves(plan::Axis axis, syntax::Role role) const {
     const bool is_source = role == syntax::Role::kSource;
-    const Phrase* now = referring(model, task, role).phrase;
-    const Phrase* then = referring(model, baseline, role).phrase;
-    if (now == nullptr && then == nullptr) continue;
+    const Phrase* now = referring(model_, task_, role).phrase;
+    const Phrase* then = referring(model_, baseline_, role).phrase;
+    if (now == nullptr && then == nullptr) return false;
     const bool same_object =
-        is_source ? task.source == baseline.source : task.target == baseline.target;
+        is_source ? task_.source == baseline_.source : task_.target == baseline_.target;
     if (now != nullptr && then != nullptr) {
       // Two phrases of different objects are alike when they refer in the same way.
-      if (same_object ? now->name == then->name : now->axis == then->axis) continue;
+      if (same_object ? now->name == then->name : now->axis == then->axis) return false;
     }
-    move(axis_of(now != nullptr ? now->axis : then->axis));
+    return (now != nullptr ? now : then)->axis == axis;
   }
 
-  if (!same_layout(model.layouts[task.layout], model.layouts[baseline.layout]) ||
-      !same_poses(model, task, baseline)) {
-    move(plan::Axis::kLayout);
-  }
-  const bool scene_moves = task.scene != baseline.scene &&
-                           !same_scene(model.scenes[task.scene], model.scenes[baseline.scene]);
-  if (scene_moves) move(plan::Axis::kScene);
-  // Another scene comes with its own camera and light; only an override makes them a change of
-  // their own.
-  const bool light_counts =
-      !scene_moves || task.light != LightId::kNone || baseline.light != LightId::kNone;
-  const bool camera_counts = !scene_moves || !task.cameras.empty() || !baseline.cameras.empty();
-  if (light_counts &&
-      !(model.lights[light_of(model, task)] == model.lights[light_of(model, baseline)])) {
-    move(plan::Axis::kLight);
-  }
-  if (camera_counts && !same_cameras(model, task, baseline)) move(plan::Axis::kCamera);
-  if (!same_goal(task, baseline)) move(plan::Axis::kGoal);
+  const Model& model_;
+  const Task& task_;
+  const Task& baseline_;
+  bool scene_moves_;
+};
+
+}  // namespace
+
+std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline) {
+  if (is_same_experiment(model, task, baseline)) return 0;
+  const Comparison comparison(model, task, baseline);
+  std::uint32_t mask = 0;
+  for (const plan::AxisInfo& info : plan::kAxisTable)
+    mask |= comparison.moves(info.axis) ? bit(info.axis) : 0;
   return mask;
 }
 
-std::string_view axis_name(plan::Axis axis) {
-  for (const auto& [known, name] : plan::kAxisNames) {
-    if (known == axis) return name;
+std::optional<plan::Axis> phrase_axis(Diagnostics& diagnostics, const syntax::Name& word) {
+  std::vector<std::string_view> words;
+  for (const plan::AxisInfo& info : plan::kAxisTable) {
+    if (!info.is_phrase) continue;
+    if (info.word() == word.text) return info.axis;
+    words.push_back(info.word());
   }
-  return {};
-}
-
-std::vector<plan::Axis> axes_in(std::uint32_t mask) {
-  std::vector<plan::Axis> axes;
-  for (const auto& [axis, name] : plan::kAxisNames) {
-    if ((mask & static_cast<std::uint32_t>(axis)) != 0) axes.push_back(axis);
-  }
-  return axes;
+  report_unknown(diagnostics, "axis", word, words);
+  return std::nullopt;
 }
 
 std::uint32_t out_of_distribution(const Model& model, const Task& task) {
@@ -320,22 +349,37 @@ const Task& root_of(const Model& model, const Task& task) {
   return *root;
 }
 
-}  // namespace
-
-bool uses_action(const Model& model, const Task& task) {
-  const Task& root = root_of(model, task);
-  return root.complete && model.templates[task.say].frame != model.templates[root.say].frame;
-}
-
-bool uses_paraphrase(const Model& model, const Task& task) {
-  const Task& root = root_of(model, task);
-  return root.complete && says_otherwise(model, task, root);
-}
-
-bool uses_phrase(const Model& model, const Task& task, PhraseAxis axis) {
+bool has_phrase(const Model& model, const Task& task, plan::Axis axis) {
   for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
     const Phrase* phrase = referring(model, task, role).phrase;
     if (phrase != nullptr && phrase->axis == axis) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool uses(const Model& model, const Task& task, plan::Axis axis) {
+  const Task& root = root_of(model, task);
+  switch (axis) {
+    case plan::Axis::kLanguageAction:
+      return root.complete && model.templates[task.say].frame != model.templates[root.say].frame;
+    case plan::Axis::kLanguageNegation:
+      return has_negation(model.templates[task.say]);
+    case plan::Axis::kLanguageAppearance:
+    case plan::Axis::kLanguageCommonsense:
+      return has_phrase(model, task, axis);
+    case plan::Axis::kLanguageParaphrase:
+      return root.complete && says_otherwise(model, task, root);
+    case plan::Axis::kObjectSource:
+    case plan::Axis::kObjectTarget:
+    case plan::Axis::kDistractors:
+    case plan::Axis::kLayout:
+    case plan::Axis::kScene:
+    case plan::Axis::kLight:
+    case plan::Axis::kCamera:
+    case plan::Axis::kGoal:
+      break;
   }
   return false;
 }

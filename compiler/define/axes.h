@@ -2,28 +2,31 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "compiler/diag/diagnostic.h"
 #include "compiler/model/model.h"
+#include "compiler/syntax/ast.h"
+#include "runtime/plan/axes.h"
 
 namespace probe::sema {
 
 // A mask of plan::Axis over the normalised records; names do not count.
 std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline);
-// "object.source", "language.action" ...
-std::string_view axis_name(plan::Axis axis);
-std::vector<plan::Axis> axes_in(std::uint32_t mask);
+
+// The axis that a phrase names, `appearance`; reported when no phrase can move it.
+std::optional<plan::Axis> phrase_axis(Diagnostics& diagnostics, const syntax::Name& word);
 
 // Bits 1 source, 2 target, 4 relation. The relation is new only when both objects are known.
 std::uint32_t out_of_distribution(const Model& model, const Task& task);
 
-// Whether the verb frame differs from that of the first task along the baselines.
-bool uses_action(const Model& model, const Task& task);
-// Whether other words than those of that first task are said, in the same verb frame.
-bool uses_paraphrase(const Model& model, const Task& task);
-bool uses_phrase(const Model& model, const Task& task, PhraseAxis axis);
+// Whether a task's instruction has what this axis of language is about: a phrase of that axis, a
+// negation; another verb frame than the first task along the baselines, or its frame in other
+// words. No axis beside those of language is used.
+bool uses(const Model& model, const Task& task, plan::Axis axis);
 
 // The scene's views with the task's own cameras in their places; the first is the main one.
 std::vector<View> views_of(const Model& model, const Task& task);

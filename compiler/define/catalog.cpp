@@ -1,5 +1,6 @@
 // The catalogue: datasets, attributes, facts and objects, with queries turned into postfix
 // programs.
+#include "compiler/define/axes.h"
 #include "compiler/define/passes.h"
 
 namespace probe::sema {
@@ -165,16 +166,12 @@ struct ObjectReader {
   }
   void operator()(const syntax::PhraseStmt& stmt) {
     Phrase phrase{std::string(stmt.name.text),
-                  PhraseAxis::kAppearance,
+                  plan::Axis::kLanguageAppearance,
                   spelled(stmt.text),
                   stmt.bare,
                   {},
                   {}};
-    if (stmt.axis.text == "commonsense") {
-      phrase.axis = PhraseAxis::kCommonsense;
-    } else if (stmt.axis.text != "appearance") {
-      report_unknown(context.diagnostics, "axis", stmt.axis, {"appearance", "commonsense"});
-    }
+    if (const auto axis = phrase_axis(context.diagnostics, stmt.axis)) phrase.axis = *axis;
     if (!compile_query(context, file, stmt.means, phrase.means)) return;
     phrase.means_text = std::string(context.sources.text(file[stmt.means].span));
     for (Phrase& known : object.phrases) {

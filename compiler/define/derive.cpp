@@ -64,9 +64,7 @@ class Derive {
       }
       names.push_back(binder.name.text);
       if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
-        if (phrases->axis.text == "appearance" || phrases->axis.text == "commonsense") continue;
-        report_unknown(context_.diagnostics, "axis", phrases->axis, {"appearance", "commonsense"});
-        fits = false;
+        fits = phrase_axis(context_.diagnostics, phrases->axis).has_value() && fits;
       } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
         fits = check_frame(templates->frame) && fits;
       } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
@@ -210,10 +208,9 @@ class Derive {
     std::vector<std::string_view> values;
     if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
       const ObjectId object = phrases->role == syntax::Role::kSource ? base.source : base.target;
-      const PhraseAxis axis =
-          phrases->axis.text == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense;
+      const plan::AxisInfo* axis = plan::find_language_axis(phrases->axis.text);
       for (const Phrase& phrase : model.objects[object].phrases) {
-        if (phrase.axis != axis) continue;
+        if (axis == nullptr || phrase.axis != axis->axis) continue;
         const auto fits = [&](ObjectId id) {
           return evaluate(phrase.means, model.objects[id]) ==
                  (id == object ? Truth::kYes : Truth::kNo);

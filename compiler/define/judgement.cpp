@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/define/passes.h"
+#include "runtime/plan/readouts.h"
 
 namespace probe::sema {
 namespace {
@@ -619,34 +620,6 @@ ExprRef ExprReader::read_predicate(const Span& span, const syntax::ExprCall& cal
   return ref;
 }
 
-bool wants_condition(plan::Readout readout) {
-  return readout == plan::Readout::kAtEnd || readout == plan::Readout::kOnce ||
-         readout == plan::Readout::kAlways || readout == plan::Readout::kCount ||
-         readout == plan::Readout::kFirst;
-}
-
-plan::Readout readout_of(syntax::ReadoutKind kind) {
-  switch (kind) {
-    case syntax::ReadoutKind::kAtEnd:
-      return plan::Readout::kAtEnd;
-    case syntax::ReadoutKind::kOnce:
-      return plan::Readout::kOnce;
-    case syntax::ReadoutKind::kAlways:
-      return plan::Readout::kAlways;
-    case syntax::ReadoutKind::kCount:
-      return plan::Readout::kCount;
-    case syntax::ReadoutKind::kFirst:
-      return plan::Readout::kFirst;
-    case syntax::ReadoutKind::kFinal:
-      return plan::Readout::kFinal;
-    case syntax::ReadoutKind::kMax:
-      return plan::Readout::kMax;
-    case syntax::ReadoutKind::kMin:
-      return plan::Readout::kMin;
-  }
-  return plan::Readout::kAtEnd;
-}
-
 }  // namespace
 
 std::span<const MeasureInfo> all_measures() { return kMeasures; }
@@ -655,11 +628,12 @@ Metric analyze_metric(Context& context, const syntax::File& file, const syntax::
   Metric metric;
   metric.name = std::string(stmt.name.text);
   metric.span = stmt.name.span;
-  metric.readout = readout_of(stmt.readout.kind);
+  metric.readout = stmt.readout.kind;
   metric.readout_span = stmt.readout.span;
   ExprReader reader(context, file);
-  metric.expr = wants_condition(metric.readout) ? reader.condition(stmt.readout.expr)
-                                                : reader.number(stmt.readout.expr);
+  const bool takes_truth = plan::info(metric.readout).takes == plan::Kind::kBool;
+  metric.expr =
+      takes_truth ? reader.condition(stmt.readout.expr) : reader.number(stmt.readout.expr);
   metric.variables = reader.variables();
   metric.type = context.model.exprs.nodes[metric.expr].type;
   if (metric.type.is_angle_between) {

@@ -226,11 +226,13 @@ bool SetReader::check_condition(const syntax::File& file, syntax::CondId id) {
   switch (test.kind) {
     case syntax::CondKind::kAxis:
       kind = "axis";
-      for (const plan::Axis axis : axes_in(0xffffffffu)) words.push_back(axis_name(axis));
+      for (const plan::AxisInfo& axis : plan::kAxisTable) words.push_back(axis.name);
       break;
     case syntax::CondKind::kUses:
       kind = "use of language";
-      words = {"action", "negation", "appearance", "commonsense", "paraphrase"};
+      for (const plan::AxisInfo& axis : plan::kAxisTable) {
+        if (axis.is_language()) words.push_back(axis.word());
+      }
       break;
     case syntax::CondKind::kOod:
       kind = "kind of novelty";
@@ -277,16 +279,9 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
   const std::string word = path_text(test.path);
   switch (test.kind) {
     case syntax::CondKind::kAxis:
-      for (const plan::Axis axis : axes_in(task.axes)) {
-        if (axis_name(axis) == word) return true;
-      }
-      return false;
+      return plan::moves(task.axes, plan::find_axis(word)->axis);
     case syntax::CondKind::kUses:
-      if (word == "action") return uses_action(model, task);
-      if (word == "paraphrase") return uses_paraphrase(model, task);
-      if (word == "negation") return has_negation(model.templates[task.say]);
-      return uses_phrase(model, task,
-                         word == "appearance" ? PhraseAxis::kAppearance : PhraseAxis::kCommonsense);
+      return uses(model, task, plan::find_language_axis(word)->axis);
     case syntax::CondKind::kOod:
       return (task.ood & (word == "source" ? 1u : word == "target" ? 2u : 4u)) != 0;
     case syntax::CondKind::kHas:

@@ -13,6 +13,7 @@
 #include "compiler/lower/intervals.h"
 #include "compiler/lower/lower.h"
 #include "runtime/base/asset_path.h"
+#include "runtime/plan/axes.h"
 #include "runtime/plan/writer.h"
 
 namespace probe::emit {
@@ -528,15 +529,11 @@ class Emitter {
 
   // P0704: "only the language changed" is an equality of ids, episode by episode.
   bool check_language_only(const std::vector<TaskId>& chosen) {
-    constexpr auto kLanguage = static_cast<std::uint32_t>(plan::Axis::kLanguageAction) |
-                               static_cast<std::uint32_t>(plan::Axis::kLanguageNegation) |
-                               static_cast<std::uint32_t>(plan::Axis::kLanguageAppearance) |
-                               static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense) |
-                               static_cast<std::uint32_t>(plan::Axis::kLanguageParaphrase);
     bool ok = true;
     for (std::size_t i = 0; i < records().tasks.size(); ++i) {
       const plan::TaskRecord& task = records().tasks[i];
-      if (task.baseline == plan::kNone || task.axes == 0 || (task.axes & ~kLanguage) != 0) continue;
+      if (task.baseline == plan::kNone || task.axes == 0 || (task.axes & ~plan::kLanguageAxes) != 0)
+        continue;
       const plan::TaskRecord& baseline = records().tasks[task.baseline];
       bool same =
           task.judge_id == baseline.judge_id && task.episodes.count == baseline.episodes.count;

@@ -254,9 +254,17 @@ class Pass {
       case Op::kMAXR:
       case Op::kMINR:
         return of(a().number);
-      default:
+      // Contacts and turning have no bound that is worth a message.
+      case Op::kPUSH:
+      case Op::kSPIN:
+      case Op::kVCROSS:
+      // Without a result.
+      case Op::kEND:
+      case Op::kEMITB:
+      case Op::kEMITR:
         return {};
     }
+    return {};
   }
 
   static std::optional<bool> compare(const Known& left, const Known& right, bool or_equal) {
@@ -304,41 +312,22 @@ class Pass {
     const auto& found = findings_.contradictions;
     if (std::find(found.begin(), found.end(), at) != found.end()) return false;
     const plan::Instruction& code = program_.code[at];
-    switch (static_cast<Op>(code.op)) {
-      case Op::kAND:
-        return collect(code.a, out) && collect(code.b, out);
-      case Op::kLT:
-        note(code.a, code.b, true, out);
-        break;
-      case Op::kLE:
-        note(code.a, code.b, false, out);
-        break;
-      case Op::kNOT:
-        return collect_not(code.a, out);
-      default:
-        break;
-    }
+    // What is none of these says nothing that could contradict.
+    const auto op = static_cast<Op>(code.op);
+    if (op == Op::kAND) return collect(code.a, out) && collect(code.b, out);
+    if (op == Op::kNOT) return collect_not(code.a, out);
+    if (op == Op::kLT || op == Op::kLE) note(code.a, code.b, op == Op::kLT, out);
     return true;
   }
 
   // The comparisons that all hold when `reg` does not.
   bool collect_not(std::uint16_t reg, Conjunction& out) {
     const plan::Instruction& code = program_.code[known_[reg].instruction];
-    switch (static_cast<Op>(code.op)) {
-      case Op::kOR:
-        return collect_not(code.a, out) && collect_not(code.b, out);
-      case Op::kNOT:
-        return collect(code.a, out);
-      // Not a < b is b <= a: a measurement that is no number ends the episode instead.
-      case Op::kLT:
-        note(code.b, code.a, false, out);
-        break;
-      case Op::kLE:
-        note(code.b, code.a, true, out);
-        break;
-      default:
-        break;
-    }
+    const auto op = static_cast<Op>(code.op);
+    if (op == Op::kOR) return collect_not(code.a, out) && collect_not(code.b, out);
+    if (op == Op::kNOT) return collect(code.a, out);
+    // Not a < b is b <= a: a measurement that is no number ends the episode instead.
+    if (op == Op::kLT || op == Op::kLE) note(code.b, code.a, op == Op::kLE, out);
     return true;
   }
 

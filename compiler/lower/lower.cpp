@@ -7,6 +7,7 @@
 #include "compiler/lower/builder.h"
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"
+#include "runtime/plan/readouts.h"
 
 namespace probe::lower {
 namespace {
@@ -30,34 +31,9 @@ class Lowering {
     Value value = eval(metric.expr);
     builder_.at(metric.readout_span);
     ProgramMetric record{metric.name, plan::MetricType::kBool, metric.readout, metric.span};
-    switch (metric.readout) {
-      case plan::Readout::kAtEnd:
-        break;
-      case plan::Readout::kOnce:
-        value = builder_.monitor(Op::kONCE, value);
-        break;
-      case plan::Readout::kAlways:
-        value = builder_.monitor(Op::kALWAYS, value);
-        break;
-      case plan::Readout::kCount:
-        value = builder_.monitor(Op::kCOUNT, value);
-        break;
-      case plan::Readout::kFirst:
-        value = builder_.monitor(Op::kFIRST, value);
-        break;
-      case plan::Readout::kFinal:
-        break;
-      case plan::Readout::kMax:
-        value = builder_.monitor(Op::kMAXR, value);
-        break;
-      case plan::Readout::kMin:
-        value = builder_.monitor(Op::kMINR, value);
-        break;
-    }
-    const bool is_truth = metric.readout == plan::Readout::kAtEnd ||
-                          metric.readout == plan::Readout::kOnce ||
-                          metric.readout == plan::Readout::kAlways;
-    record.type = is_truth ? plan::MetricType::kBool : plan::MetricType::kReal;
+    const plan::ReadoutInfo& readout = plan::info(metric.readout);
+    if (readout.has_monitor()) value = builder_.monitor(readout.monitor, value);
+    record.type = readout.is_truth() ? plan::MetricType::kBool : plan::MetricType::kReal;
     builder_.emit_metric(value, std::move(record));
     if (builder_.is_full() && ok_) {
       diagnostics_.report(Code::P0601, metric.span,

@@ -28,21 +28,25 @@ struct Printer {
       case plan::Kind::kUnused:
         return {};
       case plan::Kind::kConstant:
+      case plan::Kind::kThreeConstants:
         return number(program.constants[value]);
       case plan::Kind::kImmediate:
         return std::to_string(value);
       case plan::Kind::kBody:
+      case plan::Kind::kFinger:
         return value < body_names.size() ? body_names[value] : "b" + std::to_string(value);
-      case plan::Kind::kState: {
-        const plan::StateRecord& state = program.states[value];
-        return "s" + std::to_string(value) +
-               (state.n != 0 ? "(" + std::to_string(state.n) + ")" : "");
-      }
+      case plan::Kind::kState:
+        return "s" + std::to_string(value);
+      case plan::Kind::kTimedState:
+        return "s" + std::to_string(value) + "(" + std::to_string(program.states[value].n) + ")";
       case plan::Kind::kMetric:
         return "-> " + program.metrics[value].name;
-      default:
+      case plan::Kind::kBool:
+      case plan::Kind::kReal:
+      case plan::Kind::kVector:
         return "r" + std::to_string(value);
     }
+    return {};
   }
 };
 

@@ -56,11 +56,9 @@ struct QueryOp {
 };
 using Query = std::vector<QueryOp>;
 
-enum class PhraseAxis : std::uint8_t { kAppearance, kCommonsense };
-
 struct Phrase {
   std::string name;
-  PhraseAxis axis = PhraseAxis::kAppearance;
+  plan::Axis axis = plan::Axis::kLanguageAppearance;
   Spelled text;
   bool bare = false;  // takes no article
   Query means;

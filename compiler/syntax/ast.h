@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "compiler/source/source.h"
+#include "runtime/plan/readouts.h"
 
 namespace probe::syntax {
 
@@ -273,19 +274,9 @@ struct Cond {
   std::variant<CondTest, CondNot, CondAnd, CondOr> node;
 };
 
-enum class ReadoutKind : std::uint8_t {
-  kAtEnd,
-  kOnce,
-  kAlways,
-  kCount,
-  kFirst,
-  kFinal,
-  kMax,
-  kMin
-};
 struct Readout {
   Span span;  // read-out word to the end of the expression
-  ReadoutKind kind = ReadoutKind::kAtEnd;
+  plan::Readout kind = plan::Readout::kAtEnd;
   Span kind_span;
   ExprId expr;
 };

@@ -9,10 +9,10 @@ namespace probe::syntax {
 namespace {
 
 // What stands behind `=` in a metric, and seldom in a set of tasks.
-bool is_readout_word(std::string_view word) {
-  constexpr std::string_view kWords[] = {"at",    "once",  "always", "count",
-                                         "first", "final", "max",    "min"};
-  return std::find(std::begin(kWords), std::end(kWords), word) != std::end(kWords);
+bool begins_readout(std::string_view word) {
+  return std::ranges::any_of(plan::kReadoutTable, [word](const plan::ReadoutInfo& info) {
+    return info.words.substr(0, info.words.find(' ')) == word;
+  });
 }
 
 bool is_operator(TokenKind kind) {
@@ -148,6 +148,18 @@ bool Parser::accept(TokenKind wanted) {
 bool Parser::accept_word(std::string_view word) {
   if (!at_word(word)) return false;
   advance();
+  return true;
+}
+
+bool Parser::accept_words(std::string_view words) {
+  const std::size_t first = std::min(words.find(' '), words.size());
+  if (!accept_word(words.substr(0, first))) return false;
+  for (words.remove_prefix(first); !words.empty();) {
+    words.remove_prefix(1);
+    const std::size_t end = std::min(words.find(' '), words.size());
+    if (!expect_word(words.substr(0, end))) break;
+    words.remove_prefix(end);
+  }
   return true;
 }
 
@@ -341,7 +353,7 @@ bool Parser::looks_like_unclosed_block(std::initializer_list<std::string_view> s
                                                              text_at(pos_)) != statements.end();
   if (!ambiguous) return true;
   const std::string_view after = text_ahead(2);
-  if (text_at(pos_) == "set" && after == "=") return !is_readout_word(text_ahead(3));
+  if (text_at(pos_) == "set" && after == "=") return !begins_readout(text_ahead(3));
   return kind_ahead(2) == TokenKind::kLeftBrace || after == "like" || after == "of" ||
          after == "against";
 }

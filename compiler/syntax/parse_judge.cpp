@@ -1,4 +1,5 @@
 // Rules of language and judgement: templates, predicates, metrics, expressions over bodies.
+#include <algorithm>
 #include <array>
 
 #include "compiler/syntax/parser_impl.h"
@@ -14,16 +15,6 @@ constexpr TypeWord kTypes[] = {{"object", ParamType::kObject}, {"body", ParamTyp
                                {"length", ParamType::kLength}, {"angle", ParamType::kAngle},
                                {"time", ParamType::kTime},     {"impulse", ParamType::kImpulse},
                                {"number", ParamType::kNumber}};
-
-struct ReadoutWord {
-  std::string_view word;
-  ReadoutKind kind;
-};
-constexpr ReadoutWord kReadouts[] = {
-    {"once", ReadoutKind::kOnce},   {"always", ReadoutKind::kAlways},
-    {"count", ReadoutKind::kCount}, {"first", ReadoutKind::kFirst},
-    {"final", ReadoutKind::kFinal}, {"max", ReadoutKind::kMax},
-    {"min", ReadoutKind::kMin}};
 
 struct Comparison {
   TokenKind token;
@@ -107,17 +98,13 @@ MetricStmt Parser::metric() {
 Readout Parser::readout() {
   Readout out;
   const std::uint32_t begin = mark();
-  bool known = false;
-  if (accept_word("at")) {
-    expect_word("end");
-    known = true;
+  const auto found = std::ranges::find_if(
+      plan::kReadoutTable, [this](const plan::ReadoutInfo& info) { return accept_words(info.words); });
+  if (found == plan::kReadoutTable.end()) {
+    fail_expected("a read-out");
+  } else {
+    out.kind = found->readout;
   }
-  for (const ReadoutWord& entry : kReadouts) {
-    if (known) break;
-    known = accept_word(entry.word);
-    if (known) out.kind = entry.kind;
-  }
-  if (!known) fail_expected("a read-out");
   out.kind_span = since(begin);
   out.expr = expr();
   out.span = since(begin);

@@ -53,6 +53,8 @@ class Parser {
 
   bool accept(TokenKind wanted);
   bool accept_word(std::string_view word);
+  // Several with one blank between them: once the first is there, the others have to be.
+  bool accept_words(std::string_view words);
   bool expect(TokenKind wanted);
   bool expect_word(std::string_view word);
   void skip_newlines();

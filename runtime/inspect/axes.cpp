@@ -4,13 +4,10 @@
 #include <array>
 #include <optional>
 
-#include "runtime/plan/axis_names.h"
 #include "runtime/plan/ids.h"
 
 namespace probe::inspect {
 namespace {
-
-constexpr std::uint32_t bit(plan::Axis axis) { return static_cast<std::uint32_t>(axis); }
 
 std::vector<std::uint32_t> distractors(const plan::Plan& plan, const plan::TaskRecord& task) {
   std::vector<std::uint32_t> objects;
@@ -88,27 +85,10 @@ bool same_goal(const plan::Plan& plan, const plan::TaskRecord& a, const plan::Ta
 
 }  // namespace
 
-std::vector<std::string_view> axis_names(std::uint32_t mask) {
-  std::vector<std::string_view> names;
-  for (const auto& [axis, name] : plan::kAxisNames) {
-    if ((mask & bit(axis)) != 0) names.push_back(name);
-  }
-  return names;
-}
-
 Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t second) {
   const plan::TaskRecord& a = plan.tasks()[first];
   const plan::TaskRecord& b = plan.tasks()[second];
-  Difference found;
-  const auto move = [&found](plan::Axis axis, bool moved) {
-    if (moved) found.axes |= bit(axis);
-  };
   const bool same_distractors = distractors(plan, a) == distractors(plan, b);
-  move(plan::Axis::kObjectSource, a.source != b.source);
-  move(plan::Axis::kObjectTarget, a.target != b.target);
-  move(plan::Axis::kDistractors, !same_distractors);
-  found.language = frame_of(plan, a) != frame_of(plan, b);
-  move(plan::Axis::kLayout, !same_layout(plan, a, b, same_distractors));
   // Scenes, cameras and lights are compared by content: as the starts of a task without objects.
   plan::IdHasher hasher(plan.tables());
   const auto content = [&hasher](std::uint32_t scene, const plan::TaskRecord& cameras,
@@ -122,14 +102,40 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   };
   const Sha256 ours = content(a.scene, a, a.light);
   const bool scene_moves = ours != content(b.scene, a, a.light);
-  move(plan::Axis::kScene, scene_moves);
-  // Another scene comes with its own camera and light; whether one was chosen on top of that is
-  // not in the records.
-  if (!scene_moves) {
-    move(plan::Axis::kLight, ours != content(a.scene, a, b.light));
-    move(plan::Axis::kCamera, ours != content(a.scene, b, a.light));
-  }
-  move(plan::Axis::kGoal, !same_goal(plan, a, b));
+  const auto moves = [&](plan::Axis axis) {
+    switch (axis) {
+      case plan::Axis::kObjectSource:
+        return a.source != b.source;
+      case plan::Axis::kObjectTarget:
+        return a.target != b.target;
+      case plan::Axis::kDistractors:
+        return !same_distractors;
+      case plan::Axis::kLayout:
+        return !same_layout(plan, a, b, same_distractors);
+      case plan::Axis::kScene:
+        return scene_moves;
+      // Another scene comes with its own camera and light; whether one was chosen on top of that is
+      // not in the records.
+      case plan::Axis::kLight:
+        return !scene_moves && ours != content(a.scene, a, b.light);
+      case plan::Axis::kCamera:
+        return !scene_moves && ours != content(a.scene, b, a.light);
+      case plan::Axis::kGoal:
+        return !same_goal(plan, a, b);
+      // Frames and phrases are not in a plan.
+      case plan::Axis::kLanguageAction:
+      case plan::Axis::kLanguageNegation:
+      case plan::Axis::kLanguageAppearance:
+      case plan::Axis::kLanguageCommonsense:
+      case plan::Axis::kLanguageParaphrase:
+        break;
+    }
+    return false;
+  };
+  Difference found;
+  for (const plan::AxisInfo& info : plan::kAxisTable)
+    found.axes |= moves(info.axis) ? bit(info.axis) : 0;
+  found.language = frame_of(plan, a) != frame_of(plan, b);
   return found;
 }
 
@@ -139,8 +145,8 @@ std::vector<std::string_view> axes_between(const plan::Plan& plan, std::uint32_t
   std::optional<std::uint32_t> declared;
   if (plan.tasks()[a].baseline == b) declared = plan.tasks()[a].axes;
   if (plan.tasks()[b].baseline == a) declared = plan.tasks()[b].axes;
-  const std::uint32_t language = declared.value_or(0) & kLanguageAxes;
-  std::vector<std::string_view> names = axis_names(found.axes | language);
+  const std::uint32_t language = declared.value_or(0) & plan::kLanguageAxes;
+  std::vector<std::string_view> names = plan::axis_names(found.axes | language);
   if (found.language && language == 0) names.push_back("language");
   return names;
 }

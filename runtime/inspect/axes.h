@@ -3,28 +3,16 @@
 // which a plan does not carry.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "runtime/plan/axes.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::inspect {
-
-// "object.source", "language.action" ... of a mask of plan::Axis.
-std::vector<std::string_view> axis_names(std::uint32_t mask);
-inline constexpr std::uint32_t kLanguageAxes =
-    static_cast<std::uint32_t>(plan::Axis::kLanguageAction) |
-    static_cast<std::uint32_t>(plan::Axis::kLanguageNegation) |
-    static_cast<std::uint32_t>(plan::Axis::kLanguageAppearance) |
-    static_cast<std::uint32_t>(plan::Axis::kLanguageCommonsense) |
-    static_cast<std::uint32_t>(plan::Axis::kLanguageParaphrase);
-
-// The bits of a task's `ood`: what was not seen in training.
-inline constexpr std::array<std::string_view, 3> kNovelty = {"source", "target", "relation"};
 
 // Everything but language as a mask; of language only whether it moved: the instructions differ
 // also when the names of source and target are taken out of both.

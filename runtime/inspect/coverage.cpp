@@ -11,7 +11,7 @@
 
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/wrap.h"
-#include "runtime/plan/axis_names.h"
+#include "runtime/plan/axes.h"
 
 namespace probe::inspect {
 namespace {
@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 
 struct Row {
   std::size_t tasks = 0, variants = 0, confounded = 0;
-  std::array<std::size_t, plan::kAxisNames.size()> axes{};
-  std::array<std::size_t, kNovelty.size()> ood{};
+  std::array<std::size_t, plan::kAxisTable.size()> axes{};
+  std::array<std::size_t, plan::kNovelty.size()> ood{};
 
   void add_task(const plan::TaskRecord& task) {
     ++tasks;
@@ -30,14 +30,15 @@ struct Row {
     ++variants;
     confounded += std::popcount(task.axes) > 1 ? 1 : 0;
     for (std::size_t i = 0; i < axes.size(); ++i)
-      axes[i] += (task.axes & static_cast<std::uint32_t>(plan::kAxisNames[i].axis)) != 0 ? 1 : 0;
+      axes[i] += plan::moves(task.axes, plan::kAxisTable[i].axis) ? 1 : 0;
   }
   Json to_json() const {
     Json json = {{"variants", variants}, {"confounded", confounded}, {"axes", Json::object()}};
     for (std::size_t i = 0; i < axes.size(); ++i)
-      json["axes"][std::string(plan::kAxisNames[i].name)] = axes[i];
+      json["axes"][std::string(plan::kAxisTable[i].name)] = axes[i];
     json["tasks"] = tasks;
-    for (std::size_t i = 0; i < ood.size(); ++i) json["ood"][std::string(kNovelty[i])] = ood[i];
+    for (std::size_t i = 0; i < ood.size(); ++i)
+      json["ood"][std::string(plan::kNovelty[i])] = ood[i];
     return json;
   }
 };
@@ -86,7 +87,7 @@ Json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
     total.add_task(plan.tasks()[task]);
   }
   Json json = {{"axes", Json::array()}, {"bases", Json::array()}};
-  for (const plan::AxisName& axis : plan::kAxisNames) json["axes"].push_back(axis.name);
+  for (const plan::AxisInfo& axis : plan::kAxisTable) json["axes"].push_back(axis.name);
   std::size_t empty = 0;
   for (const auto& [base, row] : rows) {
     Json entry = {{"task", plan.text(plan.tasks()[base].name)}};
@@ -96,7 +97,7 @@ Json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
   }
   json["total"] = total.to_json();
   json["empty"] = empty;
-  json["cells"] = rows.size() * plan::kAxisNames.size();
+  json["cells"] = rows.size() * plan::kAxisTable.size();
   json["objects"] = unused_objects(plan, tasks);
   return json;
 }
@@ -127,7 +128,7 @@ void table(const Json& coverage, std::span<const Column> columns, std::string& t
   }
   for (const char* name : {"variants", "confounded"})
     line(name, [&](const Column& c) { return number((*c.counts)[name]); });
-  for (const std::string_view novelty : kNovelty) {
+  for (const std::string_view novelty : plan::kNovelty) {
     line(fmt::format("ood {}", novelty),
          [&](const Column& c) { return number((*c.counts)["ood"][std::string(novelty)]); });
   }

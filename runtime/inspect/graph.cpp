@@ -32,7 +32,7 @@ Json graph(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
     const plan::TaskRecord& task = plan.tasks()[index];
     if (task.baseline == plan::kNone) continue;
     nodes.insert(task.baseline);
-    const auto axes = axis_names(task.axes);
+    const auto axes = plan::axis_names(task.axes);
     edges.push_back({{"baseline", plan.text(plan.tasks()[task.baseline].name)},
                      {"variant", plan.text(task.name)},
                      {"axes", axes},

@@ -98,8 +98,8 @@ Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t secon
   json["b"] = plan.text(b.name);
   json["baseline"] = a_varies ? Json("b") : b_varies ? Json("a") : Json();
   json["axes"] = axes_between(plan, first, second);
-  json["declared_axes"] = a_varies   ? Json(axis_names(a.axes))
-                          : b_varies ? Json(axis_names(b.axes))
+  json["declared_axes"] = a_varies   ? Json(plan::axis_names(a.axes))
+                          : b_varies ? Json(plan::axis_names(b.axes))
                                      : Json();
   json["equal"] = equal_ids(plan, a, b);
   json["left"] = side(plan, a);

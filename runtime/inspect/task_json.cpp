@@ -58,7 +58,7 @@ Json summarise(const plan::Plan& plan, std::uint32_t index,
   json["task"] = plan.text(task.name);
   json["baseline"] =
       task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
-  json["axes"] = axis_names(task.axes);
+  json["axes"] = plan::axis_names(task.axes);
   json["categories"] = categories;
   json["prompt"] = plan.text(task.prompt);
   json["episodes"] = task.episodes.count;
@@ -144,8 +144,8 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   }
   json["light"] = plan.text(plan.lights()[task.light].name);
   json["ood"] = Json::array();
-  for (std::size_t i = 0; i < kNovelty.size(); ++i) {
-    if ((task.ood >> i & 1u) != 0) json["ood"].push_back(kNovelty[i]);
+  for (std::size_t i = 0; i < plan::kNovelty.size(); ++i) {
+    if ((task.ood >> i & 1u) != 0) json["ood"].push_back(plan::kNovelty[i]);
   }
   json["drop_m"] = task.drop;
   json["settle_s"] = task.settle;

@@ -46,16 +46,15 @@ class Lister {
   void instruction(std::string& out, std::uint32_t number, const Instruction& in) const {
     const OpInfo& op = *find_op(in.op);
     const std::string result = op.result == Kind::kUnused ? "" : fmt::format("r{}", in.dst);
-    const std::string b = operand(op, op.b, in.b);
-    std::string line =
-        fmt::format("{:4}  {:<7} {:<5} {}{}{}", number, op.name, result, operand(op, op.a, in.a),
-                    op.b == Kind::kMetric ? " -> " : " ", b);
+    const std::string b = operand(op.b, in.b);
+    std::string line = fmt::format("{:4}  {:<7} {:<5} {}{}{}", number, op.name, result,
+                                   operand(op.a, in.a), op.b == Kind::kMetric ? " -> " : " ", b);
     line.resize(line.find_last_not_of(' ') + 1);
     line.push_back('\n');
     out += line;
   }
 
-  std::string operand(const OpInfo& op, Kind kind, std::uint16_t value) const {
+  std::string operand(Kind kind, std::uint16_t value) const {
     switch (kind) {
       case Kind::kUnused:
         return {};
@@ -64,17 +63,19 @@ class Lister {
       case Kind::kVector:
         return fmt::format("r{}", value);
       case Kind::kConstant:
-        if (op.op != Op::kKV) return fmt::format("{}", constants_[value]);
+        return fmt::format("{}", constants_[value]);
+      case Kind::kThreeConstants:
         return fmt::format("({}, {}, {})", constants_[value], constants_[value + 1u],
                            constants_[value + 2u]);
       case Kind::kImmediate:
         return fmt::format("{}", value);
       case Kind::kBody:
+      case Kind::kFinger:
         return std::string(plan_.text(bodies_[value].name));
-      case Kind::kState: {
-        const std::uint16_t n = plan_.states(program_)[value].n;
-        return n == 0 ? fmt::format("s{}", value) : fmt::format("s{} for {} steps", value, n);
-      }
+      case Kind::kState:
+        return fmt::format("s{}", value);
+      case Kind::kTimedState:
+        return fmt::format("s{} for {} steps", value, plan_.states(program_)[value].n);
       case Kind::kMetric:
         return std::string(plan_.text(metrics_[value].name));
     }

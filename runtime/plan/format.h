@@ -16,34 +16,10 @@ inline constexpr std::uint16_t kMinor = 0;
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 inline constexpr std::size_t kAlignment = 64;
 
-// Sections ascend by kind in the file, none repeats. STRS must be first: all others refer to it.
+// Sections ascend by kind in the file, none repeats; see sections.def.
 enum class Section : std::uint32_t {
-  kStrings = 1,      // UTF-8 bytes, stride 1
-  kList = 2,         // u32: suite members, seeds, set members
-  kReals = 3,        // f64: initial joint positions
-  kAssets = 4,       // AssetRecord
-  kObjects = 5,      // ObjectRecord
-  kRobots = 6,       // RobotRecord
-  kDrives = 7,       // DriveRecord
-  kCameras = 8,      // CameraRecord
-  kLights = 9,       // LightRecord
-  kSuns = 10,        // SunRecord
-  kScenes = 11,      // SceneRecord
-  kConstants = 12,   // f64, finite
-  kStates = 13,      // StateRecord
-  kCode = 14,        // Instruction
-  kPrograms = 15,    // ProgramRecord
-  kMetrics = 16,     // MetricRecord
-  kBodies = 17,      // BodyRecord, task-local bodies in order
-  kPlacements = 18,  // PlacementRecord
-  kTasks = 19,       // TaskRecord
-  kEpisodes = 20,    // EpisodeRecord
-  kSets = 21,        // SetRecord: named categories of tasks
-  kSuites = 22,      // SuiteRecord
-  kViews = 23,       // ViewRecord: the cameras of tasks that have several
-  kSpans = 100,      // SpanRecord, ignorable
-  kTexts = 101,      // TextRecord, ignorable; the bytes of texts stand in kTextBytes
-  kTextBytes = 102,  // source text, ignorable
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) k##name = kind,
+#include "runtime/plan/sections.def"
 };
 
 inline constexpr std::uint16_t kIgnorable = 1;
@@ -234,14 +210,8 @@ struct MetricRecord {
 static_assert(sizeof(MetricRecord) == 16);
 
 enum class Readout : std::uint32_t {
-  kAtEnd = 1,
-  kOnce = 2,
-  kAlways = 3,
-  kCount = 4,
-  kFirst = 5,
-  kFinal = 6,
-  kMax = 7,
-  kMin = 8
+#define PROBE_READOUT(id, name, words, takes, gives, monitor) k##name = id,
+#include "runtime/plan/readouts.def"
 };
 
 // Task-local bodies, in this order: source, target, distractors, surface, fixture (if any), then
@@ -300,19 +270,8 @@ static_assert(sizeof(ViewRecord) == 16);
 inline constexpr std::uint32_t kMaxViews = 16;
 
 enum class Axis : std::uint32_t {
-  kObjectSource = 1u << 0,
-  kObjectTarget = 1u << 1,
-  kDistractors = 1u << 2,
-  kLanguageAction = 1u << 3,
-  kLanguageNegation = 1u << 4,
-  kLanguageAppearance = 1u << 5,
-  kLanguageCommonsense = 1u << 6,
-  kLayout = 1u << 7,
-  kScene = 1u << 8,
-  kLight = 1u << 9,
-  kCamera = 1u << 10,
-  kGoal = 1u << 11,
-  kLanguageParaphrase = 1u << 12
+#define PROBE_AXIS(bit, name, text, in, is_phrase) k##name = 1u << bit,
+#include "runtime/plan/axes.def"
 };
 
 struct EpisodeRecord {

@@ -9,10 +9,11 @@ namespace {
 constexpr Kind kind_of(const char* letter) { return static_cast<Kind>(letter[0]); }
 
 constexpr std::array kOps = {
-#define PROBE_OP(code, name, result, a, b, meaning) \
-  OpInfo{Op::k##name, #name, kind_of(#result), kind_of(#a), kind_of(#b), meaning},
+#define PROBE_OP(code, name, result, a, b, limit, dimension, known, meaning) \
+  OpInfo{Op::k##name, #name, kind_of(#result),       kind_of(#a),            \
+         kind_of(#b), limit, Measures::k##dimension, Known::k##known,        \
+         meaning},
 #include "runtime/plan/isa.def"
-#undef PROBE_OP
 };
 
 // Index into kOps by code, -1 for none.
@@ -33,16 +34,33 @@ constexpr bool ascending_codes() {
 }
 static_assert(ascending_codes(), "isa.def ascends by code and repeats none");
 
-constexpr bool known_columns() {
+constexpr bool known_letters() {
   for (const OpInfo& op : kOps) {
-    const std::string_view results = "-brv", operands = "-brvkiBSM";
+    const std::string_view results = "-brv", operands = "-brvkKiBFSHM";
     if (results.find(static_cast<char>(op.result)) == std::string_view::npos) return false;
     if (operands.find(static_cast<char>(op.a)) == std::string_view::npos) return false;
     if (operands.find(static_cast<char>(op.b)) == std::string_view::npos) return false;
   }
   return true;
 }
-static_assert(known_columns(), "isa.def uses the letters that its header names");
+static_assert(known_letters(), "isa.def uses the letters that its header names");
+
+constexpr bool fitting_columns() {
+  for (const OpInfo& op : kOps) {
+    const bool has_result = op.result != Kind::kUnused;
+    const bool has_immediate = op.a == Kind::kImmediate || op.b == Kind::kImmediate;
+    if (has_immediate != (op.limit > 0)) return false;
+    if (has_result == (op.dimension == Measures::kNothing)) return false;
+    if ((op.result == Kind::kBool) != (op.dimension == Measures::kTruth)) return false;
+    // What follows from registers alone is known with them.
+    const bool follows = has_result && is_register(op.a) && !is_state(op.b);
+    if (follows != (op.known == Known::kOperands)) return false;
+    const bool of_operands = op.dimension == Measures::kSame || op.dimension == Measures::kProduct;
+    if (of_operands && !is_register(op.a)) return false;
+  }
+  return true;
+}
+static_assert(fitting_columns(), "the columns of a line of isa.def agree with one another");
 
 }  // namespace
 

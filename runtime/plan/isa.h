@@ -9,9 +9,8 @@
 namespace probe::plan {
 
 enum class Op : std::uint8_t {
-#define PROBE_OP(code, name, result, a, b, meaning) k##name = code,
+#define PROBE_OP(code, name, result, a, b, limit, dimension, known, meaning) k##name = code,
 #include "runtime/plan/isa.def"
-#undef PROBE_OP
 };
 
 // The columns `result`, `a`, `b` of isa.def, by their letters.
@@ -21,20 +20,51 @@ enum class Kind : char {
   kReal = 'r',
   kVector = 'v',
   kConstant = 'k',
+  kThreeConstants = 'K',
   kImmediate = 'i',
   kBody = 'B',
+  kFinger = 'F',
   kState = 'S',
+  kTimedState = 'H',
   kMetric = 'M'
 };
+
+constexpr bool is_register(Kind kind) {
+  return kind == Kind::kBool || kind == Kind::kReal || kind == Kind::kVector;
+}
+constexpr bool is_body(Kind kind) { return kind == Kind::kBody || kind == Kind::kFinger; }
+constexpr bool is_state(Kind kind) { return kind == Kind::kState || kind == Kind::kTimedState; }
+
+// The column `dimension`: what a result measures.
+enum class Measures : std::uint8_t {
+  kNothing,
+  kTruth,
+  kAny,
+  kNumber,
+  kLength,
+  kImpulse,
+  kSpeed,
+  kSpin,
+  kTime,
+  kSteps,
+  kSame,
+  kProduct
+};
+
+// The column `known`: when a result is what it stays.
+enum class Known : std::uint8_t { kStart, kStep, kOperands };
 
 struct OpInfo {
   Op op;
   std::string_view name;
   Kind result;
   Kind a, b;
+  std::uint16_t limit;  // the largest immediate
+  Measures dimension;
+  Known known;
   std::string_view meaning;
 
-  bool is_monitor() const { return b == Kind::kState; }
+  bool is_monitor() const { return is_state(b); }
 };
 
 // All operations in the order of isa.def.

@@ -40,20 +40,10 @@ class Plan {
 
   const Tables& tables() const { return tables_; }
   std::string_view text(StringRef ref) const { return tables_.text(ref); }
-  std::span<const AssetRecord> assets() const { return tables_.assets; }
-  std::span<const ObjectRecord> objects() const { return tables_.objects; }
-  std::span<const RobotRecord> robots() const { return tables_.robots; }
-  std::span<const CameraRecord> cameras() const { return tables_.cameras; }
-  std::span<const LightRecord> lights() const { return tables_.lights; }
-  std::span<const SceneRecord> scenes() const { return tables_.scenes; }
-  std::span<const ProgramRecord> programs() const { return tables_.programs; }
-  std::span<const MetricRecord> metrics() const { return tables_.metrics; }
-  std::span<const TaskRecord> tasks() const { return tables_.tasks; }
-  std::span<const EpisodeRecord> episodes() const { return tables_.episodes; }
-  std::span<const SetRecord> sets() const { return tables_.sets; }
-  std::span<const SuiteRecord> suites() const { return tables_.suites; }
-  std::span<const SpanRecord> spans() const { return tables_.spans; }
-  std::span<const TextRecord> texts() const { return tables_.texts; }
+  // The records of each section under its member's name in sections.def: tasks(), objects() ...
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) \
+  View<Record> member() const { return tables_.member; }
+#include "runtime/plan/sections.def"
 
   std::span<const DriveRecord> drives(const RobotRecord& robot) const;
   std::span<const std::uint32_t> meshes(const RobotRecord& robot) const;  // indices of assets()

@@ -6,33 +6,18 @@ namespace probe::plan {
 namespace {
 
 constexpr std::array kSections = {
-    SectionInfo{Section::kStrings, "STRS", 1, false},
-    SectionInfo{Section::kList, "LIST", 4, false},
-    SectionInfo{Section::kReals, "REAL", 8, false},
-    SectionInfo{Section::kAssets, "ASST", sizeof(AssetRecord), false},
-    SectionInfo{Section::kObjects, "OBJT", sizeof(ObjectRecord), false},
-    SectionInfo{Section::kRobots, "ROBT", sizeof(RobotRecord), false},
-    SectionInfo{Section::kDrives, "DRIV", sizeof(DriveRecord), false},
-    SectionInfo{Section::kCameras, "CAMR", sizeof(CameraRecord), false},
-    SectionInfo{Section::kLights, "LITE", sizeof(LightRecord), false},
-    SectionInfo{Section::kSuns, "SUNS", sizeof(SunRecord), false},
-    SectionInfo{Section::kScenes, "SCNE", sizeof(SceneRecord), false},
-    SectionInfo{Section::kConstants, "CNST", 8, false},
-    SectionInfo{Section::kStates, "STAT", sizeof(StateRecord), false},
-    SectionInfo{Section::kCode, "CODE", sizeof(Instruction), false},
-    SectionInfo{Section::kPrograms, "PROG", sizeof(ProgramRecord), false},
-    SectionInfo{Section::kMetrics, "METR", sizeof(MetricRecord), false},
-    SectionInfo{Section::kBodies, "BODY", sizeof(BodyRecord), false},
-    SectionInfo{Section::kPlacements, "PLAC", sizeof(PlacementRecord), false},
-    SectionInfo{Section::kTasks, "TASK", sizeof(TaskRecord), false},
-    SectionInfo{Section::kEpisodes, "EPIS", sizeof(EpisodeRecord), false},
-    SectionInfo{Section::kSets, "SETS", sizeof(SetRecord), false},
-    SectionInfo{Section::kSuites, "SUIT", sizeof(SuiteRecord), false},
-    SectionInfo{Section::kViews, "VIEW", sizeof(ViewRecord), false},
-    SectionInfo{Section::kSpans, "SPAN", sizeof(SpanRecord), true},
-    SectionInfo{Section::kTexts, "TEXT", sizeof(TextRecord), true},
-    SectionInfo{Section::kTextBytes, "TXTB", 1, true},
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) \
+  SectionInfo{Section::k##name, tag, sizeof(Record), may_be_ignored},
+#include "runtime/plan/sections.def"
 };
+
+constexpr bool ascending_kinds() {
+  for (std::size_t i = 1; i < kSections.size(); ++i) {
+    if (kSections[i - 1].kind >= kSections[i].kind) return false;
+  }
+  return true;
+}
+static_assert(ascending_kinds(), "sections.def ascends by kind and repeats none");
 
 }  // namespace
 

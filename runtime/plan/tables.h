@@ -5,38 +5,21 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 #include "runtime/plan/format.h"
 
 namespace probe::plan {
 
+// How the records of a section are seen: text as text, all others as a span.
+template <typename Record>
+using View =
+    std::conditional_t<std::is_same_v<Record, char>, std::string_view, std::span<const Record>>;
+
+// One member a line of sections.def.
 struct Tables {
-  std::string_view strings;
-  std::span<const std::uint32_t> list;
-  std::span<const double> reals;
-  std::span<const AssetRecord> assets;
-  std::span<const ObjectRecord> objects;
-  std::span<const RobotRecord> robots;
-  std::span<const DriveRecord> drives;
-  std::span<const CameraRecord> cameras;
-  std::span<const LightRecord> lights;
-  std::span<const SunRecord> suns;
-  std::span<const SceneRecord> scenes;
-  std::span<const double> constants;
-  std::span<const StateRecord> states;
-  std::span<const Instruction> code;
-  std::span<const ProgramRecord> programs;
-  std::span<const MetricRecord> metrics;
-  std::span<const BodyRecord> bodies;
-  std::span<const PlacementRecord> placements;
-  std::span<const TaskRecord> tasks;
-  std::span<const EpisodeRecord> episodes;
-  std::span<const SetRecord> sets;
-  std::span<const SuiteRecord> suites;
-  std::span<const ViewRecord> views;
-  std::span<const SpanRecord> spans;
-  std::span<const TextRecord> texts;
-  std::string_view text_bytes;
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) View<Record> member;
+#include "runtime/plan/sections.def"
 
   // Only with references that were verified, or that the same writer gave out.
   std::string_view text(StringRef ref) const { return strings.substr(ref.offset, ref.length); }
@@ -68,35 +51,12 @@ std::span<const SectionInfo> all_sections();
 const SectionInfo* find_section(std::uint32_t kind);
 
 // Calls visit(kind, table) for every table in ascending order of kind; each table is a span or
-// string_view. The one place that pairs sections with members of Tables.
+// string_view.
 template <typename AnyTables, typename Visit>
 void for_each_table(AnyTables& t, Visit&& visit) {
-  visit(Section::kStrings, t.strings);
-  visit(Section::kList, t.list);
-  visit(Section::kReals, t.reals);
-  visit(Section::kAssets, t.assets);
-  visit(Section::kObjects, t.objects);
-  visit(Section::kRobots, t.robots);
-  visit(Section::kDrives, t.drives);
-  visit(Section::kCameras, t.cameras);
-  visit(Section::kLights, t.lights);
-  visit(Section::kSuns, t.suns);
-  visit(Section::kScenes, t.scenes);
-  visit(Section::kConstants, t.constants);
-  visit(Section::kStates, t.states);
-  visit(Section::kCode, t.code);
-  visit(Section::kPrograms, t.programs);
-  visit(Section::kMetrics, t.metrics);
-  visit(Section::kBodies, t.bodies);
-  visit(Section::kPlacements, t.placements);
-  visit(Section::kTasks, t.tasks);
-  visit(Section::kEpisodes, t.episodes);
-  visit(Section::kSets, t.sets);
-  visit(Section::kSuites, t.suites);
-  visit(Section::kViews, t.views);
-  visit(Section::kSpans, t.spans);
-  visit(Section::kTexts, t.texts);
-  visit(Section::kTextBytes, t.text_bytes);
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) \
+  visit(Section::k##name, t.member);
+#include "runtime/plan/sections.def"
 }
 
 }  // namespace probe::plan

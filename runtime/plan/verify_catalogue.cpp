@@ -1,14 +1,13 @@
-// Stage 2, first half: assets, objects, robots, cameras, lights, scenes,
-// views.
+// Stage 2, the records of what tasks are made from: assets, objects, robots, cameras, lights,
+// scenes, views.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
-#include <vector>
 
 #include "runtime/plan/verify.h"
-#include "runtime/plan/verify_fields.h"
+#include "runtime/plan/verify_records.h"
 
 namespace probe::plan {
 namespace {
@@ -25,220 +24,186 @@ bool is_inside(std::string_view path) {
   return true;
 }
 
-class CatalogueCheck : FieldCheck {
- public:
-  using FieldCheck::FieldCheck;
-
-  Status run() {
-    PROBE_TRY(check_finite(t.reals));
-    for (const AssetRecord& record : t.assets) PROBE_TRY(asset(record));
-    for (const ObjectRecord& record : t.objects) PROBE_TRY(object(record));
-    for (const DriveRecord& record : t.drives) PROBE_TRY(drive(record));
-    for (const RobotRecord& record : t.robots) PROBE_TRY(robot(record));
-    for (const CameraRecord& record : t.cameras) PROBE_TRY(camera(record));
-    for (const SunRecord& record : t.suns) PROBE_TRY(sun(record));
-    for (const LightRecord& record : t.lights) PROBE_TRY(light(record));
-    for (const SceneRecord& record : t.scenes) PROBE_TRY(scene(record));
-    for (const ViewRecord& record : t.views) PROBE_TRY(view(record));
-    return check_unique_names(t.objects, "objects");
-  }
-
- private:
-  Status asset(const AssetRecord& a) const {
-    PROBE_TRY(check_name(a.path, "the path of an asset"));
-    if (!is_inside(t.text(a.path))) {
-      return fail(Rule::kAssetPath, &a.path,
-                  fmt::format("asset path `{}` leads out of the asset folder", t.text(a.path)));
-    }
-    if (a.kind < static_cast<std::uint32_t>(AssetKind::kVisualMesh) ||
-        a.kind > static_cast<std::uint32_t>(AssetKind::kPhoto)) {
-      return fail(Rule::kAssetKind, &a.kind, fmt::format("asset kind {} is not known", a.kind));
-    }
-    PROBE_TRY(check_zero(a.zero));
-    if (a.byte_size == 0)
-      return fail(Rule::kAssetSize, &a.byte_size, "an asset has at least one byte");
-    return check_zero({&a.zero2, 1});
-  }
-
-  Status object(const ObjectRecord& o) const {
-    PROBE_TRY(check_word(o.name, "the name of an object"));
-    PROBE_TRY(check_text(o.text));
-    PROBE_TRY(check_asset(o.visual, AssetKind::kVisualMesh, true));
-    PROBE_TRY(check_asset(o.collision, AssetKind::kCollisionMesh, true));
-    PROBE_TRY(check_finite(o.box_min));
-    PROBE_TRY(check_finite(o.box_max));
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (!(o.box_min[i] < o.box_max[i]))
-        return fail(Rule::kBox, &o.box_min[i], "a box has a positive extent on each axis");
-    }
-    PROBE_TRY(check_positive(o.density, "a density"));
-    PROBE_TRY(check_not_negative(o.friction, "a friction"));
-    return check_zero(o.zero);
-  }
-
-  Status drive(const DriveRecord& d) const {
-    PROBE_TRY(check_name(d.joint, "the joint of a drive"));
-    PROBE_TRY(check_not_negative(d.stiffness, "a stiffness"));
-    PROBE_TRY(check_not_negative(d.damping, "a damping"));
-    return check_positive(d.limit, "the limit of a drive");
-  }
-
-  Status robot(const RobotRecord& r) {
-    PROBE_TRY(check_word(r.name, "the name of a robot"));
-    PROBE_TRY(check_name(r.tcp, "the tool centre point"));
-    PROBE_TRY(check_asset(r.urdf, AssetKind::kUrdf, false));
-    if (r.control != static_cast<std::uint32_t>(Control::kEeDeltaPose)) {
-      return fail(Rule::kControl, &r.control,
-                  fmt::format("control law {} is not known", r.control));
-    }
-    PROBE_TRY(check_positive(r.control_hz, "a control rate"));
-    for (const FingerRecord& finger : r.fingers) {
-      PROBE_TRY(check_name(finger.link, "the link of a finger"));
-      PROBE_TRY(check_unit(finger.opens, "the opening axis of a finger"));
-    }
-    PROBE_TRY(check_finite({&r.grip_closed, 1}));
-    PROBE_TRY(check_finite({&r.grip_open, 1}));
-    PROBE_TRY(check_not_negative(r.finger_friction, "a friction"));
-    PROBE_TRY(check_not_negative(r.finger_patch, "a patch radius"));
-    PROBE_TRY(check_not_negative(r.link_friction, "a friction"));
-    PROBE_TRY(check_not_negative(r.reach_min, "a reach"));
-    PROBE_TRY(check_not_negative(r.reach_max, "a reach"));
-    if (r.reach_min > r.reach_max)
-      return fail(Rule::kReach, &r.reach_min, "the least reach is not more than the greatest");
-    PROBE_TRY(check_zero(r.zero));
-
-    PROBE_TRY(check_slice(r.drives, t.drives.size(), "DRIV"));
-    if (r.drives.count == 0 || r.drives.count > kMaxDrives) {
-      return fail(Rule::kDriveCount, &r.drives,
-                  fmt::format("a robot has 1 to {} drives, not {}", kMaxDrives, r.drives.count));
-    }
-    std::vector<std::string_view> joints;
-    for (const DriveRecord& d : slice_of(t.drives, r.drives)) joints.push_back(t.text(d.joint));
-    std::ranges::sort(joints);
-    if (std::ranges::adjacent_find(joints) != joints.end())
-      return fail(Rule::kDriveTwice, &r.drives, "a joint has one drive, not two");
-
-    PROBE_TRY(check_slice(r.meshes, t.list.size(), "LIST"));
-    if (r.meshes.count > kMaxMeshes) {
-      return fail(
-          Rule::kMeshCount, &r.meshes,
-          fmt::format("a robot names at most {} meshes, not {}", kMaxMeshes, r.meshes.count));
-    }
-    for (const std::uint32_t& mesh : slice_of(t.list, r.meshes)) {
-      PROBE_TRY(check_index(mesh, t.assets.size(), "ASST"));
-    }
-    return {};
-  }
-
-  Status camera(const CameraRecord& c) const {
-    PROBE_TRY(check_word(c.name, "the name of a camera"));
-    PROBE_TRY(check_name(c.mount_link, "the mount of a camera"));
-    PROBE_TRY(check_finite(c.position));
-    PROBE_TRY(check_finite(c.aim_values));
-    if (c.aim == static_cast<std::uint32_t>(CameraAim::kLook)) {
-      if (c.aim_values[0] == 0 && c.aim_values[1] == 0 && c.aim_values[2] == 0) {
-        return fail(Rule::kCameraDirection, &c.aim_values,
-                    "a camera looks in a direction other than zero");
-      }
-      if (c.aim_values[3] != 0)
-        return fail(Rule::kCameraFourth, &c.aim_values[3],
-                    "the fourth number of a direction is zero");
-    } else if (c.aim == static_cast<std::uint32_t>(CameraAim::kQuat)) {
-      PROBE_TRY(check_unit(c.aim_values, "the quaternion of a camera"));
-    } else {
-      return fail(Rule::kCameraAim, &c.aim,
-                  fmt::format("a camera aims by 1 (look) or 2 (quat), not {}", c.aim));
-    }
-    if (c.width < 1 || c.width > kMaxPixels || c.height < 1 || c.height > kMaxPixels) {
-      return fail(Rule::kImageSize, &c.width,
-                  fmt::format("an image has 1 to {} pixels a side, not {} x {}", kMaxPixels,
-                              c.width, c.height));
-    }
-    if (c.samples != 0 && c.samples != 4 && c.samples != 16) {
-      return fail(Rule::kCameraSamples, &c.samples,
-                  fmt::format("a pixel has 0 (one), 4 or 16 samples, not {}", c.samples));
-    }
-    PROBE_TRY(check_positive(c.fx, "a focal length"));
-    PROBE_TRY(check_positive(c.fy, "a focal length"));
-    PROBE_TRY(check_finite({&c.cx, 1}));
-    PROBE_TRY(check_finite({&c.cy, 1}));
-    return check_zero(c.zero2);
-  }
-
-  Status sun(const SunRecord& s) const {
-    PROBE_TRY(check_finite(s.direction));
-    if (s.direction == std::array<double, 3>{0, 0, 0}) {
-      return fail(Rule::kSunDirection, &s.direction,
-                  "light travels in a direction other than zero");
-    }
-    PROBE_TRY(check_not_negative(s.power, "the power of a sun"));
-    if (s.shadow > 1)
-      return fail(Rule::kSunShadow, &s.shadow, "a sun casts shadows (1) or none (0)");
-    return check_zero(s.zero);
-  }
-
-  Status light(const LightRecord& l) const {
-    PROBE_TRY(check_word(l.name, "the name of a light"));
-    PROBE_TRY(check_not_negative(l.ambient, "ambient light"));
-    PROBE_TRY(check_slice(l.suns, t.suns.size(), "SUNS"));
-    if (l.suns.count > kMaxSuns) {
-      return fail(Rule::kSunCount, &l.suns,
-                  fmt::format("a light has at most {} suns, not {}", kMaxSuns, l.suns.count));
-    }
-    if (l.occlusion > kMaxOcclusion) {
-      return fail(Rule::kOcclusion, &l.occlusion,
-                  fmt::format("ambient light is traced by at most {} rays, not {}", kMaxOcclusion,
-                              l.occlusion));
-    }
-    PROBE_TRY(check_zero(l.zero));
-    return check_zero(l.zero2);
-  }
-
-  Status scene(const SceneRecord& s) const {
-    PROBE_TRY(check_word(s.name, "the name of a scene"));
-    PROBE_TRY(check_index(s.robot, t.robots.size(), "ROBT"));
-    PROBE_TRY(check_asset(s.photo, AssetKind::kPhoto, true));
-    PROBE_TRY(check_asset(s.backdrop, AssetKind::kVisualMesh, true));
-    PROBE_TRY(check_asset(s.fixture_visual, AssetKind::kVisualMesh, true));
-    PROBE_TRY(check_asset(s.fixture_collision, AssetKind::kCollisionMesh, true));
-    PROBE_TRY(check_zero(s.zero));
-    PROBE_TRY(check_finite(s.fixture_position));
-    PROBE_TRY(check_finite(s.base_position));
-    PROBE_TRY(check_unit(s.base_rotation, "the rotation of a robot's base"));
-    const RobotRecord& r = t.robots[s.robot];
-    PROBE_TRY(check_slice(s.joints, t.reals.size(), "REAL"));
-    if (s.joints.count != r.drives.count) {
-      return fail(Rule::kJointCount, &s.joints,
-                  fmt::format("a scene gives {} joint positions, its robot has {} drives",
-                              s.joints.count, r.drives.count));
-    }
-    PROBE_TRY(check_finite({&s.surface_z, 1}));
-    PROBE_TRY(check_finite(s.area));
-    if (!(s.area[0] < s.area[2]) || !(s.area[1] < s.area[3])) {
-      return fail(Rule::kArea, &s.area, "the area of a surface has a positive extent on each axis");
-    }
-    PROBE_TRY(check_positive(s.physics_hz, "a physics rate"));
-    const double substeps = s.physics_hz / r.control_hz;
-    if (!(substeps >= 1 && substeps <= kMaxSubsteps && substeps == std::floor(substeps))) {
-      return fail(Rule::kSubsteps, &s.physics_hz,
-                  fmt::format("a control step has a whole number of physics steps up to {}, not {}",
-                              kMaxSubsteps, substeps));
-    }
-    PROBE_TRY(check_not_negative(s.friction, "a friction"));
-    return check_zero(s.zero2);
-  }
-
-  Status view(const ViewRecord& v) const {
-    PROBE_TRY(check_word(v.name, "the name of a camera in its scene"));
-    PROBE_TRY(check_index(v.camera, t.cameras.size(), "CAMR"));
-    return check_asset(v.photo, AssetKind::kPhoto, true);
-  }
-};
-
 }  // namespace
 
-Status verify_catalogue(std::span<const std::byte> bytes, const Tables& tables) {
-  return CatalogueCheck(bytes, tables).run();
+Status RecordCheck::check(const AssetRecord& a) const {
+  PROBE_TRY(check_name(a.path, "the path of an asset"));
+  if (!is_inside(t.text(a.path))) {
+    return fail(Rule::kAssetPath, &a.path,
+                fmt::format("asset path `{}` leads out of the asset folder", t.text(a.path)));
+  }
+  if (a.kind < static_cast<std::uint32_t>(AssetKind::kVisualMesh) ||
+      a.kind > static_cast<std::uint32_t>(AssetKind::kPhoto)) {
+    return fail(Rule::kAssetKind, &a.kind, fmt::format("asset kind {} is not known", a.kind));
+  }
+  PROBE_TRY(check_zero(a.zero));
+  if (a.byte_size == 0)
+    return fail(Rule::kAssetSize, &a.byte_size, "an asset has at least one byte");
+  return check_zero({&a.zero2, 1});
+}
+
+Status RecordCheck::check(const ObjectRecord& o) const {
+  PROBE_TRY(check_word(o.name, "the name of an object"));
+  PROBE_TRY(check_text(o.text));
+  PROBE_TRY(check_asset(o.visual, AssetKind::kVisualMesh, true));
+  PROBE_TRY(check_asset(o.collision, AssetKind::kCollisionMesh, true));
+  PROBE_TRY(check_finite(o.box_min));
+  PROBE_TRY(check_finite(o.box_max));
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!(o.box_min[i] < o.box_max[i]))
+      return fail(Rule::kBox, &o.box_min[i], "a box has a positive extent on each axis");
+  }
+  PROBE_TRY(check_positive(o.density, "a density"));
+  PROBE_TRY(check_not_negative(o.friction, "a friction"));
+  return check_zero(o.zero);
+}
+
+Status RecordCheck::check(const DriveRecord& d) const {
+  PROBE_TRY(check_name(d.joint, "the joint of a drive"));
+  PROBE_TRY(check_not_negative(d.stiffness, "a stiffness"));
+  PROBE_TRY(check_not_negative(d.damping, "a damping"));
+  return check_positive(d.limit, "the limit of a drive");
+}
+
+Status RecordCheck::check(const RobotRecord& r) const {
+  PROBE_TRY(check_word(r.name, "the name of a robot"));
+  PROBE_TRY(check_name(r.tcp, "the tool centre point"));
+  PROBE_TRY(check_asset(r.urdf, AssetKind::kUrdf, false));
+  if (r.control != static_cast<std::uint32_t>(Control::kEeDeltaPose)) {
+    return fail(Rule::kControl, &r.control, fmt::format("control law {} is not known", r.control));
+  }
+  PROBE_TRY(check_positive(r.control_hz, "a control rate"));
+  for (const FingerRecord& finger : r.fingers) {
+    PROBE_TRY(check_name(finger.link, "the link of a finger"));
+    PROBE_TRY(check_unit(finger.opens, "the opening axis of a finger"));
+  }
+  PROBE_TRY(check_finite({&r.grip_closed, 1}));
+  PROBE_TRY(check_finite({&r.grip_open, 1}));
+  PROBE_TRY(check_not_negative(r.finger_friction, "a friction"));
+  PROBE_TRY(check_not_negative(r.finger_patch, "a patch radius"));
+  PROBE_TRY(check_not_negative(r.link_friction, "a friction"));
+  PROBE_TRY(check_not_negative(r.reach_min, "a reach"));
+  PROBE_TRY(check_not_negative(r.reach_max, "a reach"));
+  if (r.reach_min > r.reach_max)
+    return fail(Rule::kReach, &r.reach_min, "the least reach is not more than the greatest");
+  PROBE_TRY(check_zero(r.zero));
+
+  PROBE_TRY(check_slice(r.drives, t.drives.size(), "DRIV"));
+  if (r.drives.count == 0 || r.drives.count > kMaxDrives) {
+    return fail(Rule::kDriveCount, &r.drives,
+                fmt::format("a robot has 1 to {} drives, not {}", kMaxDrives, r.drives.count));
+  }
+  PROBE_TRY(check_slice(r.meshes, t.list.size(), "LIST"));
+  if (r.meshes.count > kMaxMeshes) {
+    return fail(Rule::kMeshCount, &r.meshes,
+                fmt::format("a robot names at most {} meshes, not {}", kMaxMeshes, r.meshes.count));
+  }
+  for (const std::uint32_t& mesh : slice_of(t.list, r.meshes)) {
+    PROBE_TRY(check_index(mesh, t.assets.size(), "ASST"));
+  }
+  return {};
+}
+
+Status RecordCheck::check(const CameraRecord& c) const {
+  PROBE_TRY(check_word(c.name, "the name of a camera"));
+  PROBE_TRY(check_name(c.mount_link, "the mount of a camera"));
+  PROBE_TRY(check_finite(c.position));
+  PROBE_TRY(check_finite(c.aim_values));
+  if (c.aim == static_cast<std::uint32_t>(CameraAim::kLook)) {
+    if (c.aim_values[0] == 0 && c.aim_values[1] == 0 && c.aim_values[2] == 0) {
+      return fail(Rule::kCameraDirection, &c.aim_values,
+                  "a camera looks in a direction other than zero");
+    }
+    if (c.aim_values[3] != 0)
+      return fail(Rule::kCameraFourth, &c.aim_values[3],
+                  "the fourth number of a direction is zero");
+  } else if (c.aim == static_cast<std::uint32_t>(CameraAim::kQuat)) {
+    PROBE_TRY(check_unit(c.aim_values, "the quaternion of a camera"));
+  } else {
+    return fail(Rule::kCameraAim, &c.aim,
+                fmt::format("a camera aims by 1 (look) or 2 (quat), not {}", c.aim));
+  }
+  if (c.width < 1 || c.width > kMaxPixels || c.height < 1 || c.height > kMaxPixels) {
+    return fail(Rule::kImageSize, &c.width,
+                fmt::format("an image has 1 to {} pixels a side, not {} x {}", kMaxPixels, c.width,
+                            c.height));
+  }
+  if (c.samples != 0 && c.samples != 4 && c.samples != 16) {
+    return fail(Rule::kCameraSamples, &c.samples,
+                fmt::format("a pixel has 0 (one), 4 or 16 samples, not {}", c.samples));
+  }
+  PROBE_TRY(check_positive(c.fx, "a focal length"));
+  PROBE_TRY(check_positive(c.fy, "a focal length"));
+  PROBE_TRY(check_finite({&c.cx, 1}));
+  PROBE_TRY(check_finite({&c.cy, 1}));
+  return check_zero(c.zero2);
+}
+
+Status RecordCheck::check(const SunRecord& s) const {
+  PROBE_TRY(check_finite(s.direction));
+  if (s.direction == std::array<double, 3>{0, 0, 0}) {
+    return fail(Rule::kSunDirection, &s.direction, "light travels in a direction other than zero");
+  }
+  PROBE_TRY(check_not_negative(s.power, "the power of a sun"));
+  if (s.shadow > 1) return fail(Rule::kSunShadow, &s.shadow, "a sun casts shadows (1) or none (0)");
+  return check_zero(s.zero);
+}
+
+Status RecordCheck::check(const LightRecord& l) const {
+  PROBE_TRY(check_word(l.name, "the name of a light"));
+  PROBE_TRY(check_not_negative(l.ambient, "ambient light"));
+  PROBE_TRY(check_slice(l.suns, t.suns.size(), "SUNS"));
+  if (l.suns.count > kMaxSuns) {
+    return fail(Rule::kSunCount, &l.suns,
+                fmt::format("a light has at most {} suns, not {}", kMaxSuns, l.suns.count));
+  }
+  if (l.occlusion > kMaxOcclusion) {
+    return fail(Rule::kOcclusion, &l.occlusion,
+                fmt::format("ambient light is traced by at most {} rays, not {}", kMaxOcclusion,
+                            l.occlusion));
+  }
+  PROBE_TRY(check_zero(l.zero));
+  return check_zero(l.zero2);
+}
+
+Status RecordCheck::check(const SceneRecord& s) const {
+  PROBE_TRY(check_word(s.name, "the name of a scene"));
+  PROBE_TRY(check_index(s.robot, t.robots.size(), "ROBT"));
+  PROBE_TRY(check_asset(s.photo, AssetKind::kPhoto, true));
+  PROBE_TRY(check_asset(s.backdrop, AssetKind::kVisualMesh, true));
+  PROBE_TRY(check_asset(s.fixture_visual, AssetKind::kVisualMesh, true));
+  PROBE_TRY(check_asset(s.fixture_collision, AssetKind::kCollisionMesh, true));
+  PROBE_TRY(check_zero(s.zero));
+  PROBE_TRY(check_finite(s.fixture_position));
+  PROBE_TRY(check_finite(s.base_position));
+  PROBE_TRY(check_unit(s.base_rotation, "the rotation of a robot's base"));
+  const RobotRecord& r = t.robots[s.robot];
+  PROBE_TRY(check_slice(s.joints, t.reals.size(), "REAL"));
+  if (s.joints.count != r.drives.count) {
+    return fail(Rule::kJointCount, &s.joints,
+                fmt::format("a scene gives {} joint positions, its robot has {} drives",
+                            s.joints.count, r.drives.count));
+  }
+  PROBE_TRY(check_finite({&s.surface_z, 1}));
+  PROBE_TRY(check_finite(s.area));
+  if (!(s.area[0] < s.area[2]) || !(s.area[1] < s.area[3])) {
+    return fail(Rule::kArea, &s.area, "the area of a surface has a positive extent on each axis");
+  }
+  PROBE_TRY(check_positive(s.physics_hz, "a physics rate"));
+  const double substeps = s.physics_hz / r.control_hz;
+  if (!(substeps >= 1 && substeps <= kMaxSubsteps && substeps == std::floor(substeps))) {
+    return fail(Rule::kSubsteps, &s.physics_hz,
+                fmt::format("a control step has a whole number of physics steps up to {}, not {}",
+                            kMaxSubsteps, substeps));
+  }
+  PROBE_TRY(check_not_negative(s.friction, "a friction"));
+  return check_zero(s.zero2);
+}
+
+Status RecordCheck::check(const ViewRecord& v) const {
+  PROBE_TRY(check_word(v.name, "the name of a camera in its scene"));
+  PROBE_TRY(check_index(v.camera, t.cameras.size(), "CAMR"));
+  return check_asset(v.photo, AssetKind::kPhoto, true);
 }
 
 }  // namespace probe::plan

@@ -21,21 +21,30 @@ std::string_view type_name(Kind kind) {
       return "a number";
     case Kind::kVector:
       return "a vector";
-    default:
-      return "nothing";
+    case Kind::kUnused:
+    case Kind::kConstant:
+    case Kind::kThreeConstants:
+    case Kind::kImmediate:
+    case Kind::kBody:
+    case Kind::kFinger:
+    case Kind::kState:
+    case Kind::kTimedState:
+    case Kind::kMetric:
+      break;
   }
+  return "nothing";
 }
 
-// How many consecutive constants an operand names.
-std::uint32_t constant_width(Op op) { return op == Op::kKV ? 3 : 1; }
-
-std::uint32_t immediate_limit(Op op) { return op == Op::kAXIS ? 2 : 1; }
+struct FingerUse {
+  const OpInfo* op;
+  const std::uint16_t* operand;
+};
 
 // What a program asks of the tasks that run it.
 struct Needs {
-  const Instruction* highest = nullptr;     // the one that names the body of highest index
-  std::uint32_t bodies = 0;                 // 1 + that index
-  std::vector<const Instruction*> fingers;  // one OPEN for every body that must be a finger
+  const Instruction* highest = nullptr;  // the one that names the body of highest index
+  std::uint32_t bodies = 0;              // 1 + that index
+  std::vector<FingerUse> fingers;        // one for every body that must be a finger
 };
 
 class ProgramCheck {
@@ -111,23 +120,25 @@ class ProgramCheck {
       case Kind::kVector:
         return use_register(info, kind, value);
       case Kind::kConstant:
-        if (value + constant_width(info.op) > program_.constants.count) {
-          return place_.fail(
-              Rule::kConstantRange, &value,
-              fmt::format("{} reads constant {} of {}", info.name,
-                          value + constant_width(info.op) - 1, program_.constants.count));
-        }
-        return {};
+        return use_constants(info, value, 1);
+      case Kind::kThreeConstants:
+        return use_constants(info, value, 3);
       case Kind::kImmediate:
-        if (value > immediate_limit(info.op)) {
-          return place_.fail(Rule::kImmediate, &value,
-                             fmt::format("{} takes at most {}, not {}", info.name,
-                                         immediate_limit(info.op), value));
+        if (value > info.limit) {
+          return place_.fail(
+              Rule::kImmediate, &value,
+              fmt::format("{} takes at most {}, not {}", info.name, info.limit, value));
         }
         return {};
       case Kind::kBody:
         return use_body(info, in, value, needs);
+      case Kind::kFinger:
+        PROBE_TRY(use_body(info, in, value, needs));
+        if (!finger_seen_[value]) needs.fingers.push_back({&info, &value});
+        finger_seen_[value] = true;
+        return {};
       case Kind::kState:
+      case Kind::kTimedState:
         return use_state(info, in, value);
       case Kind::kMetric:
         return emit(info, value);
@@ -149,6 +160,13 @@ class ProgramCheck {
     return {};
   }
 
+  Status use_constants(const OpInfo& info, const std::uint16_t& value, std::uint32_t width) {
+    if (value + width <= program_.constants.count) return {};
+    return place_.fail(Rule::kConstantRange, &value,
+                       fmt::format("{} reads constant {} of {}", info.name, value + width - 1,
+                                   program_.constants.count));
+  }
+
   Status use_body(const OpInfo& info, const Instruction& in, const std::uint16_t& value,
                   Needs& needs) {
     if (value >= kMaxBodies) {
@@ -159,10 +177,6 @@ class ProgramCheck {
     if (value + 1u > needs.bodies) {
       needs.bodies = value + 1u;
       needs.highest = &in;
-    }
-    if (info.op == Op::kOPEN && !finger_seen_[value]) {
-      finger_seen_[value] = true;
-      needs.fingers.push_back(&in);
     }
     return {};
   }
@@ -214,12 +228,12 @@ Status check_task(const Place& place, const Tables& t, const TaskRecord& task, c
                       fmt::format("names body {}, but task `{}` has {}", needs.bodies - 1,
                                   t.text(task.name), task.bodies.count));
   }
-  for (const Instruction* in : needs.fingers) {
-    const BodyRecord& body = slice_of(t.bodies, task.bodies)[in->a];
+  for (const auto& [op, operand] : needs.fingers) {
+    const BodyRecord& body = slice_of(t.bodies, task.bodies)[*operand];
     if (body.kind != static_cast<std::uint32_t>(BodyKind::kLink) || body.index >= 2) {
-      return place.fail(Rule::kFinger, &in->a,
-                        fmt::format("OPEN names body {}, which is no finger of task `{}`", in->a,
-                                    t.text(task.name)));
+      return place.fail(Rule::kFinger, operand,
+                        fmt::format("{} names body {}, which is no finger of task `{}`", op->name,
+                                    *operand, t.text(task.name)));
     }
   }
   return {};

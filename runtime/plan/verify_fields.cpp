@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "runtime/plan/verify.h"
+#include "runtime/plan/verify_records.h"
 
 namespace probe::plan {
 namespace {
@@ -141,9 +142,15 @@ Status FieldCheck::check_positive(const double& value, const char* what) const {
               fmt::format("{} is finite and greater than zero, not {}", what, value));
 }
 
+Status RecordCheck::run() const {
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) PROBE_TRY(each(t.member));
+#include "runtime/plan/sections.def"
+  return {};
+}
+
 Status verify_tables(std::span<const std::byte> bytes, const Tables& tables) {
-  PROBE_TRY(verify_catalogue(bytes, tables));
-  return verify_tasks(bytes, tables);
+  PROBE_TRY(RecordCheck(bytes, tables).run());
+  return verify_relations(bytes, tables);
 }
 
 }  // namespace probe::plan

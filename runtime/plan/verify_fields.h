@@ -63,8 +63,4 @@ class FieldCheck {
   const Tables& t;
 };
 
-// The two halves of the second stage.
-Status verify_catalogue(std::span<const std::byte> bytes, const Tables& tables);
-Status verify_tasks(std::span<const std::byte> bytes, const Tables& tables);
-
 }  // namespace probe::plan

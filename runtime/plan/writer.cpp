@@ -58,32 +58,8 @@ std::uint32_t to_u32(std::size_t size) {
 
 Tables Records::tables() const {
   Tables out;
-  out.strings = strings;
-  out.list = list;
-  out.reals = reals;
-  out.assets = assets;
-  out.objects = objects;
-  out.robots = robots;
-  out.drives = drives;
-  out.cameras = cameras;
-  out.lights = lights;
-  out.suns = suns;
-  out.scenes = scenes;
-  out.constants = constants;
-  out.states = states;
-  out.code = code;
-  out.programs = programs;
-  out.metrics = metrics;
-  out.bodies = bodies;
-  out.placements = placements;
-  out.tasks = tasks;
-  out.episodes = episodes;
-  out.sets = sets;
-  out.suites = suites;
-  out.views = views;
-  out.spans = spans;
-  out.texts = texts;
-  out.text_bytes = text_bytes;
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) out.member = member;
+#include "runtime/plan/sections.def"
   return out;
 }
 

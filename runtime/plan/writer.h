@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <unordered_map>
 #include <vector>
 
@@ -17,34 +18,16 @@
 
 namespace probe::plan {
 
-// Tables under construction; the index of a pushed record is its id. Same member names as Tables.
+// What holds the records of a section while they are gathered.
+template <typename Record>
+using Gathered = std::conditional_t<std::is_same_v<Record, char>, std::string, std::vector<Record>>;
+
+// Tables under construction, one member a line of sections.def; the index of a pushed record is its
+// id. `strings` only through Writer::text, `list` and `reals` through the methods of their names,
+// `texts` and `text_bytes` through Writer::source.
 struct Records {
-  std::string strings;              // only through Writer::text
-  std::vector<std::uint32_t> list;  // only through Writer::list
-  std::vector<double> reals;        // Writer::reals
-  std::vector<AssetRecord> assets;
-  std::vector<ObjectRecord> objects;
-  std::vector<RobotRecord> robots;
-  std::vector<DriveRecord> drives;
-  std::vector<CameraRecord> cameras;
-  std::vector<LightRecord> lights;
-  std::vector<SunRecord> suns;
-  std::vector<SceneRecord> scenes;
-  std::vector<double> constants;
-  std::vector<StateRecord> states;
-  std::vector<Instruction> code;
-  std::vector<ProgramRecord> programs;
-  std::vector<MetricRecord> metrics;
-  std::vector<BodyRecord> bodies;
-  std::vector<PlacementRecord> placements;
-  std::vector<TaskRecord> tasks;
-  std::vector<EpisodeRecord> episodes;
-  std::vector<SetRecord> sets;
-  std::vector<SuiteRecord> suites;
-  std::vector<ViewRecord> views;
-  std::vector<SpanRecord> spans;
-  std::vector<TextRecord> texts;  // only through Writer::source
-  std::string text_bytes;
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) Gathered<Record> member;
+#include "runtime/plan/sections.def"
 
   Tables tables() const;  // valid until the next change
 };

@@ -21,37 +21,35 @@ Dimension product(Dimension a, Dimension b) {
   return Dimension::kOther;
 }
 
-Dimension measured(Op op) {
-  switch (op) {
-    case Op::kPOS:
-    case Op::kSTART:
-    case Op::kHALF:
-    case Op::kTCP:
-    case Op::kORIGIN:
-      return Dimension::kLength;
-    case Op::kPUSH:
-    case Op::kIMP:
-      return Dimension::kImpulse;
-    case Op::kVEL:
-      return Dimension::kSpeed;
-    case Op::kSPIN:
-      return Dimension::kSpin;
-    case Op::kTIME:
-      return Dimension::kTime;
-    case Op::kSTEP:
-    case Op::kCOUNT:
-    case Op::kFIRST:
-      return Dimension::kSteps;
-    case Op::kKR:
-    case Op::kKV:
-      return Dimension::kAny;
-    default:
+// Of the result of `in`, whose registers have the dimensions of `known`.
+Dimension measured(const plan::OpInfo& info, const plan::Instruction& in,
+                   const std::vector<Dimension>& known) {
+  const bool has_two = plan::is_register(info.b);
+  switch (info.dimension) {
+    case plan::Measures::kNothing:
+    case plan::Measures::kTruth:
+    case plan::Measures::kNumber:
       return Dimension::kNumber;
+    case plan::Measures::kAny:
+      return Dimension::kAny;
+    case plan::Measures::kLength:
+      return Dimension::kLength;
+    case plan::Measures::kImpulse:
+      return Dimension::kImpulse;
+    case plan::Measures::kSpeed:
+      return Dimension::kSpeed;
+    case plan::Measures::kSpin:
+      return Dimension::kSpin;
+    case plan::Measures::kTime:
+      return Dimension::kTime;
+    case plan::Measures::kSteps:
+      return Dimension::kSteps;
+    case plan::Measures::kSame:
+      return has_two ? joined(known[in.a], known[in.b]) : known[in.a];
+    case plan::Measures::kProduct:
+      return has_two ? product(known[in.a], known[in.b]) : known[in.a];
   }
-}
-
-bool is_register(plan::Kind kind) {
-  return kind == plan::Kind::kReal || kind == plan::Kind::kVector;
+  return Dimension::kOther;
 }
 
 }  // namespace
@@ -61,16 +59,7 @@ std::vector<Dimension> dimensions_of(const plan::Plan& plan, const plan::Program
   for (const plan::Instruction& in : plan.code(program)) {
     const plan::OpInfo& info = *plan::find_op(in.op);
     if (info.result == plan::Kind::kUnused) continue;
-    Dimension d = measured(info.op);
-    if (is_register(info.a)) {
-      const bool two = is_register(info.b);
-      const bool multiplies = info.op == Op::kMUL || info.op == Op::kVSCALE ||
-                              info.op == Op::kVDOT || info.op == Op::kVCROSS;
-      d = !two         ? out[in.a]
-          : multiplies ? product(out[in.a], out[in.b])
-                       : joined(out[in.a], out[in.b]);
-    }
-    out.push_back(d);
+    out.push_back(measured(info, in, out));
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "runtime/base/trig.h"
+#include "runtime/plan/readouts.h"
 #include "runtime/plan/source_line.h"
 #include "runtime/rejudge/dimension.h"
 #include "runtime/rejudge/program_view.h"
@@ -23,17 +24,12 @@ using plan::Op;
 // decide are listed, up to as many.
 constexpr std::size_t kFew = 3;
 
-const char* readout_name(std::uint32_t readout) {
-  constexpr const char* kNames[] = {"?",     "at end", "once", "always", "count",
-                                    "first", "final",  "max",  "min"};
-  return readout < std::size(kNames) ? kNames[readout] : kNames[0];
-}
-
 // What happened to the predicate of one metric over the episode. Steps are one-based, 0 is none.
 struct History {
   std::uint16_t core = 0;  // the register under the outermost monitor, or what is emitted
-  Op monitor = Op::kEND;   // that monitor; kEND for none
-  bool is_truth = true;    // the core's type
+  // What that monitor is the read-out of; kFinal for none.
+  plan::Readout kept = plan::Readout::kFinal;
+  bool is_truth = true;  // the core's type
   int first_true = 0, last_true = 0, first_false = 0;
   int changed = 0;  // since when the core is what it is
   int nearest = 0;  // at which it came nearest to being true, the last of these
@@ -45,10 +41,8 @@ struct History {
 History history_of(const ProgramView& view, std::uint32_t metric) {
   History h;
   h.core = view.emitted(metric);
-  const Op op = view.op(h.core);
-  if (op == Op::kONCE || op == Op::kALWAYS || op == Op::kCOUNT || op == Op::kFIRST ||
-      op == Op::kMAXR || op == Op::kMINR) {
-    h.monitor = op;
+  if (const plan::ReadoutInfo* readout = plan::readout_of(view.op(h.core))) {
+    h.kept = readout->readout;
     h.core = view.at(h.core).a;
   }
   h.is_truth = plan::find_op(view.at(h.core).op)->result == plan::Kind::kBool;
@@ -90,23 +84,24 @@ std::pair<int, std::string> decision(const History& h, int last) {
   const auto never = [&]() -> std::pair<int, std::string> {
     return {h.nearest, fmt::format("never, nearest at step {}", h.nearest)};
   };
-  switch (h.monitor) {
-    case Op::kONCE:
+  switch (h.kept) {
+    case plan::Readout::kOnce:
       if (h.first_true == 0) return never();
       return {h.first_true, fmt::format("since step {}", h.first_true)};
-    case Op::kALWAYS:
+    case plan::Readout::kAlways:
       if (h.first_false == 0) return {last, fmt::format("at each of {} steps", last)};
       return {h.first_false, fmt::format("broken at step {}", h.first_false)};
-    case Op::kFIRST:
+    case plan::Readout::kFirst:
       if (h.first_true == 0) return never();
       return {h.first_true, fmt::format("at step {}", h.first_true)};
-    case Op::kCOUNT:
+    case plan::Readout::kCount:
       if (h.last_true == 0) return never();
       return {h.last_true, fmt::format("last at step {} of {}", h.last_true, last)};
-    case Op::kMAXR:
-    case Op::kMINR:
+    case plan::Readout::kMax:
+    case plan::Readout::kMin:
       return {h.best, fmt::format("at step {}", h.best)};
-    default:
+    case plan::Readout::kAtEnd:
+    case plan::Readout::kFinal:
       break;
   }
   if (!h.is_truth || h.changed == last) return {last, fmt::format("at step {}", last)};
@@ -165,7 +160,7 @@ class Explainer {
     why.value = h.value;
     why.shown = why.is_bool ? (h.value != 0 ? "true" : "false")
                             : quantity(h.value, metric_dimensions(plan_, program_)[metric]);
-    why.readout = readout_name(record.readout);
+    why.readout = plan::find_readout(record.readout)->words;
     std::tie(why.step, why.when) = decision(h, steps);
     if (const auto* span = plan_.span_of(4, program_.metrics.first + metric)) {
       const plan::TextRecord& text = plan_.texts()[span->text];

@@ -12,10 +12,6 @@ using plan::Op;
 
 constexpr std::uint32_t kFar = 1u << 20;
 
-bool is_register(Kind kind) {
-  return kind == Kind::kBool || kind == Kind::kReal || kind == Kind::kVector;
-}
-
 // Source text on one line.
 std::string one_line(std::string_view text) {
   std::string out;
@@ -74,10 +70,10 @@ std::string ProgramView::bodies(std::uint16_t reg) const {
     if (!below[i]) continue;
     const plan::Instruction& in = at(static_cast<std::uint16_t>(i));
     const plan::OpInfo& info = *plan::find_op(in.op);
-    if (is_register(info.a)) below[in.a] = true;
-    if (is_register(info.b)) below[in.b] = true;
-    if (info.b == Kind::kBody) found.push_back(in.b);
-    if (info.a == Kind::kBody) found.push_back(in.a);
+    if (plan::is_register(info.a)) below[in.a] = true;
+    if (plan::is_register(info.b)) below[in.b] = true;
+    if (plan::is_body(info.b)) found.push_back(in.b);
+    if (plan::is_body(info.a)) found.push_back(in.a);
   }
   std::string out;
   std::vector<std::uint16_t> named;
@@ -117,30 +113,25 @@ std::vector<std::uint32_t> ProgramView::distances(const vm::Judge& judge,
     const plan::Instruction& in = at(static_cast<std::uint16_t>(i));
     if (plan::find_op(in.op)->result != Kind::kBool) continue;
     const bool value = judge.register_value(i).x() != 0;
-    switch (static_cast<Op>(in.op)) {
-      case Op::kAND:
-        to_true[i] = to_true[in.a] + to_true[in.b];
-        to_false[i] = std::min(to_false[in.a], to_false[in.b]);
-        break;
-      case Op::kOR:
-        to_true[i] = std::min(to_true[in.a], to_true[in.b]);
-        to_false[i] = to_false[in.a] + to_false[in.b];
-        break;
-      case Op::kNOT:
-        to_true[i] = to_false[in.a];
-        to_false[i] = to_true[in.a];
-        break;
-      case Op::kHOLD: {
-        const auto reg = static_cast<std::uint16_t>(i);
-        to_true[i] = value ? 0 : to_true[in.a] + hold(reg) - static_cast<std::uint32_t>(held[i]);
-        to_false[i] = value ? 1 : 0;
-        break;
-      }
-      default: {
-        const std::uint32_t step = static_cast<Op>(in.op) == Op::kKB ? kFar : 1;
-        to_true[i] = value ? 0 : step;
-        to_false[i] = value ? step : 0;
-      }
+    const auto op = static_cast<Op>(in.op);
+    if (op == Op::kAND) {
+      to_true[i] = to_true[in.a] + to_true[in.b];
+      to_false[i] = std::min(to_false[in.a], to_false[in.b]);
+    } else if (op == Op::kOR) {
+      to_true[i] = std::min(to_true[in.a], to_true[in.b]);
+      to_false[i] = to_false[in.a] + to_false[in.b];
+    } else if (op == Op::kNOT) {
+      to_true[i] = to_false[in.a];
+      to_false[i] = to_true[in.a];
+    } else if (op == Op::kHOLD) {
+      const auto reg = static_cast<std::uint16_t>(i);
+      to_true[i] = value ? 0 : to_true[in.a] + hold(reg) - static_cast<std::uint32_t>(held[i]);
+      to_false[i] = value ? 1 : 0;
+    } else {
+      // Every other truth is one thing that is so or is not, and a constant stays what it is.
+      const std::uint32_t step = op == Op::kKB ? kFar : 1;
+      to_true[i] = value ? 0 : step;
+      to_false[i] = value ? step : 0;
     }
     to_true[i] = std::min(to_true[i], kFar);
     to_false[i] = std::min(to_false[i], kFar);

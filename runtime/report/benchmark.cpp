@@ -243,14 +243,14 @@ class Loader {
     index_in(benchmark_.prompts, task.prompt);
     task.plan = index;
     task.axes = record.axes;
-    for (const std::string_view axis : inspect::axis_names(record.axes))
+    for (const std::string_view axis : plan::axis_names(record.axes))
       task.axis_names.emplace_back(axis);
     task.source = object(plan, record.source);
     task.target = object(plan, record.target);
     for (const plan::BodyRecord& body : plan.bodies(record).subspan(2, record.distractors))
       task.distractors.push_back(object(plan, body.index));
-    for (std::size_t bit = 0; bit < inspect::kNovelty.size(); ++bit) {
-      if ((record.ood >> bit & 1U) != 0) task.ood.emplace_back(inspect::kNovelty[bit]);
+    for (std::size_t bit = 0; bit < plan::kNovelty.size(); ++bit) {
+      if ((record.ood >> bit & 1U) != 0) task.ood.emplace_back(plan::kNovelty[bit]);
     }
     benchmark_.objects[static_cast<std::size_t>(task.source)].seen_as_source =
         (record.ood & 1U) == 0;

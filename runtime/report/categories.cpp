@@ -74,7 +74,7 @@ bool is_worded(const Benchmark& benchmark, int category) {
   for (const int t : benchmark.categories[static_cast<std::size_t>(category)].tasks) {
     const Task& task = benchmark.tasks[static_cast<std::size_t>(t)];
     if (task.baseline == kAbsent) continue;
-    if ((task.axes & inspect::kLanguageAxes) == 0) return false;
+    if ((task.axes & plan::kLanguageAxes) == 0) return false;
     any = true;
   }
   return any;

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "runtime/base/percent.h"
-#include "runtime/plan/axis_names.h"
+#include "runtime/plan/axes.h"
 #include "runtime/report/models.h"
 #include "runtime/report/page_data.h"
 
@@ -99,13 +99,13 @@ class Comparer {
 
   // The tasks that move an axis against their own baselines.
   void add_axes(int metric) {
-    for (const auto& [axis, name] : plan::kAxisNames) {
+    for (const plan::AxisInfo& info : plan::kAxisTable) {
       std::vector<int> tasks;
       for (const int t : tasks_) {
         const std::uint32_t moved = benchmark_.tasks[static_cast<std::size_t>(t)].axes;
-        if ((moved & static_cast<std::uint32_t>(axis)) != 0) tasks.push_back(t);
+        if (plan::moves(moved, info.axis)) tasks.push_back(t);
       }
-      if (!tasks.empty()) add(Scope::kAxis, metric, "moves " + std::string(name), tasks);
+      if (!tasks.empty()) add(Scope::kAxis, metric, "moves " + std::string(info.name), tasks);
     }
   }
 

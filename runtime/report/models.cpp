@@ -11,7 +11,7 @@
 #include <set>
 
 #include "runtime/inspect/axes.h"
-#include "runtime/plan/axis_names.h"
+#include "runtime/plan/axes.h"
 #include "runtime/report/tables.h"
 #include "runtime/stats/bradley_terry.h"
 #include "runtime/stats/mixed_logistic.h"
@@ -120,11 +120,11 @@ std::vector<Column> axis_columns(const Benchmark& benchmark, const std::vector<R
       moved[t] |= benchmark.tasks[static_cast<std::size_t>(at)].axes;
   }
   std::vector<Column> columns;
-  for (const auto& [axis, name] : plan::kAxisNames) {
-    Column column{std::string(name), "axis", {}};
+  for (const plan::AxisInfo& info : plan::kAxisTable) {
+    Column column{std::string(info.name), "axis", {}};
     for (const Row& row : rows) {
       const std::uint32_t of_task = moved[static_cast<std::size_t>(row.task)];
-      column.values.push_back((of_task & static_cast<std::uint32_t>(axis)) != 0 ? 1 : 0);
+      column.values.push_back(plan::moves(of_task, info.axis) ? 1 : 0);
     }
     columns.push_back(std::move(column));
   }

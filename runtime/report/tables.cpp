@@ -178,8 +178,7 @@ bool is_empty(const Contrast& contrast) { return contrast.first.n == 0 || contra
 // Tasks without distractors whose words say what is meant: what objects alone are worth.
 bool is_plain(const Benchmark& benchmark, int task) {
   if (!task_at(benchmark, task).distractors.empty()) return false;
-  const std::uint32_t worded =
-      inspect::kLanguageAxes & ~static_cast<std::uint32_t>(plan::Axis::kLanguageParaphrase);
+  const std::uint32_t worded = plan::kLanguageAxes & ~plan::bit(plan::Axis::kLanguageParaphrase);
   for (int t = task; t != kAbsent; t = task_at(benchmark, t).baseline) {
     if ((task_at(benchmark, t).axes & worded) != 0) return false;
   }

@@ -5,19 +5,13 @@
 #include <set>
 #include <tuple>
 
-#include "runtime/plan/axis_names.h"
+#include "runtime/plan/axes.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::run {
 namespace {
 
 using Kind = DeliveryFinding::Kind;
-
-constexpr plan::Axis kVisible[] = {
-    plan::Axis::kObjectSource, plan::Axis::kObjectTarget, plan::Axis::kDistractors,
-    plan::Axis::kLayout,       plan::Axis::kScene,        plan::Axis::kLight,
-    plan::Axis::kCamera,
-};
 
 const std::string& prompt_of(const store::ResultRow& row) {
   return row.sent_prompt_sha256 ? *row.sent_prompt_sha256 : row.prompt_sha256;
@@ -36,13 +30,10 @@ std::string count_of(int count, const char* what) {
 // Names of the visible ones among `axes`.
 std::string visible_axes(std::uint32_t axes) {
   std::string names;
-  for (const plan::Axis axis : kVisible) {
-    if ((axes & static_cast<std::uint32_t>(axis)) == 0) continue;
-    for (const plan::AxisName& name : plan::kAxisNames) {
-      if (name.axis != axis) continue;
-      if (!names.empty()) names += ", ";
-      names += name.name;
-    }
+  for (const plan::Axis axis : plan::axes_in(axes)) {
+    if (info(axis).in != plan::AxisIn::kPicture) continue;
+    if (!names.empty()) names += ", ";
+    names += plan::axis_name(axis);
   }
   return names;
 }

@@ -71,15 +71,6 @@ Vec3 rotated(const Quat& q, const Vec3& v) {
           (x.z() * v.x() + y.z() * v.y()) + z.z() * v.z()};
 }
 
-// Measurements that are fixed once the episode has begun.
-bool is_fixed_source(Op op) {
-  return op == Op::kKR || op == Op::kKB || op == Op::kKV || op == Op::kSTART || op == Op::kHALF;
-}
-
-bool is_register(Kind kind) {
-  return kind == Kind::kBool || kind == Kind::kReal || kind == Kind::kVector;
-}
-
 }  // namespace
 
 Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
@@ -120,10 +111,9 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
       step.a = static_cast<std::uint16_t>(it - pairs_.begin());
       step.b = in.a > in.b ? 1 : 0;  // 1: what the greater body exerts on the smaller
     }
-    bool is_fixed = is_fixed_source(info.op);
-    if (is_register(info.a) && !info.is_monitor() && info.result != Kind::kUnused) {
-      is_fixed = fixed[in.a] && (!is_register(info.b) || fixed[in.b]);
-    }
+    bool is_fixed = info.known == plan::Known::kStart;
+    if (info.known == plan::Known::kOperands)
+      is_fixed = fixed[in.a] && (!plan::is_register(info.b) || fixed[in.b]);
     if (info.result != Kind::kUnused) fixed.push_back(is_fixed);
     (is_fixed ? once_ : each_).push_back(step);
   }

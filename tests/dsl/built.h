@@ -68,8 +68,8 @@ inline std::vector<std::string> starts_text(const Analysis& a, std::string_view 
 // "language.action distractors"
 inline std::string axes_text(const Analysis& a, std::string_view task) {
   std::string text;
-  for (const plan::Axis axis : sema::axes_in(a.task(task).axes))
-    text += (text.empty() ? "" : " ") + std::string(sema::axis_name(axis));
+  for (const plan::Axis axis : plan::axes_in(a.task(task).axes))
+    text += (text.empty() ? "" : " ") + std::string(plan::axis_name(axis));
   return text;
 }
 

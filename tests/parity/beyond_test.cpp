@@ -4,7 +4,7 @@
 #include <bit>
 #include <set>
 
-#include "runtime/plan/axis_names.h"
+#include "runtime/plan/axes.h"
 #include "tests/parity/published.h"
 
 using namespace probe;
@@ -42,8 +42,8 @@ TEST_CASE("thousands of tasks come from fewer than 150 lines, each comparison on
     episodes += task.episodes.count;
     if (task.baseline == plan::kNone) continue;
     CHECK_MESSAGE(std::popcount(task.axes) == 1, name);
-    for (const auto& axis : plan::kAxisNames) {
-      if ((task.axes & static_cast<std::uint32_t>(axis.axis)) != 0) ++axes[std::string(axis.name)];
+    for (const std::string_view axis : plan::axis_names(task.axes)) {
+      ++axes[std::string(axis)];
     }
   }
   const std::size_t lines = statements("beyond.probe") + statements("paraphrases.probe");

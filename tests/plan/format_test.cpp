@@ -10,8 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "runtime/plan/axis_names.h"
+#include "runtime/plan/axes.h"
 #include "runtime/plan/plan.h"
+#include "runtime/plan/readouts.h"
 #include "runtime/plan/rules.h"
 #include "tests/runtime/plan/small_plan.h"
 
@@ -270,11 +271,27 @@ TEST_CASE("the page lists every section and axis as the code has them") {
   }
   std::string flat = page();
   for (char& c : flat) c = c == '\n' ? ' ' : c;
-  for (const AxisName& axis : kAxisNames) {
-    const int bit = std::countr_zero(static_cast<std::uint32_t>(axis.axis));
-    const std::string item = " " + std::to_string(bit) + " " + std::string(axis.name);
+  for (const AxisInfo& axis : kAxisTable) {
+    const int number = std::countr_zero(bit(axis.axis));
+    const std::string item = " " + std::to_string(number) + " " + std::string(axis.name);
     CHECK_MESSAGE(flat.find(item) != std::string::npos, item);
   }
+}
+
+TEST_CASE("the page lists the fields of every section that is made of records") {
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) \
+  CHECK_MESSAGE(in_code().contains(tag) == std::is_class_v<Record>, tag);
+#include "runtime/plan/sections.def"
+}
+
+TEST_CASE("the page lists every read-out as the table has it") {
+  std::string wanted;
+  for (const ReadoutInfo& info : kReadoutTable) {
+    wanted += (wanted.empty() ? "" : ", ") +
+              std::to_string(static_cast<std::uint32_t>(info.readout)) + " " +
+              std::string(info.words);
+  }
+  CHECK_MESSAGE(contains(wanted + "\n"), wanted);
 }
 
 TEST_CASE("a reader that knows the page alone finds what Plan finds") {

@@ -10,8 +10,8 @@ namespace {
 
 std::string axes(const sema::Task& task) {
   std::string text;
-  for (const plan::Axis axis : sema::axes_in(task.axes))
-    text += (text.empty() ? "" : " ") + std::string(sema::axis_name(axis));
+  for (const plan::Axis axis : plan::axes_in(task.axes))
+    text += (text.empty() ? "" : " ") + std::string(plan::axis_name(axis));
   return text;
 }
 

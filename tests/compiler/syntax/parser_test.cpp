@@ -313,11 +313,11 @@ TEST_CASE("metrics say how their signal is read out") {
   CHECK(parsed.messages() == "");
   const auto& body = parsed.get<MetricsDecl>().body;
   REQUIRE(body.size() == 8);
-  CHECK(body[0].readout.kind == ReadoutKind::kAtEnd);
+  CHECK(body[0].readout.kind == plan::Readout::kAtEnd);
   CHECK(parsed.text(body[0].readout.kind_span) == "at end");
-  CHECK(body[1].readout.kind == ReadoutKind::kOnce);
-  CHECK(body[4].readout.kind == ReadoutKind::kMin);
-  CHECK(body[7].readout.kind == ReadoutKind::kAlways);
+  CHECK(body[1].readout.kind == plan::Readout::kOnce);
+  CHECK(body[4].readout.kind == plan::Readout::kMin);
+  CHECK(body[7].readout.kind == plan::Readout::kAlways);
 }
 
 TEST_CASE("tasks and variants with every statement") {

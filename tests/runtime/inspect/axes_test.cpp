@@ -22,9 +22,9 @@ TEST_CASE("the records of a variant and its baseline say the same axes as the co
     if (task.baseline == plan::kNone) continue;
     ++pairs;
     INFO(plan.text(task.name));
-    CHECK(axes_between(plan, t, task.baseline) == axis_names(task.axes));
-    CHECK(axes_between(plan, task.baseline, t) == axis_names(task.axes));
-    CHECK(difference(plan, t, task.baseline).language == ((task.axes & kLanguageAxes) != 0));
+    CHECK(axes_between(plan, t, task.baseline) == probe::plan::axis_names(task.axes));
+    CHECK(axes_between(plan, task.baseline, t) == probe::plan::axis_names(task.axes));
+    CHECK(difference(plan, t, task.baseline).language == ((task.axes & plan::kLanguageAxes) != 0));
   }
   CHECK(pairs == 6);
 }

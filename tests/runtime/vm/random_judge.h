@@ -100,24 +100,30 @@ class RandomProgram {
           depth = std::max(depth, depth_[value] + 1);
           break;
         case Kind::kConstant:
+        case Kind::kThreeConstants:
           value = pick(5);
           break;
         case Kind::kImmediate:
-          value = pick(op.op == Op::kAXIS ? 3 : 2);
+          value = pick(op.limit + 1u);
           break;
         case Kind::kBody:
-          value = op.op == Op::kOPEN ? 3 + pick(2) : pick(kBodies);
+          value = pick(kBodies);
           break;
-        case Kind::kState: {
+        case Kind::kFinger:
+          value = 3 + pick(2);
+          break;
+        case Kind::kState:
+        case Kind::kTimedState: {
           // Monitors of monitors cost the reference a power of the steps each.
           if (depth_[operands[0]] > 3) return;
           value = static_cast<std::uint32_t>(r.states.size());
-          const auto n = static_cast<std::uint16_t>(op.op == Op::kHOLD ? 1 + pick(4) : 0);
+          const auto n = static_cast<std::uint16_t>(op.b == Kind::kTimedState ? 1 + pick(4) : 0);
           r.states.push_back({static_cast<std::uint16_t>(op.op), n});
           depth += 2;
           break;
         }
-        default:
+        case Kind::kUnused:
+        case Kind::kMetric:
           break;
       }
     }

@@ -1,0 +1,61 @@
+// What every record of a plan says by itself, and of which others it speaks. Of the verifier's
+// second stage only.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "runtime/plan/verify_fields.h"
+
+namespace probe::plan {
+
+// One overload a kind of record: a section of sections.def whose record has none does not compile.
+// Indices, slices and kinds of other records are checked, not what those records say, unless they
+// stand in an earlier section.
+class RecordCheck : FieldCheck {
+ public:
+  using FieldCheck::FieldCheck;
+
+  // Every record of every section, in the order of the file.
+  Status run() const;
+
+ private:
+  // Checked by those who refer into them.
+  Status each(std::string_view) const { return {}; }
+  Status each(std::span<const std::uint32_t>) const { return {}; }
+  // By the third stage.
+  Status each(std::span<const Instruction>) const { return {}; }
+  Status each(std::span<const double> values) const { return check_finite(values); }
+  template <typename Record>
+  Status each(std::span<const Record> records) const {
+    for (const Record& record : records) PROBE_TRY(check(record));
+    return {};
+  }
+
+  Status check(const AssetRecord& asset) const;
+  Status check(const ObjectRecord& object) const;
+  Status check(const RobotRecord& robot) const;
+  Status check(const DriveRecord& drive) const;
+  Status check(const CameraRecord& camera) const;
+  Status check(const LightRecord& light) const;
+  Status check(const SunRecord& sun) const;
+  Status check(const SceneRecord& scene) const;
+  Status check(const StateRecord& state) const;
+  Status check(const ProgramRecord& program) const;
+  Status check(const MetricRecord& metric) const;
+  Status check(const BodyRecord& body) const;
+  Status check(const PlacementRecord& placement) const;
+  Status check(const TaskRecord& task) const;
+  Status check(const EpisodeRecord& episode) const;
+  Status check(const SetRecord& set) const;
+  Status check(const SuiteRecord& suite) const;
+  Status check(const ViewRecord& view) const;
+  Status check(const SpanRecord& span) const;
+  Status check(const TextRecord& text) const;
+};
+
+// What records say of one another; after RecordCheck.
+Status verify_relations(std::span<const std::byte> bytes, const Tables& tables);
+
+}  // namespace probe::plan

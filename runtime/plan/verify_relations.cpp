@@ -1,0 +1,252 @@
+// Stage 2, last: what records say of one another, when each by itself is good: order, ownership,
+// names, the bodies of tasks.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "runtime/plan/verify.h"
+#include "runtime/plan/verify_records.h"
+
+namespace probe::plan {
+namespace {
+
+class RelationCheck : FieldCheck {
+ public:
+  using FieldCheck::FieldCheck;
+
+  Status run() {
+    PROBE_TRY(check_unique_names(t.objects, "objects"));
+    PROBE_TRY(robots());
+    PROBE_TRY(programs());
+    PROBE_TRY(tasks());
+    PROBE_TRY(lists());
+    return spans();
+  }
+
+ private:
+  Status robots() const {
+    for (const RobotRecord& r : t.robots) {
+      std::vector<std::string_view> joints;
+      for (const DriveRecord& d : slice_of(t.drives, r.drives)) joints.push_back(t.text(d.joint));
+      std::ranges::sort(joints);
+      if (std::ranges::adjacent_find(joints) != joints.end())
+        return fail(Rule::kDriveTwice, &r.drives, "a joint has one drive, not two");
+    }
+    return {};
+  }
+
+  Status programs() const {
+    std::uint64_t code = 0, states = 0;
+    for (const ProgramRecord& p : t.programs) {
+      if (p.code.first != code)
+        return fail(Rule::kCodeFollows, &p.code,
+                    fmt::format("its code must begin at record {} of CODE", code));
+      if (p.states.count > 0 && p.states.first != states) {
+        return fail(Rule::kStatesFollow, &p.states,
+                    fmt::format("its states must begin at record {} of STAT", states));
+      }
+      code += p.code.count;
+      states += p.states.count;
+      const auto metrics = slice_of(t.metrics, p.metrics);
+      std::vector<std::string_view> names;
+      for (const MetricRecord& m : metrics) names.push_back(t.text(m.name));
+      std::ranges::sort(names);
+      if (std::ranges::adjacent_find(names) != names.end()) {
+        return fail(Rule::kMetricName, &p.metrics, "two metrics of a program have one name");
+      }
+    }
+    if (code != t.code.size())
+      return fail(Rule::kCodeOwned, &t.code[code], "an instruction belongs to a program");
+    if (states != t.states.size())
+      return fail(Rule::kStatesOwned, &t.states[states], "a state belongs to a program");
+    return {};
+  }
+
+  Status tasks() const {
+    std::uint64_t episodes = 0;
+    for (std::uint32_t i = 0; i < t.tasks.size(); ++i) {
+      PROBE_TRY(task_views(t.tasks[i]));
+      PROBE_TRY(task_bodies(t.tasks[i]));
+      PROBE_TRY(task_episodes(i));
+      episodes += t.tasks[i].episodes.count;
+    }
+    if (episodes != t.episodes.size()) {
+      return fail(Rule::kEpisodesOwned, t.episodes.data(),
+                  fmt::format("tasks name {} episodes, EPIS has {}", episodes, t.episodes.size()));
+    }
+    PROBE_TRY(check_unique_names(t.tasks, "tasks"));
+    return baselines();
+  }
+
+  Status task_views(const TaskRecord& k) const {
+    if (k.views.count == 0) return {};
+    if (k.views.count > kMaxViews) {
+      return fail(Rule::kViewCount, &k.views,
+                  fmt::format("a task has at most {} cameras, not {}", kMaxViews, k.views.count));
+    }
+    const auto views = slice_of(t.views, k.views);
+    if (views[0].camera != k.camera || views[0].photo != t.scenes[k.scene].photo) {
+      return fail(
+          Rule::kViewFirst, &k.views,
+          fmt::format("the first camera of task `{}` is not its own before its scene's photo",
+                      t.text(k.name)));
+    }
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (t.text(views[i].name) != t.text(views[j].name)) continue;
+        return fail(Rule::kViewName, &k.views,
+                    fmt::format("two cameras of task `{}` are called `{}`", t.text(k.name),
+                                t.text(views[i].name)));
+      }
+    }
+    return {};
+  }
+
+  Status task_bodies(const TaskRecord& k) const {
+    const SceneRecord& scene = t.scenes[k.scene];
+    const bool has_fixture = scene.fixture_collision != kNone;
+    const std::uint64_t objects = 2 + std::uint64_t{k.distractors};
+    const std::uint64_t first_link = objects + 1 + (has_fixture ? 1 : 0);
+    if (k.bodies.count > kMaxBodies || k.bodies.count < first_link + 2) {
+      return fail(Rule::kBodyCount, &k.bodies,
+                  fmt::format("task `{}` has {} bodies; with its {} objects it needs {} to {}",
+                              t.text(k.name), k.bodies.count, objects, first_link + 2, kMaxBodies));
+    }
+    const auto bodies = slice_of(t.bodies, k.bodies);
+    for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+      const BodyKind wanted = i < objects      ? BodyKind::kObject
+                              : i == objects   ? BodyKind::kSurface
+                              : i < first_link ? BodyKind::kFixture
+                                               : BodyKind::kLink;
+      if (bodies[i].kind != static_cast<std::uint32_t>(wanted)) {
+        return fail(Rule::kBodyOrder, &bodies[i].kind,
+                    fmt::format("body {} of task `{}` has kind {}, wanted is {}", i, t.text(k.name),
+                                bodies[i].kind, static_cast<std::uint32_t>(wanted)));
+      }
+      if (wanted == BodyKind::kLink && bodies[i].index != i - first_link) {
+        return fail(Rule::kLinkOrder, &bodies[i].index,
+                    "links are numbered from 0, the fingers first");
+      }
+    }
+    if (bodies[0].index != k.source)
+      return fail(Rule::kSourceFirst, &bodies[0].index, "the first body is the source");
+    if (bodies[1].index != k.target)
+      return fail(Rule::kTargetSecond, &bodies[1].index, "the second body is the target");
+    const RobotRecord& robot = t.robots[scene.robot];
+    for (std::size_t f = 0; f < robot.fingers.size(); ++f) {
+      const BodyRecord& finger = bodies[first_link + f];
+      if (t.text(finger.name) != t.text(robot.fingers[f].link)) {
+        return fail(Rule::kFingerName, &finger.name,
+                    fmt::format("link {} is finger `{}`, not `{}`", f,
+                                t.text(robot.fingers[f].link), t.text(finger.name)));
+      }
+    }
+    return {};
+  }
+
+  Status task_episodes(std::uint32_t index) const {
+    const TaskRecord& k = t.tasks[index];
+    if (k.episodes.count == 0)
+      return fail(Rule::kEpisodeCount, &k.episodes,
+                  fmt::format("task `{}` has no episode", t.text(k.name)));
+    const auto bodies = slice_of(t.bodies, k.bodies);
+    std::uint32_t number = 0;
+    for (const EpisodeRecord& e : slice_of(t.episodes, k.episodes)) {
+      if (e.task != index) {
+        return fail(
+            Rule::kEpisodeTask, &e.task,
+            fmt::format("an episode of task {} stands among those of task {}", e.task, index));
+      }
+      if (e.index != number)
+        return fail(Rule::kEpisodeIndex, &e.index,
+                    fmt::format("episode {} says it is episode {}", number, e.index));
+      ++number;
+      if (e.placements.count != 2 + k.distractors) {
+        return fail(Rule::kPlacementCount, &e.placements,
+                    fmt::format("an episode places {} objects, its task has {}", e.placements.count,
+                                2 + k.distractors));
+      }
+      for (std::uint32_t i = 0; i < e.placements.count; ++i) {
+        const PlacementRecord& p = t.placements[e.placements.first + i];
+        if (p.object != bodies[i].index) {
+          return fail(Rule::kPlacementObject, &e.placements,
+                      fmt::format("placement {} is of object {}, body {} is object {}", i, p.object,
+                                  i, bodies[i].index));
+        }
+      }
+    }
+    return {};
+  }
+
+  Status baselines() const {
+    enum class Mark : std::uint8_t { kNew, kOnPath, kDone };
+    std::vector<Mark> marks(t.tasks.size(), Mark::kNew);
+    for (std::uint32_t start = 0; start < t.tasks.size(); ++start) {
+      std::uint32_t at = start;
+      for (; at != kNone && marks[at] == Mark::kNew; at = t.tasks[at].baseline)
+        marks[at] = Mark::kOnPath;
+      if (at != kNone && marks[at] == Mark::kOnPath) {
+        return fail(
+            Rule::kBaselineCycle, &t.tasks[at].baseline,
+            fmt::format("task `{}` is its own baseline in the end", t.text(t.tasks[at].name)));
+      }
+      for (at = start; at != kNone && marks[at] == Mark::kOnPath; at = t.tasks[at].baseline)
+        marks[at] = Mark::kDone;
+    }
+    return {};
+  }
+
+  Status members(const Slice& slice) {
+    PROBE_TRY(count_list(slice));
+    std::unordered_set<std::uint32_t> seen;
+    for (const std::uint32_t& task : slice_of(t.list, slice)) {
+      PROBE_TRY(check_index(task, t.tasks.size(), "TASK"));
+      if (!seen.insert(task).second) {
+        return fail(Rule::kMemberTwice, &task,
+                    fmt::format("task `{}` is a member twice", t.text(t.tasks[task].name)));
+      }
+    }
+    return {};
+  }
+
+  Status count_list(const Slice& slice) {
+    listed_ += slice.count;
+    if (listed_ > t.list.size())
+      return fail(Rule::kSharedList, &slice, "two records share entries of LIST");
+    return {};
+  }
+
+  Status lists() {
+    for (const RobotRecord& r : t.robots) PROBE_TRY(count_list(r.meshes));
+    for (const SetRecord& s : t.sets) PROBE_TRY(members(s.members));
+    for (const SuiteRecord& s : t.suites) {
+      PROBE_TRY(members(s.members));
+      PROBE_TRY(count_list(s.seeds));
+    }
+    PROBE_TRY(check_unique_names(t.sets, "sets"));
+    return check_unique_names(t.suites, "suites");
+  }
+
+  Status spans() const {
+    const auto key = [](const SpanRecord& s) { return std::pair(s.what, s.index); };
+    for (std::size_t i = 1; i < t.spans.size(); ++i) {
+      if (key(t.spans[i - 1]) > key(t.spans[i]))
+        return fail(Rule::kSpanOrder, &t.spans[i], "spans ascend by what they describe");
+    }
+    return {};
+  }
+
+  std::uint64_t listed_ = 0;  // entries of LIST that records named so far
+};
+
+}  // namespace
+
+Status verify_relations(std::span<const std::byte> bytes, const Tables& tables) {
+  return RelationCheck(bytes, tables).run();
+}
+
+}  // namespace probe::plan
