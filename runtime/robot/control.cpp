@@ -69,7 +69,7 @@ void EeDeltaPoseController::reset(std::span<const double> q) {
 
 Status EeDeltaPoseController::restore(const ControlState& state) {
   if (state.joint_targets.size() != joint_targets_.size()) {
-    return Failure{"policy",
+    return Failure{Fault::kPolicy,
                    fmt::format("the controller's state is of {} joints, the robot has {}",
                                state.joint_targets.size(), joint_targets_.size()),
                    ""};

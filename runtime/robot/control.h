@@ -49,7 +49,7 @@ class EeDeltaPoseController {
                                           std::span<const double> measured_q);
 
   ControlState save() const { return {target_, joint_targets_, reached_}; }
-  // Goes on from there. Fails (code "policy") on the state of a robot with other joints.
+  // Goes on from there. Fails (kPolicy) on the state of a robot with other joints.
   Status restore(const ControlState& state);
 
   // Of the tcp link in the root link's frame.

@@ -81,7 +81,7 @@ class Loop {
  private:
   // The judge is the stage's, but a row says whose failure it was.
   static Outcome stage_failed(const Failure& failure) {
-    return {reason(failure.code == "judge" ? "judge" : "world", failure), {}};
+    return {reason(failure.code == Fault::kJudge ? "judge" : "world", failure), {}};
   }
 
   Outcome begin() {

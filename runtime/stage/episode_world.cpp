@@ -249,7 +249,7 @@ WorldState EpisodeWorld::save() const {
 
 Status EpisodeWorld::restore(const WorldState& state) {
   if (state.starts.size() != plan_.bodies(*task_).size()) {
-    return Failure{"world", "the saved state is of a task with other bodies",
+    return Failure{Fault::kWorld, "the saved state is of a task with other bodies",
                    "task `" + std::string(plan_.text(task_->name)) + "`"};
   }
   if (!world_) {

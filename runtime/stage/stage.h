@@ -42,7 +42,7 @@ class Stage {
                                                const StageOptions& options = {});
 
   // Begins an episode: the objects of the task's start `index` are dropped and settle with the arm
-  // out of the way, then the judge begins. Failures of the judge have code "judge".
+  // out of the way, then the judge begins. Failures of the judge have kJudge.
   Status reset(std::uint32_t index);
 
   // What a policy sees now: a picture of each camera, proprioception, the privileged view. What it
@@ -50,12 +50,12 @@ class Stage {
   Result<policy::Observation> observe();
 
   // One control step: action to joint targets, substeps, measurement, verdicts. After a failure
-  // (code "policy" for an action that is none, "judge", "world") only reset() and restore() may be
+  // (kPolicy for an action that is none, "judge", "world") only reset() and restore() may be
   // called.
   Status step(const policy::Action& action);
 
   // The episode as it is now, and back to it: what follows is the same bit for bit, in this stage
-  // or in another of the same plan and task. restore() fails (code "world" or "judge") on a state
+  // or in another of the same plan and task. restore() fails (kWorld or "judge") on a state
   // of another task.
   StageState save() const;
   Status restore(const StageState& state);

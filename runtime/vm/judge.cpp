@@ -155,7 +155,7 @@ Status Judge::restore(std::span<const BodyStart> starts, const JudgeState& state
   PROBE_TRY(begin(starts));
   if (state.monitors.size() != states_.size() || state.values.size() != values_.size()) {
     begun_ = false;
-    return Failure{"judge", "the saved state is of a task with other metrics", task_name_};
+    return Failure{Fault::kJudge, "the saved state is of a task with other metrics", task_name_};
   }
   states_ = state.monitors;
   values_ = state.values;

@@ -42,7 +42,7 @@ class Judge {
   Status step(const StepSample& sample);
 
   // The episode as it stands, and back to it: `starts` are those it began with. restore() fails
-  // (code "judge") as begin() does, and on the state of another task.
+  // (kJudge) as begin() does, and on the state of another task.
   JudgeState save() const { return {states_, values_}; }
   Status restore(std::span<const BodyStart> starts, const JudgeState& state);
 

@@ -141,7 +141,7 @@ TEST_CASE("the state of another task is refused, and the stage can be reset") {
   need(stack->reset(0));
   const Status refused = stack->restore(carrot->save());
   REQUIRE(!refused.ok());
-  CHECK(refused.failure().code == "world");
+  CHECK(refused.failure().code == Fault::kWorld);
   need(stack->reset(0));
   StageState damaged = stack->save();
   damaged.world.physics.resize(damaged.world.physics.size() / 2);
@@ -156,7 +156,7 @@ TEST_CASE("an action that is none is refused before anything moves") {
   const Sha256 before = stage->state_hash();
   const Status refused = stage->step({0, 0, 5000, 0, 0, 0, 1});
   REQUIRE(!refused.ok());
-  CHECK(refused.failure().code == "policy");
+  CHECK(refused.failure().code == Fault::kPolicy);
   CHECK(refused.failure().message == "action[2] is 5000, wanted a shift in metres");
   CHECK(stage->state_hash() == before);
 }

@@ -152,7 +152,7 @@ TEST_CASE("the state of a judge of other metrics is refused, and no step may fol
   state.values.pop_back();
   const Status refused = judge.restore(starts, state);
   REQUIRE(!refused.ok());
-  CHECK(refused.failure().code == "judge");
+  CHECK(refused.failure().code == Fault::kJudge);
   CHECK(refused.failure().message == "the saved state is of a task with other metrics");
   CHECK(!judge.step(resting(1)).ok());
 }
