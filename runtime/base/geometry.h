@@ -1,14 +1,18 @@
-// Vectors, rotations and poses shared by every part. SI units, world z up, quaternions (w, x, y, z).
+// Vectors, rotations and poses shared by every part. SI units, world z up, quaternions (w, x, y,
+// z).
 #pragma once
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <array>
 
 namespace probe {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
+
+inline Vec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
 // A rigid transform: x_parent = rotation * x_child + position. `rotation` is unit.
 struct Pose {

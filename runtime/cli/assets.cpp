@@ -10,12 +10,12 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct AssetsArguments {
   assets::ImportOptions options;
   bool fill = false;
 };
 
-int import_verb(Arguments& arguments) {
+int import_verb(AssetsArguments& arguments) {
   if (arguments.fill) {
     auto own = stage::find_asset_root();
     if (!own) return report(own.failure());
@@ -61,7 +61,7 @@ void add_pack(CLI::App& assets, int& exit) {
 }  // namespace
 
 void add_assets(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<AssetsArguments>();
   CLI::App* verb = app.add_subcommand("assets", "asset folders of your own");
   verb->require_subcommand(1);
   CLI::App* import = verb->add_subcommand(

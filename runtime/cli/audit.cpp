@@ -13,13 +13,13 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct AuditArguments {
   std::string file, suite, table;
   bool json = false;
   AssetOptions assets;
 };
 
-int audit_verb(const Arguments& arguments) {
+int audit_verb(const AuditArguments& arguments) {
   const auto root = stage::find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
   const auto library = find_library_folders(arguments.assets.library);
@@ -58,7 +58,7 @@ int audit_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_audit(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<AuditArguments>();
   CLI::App* verb = app.add_subcommand("audit", "what is irregular in a suite, allowed or not");
   verb->add_option("F", arguments->file, ".probe text")->required();
   verb->add_option("--suite", arguments->suite, "which suite (default: the first of the file)");

@@ -11,13 +11,13 @@
 namespace probe::cli {
 
 void add_build(CLI::App& app, int& exit) {
-  struct Arguments {
+  struct BuildArguments {
     std::vector<std::string> files;
     std::string out, suite;
     bool json = false;
     AssetOptions assets;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BuildArguments>();
   CLI::App* verb = app.add_subcommand("build", "check, lower, verify and write one frozen plan");
   verb->footer(
       "prints the plan's root, the hash that names it\n"

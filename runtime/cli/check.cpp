@@ -10,7 +10,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct CheckArguments {
   std::vector<std::string> files;
   bool json = false, watch = false;
   AssetOptions assets;
@@ -18,7 +18,7 @@ struct Arguments {
 
 // What a change of may change the outcome. A file that a `use` did not find is in no list, so while
 // there are mistakes the folders count as well.
-std::vector<std::string> to_watch(const Arguments& arguments, const CompiledText& text) {
+std::vector<std::string> to_watch(const CheckArguments& arguments, const CompiledText& text) {
   std::vector<std::string> paths = arguments.files;
   paths.insert(paths.end(), text.files.begin(), text.files.end());
   if (text.exit == kFine) return paths;
@@ -34,7 +34,7 @@ std::string counted(std::size_t count, const char* thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
-int watch_verb(const Arguments& arguments) {
+int watch_verb(const CheckArguments& arguments) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kPoll(100);
   const Interrupt interrupt;
@@ -74,7 +74,7 @@ int watch_verb(const Arguments& arguments) {
   }
 }
 
-int check_verb(const Arguments& arguments) {
+int check_verb(const CheckArguments& arguments) {
   const CompiledText text =
       compile_text(arguments.files, arguments.assets, "", false, arguments.json);
   if (text.errors + text.warnings > 0) {
@@ -87,7 +87,7 @@ int check_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_check(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CheckArguments>();
   CLI::App* verb = app.add_subcommand("check", "diagnose sources");
   verb->footer("example: vlaprobe check --watch suite/intact.probe");
   verb->add_option("F", arguments->files, ".probe texts")->required();

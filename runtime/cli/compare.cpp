@@ -9,13 +9,13 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::string a, b;
   std::vector<std::string> metrics, sets;
   bool json = false;
 };
 
-int compare_verb(const Arguments& arguments) {
+int compare_verb(const CompareArguments& arguments) {
   const std::vector<std::string> dirs = {arguments.a, arguments.b};
   const auto benchmark = report::load(dirs, {.sets = arguments.sets, .join = false});
   if (!benchmark) return report(benchmark.failure());
@@ -37,7 +37,7 @@ int compare_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   CLI::App* verb = app.add_subcommand(
       "compare", "two runs on the same starts: which differences are real, and how large");
   verb->footer("example: vlaprobe compare runs/step_10000 runs/step_20000");

@@ -10,13 +10,13 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct DiffArguments {
   std::string file, a, b;
   bool json = false;
   AssetOptions assets;
 };
 
-int diff_two_tasks(const Arguments& arguments) {
+int diff_two_tasks(const DiffArguments& arguments) {
   LoadedPlan loaded = load_plan(arguments.file, arguments.assets);
   if (!loaded.plan) return loaded.exit;
   const auto a = find_task(*loaded.plan, arguments.a, loaded.exit);
@@ -28,7 +28,7 @@ int diff_two_tasks(const Arguments& arguments) {
   return kFine;
 }
 
-int diff_two_plans(const Arguments& arguments) {
+int diff_two_plans(const DiffArguments& arguments) {
   LoadedPlan a = load_plan(arguments.file, arguments.assets);
   if (!a.plan) return a.exit;
   if (!std::filesystem::exists(arguments.a) && a.plan->find_task(arguments.a)) {
@@ -46,7 +46,7 @@ int diff_two_plans(const Arguments& arguments) {
 }  // namespace
 
 void add_diff(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DiffArguments>();
   CLI::App* verb =
       app.add_subcommand("diff", "two tasks of a file, or two files, by axes and identities");
   verb->footer(

@@ -8,11 +8,11 @@
 namespace probe::cli {
 
 void add_dis(CLI::App& app, int& exit) {
-  struct Arguments {
+  struct DisArguments {
     std::string file, task;
     AssetOptions assets;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DisArguments>();
   CLI::App* verb =
       app.add_subcommand("dis", "a plan as text: tables and programs with their source lines");
   verb->footer("example: vlaprobe dis intact.plan carrot_on_plate");

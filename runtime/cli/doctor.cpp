@@ -9,7 +9,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct DoctorArguments {
   bool json = false;
   AssetOptions assets;
 };
@@ -26,7 +26,7 @@ Result<plan::Plan> compile_suite(const std::string& asset_root) {
   return plan::Plan::from_bytes(std::move(text.plan));
 }
 
-int examine(const Arguments& arguments) {
+int examine(const DoctorArguments& arguments) {
   const auto report = doctor::examine(arguments.assets.root, compile_suite);
   if (!report) return cli::report(report.failure());
   if (arguments.json) {
@@ -40,7 +40,7 @@ int examine(const Arguments& arguments) {
 }  // namespace
 
 void add_doctor(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DoctorArguments>();
   CLI::App* verb = app.add_subcommand(
       "doctor", "what is installed, and whether it draws and settles as it should");
   verb->footer(

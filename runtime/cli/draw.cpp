@@ -15,7 +15,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct DrawArguments {
   std::string file, task, out;
   bool phrases = false;
   AssetOptions assets;
@@ -45,7 +45,7 @@ Result<std::vector<show::PhraseRow>> phrase_rows(const LoadedPlan& loaded,
   return rows;
 }
 
-int draw_phrases(const Arguments& arguments, const LoadedPlan& loaded) {
+int draw_phrases(const DrawArguments& arguments, const LoadedPlan& loaded) {
   if (!loaded.is_text) {
     return report({Fault::kUsage,
                    "a plan does not keep which words mean which object; give the text",
@@ -61,7 +61,7 @@ int draw_phrases(const Arguments& arguments, const LoadedPlan& loaded) {
   return kFine;
 }
 
-int draw_verb(const Arguments& arguments) {
+int draw_verb(const DrawArguments& arguments) {
   AssetOptions assets = arguments.assets;
   assets.tasks = arguments.task;
   LoadedPlan loaded = load_plan(arguments.file, assets);
@@ -87,7 +87,7 @@ int draw_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_draw(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DrawArguments>();
   CLI::App* verb = app.add_subcommand("draw", "all starts of a task from above, as SVG");
   verb->footer(
       "table, cells, footprints, reach and the camera's frame; no simulator\n"

@@ -8,11 +8,11 @@
 namespace probe::cli {
 
 void add_export(CLI::App& app, int& exit) {
-  struct Arguments {
+  struct ExportArguments {
     std::string dir, out;
     exporting::ExportOptions options;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportArguments>();
   CLI::App* verb = app.add_subcommand("export", "stored traces for other tools");
   verb->footer(
       "X.jsonl holds a line for each episode and each step, X.h5 a group for each episode\n"

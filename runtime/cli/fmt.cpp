@@ -55,11 +55,11 @@ int format_one(const std::string& path, bool check, Tally& tally) {
 }  // namespace
 
 void add_fmt(CLI::App& app, int& exit) {
-  struct Arguments {
+  struct FmtArguments {
     std::vector<std::string> files;
     bool check = false, json = false;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<FmtArguments>();
   CLI::App* verb = app.add_subcommand("fmt", "canonical layout, in place");
   verb->footer(
       "prints the files that it changes; a file with syntax errors is left alone\n"

@@ -12,7 +12,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct JudgeArguments {
   std::string dir, with;
   std::vector<std::string> suites;  // globs
   std::string metric;
@@ -170,7 +170,7 @@ void print_by_task(const std::vector<rejudge::Reading>& readings, const std::str
   print_cells(rows);
 }
 
-int judge_under_several(const Arguments& arguments, const plan::Plan& plan) {
+int judge_under_several(const JudgeArguments& arguments, const plan::Plan& plan) {
   if (!arguments.options.out.empty()) {
     return report(
         {Fault::kUsage, "a results folder is written under one suite; name it whole", "--out"});
@@ -199,7 +199,7 @@ int judge_under_several(const Arguments& arguments, const plan::Plan& plan) {
   return kFine;
 }
 
-int judge_verb(Arguments arguments) {
+int judge_verb(JudgeArguments arguments) {
   LoadedPlan loaded = load_plan(arguments.with, arguments.assets);
   if (!loaded.plan) return loaded.exit;
   const plan::Plan& plan = *loaded.plan;
@@ -233,7 +233,7 @@ int judge_verb(Arguments arguments) {
 }  // namespace
 
 void add_judge(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<JudgeArguments>();
   CLI::App* verb = app.add_subcommand(
       "judge", "stored traces under another plan's metrics: no policy, no physics");
   verb->footer(

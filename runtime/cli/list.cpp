@@ -11,14 +11,14 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct ListArguments {
   std::string file, task, suite;
   bool json = false, count = false;
   AssetOptions assets;
 };
 
 // A text is counted without making its plan: a sweep of a million episodes in a second.
-int count_text(const Arguments& arguments) {
+int count_text(const ListArguments& arguments) {
   const auto root = stage::find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
   const auto library = find_library_folders(arguments.assets.library);
@@ -38,7 +38,7 @@ int count_text(const Arguments& arguments) {
   return kFine;
 }
 
-int list_verb(const Arguments& arguments) {
+int list_verb(const ListArguments& arguments) {
   if (arguments.count && arguments.file.ends_with(".probe")) return count_text(arguments);
   LoadedPlan loaded = load_plan(arguments.file, arguments.assets);
   if (!loaded.plan) return loaded.exit;
@@ -58,7 +58,7 @@ int list_verb(const Arguments& arguments) {
   return kFine;
 }
 
-int show_verb(const Arguments& arguments) {
+int show_verb(const ListArguments& arguments) {
   LoadedPlan loaded = load_plan(arguments.file, arguments.assets);
   if (!loaded.plan) return loaded.exit;
   const auto index = find_task(*loaded.plan, arguments.task, loaded.exit);
@@ -71,7 +71,7 @@ int show_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_list(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ListArguments>();
   CLI::App* verb = app.add_subcommand("list", "the tasks of a file with their instructions");
   verb->footer("example: vlaprobe list suite/intact.probe --json");
   verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
@@ -83,7 +83,7 @@ void add_list(CLI::App& app, int& exit) {
 }
 
 void add_show(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ListArguments>();
   CLI::App* verb = app.add_subcommand("show", "one task whole: roles, axes, ids, every start");
   verb->footer("example: vlaprobe show suite/intact.probe carrot_on_plate");
   verb->add_option("F", arguments->file, ".probe text or .plan file")->required();

@@ -5,12 +5,12 @@
 namespace probe::cli {
 
 void add_plan_table(CLI::App& app, int& exit, PlanTable table) {
-  struct Arguments {
+  struct PlanTableArguments {
     std::string file, suite;
     bool json = false;
     AssetOptions assets;
   };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PlanTableArguments>();
   CLI::App* verb = app.add_subcommand(table.name, table.about);
   verb->footer(table.footer);
   verb->add_option("F", arguments->file, ".probe text or .plan file")->required();

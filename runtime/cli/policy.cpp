@@ -10,12 +10,12 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct PolicyArguments {
   std::string policy, profile;
   bool json = false;
 };
 
-int test_verb(const Arguments& arguments) {
+int test_verb(const PolicyArguments& arguments) {
   const auto choice = run::server_choice(arguments.policy);
   if (!choice) return report(choice.failure());
   const auto tested = servers::test_server(*choice);
@@ -28,7 +28,7 @@ int test_verb(const Arguments& arguments) {
   return tested->is_wrong() ? kOutside : kFine;
 }
 
-int profiles_verb(const Arguments& arguments) {
+int profiles_verb(const PolicyArguments& arguments) {
   if (arguments.profile.empty()) {
     for (const servers::ProfileText& ready : servers::ready_profiles()) {
       const auto profile = servers::find_profile(ready.name);
@@ -53,7 +53,7 @@ int profiles_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_policy(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PolicyArguments>();
   CLI::App* verb = app.add_subcommand("policy", "test a policy server; show ready profiles");
   verb->require_subcommand(1);
   verb->footer("example: vlaprobe policy test openpi://localhost:8000?profile=pi0_bridge_openpi");

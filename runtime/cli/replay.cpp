@@ -9,7 +9,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::string dir, task;
   int episode = 0;
   std::optional<int> seed;
@@ -17,7 +17,7 @@ struct Arguments {
   AssetOptions assets;
 };
 
-int replay_verb(const Arguments& arguments) {
+int replay_verb(const ReplayArguments& arguments) {
   run::ReplayOptions options = arguments.options;
   options.assets = arguments.assets.root;
   auto report_or =
@@ -42,7 +42,7 @@ int replay_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* verb =
       app.add_subcommand("replay", "a stored episode again, from its recorded actions");
   verb->footer(

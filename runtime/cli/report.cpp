@@ -17,7 +17,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   std::vector<std::string> dirs, published, sets;
   std::string out, title, floors, format;
   bool json = false, no_traces = false;
@@ -30,7 +30,7 @@ std::string dump(const nlohmann::ordered_json& json, int indent = -1) {
 }
 
 report::EpisodeDocuments read_traces(const report::Benchmark& benchmark,
-                                     const Arguments& arguments) {
+                                     const ReportArguments& arguments) {
   std::vector<report::EpisodeTrace> episodes;
   episodes.reserve(benchmark.episodes.size());
   for (const report::Episode& e : benchmark.episodes) {
@@ -67,7 +67,7 @@ Status spare_runs(const std::string& out) {
   return {};
 }
 
-Status write_report(const Arguments& arguments) {
+Status write_report(const ReportArguments& arguments) {
   if (!arguments.out.empty()) PROBE_TRY(spare_runs(arguments.out));
   PROBE_ASSIGN(report::Benchmark benchmark, report::load(arguments.dirs, {.sets = arguments.sets}));
   report::PageOptions options{.title = arguments.title,
@@ -114,7 +114,7 @@ Status write_report(const Arguments& arguments) {
   return {};
 }
 
-int report_verb(Arguments& arguments) {
+int report_verb(ReportArguments& arguments) {
   if (arguments.out.empty() && !arguments.json && arguments.format.empty()) {
     return report(Failure{Fault::kUsage,
                           "nothing to write: give -o page.html, or --json, or --format csv", ""});
@@ -131,7 +131,7 @@ int report_verb(Arguments& arguments) {
 }  // namespace
 
 void add_report(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReportArguments>();
   CLI::App* verb = app.add_subcommand(
       "report", "one page of runs: tables with intervals, charts, every episode");
   verb->footer(

@@ -11,13 +11,13 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct ResultsArguments {
   std::string dir;
   bool json = false, csv = false, delivery = false;
 };
 
 // Whether what makes tasks different reached the policy.
-int delivery_verb(const Arguments& arguments, std::span<const store::ResultRow> rows) {
+int delivery_verb(const ResultsArguments& arguments, std::span<const store::ResultRow> rows) {
   const auto plan = rejudge::stored_plan(arguments.dir);
   if (!plan) return report({Fault::kStore, "its plan cannot be read", arguments.dir});
   const auto findings = run::check_delivery(*plan, rows);
@@ -32,7 +32,7 @@ int delivery_verb(const Arguments& arguments, std::span<const store::ResultRow> 
   return kFine;
 }
 
-int results_verb(const Arguments& arguments) {
+int results_verb(const ResultsArguments& arguments) {
   auto rows = store::read_results(arguments.dir);
   if (!rows) return report(rows.failure());
   if (arguments.delivery) return delivery_verb(arguments, *rows);
@@ -50,7 +50,7 @@ int results_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_results(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ResultsArguments>();
   CLI::App* verb = app.add_subcommand("results", "what a run found: counts, or one row an episode");
   verb->footer("example: vlaprobe results runs/expert --json");
   verb->add_option("DIR", arguments->dir, "results folder")->required();

@@ -16,7 +16,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct CallArguments {
   RunArguments run;
   std::string shard = "1/1";
 };
@@ -80,7 +80,7 @@ class ProgressPrinter {
   bool dirty_ = false;
 };
 
-int run_verb(const Arguments& arguments) {
+int run_verb(const CallArguments& arguments) {
   auto options = to_options(arguments.run);
   if (!options) return report(options.failure());
   const auto shard = parse_shard(arguments.shard);
@@ -103,7 +103,7 @@ int run_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_run(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CallArguments>();
   CLI::App* verb = app.add_subcommand("run", "evaluate a policy; the same command again continues");
   verb->footer(
       "policies:\n" + run::policy_help() +

@@ -11,14 +11,14 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct SheetArguments {
   std::string input, task, out;
   std::optional<std::uint32_t> start;
   show::SheetOptions options;
   AssetOptions assets;
 };
 
-void add_camera_option(CLI::App& verb, Arguments& arguments) {
+void add_camera_option(CLI::App& verb, SheetArguments& arguments) {
   verb.add_option("--camera", arguments.options.camera,
                   "of several cameras, the one to show (default: all, side by side)");
 }
@@ -32,7 +32,7 @@ int written(const Status& status, const std::string& path) {
 }  // namespace
 
 void add_sheet(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SheetArguments>();
   CLI::App* verb =
       app.add_subcommand("sheet", "first and last picture of every stored episode, as one PNG");
   verb->footer("green captions are successes\nexample: vlaprobe sheet runs/expert -o expert.png");
@@ -52,7 +52,7 @@ void add_sheet(CLI::App& app, int& exit) {
 }
 
 void add_preview(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SheetArguments>();
   CLI::App* verb =
       app.add_subcommand("preview", "the first picture of every start of a task, as one PNG");
   verb->footer("example: vlaprobe preview suite/intact.probe carrot_on_plate -o starts.png");

@@ -11,14 +11,14 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct SlurmArguments {
   RunArguments run;
   cluster::JobScript script;
   int array = 0, nodes = 0;
   bool submit = false;
 };
 
-int slurm_verb(const Arguments& arguments) {
+int slurm_verb(const SlurmArguments& arguments) {
   if ((arguments.array > 0) == (arguments.nodes > 0)) {
     return report(
         {Fault::kUsage, "one of --array N and --nodes N says how many tasks there are", ""});
@@ -59,7 +59,7 @@ int slurm_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_slurm(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SlurmArguments>();
   CLI::App* verb = app.add_subcommand("slurm", "`run` as an array job of Slurm, merged at the end");
   verb->footer(
       "-o holds shards/, slurm/job.sh, its logs and, at the end, the merged run.\n"

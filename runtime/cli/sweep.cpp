@@ -9,12 +9,12 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct SweepArguments {
   RunArguments run;
   std::vector<std::string> checkpoints;
 };
 
-int sweep_verb(const Arguments& arguments) {
+int sweep_verb(const SweepArguments& arguments) {
   auto options = to_options(arguments.run);
   if (!options) return report(options.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
@@ -36,7 +36,7 @@ int sweep_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_sweep(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SweepArguments>();
   CLI::App* verb =
       app.add_subcommand("sweep", "the best of several checkpoints, then the whole suite with it");
   verb->footer(

@@ -10,7 +10,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
   std::string file;
   bool fast = false, json = false;
 };
@@ -68,7 +68,7 @@ void print_json(const plan::Plan& plan, const Counts& counts, bool fast) {
   fmt::print("{}\n", json.dump(1));
 }
 
-int verify_verb(const Arguments& arguments) {
+int verify_verb(const VerifyArguments& arguments) {
   const auto plan = plan::Plan::open(arguments.file, {.identity = !arguments.fast});
   if (!plan) return report(plan.failure());
   const Counts counts = count(*plan);
@@ -96,7 +96,7 @@ int verify_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_verify(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* verb = app.add_subcommand("verify", "check every rule of the plan format on a file");
   verb->footer("example: vlaprobe verify intact.plan");
   verb->add_option("X.plan", arguments->file, "plan file")->required();

@@ -9,7 +9,7 @@
 namespace probe::cli {
 namespace {
 
-struct Arguments {
+struct WhyArguments {
   std::string dir, task, metric;
   int episode = 0;
   std::optional<int> seed;
@@ -66,7 +66,7 @@ void print_metric(const rejudge::MetricWhy& metric) {
   }
 }
 
-int why_verb(const Arguments& arguments) {
+int why_verb(const WhyArguments& arguments) {
   const auto why = rejudge::why(arguments.dir, arguments.task, arguments.episode, arguments.seed,
                                 arguments.metric);
   if (!why) return report(why.failure());
@@ -86,7 +86,7 @@ int why_verb(const Arguments& arguments) {
 }  // namespace
 
 void add_why(CLI::App& app, int& exit) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<WhyArguments>();
   CLI::App* verb =
       app.add_subcommand("why", "a verdict explained: source lines with the measured numbers");
   verb->footer(

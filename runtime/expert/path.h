@@ -15,6 +15,10 @@ namespace probe::expert {
 
 using JointVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, robot::kMaxChainJoints, 1>;
 
+inline std::span<const double> span_of(const JointVector& q) {
+  return {q.data(), static_cast<std::size_t>(q.size())};
+}
+
 class Path {
  public:
   static constexpr int kPast = 3;  // steps -2, -1 and 0 are known

@@ -30,10 +30,6 @@ constexpr int kFewestSteps = 5, kMostSteps = 24;
 constexpr int kMoreSteps = 3;   // added where the clearance was not met
 constexpr double kBad = 0.003;  // m less than nothing
 
-std::span<const double> span_of(const JointVector& q) {
-  return {q.data(), static_cast<std::size_t>(q.size())};
-}
-
 struct Move {
   const Reach* reach = nullptr;
   const Recent* recent = nullptr;

@@ -12,10 +12,6 @@ namespace {
 
 using robot::Jacobian;
 
-std::span<const double> span_of(const JointVector& x) {
-  return {x.data(), static_cast<std::size_t>(x.size())};
-}
-
 Mat3 skew(const Vec3& v) {
   Mat3 m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;

@@ -18,7 +18,7 @@ constexpr double kTouch = 0.004;       // m, where the smooth path ends and feel
 constexpr double kComfortable = 0.01;  // m of clearance; more earns nothing
 constexpr double kFeet = 0.004;        // m
 constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};
-constexpr std::size_t kMostTried = 10;
+constexpr std::size_t kMostPlaces = 10;
 
 Eigen::Matrix2d turn_by(double angle) {
   const SinCos t = portable_sincos(angle);
@@ -92,7 +92,7 @@ std::optional<Place> plan_place(const Scene& scene, const Reach& reach,
   const double hang = std::max(GripperShape{}.tip_below, tool.position.z() - scene.source.bottom);
   Pose lifted = tool;
   lifted.position.z() = std::max(tool.position.z() + 0.03, travel_height(scene, hang));
-  for (std::size_t i = 0; i < std::min(places.size(), kMostTried); ++i) {
+  for (std::size_t i = 0; i < std::min(places.size(), kMostPlaces); ++i) {
     Pose over = places[i].tcp;
     over.position.z() = std::max(over.position.z(), lifted.position.z());
     if (reach.follow(joints, std::array{lifted, over, places[i].tcp})) return places[i];

@@ -18,7 +18,7 @@ constexpr double kGap = 0.010;   // m between closed fingers and the source at f
 constexpr double kTips = 0.003;  // m above what the source stands on
 constexpr double kRoomy = 0.03;  // m; more earns nothing
 constexpr double kNearest = 0.002;
-constexpr std::size_t kMostWalls = 8, kMostTried = 20;
+constexpr std::size_t kMostWalls = 8, kMostShoves = 20;
 
 struct Candidate {
   Shove shove;
@@ -87,7 +87,7 @@ std::vector<Candidate> candidates(const Scene& scene) {
 std::optional<Shove> plan_shove(const Scene& scene, const Reach& reach) {
   if (scene.source.whole.size() < 3) return std::nullopt;
   const std::vector<Candidate> all = candidates(scene);
-  for (std::size_t i = 0; i < std::min(all.size(), kMostTried); ++i) {
+  for (std::size_t i = 0; i < std::min(all.size(), kMostShoves); ++i) {
     const Shove& shove = all[i].shove;
     const std::array way{shove.start.above, shove.start.grasp.tcp, shove.end};
     if (reach.follow(scene.joints, way)) return shove;

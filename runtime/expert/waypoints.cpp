@@ -15,7 +15,7 @@ namespace {
 constexpr double kAbove = 0.055;      // m, from the grasp up to where the descent starts
 constexpr double kTravelGap = 0.020;  // m, between what moves and what it passes over
 constexpr double kReleaseGap = 0.001;
-constexpr std::size_t kMostTried = 40;  // candidates put to inverse kinematics
+constexpr std::size_t kMostGrasps = 40;  // candidates put to inverse kinematics
 
 // Over the target the held source has its own height; the fingers' tips may be lower or higher than
 // its bottom.
@@ -160,7 +160,7 @@ std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place
         return same_hold(scene.source_pose * before, grasp.tcp);
       });
     });
-    for (std::size_t i = 0; i < std::min(grasps.size(), kMostTried); ++i) {
+    for (std::size_t i = 0; i < std::min(grasps.size(), kMostGrasps); ++i) {
       const Pick pick = pick_of(scene, grasps[i]);
       if (reachable(scene, reach, pick, place && crowded)) return pick;
     }

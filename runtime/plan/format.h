@@ -15,6 +15,9 @@ inline constexpr std::uint16_t kMajor = 1;
 inline constexpr std::uint16_t kMinor = 0;
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 inline constexpr std::size_t kAlignment = 64;
+constexpr std::uint64_t align_up(std::uint64_t at) {
+  return (at + kAlignment - 1) / kAlignment * kAlignment;
+}
 
 // Sections ascend by kind in the file, none repeats; see sections.def.
 enum class Section : std::uint32_t {

@@ -46,10 +46,6 @@ std::string section_name(std::uint32_t kind) {
   return info == nullptr ? fmt::format("section {}", kind) : std::string(info->name);
 }
 
-constexpr std::uint64_t align_up(std::uint64_t at) {
-  return (at + kAlignment - 1) / kAlignment * kAlignment;
-}
-
 Status check_header(std::span<const std::byte> bytes) {
   if (bytes.size() < sizeof(Header)) {
     return header_failure(Rule::kShort, 0,

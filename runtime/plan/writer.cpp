@@ -11,10 +11,6 @@
 namespace probe::plan {
 namespace {
 
-constexpr std::uint64_t align_up(std::uint64_t at) {
-  return (at + kAlignment - 1) / kAlignment * kAlignment;
-}
-
 struct Part {
   DirectoryEntry entry;
   std::span<const std::byte> bytes;

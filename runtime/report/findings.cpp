@@ -15,7 +15,7 @@ Json finding(const char* level, std::string text, const char* see) {
   return {{"level", level}, {"text", std::move(text)}, {"see", see}};
 }
 
-std::string points(double difference) { return signed_text(100 * difference, 1) + " points"; }
+std::string points_text(double difference) { return signed_text(100 * difference, 1) + " points"; }
 
 // Of the policies under test, where there are some.
 bool is_tested(const Benchmark& benchmark, int policy) {
@@ -48,7 +48,7 @@ void add_categories(const Benchmark& benchmark, const Tables& tables, int metric
             benchmark.policies[p].label, here, rows,
             benchmark.metrics[static_cast<std::size_t>(metric)].name, anew,
             benchmark.categories[static_cast<std::size_t>(worst->category)].label,
-            points(c.difference), c.first.k, c.first.n, c.second.k, c.second.n,
+            points_text(c.difference), c.first.k, c.first.n, c.second.k, c.second.n,
             p_text(c.here.adjusted), p_text(c.anew.adjusted)),
         "deltas"));
   }

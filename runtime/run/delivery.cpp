@@ -11,8 +11,6 @@
 namespace probe::run {
 namespace {
 
-using Kind = DeliveryFinding::Kind;
-
 const std::string& prompt_of(const store::ResultRow& row) {
   return row.sent_prompt_sha256 ? *row.sent_prompt_sha256 : row.prompt_sha256;
 }
@@ -71,8 +69,8 @@ class Detector {
     std::set<std::string_view> sent;
     for (const store::ResultRow* row : rows) sent.insert(prompt_of(*row));
     if (sent.size() > 1) {
-      add({Kind::kManyPrompts, std::string(name(task)), "", "", static_cast<int>(sent.size()),
-           static_cast<int>(rows.size()),
+      add({DeliveryFinding::Kind::kManyPrompts, std::string(name(task)), "", "",
+           static_cast<int>(sent.size()), static_cast<int>(rows.size()),
            "task " + quoted(name(task)) + ": its one instruction reached the policy as " +
                std::to_string(sent.size()) + " different texts"});
     }
@@ -82,8 +80,8 @@ class Detector {
       const auto [first, is_first] = first_with_.emplace(text, task);
       if (is_first || prompt(first->second) == prompt(task)) continue;
       const auto count = static_cast<int>(rows.size());
-      add({Kind::kSamePrompt, std::string(name(task)), std::string(name(first->second)), "", count,
-           count,
+      add({DeliveryFinding::Kind::kSamePrompt, std::string(name(task)),
+           std::string(name(first->second)), "", count, count,
            "tasks " + quoted(name(task)) + " and " + quoted(name(first->second)) +
                " have different instructions (\"" + std::string(prompt(task)) + "\", \"" +
                std::string(prompt(first->second)) + "\"), but the policy was sent the same text"});
@@ -105,8 +103,8 @@ class Detector {
       if (picture_of(*other->second) == picture_of(*row)) ++same;
     }
     if (same == 0) return;
-    add({Kind::kSamePicture, std::string(name(task)), std::string(name(record.baseline)), axes,
-         same, compared,
+    add({DeliveryFinding::Kind::kSamePicture, std::string(name(task)),
+         std::string(name(record.baseline)), axes, same, compared,
          "task " + quoted(name(task)) + " differs from its baseline " +
              quoted(name(record.baseline)) + " in " + axes + ", but in " + std::to_string(same) +
              " of " + count_of(compared, "episode") +
@@ -131,9 +129,9 @@ std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
 std::string to_json(std::span<const DeliveryFinding> findings) {
   auto array = nlohmann::ordered_json::array();
   for (const DeliveryFinding& finding : findings) {
-    const char* kind = finding.kind == Kind::kSamePrompt    ? "same_prompt"
-                       : finding.kind == Kind::kManyPrompts ? "many_prompts"
-                                                            : "same_picture";
+    const char* kind = finding.kind == DeliveryFinding::Kind::kSamePrompt    ? "same_prompt"
+                       : finding.kind == DeliveryFinding::Kind::kManyPrompts ? "many_prompts"
+                                                                             : "same_picture";
     array.push_back({{"kind", kind},
                      {"task", finding.task},
                      {"other", finding.other},

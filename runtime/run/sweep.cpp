@@ -23,7 +23,7 @@ constexpr const char* kRule =
     "highest mean over the original tasks of the share of successes; of equals the one with the "
     "higher mean share of intentions; of these the first named";
 
-Failure usage(const std::string& message, const char* where) {
+Failure misused(const std::string& message, const char* where) {
   return {Fault::kUsage, message, where};
 }
 
@@ -37,20 +37,20 @@ std::string with_checkpoint(std::string text, const std::string& checkpoint) {
 
 Status check(const SweepOptions& options) {
   if (options.run.policy.find(kPlace) == std::string::npos) {
-    return usage("`" + options.run.policy +
-                     "` has no {} for a checkpoint, as in intact://HOST:PORT?model={}",
-                 "--policy");
+    return misused("`" + options.run.policy +
+                       "` has no {} for a checkpoint, as in intact://HOST:PORT?model={}",
+                   "--policy");
   }
   if (!options.run.name.empty() && options.run.name.find(kPlace) == std::string::npos) {
-    return usage("`" + options.run.name + "` has no {}: all checkpoints would have one name",
-                 "--name");
+    return misused("`" + options.run.name + "` has no {}: all checkpoints would have one name",
+                   "--name");
   }
-  if (options.checkpoints.empty()) return usage("no checkpoint is named", "--checkpoints");
+  if (options.checkpoints.empty()) return misused("no checkpoint is named", "--checkpoints");
   std::set<std::string> known;
   for (const std::string& checkpoint : options.checkpoints) {
-    if (checkpoint.empty()) return usage("a checkpoint's text is empty", "--checkpoints");
+    if (checkpoint.empty()) return misused("a checkpoint's text is empty", "--checkpoints");
     if (!known.insert(checkpoint).second) {
-      return usage("`" + checkpoint + "` is named twice", "--checkpoints");
+      return misused("`" + checkpoint + "` is named twice", "--checkpoints");
     }
   }
   return {};

@@ -17,7 +17,7 @@ constexpr double kUsualTurn = 1.0;    // rad a step
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kLongChunk = 16;  // 3 s at 5 Hz
 
-std::string number(double value) {
+std::string short_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
@@ -39,7 +39,9 @@ Range range_of(const std::vector<RawAction>& actions, std::size_t first, std::si
   return range;
 }
 
-std::string text_of(const Range& range) { return number(range.low) + " .. " + number(range.high); }
+std::string text_of(const Range& range) {
+  return short_number(range.low) + " .. " + short_number(range.high);
+}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -69,9 +71,8 @@ Check judge_chunks(const Profile& profile, const std::vector<std::vector<RawActi
     check.fix = {"ensemble = none"};
   } else if (profile.chunk_use == 0 && profile.ensemble == Ensemble::kNone && least >= kLongChunk) {
     check.verdict = Verdict::kWarning;
-    check.found +=
-        ", all of which are done before the next look: " + number(static_cast<double>(least) / 5) +
-        " s at 5 Hz";
+    check.found += ", all of which are done before the next look: " +
+                   short_number(static_cast<double>(least) / 5) + " s at 5 Hz";
     check.fix = {"chunk.use = 4"};
   }
   return check;
@@ -89,7 +90,7 @@ Check judge_translation(const Profile& profile, const std::vector<RawAction>& ac
   Check check{"translation",
               Verdict::kFine,
               "numbers 1 to 3: " + text_of(range_of(raw, 0, 3)) + "; a step moves " +
-                  number(usual * 100) + " cm, at most " + number(longest * 100) + " cm",
+                  short_number(usual * 100) + " cm, at most " + short_number(longest * 100) + " cm",
               {}};
   const Range range = range_of(raw, 0, 3);
   if (longest == 0) {
@@ -130,10 +131,10 @@ Check judge_rotation(const Profile& profile, const std::vector<RawAction>& actio
   Check check{"rotation",
               Verdict::kFine,
               "numbers 4 to 6: " + text_of(range_of(actions, 3, 3)) + "; a turn of at most " +
-                  number(longest) +
+                  short_number(longest) +
                   " rad; as roll pitch yaw and as a rotation vector they are "
                   "up to " +
-                  number(degrees) + " degrees apart",
+                  short_number(degrees) + " degrees apart",
               {}};
   if (longest == 0) {
     check.verdict = Verdict::kUnclear;

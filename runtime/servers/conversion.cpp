@@ -9,7 +9,7 @@
 namespace probe::servers {
 namespace {
 
-Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
+Failure bad_conversion(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 bool is_masked(const Statistics& statistics, std::size_t i) {
   return i < statistics.mask.size() && statistics.mask[i] == 0;
@@ -46,10 +46,10 @@ Result<double> to_gripper(const Profile& profile, double raw) {
   // Regression overshoots; more than a whole range is another convention.
   const double slack = high - low;
   if (raw < low - slack || raw > high + slack) {
-    return bad("the gripper's number is " + std::to_string(raw) + ", expected " +
-               std::to_string(static_cast<int>(low)) + " to " +
-               std::to_string(static_cast<int>(high)) +
-               " (profile fields `action.gripper`, `action.normalised`)");
+    return bad_conversion("the gripper's number is " + std::to_string(raw) + ", expected " +
+                          std::to_string(static_cast<int>(low)) + " to " +
+                          std::to_string(static_cast<int>(high)) +
+                          " (profile fields `action.gripper`, `action.normalised`)");
   }
   if (profile.action_threshold) {
     const bool above = raw > *profile.action_threshold;
@@ -68,9 +68,9 @@ double length(const double* numbers) {
 Status check_limit(double value, double limit, const char* what, const char* unit,
                    const char* field) {
   if (value <= limit) return {};
-  return bad(std::string("an action that ") + what + " " + std::to_string(value) + " " + unit +
-             " in one control step, expected at most " + std::to_string(limit) +
-             " (profile fields `action.normalised`, `" + field + "`)");
+  return bad_conversion(std::string("an action that ") + what + " " + std::to_string(value) + " " +
+                        unit + " in one control step, expected at most " + std::to_string(limit) +
+                        " (profile fields `action.normalised`, `" + field + "`)");
 }
 
 double denormalised(const Statistics& statistics, std::size_t i, double value) {
@@ -139,14 +139,16 @@ Result<std::vector<double>> laid_out(const Profile& profile,
       break;
     case StateLayout::kXyzRotvecFingers:
       append(state, robot::to_rotation_vector(rotation));
-      if (!has_fingers) return bad("`state.layout` asks for two fingers, the robot has none");
+      if (!has_fingers)
+        return bad_conversion("`state.layout` asks for two fingers, the robot has none");
       state.insert(state.end(), joints.end() - kFingers, joints.end());
       break;
     case StateLayout::kJoints:
       state = joints;
       break;
     case StateLayout::kJointsOpenness:
-      if (!has_fingers) return bad("`state.layout` leaves out two fingers, the robot has none");
+      if (!has_fingers)
+        return bad_conversion("`state.layout` leaves out two fingers, the robot has none");
       state.assign(joints.begin(), joints.end() - kFingers);
       state.push_back(measured.openness);
       break;
@@ -177,8 +179,8 @@ Result<std::vector<double>> to_state(const Profile& profile,
   const std::size_t known =
       statistics.kind == Normalisation::kBound ? statistics.low.size() : statistics.mean.size();
   if (known != state.size()) {
-    return bad("the profile has statistics of " + std::to_string(known) +
-               " numbers, the state has " + std::to_string(state.size()));
+    return bad_conversion("the profile has statistics of " + std::to_string(known) +
+                          " numbers, the state has " + std::to_string(state.size()));
   }
   for (std::size_t i = 0; i < state.size(); ++i) state[i] = normalised(statistics, i, state[i]);
   return state;

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t kMostActions = 1000;
 
-Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
-
 }  // namespace
 
 Result<std::vector<RawAction>> to_actions(const wire::Value& answer) {

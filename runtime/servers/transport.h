@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -18,6 +19,9 @@
 #include "runtime/wire/value.h"
 
 namespace probe::servers {
+
+// What a server sent and nothing can be done with.
+inline Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
 struct RequestImage {
   std::string key;

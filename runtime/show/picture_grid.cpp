@@ -8,7 +8,7 @@
 namespace probe::show {
 namespace {
 
-constexpr int kMargin = 4, kCaption = kGlyphHeight + 4;
+constexpr int kGap = 4, kCaption = kGlyphHeight + 4;
 
 }  // namespace
 
@@ -18,11 +18,11 @@ Picture lay_out_grid(const std::vector<GridCell>& cells, int columns) {
   const int rows = (static_cast<int>(cells.size()) + columns - 1) / columns;
   const int width = cells[0].pictures[0].width, height = cells[0].pictures[0].height;
   const int strip = static_cast<int>(cells[0].pictures.size()) * (width + 1) - 1;
-  const int step_x = strip + kMargin, step_y = height + kCaption + kMargin;
-  Picture sheet = make_picture(columns * step_x + kMargin, rows * step_y + kMargin, {24, 24, 28});
+  const int step_x = strip + kGap, step_y = height + kCaption + kGap;
+  Picture sheet = make_picture(columns * step_x + kGap, rows * step_y + kGap, {24, 24, 28});
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    int x = kMargin + static_cast<int>(i) % columns * step_x;
-    const int y = kMargin + static_cast<int>(i) / columns * step_y;
+    int x = kGap + static_cast<int>(i) % columns * step_x;
+    const int y = kGap + static_cast<int>(i) / columns * step_y;
     draw_text(sheet, x, y + height + 3, fit_text(cells[i].caption, strip, 1), cells[i].color);
     for (const Picture& picture : cells[i].pictures) {
       paste(sheet, picture, x, y);

@@ -17,8 +17,6 @@ constexpr double kContactImpulse = 1e-6;
 // over objects). From the reference's reset.
 constexpr double kStillSpeed = 1e-3, kStillSpin = 1e-2, kExtraSettle = 1.5;
 
-Vec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
 bool is_kind(const plan::BodyRecord& body, plan::BodyKind kind) {
   return body.kind == static_cast<std::uint32_t>(kind);
 }

@@ -10,8 +10,6 @@
 namespace probe::stage {
 namespace {
 
-Vec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
-
 // The mount link's pose in the base frame does not depend on q: no joint on the way moves.
 bool is_fixed(const robot::RobotModel& model, int link) {
   while (model.links[static_cast<std::size_t>(link)].parent_joint >= 0) {

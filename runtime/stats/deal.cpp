@@ -13,7 +13,7 @@ namespace probe::stats {
 namespace {
 
 // Additions that counting may take before inversion is quicker.
-constexpr double kMostCounting = 2e7;
+constexpr double kMostDealt = 2e7;
 
 double log_choose(double n, double k) {
   return boost::math::lgamma(n + 1) - boost::math::lgamma(k + 1) - boost::math::lgamma(n - k + 1);
@@ -87,8 +87,8 @@ double deal_at_least(const Deck& deck, std::int64_t hand, std::int64_t least) {
   double choices = 0;
   for (const auto& [value, count] : deck) choices += static_cast<double>(std::min(count, hand));
   work *= choices;
-  return work <= kMostCounting ? deal_by_counting(deck, hand, least)
-                               : deal_by_inversion(deck, hand, least);
+  return work <= kMostDealt ? deal_by_counting(deck, hand, least)
+                            : deal_by_inversion(deck, hand, least);
 }
 
 double deal_by_counting(const Deck& deck, std::int64_t hand, std::int64_t least) {

@@ -11,9 +11,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kDepth = 64;
+constexpr int kMostLevels = 64;
 
-Failure failed(const std::string& message) { return {Fault::kPolicy, message, ""}; }
+Failure bad_json(const std::string& message) { return {Fault::kPolicy, message, ""}; }
 
 // ---- writing ----------------------------------------------------------------------------------
 
@@ -92,7 +92,7 @@ bool is_too_deep(std::string_view text) {
       continue;
     }
     if (c == '"') in_string = true;
-    if ((c == '[' || c == '{') && ++depth > kDepth) return true;
+    if ((c == '[' || c == '{') && ++depth > kMostLevels) return true;
     if (c == ']' || c == '}') --depth;
   }
   return false;
@@ -104,17 +104,17 @@ Result<Value> read_marked(const Json& map) {
   const Json& data = map.at("__numpy__");
   if (!data.is_string() || dtype == map.end() || !dtype->is_string() || shape == map.end() ||
       !shape->is_array()) {
-    return failed("an array needs `__numpy__` and `dtype` as texts and a list `shape`");
+    return bad_json("an array needs `__numpy__` and `dtype` as texts and a list `shape`");
   }
   Array array{dtype->get<std::string>(), {}, {}};
   for (const Json& n : *shape) {
     if (!n.is_number_unsigned() || n.get<std::uint64_t>() > (std::uint64_t{1} << 40)) {
-      return failed("an array's `shape` is not made of sizes");
+      return bad_json("an array's `shape` is not made of sizes");
     }
     array.shape.push_back(n.get<std::int64_t>());
   }
   auto bytes = from_base64(data.get_ref<const std::string&>());
-  if (!bytes) return failed("an array's `__numpy__` is no base64");
+  if (!bytes) return bad_json("an array's `__numpy__` is no base64");
   array.bytes = std::move(*bytes);
   PROBE_TRY(check_fit(array));
   return Value(std::move(array));
@@ -165,11 +165,12 @@ std::string to_json(const Value& value) {
 }
 
 Result<Value> from_json(std::string_view text) {
-  if (text.empty()) return failed("no JSON but an empty text");
-  if (is_too_deep(text)) return failed("JSON of more than " + std::to_string(kDepth) + " levels");
+  if (text.empty()) return bad_json("no JSON but an empty text");
+  if (is_too_deep(text))
+    return bad_json("JSON of more than " + std::to_string(kMostLevels) + " levels");
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) {
-    return failed("no JSON but " + describe(std::string(text.substr(0, 200))));
+    return bad_json("no JSON but " + describe(std::string(text.substr(0, 200))));
   }
   return read(json);
 }

@@ -14,7 +14,7 @@ constexpr std::size_t kDepth = 64;
 // at a level.
 constexpr std::size_t kElements = 65536;
 
-Failure failed(const std::string& message) { return {Fault::kPolicy, message, ""}; }
+Failure bad_msgpack(const std::string& message) { return {Fault::kPolicy, message, ""}; }
 
 // ---- writing ----------------------------------------------------------------------------------
 
@@ -125,13 +125,13 @@ Result<Value> read_marked(const msgpack::object_map& map) {
   const auto* shape = entry(map, "shape");
   if (data == nullptr || dtype == nullptr || shape == nullptr ||
       shape->type != msgpack::type::ARRAY) {
-    return failed("an array needs `data`, `dtype` and a list `shape`");
+    return bad_msgpack("an array needs `data`, `dtype` and a list `shape`");
   }
   Array array{std::string(text_of(*dtype)), {}, bytes_of(*data)};
   for (std::uint32_t i = 0; i < shape->via.array.size; ++i) {
     const msgpack::object& n = shape->via.array.ptr[i];
     if (n.type != msgpack::type::POSITIVE_INTEGER || n.via.u64 > (std::uint64_t{1} << 40)) {
-      return failed("an array's `shape` is not made of sizes");
+      return bad_msgpack("an array's `shape` is not made of sizes");
     }
     array.shape.push_back(static_cast<std::int64_t>(n.via.u64));
   }
@@ -147,7 +147,7 @@ Result<Value> read_map(const msgpack::object_map& map) {
   }
   if (entry(map, "__npgeneric__") != nullptr) {
     const auto* number = entry(map, "data");
-    if (number == nullptr) return failed("a numpy scalar needs `data`");
+    if (number == nullptr) return bad_msgpack("a numpy scalar needs `data`");
     return read(*number);
   }
   Map entries;
@@ -155,7 +155,7 @@ Result<Value> read_map(const msgpack::object_map& map) {
   for (std::uint32_t i = 0; i < map.size; ++i) {
     const auto type = map.ptr[i].key.type;
     if (type != msgpack::type::STR && type != msgpack::type::BIN) {
-      return failed("a key of a map is not a text");
+      return bad_msgpack("a key of a map is not a text");
     }
     PROBE_ASSIGN(Value value, read(map.ptr[i].val));
     entries.emplace_back(std::string(text_of(map.ptr[i].key)), std::move(value));
@@ -193,7 +193,7 @@ Result<Value> read(const msgpack::object& object) {
     case msgpack::type::MAP:
       return read_map(object.via.map);
     default:
-      return failed("an extension type is not read");
+      return bad_msgpack("an extension type is not read");
   }
 }
 
@@ -207,7 +207,7 @@ Bytes to_msgpack(const Value& value, ArrayStyle style) {
 }
 
 Result<Value> from_msgpack(std::span<const std::uint8_t> bytes) {
-  if (bytes.empty()) return failed("not a MessagePack message: it is empty");
+  if (bytes.empty()) return bad_msgpack("not a MessagePack message: it is empty");
   const msgpack::unpack_limit limit(kElements, kElements, bytes.size(), bytes.size(), bytes.size(),
                                     kDepth);
   try {
@@ -216,12 +216,12 @@ Result<Value> from_msgpack(std::span<const std::uint8_t> bytes) {
         reinterpret_cast<const char*>(bytes.data()), bytes.size(), offset,
         [](auto, auto, auto) { return true; }, nullptr, limit);
     if (offset != bytes.size()) {
-      return failed("not one MessagePack message: " + std::to_string(bytes.size() - offset) +
-                    " bytes follow it");
+      return bad_msgpack("not one MessagePack message: " + std::to_string(bytes.size() - offset) +
+                         " bytes follow it");
     }
     return read(handle.get());
   } catch (const std::exception& error) {
-    return failed(std::string("not a MessagePack message: ") + error.what());
+    return bad_msgpack(std::string("not a MessagePack message: ") + error.what());
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr std::string_view kMagic("\x93NUMPY", 6);
 constexpr std::size_t kAlignment = 64;  // of the data, from numpy 1.14 on
 
-Failure failed(const std::string& message) {
+Failure bad_npy(const std::string& message) {
   return {Fault::kPolicy, "a .npy array " + message, ""};
 }
 
@@ -52,31 +52,31 @@ Bytes to_npy(const Array& array) {
 
 Result<Array> from_npy(const Bytes& file) {
   if (file.size() < 10 || std::memcmp(file.data(), kMagic.data(), kMagic.size()) != 0) {
-    return failed("does not begin with numpy's mark");
+    return bad_npy("does not begin with numpy's mark");
   }
   // Versions 2 and 3 have a 4-byte length.
   const bool is_long = file[6] >= 2;
   const std::size_t first = is_long ? 12 : 10;
-  if (file.size() < first) return failed("ends in its header");
+  if (file.size() < first) return bad_npy("ends in its header");
   std::size_t length = 0;
   for (std::size_t i = first; i-- > 8;) length = length << 8 | file[i];
-  if (length > file.size() - first) return failed("ends in its header");
+  if (length > file.size() - first) return bad_npy("ends in its header");
   const std::string_view header(reinterpret_cast<const char*>(file.data()) + first, length);
 
   Array array;
   const std::string_view descr = after_key(header, "'descr'");
-  if (descr.size() < 2 || descr[0] != '\'') return failed("has no dtype");
+  if (descr.size() < 2 || descr[0] != '\'') return bad_npy("has no dtype");
   array.dtype = std::string(descr.substr(1, descr.find('\'', 1) - 1));
   if (!after_key(header, "'fortran_order'").starts_with("False"))
-    return failed("is not in C order");
+    return bad_npy("is not in C order");
   std::string_view shape = after_key(header, "'shape'");
   if (!shape.starts_with("(") || shape.find(')') == std::string_view::npos)
-    return failed("has no shape");
+    return bad_npy("has no shape");
   shape = shape.substr(1, shape.find(')') - 1);
   while (!shape.empty()) {
     std::int64_t n = 0;
     const auto [end, error] = std::from_chars(shape.data(), shape.data() + shape.size(), n);
-    if (error != std::errc()) return failed("has a shape that is not made of sizes");
+    if (error != std::errc()) return bad_npy("has a shape that is not made of sizes");
     array.shape.push_back(n);
     shape.remove_prefix(static_cast<std::size_t>(end - shape.data()));
     const std::size_t next = shape.find_first_not_of(", ");

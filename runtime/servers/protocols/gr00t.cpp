@@ -17,8 +17,6 @@ constexpr std::array<std::string_view, 7> kStateNames = kActionNames;
 constexpr std::array<std::string_view, 8> kPaddedStateNames = {"x",     "y",   "z",   "roll",
                                                                "pitch", "yaw", "pad", "gripper"};
 
-Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
-
 // The array with leading dimensions of 1: batch and, from n1.6 on, time.
 wire::Array led(wire::Array array, Gr00tForm form) {
   const std::size_t count = form == Gr00tForm::kN15 ? 1 : 2;

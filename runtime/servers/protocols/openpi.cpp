@@ -13,8 +13,6 @@
 namespace probe::servers {
 namespace {
 
-Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
-
 // One connection and its messages.
 class OpenpiConnection {
  public:

@@ -10,8 +10,6 @@ namespace {
 
 constexpr std::string_view kEncoded = "encoded";
 
-Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
-
 class OpenVla : public Transport {
  public:
   OpenVla(const Profile& profile, const wire::Endpoint& server)

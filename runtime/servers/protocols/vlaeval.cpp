@@ -18,8 +18,6 @@ using vlaeval::PictureCoding;
 
 constexpr std::int64_t kProtocolVersion = 1;
 
-Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
-
 bool is_this_machine(const std::string& host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }

@@ -7,8 +7,6 @@
 namespace probe::servers::vlaeval {
 namespace {
 
-Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
-
 // Above 90 the colours keep their resolution.
 constexpr int kJpegQuality = 95;
 
