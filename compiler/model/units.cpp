@@ -18,9 +18,9 @@ struct Unit {
 std::int8_t exponent(int value) { return static_cast<std::int8_t>(value); }
 
 const Unit kUnits[] = {
-#define PROBE_UNIT_MEANING(spelling, scale, length, time, angle, mass, pixel) \
-  {spelling, scale, {length, time, angle, mass, pixel}},
-#include "compiler/model/units.def"
+#define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) \
+  {text, scale, {length, time, angle, mass, pixel}},
+#include "compiler/syntax/units.def"
 };
 
 const Unit* find_unit(std::string_view spelling) {

@@ -1,75 +1,41 @@
-// Every statement that stands once has a key; two of one key in a block are P0203.
+// Every statement that stands once has a key, by the column `repeat` of keywords.def; two of one
+// key in a block are P0203.
 #include "compiler/names/repeats.h"
 
 #include <type_traits>
+
+#include "compiler/syntax/lexer.h"
+#include "compiler/syntax/words.h"
+#include "runtime/base/check.h"
 
 namespace probe::sema {
 namespace {
 
 using Key = std::string;  // empty: may stand repeatedly
 
-struct KeyOf {
-  // Objects.
-  Key operator()(const syntax::MeshStmt&) const { return "mesh"; }
-  Key operator()(const syntax::BoxSizeStmt&) const { return "box"; }
-  Key operator()(const syntax::BoxCornersStmt&) const { return "box"; }
-  Key operator()(const syntax::DensityStmt&) const { return "density"; }
-  Key operator()(const syntax::FrictionStmt&) const { return "friction"; }
-  Key operator()(const syntax::RestStmt&) const { return "rest"; }
-  Key operator()(const syntax::NameStmt&) const { return "name"; }
-  Key operator()(const syntax::PhraseStmt& stmt) const { return named("phrase", stmt.name); }
-  Key operator()(const syntax::AttributeStmt& stmt) const { return Key(stmt.attribute.text); }
-  // Robots, cameras, lights, scenes.
-  Key operator()(const syntax::UrdfStmt&) const { return "urdf"; }
-  Key operator()(const syntax::TcpStmt&) const { return "tcp"; }
-  Key operator()(const syntax::FingersStmt&) const { return "fingers"; }
-  Key operator()(const syntax::ControlStmt&) const { return "control"; }
-  Key operator()(const syntax::ReachStmt&) const { return "reach"; }
-  Key operator()(const syntax::GripStmt&) const { return "grip"; }
-  Key operator()(const syntax::MountStmt&) const { return "mount"; }
-  Key operator()(const syntax::ImageStmt&) const { return "image"; }
-  Key operator()(const syntax::LensStmt&) const { return "lens"; }
-  Key operator()(const syntax::AmbientStmt&) const { return "ambient"; }
-  Key operator()(const syntax::SceneRobotStmt&) const { return "robot"; }
-  Key operator()(const syntax::JointsStmt&) const { return "joints"; }
-  Key operator()(const syntax::SurfaceStmt&) const { return "surface"; }
-  Key operator()(const syntax::FixtureStmt&) const { return "fixture"; }
-  Key operator()(const syntax::BackdropStmt&) const { return "backdrop"; }
-  Key operator()(const syntax::SceneCameraStmt&) const { return "camera"; }
-  Key operator()(const syntax::UseLightStmt&) const { return "light"; }
-  Key operator()(const syntax::PhysicsStmt&) const { return "physics"; }
-  // Layouts.
-  Key operator()(const syntax::CellsStmt& stmt) const { return named("cells", stmt.name); }
-  Key operator()(const syntax::JitterStmt&) const { return "jitter"; }
-  Key operator()(const syntax::DropStmt&) const { return "drop"; }
-  Key operator()(const syntax::ExpectEpisodesStmt&) const { return "expect"; }
-  // Tasks and suites.
-  Key operator()(const syntax::FieldStmt& stmt) const {
-    static constexpr const char* kWords[] = {"scene",  "layout",  "source",
-                                             "target", "metrics", "light"};
-    return kWords[static_cast<std::size_t>(stmt.field)];
-  }
-  Key operator()(const syntax::TaskCameraStmt& stmt) const {
-    return stmt.as ? named("camera as", *stmt.as) : "camera";
-  }
-  Key operator()(const syntax::DistractorsStmt&) const { return "distractors"; }
-  Key operator()(const syntax::SayStmt&) const { return "say"; }
-  Key operator()(const syntax::ReferStmt& stmt) const {
-    return stmt.role == syntax::Role::kSource ? "refer source" : "refer target";
-  }
-  Key operator()(const syntax::PoseStmt& stmt) const { return named("pose", stmt.object); }
-  Key operator()(const syntax::HorizonStmt&) const { return "horizon"; }
-  Key operator()(const syntax::MetricStmt& stmt) const { return named("set", stmt.name); }
-  Key operator()(const syntax::SuiteTasksStmt&) const { return "tasks"; }
-  Key operator()(const syntax::PrefixStmt&) const { return "prefix"; }
-  Key operator()(const syntax::ExpectTasksStmt&) const { return "expect"; }
-  template <typename Other>
-  Key operator()(const Other&) const {
-    return {};
-  }
+// What a statement is about, where keywords.def has `Named`.
+std::string_view name_in(const syntax::PhraseStmt& stmt) { return stmt.name.text; }
+std::string_view name_in(const syntax::CellsStmt& stmt) { return stmt.name.text; }
+std::string_view name_in(const syntax::PoseStmt& stmt) { return stmt.object.text; }
+std::string_view name_in(const syntax::MetricStmt& stmt) { return stmt.name.text; }
+std::string_view name_in(const syntax::ReferStmt& stmt) {
+  return stmt.role == syntax::Role::kSource ? "source" : "target";
+}
 
-  static Key named(const char* word, const syntax::Name& name) {
-    return std::string(word) + " " + std::string(name.text);
+struct KeyOf {
+  const syntax::StatementWord& said;
+
+  Key operator()(const syntax::TaskCameraStmt& stmt) const {
+    return stmt.as ? "camera as " + std::string(stmt.as->text) : "camera";
+  }
+  template <typename Stmt>
+  Key operator()(const Stmt& stmt) const {
+    const Key word(said.word);
+    if (said.repeat == syntax::Repeat::kMany) return {};
+    if (said.repeat == syntax::Repeat::kOnce) return word;
+    if constexpr (requires { name_in(stmt); }) return word + " " + std::string(name_in(stmt));
+    PROBE_CHECK(false, "a statement that may be repeated for another name has one");
+    return {};
   }
 };
 
@@ -77,18 +43,40 @@ void report_repeat(Context& context, const Span& span, const Span& first, const 
   context.report(Code::P0203, span, what).label(first, "first said here");
 }
 
+// The word that a statement begins with.
+std::string_view first_word(std::string_view text) {
+  std::size_t end = 0;
+  while (end < text.size() && syntax::is_word(text[end])) ++end;
+  return text.substr(0, end);
+}
+
 template <typename Stmt>
-void check_block(Context& context, const std::vector<Stmt>& body) {
+void check_block(Context& context, syntax::Block block, const std::vector<Stmt>& body) {
   std::map<Key, Span> said;
   for (const Stmt& stmt : body) {
-    const Key key = std::visit(KeyOf{}, stmt);
-    if (key.empty()) continue;
     const Span span = std::visit([](const auto& node) { return node.span; }, stmt);
+    const std::string_view word = first_word(context.sources.text(span));
+    const syntax::StatementWord* known = syntax::find_statement(block, word);
+    // Other words are attributes of an object, each of which is given once.
+    const Key key = known == nullptr ? Key(word) : std::visit(KeyOf{*known}, stmt);
+    if (key.empty()) continue;
     const auto [first, is_new] = said.try_emplace(key, span);
     if (!is_new)
       report_repeat(context, span, first->second, "`" + key + "` is said twice in this block");
   }
 }
+
+// Which block of keywords.def a declaration has.
+syntax::Block block_of(const syntax::ObjectDecl&) { return syntax::Block::kObject; }
+syntax::Block block_of(const syntax::RobotDecl&) { return syntax::Block::kRobot; }
+syntax::Block block_of(const syntax::CameraDecl&) { return syntax::Block::kCamera; }
+syntax::Block block_of(const syntax::LightDecl&) { return syntax::Block::kLight; }
+syntax::Block block_of(const syntax::SceneDecl&) { return syntax::Block::kScene; }
+syntax::Block block_of(const syntax::LayoutDecl&) { return syntax::Block::kLayout; }
+syntax::Block block_of(const syntax::TaskDecl&) { return syntax::Block::kTask; }
+syntax::Block block_of(const syntax::VariantDecl&) { return syntax::Block::kTask; }
+syntax::Block block_of(const syntax::DeriveDecl&) { return syntax::Block::kTask; }
+syntax::Block block_of(const syntax::SuiteDecl&) { return syntax::Block::kSuite; }
 
 // A fact has one truth, and a thing is seen or is not.
 void check_claims(Context& context, const syntax::ObjectDecl& object) {
@@ -133,12 +121,13 @@ void check_repeats(Context& context) {
     if constexpr (std::is_same_v<Node, syntax::PredicateDecl>) check_parameters(context, node);
     if constexpr (std::is_same_v<Node, syntax::ObjectDecl>) check_claims(context, node);
     if constexpr (std::is_same_v<Node, syntax::VariantsDecl>) {
-      for (const syntax::VariantsMember& member : node.members) check_block(context, member.body);
+      for (const syntax::VariantsMember& member : node.members)
+        check_block(context, syntax::Block::kTask, member.body);
     } else if constexpr (std::is_same_v<Node, syntax::MetricsDecl> ||
                          std::is_same_v<Node, syntax::DatasetDecl>) {
       // Metrics are checked where they are read; relations add up.
     } else if constexpr (requires { node.body.begin(); }) {
-      check_block(context, node.body);
+      check_block(context, block_of(node), node.body);
     }
   };
   for (const syntax::File* file : context.files) {

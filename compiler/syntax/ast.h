@@ -33,7 +33,7 @@ struct Path {
 
 enum class Unit : std::uint8_t {
   kNone,
-#define PROBE_UNIT(id, text) id,
+#define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) id,
 #include "compiler/syntax/units.def"
   kUnknown,  // P0301 has been reported; say nothing more
 };

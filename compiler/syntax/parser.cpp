@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/syntax/parser_impl.h"
+#include "compiler/syntax/words.h"
 
 namespace probe::syntax {
 
@@ -91,34 +92,17 @@ void Parser::declaration() {
   while (raw_kind() != TokenKind::kEnd && !starts_declaration()) advance();
 }
 
+DeclNode Parser::use_decl() {
+  advance();
+  return UseDecl{string()};
+}
+
 DeclNode Parser::declaration_node() {
-  struct Rule {
-    std::string_view word;
-    DeclNode (Parser::*parse)();
+  static constexpr Rule<DeclNode> kRules[] = {
+#define PROBE_DECL(word, parse) {#word, &Parser::parse},
+#include "compiler/syntax/keywords.def"
   };
-  static constexpr Rule kRules[] = {
-      {"use", &Parser::use_decl},
-      {"dataset", &Parser::dataset_decl},
-      {"attribute", &Parser::attribute_decl},
-      {"facts", &Parser::facts_decl},
-      {"object", &Parser::object_decl},
-      {"robot", &Parser::robot_decl},
-      {"camera", &Parser::camera_decl},
-      {"light", &Parser::light_decl},
-      {"scene", &Parser::scene_decl},
-      {"layout", &Parser::layout_decl},
-      {"template", &Parser::template_decl},
-      {"predicate", &Parser::predicate_decl},
-      {"metrics", &Parser::metrics_decl},
-      {"abstract", &Parser::task_decl},
-      {"task", &Parser::task_decl},
-      {"variant", &Parser::variant_decl},
-      {"variants", &Parser::variants_decl},
-      {"derive", &Parser::derive_decl},
-      {"set", &Parser::set_decl},
-      {"suite", &Parser::suite_decl},
-  };
-  for (const Rule& rule : kRules) {
+  for (const Rule<DeclNode>& rule : kRules) {
     if (at_word(rule.word)) {
       expected_count_ = 0;
       return (this->*rule.parse)();

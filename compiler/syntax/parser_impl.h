@@ -1,14 +1,17 @@
 // The recursive descent parser's class; private to this folder. Its methods are spread over
-// cursor.cpp (tokens, errors, recovery, leaves), parse_world.cpp, parse_judge.cpp, parse_task.cpp
-// and parser.cpp (the file).
+// cursor.cpp (tokens), recovery.cpp (errors), leaves.cpp, parser.cpp (the file) and one
+// parse_<construct>.cpp for each construct of the language.
 //
 // Errors: the first one in a statement is reported and sets failed_; from then on at() is false and
 // take() does nothing, so every rule runs out without further reports, until the statement loop
 // recovers.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,8 +23,6 @@
 
 namespace probe::syntax {
 
-bool is_declaration_word(std::string_view word);
-
 class Parser {
  public:
   Parser(const SourceFile& source, const TokenStream& stream, ErrorBudget& errors);
@@ -29,7 +30,7 @@ class Parser {
   std::vector<TokenRole> take_roles() { return std::move(roles_); }
 
  private:
-  // ---- cursor.cpp: tokens ----
+  // ---- cursor.cpp ----
   // What the grammar sees here: a `;` or a newline that counts is kSemicolon, anything after an
   // error kEnd.
   TokenKind kind() const;
@@ -59,7 +60,7 @@ class Parser {
   bool expect_word(std::string_view word);
   void skip_newlines();
 
-  // ---- cursor.cpp: errors and recovery ----
+  // ---- recovery.cpp ----
   // `noun` stands for the expected set in the message when the set is long; the help then lists it.
   void fail_expected(std::string_view noun = "something else");
   bool fail_blank_before_unit();
@@ -70,16 +71,31 @@ class Parser {
   void recover(std::uint32_t start);
   bool starts_declaration()
       const;  // first on its line, not right of the declaration before, and a declaration's word
-  bool looks_like_unclosed_block(std::initializer_list<std::string_view> statements) const;
+  // Whether a word can begin a statement of a block.
+  using Begins = std::function<bool(std::string_view)>;
+  static bool any_name(std::string_view) { return true; }
+  bool looks_like_unclosed_block(const Begins& begins) const;
 
-  // statement() parses one statement, whose first word is one of `statements` (empty: any name).
+  // statement() parses one statement, whose first word is one that `begins` knows.
   template <typename Statement>
-  void block(std::initializer_list<std::string_view> statements, Statement statement);
+  void block(const Begins& begins, Statement statement);
   bool begin_block();
-  bool end_block(std::initializer_list<std::string_view> statements, std::uint32_t open);
+  bool end_block(const Begins& begins, std::uint32_t open);
   void end_statement(std::uint32_t start);
 
-  // ---- cursor.cpp: leaves ----
+  // A line of keywords.def: a first word, and what reads the rest.
+  template <typename Node>
+  struct Rule {
+    std::string_view word;
+    Node (Parser::*parse)();
+  };
+  // The block of a declaration, by the lines of keywords.def that name it. A word that none has is
+  // read by `other`, or is an error that expects `noun`.
+  template <typename Stmt>
+  std::vector<Stmt> body(std::span<const Rule<Stmt>> rules, std::string_view noun,
+                         Stmt (Parser::*other)() = nullptr);
+
+  // ---- leaves.cpp ----
   Name name();
   Name keyword_name(std::string_view what);
   std::vector<Name> names();
@@ -104,40 +120,79 @@ class Parser {
     return out;
   }
 
-  // ---- parse_world.cpp ----
-  DeclNode use_decl();
+  // ---- parse_dataset.cpp, parse_attribute.cpp ----
   DeclNode dataset_decl();
+  RelationsStmt dataset_relations();
   DeclNode attribute_decl();
   DeclNode facts_decl();
-  DeclNode object_decl();
-  void object_statement(std::vector<ObjectStmt>& body);
-  ObjectStmt box_statement();
-  ObjectStmt phrase_statement();
-  DeclNode robot_decl();
-  void robot_statement(std::vector<RobotStmt>& body);
-  DeclNode camera_decl();
-  void camera_statement(std::vector<CameraStmt>& body);
-  DeclNode light_decl();
-  void light_statement(std::vector<LightStmt>& body);
-  DeclNode scene_decl();
-  void scene_statement(std::vector<SceneStmt>& body);
-  DeclNode layout_decl();
-  void layout_statement(std::vector<LayoutStmt>& body);
-  LayoutStmt cells_statement();
-  LayoutStmt place_statement();
-
   QueryId query();
   QueryId query_and();
   QueryId query_not();
   QueryId add(Query node, std::initializer_list<QueryId> children);
 
-  // ---- parse_judge.cpp ----
+  // ---- parse_object.cpp ----
+  DeclNode object_decl();
+  ObjectStmt object_mesh();
+  ObjectStmt object_box();
+  ObjectStmt object_density();
+  ObjectStmt object_friction();
+  ObjectStmt object_is();
+  ObjectStmt object_maybe();
+  ObjectStmt object_seen();
+  ObjectStmt object_unseen();
+  ObjectStmt object_rest();
+  ObjectStmt object_name();
+  ObjectStmt object_phrase();
+  ObjectStmt object_attribute();
+
+  // ---- parse_robot.cpp ----
+  DeclNode robot_decl();
+  RobotStmt robot_urdf();
+  RobotStmt robot_tcp();
+  RobotStmt robot_fingers();
+  RobotStmt robot_control();
+  RobotStmt robot_reach();
+  RobotStmt robot_drive();
+  RobotStmt robot_grip();
+
+  // ---- parse_camera.cpp, parse_light.cpp ----
+  DeclNode camera_decl();
+  CameraStmt camera_mount();
+  CameraStmt camera_image();
+  CameraStmt camera_lens();
+  DeclNode light_decl();
+  LightStmt light_ambient();
+  LightStmt light_sun();
+
+  // ---- parse_scene.cpp ----
+  DeclNode scene_decl();
+  SceneStmt scene_robot();
+  SceneStmt scene_joints();
+  SceneStmt scene_surface();
+  SceneStmt scene_fixture();
+  SceneStmt scene_backdrop();
+  SceneStmt scene_camera();
+  SceneStmt scene_light();
+  SceneStmt scene_physics();
+
+  // ---- parse_layout.cpp ----
+  DeclNode layout_decl();
+  LayoutStmt layout_cells();
+  LayoutStmt layout_place();
+  LayoutStmt layout_orient();
+  LayoutStmt layout_jitter();
+  LayoutStmt layout_drop();
+  LayoutStmt layout_expect();
+
+  // ---- parse_template.cpp, parse_predicate.cpp, parse_metrics.cpp ----
   DeclNode template_decl();
   DeclNode predicate_decl();
   Param param();
   DeclNode metrics_decl();
   MetricStmt metric();
   Readout readout();
+
+  // ---- parse_expr.cpp ----
   ExprId expr();
   ExprId expr_and();
   ExprId expr_not();
@@ -150,21 +205,34 @@ class Parser {
   Argument argument();
   ExprId add(Expr node, std::initializer_list<ExprId> children);
   ExprId add_binary(BinaryOp op, const Span& op_span, ExprId left, ExprId right);
+
+  // ---- parse_body_set.cpp ----
   SetExprId set_expr();
   SetExprId set_operand();
   SetExprId add(SetExpr node, std::initializer_list<SetExprId> children);
+  std::optional<SetOp> set_operator();
 
   // ---- parse_task.cpp ----
   DeclNode task_decl();
   DeclNode variant_decl();
   DeclNode variants_decl();
   std::vector<TaskStmt> task_body();
-  void task_statement(std::vector<TaskStmt>& body);
+  template <TaskField field>
+  TaskStmt task_field();
+  TaskStmt task_camera();
+  TaskStmt task_distractors();
+  TaskStmt task_say();
+  TaskStmt task_refer();
+  TaskStmt task_pose();
+  TaskStmt task_horizon();
+  TaskStmt task_metric();
+
+  // ---- parse_derive.cpp ----
   DeclNode derive_decl();
   Binder binder();
+
+  // ---- parse_set.cpp ----
   DeclNode set_decl();
-  DeclNode suite_decl();
-  void suite_statement(std::vector<SuiteStmt>& body);
   TaskSetId task_set();
   TaskSetId task_set_without_where();
   TaskSetId task_set_operand();
@@ -173,10 +241,17 @@ class Parser {
   CondId cond_and();
   CondId cond_not();
   CondId add(Cond node, std::initializer_list<CondId> children);
-  std::optional<SetOp> set_operator();
+
+  // ---- parse_suite.cpp ----
+  DeclNode suite_decl();
+  SuiteStmt suite_tasks();
+  SuiteStmt suite_prefix();
+  SuiteStmt suite_seeds();
+  SuiteStmt suite_expect();
 
   // ---- parser.cpp ----
   void declaration();
+  DeclNode use_decl();
   DeclNode declaration_node();
   std::vector<std::string_view> docs_before() const;
   Allow allow();
@@ -242,17 +317,47 @@ class NestingGuard {
 };
 
 template <typename Statement>
-void Parser::block(std::initializer_list<std::string_view> statements, Statement statement) {
+void Parser::block(const Begins& begins, Statement statement) {
   if (!begin_block()) return;
   const std::uint32_t open = prev_;
   std::vector<std::uint32_t> outer_parens;
   outer_parens.swap(open_parens_);
-  while (!end_block(statements, open)) {
+  while (!end_block(begins, open)) {
     const std::uint32_t start = pos_;
     statement();
     end_statement(start);
   }
   open_parens_.swap(outer_parens);
+}
+
+template <typename Stmt>
+std::vector<Stmt> Parser::body(std::span<const Rule<Stmt>> rules, std::string_view noun,
+                               Stmt (Parser::*other)()) {
+  std::vector<Stmt> out;
+  const auto begins = [&](std::string_view word) {
+    return other != nullptr || std::ranges::find(rules, word, &Rule<Stmt>::word) != rules.end();
+  };
+  block(begins, [&] {
+    const std::uint32_t begin = mark();
+    const auto rule = std::ranges::find_if(
+        rules, [this](const Rule<Stmt>& known) { return accept_word(known.word); });
+    Stmt stmt;
+    if (rule != rules.end()) {
+      stmt = (this->*rule->parse)();
+    } else if (other != nullptr) {
+      stmt = (this->*other)();
+    } else {
+      fail_expected(noun);
+    }
+    if (failed_) return;
+    if constexpr (requires { stmt.span; }) {
+      stmt.span = since(begin);
+    } else {
+      std::visit([&](auto& node) { node.span = since(begin); }, stmt);
+    }
+    out.push_back(std::move(stmt));
+  });
+  return out;
 }
 
 template <typename Node, typename Id>

@@ -14,7 +14,7 @@ struct UnitText {
   std::string_view text;
 };
 constexpr auto kUnits = std::to_array<UnitText>({
-#define PROBE_UNIT(id, text) {Unit::id, text},
+#define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) {Unit::id, text},
 #include "compiler/syntax/units.def"
 });
 

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/syntax/words.h"
+
 namespace probe::editor {
 namespace {
 
@@ -19,42 +21,38 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-// The longest first, for an alternative that matches early hides those behind it.
+// The longest first, for an alternative that matches early hides those behind it; each once.
 std::string alternatives(std::vector<std::string_view> words) {
-  std::stable_sort(words.begin(), words.end(),
-                   [](std::string_view a, std::string_view b) { return a.size() > b.size(); });
+  std::ranges::sort(words, [](std::string_view a, std::string_view b) {
+    return a.size() != b.size() ? a.size() > b.size() : a < b;
+  });
+  words.erase(std::unique(words.begin(), words.end()), words.end());
   std::string out;
   for (const std::string_view word : words) out += (out.empty() ? "" : "|") + escaped(word);
   return out;
 }
 
 std::string declarations() {
-  return alternatives({
-#define PROBE_DECL(word) #word,
-#include "compiler/syntax/keywords.def"
-  });
+  const auto words = syntax::declaration_words();
+  return alternatives({words.begin(), words.end()});
 }
 
 std::string statements() {
-  return alternatives({
-#define PROBE_STATEMENT(word) #word,
-#include "compiler/syntax/keywords.def"
-      // These start declarations too.
-      "scene", "layout", "metrics", "light", "camera", "robot", "set"});
+  std::vector<std::string_view> words;
+  for (const syntax::StatementWord& statement : syntax::statement_words())
+    words.push_back(statement.word);
+  return alternatives(std::move(words));
 }
 
 std::string words() {
-  std::vector<std::string_view> all = {
-#define PROBE_WORD(word) #word,
-#include "compiler/syntax/keywords.def"
-  };
-  all.erase(std::remove(all.begin(), all.end(), "x"), all.end());  // a word between numbers only
+  std::vector<std::string_view> all = syntax::inner_words();
+  std::erase(all, "x");  // a word between numbers only
   return alternatives(std::move(all));
 }
 
 std::string units() {
   return alternatives({
-#define PROBE_UNIT(id, text) text,
+#define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) text,
 #include "compiler/syntax/units.def"
   });
 }

@@ -10,6 +10,9 @@
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "compiler/syntax/lexer.h"
+#include "compiler/syntax/words.h"
+#include "runtime/plan/axes.h"
+#include "runtime/plan/readouts.h"
 
 using namespace probe;
 namespace fs = std::filesystem;
@@ -82,15 +85,16 @@ TEST_CASE("every example of the reference and of the library's page compiles") {
 
 TEST_CASE("the reference names every declaration, unit, measure and code") {
   const std::string page = read(kRoot / "dsl/reference.md");
-  for (const std::string_view word : {
-#define PROBE_DECL(word) std::string_view(#word),
-#define PROBE_STATEMENT(word) std::string_view(#word),
-#include "compiler/syntax/keywords.def"
-       }) {
+  for (const std::string_view word : syntax::declaration_words())
     CHECK_MESSAGE(page.find(word) != std::string::npos, word);
-  }
+  for (const syntax::StatementWord& statement : syntax::statement_words())
+    CHECK_MESSAGE(page.find(statement.word) != std::string::npos, statement.word);
+  for (const plan::ReadoutInfo& readout : plan::kReadoutTable)
+    CHECK_MESSAGE(page.find("`" + std::string(readout.words)) != std::string::npos, readout.words);
+  for (const plan::AxisInfo& axis : plan::kAxisTable)
+    CHECK_MESSAGE(page.find(axis.name) != std::string::npos, axis.name);
   for (const std::string_view unit : {
-#define PROBE_UNIT(id, text) std::string_view(text),
+#define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) std::string_view(text),
 #include "compiler/syntax/units.def"
        }) {
     CHECK_MESSAGE(page.find(unit) != std::string::npos, unit);

@@ -54,12 +54,13 @@ TEST_CASE("what is no plain decimal is refused") {
 
 TEST_CASE("every unit of the grammar has a meaning") {
   const syntax::Unit units[] = {
-#define PROBE_UNIT(id, text) syntax::Unit::id,
+#define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) syntax::Unit::id,
 #include "compiler/syntax/units.def"
   };
   for (const syntax::Unit unit : units) {
     CAPTURE(syntax::to_text(unit));
     CHECK(is_unit(syntax::to_text(unit)));
+    CHECK(syntax::unit_from_text(syntax::to_text(unit)) == unit);
   }
 }
 

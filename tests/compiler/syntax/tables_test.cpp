@@ -9,6 +9,9 @@
 
 #include "compiler/diag/diagnostic.h"
 #include "compiler/syntax/lexer.h"
+#include "compiler/syntax/words.h"
+#include "runtime/plan/axes.h"
+#include "runtime/plan/readouts.h"
 
 using namespace probe;
 using namespace probe::syntax;
@@ -47,24 +50,64 @@ std::set<std::string> quoted_words(const std::string& text) {
 }  // namespace
 
 TEST_CASE("the keyword table holds exactly the words of the grammar") {
-  const std::set<std::string> table = {
-#define PROBE_DECL(word) #word,
-#define PROBE_STATEMENT(word) #word,
-#define PROBE_WORD(word) #word,
-#include "compiler/syntax/keywords.def"
-  };
+  std::set<std::string> table;
+  for (const std::string_view word : declaration_words()) table.emplace(word);
+  for (const StatementWord& statement : statement_words()) table.emplace(statement.word);
+  for (const std::string_view word : inner_words()) table.emplace(word);
   const std::string grammar = read(kDsl / "grammar.ebnf");
   const std::size_t rules = grammar.find("(* ---- file");
   REQUIRE(rules != std::string::npos);
   const std::set<std::string> words = quoted_words(grammar.substr(rules));
   for (const std::string& word : words)
     CHECK_MESSAGE(table.count(word) == 1, "not in keywords.def: ", word);
-  const std::set<std::string> conventions = {
-      "appearance", "commonsense"};  // axes with a meaning, not words of a rule
+  std::set<std::string> conventions;  // axes with a meaning, not words of a rule
+  for (const plan::AxisInfo& axis : plan::kAxisTable) {
+    if (axis.is_phrase) conventions.emplace(axis.word());
+  }
   for (const std::string& word : table) {
     if (conventions.count(word) == 0)
       CHECK_MESSAGE(words.count(word) == 1, "not in grammar.ebnf: ", word);
   }
+}
+
+namespace {
+
+// The right side of a rule, by its name at the beginning of a line.
+std::string rule_of(const std::string& grammar, const std::string& name) {
+  const std::size_t begin = grammar.find("\n" + name + " ");
+  REQUIRE_MESSAGE(begin != std::string::npos, name);
+  return grammar.substr(begin, grammar.find(" ;", begin) - begin);
+}
+
+}  // namespace
+
+TEST_CASE("each block of the grammar has the statements of its block in the table") {
+  const std::string grammar = read(kDsl / "grammar.ebnf");
+  const std::pair<Block, const char*> blocks[] = {
+      {Block::kDataset, "dataset"},  {Block::kObject, "object_st"}, {Block::kRobot, "robot_st"},
+      {Block::kCamera, "camera_st"}, {Block::kLight, "light_st"},   {Block::kScene, "scene_st"},
+      {Block::kLayout, "layout_st"}, {Block::kTask, "task_st"},     {Block::kSuite, "suite_st"}};
+  std::size_t checked = 0;
+  for (const auto& [block, rule] : blocks) {
+    const std::set<std::string> words = quoted_words(rule_of(grammar, rule));
+    for (const StatementWord& statement : statement_words()) {
+      if (statement.block != block) continue;
+      CHECK_MESSAGE(words.contains(std::string(statement.word)), rule, ": ", statement.word);
+      CHECK(find_statement(block, statement.word) == &statement);
+      ++checked;
+    }
+  }
+  CHECK(checked == statement_words().size());
+}
+
+TEST_CASE("the read-outs of the grammar are those of the table") {
+  const std::string rule = rule_of(read(kDsl / "grammar.ebnf"), "readout");
+  std::set<std::string> words;
+  for (const plan::ReadoutInfo& readout : plan::kReadoutTable) {
+    std::istringstream text{std::string(readout.words)};
+    for (std::string word; text >> word;) words.insert(word);
+  }
+  CHECK(quoted_words(rule) == words);
 }
 
 TEST_CASE("the units of the grammar are those of the table") {

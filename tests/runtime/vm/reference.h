@@ -168,9 +168,20 @@ class Reference {
         return truth(x(in.a)[0] != 0 || x(in.b)[0] != 0);
       case kNOT:
         return truth(x(in.a)[0] == 0);
-      default:
+      case kONCE:
+      case kALWAYS:
+      case kHOLD:
+      case kCOUNT:
+      case kFIRST:
+      case kMAXR:
+      case kMINR:
         return monitor(in, now);
+      case kEND:
+      case kEMITB:
+      case kEMITR:
+        break;  // no results
     }
+    return {NAN, NAN, NAN};
   }
 
   // What the monitor's operand was at every step up to now.

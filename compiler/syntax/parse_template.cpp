@@ -1,5 +1,5 @@
-// Slots inside a string: "put {the source} on {target: dishware}". The spans point into the string
-// as written.
+// Templates of instructions, and the slots inside a string: "put {the source} on {target:
+// dishware}". The spans of slots point into the string as written.
 #include <algorithm>
 
 #include "compiler/syntax/parser_impl.h"
@@ -65,6 +65,15 @@ class SlotReader {
 };
 
 }  // namespace
+
+DeclNode Parser::template_decl() {
+  advance();
+  TemplateDecl out;
+  out.name = name();
+  out.frame = optional_name_after("frame");
+  out.text = template_text();
+  return out;
+}
 
 TemplateText Parser::template_text() {
   TemplateText out;

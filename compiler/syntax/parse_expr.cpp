@@ -1,20 +1,10 @@
-// Rules of language and judgement: templates, predicates, metrics, expressions over bodies.
+// Expressions of predicates and metrics.
 #include <algorithm>
-#include <array>
 
 #include "compiler/syntax/parser_impl.h"
 
 namespace probe::syntax {
 namespace {
-
-struct TypeWord {
-  std::string_view word;
-  ParamType type;
-};
-constexpr TypeWord kTypes[] = {{"object", ParamType::kObject}, {"body", ParamType::kBody},
-                               {"length", ParamType::kLength}, {"angle", ParamType::kAngle},
-                               {"time", ParamType::kTime},     {"impulse", ParamType::kImpulse},
-                               {"number", ParamType::kNumber}};
 
 struct Comparison {
   TokenKind token;
@@ -26,93 +16,6 @@ constexpr Comparison kComparisons[] = {
     {TokenKind::kEqual, BinaryOp::kEqual},     {TokenKind::kNotEqual, BinaryOp::kNotEqual}};
 
 }  // namespace
-
-DeclNode Parser::template_decl() {
-  advance();
-  TemplateDecl out;
-  out.name = name();
-  out.frame = optional_name_after("frame");
-  out.text = template_text();
-  return out;
-}
-
-DeclNode Parser::predicate_decl() {
-  advance();
-  PredicateDecl out;
-  out.name = name();
-  set_role(TokenRole::kTightParen);
-  expect(TokenKind::kLeftParen);
-  if (!at(TokenKind::kRightParen)) out.params = comma_list([this] { return param(); });
-  expect(TokenKind::kRightParen);
-  expect(TokenKind::kAssign);
-  skip_newlines();
-  out.body = expr();
-  return out;
-}
-
-Param Parser::param() {
-  Param out;
-  const std::uint32_t begin = mark();
-  out.name = name();
-  expect(TokenKind::kColon);
-  out.type_span = here();
-  bool known = false;
-  for (const TypeWord& type : kTypes) {
-    if (!known && accept_word(type.word)) {
-      out.type = type.type;
-      known = true;
-    }
-  }
-  if (!known) {
-    expected_count_ = 0;
-    for (const TypeWord& type : kTypes) at_word(type.word);
-    fail_expected("a type");
-  }
-  if (accept(TokenKind::kAssign)) out.default_value = expr();
-  out.span = since(begin);
-  return out;
-}
-
-DeclNode Parser::metrics_decl() {
-  advance();
-  MetricsDecl out;
-  out.name = name();
-  out.like = optional_name_after("like");
-  block({}, [&] {
-    MetricStmt stmt = metric();
-    if (!failed_) out.body.push_back(std::move(stmt));
-  });
-  return out;
-}
-
-MetricStmt Parser::metric() {
-  MetricStmt out;
-  const std::uint32_t begin = mark();
-  out.name = name();
-  expect(TokenKind::kAssign);
-  out.readout = readout();
-  out.span = since(begin);
-  return out;
-}
-
-Readout Parser::readout() {
-  Readout out;
-  const std::uint32_t begin = mark();
-  const auto found = std::ranges::find_if(
-      plan::kReadoutTable, [this](const plan::ReadoutInfo& info) { return accept_words(info.words); });
-  if (found == plan::kReadoutTable.end()) {
-    fail_expected("a read-out");
-  } else {
-    out.kind = found->readout;
-  }
-  out.kind_span = since(begin);
-  out.expr = expr();
-  out.span = since(begin);
-  return out;
-}
-
-// ---- expressions
-// ----------------------------------------------------------------------------------------------------
 
 ExprId Parser::add(Expr node, std::initializer_list<ExprId> children) {
   return add_node(file_.exprs, expr_heights_, std::move(node), children);
@@ -174,7 +77,7 @@ ExprId Parser::quantified(Quantifier quantifier, std::uint32_t begin) {
   if (at(TokenKind::kLeftBrace)) {
     ExprBlock out{quantifier, {}};
     std::uint16_t height = 0;
-    block({}, [&] {
+    block(any_name, [&] {
       const ExprId condition = expr();
       if (failed_) return;
       height = std::max(height, expr_heights_[condition.value]);
@@ -305,49 +208,6 @@ Argument Parser::argument() {
   out.value = expr();
   out.span = since(begin);
   return out;
-}
-
-// ---- sets of bodies
-// -------------------------------------------------------------------------------------------------
-
-SetExprId Parser::add(SetExpr node, std::initializer_list<SetExprId> children) {
-  return add_node(file_.set_exprs, set_expr_heights_, std::move(node), children);
-}
-
-std::optional<SetOp> Parser::set_operator() {
-  if (accept(TokenKind::kPipe)) return SetOp::kUnion;
-  if (accept(TokenKind::kAmpersand)) return SetOp::kIntersection;
-  if (accept(TokenKind::kMinus)) return SetOp::kDifference;
-  return std::nullopt;
-}
-
-SetExprId Parser::set_expr() {
-  const std::uint32_t begin = mark();
-  SetExprId left = set_operand();
-  while (const std::optional<SetOp> op = set_operator()) {
-    const SetExprId right = set_operand();
-    if (failed_) return {};
-    left = add(SetExpr{since(begin), SetBinary{*op, left, right}}, {left, right});
-  }
-  return left;
-}
-
-SetExprId Parser::set_operand() {
-  const NestingGuard guard(*this);
-  if (!guard.ok) return {};
-  const std::uint32_t begin = mark();
-  if (accept(TokenKind::kLeftParen)) {
-    const SetExprId inner = set_expr();
-    expect(TokenKind::kRightParen);
-    return inner;
-  }
-  if (at(TokenKind::kLeftBrace)) {
-    set_role(TokenRole::kTightBrace);
-    SetNames out{braced_names()};
-    return add(SetExpr{since(begin), std::move(out)}, {});
-  }
-  const Name only = name();
-  return add(SetExpr{since(begin), SetName{only}}, {});
 }
 
 }  // namespace probe::syntax

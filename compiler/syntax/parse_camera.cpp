@@ -1,0 +1,43 @@
+// Cameras.
+#include "compiler/syntax/parser_impl.h"
+
+namespace probe::syntax {
+
+DeclNode Parser::camera_decl() {
+  static constexpr Rule<CameraStmt> kRules[] = {
+#define PROBE_IN_CAMERA(word, parse, repeat) {#word, &Parser::parse},
+#include "compiler/syntax/keywords.def"
+  };
+  advance();
+  CameraDecl out;
+  out.name = name();
+  out.like = optional_name_after("like");
+  out.body = body<CameraStmt>(kRules, "a statement of `camera`");
+  return out;
+}
+
+CameraStmt Parser::camera_mount() {
+  MountStmt out;
+  out.frame = path();
+  expect_word("at");
+  out.at = point();
+  out.kind = accept_word("quat") ? MountKind::kQuat : MountKind::kLook;
+  if (out.kind == MountKind::kLook) expect_word("look");
+  out.direction = point();
+  return out;
+}
+
+CameraStmt Parser::camera_image() {
+  ImageStmt out;
+  out.width = integer();
+  expect_word("x");
+  out.height = integer();
+  if (accept_word("samples")) out.samples = integer();
+  return out;
+}
+
+CameraStmt Parser::camera_lens() {
+  return LensStmt{{}, comma_list([this] { return quantity(); })};
+}
+
+}  // namespace probe::syntax

@@ -1,0 +1,53 @@
+// Derivations: a task for each of what is bound.
+#include "compiler/syntax/parser_impl.h"
+
+namespace probe::syntax {
+
+DeclNode Parser::derive_decl() {
+  advance();
+  DeriveDecl out;
+  out.name = template_text();
+  expect_word("for");
+  out.binders = comma_list([this] { return binder(); });
+  if (accept_word("where")) out.where = cond();
+  out.body = task_body();
+  return out;
+}
+
+Binder Parser::binder() {
+  Binder out;
+  const std::uint32_t begin = mark();
+  out.name = name();
+  expect_word("in");
+  const bool clear = at_word("clear") && text_ahead(1) == "phrases" && text_ahead(3) == "of";
+  if (clear ||
+      (at_word("phrases") && kind_ahead(1) == TokenKind::kIdent && text_ahead(2) == "of")) {
+    advance();
+    if (clear) advance();
+    BinderPhrases phrases;
+    phrases.clear = clear;
+    phrases.axis = name();
+    expect_word("of");
+    phrases.role = role();
+    out.over = phrases;
+  } else if (at_word("templates") && text_ahead(1) == "of") {
+    advance();
+    advance();
+    out.over = BinderTemplates{name()};
+  } else if (at_word("distractors") && text_ahead(1) == "of") {
+    advance();
+    advance();
+    out.over = BinderDistractors{name()};
+  } else if (at_word("objects") && kind_ahead(1) == TokenKind::kLeftParen) {
+    advance();
+    advance();
+    out.over = BinderObjects{names()};
+    expect(TokenKind::kRightParen);
+  } else {
+    out.over = BinderTasks{task_set_without_where()};
+  }
+  out.span = since(begin);
+  return out;
+}
+
+}  // namespace probe::syntax
