@@ -18,7 +18,7 @@ constexpr double kMostOff = 0.005;       // m
 constexpr double kMostPart = 0.1;        // of the mesh's side
 constexpr double kLeastCounted = 0.001;  // m, below which a part of a thin side is no matter
 
-std::string centimetres(double metres) {
+std::string exact_centimetres(double metres) {
   // To a micrometre; adding 0 turns -0 into 0.
   return fmt::format("{}cm", std::round(metres * 1e6) / 1e4 + 0.0);
 }
@@ -44,14 +44,15 @@ bool is_centred(const Bounds& bounds) {
 }
 
 std::string sides(const std::array<double, 3>& low, const std::array<double, 3>& high) {
-  return centimetres(high[0] - low[0]) + " x " + centimetres(high[1] - low[1]) + " x " +
-         centimetres(high[2] - low[2]);
+  return exact_centimetres(high[0] - low[0]) + " x " + exact_centimetres(high[1] - low[1]) + " x " +
+         exact_centimetres(high[2] - low[2]);
 }
 
 std::string box_statement(const Bounds& bounds) {
   if (is_centred(bounds)) return "box " + sides(bounds.low, bounds.high);
   const auto corner = [](const std::array<double, 3>& at) {
-    return "(" + centimetres(at[0]) + ", " + centimetres(at[1]) + ", " + centimetres(at[2]) + ")";
+    return "(" + exact_centimetres(at[0]) + ", " + exact_centimetres(at[1]) + ", " +
+           exact_centimetres(at[2]) + ")";
   };
   return "box " + corner(bounds.low) + " .. " + corner(bounds.high);
 }

@@ -13,9 +13,6 @@
 
 namespace probe::report {
 
-// What counts as a real difference.
-inline constexpr double kAlpha = 0.05;
-
 // k of n valid episodes, with the interval of clustered_rate.
 struct Estimate {
   stats::Count count;
