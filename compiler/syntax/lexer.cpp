@@ -214,10 +214,10 @@ class Lexer {
       Diagnostic* error = errors_.report(Code::P0101, span(at_, at_ + bytes),
                                          "found `" + seen + "`, expected a digit before the point");
       if (error != nullptr) error->fix_by("write `0" + seen + "`", span(at_, at_), "0");
-      const std::size_t begin = at_;
+      const std::size_t begin = at_, first = tokens_.size();
       ++at_;
-      number();
-      tokens_.back().begin = static_cast<std::uint32_t>(begin);
+      number();  // of `.5x` two tokens
+      tokens_[first].begin = static_cast<std::uint32_t>(begin);
       return;
     }
     push(TokenKind::kDot, 1);

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "compiler/syntax/lexer.h"
+
 #include <numbers>
 
 #include "compiler/syntax/ast.h"
