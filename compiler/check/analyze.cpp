@@ -4,7 +4,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "compiler/define/passes.h"
+#include "compiler/check/check.h"
+#include "compiler/define/define.h"
 #include "compiler/names/allow.h"
 #include "compiler/names/repeats.h"
 
@@ -45,36 +46,17 @@ bool loses_names(const std::vector<const syntax::File*>& files, const Diagnostic
 
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
               const std::string& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots) {
-  Model model;
-  Diagnostics found;
-  Context context{.sources = sources,
-                  .diagnostics = found,
-                  .asset_root = asset_root,
-                  .model = model,
-                  .symbols = {},
-                  .files = files,
-                  .was_broken = diagnostics.has_errors()};
-  collect_names(context);
-  check_repeats(context);
-  define_catalog(context);
-  define_stage(context);
-  define_layouts(context);
-  define_templates(context);
-  define_judgement(context);
-  define_tasks(context);
-  check_comparisons(context);
-  check_language(context);
-  check_starts(context);
-  check_metrics(context);
-  define_sets(context);
-  define_suites(context);
-  check_tags(context);
-  check_magnitudes(context);
-  check_boxes(context);
   if (roots.empty()) {
     for (const syntax::File* file : files) roots.push_back(file->id);
   }
-  check_unused(context, roots);
+  Model model;
+  Diagnostics found;
+  Reporter reporter{found, diagnostics.has_errors()};
+  Context context{sources, reporter, found, asset_root, model, files};
+  collect_names(files, context.symbols, found);
+  check_repeats(context);
+  define_model(context);
+  check_model({model, context.symbols, sources, files, roots, asset_root}, reporter);
   const bool lacks_names =
       std::any_of(diagnostics.items().begin(), diagnostics.items().end(),
                   [&](const Diagnostic& item) { return loses_names(files, item); });

@@ -10,9 +10,11 @@
 
 namespace probe::sema {
 
-// `files`: a file after the files it uses. `asset_root` is where URDF files are looked up. `roots`:
-// the files named by the user rather than by `use`; empty means all. The model means something only
-// when `diagnostics` has no errors.
+// In: trees, a file after the files it uses. Out: the model, which means something only when
+// `diagnostics` has no errors. The order: names are collected, repeats refused, the model defined
+// (define/define.h), then checked (check/check.h); at last `@allow` decides what is said.
+// `asset_root` is where URDF files are looked up. `roots`: the files named by the user rather than
+// by `use`; empty means all.
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
               const std::string& asset_root, Diagnostics& diagnostics,
               std::vector<FileId> roots = {});

@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compiler/define/passes.h"
+#include "compiler/check/check.h"
 #include "compiler/geometry/mesh_bounds.h"
-#include "compiler/names/allow.h"
 
 namespace probe::sema {
 namespace {
@@ -59,19 +58,18 @@ std::string box_statement(const Bounds& bounds) {
 
 }  // namespace
 
-void check_boxes(Context& context) {
-  for (std::size_t i = 0; i < context.symbols.object_decls.size(); ++i) {
-    const Span& decl = context.symbols.object_decls[i].decl->span;
-    const Object& object = context.model.objects[static_cast<ObjectId>(i)];
+void check_boxes(const Model& model, const std::string& asset_root, Reporter& reporter) {
+  for (const Object& object : model.objects) {
+    const Span& decl = object.decl_span;
     const bool own_box = !object.box_span.is_none() && is_within(object.box_span, decl);
     const bool own_mesh = !object.mesh.span.is_none() && is_within(object.mesh.span, decl);
     // A copy of both is as right or wrong as the original, which is looked at itself.
     if (!object.box_is_read || object.mesh.span.is_none() || (!own_box && !own_mesh)) continue;
-    const auto mesh = bounds_of_mesh(context.asset_root, object.mesh.text);
+    const auto mesh = bounds_of_mesh(asset_root, object.mesh.text);
     if (!mesh || !differs(object, *mesh)) continue;
     const std::string box = box_statement(*mesh);
-    Diagnostic& found = context.report(Code::P0506, own_box ? object.box_span : object.mesh.span,
-                                       "the box of `" + object.name + "` is not that of its mesh");
+    Diagnostic& found = reporter.report(Code::P0506, own_box ? object.box_span : object.mesh.span,
+                                        "the box of `" + object.name + "` is not that of its mesh");
     const std::string declared = "declared " + sides(object.box_min, object.box_max);
     const std::string measured = "the mesh measures " + sides(mesh->low, mesh->high);
     if (own_box) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "compiler/define/passes.h"
+#include "compiler/check/check.h"
 
 namespace probe::sema {
 namespace {
@@ -32,7 +32,7 @@ constexpr Band kFocal{10, 20'000, "10px to 20000px"};
 constexpr Band kTurn{0, 6.2832, "at most a full turn"};
 
 struct Magnitudes {
-  Context& context;
+  Reporter& reporter;
 
   void check(const syntax::Quantity& written, const Band& band, std::string_view what) {
     if (written.unit == syntax::Unit::kUnknown) return;
@@ -43,9 +43,9 @@ struct Magnitudes {
       return std::abs(value) >= band.least && std::abs(value) <= band.most;
     };
     if (fits(quantity->si())) return;
-    Diagnostic& slip = context.report(Code::P0303, written.span,
-                                      "`" + digits + std::string(to_text(written.unit)) +
-                                          "` is implausible for " + std::string(what));
+    Diagnostic& slip = reporter.report(Code::P0303, written.span,
+                                       "`" + digits + std::string(to_text(written.unit)) +
+                                           "` is implausible for " + std::string(what));
     slip.point(std::string("usually ") + band.usual);
     // Water is 1 g/cm3 and 1000 kg/m3: the usual slip.
     if (quantity->dimension == dim::kDensity) {
@@ -75,7 +75,7 @@ struct Magnitudes {
     const double nearest = std::round(eighths);
     if (nearest < 1 || nearest > 8 || std::abs(eighths - nearest) > 5e-3) return;
     const std::string digits = (written.negative ? "-" : "") + std::string(written.digits);
-    context.report(Code::P0303, written.span, "`" + digits + "deg` is an implausible turn")
+    reporter.report(Code::P0303, written.span, "`" + digits + "deg` is an implausible turn")
         .point("in radians it would be " + fmt::format("{:g}", nearest * 45) + "deg")
         .help("did you mean `" + digits + "rad`?");
   }
@@ -147,20 +147,20 @@ struct Magnitudes {
 
 }  // namespace
 
-void check_magnitudes(Context& context) {
-  if (context.has_errors()) return;  // a wrong dimension has no size
-  Magnitudes check{context};
-  check.all(context.symbols.object_decls);
-  check.all(context.symbols.robot_decls);
-  check.all(context.symbols.camera_decls);
-  check.all(context.symbols.scene_decls);
-  check.all(context.symbols.layout_decls);
-  for (const DeclaredTask& task : context.symbols.task_decls) {
+void check_magnitudes(const Symbols& symbols, Reporter& reporter) {
+  if (reporter.has_errors()) return;  // a wrong dimension has no size
+  Magnitudes check{reporter};
+  check.all(symbols.object_decls);
+  check.all(symbols.robot_decls);
+  check.all(symbols.camera_decls);
+  check.all(symbols.scene_decls);
+  check.all(symbols.layout_decls);
+  for (const DeclaredTask& task : symbols.task_decls) {
     // The statements of a `derive` are those of all its tasks.
     if (task.derived) continue;
     for (const auto& stmt : *task.body) std::visit(check, stmt);
   }
-  for (const auto& derive : context.symbols.derive_decls) {
+  for (const auto& derive : symbols.derive_decls) {
     for (const auto& stmt : derive.node->body) std::visit(check, stmt);
   }
 }

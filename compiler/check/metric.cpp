@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "compiler/define/passes.h"
+#include "compiler/check/check.h"
 #include "runtime/plan/readouts.h"
 
 namespace probe::sema {
@@ -27,9 +27,10 @@ struct HoldFinder {
 
 // P0605: read-outs that mean something else than they seem to.
 struct LatchLint {
-  Context& context;
+  const Model& model;
+  Reporter& reporter;
 
-  const ExprNode& node(ExprRef ref) const { return context.model.exprs.nodes[ref]; }
+  const ExprNode& node(ExprRef ref) const { return model.exprs.nodes[ref]; }
 
   // A comparison of contact impulses, which come and go within a step.
   bool is_pulse(ExprRef ref) const {
@@ -44,7 +45,7 @@ struct LatchLint {
       case ExprOp::kAny:
         return is_pulse(at.args[0]);
       case ExprOp::kCall:
-        return is_pulse(context.model.predicates[at.predicate].body);
+        return is_pulse(model.predicates[at.predicate].body);
       default:
         return false;
     }
@@ -55,17 +56,17 @@ struct LatchLint {
     const std::string name = "metric `" + metric.name + "`";
     const bool once = metric.readout == plan::Readout::kOnce;
     if (metric.readout == plan::Readout::kAtEnd && is_pulse(metric.expr)) {
-      context
+      reporter
           .report(Code::P0605, metric.readout_span, name + " reads a contact at the last step only")
           .help("a contact comes and goes: `once` keeps it");
     } else if (once && top.op == ExprOp::kNot && node(top.args[0]).span != top.span) {  // not `!=`
-      context
+      reporter
           .report(Code::P0605, metric.readout_span,
                   name + " is true as soon as one step lacks its condition")
           .help("for a condition that never holds write `always not`");
     } else if ((once || metric.readout == plan::Readout::kAlways) &&
                (top.op == ExprOp::kOnce || top.op == ExprOp::kAlways)) {
-      context.report(Code::P0605, metric.readout_span, name + " latches what is latched already")
+      reporter.report(Code::P0605, metric.readout_span, name + " latches what is latched already")
           .help("one latch is enough: with `at end`, the inner one is read at the last step");
     }
   }
@@ -84,63 +85,63 @@ std::string words_of_truths() {
 }
 
 // `success` is what an episode is scored by: a condition, in every task.
-void check_success(Context& context, const Task& task,
+void check_success(const Model& model, Reporter& reporter, const Task& task,
                    std::set<std::pair<std::uint32_t, std::uint32_t>>& reported) {
   const auto success = std::find_if(task.judged.begin(), task.judged.end(),
                                     [](const Metric& metric) { return metric.name == "success"; });
   // What a copy lacks, the original lacks.
   MetricsId id = task.metrics;
   const auto lacks_success = [&](MetricsId at) {
-    const auto& items = context.model.metrics[at].items;
+    const auto& items = model.metrics[at].items;
     return std::none_of(items.begin(), items.end(),
                         [](const Metric& metric) { return metric.name == "success"; });
   };
-  for (MetricsId like = context.model.metrics[id].like; like != MetricsId::kNone;
-       like = context.model.metrics[like].like) {
+  for (MetricsId like = model.metrics[id].like; like != MetricsId::kNone;
+       like = model.metrics[like].like) {
     if (lacks_success(like)) id = like;
   }
-  const Metrics& metrics = context.model.metrics[id];
+  const Metrics& metrics = model.metrics[id];
   const Span& place = success == task.judged.end() ? metrics.span : success->span;
   const bool is_condition = success != task.judged.end() && plan::info(success->readout).is_truth();
   if (is_condition || !reported.insert({place.file.value, place.begin}).second) return;
   if (success == task.judged.end()) {
-    context.report(Code::P0206, place, "metrics `" + metrics.name + "` have no `success`")
+    reporter.report(Code::P0206, place, "metrics `" + metrics.name + "` have no `success`")
         .label(task.span, "judged by them")
         .help("an episode is scored by `success = at end ...`");
   } else {
-    context.report(Code::P0601, success->readout_span, "expected `success` to be true or false")
+    reporter.report(Code::P0601, success->readout_span, "expected `success` to be true or false")
         .help("an episode is scored by it: " + words_of_truths() + " a condition");
   }
 }
 
 }  // namespace
 
-void check_metrics(Context& context) {
+void check_metrics(const Model& model, Reporter& reporter) {
   // A metric that is copied with `like` is looked at where it stands.
   std::set<std::pair<std::uint32_t, std::uint32_t>> looked_at;
   const auto lint = [&](const Metric& metric) {
     if (looked_at.insert({metric.span.file.value, metric.span.begin}).second)
-      LatchLint{context}.check(metric);
+      LatchLint{model, reporter}.check(metric);
   };
-  for (const Metrics& metrics : context.model.metrics) {
+  for (const Metrics& metrics : model.metrics) {
     for (const Metric& metric : metrics.items) lint(metric);
   }
-  for (const Task& task : context.model.tasks) {
+  for (const Task& task : model.tasks) {
     for (const Metric& metric : task.overrides) lint(metric);
   }
   std::set<std::pair<ExprRef, std::uint64_t>> reported;
   std::set<std::pair<std::uint32_t, std::uint32_t>> without_success;
-  for (const Task& task : context.model.tasks) {
+  for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
-    const About about(context, task.decl_span);
-    check_success(context, task, without_success);
+    const About about(reporter, task.decl_span);
+    check_success(model, reporter, task, without_success);
     for (const Metric& metric : task.judged) {
-      HoldFinder finder{context.model, task.horizon, {}};
+      HoldFinder finder{model, task.horizon, {}};
       finder.visit(metric.expr);
       for (const ExprRef hold : finder.too_long) {
         if (!reported.insert({hold, task.horizon}).second) continue;
-        context
-            .report(Code::P0604, context.model.exprs.nodes[hold].span,
+        reporter
+            .report(Code::P0604, model.exprs.nodes[hold].span,
                     "metric `" + metric.name + "` can never become true in `" + task.name + "`")
             .point("the horizon is " + std::to_string(task.horizon) + " steps")
             .label(task.horizon_span, "set here");

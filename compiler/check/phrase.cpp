@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <set>
 
-#include "compiler/define/passes.h"
+#include "compiler/check/check.h"
+#include "compiler/define/query.h"
 #include "compiler/define/task.h"
-#include "compiler/define/axes.h"
 #include "compiler/define/template.h"
-#include "compiler/names/allow.h"
+#include "runtime/plan/axes.h"
 
 namespace probe::sema {
 namespace {
@@ -21,11 +21,11 @@ constexpr std::size_t kMaxPromptBytes = 1000;
 using Unfit = std::set<std::pair<const Phrase*, ObjectId>>;
 
 struct TaskLanguage {
-  Context& context;
+  const Model& model;
+  Reporter& reporter;
   const Task& task;
   Unfit& unfit;
 
-  const Model& model() const { return context.model; }
   const Span& place(std::size_t role) const {
     return task.refer[role]          ? task.refer[role]->span
            : task.say_span.is_none() ? task.span
@@ -47,21 +47,21 @@ struct TaskLanguage {
       for (const std::uint32_t value : other.values[a])
         shared = shared || value == wanted.values[a][0];
       if (shared) continue;
-      const Attribute& attribute = model().attributes[static_cast<AttributeId>(a)];
+      const Attribute& attribute = model.attributes[static_cast<AttributeId>(a)];
       return attribute.name + " " + attribute.values[wanted.values[a][0]];
     }
     for (std::size_t f = 0; f < wanted.facts.size(); ++f) {
-      if (wanted.facts[f] == Truth::kYes && other.facts[f] == Truth::kNo) return model().facts[f];
+      if (wanted.facts[f] == Truth::kYes && other.facts[f] == Truth::kNo) return model.facts[f];
     }
     return {};
   }
 
   void check_phrase(std::size_t role, const Phrase& phrase, ObjectId wanted_id) const {
-    const Object& wanted = model().objects[wanted_id];
+    const Object& wanted = model.objects[wanted_id];
     const std::string quoted = "\"" + phrase.text.text + "\"";
     if (evaluate(phrase.means, wanted) != Truth::kYes) {
       if (!unfit.insert({&phrase, wanted_id}).second) return;
-      context
+      reporter
           .report(Code::P0401, place(role),
                   quoted + " does not denote `" + wanted.name + "` in `" + task.name + "`")
           .label(phrase.text.span, "means `" + phrase.means_text + "`");
@@ -70,7 +70,7 @@ struct TaskLanguage {
     std::vector<ObjectId> sure, perhaps;
     for (const ObjectId id : task.objects()) {
       if (id == wanted_id) continue;
-      const Truth truth = evaluate(phrase.means, model().objects[id]);
+      const Truth truth = evaluate(phrase.means, model.objects[id]);
       if (truth == Truth::kYes) sure.push_back(id);
       if (truth == Truth::kUnknown) perhaps.push_back(id);
     }
@@ -78,15 +78,15 @@ struct TaskLanguage {
     if (rivals.empty()) return;
     std::string names;
     for (const ObjectId id : rivals)
-      names += (names.empty() ? "`" : ", `") + model().objects[id].name + "`";
-    const Object& first = model().objects[rivals.front()];
+      names += (names.empty() ? "`" : ", `") + model.objects[id].name + "`";
+    const Object& first = model.objects[rivals.front()];
     Diagnostic& diagnostic =
         sure.empty()
-            ? context.report(Code::P0403, rivalry(role, rivals.front()),
-                             quoted + " may also denote " + names + " in `" + task.name + "`")
-            : context.report(Code::P0402, rivalry(role, rivals.front()),
-                             quoted + " denotes " + std::to_string(sure.size() + 1) +
-                                 " objects in `" + task.name + "`");
+            ? reporter.report(Code::P0403, rivalry(role, rivals.front()),
+                              quoted + " may also denote " + names + " in `" + task.name + "`")
+            : reporter.report(Code::P0402, rivalry(role, rivals.front()),
+                              quoted + " denotes " + std::to_string(sure.size() + 1) +
+                                  " objects in `" + task.name + "`");
     diagnostic.point("also `" + phrase.means_text + "`: " + names)
         .label(phrase.text.span, "meant for `" + wanted.name + "`");
     if (diagnostic.primary != place(role)) diagnostic.label(place(role), "said here");
@@ -98,10 +98,10 @@ struct TaskLanguage {
   }
 
   void check_name(std::size_t role, ObjectId wanted_id) const {
-    const Object& wanted = model().objects[wanted_id];
+    const Object& wanted = model.objects[wanted_id];
     for (const ObjectId id : task.objects()) {
       if (id == wanted_id) continue;
-      const std::string& other = model().objects[id].text.text;
+      const std::string& other = model.objects[id].text.text;
       const std::string& name = wanted.text.text;
       // Words that differ in case alone are the same words.
       const std::string folded = fold_case(other), mine = fold_case(name);
@@ -109,7 +109,7 @@ struct TaskLanguage {
       const bool part = folded.size() > mine.size() &&
                         (folded.starts_with(mine + " ") || folded.ends_with(" " + mine));
       if (!same && !part) continue;
-      context.report(
+      reporter.report(
           Code::P0405, rivalry(role, id),
           same ? "two objects of `" + task.name + "` are called \"" + name + "\""
                : "\"" + name + "\" is part of the name \"" + other + "\" in `" + task.name + "`");
@@ -118,19 +118,21 @@ struct TaskLanguage {
 
   void check_category(const SlotRef& slot, const Object& object) const {
     if (!slot.category) return;
-    const auto attribute = context.symbols.attributes.peek("category");
-    if (!attribute) {
-      context.report(Code::P0407, slot.category->span, "there is no attribute `category`");
+    const auto& attributes = model.attributes;
+    const auto attribute = std::find_if(attributes.begin(), attributes.end(),
+                                        [](const Attribute& a) { return a.name == "category"; });
+    if (attribute == attributes.end()) {
+      reporter.report(Code::P0407, slot.category->span, "there is no attribute `category`");
       return;
     }
-    const Attribute& record = model().attributes[static_cast<AttributeId>(*attribute)];
-    for (std::uint32_t value = 0; value < record.values.size(); ++value) {
-      if (record.values[value] != slot.category->text) continue;
-      for (const std::uint32_t has : object.values[*attribute]) {
+    const auto index = static_cast<std::size_t>(attribute - attributes.begin());
+    for (std::uint32_t value = 0; value < attribute->values.size(); ++value) {
+      if (attribute->values[value] != slot.category->text) continue;
+      for (const std::uint32_t has : object.values[index]) {
         if (has == value) return;
       }
     }
-    context
+    reporter
         .report(Code::P0407, task.say_span.is_none() ? task.span : task.say_span,
                 "`" + object.name + "` is no `" + slot.category->text + "`")
         .label(slot.span, "this slot wants one");
@@ -139,18 +141,18 @@ struct TaskLanguage {
   // The source is what is to be moved, and the target is avoided only where the goal moves with it.
   bool check_avoided(const SlotRef& slot) const {
     const auto is = [&](const char* role, ObjectId id) {
-      return slot.name.text == role || slot.name.text == model().objects[id].name;
+      return slot.name.text == role || slot.name.text == model.objects[id].name;
     };
     if (is("source", task.source)) {
-      context.report(Code::P0404, slot.span, "the source cannot be the object to avoid");
+      reporter.report(Code::P0404, slot.span, "the source cannot be the object to avoid");
       return false;
     }
     if (!is("target", task.target) || task.baseline == TaskId::kNone) return true;
-    const Task& baseline = model().tasks[task.baseline];
-    if (!baseline.complete || baseline.abstract || has_negation(model().templates[baseline.say]) ||
+    const Task& baseline = model.tasks[task.baseline];
+    if (!baseline.complete || baseline.abstract || has_negation(model.templates[baseline.say]) ||
         plan::moves(task.axes, plan::Axis::kGoal))
       return true;
-    context
+    reporter
         .report(Code::P0404, slot.span,
                 "`" + task.name + "` says to avoid the target and is judged as `" + baseline.name +
                     "` is")
@@ -164,29 +166,33 @@ struct TaskLanguage {
     if (is_source || slot.name.text == "target") {
       const ObjectId id = is_source ? task.source : task.target;
       const std::size_t role = is_source ? 0 : 1;
-      check_category(slot, model().objects[id]);
+      check_category(slot, model.objects[id]);
       const Referring words =
-          referring(model(), task, is_source ? syntax::Role::kSource : syntax::Role::kTarget);
+          referring(model, task, is_source ? syntax::Role::kSource : syntax::Role::kTarget);
       if (words.phrase != nullptr) return check_phrase(role, *words.phrase, id);
       return check_name(role, id);
     }
     std::string scene;
     for (const ObjectId id : task.objects()) {
-      const Object& object = model().objects[id];
+      const Object& object = model.objects[id];
       if (object.name == slot.name.text) return check_category(slot, object);
       scene += (scene.empty() ? "" : ", ") + object.name;
     }
-    const auto missing = context.symbols.objects.peek(slot.name.text);
-    if (!missing) return;  // no object at all, which was reported
+    const auto& objects = model.objects;
+    const auto missing = std::find_if(objects.begin(), objects.end(), [&](const Object& known) {
+      return known.name == slot.name.text;
+    });
+    if (missing == objects.end()) return;  // no object at all, which was reported
     if (task.keeps_absent && !task.allow_absent) return;
-    const Object& object = model().objects[static_cast<ObjectId>(*missing)];
+    const Object& object = *missing;
     const std::string words = (slot.avoid ? "not " : "") +
                               std::string(slot.the && !object.bare ? "the " : "") +
                               object.text.text;
-    Diagnostic& diagnostic = context.report(
+    Diagnostic& diagnostic = reporter.report(
         Code::P0404, slot.span,
         "\"" + words + "\" names an object that is not in the scene of `" + task.name + "`");
-    const std::string other = task_with(static_cast<ObjectId>(*missing));
+    const std::string other =
+        task_with(objects.id(static_cast<std::size_t>(missing - objects.begin())));
     diagnostic.point("the scene has " + scene)
         .help("add `distractors " + slot.name.text + "`" +
               (other.empty() ? "" : ", or derive from `" + other + "`"));
@@ -196,7 +202,7 @@ struct TaskLanguage {
 
   // A task like this one in which the object is there as well; empty when there is none.
   std::string task_with(ObjectId wanted) const {
-    for (const Task& other : model().tasks) {
+    for (const Task& other : model.tasks) {
       if (other.abstract || !other.complete || other.source != task.source ||
           other.target != task.target || other.scene != task.scene)
         continue;
@@ -209,17 +215,17 @@ struct TaskLanguage {
   void check_sentence() const {
     const Span& span = task.say_span.is_none() ? task.span : task.say_span;
     if (task.prompt.empty()) {
-      context.report(Code::P0406, span, "the instruction of `" + task.name + "` is empty");
+      reporter.report(Code::P0406, span, "the instruction of `" + task.name + "` is empty");
     } else if (task.prompt.size() > kMaxPromptBytes) {
-      context.report(Code::P0406, span,
-                     "the instruction of `" + task.name + "` is longer than " +
-                         std::to_string(kMaxPromptBytes) + " bytes");
+      reporter.report(Code::P0406, span,
+                      "the instruction of `" + task.name + "` is longer than " +
+                          std::to_string(kMaxPromptBytes) + " bytes");
     } else if (task.prompt.find_first_of("{}") != std::string::npos) {
-      context.report(Code::P0406, span,
-                     "braces are left in the instruction of `" + task.name + "`");
+      reporter.report(Code::P0406, span,
+                      "braces are left in the instruction of `" + task.name + "`");
     } else if (!is_nfc(task.prompt)) {
-      context.report(Code::P0406, span,
-                     "the instruction of `" + task.name + "` is not in composed form (NFC)");
+      reporter.report(Code::P0406, span,
+                      "the instruction of `" + task.name + "` is not in composed form (NFC)");
     }
   }
 
@@ -245,14 +251,14 @@ struct TaskLanguage {
 
 }  // namespace
 
-void check_language(Context& context) {
+void check_phrases(const Model& model, Reporter& reporter) {
   Unfit unfit;
-  for (const Task& task : context.model.tasks) {
+  for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
-    const About about(context, task.decl_span);
-    const TaskLanguage check{context, task, unfit};
+    const About about(reporter, task.decl_span);
+    const TaskLanguage check{model, reporter, task, unfit};
     std::set<std::pair<std::string, bool>> checked;  // a second slot of one name says nothing new
-    for (const Template::Part& part : context.model.templates[task.say].parts) {
+    for (const Template::Part& part : model.templates[task.say].parts) {
       if (part.slot && checked.insert({part.slot->name.text, part.slot->avoid}).second)
         check.check_slot(*part.slot);
     }

@@ -5,7 +5,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "compiler/define/passes.h"
+#include "compiler/check/check.h"
 
 namespace probe::sema {
 namespace {
@@ -55,9 +55,9 @@ bool declares_tasks(const syntax::File& file) {
   return false;
 }
 
-bool is_used_file(const Context& context, const syntax::File& file) {
-  const std::string own = std::filesystem::path(context.sources.file(file.id).name()).filename();
-  for (const syntax::File* other : context.files) {
+bool is_used_file(const Checked& checked, const syntax::File& file) {
+  const std::string own = std::filesystem::path(checked.sources.file(file.id).name()).filename();
+  for (const syntax::File* other : checked.files) {
     for (const syntax::Decl& decl : other->decls) {
       const auto* use = std::get_if<syntax::UseDecl>(&decl.node);
       if (use != nullptr && std::filesystem::path(use->path.value).filename() == own) return true;
@@ -74,8 +74,8 @@ struct PhraseUse {
 };
 
 // So does one over a frame with its templates.
-bool is_in_bound_frame(const Context& context, const syntax::TemplateDecl& node) {
-  for (const auto& derive : context.symbols.derive_decls) {
+bool is_in_bound_frame(const Checked& checked, const syntax::TemplateDecl& node) {
+  for (const auto& derive : checked.symbols.derive_decls) {
     for (const syntax::Binder& binder : derive.node->binders) {
       const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over);
       if (templates != nullptr && node.frame && templates->frame.text == node.frame->text)
@@ -85,15 +85,15 @@ bool is_in_bound_frame(const Context& context, const syntax::TemplateDecl& node)
   return false;
 }
 
-PhraseUse phrase_use(const Context& context) {
+PhraseUse phrase_use(const Checked& checked) {
   PhraseUse use;
-  for (const auto& object : context.symbols.object_decls) {
+  for (const auto& object : checked.symbols.object_decls) {
     for (const syntax::ObjectStmt& stmt : object.node->body) {
       if (const auto* phrase = std::get_if<syntax::PhraseStmt>(&stmt))
         ++use.declared[phrase->name.text];
     }
   }
-  for (const auto& derive : context.symbols.derive_decls) {
+  for (const auto& derive : checked.symbols.derive_decls) {
     for (const syntax::Binder& binder : derive.node->binders) {
       if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over))
         use.axes.insert(phrases->axis.text);
@@ -104,23 +104,23 @@ PhraseUse phrase_use(const Context& context) {
 
 }  // namespace
 
-void check_unused(Context& context, std::span<const FileId> roots) {
+void check_unused(const Checked& checked, Reporter& reporter) {
   // A misspelt name would be found twice.
-  if (context.has_errors()) return;
+  if (reporter.has_errors()) return;
   std::vector<const syntax::File*> files;
-  for (const syntax::File* file : context.files) {
-    const bool is_root = std::any_of(roots.begin(), roots.end(),
+  for (const syntax::File* file : checked.files) {
+    const bool is_root = std::any_of(checked.roots.begin(), checked.roots.end(),
                                      [&](FileId id) { return id.value == file->id.value; });
-    if (is_root && declares_tasks(*file) && !is_used_file(context, *file)) files.push_back(file);
+    if (is_root && declares_tasks(*file) && !is_used_file(checked, *file)) files.push_back(file);
   }
   if (files.empty()) return;
   Counts words;
-  for (const syntax::File* file : context.files)
-    count_words(context.sources.file(file->id).text(), words);
-  const PhraseUse phrases = phrase_use(context);
+  for (const syntax::File* file : checked.files)
+    count_words(checked.sources.file(file->id).text(), words);
+  const PhraseUse phrases = phrase_use(checked);
   const auto report = [&](std::string_view kind, const syntax::Name& name) {
-    context.report(Code::P0205, name.span,
-                   std::string(kind) + " `" + std::string(name.text) + "` is never used");
+    reporter.report(Code::P0205, name.span,
+                    std::string(kind) + " `" + std::string(name.text) + "` is never used");
   };
   for (const syntax::File* file : files) {
     for (const syntax::Decl& decl : file->decls) {
@@ -128,7 +128,7 @@ void check_unused(Context& context, std::span<const FileId> roots) {
       if (const auto* tmpl = std::get_if<syntax::TemplateDecl>(&decl.node)) {
         // Its own frame may have the same word.
         const std::size_t own = tmpl->frame && tmpl->frame->text == tmpl->name.text ? 2 : 1;
-        if (words[tmpl->name.text] <= own && !is_in_bound_frame(context, *tmpl))
+        if (words[tmpl->name.text] <= own && !is_in_bound_frame(checked, *tmpl))
           report("template", tmpl->name);
       } else if (const auto* predicate = std::get_if<syntax::PredicateDecl>(&decl.node)) {
         if (words[predicate->name.text] <= 1) report("predicate", predicate->name);

@@ -28,12 +28,4 @@ std::uint32_t out_of_distribution(const Model& model, const Task& task);
 // words. No axis beside those of language is used.
 bool uses(const Model& model, const Task& task, plan::Axis axis);
 
-// The scene's views with the task's own cameras in their places; the first is the main one.
-std::vector<View> views_of(const Model& model, const Task& task);
-// Whether the plan keeps their names: a scene's only camera has its own, unless `as` gave one.
-bool has_names(const std::vector<View>& views);
-// Null when there is none.
-const View* view_named(const Scene& scene, std::string_view name);
-LightId light_of(const Model& model, const Task& task);
-
 }  // namespace probe::sema

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/define/axes.h"
+#include "compiler/define/query.h"
 #include "compiler/define/set.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"

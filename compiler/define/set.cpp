@@ -1,12 +1,11 @@
-// Sets of tasks, computed from conditions, and suites that list them. Sets may name one another in
-// any order.
+// `set`: tasks by name, by what they are compared with, by conditions.
 #include "compiler/define/set.h"
 
 #include <algorithm>
 #include <filesystem>
 
 #include "compiler/define/axes.h"
-#include "compiler/define/passes.h"
+#include "compiler/define/define.h"
 #include "compiler/define/template.h"
 #include "runtime/base/sha256.h"
 
@@ -81,13 +80,8 @@ void SetReader::define(SetId id) {
   if (preview_) diagnostics_ = &unheard_;
   std::vector<TaskId> members = read(*declared.file, declared.node->tasks);
   diagnostics_ = heard;
-  // A mistake anywhere may be why nothing is in it.
-  if (!preview_ && members.empty() && declared.decl->complete && !context_.has_errors()) {
-    diagnostics_->report(Code::P0211, declared.node->name.span,
-                         "no task is in set `" + std::string(declared.node->name.text) + "`");
-  }
   context_.model.sets[id] = {std::string(declared.node->name.text), declared.node->name.span,
-                             std::move(members)};
+                             std::move(members), !declared.decl->complete};
   state = kDone;
 }
 
@@ -293,87 +287,11 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
   }
   return false;
 }
-namespace {
-
-void expect_suite(Context& context, const Suite& suite, const syntax::ExpectTasksStmt& expect) {
-  // A mistake may be why a set misses a task or more.
-  if (context.has_errors()) return;
-  for (const Task& task : context.model.tasks) {
-    if (!task.complete && !task.abstract) return;
-  }
-  std::uint64_t episodes = 0;
-  for (const TaskId id : suite.members) {
-    episodes += context.model.tasks[id].starts.size();
-  }
-  if (expect.tasks.value == suite.members.size() && expect.episodes.value == episodes) return;
-  context.report(Code::P0504, expect.span,
-                 "suite `" + suite.name + "` has " + std::to_string(suite.members.size()) +
-                     " tasks and " + std::to_string(episodes) + " episodes");
-}
-
-}  // namespace
 
 void define_sets(Context& context) {
   const std::size_t count = context.symbols.set_decls.size();
   SetReader reader(context, SetReader::Mode::kDefine);
   for (std::size_t i = 0; i < count; ++i) reader.define(static_cast<SetId>(i));
-}
-
-void define_suites(Context& context) {
-  SetReader reader(context, SetReader::Mode::kDefined);
-  for (const auto& declared : context.symbols.suite_decls) {
-    const syntax::SuiteDecl& node = *declared.node;
-    Suite suite;
-    suite.name = std::string(node.name.text);
-    suite.span = node.name.span;
-    if (node.trained_on) {
-      const auto dataset = context.symbols.datasets.find(*node.trained_on, context.diagnostics);
-      if (dataset) suite.trained_on = static_cast<DatasetId>(*dataset);
-    }
-    bool has_tasks = false, has_seeds = false;
-    const syntax::ExpectTasksStmt* expect = nullptr;
-    for (const syntax::SuiteStmt& stmt : node.body) {
-      if (const auto* tasks = std::get_if<syntax::SuiteTasksStmt>(&stmt)) {
-        has_tasks = true;
-        suite.members = reader.read(*declared.file, tasks->tasks);
-      } else if (const auto* prefix = std::get_if<syntax::PrefixStmt>(&stmt)) {
-        suite.prefix = prefix->prefix.value;
-      } else if (const auto* seeds = std::get_if<syntax::SeedsStmt>(&stmt)) {
-        has_seeds = true;
-        for (const syntax::Int& seed : seeds->seeds) {
-          const auto value = static_cast<std::uint32_t>(seed.value);
-          const auto& known = suite.seeds;
-          if (seed.value > 0xfffffffeu) {
-            context.report(Code::P0304, seed.span, "a seed is below 4294967295");
-          } else if (std::find(known.begin(), known.end(), value) != known.end()) {
-            context
-                .report(Code::P0203, seed.span,
-                        "seed `" + std::to_string(value) + "` is listed twice")
-                .help("the same seed repeats the same episodes");
-          } else {
-            suite.seeds.push_back(value);
-          }
-        }
-      } else {
-        expect = &std::get<syntax::ExpectTasksStmt>(stmt);
-      }
-    }
-    if (declared.decl->complete) {
-      if (!has_tasks) {
-        context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `tasks`");
-      } else if (suite.members.empty() && !context.has_errors()) {
-        context.report(Code::P0211, suite.span, "no task is in suite `" + suite.name + "`")
-            .severity = Severity::kError;
-      }
-      if (!has_seeds) {
-        context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `seeds`")
-            .help("each seed runs every episode once: `seeds 42`");
-      }
-    }
-    if (suite.seeds.empty()) suite.seeds.push_back(0);
-    if (expect != nullptr) expect_suite(context, suite, *expect);
-    context.model.suites.add(std::move(suite));
-  }
 }
 
 }  // namespace probe::sema

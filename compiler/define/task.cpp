@@ -5,11 +5,12 @@
 #include <algorithm>
 
 #include "compiler/define/axes.h"
-#include "compiler/define/judgement.h"
-#include "compiler/define/layout.h"
-#include "compiler/define/passes.h"
+#include "compiler/define/define.h"
+#include "compiler/define/metrics.h"
 #include "compiler/define/template.h"
-#include "compiler/names/allow.h"
+#include "compiler/define/views.h"
+#include "compiler/names/like.h"
+#include "compiler/names/quantities.h"
 
 namespace probe::sema {
 namespace {
@@ -127,7 +128,7 @@ struct TaskReader {
     poisoned = true;
   }
   void operator()(const syntax::MetricStmt& stmt) {
-    Metric metric = analyze_metric(context, *declared.file, stmt);
+    Metric metric = read_metric(context, *declared.file, stmt);
     poisoned = poisoned || metric.type.kind == TypeKind::kPoison;
     std::erase_if(task.overrides, [&](const Metric& old) { return old.name == metric.name; });
     task.overrides.push_back(std::move(metric));
@@ -309,7 +310,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   task.like = parent ? static_cast<TaskId>(*parent) : TaskId::kNone;
   task.baseline = TaskId::kNone;
   task.axes = 0;
-  const About about(context_, task.decl_span);
+  const About about(context_.reporter, task.decl_span);
   read_allows(context_, *declared.decl, *declared.body, task);
   TaskReader reader{context_, declared, task, poisoned};
   for (const syntax::TaskStmt& stmt : *declared.body) {
@@ -322,7 +323,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   if (!poisoned) check_refer(context_, task, 0, poisoned);
   if (!poisoned) check_refer(context_, task, 1, poisoned);
   const std::string missing = missing_statements(task);
-  if (task.scene != SceneId::kNone) poisoned = poisoned || !model.scenes[task.scene].complete;
+  if (task.scene != SceneId::kNone) poisoned = poisoned || model.scenes[task.scene].broken;
   task.complete = missing.empty() && !poisoned;
   if (task.complete) check_roles(context_, task, poisoned);
   if (task.complete) check_cameras(context_, task, poisoned);
@@ -375,6 +376,35 @@ void TaskTable::compare(std::uint32_t index, bool last_chance) {
   }
 }
 
+namespace {
+
+// Every member of a circle loses its baseline, so that later passes can walk to a root.
+void break_cycles(Context& context) {
+  Model& model = context.model;
+  std::vector<bool> safe(model.tasks.size(), false);
+  for (std::size_t start = 0; start < model.tasks.size(); ++start) {
+    std::vector<TaskId> chain;
+    TaskId at = static_cast<TaskId>(start);
+    while (at != TaskId::kNone && !safe[static_cast<std::size_t>(at)] &&
+           std::find(chain.begin(), chain.end(), at) == chain.end()) {
+      chain.push_back(at);
+      at = model.tasks[at].baseline;
+    }
+    if (at != TaskId::kNone && !safe[static_cast<std::size_t>(at)]) {
+      const Task& task = model.tasks[at];
+      context.report(Code::P0703, task.baseline_span,
+                     "task `" + task.name + "` is compared with itself over its baselines");
+      for (auto member = std::find(chain.begin(), chain.end(), at); member != chain.end();
+           ++member) {
+        model.tasks[*member].baseline = TaskId::kNone;
+      }
+    }
+    for (const TaskId id : chain) safe[static_cast<std::size_t>(id)] = true;
+  }
+}
+
+}  // namespace
+
 void define_tasks(Context& context) {
   for (std::size_t i = 0; i < context.symbols.set_decls.size(); ++i) context.model.sets.add({});
   TaskTable table(context);
@@ -397,15 +427,17 @@ void define_tasks(Context& context) {
   for (std::uint32_t i = 0; i < written; ++i) {
     if (!later[i]) table.compare(i, !derives);
   }
-  if (!derives) return;
-  expand_derives(context, table);
-  for (const std::uint32_t i : order) {
-    if (!later[i]) continue;
-    const DeclaredTask& declared = context.symbols.task_decls[i];
-    if (!parents[i]) parents[i] = context.symbols.tasks.find(*declared.like, context.diagnostics);
-    table.define(i, parents[i]);
+  if (derives) {
+    expand_derives(context, table);
+    for (const std::uint32_t i : order) {
+      if (!later[i]) continue;
+      const DeclaredTask& declared = context.symbols.task_decls[i];
+      if (!parents[i]) parents[i] = context.symbols.tasks.find(*declared.like, context.diagnostics);
+      table.define(i, parents[i]);
+    }
+    for (std::uint32_t i = 0; i < written; ++i) table.compare(i, true);
   }
-  for (std::uint32_t i = 0; i < written; ++i) table.compare(i, true);
+  break_cycles(context);
 }
 
 }  // namespace probe::sema

@@ -1,25 +1,11 @@
+// `template`, and words on the spot: what is said, and how it is printed for a task.
 #include "compiler/define/template.h"
 
 #include <algorithm>
 
-#include "compiler/define/passes.h"
+#include "compiler/define/define.h"
 
 namespace probe::sema {
-namespace {
-
-Truth negate(Truth value) {
-  if (value == Truth::kUnknown) return value;
-  return value == Truth::kYes ? Truth::kNo : Truth::kYes;
-}
-
-Truth has_value(const Object& object, std::uint32_t attribute, std::uint32_t value) {
-  const auto& values = object.values[attribute];
-  if (values.empty()) return Truth::kUnknown;
-  return std::find(values.begin(), values.end(), value) != values.end() ? Truth::kYes : Truth::kNo;
-}
-
-}  // namespace
-
 std::string first_word(const std::vector<Template::Part>& parts) {
   if (parts.empty() || parts[0].slot) return {};
   const std::string& text = parts[0].literal;
@@ -77,36 +63,6 @@ std::string render_prompt(const Model& model, const Task& task) {
     prompt += *words.text;
   }
   return prompt;
-}
-
-Truth evaluate(const Query& query, const Object& object) {
-  std::vector<Truth> stack;
-  const auto pop = [&stack] {
-    const Truth top = stack.back();
-    stack.pop_back();
-    return top;
-  };
-  for (const QueryOp& op : query) {
-    switch (op.kind) {
-      case QueryOp::kFact:
-        stack.push_back(object.facts[op.a]);
-        break;
-      case QueryOp::kValue:
-        stack.push_back(has_value(object, op.a, op.b));
-        break;
-      case QueryOp::kNot:
-        stack.push_back(negate(pop()));
-        break;
-      // Ordered no < unknown < yes, "and" is the least and "or" the largest.
-      case QueryOp::kAnd:
-        stack.push_back(std::min(pop(), pop()));
-        break;
-      case QueryOp::kOr:
-        stack.push_back(std::max(pop(), pop()));
-        break;
-    }
-  }
-  return stack.empty() ? Truth::kUnknown : stack.back();
 }
 
 bool has_negation(const Template& say) {

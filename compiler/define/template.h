@@ -1,5 +1,4 @@
-// Instructions and what their phrases mean: rendering of templates, and Kleene evaluation of
-// queries over objects.
+// Instructions: their parts, the words they choose for an object, and their rendering.
 #pragma once
 
 #include <string>
@@ -23,11 +22,8 @@ struct Referring {
 };
 Referring referring(const Model& model, const Task& task, syntax::Role role);
 
-// Slots that name an object which does not exist print nothing; check_language has said so.
+// Slots that name an object which does not exist print nothing; which was reported.
 std::string render_prompt(const Model& model, const Task& task);
-
-// Whether the object is what the query describes. An attribute without a value is unknown.
-Truth evaluate(const Query& query, const Object& object);
 
 // An instruction that mentions something it warns against.
 bool has_negation(const Template& say);

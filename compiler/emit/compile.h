@@ -52,6 +52,10 @@ struct Compilation {
   std::map<std::string, std::string> called;
 };
 
+// In: paths. Out: sources, diagnostics and, from build(), the verified bytes of a plan. The order:
+// load and parse what the files reach (syntax), analyze() (check/analyze.h), then emit() when that
+// found no error.
+//
 // Diagnoses the files and everything they use. Each file that no other named one uses is a program
 // of its own, so two of them may declare the same names. Assets are looked for and inspected, not
 // hashed. A Failure is only for the outside: a root file that cannot be read (kIo), a suite

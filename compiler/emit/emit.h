@@ -23,8 +23,11 @@ struct EmitOptions {
   std::function<bool(std::string_view)> wants_task = {};
 };
 
-// Empty when something was reported or nothing was to be written. `files`: the sources, in the
-// order in which they are to stand in the plan.
+// In: a model without errors. Out: the bytes of a plan; empty when something was reported or
+// nothing was to be written. The order: sources; task after task with all it stands on (objects,
+// scene, robot, views, light, program, starts), so that records stand in the order of first use;
+// what the programs say of their metrics; assets; sets and suites; ids; and the last check, of
+// hashes. `files`: the sources, in the order in which they are to stand in the plan.
 Result<std::vector<std::byte>> emit(const sema::Model& model, const SourceSet& sources,
                                     const std::vector<FileId>& files, const EmitOptions& options,
                                     Diagnostics& diagnostics);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "compiler/define/judgement.h"
 #include "compiler/lower/builder.h"
+#include "compiler/model/measures.h"
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"
 #include "runtime/plan/readouts.h"

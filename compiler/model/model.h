@@ -75,6 +75,7 @@ struct Object {
   std::string name;
   bool broken = false;  // something was reported: what follows from that is not said
   Span span;            // of its name
+  Span decl_span;       // of the declaration
   Spelled mesh;
   Spelled text;  // in instructions
   bool bare = false;
@@ -160,7 +161,7 @@ struct View {
 struct Scene {
   std::string name;
   Span span;
-  bool complete = false;  // else something was reported, and tasks here are not looked at
+  bool broken = false;  // something was reported, and tasks here are not looked at
   RobotId robot = RobotId::kNone;
   std::array<double, 3> base_position{};
   bool base_on_surface = false;  // no height was written
@@ -316,6 +317,7 @@ struct TaskSet {
   std::string name;
   Span span;
   std::vector<TaskId> members;
+  bool broken = false;  // its text is torn
 };
 
 struct Suite {
@@ -325,6 +327,12 @@ struct Suite {
   DatasetId trained_on = DatasetId::kNone;
   std::vector<TaskId> members;
   std::vector<std::uint32_t> seeds;
+  struct Expect {
+    std::uint64_t tasks = 0, episodes = 0;
+    Span span;
+  };
+  std::optional<Expect> expect;
+  bool broken = false;  // its text is torn, or has no `tasks`
 };
 
 struct Model {

@@ -34,12 +34,13 @@ std::vector<Allowed> collect_allows(const Context& context) {
 const syntax::Allow* silencer(const Context& context, const Diagnostic& diagnostic,
                               std::size_t index, std::vector<Allowed>& allows) {
   if (diagnostic.severity != Severity::kWarning) return nullptr;
-  const auto about = context.about.find(index);
+  const auto about = context.reporter.about.find(index);
   const syntax::Allow* found = nullptr;
   for (Allowed& allowed : allows) {
     if (allowed.code != diagnostic.code) continue;
-    const bool here = is_within(diagnostic.primary, allowed.decl) ||
-                      (about != context.about.end() && is_within(about->second, allowed.decl));
+    const bool here =
+        is_within(diagnostic.primary, allowed.decl) ||
+        (about != context.reporter.about.end() && is_within(about->second, allowed.decl));
     allowed.used = allowed.used || here;
     if (here) found = allowed.allow;
   }
@@ -79,13 +80,13 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
   for (const Diagnostic& diagnostic : context.diagnostics.items()) {
     const std::size_t at = index++;
     if (const syntax::Allow* allow = silencer(context, diagnostic, at, allows)) {
-      const auto about = context.about.find(at);
-      out.silence(
-          {diagnostic, about == context.about.end() ? Span{} : about->second, allow->reason.value});
+      const auto about = context.reporter.about.find(at);
+      out.silence({diagnostic, about == context.reporter.about.end() ? Span{} : about->second,
+                   allow->reason.value});
       continue;
     }
     // What could not be read may declare it; a near spelling is a mistake all the same.
-    if (context.was_broken && is_in_torso(context, diagnostic.primary)) continue;
+    if (context.reporter.was_broken && is_in_torso(context, diagnostic.primary)) continue;
     const bool is_unknown = diagnostic.code == Code::P0201 || diagnostic.code == Code::P0204;
     if (lacks_names && is_unknown && !diagnostic.fix) continue;
     if (is_unknown) {
@@ -99,7 +100,7 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
       }
       continue;
     }
-    if (!context.about.contains(at)) {
+    if (!context.reporter.about.contains(at)) {
       out.add(diagnostic);
       continue;
     }

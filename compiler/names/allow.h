@@ -10,10 +10,4 @@ namespace probe::sema {
 // a word. `lacks_names`: some declarations could not be read, so their names are not known.
 void say(const Context& context, std::span<const FileId> roots, bool lacks_names, Diagnostics& out);
 
-// Whether `inner` lies within `outer`.
-inline bool is_within(const Span& inner, const Span& outer) {
-  return inner.file.value == outer.file.value && inner.begin >= outer.begin &&
-         inner.end <= outer.end;
-}
-
 }  // namespace probe::sema

@@ -42,6 +42,11 @@ inline Span join(const Span& first, const Span& last) {
   return {first.file, first.begin, last.end};
 }
 
+// Whether `inner` lies within `outer`.
+inline bool is_within(const Span& inner, const Span& outer) {
+  return inner.file == outer.file && inner.begin >= outer.begin && inner.end <= outer.end;
+}
+
 // Both from 1. A column counts characters (code points), not bytes: what editors show.
 struct LineColumn {
   std::uint32_t line = 1;

@@ -1,7 +1,7 @@
 // Catalogue and stage. Each case begins with the productions it holds.
 #include <doctest/doctest.h>
 
-#include "compiler/define/template.h"
+#include "compiler/define/query.h"
 #include "tests/dsl/built.h"
 
 using namespace probe;

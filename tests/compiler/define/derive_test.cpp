@@ -1,7 +1,5 @@
 #include <doctest/doctest.h>
 
-#include <cmath>
-
 #include "compiler/define/task.h"
 #include "tests/compiler/small_suite.h"
 
@@ -84,17 +82,6 @@ derive "{t}_not_{o}" for t in { crowd }, o in distractors of t {
   CHECK(a->task("crowd_not_pale").prompt == "put the red block on the tray, not on the pale block");
 }
 
-TEST_CASE("words on the spot that begin like the copied instruction keep its frame") {
-  const auto a = analyze_with_suite(R"(
-template lay frame lay "put {the source} on {the target}"
-task laid like red_on_tray { distractors blue; say lay }
-variant again of laid { say "put {the source} on {the target}, not on {avoid the blue}" }
-variant other of laid { say "take {the source} to {the target}, not on {avoid the blue}" }
-)");
-  CHECK(a->task("again").axes == static_cast<std::uint32_t>(plan::Axis::kLanguageNegation));
-  CHECK((a->task("other").axes & static_cast<std::uint32_t>(plan::Axis::kLanguageAction)) != 0);
-}
-
 TEST_CASE("clear phrases describe their object alone in the scene") {
   const auto a = analyze_with_suite(R"(
 variant crowd of red_on_tray { distractors blue }
@@ -169,61 +156,4 @@ TEST_CASE("an expansion beyond the limit is stopped and said once") {
   CHECK(analyze_with_suite("layout huge like pairs { cells spots = grid 1000 x 1000 at (0cm, 0cm) "
                            "spread (10cm, 10cm) }\ntask t like red_on_tray { layout huge }")
             ->codes() == "P0210");
-}
-
-TEST_CASE("a sample is a choice that a new task disturbs by at most one") {
-  const std::string tasks =
-      "variants of red_on_tray { a { horizon 61 steps }\n b { horizon 62 steps }\n c { horizon 63 "
-      "steps }\n d { horizon 64 steps }\n e { horizon 65 steps } }\n";
-  const std::string set = "set some = sample 3 of variants of { red_on_tray } seed 7\n";
-  const auto before = analyze_with_suite(tasks + set);
-  CHECK_MESSAGE(before->codes() == "", before->said());
-  const auto after =
-      analyze_with_suite(tasks + set + "variant f of red_on_tray { horizon 66 steps }");
-  const std::string chosen = members(*before, "some");
-  CHECK(chosen.size() == 5);
-  CHECK(members(*analyze_with_suite(tasks + set), "some") == chosen);
-  std::size_t kept = 0;
-  for (const char name : chosen) {
-    if (name != ' ' && members(*after, "some").find(name) != std::string::npos) ++kept;
-  }
-  CHECK(kept >= 2);
-  CHECK(analyze_with_suite("set some = sample 3 of tasks seed 7")->codes() == "P0304");
-}
-
-TEST_CASE("jitter moves every object by its own draw, and other tasks shift nothing") {
-  const std::string text =
-      "layout shaken like pairs { jitter 5mm }\ntask t like red_on_tray { layout shaken }\n";
-  const auto a = analyze_with_suite(text);
-  const auto b = analyze_with_suite("task s like base { source blue; target tray; layout shaken }" +
-                                    text + "variant u of t { say take }");
-  CHECK_MESSAGE(a->codes() == "", a->said());
-  const auto& plain = a->task("red_on_tray").starts;
-  const auto& shaken = a->task("t").starts;
-  REQUIRE(shaken.size() == plain.size());
-  double least = 1, most = -1;
-  for (std::size_t e = 0; e < plain.size(); ++e) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto& here = shaken[e].placed[i];
-      CHECK(here.x == b->task("t").starts[e].placed[i].x);
-      CHECK(here.y == b->task("t").starts[e].placed[i].y);
-      CHECK(here.x == b->task("u").starts[e].placed[i].x);
-      const double dx = here.x - plain[e].placed[i].x;
-      CHECK(std::abs(dx) <= 0.005);
-      least = std::min(least, dx);
-      most = std::max(most, dx);
-    }
-  }
-  CHECK(least < -0.003);
-  CHECK(most > 0.003);
-  CHECK(analyze_with_suite("layout l like pairs { jitter -5mm }")->codes() == "P0304");
-}
-
-TEST_CASE("an @allow silences warnings about its declaration, and a word when there are none") {
-  const char* night = "variant v of red_on_tray { light night }";
-  CHECK(analyze_with_suite(std::string("@allow(confounded, \"why\")\n") + night)->codes() ==
-        "P0209");
-  CHECK(analyze_with_suite("@allow(shared_name, \"why\")\nobject blue_two like blue { }\n"
-                           "variant v of red_on_tray { distractors blue_two }")
-            ->codes() == "P0209");
 }

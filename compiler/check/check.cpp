@@ -1,0 +1,18 @@
+#include "compiler/check/check.h"
+
+namespace probe::sema {
+
+void check_model(const Checked& checked, Reporter& reporter) {
+  const Model& model = checked.model;
+  check_comparisons(model, reporter);
+  check_phrases(model, reporter);
+  check_starts(model, reporter);
+  check_metrics(model, reporter);
+  check_expectations(model, reporter);
+  check_tags(model, reporter);
+  check_magnitudes(checked.symbols, reporter);
+  check_boxes(model, checked.asset_root, reporter);
+  check_unused(checked, reporter);
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,41 @@
+// What the finished model says that nobody means: one file a family of codes. A check reads the
+// model, and the trees only where the words themselves are looked at; it changes neither.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/model/model.h"
+#include "compiler/names/reporter.h"
+#include "compiler/names/symbols.h"
+
+namespace probe::sema {
+
+// What a check may read.
+struct Checked {
+  const Model& model;
+  const Symbols& symbols;
+  const SourceSet& sources;
+  const std::vector<const syntax::File*>& files;
+  std::span<const FileId> roots;  // named by the user rather than by `use`
+  std::string asset_root;
+};
+
+// In: the model that define_model() made. Out: words to the reporter, each thing once. Language
+// comes before places because a mistake in either may be why the other is odd; sizes and unused
+// names are looked at only when nothing else is wrong.
+void check_model(const Checked& checked, Reporter& reporter);
+
+void check_comparisons(const Model& model, Reporter& reporter);     // P0701-P0703
+void check_phrases(const Model& model, Reporter& reporter);         // P0401-P0407
+void check_starts(const Model& model, Reporter& reporter);          // P0501-P0505
+void check_metrics(const Model& model, Reporter& reporter);         // P0604-P0605
+void check_expectations(const Model& model, Reporter& reporter);    // P0504, P0211
+void check_tags(const Model& model, Reporter& reporter);            // P0705
+void check_magnitudes(const Symbols& symbols, Reporter& reporter);  // P0303
+void check_boxes(const Model& model, const std::string& asset_root,
+                 Reporter&);                                    // P0506
+void check_unused(const Checked& checked, Reporter& reporter);  // P0205
+
+}  // namespace probe::sema

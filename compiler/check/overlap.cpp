@@ -1,0 +1,103 @@
+// P0501: two footprints in one another, in any start.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "compiler/check/starts.h"
+#include "compiler/geometry/footprint.h"
+
+namespace probe::sema {
+namespace {
+
+// Rounded up to a whole millimetre: what is advised has to fit.
+std::string millimetre_up(double metres) {
+  return centimetres(std::ceil(metres * 1000 - 1e-6) / 1000);
+}
+
+// Of the grid on which both stand.
+const Cells::Spread* spread_of(const Layout& layout, const Start::Placed& a,
+                               const Start::Placed& b) {
+  for (const Cells& cells : layout.cells) {
+    for (std::size_t g = 0; g < cells.grids.size(); ++g) {
+      const auto holds = [&](const Start::Placed& placed) {
+        return std::any_of(cells.grids[g].begin(), cells.grids[g].end(), [&](const Cell& cell) {
+          return cell.x == placed.x && cell.y == placed.y;
+        });
+      };
+      if (holds(a) && holds(b)) return &cells.spreads[g];
+    }
+  }
+  return nullptr;
+}
+
+// At each spread that is too small, the least of the same shape at which nothing overlaps.
+// Nothing is said when something overlaps that a spread does not move apart.
+bool advise_spread(const TaskStarts& starts, Diagnostic& said) {
+  if (starts.layout.jitter > 0) return false;
+  std::map<const Cells::Spread*, double> factors;
+  for (const Start& start : starts.task.starts) {
+    for (std::size_t i = 0; i < start.placed.size(); ++i) {
+      for (std::size_t j = i + 1; j < start.placed.size(); ++j) {
+        const Start::Placed &a = start.placed[i], &b = start.placed[j];
+        const Footprint one = footprint(starts.object(a), a), two = footprint(starts.object(b), b);
+        if (overlap(one, two) <= 1e-6) continue;
+        const Cells::Spread* spread = spread_of(starts.layout, a, b);
+        if (spread == nullptr) return false;
+        const auto factor = growth(one, two, {b.x - a.x, b.y - a.y});
+        if (!factor) return false;
+        double& most = factors[spread];
+        most = std::max(most, *factor);
+      }
+    }
+  }
+  for (const Cells& cells : starts.layout.cells) {
+    for (const Cells::Spread& spread : cells.spreads) {
+      const auto found = factors.find(&spread);
+      if (found == factors.end()) continue;
+      const std::string x = millimetre_up(spread.x * found->second);
+      const std::string y = millimetre_up(spread.y * found->second);
+      said.label(spread.span,
+                 (x == y ? x : "(" + x + ", " + y + ")") + " is the least that fits these objects");
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void check_overlap(const TaskStarts& starts) {
+  std::size_t pairs = 0, bad = 0, first_episode = 0;
+  double depth = 0;
+  const Start::Placed* first[2] = {};
+  for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
+    const auto& placed = starts.task.starts[e].placed;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      for (std::size_t j = i + 1; j < placed.size(); ++j) {
+        ++pairs;
+        // Boxes may touch: less than a micrometre is rounding.
+        const double now = overlap(footprint(starts.object(placed[i]), placed[i]),
+                                   footprint(starts.object(placed[j]), placed[j]));
+        if (now <= 1e-6) continue;
+        if (bad++ != 0) continue;
+        depth = now;
+        first_episode = e;
+        first[0] = &placed[i];
+        first[1] = &placed[j];
+      }
+    }
+  }
+  if (bad == 0) return;
+  Diagnostic& said =
+      starts.reporter
+          .report(Code::P0501, starts.place({first[0]->object, first[1]->object}),
+                  "`" + starts.object(*first[0]).name + "` and `" + starts.object(*first[1]).name +
+                      "` overlap by " + centimetres(depth) + " in `" + starts.task.name + "`; " +
+                      std::to_string(bad) + " of " + std::to_string(pairs) +
+                      " object pairs overlap in this task")
+          .point("episode " + std::to_string(first_episode) + ": " +
+                 at(starts.object(*first[0]), *first[0]) + ", " +
+                 at(starts.object(*first[1]), *first[1]));
+  if (!advise_spread(starts, said)) said.label(starts.layout.span, "the layout");
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,69 @@
+// P0502: a place outside the annulus that the arm reaches, or at which it cannot grasp or set down.
+#include <cmath>
+#include <cstdio>
+
+#include "compiler/check/starts.h"
+#include "compiler/geometry/footprint.h"
+
+namespace probe::sema {
+namespace {
+
+// A pose over the middle of the source, and one over the target with the source in hand.
+bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, const Robot& robot) {
+  auto found = arms.find(starts.task.scene);
+  if (found == arms.end())
+    found = arms.emplace(starts.task.scene, Arm::of(starts.model, scene)).first;
+  if (!found->second) return true;
+  constexpr double kAboveTarget = 0.02;  // m
+  for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
+    const auto& placed = starts.task.starts[e].placed;
+    const double half = height(starts.object(placed[0]), placed[0].turn) / 2;
+    const double on_target = height(starts.object(placed[1]), placed[1].turn) + half + kAboveTarget;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double z = scene.surface_z + (i == 0 ? half : on_target);
+      const auto miss = found->second->misses(placed[i].x, placed[i].y, z);
+      if (!miss) continue;
+      char degrees[32];
+      std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / 3.14159265358979);
+      starts.reporter
+          .report(Code::P0502, starts.place({placed[i].object, placed[0].object}),
+                  "`" + robot.name + "` cannot " +
+                      (i == 0 ? "grasp `" + starts.object(placed[0]).name + "` from above"
+                              : "place `" + starts.object(placed[0]).name + "` on `" +
+                                    starts.object(placed[1]).name + "`") +
+                      " in `" + starts.task.name + "`: the tool stays " +
+                      centimetres(miss->position) + " and " + degrees + "deg away")
+          .point("episode " + std::to_string(e) + ": " + at(starts.object(placed[i]), placed[i]))
+          .label(starts.layout.span, "the layout");
+      return false;
+    }
+  }
+  return true;
+}
+}  // namespace
+
+bool check_reach(const TaskStarts& starts, Arms& arms) {
+  const Scene& scene = starts.model.scenes[starts.task.scene];
+  if (scene.robot == RobotId::kNone) return true;
+  const Robot& robot = starts.model.robots[scene.robot];
+  for (std::size_t e = 0; robot.reach_max != 0 && e < starts.task.starts.size(); ++e) {
+    for (const Start::Placed& placed : starts.task.starts[e].placed) {
+      const double dx = placed.x - scene.base_position[0];
+      const double dy = placed.y - scene.base_position[1];
+      const double away = std::sqrt(dx * dx + dy * dy);
+      if (away >= robot.reach_min && away <= robot.reach_max) continue;
+      starts.reporter
+          .report(Code::P0502, starts.place({placed.object}),
+                  "`" + starts.object(placed).name + "` is " + centimetres(away) +
+                      " from the base of `" + robot.name + "` in `" + starts.task.name +
+                      "`, which reaches " + centimetres(robot.reach_min) + " to " +
+                      centimetres(robot.reach_max))
+          .point("episode " + std::to_string(e) + ": " + at(starts.object(placed), placed))
+          .label(starts.layout.span, "the layout");
+      return false;
+    }
+  }
+  return check_grasps(starts, arms, scene, robot);
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,63 @@
+// P05xx: every task's starts, one check after the other. Looks at boxes only; collision hulls are
+// not known here.
+#include "compiler/check/starts.h"
+
+#include <cstdio>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "compiler/check/check.h"
+#include "compiler/define/task.h"
+#include "compiler/define/views.h"
+
+namespace probe::sema {
+
+Span TaskStarts::place(std::initializer_list<ObjectId> objects) const {
+  if (!like_is_fine || is_within(task.layout_span, task.decl_span)) return task.layout_span;
+  for (const ObjectId id : objects) {
+    if (const auto span = entry_of(task, id)) return *span;
+  }
+  return task.span;
+}
+
+std::string centimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4gcm", metres * 100);
+  return text;
+}
+
+std::string at(const Object& object, const Start::Placed& placed) {
+  return object.name + " at (" + centimetres(placed.x) + ", " + centimetres(placed.y) + ")";
+}
+
+void check_starts(const Model& model, Reporter& reporter) {
+  // Tasks share lists of starts; what was fine for one in its scene is fine for the next.
+  std::map<const Start*, std::set<std::pair<SceneId, std::vector<CameraId>>>> fine_in;
+  std::vector<bool> fine(model.tasks.size(), false);
+  Arms arms;
+  std::size_t at = 0;
+  for (const Task& task : model.tasks) {
+    const std::size_t index = at++;
+    if (task.starts.empty()) continue;
+    std::pair where{task.scene, std::vector<CameraId>()};
+    for (const View& view : views_of(model, task)) where.second.push_back(view.camera);
+    auto& known = fine_in[task.starts.data()];
+    if (known.contains(where)) {
+      fine[index] = true;
+      continue;
+    }
+    const About about(reporter, task.decl_span);
+    const bool like_is_fine =
+        task.like != TaskId::kNone && fine[static_cast<std::size_t>(task.like)];
+    const TaskStarts starts{model, reporter, task, model.layouts[task.layout], like_is_fine};
+    const std::size_t before = reporter.diagnostics.size();
+    check_overlap(starts);
+    // What lies beside the table is out of reach and out of view as well.
+    if (check_surface(starts) && check_reach(starts, arms)) check_frame(starts);
+    fine[index] = reporter.diagnostics.size() == before;
+    if (fine[index]) known.insert(std::move(where));
+  }
+}
+
+}  // namespace probe::sema

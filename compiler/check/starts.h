@@ -1,0 +1,40 @@
+// The starts of one task as the checks of places see them, and the words for a place.
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "compiler/geometry/reachable.h"
+#include "compiler/model/model.h"
+#include "compiler/names/reporter.h"
+
+namespace probe::sema {
+
+struct TaskStarts {
+  const Model& model;
+  Reporter& reporter;
+  const Task& task;
+  const Layout& layout;
+  bool like_is_fine = false;  // the task that this one copies starts well
+
+  const Object& object(const Start::Placed& placed) const { return model.objects[placed.object]; }
+  // Where to report: the layout, unless it is fine for the task that this one copies; then what
+  // came in here.
+  Span place(std::initializer_list<ObjectId> objects) const;
+};
+
+// Arms by scene; none for a scene whose arm cannot be asked.
+using Arms = std::map<SceneId, std::optional<Arm>>;
+
+void check_overlap(const TaskStarts& starts);            // P0501
+bool check_surface(const TaskStarts& starts);            // P0505; false when something was reported
+bool check_reach(const TaskStarts& starts, Arms& arms);  // P0502; as above
+void check_frame(const TaskStarts& starts);              // P0505 as a warning
+
+std::string centimetres(double metres);  // "7.5cm"
+// "carrot at (7.5cm, -2cm)".
+std::string at(const Object& object, const Start::Placed& placed);
+
+}  // namespace probe::sema

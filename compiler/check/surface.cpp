@@ -1,0 +1,33 @@
+// P0505 as an error: an object over the edge of the surface.
+#include "compiler/check/starts.h"
+#include "compiler/geometry/footprint.h"
+
+namespace probe::sema {
+
+bool check_surface(const TaskStarts& starts) {
+  const Scene& scene = starts.model.scenes[starts.task.scene];
+  for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
+    for (const Start::Placed& placed : starts.task.starts[e].placed) {
+      const Footprint shape = footprint(starts.object(placed), placed);
+      const double rx = shape.reach_along({1, 0});
+      const double ry = shape.reach_along({0, 1});
+      const bool inside =
+          shape.centre.x - rx >= scene.area[0] && shape.centre.x + rx <= scene.area[2] &&
+          shape.centre.y - ry >= scene.area[1] && shape.centre.y + ry <= scene.area[3];
+      if (inside) continue;
+      starts.reporter
+          .report(Code::P0505, starts.place({placed.object}),
+                  "`" + starts.object(placed).name + "` stands over the edge of `" + scene.name +
+                      "` in `" + starts.task.name + "`")
+          .point("episode " + std::to_string(e) + ": " + at(starts.object(placed), placed))
+          .label(starts.layout.span, "the layout")
+          .label(scene.span, "the surface is x " + centimetres(scene.area[0]) + " .. " +
+                                 centimetres(scene.area[2]) + ", y " + centimetres(scene.area[1]) +
+                                 " .. " + centimetres(scene.area[3]));
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,78 @@
+// Sets of bodies, over which quantifiers go.
+#include <algorithm>
+
+#include "compiler/define/expr.h"
+
+namespace probe::sema {
+namespace {
+
+constexpr std::pair<std::string_view, SetOp> kSets[] = {
+    {"fingers", SetOp::kFingers}, {"links", SetOp::kLinks},   {"bodies", SetOp::kBodies},
+    {"objects", SetOp::kObjects}, {"others", SetOp::kOthers}, {"distractors", SetOp::kDistractors},
+};
+
+}  // namespace
+
+bool ExprReader::only_objects(SetRef ref) {
+  const SetNode& set = arena().sets[ref];
+  switch (set.op) {
+    case SetOp::kObjects:
+    case SetOp::kOthers:
+    case SetOp::kDistractors:
+      return true;
+    case SetOp::kNames:
+      return std::all_of(set.bodies.begin(), set.bodies.end(),
+                         [&](ExprRef body) { return node(body).type.is_object; });
+    case SetOp::kUnion:
+      return only_objects(set.left) && only_objects(set.right);
+    case SetOp::kIntersection:
+      return only_objects(set.left) || only_objects(set.right);
+    case SetOp::kDifference:
+      return only_objects(set.left);
+    default:
+      return false;
+  }
+}
+
+std::optional<SetRef> ExprReader::read_set(syntax::SetExprId id) {
+  if (id.value == syntax::SetExprId::kNone) return std::nullopt;
+  const syntax::SetExpr& written = file_[id];
+  SetNode set;
+  set.span = written.span;
+  if (const auto* names = std::get_if<syntax::SetNames>(&written.node)) {
+    set.op = SetOp::kNames;
+    for (const syntax::Name& name : names->names) {
+      const ExprRef body =
+          expect(read_node(name.span, syntax::ExprName{name}), TypeKind::kBody, "a body");
+      if (is_poison(body)) return std::nullopt;
+      set.bodies.push_back(body);
+    }
+  } else if (const auto* name = std::get_if<syntax::SetName>(&written.node)) {
+    std::vector<std::string_view> candidates;
+    bool found = false;
+    for (const auto& [text, op] : kSets) {
+      candidates.push_back(text);
+      if (text != name->name.text) continue;
+      set.op = op;
+      found = true;
+    }
+    if (!found) {
+      report_unknown(context_.diagnostics, "set of bodies", name->name, candidates);
+      return std::nullopt;
+    }
+  } else {
+    const auto& binary = std::get<syntax::SetBinary>(written.node);
+    const auto left = read_set(binary.left);
+    const auto right = read_set(binary.right);
+    if (!left || !right) return std::nullopt;
+    set.left = *left;
+    set.right = *right;
+    set.op = binary.op == syntax::SetOp::kUnion          ? SetOp::kUnion
+             : binary.op == syntax::SetOp::kIntersection ? SetOp::kIntersection
+                                                         : SetOp::kDifference;
+  }
+  arena().sets.push_back(std::move(set));
+  return static_cast<SetRef>(arena().sets.size() - 1);
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,134 @@
+// `camera`: where it is mounted, where it looks, what its picture is.
+#include <algorithm>
+#include <cmath>
+
+#include "compiler/define/define.h"
+#include "compiler/define/record.h"
+#include "compiler/define/robot.h"
+#include "compiler/names/quantities.h"
+
+namespace probe::sema {
+namespace {
+
+constexpr std::uint32_t kLargestSide = 8192;  // of a picture as it is traced
+
+struct CameraReader {
+  Context& context;
+  Camera& camera;
+
+  void operator()(const syntax::MountStmt& stmt) {
+    if (stmt.frame.parts.size() != 2) {
+      context.report(Code::P0201, stmt.frame.span, "expected `robot.link` to mount the camera on");
+    } else {
+      const auto robot = context.symbols.robots.find(stmt.frame.parts[0], context.diagnostics);
+      camera.mount_link = spelled(stmt.frame.parts[1]);
+      if (robot) {
+        camera.mount_robot = static_cast<RobotId>(*robot);
+        check_link(context, camera.mount_link, context.model.robots[camera.mount_robot]);
+      }
+    }
+    assign(camera.position,
+           read_point(context, stmt.at, 3, 3, dim::kLength, "`mount ... at` takes lengths"));
+    const bool looks = stmt.kind == syntax::MountKind::kLook;
+    camera.aim = looks ? plan::CameraAim::kLook : plan::CameraAim::kQuat;
+    camera.aim_values = {};
+    const std::size_t count = looks ? 3 : 4;
+    const auto aim = read_point(
+        context, stmt.direction, count, count, dim::kNumber,
+        looks ? "`look` takes a direction of plain numbers" : "`quat` takes plain numbers");
+    assign(camera.aim_values, aim);
+    const auto& values = camera.aim_values;
+    const auto is_zero = [](double value) { return value == 0; };
+    if (aim && looks && std::all_of(values.begin(), values.end(), is_zero)) {
+      context
+          .report(Code::P0304, stmt.direction.span, "a camera looks along a direction, found none")
+          .help("a direction is a vector, such as `look (1, 0, -1)`");
+    } else if (aim && looks && values[0] == 0 && values[1] == 0) {
+      context
+          .report(Code::P0304, stmt.direction.span,
+                  "the view is vertical, which leaves its roll open")
+          .help("give the orientation with `quat`");
+    }
+    if (aim && !looks) make_unit(stmt.direction.span);
+  }
+  // A published quaternion has six digits or so; a plan wants its length to be 1.
+  void make_unit(const Span& span) {
+    double squares = 0;
+    for (const double value : camera.aim_values) squares += value * value;
+    const double length = std::sqrt(squares);
+    if (std::abs(length - 1) > 1e-3) {
+      context.report(Code::P0304, span,
+                     "expected a unit quaternion (w, x, y, z), found one of another length");
+      return;
+    }
+    for (double& value : camera.aim_values) value /= length;
+  }
+  void operator()(const syntax::ImageStmt& stmt) {
+    camera.width = size(stmt.width);
+    camera.height = size(stmt.height);
+    camera.samples = 0;
+    if (!stmt.samples) return;
+    const auto samples = stmt.samples->value;
+    if (samples != 1 && samples != 4 && samples != 16) {
+      context.report(Code::P0304, stmt.samples->span, "expected 1, 4 or 16 samples a pixel");
+      return;
+    }
+    // The renderer traces a picture of all samples and averages it.
+    const std::uint32_t across = samples == 16 ? 4 : samples == 4 ? 2 : 1;
+    if (std::max(camera.width, camera.height) * across > kLargestSide) {
+      context.report(Code::P0304, stmt.samples->span,
+                     "with " + std::to_string(samples) +
+                         " samples a pixel an image side is at most " +
+                         std::to_string(kLargestSide / across) + " pixels");
+      return;
+    }
+    if (samples > 1) camera.samples = static_cast<std::uint32_t>(samples);
+  }
+  void operator()(const syntax::LensStmt& stmt) {
+    if (stmt.values.size() != 4) {
+      context.report(Code::P0302, stmt.span,
+                     "expected fx, fy, cx, cy, found " + std::to_string(stmt.values.size()) +
+                         (stmt.values.size() == 1 ? " value" : " values"));
+      return;
+    }
+    double* const to[] = {&camera.fx, &camera.fy, &camera.cx, &camera.cy};
+    for (std::size_t i = 0; i < 4; ++i) {
+      *to[i] =
+          read_positive(context, stmt.values[i], dim::kPixel, "`lens` takes pixels").value_or(1);
+    }
+  }
+  std::uint32_t size(const syntax::Int& value) {
+    if (value.value >= 1 && value.value <= kLargestSide)
+      return static_cast<std::uint32_t>(value.value);
+    context.report(Code::P0304, value.span, "expected an image side between 1 and 8192 pixels");
+    return 1;
+  }
+};
+
+}  // namespace
+
+bool Camera::operator==(const Camera& other) const {
+  return mount_link.text == other.mount_link.text && aim == other.aim &&
+         position == other.position && aim_values == other.aim_values && width == other.width &&
+         height == other.height && samples == other.samples && fx == other.fx && fy == other.fy &&
+         cx == other.cx && cy == other.cy;
+}
+
+void define_cameras(Context& context) {
+  const auto read = [&](const Declared<syntax::CameraDecl>& declared, Camera& camera) {
+    for (const syntax::CameraStmt& stmt : declared.node->body)
+      std::visit(CameraReader{context, camera}, stmt);
+  };
+  const auto complete = [&](const Camera& camera, bool) {
+    const auto need = [&](bool is_there, std::string_view statement) {
+      require(context, is_there, "camera", camera.name, camera.span, statement);
+    };
+    need(!camera.mount_link.span.is_none(), "mount");
+    need(camera.width != 0, "image");
+    need(camera.fx != 0, "lens");
+  };
+  define_records(context, context.symbols.cameras, context.symbols.camera_decls,
+                 context.model.cameras, read, complete);
+}
+
+}  // namespace probe::sema

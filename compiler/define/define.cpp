@@ -1,0 +1,23 @@
+#include "compiler/define/define.h"
+
+namespace probe::sema {
+
+void define_model(Context& context) {
+  define_attributes(context);
+  define_objects(context);
+  define_datasets(context);
+  define_robots(context);
+  define_cameras(context);
+  define_lights(context);
+  define_scenes(context);
+  define_layouts(context);
+  define_templates(context);
+  define_predicates(context);
+  define_metrics(context);
+  define_tasks(context);
+  define_starts(context);
+  define_sets(context);
+  define_suites(context);
+}
+
+}  // namespace probe::sema

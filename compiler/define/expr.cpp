@@ -1,0 +1,223 @@
+#include "compiler/define/expr.h"
+
+#include <algorithm>
+
+namespace probe::sema {
+
+std::string type_name(const Type& type) {
+  switch (type.kind) {
+    case TypeKind::kPoison:
+      return "nothing";
+    case TypeKind::kBool:
+      return "a condition";
+    case TypeKind::kReal:
+      return name_of(type.dimension);
+    case TypeKind::kVector:
+      return type.dimension == dim::kNumber ? "a direction"
+                                            : "a vector of " + name_of(type.dimension).substr(2);
+    case TypeKind::kBody:
+      return type.is_object ? "an object" : "a body";
+  }
+  return {};
+}
+
+void ExprReader::add_variable(std::string_view name, const Type& type) {
+  scope_.push_back({name, type, variables_++});
+}
+
+ExprRef ExprReader::read(syntax::ExprId id) {
+  // Left out by a syntax error, which has been reported.
+  if (id.value == syntax::ExprId::kNone) return poison({});
+  const syntax::Expr& expr = file_[id];
+  const Level level(context_);
+  return std::visit([&](const auto& node) { return read_node(expr.span, node); }, expr.node);
+}
+
+ExprRef ExprReader::add(ExprNode node) {
+  for (const ExprRef arg : node.args)
+    node.height = std::max(node.height, arena().nodes[arg].height + 1);
+  arena().nodes.push_back(std::move(node));
+  return static_cast<ExprRef>(arena().nodes.size() - 1);
+}
+
+ExprRef ExprReader::add(ExprOp op, const Type& type, const Span& span, std::vector<ExprRef> args,
+                        std::uint32_t a) {
+  ExprNode node;
+  node.op = op;
+  node.type = type;
+  node.span = span;
+  node.args = std::move(args);
+  node.a = a;
+  return add(std::move(node));
+}
+
+ExprRef ExprReader::expect(ExprRef ref, TypeKind kind, const char* wanted) {
+  const Type type = node(ref).type;
+  if (type.kind == TypeKind::kPoison || type.kind == kind) return ref;
+  context_.report(Code::P0601, node(ref).span,
+                  std::string("expected ") + wanted + ", found " + type_name(type));
+  return poison(node(ref).span);
+}
+
+ExprRef ExprReader::plain(ExprRef ref) {
+  if (!node(ref).type.is_angle_between) return ref;
+  context_.report(Code::P0601, node(ref).span, "`angle` stands alone on one side of a comparison")
+      .help("write `angle(u, v) <= 60deg`");
+  return poison(node(ref).span);
+}
+
+bool ExprReader::same_dimension(ExprRef left, ExprRef right) {
+  const Type a = node(left).type;
+  const Type b = node(right).type;
+  if (a.dimension == b.dimension) return true;
+  // The literal is the one to correct.
+  const bool left_is_literal = node(left).op == ExprOp::kConstant;
+  const ExprRef wrong = left_is_literal ? left : right;
+  const Dimension& wanted = left_is_literal ? b.dimension : a.dimension;
+  Diagnostic& diagnostic =
+      context_.report(Code::P0302, node(wrong).span,
+                      "expected " + name_of(wanted) + ", found " +
+                          name_of(left_is_literal ? a.dimension : b.dimension));
+  diagnostic.label(node(left_is_literal ? right : left).span, "this is " + name_of(wanted));
+  if (node(wrong).op == ExprOp::kConstant && node(wrong).type.dimension == dim::kNumber &&
+      !usual_unit(wanted).empty()) {
+    diagnostic.help("a unit touches its number: `" +
+                    std::string(context_.sources.text(node(wrong).span)) +
+                    std::string(usual_unit(wanted)) + "`");
+  }
+  return false;
+}
+
+ExprRef ExprReader::read_node(const Span& span, const syntax::ExprNumber& number) {
+  if (number.value.unit == syntax::Unit::kUnknown) return poison(span);
+  const auto quantity = make_quantity(number.value.digits, to_text(number.value.unit));
+  if (!quantity) {
+    context_.report(Code::P0304, span, "more digits or a larger exponent than is kept");
+    return poison(span);
+  }
+  arena().quantities.push_back(*quantity);
+  return add(ExprOp::kConstant, real_type(quantity->dimension), span, {},
+             static_cast<std::uint32_t>(arena().quantities.size() - 1));
+}
+
+ExprRef ExprReader::read_node(const Span& span, const syntax::ExprName& name) {
+  for (auto variable = scope_.rbegin(); variable != scope_.rend(); ++variable) {
+    if (variable->name == name.name.text)
+      return add(ExprOp::kVariable, variable->type, span, {}, variable->index);
+  }
+  if (const auto ref = body_name(name.name)) return *ref;
+  for (const MeasureInfo& measure : all_measures()) {
+    if (measure.name != name.name.text) continue;
+    if (measure.params.empty()) return add_measure(span, measure, {});
+    context_
+        .report(Code::P0601, span, "`" + std::string(measure.name) + "` is measured of something")
+        .help("write `" + std::string(measure.name) + "(...)`");
+    return poison(span);
+  }
+  std::vector<std::string_view> candidates = {"source", "target", "surface"};
+  for (const Variable& variable : scope_) candidates.push_back(variable.name);
+  for (const MeasureInfo& measure : all_measures()) {
+    if (measure.params.empty()) candidates.push_back(measure.name);
+  }
+  report_unknown(context_.diagnostics, "name", name.name, candidates);
+  return poison(span);
+}
+
+std::optional<ExprRef> ExprReader::body_name(const syntax::Name& name) {
+  if (name.text == "source" || name.text == "target") {
+    const std::uint32_t role = name.text == "source" ? 0 : 1;
+    return add(ExprOp::kRole, {TypeKind::kBody, dim::kNumber, true}, name.span, {}, role);
+  }
+  if (name.text == "surface")
+    return add(ExprOp::kSurface, {TypeKind::kBody, dim::kNumber, false}, name.span);
+  return std::nullopt;
+}
+
+ExprRef ExprReader::read_node(const Span& span, const syntax::ExprCall& call) {
+  for (const MeasureInfo& measure : all_measures()) {
+    if (measure.name == call.callee.text) return read_measure(span, call, measure);
+  }
+  if (const auto predicate = context_.symbols.predicates.peek(call.callee.text)) {
+    return read_predicate(span, call, static_cast<PredicateId>(*predicate));
+  }
+  std::vector<std::string_view> candidates;
+  for (const syntax::Name& known : context_.symbols.predicates.names())
+    candidates.push_back(known.text);
+  for (const MeasureInfo& measure : all_measures()) candidates.push_back(measure.name);
+  report_unknown(context_.diagnostics, "predicate", call.callee, candidates);
+  return poison(span);
+}
+
+ExprRef ExprReader::read_measure(const Span& span, const syntax::ExprCall& call,
+                                 const MeasureInfo& measure) {
+  std::vector<ExprRef> args;
+  for (const syntax::Argument& argument : call.arguments) {
+    if (argument.name) {
+      context_.report(Code::P0601, argument.name->span,
+                      "`" + std::string(measure.name) + "` has no named arguments");
+      return poison(span);
+    }
+    args.push_back(plain(read(argument.value)));
+  }
+  if (args.size() != measure.params.size()) {
+    context_.report(Code::P0601, span,
+                    "`" + std::string(measure.name) + "` takes " +
+                        std::to_string(measure.params.size()) + " arguments, found " +
+                        std::to_string(args.size()));
+    return poison(span);
+  }
+  bool fits = true;
+  for (std::size_t i = 0; i < args.size(); ++i) fits = argument_fits(measure, i, args[i]) && fits;
+  if (!fits) return poison(span);
+  if (measure.params == "RR" && !same_dimension(args[0], args[1])) return poison(span);
+  return add_measure(span, measure, std::move(args));
+}
+
+bool ExprReader::argument_fits(const MeasureInfo& measure, std::size_t i, ExprRef arg) {
+  const Type& type = node(arg).type;
+  if (type.kind == TypeKind::kPoison) return false;
+  const bool is_body = type.kind == TypeKind::kBody;
+  const bool is_point = type.kind == TypeKind::kVector && type.dimension == dim::kLength;
+  const char* wanted = "";
+  bool fits = false;
+  switch (measure.params[i]) {
+    case 'B':
+      fits = is_body, wanted = "a body";
+      break;
+    case 'O':
+      fits = is_body && type.is_object, wanted = "an object";
+      break;
+    case 'P':
+      fits = is_body || is_point, wanted = "a body or a point";
+      break;
+    case 'V':
+      fits = type.kind == TypeKind::kVector, wanted = "a vector";
+      break;
+    case 'R':
+      fits = type.kind == TypeKind::kReal, wanted = "a number";
+      break;
+    default:
+      break;
+  }
+  if (!fits) {
+    context_
+        .report(Code::P0601, node(arg).span,
+                std::string("expected ") + wanted + ", found " + type_name(type))
+        .point("`" + std::string(measure.name) + "`: " + std::string(measure.meaning));
+  }
+  return fits;
+}
+
+ExprRef ExprReader::add_measure(const Span& span, const MeasureInfo& measure,
+                                std::vector<ExprRef> args) {
+  Type type;
+  type.kind = measure.result == 'v' ? TypeKind::kVector : TypeKind::kReal;
+  type.dimension =
+      measure.params.starts_with("R") ? node(args[0]).type.dimension : measure.dimension;
+  type.is_angle_between = measure.result == 'a';
+  const ExprRef ref = add(ExprOp::kMeasure, type, span, std::move(args));
+  arena().nodes[ref].measure = measure.measure;
+  return ref;
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,57 @@
+// `light`: an ambient part and any number of suns.
+#include "compiler/define/define.h"
+#include "compiler/define/record.h"
+#include "compiler/names/quantities.h"
+
+namespace probe::sema {
+
+bool Light::operator==(const Light& other) const {
+  if (ambient != other.ambient || occlusion != other.occlusion || suns.size() != other.suns.size())
+    return false;
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||
+        suns[i].shadow != other.suns[i].shadow) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void define_lights(Context& context) {
+  for (const auto& declared : context.symbols.light_decls) {
+    Light light;
+    light.name = std::string(declared.node->name.text);
+    light.span = declared.node->name.span;
+    for (const syntax::LightStmt& stmt : declared.node->body) {
+      if (const auto* ambient = std::get_if<syntax::AmbientStmt>(&stmt)) {
+        light.ambient =
+            read_si(context, ambient->value, dim::kNumber, "`ambient` takes a number").value_or(0);
+        if (light.ambient < 0)
+          context.report(Code::P0304, ambient->value.span,
+                         "expected an ambient light of 0 or more");
+        if (!ambient->occlusion) continue;
+        if (ambient->occlusion->value < 1 || ambient->occlusion->value > plan::kMaxOcclusion) {
+          context.report(Code::P0304, ambient->occlusion->span,
+                         "expected 1 to 16 rays to find how open a place is");
+          continue;
+        }
+        light.occlusion = static_cast<std::uint32_t>(ambient->occlusion->value);
+        continue;
+      }
+      const auto& written = std::get<syntax::SunStmt>(stmt);
+      plan::SunRecord sun;
+      assign(sun.direction, read_point(context, written.direction, 3, 3, dim::kNumber,
+                                       "`sun` takes a direction of plain numbers"));
+      if (sun.direction == std::array<double, 3>{})
+        context.report(Code::P0304, written.direction.span,
+                       "a sun shines along a direction, found none");
+      sun.power =
+          read_positive(context, written.power, dim::kNumber, "`power` takes a number").value_or(1);
+      sun.shadow = written.shadow ? 1 : 0;
+      light.suns.push_back(sun);
+    }
+    context.model.lights.add(std::move(light));
+  }
+}
+
+}  // namespace probe::sema

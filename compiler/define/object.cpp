@@ -1,0 +1,164 @@
+// `object`: its statements over what it copied.
+#include "compiler/define/attribute.h"
+#include "compiler/define/axes.h"
+#include "compiler/define/define.h"
+#include "compiler/define/query.h"
+#include "compiler/define/record.h"
+#include "compiler/names/quantities.h"
+
+namespace probe::sema {
+namespace {
+
+// Reads the statements of one object over what it copied.
+struct ObjectReader {
+  Context& context;
+  const syntax::File& file;
+  Object& object;
+  bool has_is = false, has_maybe = false, has_seen = false;
+
+  void facts(const std::vector<syntax::Name>& names, Truth truth, bool& begun) {
+    // Statements overwrite: a new list replaces the copied one of its kind.
+    if (!begun) {
+      for (Truth& fact : object.facts) {
+        if (fact == truth) fact = Truth::kNo;
+      }
+    }
+    begun = true;
+    for (const syntax::Name& name : names) {
+      if (const auto fact = context.symbols.facts.find(name, context.diagnostics))
+        object.facts[*fact] = truth;
+    }
+  }
+
+  void begin_box(const Span& span) {
+    object.has_box = object.box_is_read = true;
+    object.box_span = span;
+  }
+
+  void operator()(const syntax::MeshStmt& stmt) { object.mesh = spelled(stmt.path); }
+  void operator()(const syntax::BoxSizeStmt& stmt) {
+    const syntax::Quantity* sides[] = {&stmt.x, &stmt.y, &stmt.z};
+    begin_box(stmt.span);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto side = read_positive(context, *sides[i], dim::kLength, "`box` takes lengths");
+      if (!side) {
+        object.box_is_read = false;
+        continue;
+      }
+      // Halving is exact in binary, so the corners are the nearest doubles to the exact ones.
+      object.box_min[i] = -*side / 2;
+      object.box_max[i] = *side / 2;
+    }
+  }
+  void operator()(const syntax::BoxCornersStmt& stmt) {
+    begin_box(stmt.span);
+    object.box_is_read = false;
+    const auto low = read_point(context, stmt.low, 3, 3, dim::kLength, "`box` takes lengths");
+    const auto high = read_point(context, stmt.high, 3, 3, dim::kLength, "`box` takes lengths");
+    if (!low || !high) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      object.box_min[i] = (*low)[i].si();
+      object.box_max[i] = (*high)[i].si();
+      if (object.box_min[i] < object.box_max[i]) continue;
+      context.report(Code::P0304, stmt.span,
+                     "the second corner of a box lies above the first on every axis");
+      return;
+    }
+    object.box_is_read = true;
+  }
+  void operator()(const syntax::DensityStmt& stmt) {
+    object.has_density = true;
+    object.density =
+        read_positive(context, stmt.value, dim::kDensity, "`density` takes a density").value_or(1);
+  }
+  void operator()(const syntax::FrictionStmt& stmt) {
+    object.has_friction = true;
+    object.friction =
+        read_positive(context, stmt.value, dim::kNumber, "`friction` takes a number").value_or(1);
+  }
+  void operator()(const syntax::IsStmt& stmt) { facts(stmt.facts, Truth::kYes, has_is); }
+  void operator()(const syntax::MaybeStmt& stmt) { facts(stmt.facts, Truth::kUnknown, has_maybe); }
+  void operator()(const syntax::SeenInStmt& stmt) {
+    if (!has_seen) object.seen_in.clear();
+    has_seen = true;
+    object.unseen = false;
+    for (const syntax::Name& name : stmt.datasets) {
+      const auto dataset = context.symbols.datasets.find(name, context.diagnostics);
+      if (dataset) object.seen_in.push_back(static_cast<DatasetId>(*dataset));
+    }
+  }
+  void operator()(const syntax::UnseenStmt&) {
+    object.seen_in.clear();
+    object.unseen = true;
+  }
+  void operator()(const syntax::RestStmt& stmt) {
+    if (const auto turns = read_turns(context, stmt.poses)) object.rest = *turns;
+  }
+  void operator()(const syntax::NameStmt& stmt) {
+    object.text = spelled(stmt.text);
+    if (object.text.text.find_first_not_of(' ') == std::string::npos)
+      context.report(Code::P0406, object.text.span, "an object's name has no words");
+    object.bare = stmt.bare;
+  }
+  void operator()(const syntax::PhraseStmt& stmt) {
+    Phrase phrase{std::string(stmt.name.text),
+                  plan::Axis::kLanguageAppearance,
+                  spelled(stmt.text),
+                  stmt.bare,
+                  {},
+                  {}};
+    if (const auto axis = phrase_axis(context.diagnostics, stmt.axis)) phrase.axis = *axis;
+    if (!compile_query(context, file, stmt.means, phrase.means)) return;
+    phrase.means_text = std::string(context.sources.text(file[stmt.means].span));
+    for (Phrase& known : object.phrases) {
+      if (known.name != phrase.name) continue;
+      known = std::move(phrase);
+      return;
+    }
+    object.phrases.push_back(std::move(phrase));
+  }
+  void operator()(const syntax::AttributeStmt& stmt) {
+    const auto attribute = context.symbols.attributes.find(stmt.attribute, context.diagnostics);
+    if (!attribute) return;
+    std::vector<std::uint32_t>& values = object.values[*attribute];
+    values.clear();
+    for (const syntax::Name& name : stmt.values) {
+      if (const auto value = find_value(context, static_cast<AttributeId>(*attribute), name))
+        values.push_back(*value);
+    }
+  }
+};
+
+}  // namespace
+
+const Phrase* Object::find_phrase(std::string_view phrase) const {
+  for (const Phrase& known : phrases) {
+    if (known.name == phrase) return &known;
+  }
+  return nullptr;
+}
+
+void define_objects(Context& context) {
+  const auto read = [&](const Declared<syntax::ObjectDecl>& declared, Object& object) {
+    object.decl_span = declared.decl->span;
+    object.values.resize(context.model.attributes.size());
+    object.facts.resize(context.model.facts.size(), Truth::kNo);
+    ObjectReader reader{context, *declared.file, object};
+    for (const syntax::ObjectStmt& stmt : declared.node->body) std::visit(reader, stmt);
+    if (object.rest.empty()) object.rest.push_back({});
+  };
+  const auto complete = [&](const Object& object, bool) {
+    const auto need = [&](bool is_there, std::string_view statement) {
+      require(context, is_there, "object", object.name, object.span, statement);
+    };
+    need(!object.mesh.span.is_none(), "mesh");
+    need(object.has_box, "box");
+    need(object.has_density, "density");
+    need(object.has_friction, "friction");
+    need(!object.text.span.is_none(), "name");
+  };
+  define_records(context, context.symbols.objects, context.symbols.object_decls,
+                 context.model.objects, read, complete);
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,240 @@
+// `robot`: links and joints named here are looked up in the URDF, and every drive's units must fit
+// the kind of its joint.
+#include "compiler/define/robot.h"
+
+#include <filesystem>
+
+#include "compiler/define/define.h"
+#include "compiler/define/record.h"
+#include "compiler/names/quantities.h"
+
+namespace probe::sema {
+namespace {
+
+struct RobotReader {
+  Context& context;
+  Robot& robot;
+  bool has_control = false, has_grip = false, has_drive = false;
+
+  void check_above_zero(const syntax::Quantity& written, double value, const char* why) {
+    if (value > 0) return;
+    context
+        .report(Code::P0304, written.span,
+                "expected a value above zero, found `" +
+                    std::string(context.sources.text(written.span)) + "`")
+        .point(why);
+  }
+
+  void operator()(const syntax::UrdfStmt& stmt) { robot.urdf = spelled(stmt.path); }
+  void operator()(const syntax::TcpStmt& stmt) { robot.tcp = spelled(stmt.link); }
+  void operator()(const syntax::FingersStmt& stmt) {
+    robot.fingers.clear();
+    for (const syntax::Finger& finger : stmt.fingers) {
+      const std::string_view axis = finger.axis.text;
+      Finger record{spelled(finger.link), {}};
+      if (axis != "x" && axis != "y" && axis != "z") {
+        report_unknown(context.diagnostics, "axis", finger.axis, {"x", "y", "z"});
+      } else {
+        record.opens[static_cast<std::size_t>(axis[0] - 'x')] = finger.negative ? -1 : 1;
+      }
+      robot.fingers.push_back(std::move(record));
+    }
+    if (robot.fingers.size() == 2 && robot.fingers[0].link.text == robot.fingers[1].link.text) {
+      context.report(Code::P0304, stmt.fingers[1].link.span,
+                     "expected two fingers, found `" + robot.fingers[0].link.text + "` twice");
+    }
+    if (robot.fingers.size() != 2) {
+      context.report(Code::P0304, stmt.span,
+                     "expected 2 fingers, found " + std::to_string(robot.fingers.size()));
+    }
+  }
+  void operator()(const syntax::ControlStmt& stmt) {
+    has_control = true;
+    if (stmt.law.text != "ee_delta_pose") {
+      report_unknown(context.diagnostics, "control law", stmt.law, {"ee_delta_pose"});
+    }
+    robot.control_hz =
+        read_positive(context, stmt.rate, dim::kRate, "`control` takes a frequency").value_or(1);
+  }
+  void operator()(const syntax::ReachStmt& stmt) {
+    robot.reach_min =
+        read_si(context, stmt.least, dim::kLength, "`reach` takes lengths").value_or(0);
+    robot.reach_max =
+        read_positive(context, stmt.most, dim::kLength, "`reach` takes lengths").value_or(1);
+    if (robot.reach_min >= 0 && robot.reach_min < robot.reach_max) return;
+    context.report(Code::P0304, stmt.span,
+                   "expected the nearest reach below the farthest, both from 0, found `" +
+                       std::string(context.sources.text(stmt.span)) + "`");
+  }
+  void operator()(const syntax::DriveStmt& stmt) {
+    has_drive = true;
+    // Whether the joint turns or slides is known only with the URDF; the stiffness decides what the
+    // others must be.
+    const auto stiffness = make_quantity(stmt.stiffness.digits, to_text(stmt.stiffness.unit));
+    const bool slides = stiffness && stiffness->dimension == dim::kLinearStiffness;
+    Drive drive;
+    drive.span = stmt.span;
+    const auto k = read_quantity(context, stmt.stiffness,
+                                 slides ? dim::kLinearStiffness : dim::kAngularStiffness,
+                                 "a stiffness is in Nm/rad, or in N/m for a sliding joint");
+    const auto d = read_quantity(
+        context, stmt.damping, slides ? dim::kLinearDamping : dim::kAngularDamping,
+        slides ? "a sliding joint is damped in Ns/m" : "a turning joint is damped in Nms/rad");
+    const auto f = read_quantity(
+        context, stmt.limit, slides ? dim::kForce : dim::kTorque,
+        slides ? "a sliding joint is limited in N" : "a turning joint is limited in Nm");
+    if (!k || !d || !f) return;
+    check_above_zero(stmt.stiffness, k->si(), "a drive without stiffness holds nothing");
+    check_above_zero(stmt.damping, d->si(), "a drive without damping swings for ever");
+    check_above_zero(stmt.limit, f->si(), "a drive without force moves nothing");
+    drive.stiffness = *k;
+    drive.damping = *d;
+    drive.limit = *f;
+    for (const syntax::Name& joint : stmt.joints) {
+      for (const Drive& known : robot.drives) {
+        if (known.joint.text != joint.text) continue;
+        context.report(Code::P0203, joint.span, "joint `" + known.joint.text + "` is driven twice")
+            .label(known.joint.span, "first driven here");
+      }
+      drive.joint = spelled(joint);
+      robot.drives.push_back(drive);
+    }
+  }
+  void operator()(const syntax::GripStmt& stmt) {
+    has_grip = true;
+    robot.grip_closed =
+        read_si(context, stmt.closed, dim::kLength, "`grip` takes lengths").value_or(0);
+    robot.grip_open = read_si(context, stmt.open, dim::kLength, "`grip` takes lengths").value_or(1);
+    if (robot.grip_closed >= robot.grip_open) {
+      context.report(Code::P0304, stmt.span,
+                     "expected the closed position below the open one, found `" +
+                         std::string(context.sources.text(stmt.span)) + "`");
+    }
+    if (stmt.friction) {
+      robot.finger_friction =
+          read_positive(context, *stmt.friction, dim::kNumber, "`friction` takes a number")
+              .value_or(1);
+    }
+    if (stmt.patch)
+      robot.finger_patch =
+          read_si(context, *stmt.patch, dim::kLength, "`patch` takes a length").value_or(0);
+  }
+};
+
+void unknown_part(Context& context, std::string_view kind, const Spelled& name, const Robot& robot,
+                  std::vector<std::string_view> candidates) {
+  report_unknown(context.diagnostics, kind, {name.span, name.text}, candidates)
+      .label(robot.urdf.span, "not in this file");
+}
+
+}  // namespace
+
+void check_link(Context& context, const Spelled& link, const Robot& robot) {
+  if (!robot.model || link.text.empty() || robot.model->find_link(link.text) >= 0) return;
+  std::vector<std::string_view> candidates;
+  for (const robot::Link& known : robot.model->links) candidates.push_back(known.name);
+  unknown_part(context, "link", link, robot, std::move(candidates));
+}
+
+namespace {
+
+void check_drive(Context& context, const Drive& drive, const Robot& robot) {
+  const int index = robot.model->find_joint(drive.joint.text);
+  if (index < 0) {
+    std::vector<std::string_view> candidates;
+    for (const robot::Joint& known : robot.model->joints) candidates.push_back(known.name);
+    unknown_part(context, "joint", drive.joint, robot, std::move(candidates));
+    return;
+  }
+  const robot::JointKind kind = robot.model->joints[static_cast<std::size_t>(index)].kind;
+  if (kind == robot::JointKind::kFixed) {
+    context.report(Code::P0302, drive.joint.span,
+                   "joint `" + drive.joint.text + "` is fixed, it cannot be driven");
+    return;
+  }
+  const bool slides = kind == robot::JointKind::kPrismatic;
+  if (slides == (drive.stiffness.dimension == dim::kLinearStiffness)) return;
+  context
+      .report(Code::P0302, drive.span,
+              "joint `" + drive.joint.text + "` " + (slides ? "slides" : "turns") +
+                  ", its stiffness is in " + (slides ? "N/m" : "Nm/rad"))
+      .label(drive.joint.span, "this joint");
+}
+
+// A gripper opens as its fingers' joints go up: each must then move the way it is said to open, and
+// two that open in one direction hold nothing.
+void check_fingers(Context& context, const Robot& robot) {
+  if (robot.fingers.size() != 2 || robot.fingers[0].link.text == robot.fingers[1].link.text) return;
+  std::vector<Vec3> ways;  // in the frame of the link both hang on
+  int parent = -1;
+  for (const Finger& finger : robot.fingers) {
+    const int link = robot.model->find_link(finger.link.text);
+    const Vec3 opens(finger.opens[0], finger.opens[1], finger.opens[2]);
+    const int above =
+        link < 0 ? -1 : robot.model->links[static_cast<std::size_t>(link)].parent_joint;
+    if (above < 0 || opens.isZero()) return;
+    const robot::Joint& joint = robot.model->joints[static_cast<std::size_t>(above)];
+    if (joint.kind == robot::JointKind::kPrismatic && joint.axis.dot(opens) < 0) {
+      context
+          .report(Code::P0304, finger.link.span,
+                  "finger `" + finger.link.text + "` is said to open against its joint's motion")
+          .point("`" + joint.name + "` moves it the other way as its position grows")
+          .label(robot.urdf.span, "the joint is described here");
+      return;
+    }
+    if (!ways.empty() && joint.parent_link != parent) return;
+    parent = joint.parent_link;
+    ways.push_back(joint.origin.rotation * opens);
+  }
+  if (ways.size() != 2 || ways[0].dot(ways[1]) < 0.9) return;
+  context
+      .report(Code::P0304, robot.fingers[1].link.span,
+              "expected fingers that open apart, found both opening in one direction")
+      .label(robot.fingers[0].link.span, "opens the same way");
+}
+
+void load_model(Context& context, Robot& robot) {
+  const std::string path = (std::filesystem::path(context.asset_root) / robot.urdf.text).string();
+  auto model = robot::load_urdf(path);
+  if (!model.ok()) {
+    context
+        .report(Code::P0202, robot.urdf.span,
+                "the robot description cannot be read: " + model.failure().message)
+        .note("looked for `" + robot.urdf.text + "` in the assets folder");
+    return;
+  }
+  robot.model = std::move(model).value();
+  check_link(context, robot.tcp, robot);
+  for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);
+  for (const Drive& drive : robot.drives) check_drive(context, drive, robot);
+  check_fingers(context, robot);
+}
+
+}  // namespace
+
+void define_robots(Context& context) {
+  for (const auto& declared : context.symbols.robot_decls) {
+    const syntax::RobotDecl& node = *declared.node;
+    Robot robot;
+    robot.name = std::string(node.name.text);
+    robot.span = node.name.span;
+    const auto errors = context.mistakes();
+    RobotReader reader{context, robot};
+    for (const syntax::RobotStmt& stmt : node.body) std::visit(reader, stmt);
+    const auto need = [&](bool is_there, std::string_view statement) {
+      if (!declared.decl->complete) return;
+      require(context, is_there, "robot", robot.name, robot.span, statement);
+    };
+    need(!robot.urdf.span.is_none(), "urdf");
+    need(!robot.tcp.span.is_none(), "tcp");
+    need(!robot.fingers.empty(), "fingers");
+    need(reader.has_control, "control");
+    need(reader.has_grip, "grip");
+    need(reader.has_drive, "drive");
+    if (!robot.urdf.span.is_none()) load_model(context, robot);
+    robot.broken = !declared.decl->complete || context.mistakes() != errors;
+    context.model.robots.add(std::move(robot));
+  }
+}
+
+}  // namespace probe::sema

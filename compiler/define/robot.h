@@ -1,0 +1,11 @@
+// Parts of a robot by the names that its URDF gives them.
+#pragma once
+
+#include "compiler/names/context.h"
+
+namespace probe::sema {
+
+// P0201 unless the robot's URDF, where it could be read, has the link.
+void check_link(Context& context, const Spelled& link, const Robot& robot);
+
+}  // namespace probe::sema

@@ -1,0 +1,197 @@
+// `scene`: a robot at its place, a surface, what stands and looks around it.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "compiler/define/define.h"
+#include "compiler/define/record.h"
+#include "compiler/names/quantities.h"
+
+namespace probe::sema {
+namespace {
+
+struct SceneReader {
+  Context& context;
+  Scene& scene;
+  bool has_surface = false, has_physics = false;
+
+  void operator()(const syntax::SceneRobotStmt& stmt) {
+    const auto robot = context.symbols.robots.find(stmt.robot, context.diagnostics);
+    if (robot) scene.robot = static_cast<RobotId>(*robot);
+    const auto at =
+        read_point(context, stmt.at, 2, 3, dim::kLength, "`robot ... at` takes lengths");
+    assign(scene.base_position, at);
+    scene.base_on_surface = at && at->size() == 2;
+    if (const auto yaw = read_quantity(context, stmt.yaw, dim::kAngle, "`yaw` takes an angle")) {
+      scene.base_turn = make_turn(nullptr, nullptr, &*yaw);
+    }
+  }
+  void operator()(const syntax::JointsStmt& stmt) {
+    scene.joints.clear();
+    scene.joints_span = stmt.span;
+    // Lengths and angles mix here; each is checked against its joint when the robot is known.
+    for (const syntax::Quantity& value : stmt.positions.coordinates) {
+      const auto as_is = make_quantity("0", to_text(value.unit));
+      const bool is_length = as_is && as_is->dimension == dim::kLength;
+      const auto read = read_quantity(context, value, is_length ? dim::kLength : dim::kAngle,
+                                      "a joint is at an angle or a length");
+      if (read) scene.joints.push_back(*read);
+    }
+    if (scene.joints.size() != stmt.positions.coordinates.size())
+      scene.joints.clear(), scene.joints_span = {};
+  }
+  void operator()(const syntax::SurfaceStmt& stmt) {
+    has_surface = true;
+    scene.surface_z =
+        read_si(context, stmt.height, dim::kLength, "`surface` takes a height").value_or(0);
+    const auto low = read_point(context, stmt.low, 2, 2, dim::kLength, "`area` takes lengths");
+    const auto high = read_point(context, stmt.high, 2, 2, dim::kLength, "`area` takes lengths");
+    if (!low || !high) return;
+    scene.area = {(*low)[0].si(), (*low)[1].si(), (*high)[0].si(), (*high)[1].si()};
+    if (scene.area[0] < scene.area[2] && scene.area[1] < scene.area[3]) return;
+    context.report(Code::P0304, join(stmt.low.span, stmt.high.span),
+                   "the second corner of an area lies above the first on both axes");
+  }
+  void operator()(const syntax::FixtureStmt& stmt) {
+    scene.fixture = spelled(stmt.mesh);
+    assign(scene.fixture_position,
+           read_point(context, stmt.at, 3, 3, dim::kLength, "`fixture ... at` takes lengths"));
+  }
+  void operator()(const syntax::BackdropStmt& stmt) { scene.backdrop = spelled(stmt.mesh); }
+  void operator()(const syntax::SceneCameraStmt& stmt) {
+    scene.views.clear();
+    for (const syntax::SceneCamera& written : stmt.cameras) {
+      const auto camera = context.symbols.cameras.find(written.camera, context.diagnostics);
+      if (!camera) continue;
+      View view;
+      const syntax::Name& name = written.as ? *written.as : written.camera;
+      view.name = std::string(name.text);
+      view.span = name.span;
+      view.camera = static_cast<CameraId>(*camera);
+      view.is_named = written.as.has_value();
+      if (written.overlay) view.overlay = spelled(*written.overlay);
+      add_view(std::move(view));
+    }
+    if (scene.views.size() > plan::kMaxViews) {
+      context.report(Code::P0304, stmt.span,
+                     "expected at most " + std::to_string(plan::kMaxViews) +
+                         " cameras in a scene, found " + std::to_string(scene.views.size()));
+    }
+  }
+  void add_view(View view) {
+    for (const View& known : scene.views) {
+      if (known.name != view.name) continue;
+      context
+          .report(Code::P0203, view.span,
+                  "two cameras of scene `" + scene.name + "` are called `" + view.name + "`")
+          .label(known.span, "first called so here")
+          .help("`as NAME` gives a camera another name in its scene");
+      return;
+    }
+    scene.views.push_back(std::move(view));
+  }
+  void operator()(const syntax::UseLightStmt& stmt) {
+    const auto light = context.symbols.lights.find(stmt.light, context.diagnostics);
+    if (light) scene.light = static_cast<LightId>(*light);
+  }
+  void operator()(const syntax::PhysicsStmt& stmt) {
+    has_physics = true;
+    scene.physics_span = stmt.rate.span;
+    scene.physics_hz =
+        read_positive(context, stmt.rate, dim::kRate, "`physics` takes a frequency").value_or(1);
+    scene.friction =
+        read_positive(context, stmt.friction, dim::kNumber, "`friction` takes a number")
+            .value_or(1);
+    if (stmt.window_step)
+      context.report(Code::P0101, stmt.span, "`window step` is not available yet");
+  }
+};
+
+// A world refuses joints that begin farther beyond a limit than rounding explains.
+void check_joint_limits(Context& context, const Scene& scene, const Robot& robot) {
+  if (!robot.model) return;
+  constexpr double kRounding = 1e-3;  // m or rad, as in runtime/world
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const int index = robot.model->find_joint(robot.drives[i].joint.text);
+    if (index < 0) continue;
+    const robot::Joint& joint = robot.model->joints[static_cast<std::size_t>(index)];
+    if (joint.kind == robot::JointKind::kContinuous || joint.kind == robot::JointKind::kFixed)
+      continue;
+    const double q = scene.joints[i].si();
+    if (q >= joint.lower - kRounding && q <= joint.upper + kRounding) continue;
+    context
+        .report(Code::P0304, scene.joints_span,
+                fmt::format("joint `{}` starts at {:.6g}, beyond its limits of {:.6g} and {:.6g}",
+                            joint.name, q, joint.lower, joint.upper))
+        .point("number " + std::to_string(i + 1));
+  }
+}
+
+void check_joints(Context& context, const Scene& scene) {
+  if (scene.robot == RobotId::kNone || scene.joints_span.is_none()) return;
+  const Robot& robot = context.model.robots[scene.robot];
+  if (scene.joints.size() != robot.drives.size()) {
+    context.report(Code::P0304, scene.joints_span,
+                   "expected " + std::to_string(robot.drives.size()) +
+                       " joints, one per drive of `" + robot.name + "`, found " +
+                       std::to_string(scene.joints.size()));
+    return;
+  }
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+    const bool slides = robot.drives[i].stiffness.dimension == dim::kLinearStiffness;
+    const Dimension wanted = slides ? dim::kLength : dim::kAngle;
+    if (scene.joints[i].dimension == wanted) continue;
+    context
+        .report(Code::P0302, scene.joints_span,
+                "expected " + name_of(wanted) + " for joint `" + robot.drives[i].joint.text +
+                    "`, found " + name_of(scene.joints[i].dimension))
+        .point("number " + std::to_string(i + 1));
+  }
+  check_joint_limits(context, scene, robot);
+}
+
+// A control step is a whole number of physics steps.
+void check_rates(Context& context, const Scene& scene) {
+  if (scene.robot == RobotId::kNone || scene.physics_hz == 0) return;
+  const double control_hz = context.model.robots[scene.robot].control_hz;
+  if (control_hz == 0) return;
+  const double substeps = scene.physics_hz / control_hz;
+  constexpr double kMostSubsteps = 100000;
+  if (substeps >= 1 && substeps <= kMostSubsteps && substeps == std::floor(substeps)) return;
+  context
+      .report(Code::P0304, scene.physics_span,
+              "expected a whole number of physics steps in a control step, found " +
+                  fmt::format("{:.6g}", substeps))
+      .help("the robot is controlled at " + fmt::format("{:.6g}", control_hz) +
+            "Hz: write a multiple of that, such as `500Hz` for 5Hz");
+}
+
+}  // namespace
+
+void define_scenes(Context& context) {
+  const auto read = [&](const Declared<syntax::SceneDecl>& declared, Scene& scene) {
+    SceneReader reader{context, scene};
+    for (const syntax::SceneStmt& stmt : declared.node->body) std::visit(reader, stmt);
+    if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
+  };
+  const auto complete = [&](Scene& scene, bool is_read) {
+    if (!is_read) return;
+    const auto need = [&](bool is_there, std::string_view statement) {
+      require(context, is_there, "scene", scene.name, scene.span, statement);
+    };
+    need(scene.robot != RobotId::kNone, "robot");
+    need(!scene.joints_span.is_none(), "joints");
+    need(scene.area[0] != scene.area[2], "surface");
+    need(!scene.views.empty(), "camera");
+    need(scene.light != LightId::kNone, "light");
+    need(scene.physics_hz != 0, "physics");
+    if (scene.robot == RobotId::kNone) return;
+    scene.broken = context.model.robots[scene.robot].broken;
+    if (!scene.broken) check_joints(context, scene);
+    check_rates(context, scene);
+  };
+  define_records(context, context.symbols.scenes, context.symbols.scene_decls, context.model.scenes,
+                 read, complete);
+}
+
+}  // namespace probe::sema

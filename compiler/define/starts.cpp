@@ -1,0 +1,332 @@
+// The ordered enumeration of a layout for the objects of one task, and the shifts of `jitter`.
+#include "compiler/define/starts.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "compiler/define/define.h"
+#include "compiler/define/task.h"
+#include "runtime/base/sha256.h"
+
+namespace probe::sema {
+namespace {
+
+// One object to put somewhere, in the order in which the lines name them.
+struct Item {
+  std::size_t object = 0;  // index into the task's objects
+  const Place* place = nullptr;
+  std::size_t cells = 0;  // index into layout.cells
+};
+
+struct Enumerator {
+  const Model& model;
+  const Layout& layout;
+  const Task& task;
+  std::vector<ObjectId> objects;
+  std::vector<Item> items;
+  std::vector<std::vector<Turn>> turns;  // by object
+  std::size_t turn_count = 1;
+
+  std::optional<std::size_t> index_of(ObjectId object) const {
+    const auto at = std::find(objects.begin(), objects.end(), object);
+    if (at == objects.end()) return std::nullopt;
+    return static_cast<std::size_t>(at - objects.begin());
+  }
+
+  // The task's objects that a line's word means; an object that is not in the task is nothing.
+  std::vector<std::size_t> meant(const Spelled& word) const {
+    if (word.text == "source") return {0};
+    if (word.text == "target") return {1};
+    std::vector<std::size_t> result;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const bool by_role = word.text == "distractors" && i >= 2;
+      if (by_role || model.objects[objects[i]].name == word.text) result.push_back(i);
+    }
+    return result;
+  }
+
+  std::optional<LayoutProblem> plan_items() {
+    std::vector<bool> placed(objects.size(), false);
+    for (const Place& place : layout.places) {
+      std::size_t cells = 0;
+      while (cells < layout.cells.size() && layout.cells[cells].name != place.cells) ++cells;
+      for (const Spelled& word : place.what) {
+        for (const std::size_t object : meant(word)) {
+          if (placed[object]) continue;
+          placed[object] = true;
+          items.push_back({object, &place, cells});
+        }
+      }
+    }
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (placed[i]) continue;
+      return LayoutProblem{
+          LayoutProblem::kNotPlaced,
+          "layout `" + layout.name + "` places no `" + model.objects[objects[i]].name + "`",
+          layout.span};
+    }
+    return std::nullopt;
+  }
+
+  std::vector<Turn> rest_of(ObjectId object) const {
+    for (const PoseOverride& pose : task.poses) {
+      if (pose.object == object) return pose.turns;
+    }
+    return model.objects[object].rest;
+  }
+
+  std::optional<LayoutProblem> plan_turns() {
+    for (const ObjectId object : objects) {
+      std::vector<Turn> rest = rest_of(object);
+      if (!layout.by_rest && rest.size() > 1) rest.resize(1);
+      turns.push_back(std::move(rest));
+    }
+    for (const Orient& orient : layout.orients) {
+      for (const std::size_t object : meant(orient.what)) turns[object] = orient.turns;
+    }
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      if (turns[i].size() > turns[longest].size()) longest = i;
+    }
+    turn_count = turns[longest].size();
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+      if (turns[i].size() == turn_count || turns[i].size() == 1) continue;
+      return LayoutProblem{LayoutProblem::kRestCount,
+                           "`" + model.objects[objects[longest]].name + "` has " +
+                               std::to_string(turn_count) + " turns and `" +
+                               model.objects[objects[i]].name + "` has " +
+                               std::to_string(turns[i].size()),
+                           layout.span};
+    }
+    return std::nullopt;
+  }
+
+  // How many starts placements() makes with these grids; a double, so that nothing overflows.
+  double count(const std::vector<std::size_t>& grids) const {
+    double ways = static_cast<double>(turn_count);
+    std::vector<std::size_t> used(layout.cells.size(), 0);
+    for (const Item& item : items) {
+      if (item.place->how == Place::kAt) continue;
+      const std::size_t size = layout.cells[item.cells].grids[grids[item.cells]].size();
+      const std::size_t left = size - std::min(size, used[item.cells]++);
+      ways *= item.place->how == Place::kDistinct ? static_cast<double>(left) : left > 0 ? 1 : 0;
+    }
+    return ways;
+  }
+
+  // All ways to give the items their cells, as one odometer: the digit of a `distinct` item is its
+  // cell, later items fastest; the others have one way. `grids` chooses a grid for each named set
+  // of cells.
+  void placements(const std::vector<std::size_t>& grids, std::vector<Start>& out) const {
+    std::vector<std::size_t> digit(items.size(), 0);
+    std::size_t depth = 0;
+    bool fresh = true;
+    while (true) {
+      if (depth == items.size()) {
+        emit(grids, digit, out);
+        if (depth == 0) return;
+        --depth;
+        fresh = false;
+        continue;
+      }
+      const Item& item = items[depth];
+      const bool has_cells = item.place->how != Place::kAt;
+      const std::size_t count =
+          has_cells ? layout.cells[item.cells].grids[grids[item.cells]].size() : 1;
+      std::size_t next = fresh ? 0 : digit[depth] + 1;
+      if (item.place->how == Place::kRemaining && !fresh) next = count;
+      while (has_cells && next < count && is_taken(digit, depth, next)) ++next;
+      if (next >= count) {
+        if (depth == 0) return;
+        --depth;
+        fresh = false;
+        continue;
+      }
+      digit[depth] = next;
+      ++depth;
+      fresh = true;
+    }
+  }
+
+  bool is_taken(const std::vector<std::size_t>& digit, std::size_t depth, std::size_t cell) const {
+    for (std::size_t i = 0; i < depth; ++i) {
+      if (items[i].place->how != Place::kAt && items[i].cells == items[depth].cells &&
+          digit[i] == cell)
+        return true;
+    }
+    return false;
+  }
+
+  void emit(const std::vector<std::size_t>& grids, const std::vector<std::size_t>& digit,
+            std::vector<Start>& out) const {
+    Start start;
+    start.placed.resize(objects.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const Item& item = items[i];
+      const Cell cell = item.place->how == Place::kAt
+                            ? item.place->at
+                            : layout.cells[item.cells].grids[grids[item.cells]][digit[i]];
+      start.placed[item.object] = {objects[item.object], cell.x, cell.y, {}};
+    }
+    for (std::size_t turn = 0; turn < turn_count; ++turn) {
+      for (std::size_t i = 0; i < objects.size(); ++i) {
+        start.placed[i].turn = turns[i].size() == 1 ? turns[i][0] : turns[i][turn];
+      }
+      out.push_back(start);
+    }
+  }
+};
+
+// A number in [-1, 1) from the first bits of a hash.
+double draw(const Sha256& hash) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < 8; ++i) bits = bits << 8 | hash.bytes[i];
+  return static_cast<double>(bits >> 11) * 0x1p-52 - 1.0;
+}
+
+// Every draw has its own key, the start as the grid gives it with the object and the axis, so that
+// no other task, start or object shifts it.
+void jitter(const Model& model, double most, Start& start) {
+  std::vector<std::pair<std::string, const Start::Placed*>> rows;
+  for (const Start::Placed& placed : start.placed)
+    rows.emplace_back(model.objects[placed.object].name, &placed);
+  std::sort(rows.begin(), rows.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  Hasher whole;
+  whole.text("start");
+  for (const auto& [name, placed] : rows)
+    whole.text(name).f64(placed->x).f64(placed->y).f64s(placed->turn.rotation);
+  const Sha256 key = whole.finish();
+  for (Start::Placed& placed : start.placed) {
+    double* const axes[] = {&placed.x, &placed.y};
+    for (std::uint8_t axis = 0; axis < 2; ++axis) {
+      Hasher hasher;
+      hasher.text("jitter").hash(key).text(model.objects[placed.object].name).u8(axis);
+      *axes[axis] += most * draw(hasher.finish());
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
+                                    std::size_t most, std::optional<LayoutProblem>& problem) {
+  Enumerator enumerator{model, layout, task, task.objects(), {}, {}, 1};
+  problem = enumerator.plan_items();
+  if (!problem) problem = enumerator.plan_turns();
+  if (problem) return {};
+  std::vector<Start> starts;
+  std::vector<std::size_t> grids(layout.cells.size(), 0);
+  double count = 0;
+  while (true) {
+    count += enumerator.count(grids);
+    if (count > static_cast<double>(most)) {
+      problem = LayoutProblem{LayoutProblem::kTooMany,
+                              "the suite grows beyond " + std::to_string(kMaxEpisodes) +
+                                  " episodes with layout `" + layout.name + "`",
+                              layout.span};
+      return {};
+    }
+    enumerator.placements(grids, starts);
+    std::size_t at = grids.size();
+    while (at > 0 && grids[at - 1] + 1 >= layout.cells[at - 1].grids.size()) grids[--at] = 0;
+    if (at == 0) break;
+    ++grids[at - 1];
+  }
+  if (starts.empty()) {
+    std::size_t cells = 0;
+    Span span = layout.span;
+    for (const Item& item : enumerator.items) {
+      if (item.place->how == Place::kAt) continue;
+      cells = layout.cells[item.cells].grids.front().size();
+      span = item.place->span;
+    }
+    problem = LayoutProblem{LayoutProblem::kTooFewCells,
+                            std::to_string(enumerator.objects.size()) + " objects for " +
+                                std::to_string(cells) + " cells",
+                            span};
+  }
+  if (layout.jitter > 0) {
+    for (Start& start : starts) jitter(model, layout.jitter, start);
+  }
+  return starts;
+}
+
+namespace {
+
+// What the starts of a task depend on.
+std::vector<double> starts_key(const Task& task) {
+  std::vector<double> key = {static_cast<double>(task.layout)};
+  for (const ObjectId id : task.objects()) key.push_back(static_cast<double>(id));
+  for (const PoseOverride& pose : task.poses) {
+    key.push_back(-1);
+    key.push_back(static_cast<double>(pose.object));
+    for (const Turn& turn : pose.turns)
+      key.insert(key.end(), turn.rotation.begin(), turn.rotation.end());
+  }
+  return key;
+}
+
+Code code_of(LayoutProblem::Kind kind) {
+  switch (kind) {
+    case LayoutProblem::kNotPlaced:
+      return Code::P0206;
+    case LayoutProblem::kTooFewCells:
+      return Code::P0503;
+    case LayoutProblem::kRestCount:
+      return Code::P0304;
+    case LayoutProblem::kTooMany:
+      return Code::P0210;
+  }
+  return Code::P0304;
+}
+
+void report_problem(Context& context, const Task& task, const LayoutProblem& problem) {
+  // Where the layout is fine for the task that this one copies, what came in here is to blame.
+  const bool like_is_fine =
+      task.like != TaskId::kNone && !context.model.tasks[task.like].starts.empty();
+  const bool is_newcomer = like_is_fine && is_within(task.distractors_span, task.decl_span);
+  context
+      .report(code_of(problem.kind), is_newcomer ? task.distractors_span : task.layout_span,
+              problem.message + " in `" + task.name + "`")
+      .label(problem.span, "the layout");
+}
+
+}  // namespace
+
+void define_starts(Context& context) {
+  Model& model = context.model;
+  std::map<std::vector<double>, const std::vector<Start>*> known;
+  std::set<LayoutId> incomplete_layouts;  // that lack a place: said once
+  std::size_t episodes = 0;
+  for (Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    const About about(context.reporter, task.decl_span);
+    const std::vector<Start>*& starts = known[starts_key(task)];
+    if (starts == nullptr) {
+      const Layout& layout = model.layouts[task.layout];
+      std::optional<LayoutProblem> problem;
+      std::vector<Start> found =
+          enumerate_starts(model, layout, task, kMaxEpisodes - episodes, problem);
+      if (problem) {
+        // What a layout lacks, its copies lack.
+        const bool is_known = incomplete_layouts.contains(layout.like);
+        const bool is_layout = problem->kind == LayoutProblem::kNotPlaced;
+        if (is_layout && (!incomplete_layouts.insert(task.layout).second || is_known)) continue;
+        report_problem(context, task, *problem);
+        continue;
+      }
+      starts = &model.start_lists.emplace_back(std::move(found));
+    }
+    task.starts = *starts;
+    episodes += task.starts.size();
+    if (episodes <= kMaxEpisodes) continue;
+    context.report(Code::P0210, task.span,
+                   "the suite grows beyond " + std::to_string(kMaxEpisodes) + " episodes with `" +
+                       task.name + "`");
+    return;
+  }
+}
+
+}  // namespace probe::sema

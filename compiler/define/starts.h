@@ -1,0 +1,26 @@
+// The ordered enumeration of a layout for the objects of one task: the first line varies slowest,
+// the last fastest.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/model/model.h"
+
+namespace probe::sema {
+
+// Why a layout gives no starts for a task.
+struct LayoutProblem {
+  enum Kind { kNotPlaced, kTooFewCells, kRestCount, kTooMany };
+  Kind kind = kNotPlaced;
+  std::string message;
+  Span span;  // within the layout
+};
+
+// Starts in episode order, at most `most`. On a problem the list is empty and `problem` is set.
+std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
+                                    std::size_t most, std::optional<LayoutProblem>& problem);
+
+}  // namespace probe::sema

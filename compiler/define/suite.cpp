@@ -1,0 +1,70 @@
+// `suite`: which tasks are run, under which seeds.
+#include <algorithm>
+
+#include "compiler/define/define.h"
+#include "compiler/define/set.h"
+
+namespace probe::sema {
+namespace {
+
+struct SuiteReader {
+  Context& context;
+  SetReader& sets;
+  const syntax::File& file;
+  Suite& suite;
+  bool has_tasks = false, has_seeds = false;
+
+  void operator()(const syntax::SuiteTasksStmt& stmt) {
+    has_tasks = true;
+    suite.members = sets.read(file, stmt.tasks);
+  }
+  void operator()(const syntax::PrefixStmt& stmt) { suite.prefix = stmt.prefix.value; }
+  void operator()(const syntax::SeedsStmt& stmt) {
+    has_seeds = true;
+    for (const syntax::Int& seed : stmt.seeds) {
+      const auto value = static_cast<std::uint32_t>(seed.value);
+      const auto& known = suite.seeds;
+      if (seed.value > 0xfffffffeu) {
+        context.report(Code::P0304, seed.span, "a seed is below 4294967295");
+      } else if (std::find(known.begin(), known.end(), value) != known.end()) {
+        context
+            .report(Code::P0203, seed.span, "seed `" + std::to_string(value) + "` is listed twice")
+            .help("the same seed repeats the same episodes");
+      } else {
+        suite.seeds.push_back(value);
+      }
+    }
+  }
+  void operator()(const syntax::ExpectTasksStmt& stmt) {
+    suite.expect = {stmt.tasks.value, stmt.episodes.value, stmt.span};
+  }
+};
+
+}  // namespace
+
+void define_suites(Context& context) {
+  SetReader sets(context, SetReader::Mode::kDefined);
+  for (const auto& declared : context.symbols.suite_decls) {
+    const syntax::SuiteDecl& node = *declared.node;
+    Suite suite;
+    suite.name = std::string(node.name.text);
+    suite.span = node.name.span;
+    if (node.trained_on) {
+      const auto dataset = context.symbols.datasets.find(*node.trained_on, context.diagnostics);
+      if (dataset) suite.trained_on = static_cast<DatasetId>(*dataset);
+    }
+    SuiteReader reader{context, sets, *declared.file, suite};
+    for (const syntax::SuiteStmt& stmt : node.body) std::visit(reader, stmt);
+    suite.broken = !declared.decl->complete || !reader.has_tasks;
+    if (declared.decl->complete && !reader.has_tasks)
+      context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `tasks`");
+    if (declared.decl->complete && !reader.has_seeds) {
+      context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `seeds`")
+          .help("each seed runs every episode once: `seeds 42`");
+    }
+    if (suite.seeds.empty()) suite.seeds.push_back(0);
+    context.model.suites.add(std::move(suite));
+  }
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,146 @@
+// The emitter of one plan: the records that are being filled, and which row of the model has which
+// index. One member function a construct, each in the file of its name.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compiler/emit/assets.h"
+#include "compiler/emit/emit.h"
+#include "compiler/lower/lower.h"
+#include "compiler/lower/program.h"
+#include "compiler/model/model.h"
+#include "runtime/plan/writer.h"
+
+namespace probe::emit {
+
+using sema::Model;
+using sema::ObjectId;
+using sema::TaskId;
+
+// What a span of the plan is of.
+constexpr std::uint32_t kCodeSpan = 1, kTaskSpan = 2, kObjectSpan = 3, kMetricSpan = 4;
+
+// Gives each used row of a table its index in the plan, in the order of first use.
+template <typename Id>
+class Used {
+ public:
+  explicit Used(std::size_t size) : index_(size, plan::kNone) {}
+  // True when the row is new and its record is to be pushed.
+  bool add(Id id, std::uint32_t index) {
+    std::uint32_t& known = index_[static_cast<std::size_t>(id)];
+    if (known != plan::kNone) return false;
+    known = index;
+    return true;
+  }
+  std::uint32_t operator[](Id id) const {
+    return id == Id::kNone ? plan::kNone : index_[static_cast<std::size_t>(id)];
+  }
+
+ private:
+  std::vector<std::uint32_t> index_;
+};
+
+std::uint32_t size32(const auto& table) { return static_cast<std::uint32_t>(table.size()); }
+
+class Emitter {
+ public:
+  Emitter(const Model& model, const SourceSet& sources, const EmitOptions& options,
+          Diagnostics& diagnostics)
+      : model_(model),
+        sources_(sources),
+        options_(options),
+        diagnostics_(diagnostics),
+        assets_(options.asset_root, options.write, options.inspect_asset),
+        objects_(model.objects.size()),
+        robots_(model.robots.size()),
+        cameras_(model.cameras.size()),
+        lights_(model.lights.size()),
+        scenes_(model.scenes.size()),
+        tasks_(model.tasks.size()) {}
+
+  Result<std::vector<std::byte>> run(const std::vector<FileId>& files);
+
+ private:
+  plan::Records& records() { return writer_.records; }
+
+  bool suite_is_kept(const sema::Suite& suite) const;
+
+  // All concrete tasks, or those of one suite with the baselines they are compared with, as
+  // declared.
+  std::vector<TaskId> choose_tasks() const;
+  void add_sources(const std::vector<FileId>& files);
+  void add_span(std::uint32_t what, std::uint32_t index, const Span& span);
+
+  // A folder's picture mesh and what is felt: `collision`, or the picture mesh where there is none.
+  struct MeshPair {
+    std::string visual, collision;
+  };
+  MeshPair find_meshes(const std::string& folder) const;
+  void add_object(ObjectId id);
+  void add_robot(sema::RobotId id);
+
+  // Every file the URDF names, each once, in its order.
+  std::vector<std::uint32_t> robot_meshes(const sema::Robot& robot, AssetOwner owner);
+  void add_camera(sema::CameraId id);
+  void add_light(sema::LightId id);
+  std::uint32_t add_photo(const std::optional<sema::Spelled>& overlay, AssetOwner owner);
+  void add_scene(sema::SceneId id);
+
+  // Tasks of one shape share one program.
+  std::uint32_t add_program(lower::Program program, std::uint64_t horizon, double control_hz);
+
+  // P0603 at once; P0602 when a metric is constant in every program that has it: over the
+  // distractors of a task without any it may be.
+  void note_constants(const lower::Program& program, std::uint64_t horizon, double control_hz);
+  void report_constants();
+  bool needs(const sema::Task& task, const AssetOwner& owner) const;
+
+  // Each with the tasks that cannot run without it.
+  void report_misses(const std::vector<TaskId>& chosen);
+  plan::Slice add_bodies(const std::vector<lower::Body>& bodies);
+
+  // Equal starts share their placements: a variant that only changes words adds none.
+  plan::Slice add_placements(const sema::Start& start, double z);
+
+  // Tasks of one scene share them.
+  plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
+  void add_task(const sema::Task& task);
+  void add_assets();
+  plan::Slice add_members(const std::vector<TaskId>& members);
+  void add_sets();
+  void add_suites();
+
+  // P0704: "only the language changed" is an equality of ids, episode by episode.
+  bool check_language_only(const std::vector<TaskId>& chosen);
+
+  const Model& model_;
+  const SourceSet& sources_;
+  const EmitOptions& options_;
+  Diagnostics& diagnostics_;
+  AssetTable assets_;
+  plan::Writer writer_;
+  std::map<std::uint32_t, std::uint32_t> texts_;  // FileId -> kTexts
+  Used<ObjectId> objects_;
+  Used<sema::RobotId> robots_;
+  Used<sema::CameraId> cameras_;
+  Used<sema::LightId> lights_;
+  Used<sema::SceneId> scenes_;
+  Used<TaskId> tasks_;
+  std::vector<lower::Program> programs_;
+  struct Constant {
+    lower::ProgramMetric metric;
+    bool varies = false;
+    std::set<std::string> values;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
+  std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
+  std::map<std::vector<double>, plan::Slice> placements_;
+  std::map<std::vector<std::uint32_t>, plan::Slice> views_;
+};
+
+}  // namespace probe::emit

@@ -1,0 +1,17 @@
+// Lights as records.
+#include "compiler/emit/emitter.h"
+
+namespace probe::emit {
+
+void Emitter::add_light(sema::LightId id) {
+  if (!lights_.add(id, size32(records().lights))) return;
+  const sema::Light& light = model_.lights[id];
+  plan::LightRecord record;
+  record.name = writer_.text(light.name);
+  record.ambient = light.ambient;
+  record.occlusion = light.occlusion;
+  record.suns = plan::append(records().suns, std::span<const plan::SunRecord>(light.suns));
+  records().lights.push_back(record);
+}
+
+}  // namespace probe::emit

@@ -1,0 +1,70 @@
+// Lowered metrics as programs, and what is known of them without running: P0602, P0603.
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "compiler/emit/emitter.h"
+#include "compiler/lower/intervals.h"
+
+namespace probe::emit {
+
+std::uint32_t Emitter::add_program(lower::Program program, std::uint64_t horizon,
+                                   double control_hz) {
+  for (std::size_t i = 0; i < programs_.size(); ++i) {
+    if (programs_[i].same_as(program)) return static_cast<std::uint32_t>(i);
+  }
+  note_constants(program, horizon, control_hz);
+  plan::ProgramRecord record;
+  record.constants = plan::append(records().constants, std::span<const double>(program.constants));
+  record.states =
+      plan::append(records().states, std::span<const plan::StateRecord>(program.states));
+  for (std::size_t i = 0; i < program.code.size(); ++i) {
+    add_span(kCodeSpan, size32(records().code) + static_cast<std::uint32_t>(i), program.spans[i]);
+  }
+  record.code = plan::append(records().code, std::span<const plan::Instruction>(program.code));
+  record.metrics = {size32(records().metrics), size32(program.metrics)};
+  for (const lower::ProgramMetric& metric : program.metrics) {
+    add_span(kMetricSpan, size32(records().metrics), metric.span);
+    records().metrics.push_back({writer_.text(metric.name), static_cast<std::uint32_t>(metric.type),
+                                 static_cast<std::uint32_t>(metric.readout)});
+  }
+  records().programs.push_back(record);
+  programs_.push_back(std::move(program));
+  return size32(programs_) - 1;
+}
+
+void Emitter::note_constants(const lower::Program& program, std::uint64_t horizon,
+                             double control_hz) {
+  const lower::Findings findings = lower::find_constants(program, horizon, control_hz);
+  for (const std::size_t at : findings.contradictions) {
+    const Span& span = program.spans[at];
+    if (!contradictions_.insert({span.file.value, span.begin}).second) continue;
+    diagnostics_.report(Code::P0603, span, "these conditions exclude one another");
+  }
+  for (std::size_t i = 0; i < program.metrics.size(); ++i) {
+    const auto known =
+        std::find_if(findings.constants.begin(), findings.constants.end(),
+                     [&](const lower::ConstantMetric& found) { return found.metric == i; });
+    const Span& span = program.metrics[i].span;
+    Constant& constant = constants_[{span.file.value, span.begin}];
+    constant.metric = program.metrics[i];
+    if (known == findings.constants.end()) {
+      constant.varies = true;
+    } else {
+      const auto& number = known->number;
+      constant.values.insert(number         ? fmt::format("{:.6g}", *number)
+                             : known->value ? "true"
+                                            : "false");
+    }
+  }
+}
+
+void Emitter::report_constants() {
+  for (const auto& [place, constant] : constants_) {
+    if (constant.varies || constant.values.size() != 1) continue;
+    diagnostics_.report(
+        Code::P0602, constant.metric.span,
+        "metric `" + constant.metric.name + "` is always " + *constant.values.begin());
+  }
+}
+
+}  // namespace probe::emit

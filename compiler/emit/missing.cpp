@@ -1,0 +1,50 @@
+// Assets as records, and P0202 for those that are not there.
+#include <algorithm>
+
+#include "compiler/emit/emitter.h"
+
+namespace probe::emit {
+
+void Emitter::add_assets() {
+  for (const Asset& asset : assets_.assets()) {
+    plan::AssetRecord record;
+    record.path = writer_.text(asset.path);
+    record.kind = static_cast<std::uint32_t>(asset.kind);
+    record.byte_size = asset.byte_size;
+    record.sha256 = asset.hash.bytes;
+    records().assets.push_back(record);
+  }
+}
+
+bool Emitter::needs(const sema::Task& task, const AssetOwner& owner) const {
+  switch (owner.kind) {
+    case AssetOwner::Kind::kObject: {
+      const std::vector<ObjectId> objects = task.objects();
+      return std::find(objects.begin(), objects.end(), static_cast<ObjectId>(owner.id)) !=
+             objects.end();
+    }
+    case AssetOwner::Kind::kScene:
+      return task.scene == static_cast<sema::SceneId>(owner.id);
+    case AssetOwner::Kind::kRobot:
+      return model_.scenes[task.scene].robot == static_cast<sema::RobotId>(owner.id);
+  }
+  return false;
+}
+
+void Emitter::report_misses(const std::vector<TaskId>& chosen) {
+  constexpr std::size_t kNamed = 6;
+  for (const AssetMiss& miss : assets_.misses()) {
+    std::string names;
+    std::size_t count = 0;
+    for (const TaskId id : chosen) {
+      if (!needs(model_.tasks[id], miss.owner) || ++count > kNamed) continue;
+      names += (count == 1 ? "`" : ", `") + model_.tasks[id].name + "`";
+    }
+    if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
+    diagnostics_.report(Code::P0202, miss.span, "asset `" + miss.path + "` " + miss.why)
+        .note("looked for it in the assets folder `" + options_.asset_root + "`")
+        .note("needed by " + names);
+  }
+}
+
+}  // namespace probe::emit

@@ -1,0 +1,74 @@
+// Scenes as records, with what stands in them and behind them.
+#include <array>
+
+#include "compiler/emit/emitter.h"
+#include "runtime/base/asset_path.h"
+
+namespace probe::emit {
+namespace {
+
+// OBJ first: that is how convex decompositions are stored.
+constexpr std::array<std::string_view, 5> kCollisionExtensions{".obj", ".stl", ".glb", ".gltf",
+                                                               ".dae"};
+
+}  // namespace
+
+Emitter::MeshPair Emitter::find_meshes(const std::string& folder) const {
+  MeshPair meshes{assets_.find(folder + "/visual", kMeshExtensions),
+                  assets_.find(folder + "/collision", kCollisionExtensions)};
+  // Where neither is there, one message is enough: that about the picture mesh.
+  if (!assets_.has(meshes.collision)) meshes.collision = meshes.visual;
+  return meshes;
+}
+
+std::uint32_t Emitter::add_photo(const std::optional<sema::Spelled>& overlay, AssetOwner owner) {
+  if (!overlay) return plan::kNone;
+  return assets_.add("scenes/" + overlay->text, plan::AssetKind::kPhoto, overlay->span, owner);
+}
+
+void Emitter::add_scene(sema::SceneId id) {
+  if (!scenes_.add(id, size32(records().scenes))) return;
+  const sema::Scene& scene = model_.scenes[id];
+  add_robot(scene.robot);
+  plan::SceneRecord record;
+  record.name = writer_.text(scene.name);
+  record.robot = robots_[scene.robot];
+  const AssetOwner owner{AssetOwner::Kind::kScene, static_cast<std::uint32_t>(id)};
+  const std::optional<sema::Spelled>& overlay = scene.views.front().overlay;
+  record.photo = add_photo(overlay, owner);
+  if (scene.backdrop) {
+    const std::string folder = "scenes/" + scene.backdrop->text + "/";
+    const Span& span = scene.backdrop->span;
+    // A photo in the folder is what the camera saw there: it stands behind everything, and the
+    // mesh, where there is one, only for depth and for what hides what.
+    const std::string photo = assets_.find(folder + "photo", kPhotoExtensions);
+    const std::string visual = assets_.find(folder + "visual", kMeshExtensions);
+    const bool has_photo = assets_.has(photo);
+    if (has_photo && !overlay) {
+      record.photo = assets_.add(photo, plan::AssetKind::kPhoto, span, owner);
+    }
+    if (!has_photo || assets_.has(visual)) {
+      record.backdrop = assets_.add(visual, plan::AssetKind::kVisualMesh, span, owner);
+    }
+  }
+  if (scene.fixture) {
+    const MeshPair meshes = find_meshes("fixtures/" + scene.fixture->text);
+    const Span& span = scene.fixture->span;
+    record.fixture_visual = assets_.add(meshes.visual, plan::AssetKind::kVisualMesh, span, owner);
+    record.fixture_collision =
+        assets_.add(meshes.collision, plan::AssetKind::kCollisionMesh, span, owner);
+    record.fixture_position = scene.fixture_position;
+  }
+  record.base_position = scene.base_position;
+  record.base_rotation = scene.base_turn.rotation;
+  std::vector<double> joints;
+  for (const sema::Quantity& joint : scene.joints) joints.push_back(joint.si());
+  record.joints = writer_.reals(joints);
+  record.surface_z = scene.surface_z;
+  record.area = scene.area;
+  record.physics_hz = scene.physics_hz;
+  record.friction = scene.friction;
+  records().scenes.push_back(record);
+}
+
+}  // namespace probe::emit

@@ -1,0 +1,83 @@
+// Tasks as records, with their bodies, placements and episodes.
+#include "compiler/define/views.h"
+#include "compiler/emit/emitter.h"
+
+namespace probe::emit {
+
+plan::Slice Emitter::add_bodies(const std::vector<lower::Body>& bodies) {
+  std::vector<plan::BodyRecord> rows;
+  for (const lower::Body& body : bodies) {
+    const bool is_object = body.kind == plan::BodyKind::kObject;
+    const std::uint32_t index =
+        is_object ? objects_[static_cast<ObjectId>(body.index)] : body.index;
+    rows.push_back({static_cast<std::uint32_t>(body.kind), index, writer_.text(body.name)});
+  }
+  return plan::append(records().bodies, std::span<const plan::BodyRecord>(rows));
+}
+
+plan::Slice Emitter::add_placements(const sema::Start& start, double z) {
+  std::vector<plan::PlacementRecord> rows;
+  std::vector<double> key;
+  for (const sema::Start::Placed& placed : start.placed) {
+    plan::PlacementRecord row;
+    row.object = objects_[placed.object];
+    row.position = {placed.x, placed.y, z};
+    row.rotation = placed.turn.rotation;
+    key.push_back(static_cast<double>(row.object));
+    key.insert(key.end(), row.position.begin(), row.position.end());
+    key.insert(key.end(), row.rotation.begin(), row.rotation.end());
+    rows.push_back(row);
+  }
+  const auto [at, is_new] = placements_.try_emplace(std::move(key), plan::Slice{});
+  if (is_new)
+    at->second = plan::append(records().placements, std::span<const plan::PlacementRecord>(rows));
+  return at->second;
+}
+
+void Emitter::add_task(const sema::Task& task) {
+  const sema::Scene& scene = model_.scenes[task.scene];
+  if (!model_.robots[scene.robot].model || model_.robots[scene.robot].fingers.size() != 2) return;
+  for (const ObjectId id : task.objects()) add_object(id);
+  add_scene(task.scene);
+  const std::vector<sema::View> views = views_of(model_, task);
+  for (const sema::View& view : views) add_camera(view.camera);
+  add_light(light_of(model_, task));
+  const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
+  auto program = lower::lower_task(model_, task, bodies, diagnostics_);
+  if (!program) return;
+
+  const sema::Layout& layout = model_.layouts[task.layout];
+  plan::TaskRecord record;
+  record.name = writer_.text(task.name);
+  record.prompt = writer_.text(task.prompt);
+  record.scene = scenes_[task.scene];
+  record.camera = cameras_[views.front().camera];
+  if (has_names(views)) record.views = add_views(views, task.scene);
+  record.light = lights_[light_of(model_, task)];
+  record.program =
+      add_program(std::move(*program), task.horizon, model_.robots[scene.robot].control_hz);
+  record.source = objects_[task.source];
+  record.target = objects_[task.target];
+  record.bodies = add_bodies(bodies);
+  record.distractors = size32(task.distractors);
+  record.horizon = static_cast<std::uint32_t>(task.horizon);
+  record.baseline = tasks_[task.baseline];
+  record.axes = record.baseline == plan::kNone ? 0 : task.axes;
+  record.ood = task.ood;
+  if (task.allow_confounded) record.allow = writer_.text(*task.allow_confounded);
+  record.drop = layout.drop;
+  record.settle = layout.settle;
+  const std::uint32_t index = size32(records().tasks);
+  record.episodes = {size32(records().episodes), size32(task.starts)};
+  for (std::size_t e = 0; e < task.starts.size(); ++e) {
+    plan::EpisodeRecord episode;
+    episode.task = index;
+    episode.index = static_cast<std::uint32_t>(e);
+    episode.placements = add_placements(task.starts[e], scene.surface_z + layout.drop);
+    records().episodes.push_back(episode);
+  }
+  add_span(kTaskSpan, index, task.span);
+  records().tasks.push_back(record);
+}
+
+}  // namespace probe::emit

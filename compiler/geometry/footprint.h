@@ -1,0 +1,38 @@
+// The shadow of an oriented box on the surface, which is what overlap and edges are judged by:
+// collision hulls are not known to the compiler.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "compiler/model/model.h"
+
+namespace probe::sema {
+
+struct Vec2 {
+  double x = 0, y = 0;  // m
+};
+
+// A centre and three half axes, of which the outline is the sum (m, world).
+struct Footprint {
+  Vec2 centre;
+  std::array<Vec2, 3> axes;
+
+  // Half its extent along the unit vector `n`.
+  double reach_along(const Vec2& n) const;
+};
+
+Footprint footprint(const Object& object, const Start::Placed& placed);
+
+// How deep two footprints stand in one another (m), over their separating axes; at most 0 when some
+// line separates them.
+double overlap(const Footprint& a, const Footprint& b);
+
+// The factor by which the vector between two cells must grow until their footprints only touch;
+// nothing when they stand on the same cell.
+std::optional<double> growth(const Footprint& a, const Footprint& b, const Vec2& cells);
+
+// The height of a turned box (m).
+double height(const Object& object, const Turn& turn);
+
+}  // namespace probe::sema

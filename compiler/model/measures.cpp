@@ -1,0 +1,16 @@
+#include "compiler/model/measures.h"
+
+namespace probe::sema {
+namespace {
+
+const MeasureInfo kMeasures[] = {
+#define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, meaning) \
+  {Measure::id, name, params, result, {length, time, angle, mass, 0}, meaning},
+#include "compiler/model/measures.def"
+};
+
+}  // namespace
+
+std::span<const MeasureInfo> all_measures() { return kMeasures; }
+
+}  // namespace probe::sema

@@ -1,0 +1,59 @@
+#include "compiler/names/name_table.h"
+
+#include <algorithm>
+
+namespace probe::sema {
+
+std::optional<std::uint32_t> NameTable::declare(const syntax::Name& name,
+                                                Diagnostics& diagnostics) {
+  const auto index = static_cast<std::uint32_t>(names_.size());
+  const auto [at, is_new] = by_text_.try_emplace(name.text, index);
+  if (!is_new) {
+    diagnostics
+        .report(Code::P0203, name.span,
+                kind_ + " `" + std::string(name.text) + "` is declared twice")
+        .label(names_[at->second].span, "first declared here");
+    return std::nullopt;
+  }
+  names_.push_back(name);
+  return index;
+}
+
+std::optional<std::uint32_t> NameTable::peek(std::string_view text) const {
+  const auto at = by_text_.find(text);
+  if (at == by_text_.end()) return std::nullopt;
+  return at->second;
+}
+
+std::optional<std::uint32_t> NameTable::find(const syntax::Name& name,
+                                             Diagnostics& diagnostics) const {
+  if (const auto found = peek(name.text)) return found;
+  std::vector<std::string_view> candidates;
+  for (const syntax::Name& known : names_) candidates.push_back(known.text);
+  report_unknown(diagnostics, kind_, name, candidates);
+  return std::nullopt;
+}
+
+Diagnostic& report_unknown(Diagnostics& diagnostics, std::string_view kind,
+                           const syntax::Name& name,
+                           const std::vector<std::string_view>& candidates) {
+  Diagnostic& diagnostic = diagnostics.report(
+      Code::P0201, name.span, "unknown " + std::string(kind) + " `" + std::string(name.text) + "`");
+  auto near = nearest(name.text, candidates);
+  if (!near && name.text.size() > 2) {
+    // `bridge` for `bridge_v2`: the only one that begins so.
+    const auto begins = [&](std::string_view known) {
+      return known.starts_with(std::string(name.text) + "_");
+    };
+    if (std::count_if(candidates.begin(), candidates.end(), begins) == 1)
+      near = *std::find_if(candidates.begin(), candidates.end(), begins);
+  }
+  if (near) {
+    const std::string text(*near);
+    diagnostic.point("did you mean `" + text + "`?")
+        .fix_by("write `" + text + "`", name.span, text);
+  }
+  return diagnostic;
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,43 @@
+// What the analysis has to say, with the declaration that each word is about: what every check gets
+// beside the model.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+#include "compiler/diag/diagnostic.h"
+
+namespace probe::sema {
+
+struct Reporter {
+  Diagnostics& diagnostics;
+  bool was_broken = false;  // the text had errors before: what lacks now may follow from them
+  std::map<std::size_t, Span> about = {};  // by diagnostic: the declaration it is about
+
+  bool has_errors() const { return was_broken || diagnostics.has_errors(); }
+  Diagnostic& report(Code code, const Span& span, std::string message) {
+    return diagnostics.report(code, span, std::move(message));
+  }
+};
+
+// While it lives, what is reported is about this declaration, wherever it points: an @allow there
+// silences it.
+class About {
+ public:
+  About(Reporter& reporter, const Span& decl)
+      : reporter_(reporter), decl_(decl), first_(reporter.diagnostics.size()) {}
+  ~About() {
+    for (std::size_t i = first_; i < reporter_.diagnostics.size(); ++i)
+      reporter_.about.insert({i, decl_});
+  }
+  About(const About&) = delete;
+  About& operator=(const About&) = delete;
+
+ private:
+  Reporter& reporter_;
+  Span decl_;
+  std::size_t first_;
+};
+
+}  // namespace probe::sema

@@ -1,0 +1,115 @@
+#include "compiler/define/axes.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/compiler/small_suite.h"
+
+using namespace probe;
+using test::analyze_with_suite;
+
+namespace {
+
+std::string axes(const sema::Task& task) {
+  std::string text;
+  for (const plan::Axis axis : plan::axes_in(task.axes))
+    text += (text.empty() ? "" : " ") + std::string(plan::axis_name(axis));
+  return text;
+}
+
+std::string members(const test::Analysis& a, std::string_view set) {
+  std::string text;
+  for (const sema::TaskSet& known : a.model.sets) {
+    if (known.name != set) continue;
+    for (const sema::TaskId id : known.members)
+      text += (text.empty() ? "" : " ") + a.model.tasks[id].name;
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a variant moves the axes it changes and no others") {
+  const auto a = analyze_with_suite(R"(
+variants of red_on_tray {
+  source { source blue }
+  target { target pale }
+  among { distractors blue }
+  action { say take }
+  words { refer source as by_color }
+  riddle { refer source as loved }
+  dark { light night }
+  longer { horizon 90 steps }
+  goal { set success = at end (height(source) > 90cm) }
+}
+variant article of red_on_tray { say "put {the source} on {target}"; light night }
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  CHECK(axes(a->task("source")) == "object.source");
+  CHECK(axes(a->task("target")) == "object.target");
+  CHECK(axes(a->task("among")) == "distractors");
+  CHECK(axes(a->task("action")) == "language.action");
+  CHECK(axes(a->task("words")) == "language.appearance");
+  CHECK(axes(a->task("riddle")) == "language.commonsense");
+  CHECK(axes(a->task("dark")) == "light");
+  CHECK(axes(a->task("longer")) == "goal");
+  CHECK(axes(a->task("goal")) == "goal");
+  // An article is no move; words on the spot take their first word as the verb frame.
+  CHECK(axes(a->task("article")) == "light");
+}
+
+TEST_CASE("other words in the same verb frame are a paraphrase, articles and named roles are not") {
+  const auto a = analyze_with_suite(R"(
+template gently frame put "put {the source} down on top of {the target}"
+template set_down frame put "set {the source} down on {the target}"
+variants of red_on_tray {
+  gentle { say gently }
+  down { say set_down }
+  down_by_color { say set_down; refer source as by_color }
+}
+variant same of red_on_tray { say "put the {source} on a {target}"; light night }
+variant named of red_on_tray { say "put {red} on {the tray}"; light night }
+variant other of gentle { source blue }
+derive "{t}_softly" for t in { red_on_tray, other } { say "put {the source} softly on {the target}" }
+set reworded = tasks where uses paraphrase
+set moved = tasks where axis language.paraphrase
+)");
+  CHECK_MESSAGE(a->codes() == "P0701", a->said());
+  CHECK(axes(a->task("gentle")) == "language.paraphrase");
+  CHECK(axes(a->task("down")) == "language.paraphrase");
+  CHECK(axes(a->task("down_by_color")) == "language.appearance language.paraphrase");
+  CHECK(axes(a->task("same")) == "light");
+  CHECK(axes(a->task("named")) == "light");
+  CHECK(axes(a->task("other")) == "object.source");
+  CHECK(axes(a->task("red_on_tray_softly")) == "language.paraphrase");
+  CHECK(axes(a->task("other_softly")) == "language.paraphrase");
+  CHECK(members(*a, "reworded") ==
+        "gentle down down_by_color other red_on_tray_softly other_softly");
+  CHECK(members(*a, "moved") == "gentle down down_by_color red_on_tray_softly other_softly");
+}
+
+TEST_CASE("what was not seen in training is out of distribution") {
+  const auto a = analyze_with_suite(
+      "variants of red_on_tray { s { source pale }\n r { source blue }\n t { target pale } }");
+  CHECK(a->task("red_on_tray").ood == 0);
+  CHECK(a->task("s").ood == 1);
+  CHECK(a->task("t").ood == 2);
+  // Both are known, their relation is not.
+  CHECK(a->task("r").ood == 4);
+}
+
+TEST_CASE("what is heard, seen and judged alike is one experiment, whatever declares it") {
+  const char* const slots = "variant v of red_on_tray { say \"put red block on the tray\" }";
+  const auto base = analyze_with_suite("");
+  REQUIRE(base->task("red_on_tray").prompt == "put red block on the tray");
+  CHECK(analyze_with_suite(slots)->codes() == "P0702");
+  CHECK(analyze_with_suite("template lift frame pick \"put {source} on {the target}\"\n"
+                           "variant v of red_on_tray { say lift }")
+            ->codes() == "P0702");
+  CHECK(analyze_with_suite("object twin like red { phrase odd appearance \"red block\" bare "
+                           "means color red; name \"else\" }\n"
+                           "variant v of red_on_tray { source twin; refer source as odd }")
+            ->codes() == "P0702");
+  CHECK(analyze_with_suite("object twin like red { density 400kg/m3 }\n"
+                           "variant v of red_on_tray { source twin }")
+            ->codes() == "");
+}
