@@ -5,10 +5,10 @@
 
 #include "compiler/audit/table.h"
 #include "compiler/diag/text.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
-#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 namespace {
@@ -20,7 +20,7 @@ struct AuditArguments {
 };
 
 int audit_verb(const AuditArguments& arguments) {
-  const auto root = stage::find_asset_root(arguments.assets.root);
+  const auto root = find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
   const auto library = find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());
@@ -57,17 +57,17 @@ int audit_verb(const AuditArguments& arguments) {
 
 }  // namespace
 
-void add_audit(CLI::App& app, int& exit) {
+void add_audit(Verb app, int& exit) {
   auto arguments = std::make_shared<AuditArguments>();
-  CLI::App* verb = app.add_subcommand("audit", "what is irregular in a suite, allowed or not");
-  verb->add_option("F", arguments->file, ".probe text")->required();
-  verb->add_option("--suite", arguments->suite, "which suite (default: the first of the file)");
-  verb->add_option("--table", arguments->table,
-                   "CSV of published percentages, a column a set: can they be averages over it?");
-  verb->add_flag("--json", arguments->json, "as a JSON object");
-  add_asset_option(*verb, arguments->assets);
-  verb->footer("example: vlaprobe audit suite/intact.probe");
-  verb->callback([arguments, &exit] { exit = audit_verb(*arguments); });
+  Verb verb = app.add_subcommand("audit", "what is irregular in a suite, allowed or not");
+  verb.add_option("F", arguments->file, ".probe text").required();
+  verb.add_option("--suite", arguments->suite, "which suite (default: the first of the file)");
+  verb.add_option("--table", arguments->table,
+                  "CSV of published percentages, a column a set: can they be averages over it?");
+  verb.add_flag("--json", arguments->json, "as a JSON object");
+  add_asset_option(verb, arguments->assets);
+  verb.footer("example: vlaprobe audit suite/intact.probe");
+  verb.callback([arguments, &exit] { exit = audit_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -10,7 +10,7 @@
 
 namespace probe::cli {
 
-void add_build(CLI::App& app, int& exit) {
+void add_build(Verb app, int& exit) {
   struct BuildArguments {
     std::vector<std::string> files;
     std::string out, suite;
@@ -18,18 +18,18 @@ void add_build(CLI::App& app, int& exit) {
     AssetOptions assets;
   };
   auto arguments = std::make_shared<BuildArguments>();
-  CLI::App* verb = app.add_subcommand("build", "check, lower, verify and write one frozen plan");
-  verb->footer(
+  Verb verb = app.add_subcommand("build", "check, lower, verify and write one frozen plan");
+  verb.footer(
       "prints the plan's root, the hash that names it\n"
       "example: vlaprobe build suite/intact.probe -o intact.plan");
-  verb->add_option("F", arguments->files, ".probe texts")->required();
-  verb->add_option("-o,--out", arguments->out, "plan file to write")->required();
-  verb->add_option("--suite", arguments->suite, "only this suite's tasks");
-  verb->add_option("--tasks", arguments->assets.tasks,
-                   "glob: only these tasks, where the assets lack what others need");
-  verb->add_flag("--json", arguments->json, "root and sizes as a JSON object");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] {
+  verb.add_option("F", arguments->files, ".probe texts").required();
+  verb.add_option("-o,--out", arguments->out, "plan file to write").required();
+  verb.add_option("--suite", arguments->suite, "only this suite's tasks");
+  verb.add_option("--tasks", arguments->assets.tasks,
+                  "glob: only these tasks, where the assets lack what others need");
+  verb.add_flag("--json", arguments->json, "root and sizes as a JSON object");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] {
     CompiledText text = compile_text(arguments->files, arguments->assets, arguments->suite, true);
     exit = text.exit;
     if (exit != kFine) return;

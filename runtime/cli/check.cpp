@@ -86,18 +86,18 @@ int check_verb(const CheckArguments& arguments) {
 
 }  // namespace
 
-void add_check(CLI::App& app, int& exit) {
+void add_check(Verb app, int& exit) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* verb = app.add_subcommand("check", "diagnose sources");
-  verb->footer("example: vlaprobe check --watch suite/intact.probe");
-  verb->add_option("F", arguments->files, ".probe texts")->required();
-  verb->add_flag("--watch", arguments->watch,
-                 "again whenever one of them, or what it uses, changes");
-  verb->add_flag("--json", arguments->json, "diagnostics as a JSON array on stdout");
-  verb->add_option("--tasks", arguments->assets.tasks,
-                   "glob: only these tasks, where the assets lack what others need");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] {
+  Verb verb = app.add_subcommand("check", "diagnose sources");
+  verb.footer("example: vlaprobe check --watch suite/intact.probe");
+  verb.add_option("F", arguments->files, ".probe texts").required();
+  verb.add_flag("--watch", arguments->watch,
+                "again whenever one of them, or what it uses, changes");
+  verb.add_flag("--json", arguments->json, "diagnostics as a JSON array on stdout");
+  verb.add_option("--tasks", arguments->assets.tasks,
+                  "glob: only these tasks, where the assets lack what others need");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] {
     exit = arguments->watch ? watch_verb(*arguments) : check_verb(*arguments);
   });
 }

@@ -10,9 +10,9 @@
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/assets/asset_check.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/glob.h"
 #include "runtime/cli/library.h"
-#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 
@@ -20,7 +20,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
                              const std::string& suite, bool want_plan, bool json,
                              bool chosen_only) {
   CompiledText text;
-  auto root = stage::find_asset_root(assets.root);
+  auto root = find_asset_root(assets.root);
   if (!root) {
     text.exit = report(root.failure());
     return text;

@@ -13,10 +13,10 @@ namespace probe::cli {
 struct CompiledText {
   std::vector<std::byte> plan;  // empty unless asked for
   std::size_t errors = 0, warnings = 0;
-  int exit = kFine;                // kUser when there were errors
-  std::string said;                // the diagnostics, as text or as JSON
+  int exit = kFine;                  // kUser when there were errors
+  std::string said;                  // the diagnostics, as text or as JSON
   bool only_assets_missing = false;  // every error is a P0202
-  std::vector<std::string> files;  // every file that was read, as it was found
+  std::vector<std::string> files;    // every file that was read, as it was found
   std::vector<std::string> unused_phrases;
   std::vector<ReferringWords> referring;
   std::vector<std::string> own_suites;  // declared by the named files, not by those they use

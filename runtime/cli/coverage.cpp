@@ -5,7 +5,7 @@
 
 namespace probe::cli {
 
-void add_coverage(CLI::App& app, int& exit) {
+void add_coverage(Verb app, int& exit) {
   add_plan_table(app, exit,
                  {.name = "coverage",
                   .about = "how many variants of each base task move each axis",

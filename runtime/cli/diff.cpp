@@ -45,19 +45,19 @@ int diff_two_plans(const DiffArguments& arguments) {
 
 }  // namespace
 
-void add_diff(CLI::App& app, int& exit) {
+void add_diff(Verb app, int& exit) {
   auto arguments = std::make_shared<DiffArguments>();
-  CLI::App* verb =
+  Verb verb =
       app.add_subcommand("diff", "two tasks of a file, or two files, by axes and identities");
-  verb->footer(
+  verb.footer(
       "example: vlaprobe diff suite/intact.probe carrot_on_plate carrot_on_plate_lang_color\n"
       "         vlaprobe diff old.plan new.plan");
-  verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
-  verb->add_option("A", arguments->a, "a task of F; or, without B, another file")->required();
-  verb->add_option("B", arguments->b, "another task of F");
-  verb->add_flag("--json", arguments->json, "as a JSON object");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] {
+  verb.add_option("F", arguments->file, ".probe text or .plan file").required();
+  verb.add_option("A", arguments->a, "a task of F; or, without B, another file").required();
+  verb.add_option("B", arguments->b, "another task of F");
+  verb.add_flag("--json", arguments->json, "as a JSON object");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] {
     exit = arguments->b.empty() ? diff_two_plans(*arguments) : diff_two_tasks(*arguments);
   });
 }

@@ -7,19 +7,19 @@
 
 namespace probe::cli {
 
-void add_dis(CLI::App& app, int& exit) {
+void add_dis(Verb app, int& exit) {
   struct DisArguments {
     std::string file, task;
     AssetOptions assets;
   };
   auto arguments = std::make_shared<DisArguments>();
-  CLI::App* verb =
+  Verb verb =
       app.add_subcommand("dis", "a plan as text: tables and programs with their source lines");
-  verb->footer("example: vlaprobe dis intact.plan carrot_on_plate");
-  verb->add_option("F", arguments->file, ".plan file or .probe text")->required();
-  verb->add_option("TASK", arguments->task, "the program of this task alone");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] {
+  verb.footer("example: vlaprobe dis intact.plan carrot_on_plate");
+  verb.add_option("F", arguments->file, ".plan file or .probe text").required();
+  verb.add_option("TASK", arguments->task, "the program of this task alone");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] {
     LoadedPlan loaded = load_plan(arguments->file, arguments->assets);
     exit = loaded.exit;
     if (!loaded.plan) return;

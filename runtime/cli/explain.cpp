@@ -68,17 +68,17 @@ int explain(const std::string& word, bool json) {
 
 }  // namespace
 
-void add_explain(CLI::App& app, int& exit) {
+void add_explain(Verb app, int& exit) {
   struct ExplainArguments {
     std::string code;
     bool json = false;
   };
   auto arguments = std::make_shared<ExplainArguments>();
-  CLI::App* verb = app.add_subcommand("explain", "the essay behind a diagnostic's code");
-  verb->footer("without a code: all codes with their titles\nexample: vlaprobe explain P0402");
-  verb->add_option("CODE", arguments->code, "P0402, or the word of an @allow");
-  verb->add_flag("--json", arguments->json, "as JSON");
-  verb->callback([arguments, &exit] {
+  Verb verb = app.add_subcommand("explain", "the essay behind a diagnostic's code");
+  verb.footer("without a code: all codes with their titles\nexample: vlaprobe explain P0402");
+  verb.add_option("CODE", arguments->code, "P0402, or the word of an @allow");
+  verb.add_flag("--json", arguments->json, "as JSON");
+  verb.callback([arguments, &exit] {
     exit = arguments->code.empty() ? list_codes(arguments->json)
                                    : explain(arguments->code, arguments->json);
   });

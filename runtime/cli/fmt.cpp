@@ -54,20 +54,20 @@ int format_one(const std::string& path, bool check, Tally& tally) {
 
 }  // namespace
 
-void add_fmt(CLI::App& app, int& exit) {
+void add_fmt(Verb app, int& exit) {
   struct FmtArguments {
     std::vector<std::string> files;
     bool check = false, json = false;
   };
   auto arguments = std::make_shared<FmtArguments>();
-  CLI::App* verb = app.add_subcommand("fmt", "canonical layout, in place");
-  verb->footer(
+  Verb verb = app.add_subcommand("fmt", "canonical layout, in place");
+  verb.footer(
       "prints the files that it changes; a file with syntax errors is left alone\n"
       "example: vlaprobe fmt suite/*.probe");
-  verb->add_option("F", arguments->files, ".probe texts")->required();
-  verb->add_flag("--check", arguments->check, "write nothing; exit 1 if a file would change");
-  verb->add_flag("--json", arguments->json, "those files as a JSON array");
-  verb->callback([arguments, &exit] {
+  verb.add_option("F", arguments->files, ".probe texts").required();
+  verb.add_flag("--check", arguments->check, "write nothing; exit 1 if a file would change");
+  verb.add_flag("--json", arguments->json, "those files as a JSON array");
+  verb.callback([arguments, &exit] {
     Tally tally;
     for (const std::string& file : arguments->files) {
       exit = std::max(exit, format_one(file, arguments->check, tally));

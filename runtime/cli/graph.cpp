@@ -5,7 +5,7 @@
 
 namespace probe::cli {
 
-void add_graph(CLI::App& app, int& exit) {
+void add_graph(Verb app, int& exit) {
   add_plan_table(app, exit,
                  {.name = "graph",
                   .about = "which task is compared with which, for Graphviz (DOT)",

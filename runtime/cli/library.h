@@ -1,6 +1,7 @@
-// Where `use "std/..."` finds the standard library.
+// Where the program lies, and where `use "std/..."` finds the standard library.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "runtime/base/result.h"
 
 namespace probe::cli {
+
+// Empty when the system does not say.
+std::filesystem::path folder_of_program();
 
 // The folders that hold `std/`: `chosen` if not empty, else the environment's VLAPROBE_STD, else
 // `dsl` beside the program's folder, else that of the source tree it was built from; empty when

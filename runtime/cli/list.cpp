@@ -3,10 +3,10 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
 #include "runtime/inspect/task_json.h"
-#include "runtime/stage/assets.h"
 
 namespace probe::cli {
 namespace {
@@ -19,7 +19,7 @@ struct ListArguments {
 
 // A text is counted without making its plan: a sweep of a million episodes in a second.
 int count_text(const ListArguments& arguments) {
-  const auto root = stage::find_asset_root(arguments.assets.root);
+  const auto root = find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
   const auto library = find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());
@@ -70,28 +70,28 @@ int show_verb(const ListArguments& arguments) {
 
 }  // namespace
 
-void add_list(CLI::App& app, int& exit) {
+void add_list(Verb app, int& exit) {
   auto arguments = std::make_shared<ListArguments>();
-  CLI::App* verb = app.add_subcommand("list", "the tasks of a file with their instructions");
-  verb->footer("example: vlaprobe list suite/intact.probe --json");
-  verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
-  verb->add_option("--suite", arguments->suite, "only the members of this suite");
-  verb->add_flag("--count", arguments->count, "only how many tasks and episodes there are");
-  verb->add_flag("--json", arguments->json, "a JSON array of tasks");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] { exit = list_verb(*arguments); });
+  Verb verb = app.add_subcommand("list", "the tasks of a file with their instructions");
+  verb.footer("example: vlaprobe list suite/intact.probe --json");
+  verb.add_option("F", arguments->file, ".probe text or .plan file").required();
+  verb.add_option("--suite", arguments->suite, "only the members of this suite");
+  verb.add_flag("--count", arguments->count, "only how many tasks and episodes there are");
+  verb.add_flag("--json", arguments->json, "a JSON array of tasks");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] { exit = list_verb(*arguments); });
 }
 
-void add_show(CLI::App& app, int& exit) {
+void add_show(Verb app, int& exit) {
   auto arguments = std::make_shared<ListArguments>();
-  CLI::App* verb = app.add_subcommand("show", "one task whole: roles, axes, ids, every start");
-  verb->footer("example: vlaprobe show suite/intact.probe carrot_on_plate");
-  verb->add_option("F", arguments->file, ".probe text or .plan file")->required();
-  verb->add_option("TASK", arguments->task, "task name, with or without its suite's prefix")
-      ->required();
-  verb->add_flag("--json", arguments->json, "as a JSON object");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] { exit = show_verb(*arguments); });
+  Verb verb = app.add_subcommand("show", "one task whole: roles, axes, ids, every start");
+  verb.footer("example: vlaprobe show suite/intact.probe carrot_on_plate");
+  verb.add_option("F", arguments->file, ".probe text or .plan file").required();
+  verb.add_option("TASK", arguments->task, "task name, with or without its suite's prefix")
+      .required();
+  verb.add_flag("--json", arguments->json, "as a JSON object");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] { exit = show_verb(*arguments); });
 }
 
 }  // namespace probe::cli

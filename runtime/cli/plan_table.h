@@ -19,6 +19,6 @@ struct PlanTable {
   std::function<nlohmann::ordered_json(const LoadedPlan&, std::span<const std::uint32_t>)> make;
   std::string (*text)(const nlohmann::ordered_json&);
 };
-void add_plan_table(CLI::App& app, int& exit, PlanTable table);
+void add_plan_table(Verb app, int& exit, PlanTable table);
 
 }  // namespace probe::cli

@@ -95,14 +95,14 @@ int verify_verb(const VerifyArguments& arguments) {
 
 }  // namespace
 
-void add_verify(CLI::App& app, int& exit) {
+void add_verify(Verb app, int& exit) {
   auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* verb = app.add_subcommand("verify", "check every rule of the plan format on a file");
-  verb->footer("example: vlaprobe verify intact.plan");
-  verb->add_option("X.plan", arguments->file, "plan file")->required();
-  verb->add_flag("--fast", arguments->fast, "without recomputing the ids");
-  verb->add_flag("--json", arguments->json, "root, counts and sections as a JSON object");
-  verb->callback([arguments, &exit] { exit = verify_verb(*arguments); });
+  Verb verb = app.add_subcommand("verify", "check every rule of the plan format on a file");
+  verb.footer("example: vlaprobe verify intact.plan");
+  verb.add_option("X.plan", arguments->file, "plan file").required();
+  verb.add_flag("--fast", arguments->fast, "without recomputing the ids");
+  verb.add_flag("--json", arguments->json, "root, counts and sections as a JSON object");
+  verb.callback([arguments, &exit] { exit = verify_verb(*arguments); });
 }
 
 }  // namespace probe::cli

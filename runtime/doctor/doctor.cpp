@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/doctor/golden_starts.h"
 #include "runtime/render/renderer.h"
@@ -68,7 +69,7 @@ bool DoctorReport::fine() const { return asset_damage.empty() && (!golden || gol
 
 Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite) {
   DoctorReport report;
-  PROBE_ASSIGN(report.asset_root, stage::find_asset_root(assets));
+  PROBE_ASSIGN(report.asset_root, find_asset_root(assets));
   PROBE_ASSIGN(const Sha256 manifest, check_manifest(report.asset_root, report));
   report.fingerprint = store::take_fingerprint(manifest);
   report.code_level = code_level();

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/run/episode.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/episode_video.h"
@@ -98,7 +99,7 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
   report.fingerprint_differences =
       store::differences(recorded, store::take_fingerprint(stage::asset_digest(plan)));
 
-  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
   const std::uint32_t tasks[] = {job.task};
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, job.task, std::move(assets)));

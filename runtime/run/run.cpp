@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/run/delivery.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/policies.h"
@@ -346,7 +347,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   }
   PROBE_ASSIGN(Selection selection,
                select_jobs(plan, options, traits.draws, traits.recorded ? &recorded : nullptr));
-  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
 
   RunSummary summary;
   summary.notes = selection.notes;

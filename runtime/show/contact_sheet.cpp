@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/glob.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/picture_grid.h"
@@ -56,7 +57,7 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
   if (rows.empty())
     return Failure{Fault::kUsage, "no stored episode of `" + options.tasks + "`", dir};
   PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
-  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
 
   // Rows are ordered by task: one view at a time is enough.
   std::string task_name;

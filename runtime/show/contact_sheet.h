@@ -12,7 +12,7 @@ struct SheetOptions {
   int columns = 6;
   int cell_width = 213;  // pixels of one picture; a cell shows the first and the last
   std::string camera;    // of several, the one that is shown; empty: all, side by side
-  std::string assets;    // asset root, see stage::find_asset_root
+  std::string assets;    // asset root, see find_asset_root
 };
 
 // A PNG grid of the first and last picture of every stored episode, with captions, drawn from the

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/overlay.h"
 #include "runtime/stage/assets.h"
@@ -70,7 +71,7 @@ std::optional<std::uint16_t> body_of(const plan::Plan& plan, std::uint32_t task,
 Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
                      const std::string& png_path, const std::string& assets_folder) {
   if (rows.empty()) return Failure{Fault::kUsage, "no phrase refers to an object", ""};
-  PROBE_ASSIGN(const std::string root, stage::find_asset_root(assets_folder));
+  PROBE_ASSIGN(const std::string root, find_asset_root(assets_folder));
   const int step = kCrop + kMargin;
   Picture sheet = make_picture(kCrop + kWordsWidth + 3 * kMargin,
                                static_cast<int>(rows.size()) * step + kMargin, kGround);

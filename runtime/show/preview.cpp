@@ -1,6 +1,7 @@
 // Drop, settle, one picture: for every start of a task.
 #include "runtime/show/preview.h"
 
+#include "runtime/base/asset_root.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/picture_grid.h"
 #include "runtime/stage/stage.h"
@@ -9,7 +10,7 @@ namespace probe::show {
 
 Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::string& png_path,
                      const SheetOptions& options) {
-  PROBE_ASSIGN(const std::string root, stage::find_asset_root(options.assets));
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
   const std::uint32_t tasks[] = {task};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, task, assets));
@@ -44,7 +45,7 @@ Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t ind
                        std::to_string(count) + " starts, counted from 0",
                    ""};
   }
-  PROBE_ASSIGN(const std::string root, stage::find_asset_root(assets_folder));
+  PROBE_ASSIGN(const std::string root, find_asset_root(assets_folder));
   const std::uint32_t tasks[] = {task};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, task, assets));

@@ -2,7 +2,6 @@
 // them.
 #include "runtime/stage/assets.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -31,12 +30,6 @@ Read read_bytes(const fs::path& path) {
   std::ostringstream all;
   all << file.rdbuf();
   return {std::move(all).str(), file.good() || file.eof()};
-}
-
-std::string folder_of_program() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? std::string() : program.parent_path().string();
 }
 
 scene::CollisionShape make_primitive(const robot::Primitive& primitive) {
@@ -78,31 +71,6 @@ Result<std::shared_ptr<const scene::CollisionShape>> load_link_shape(
 }
 
 }  // namespace
-
-Result<std::string> find_asset_root(std::string_view chosen) {
-  // A place that somebody named is the only one looked at.
-  const auto only = [](std::string_view path, const char* who) -> Result<std::string> {
-    if (fs::is_directory(path)) return std::string(path);
-    return Failure{Fault::kAsset, std::string("the asset folder given by ") + who + " is not there",
-                   std::string(path)};
-  };
-  if (!chosen.empty()) return only(chosen, "--assets");
-  if (const char* named = std::getenv("VLAPROBE_ASSETS"); named != nullptr && *named != '\0') {
-    return only(named, "VLAPROBE_ASSETS");
-  }
-  std::string looked;
-  const std::string beside = folder_of_program();
-  for (const std::string& place : {beside.empty() ? beside : beside + "/../assets",
-                                   std::string(VLAPROBE_BUILT_FROM) + "/assets"}) {
-    if (place.empty()) continue;
-    // A build folder has an `assets` too, without a manifest.
-    if (fs::exists(place + "/manifest.json")) return fs::path(place).lexically_normal().string();
-    looked += (looked.empty() ? "" : ", ") + place;
-  }
-  return Failure{
-      Fault::kAsset,
-      "no asset folder; looked at " + looked + "; name one with --assets or VLAPROBE_ASSETS", ""};
-}
 
 class SharedAssets::Loader {
  public:

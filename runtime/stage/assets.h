@@ -25,11 +25,6 @@ class SceneStore;
 
 namespace probe::stage {
 
-// The folder that the plan's asset paths are relative to: `chosen` if not empty, else the
-// environment's VLAPROBE_ASSETS, else `assets` beside the program's folder, else that of the source
-// tree it was built from. Fails (kAsset) naming every place it looked at.
-Result<std::string> find_asset_root(std::string_view chosen = {});
-
 // What a URDF's links look like and collide with. A link's collision meshes are merged into one
 // shape in link frame.
 struct RobotParts {

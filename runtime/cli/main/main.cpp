@@ -1,4 +1,23 @@
-// The program `vlaprobe`.
-#include "runtime/cli/verbs.h"
+// The program `vlaprobe`. Verbs that need the compiler alone run here and start in a few
+// milliseconds; for everything else it becomes `vlaprobe-full` beside it, whose libraries take ten
+// times as long to load.
+#include <fmt/format.h>
+#include <unistd.h>
 
-int main(int argc, char** argv) { return probe::cli::main(argc, argv); }
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "runtime/cli/app.h"
+#include "runtime/cli/library.h"
+
+int main(int argc, char** argv) {
+  using namespace probe;
+  const int exit = cli::run_program(
+      argc, argv, [](cli::Verb program, int& exit) { cli::add_text_verbs(program, exit, nullptr); },
+      false);
+  if (exit != cli::kHandOver) return exit;
+  const std::string full = (cli::folder_of_program() / "vlaprobe-full").string();
+  execv(full.c_str(), argv);
+  return cli::report({Fault::kIo, std::string("cannot be started: ") + std::strerror(errno), full});
+}

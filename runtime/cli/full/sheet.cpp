@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "runtime/cli/filled.h"
+#include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
 #include "runtime/run/replay.h"
 #include "runtime/show/preview.h"
@@ -18,7 +18,7 @@ struct SheetArguments {
   AssetOptions assets;
 };
 
-void add_camera_option(CLI::App& verb, SheetArguments& arguments) {
+void add_camera_option(Verb verb, SheetArguments& arguments) {
   verb.add_option("--camera", arguments.options.camera,
                   "of several cameras, the one to show (default: all, side by side)");
 }
@@ -31,42 +31,40 @@ int written(const Status& status, const std::string& path) {
 
 }  // namespace
 
-void add_sheet(CLI::App& app, int& exit) {
+void add_sheet(Verb app, int& exit) {
   auto arguments = std::make_shared<SheetArguments>();
-  CLI::App* verb =
+  Verb verb =
       app.add_subcommand("sheet", "first and last picture of every stored episode, as one PNG");
-  verb->footer("green captions are successes\nexample: vlaprobe sheet runs/expert -o expert.png");
-  verb->add_option("DIR", arguments->input, "results folder")->required();
-  verb->add_option("-o,--out", arguments->out, "PNG to write")->required();
-  verb->add_option("--tasks", arguments->options.tasks, "glob over task names");
-  verb->add_option("--columns", arguments->options.columns, "episodes in a row")
-      ->check(CLI::Range(1, 64));
-  add_camera_option(*verb, *arguments);
-  add_asset_option(*verb, arguments->assets);
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] {
+  verb.footer("green captions are successes\nexample: vlaprobe sheet runs/expert -o expert.png");
+  verb.add_option("DIR", arguments->input, "results folder").required();
+  verb.add_option("-o,--out", arguments->out, "PNG to write").required();
+  verb.add_option("--tasks", arguments->options.tasks, "glob over task names");
+  verb.add_option("--columns", arguments->options.columns, "episodes in a row").between(1, 64);
+  add_camera_option(verb, *arguments);
+  add_asset_option(verb, arguments->assets);
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] {
     arguments->options.assets = arguments->assets.root;
     exit = written(show::write_contact_sheet(arguments->input, arguments->out, arguments->options),
                    arguments->out);
   });
 }
 
-void add_preview(CLI::App& app, int& exit) {
+void add_preview(Verb app, int& exit) {
   auto arguments = std::make_shared<SheetArguments>();
-  CLI::App* verb =
+  Verb verb =
       app.add_subcommand("preview", "the first picture of every start of a task, as one PNG");
-  verb->footer("example: vlaprobe preview suite/intact.probe carrot_on_plate -o starts.png");
-  verb->add_option("--start", arguments->start,
-                   "one start, counted from 0, in the camera's own size");
-  verb->add_option("F", arguments->input, ".probe text or .plan file")->required();
-  verb->add_option("TASK", arguments->task, "task name")->required();
-  verb->add_option("-o,--out", arguments->out, "PNG to write")->required();
-  verb->add_option("--columns", arguments->options.columns, "starts in a row")
-      ->check(CLI::Range(1, 64));
-  add_camera_option(*verb, *arguments);
-  add_asset_option(*verb, arguments->assets);
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] {
+  verb.footer("example: vlaprobe preview suite/intact.probe carrot_on_plate -o starts.png");
+  verb.add_option("--start", arguments->start,
+                  "one start, counted from 0, in the camera's own size");
+  verb.add_option("F", arguments->input, ".probe text or .plan file").required();
+  verb.add_option("TASK", arguments->task, "task name").required();
+  verb.add_option("-o,--out", arguments->out, "PNG to write").required();
+  verb.add_option("--columns", arguments->options.columns, "starts in a row").between(1, 64);
+  add_camera_option(verb, *arguments);
+  add_asset_option(verb, arguments->assets);
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] {
     arguments->assets.tasks = arguments->task;
     LoadedPlan loaded = load_plan(arguments->input, arguments->assets);
     exit = loaded.exit;

@@ -3,9 +3,8 @@
 
 #include "runtime/assets/import.h"
 #include "runtime/assets/pack.h"
-#include "runtime/cli/filled.h"
-#include "runtime/cli/verbs.h"
-#include "runtime/stage/assets.h"
+#include "runtime/base/asset_root.h"
+#include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
 namespace {
@@ -17,7 +16,7 @@ struct AssetsArguments {
 
 int import_verb(AssetsArguments& arguments) {
   if (arguments.fill) {
-    auto own = stage::find_asset_root();
+    auto own = find_asset_root();
     if (!own) return report(own.failure());
     arguments.options.fill_from = *own;
   }
@@ -35,19 +34,19 @@ int import_verb(AssetsArguments& arguments) {
   return kFine;
 }
 
-void add_pack(CLI::App& assets, int& exit) {
+void add_pack(Verb assets, int& exit) {
   auto options = std::make_shared<assets::PackOptions>();
-  CLI::App* pack = assets.add_subcommand("pack", "a mesh or a robot of yours as one asset");
-  pack->footer(
+  Verb pack = assets.add_subcommand("pack", "a mesh or a robot of yours as one asset");
+  pack.footer(
       "reads glb, gltf, dae, obj, stl, urdf; z is up in the result; prints the box to write\n"
       "example: vlaprobe assets pack mug/mug.obj -o my_assets/objects/mug --scale 0.001");
-  pack->add_option("FILE", options->from, "mesh or URDF")->required();
-  pack->add_option("-o,--out", options->to, "folder to make")->required();
-  pack->add_option("--scale", options->scale, "metres a unit of the file (default: 1)");
-  pack->add_option("--collision", options->collision,
-                   "mesh of convex parts (default: collision.* beside FILE, else FILE itself)");
-  refuse_empty_values(*pack);
-  pack->callback([options, &exit] {
+  pack.add_option("FILE", options->from, "mesh or URDF").required();
+  pack.add_option("-o,--out", options->to, "folder to make").required();
+  pack.add_option("--scale", options->scale, "metres a unit of the file (default: 1)");
+  pack.add_option("--collision", options->collision,
+                  "mesh of convex parts (default: collision.* beside FILE, else FILE itself)");
+  pack.refuse_empty_values();
+  pack.callback([options, &exit] {
     const auto packed = assets::pack_asset(*options);
     if (!packed) {
       exit = report(packed.failure());
@@ -60,25 +59,25 @@ void add_pack(CLI::App& assets, int& exit) {
 
 }  // namespace
 
-void add_assets(CLI::App& app, int& exit) {
+void add_assets(Verb app, int& exit) {
   auto arguments = std::make_shared<AssetsArguments>();
-  CLI::App* verb = app.add_subcommand("assets", "asset folders of your own");
-  verb->require_subcommand(1);
-  CLI::App* import = verb->add_subcommand(
+  Verb verb = app.add_subcommand("assets", "asset folders of your own");
+  verb.require_subcommand();
+  Verb import = verb.add_subcommand(
       "import", "a SimplerEnv / ManiSkill2_real2sim data folder as an asset folder");
-  import->footer(
+  import.footer(
       "one line a model: taken, odd (taken, with a remark) or missing; every verb takes the result "
       "with --assets\n"
       "example: vlaprobe assets import SimplerEnv/ManiSkill2_real2sim -o simpler");
-  import->add_option("DIR", arguments->options.from, "the repository, its data folder, or above")
-      ->required();
-  import->add_option("-o,--out", arguments->options.to, "folder to make")->required();
-  import->add_flag("--fill", arguments->fill,
-                   "take what the suite needs and DIR lacks from vlaprobe's own assets");
-  refuse_empty_values(*import);
-  import->callback([arguments, &exit] { exit = import_verb(*arguments);
+  import.add_option("DIR", arguments->options.from, "the repository, its data folder, or above")
+      .required();
+  import.add_option("-o,--out", arguments->options.to, "folder to make").required();
+  import.add_flag("--fill", arguments->fill,
+                  "take what the suite needs and DIR lacks from vlaprobe's own assets");
+  import.refuse_empty_values();
+  import.callback([arguments, &exit] { exit = import_verb(*arguments);
 });
-add_pack(*verb, exit);
+add_pack(verb, exit);
 }  // namespace probe::cli
 
 }  // namespace probe::cli

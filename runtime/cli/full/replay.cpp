@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/filled.h"
-#include "runtime/cli/verbs.h"
+#include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
 namespace {
@@ -41,26 +40,25 @@ int replay_verb(const ReplayArguments& arguments) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, int& exit) {
+void add_replay(Verb app, int& exit) {
   auto arguments = std::make_shared<ReplayArguments>();
-  CLI::App* verb =
-      app.add_subcommand("replay", "a stored episode again, from its recorded actions");
-  verb->footer(
+  Verb verb = app.add_subcommand("replay", "a stored episode again, from its recorded actions");
+  verb.footer(
       "example: vlaprobe replay runs/expert carrot_on_plate 3 --verify --video carrot3.mp4");
-  verb->add_option("DIR", arguments->dir, "results folder")->required();
-  verb->add_option("TASK", arguments->task, "task name")->required();
-  verb->add_option("EPISODE", arguments->episode, "start, from 0")->required();
-  verb->add_option("SEED", arguments->seed, "seed (default: the lowest stored)");
-  verb->add_flag("--verify", arguments->options.verify, "compare every measurement and hash");
-  verb->add_option("--video", arguments->options.video, "write an mp4");
-  verb->add_option("--png", arguments->options.png, "write the picture at --step");
-  verb->add_option("--step", arguments->options.png_step,
-                   "control step of --png, 0 is the first picture");
-  verb->add_option("--camera", arguments->options.camera,
-                   "of several cameras, the one to show (default: all, side by side)");
-  add_asset_option(*verb, arguments->assets);
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = replay_verb(*arguments); });
+  verb.add_option("DIR", arguments->dir, "results folder").required();
+  verb.add_option("TASK", arguments->task, "task name").required();
+  verb.add_option("EPISODE", arguments->episode, "start, from 0").required();
+  verb.add_option("SEED", arguments->seed, "seed (default: the lowest stored)");
+  verb.add_flag("--verify", arguments->options.verify, "compare every measurement and hash");
+  verb.add_option("--video", arguments->options.video, "write an mp4");
+  verb.add_option("--png", arguments->options.png, "write the picture at --step");
+  verb.add_option("--step", arguments->options.png_step,
+                  "control step of --png, 0 is the first picture");
+  verb.add_option("--camera", arguments->options.camera,
+                  "of several cameras, the one to show (default: all, side by side)");
+  add_asset_option(verb, arguments->assets);
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = replay_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/filled.h"
-#include "runtime/cli/verbs.h"
+#include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
 namespace {
@@ -36,19 +35,19 @@ int compare_verb(const CompareArguments& arguments) {
 
 }  // namespace
 
-void add_compare(CLI::App& app, int& exit) {
+void add_compare(Verb app, int& exit) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* verb = app.add_subcommand(
+  Verb verb = app.add_subcommand(
       "compare", "two runs on the same starts: which differences are real, and how large");
-  verb->footer("example: vlaprobe compare runs/step_10000 runs/step_20000");
-  verb->add_option("A", arguments->a, "results folder")->required();
-  verb->add_option("B", arguments->b, "results folder")->required();
-  verb->add_option("--metrics", arguments->metrics, "A,B,...: of these only")->delimiter(',');
-  verb->add_option("--sets", arguments->sets, "A,B,...: sets of the plan that are the categories")
-      ->delimiter(',');
-  verb->add_flag("--json", arguments->json, "words and numbers as a JSON object");
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = compare_verb(*arguments); });
+  verb.footer("example: vlaprobe compare runs/step_10000 runs/step_20000");
+  verb.add_option("A", arguments->a, "results folder").required();
+  verb.add_option("B", arguments->b, "results folder").required();
+  verb.add_option("--metrics", arguments->metrics, "A,B,...: of these only").delimiter(',');
+  verb.add_option("--sets", arguments->sets, "A,B,...: sets of the plan that are the categories")
+      .delimiter(',');
+  verb.add_flag("--json", arguments->json, "words and numbers as a JSON object");
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = compare_verb(*arguments); });
 }
 
 }  // namespace probe::cli

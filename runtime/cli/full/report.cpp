@@ -6,8 +6,7 @@
 #include <thread>
 
 #include "runtime/base/file.h"
-#include "runtime/cli/filled.h"
-#include "runtime/cli/verbs.h"
+#include "runtime/cli/full/verbs.h"
 #include "runtime/report/episode_documents.h"
 #include "runtime/report/page_data.h"
 #include "runtime/report/page_writer.h"
@@ -72,7 +71,7 @@ Status write_report(const ReportArguments& arguments) {
   PROBE_ASSIGN(report::Benchmark benchmark, report::load(arguments.dirs, {.sets = arguments.sets}));
   report::PageOptions options{.title = arguments.title,
                               .command = arguments.command,
-                              .program = "vlaprobe " VLAPROBE_VERSION,
+                              .program = "vlaprobe " version(),
                               .relative_to = "",
                               .published = {},
                               .models = true};
@@ -130,39 +129,38 @@ int report_verb(ReportArguments& arguments) {
 
 }  // namespace
 
-void add_report(CLI::App& app, int& exit) {
+void add_report(Verb app, int& exit) {
   auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* verb = app.add_subcommand(
-      "report", "one page of runs: tables with intervals, charts, every episode");
-  verb->footer(
+  Verb verb = app.add_subcommand("report",
+                                 "one page of runs: tables with intervals, charts, every episode");
+  verb.footer(
       "the page opens from disk, offline; videos are linked, so keep them where they are\n"
       "example: vlaprobe report runs/expert runs/null runs/pi0 -o page.html");
-  verb->add_option("DIR", arguments->dirs, "results folders")->required();
-  verb->add_option("-o,--out", arguments->out, "the page");
-  verb->add_option("--title", arguments->title, "of the page");
-  verb->add_option("--with", arguments->published,
-                   "CSV of published percentages, to stand beside ours")
-      ->expected(1)
-      ->take_all();
-  verb->add_option("--floors", arguments->floors,
-                   "CSV of floors and ceilings measured before, as suite/floors.csv");
-  verb->add_option("--sets", arguments->sets, "A,B,...: sets of the plan that are the columns")
-      ->delimiter(',');
-  CLI::Option* json =
-      verb->add_flag("--json", arguments->json, "the page's numbers as JSON on stdout");
+  verb.add_option("DIR", arguments->dirs, "results folders").required();
+  verb.add_option("-o,--out", arguments->out, "the page");
+  verb.add_option("--title", arguments->title, "of the page");
+  verb.add_option("--with", arguments->published,
+                  "CSV of published percentages, to stand beside ours")
+      .one_each();
+  verb.add_option("--floors", arguments->floors,
+                  "CSV of floors and ceilings measured before, as suite/floors.csv");
+  verb.add_option("--sets", arguments->sets, "A,B,...: sets of the plan that are the columns")
+      .delimiter(',');
+  const Option json =
+      verb.add_flag("--json", arguments->json, "the page's numbers as JSON on stdout");
   std::vector<std::string> formats;
   for (const report::TableFormatName& known : report::kTableFormats)
     formats.emplace_back(known.name);
-  verb->add_option("--format", arguments->format,
-                   "only the tables, as csv (rates), csv-differences (tests), json or latex, to "
-                   "stdout or -o")
-      ->check(CLI::IsMember(formats))
-      ->excludes(json);
-  verb->add_flag("--no-traces", arguments->no_traces, "no timelines and no explained verdicts");
-  verb->add_option("--jobs", arguments->jobs, "threads that read traces (default: all cores)")
-      ->check(CLI::Range(1, 1024));
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = report_verb(*arguments); });
+  verb.add_option("--format", arguments->format,
+                  "only the tables, as csv (rates), csv-differences (tests), json or latex, to "
+                  "stdout or -o")
+      .one_of(formats)
+      .excludes(json);
+  verb.add_flag("--no-traces", arguments->no_traces, "no timelines and no explained verdicts");
+  verb.add_option("--jobs", arguments->jobs, "threads that read traces (default: all cores)")
+      .between(1, 1024);
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = report_verb(*arguments); });
 }
 
 }  // namespace probe::cli

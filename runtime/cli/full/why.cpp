@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/cli/verbs.h"
+#include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/explain.h"
 
 namespace probe::cli {
@@ -85,20 +85,20 @@ int why_verb(const WhyArguments& arguments) {
 
 }  // namespace
 
-void add_why(CLI::App& app, int& exit) {
+void add_why(Verb app, int& exit) {
   auto arguments = std::make_shared<WhyArguments>();
-  CLI::App* verb =
+  Verb verb =
       app.add_subcommand("why", "a verdict explained: source lines with the measured numbers");
-  verb->footer(
+  verb.footer(
       "lines marked > are those that made the metric what it is\n"
       "example: vlaprobe why runs/expert carrot_on_plate 3 --metric success");
-  verb->add_option("DIR", arguments->dir, "results folder")->required();
-  verb->add_option("TASK", arguments->task, "task name")->required();
-  verb->add_option("EPISODE", arguments->episode, "start, from 0")->required();
-  verb->add_option("SEED", arguments->seed, "seed (default: the lowest stored)");
-  verb->add_option("--metric", arguments->metric, "this one alone");
-  verb->add_flag("--json", arguments->json, "as a JSON object");
-  verb->callback([arguments, &exit] { exit = why_verb(*arguments); });
+  verb.add_option("DIR", arguments->dir, "results folder").required();
+  verb.add_option("TASK", arguments->task, "task name").required();
+  verb.add_option("EPISODE", arguments->episode, "start, from 0").required();
+  verb.add_option("SEED", arguments->seed, "seed (default: the lowest stored)");
+  verb.add_option("--metric", arguments->metric, "this one alone");
+  verb.add_flag("--json", arguments->json, "as a JSON object");
+  verb.callback([arguments, &exit] { exit = why_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -1,5 +1,5 @@
 // Options to RunOptions, and sentences about runs.
-#include "runtime/cli/run_options.h"
+#include "runtime/cli/full/run_options.h"
 
 #include <fmt/format.h>
 
@@ -129,12 +129,12 @@ void print_summary(const run::RunSummary& summary) {
   }
 }
 
-void add_run_options(CLI::App& verb, RunArguments& arguments) {
-  verb.add_option("F", arguments.file, ".probe text or .plan file")->required();
-  verb.add_option("--policy", arguments.policy, "who acts")->required();
+void add_run_options(Verb verb, RunArguments& arguments) {
+  verb.add_option("F", arguments.file, ".probe text or .plan file").required();
+  verb.add_option("--policy", arguments.policy, "who acts").required();
   verb.add_option("--name", arguments.name,
                   "what the rows call the policy (default: P); stays when its server moves");
-  verb.add_option("-o,--out", arguments.out, "results folder")->required();
+  verb.add_option("-o,--out", arguments.out, "results folder").required();
   verb.add_option("--suite", arguments.suite,
                   "which suite (default: the first that F itself declares)");
   verb.add_option("--tasks", arguments.tasks, "glob over task names");
@@ -142,18 +142,18 @@ void add_run_options(CLI::App& verb, RunArguments& arguments) {
   verb.add_option("--seeds", arguments.seeds, "A,B,... instead of the suite's");
   verb.add_option("--jobs", arguments.jobs,
                   "worlds in parallel; more than cores if the policy takes its time (1)")
-      ->check(CLI::Range(1, 1024));
+      .between(1, 1024);
   verb.add_option("--retries", arguments.retries,
                   "how often an episode that the server failed is tried again at once (2)")
-      ->check(CLI::Range(0, 1000));
+      .between(0, 1000);
   verb.add_option("--give-up-after", arguments.give_up_after,
                   "stop when the server failed that many episodes in a row; 0: never (5)")
-      ->check(CLI::Range(0, 1000000));
+      .between(0, 1000000);
   verb.add_option("--if-changed", arguments.if_changed,
                   "refuse, fork (into DIR-2) or continue over another build or profile")
-      ->check(CLI::IsMember({"refuse", "fork", "continue"}));
+      .one_of({"refuse", "fork", "continue"});
   verb.add_option("--video", arguments.video, "none, failures or all")
-      ->check(CLI::IsMember({"none", "failures", "all"}));
+      .one_of({"none", "failures", "all"});
   add_asset_option(verb, arguments.assets);
 }
 

@@ -5,8 +5,9 @@
 
 #include <filesystem>
 
-#include "runtime/cli/filled.h"
-#include "runtime/cli/run_options.h"
+#include "runtime/cli/full/run_options.h"
+#include "runtime/cli/full/verbs.h"
+#include "runtime/cli/library.h"
 
 namespace probe::cli {
 namespace {
@@ -33,8 +34,7 @@ int slurm_verb(const SlurmArguments& arguments) {
   options.script.tasks = arguments.array + arguments.nodes;
   options.script.whole_nodes = arguments.nodes > 0;
   if (options.script.program.empty()) {
-    std::error_code error;
-    options.script.program = std::filesystem::read_symlink("/proc/self/exe", error).string();
+    options.script.program = (folder_of_program() / "vlaprobe").string();
   }
   options.submit = arguments.submit;
   options.tell = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
@@ -58,30 +58,28 @@ int slurm_verb(const SlurmArguments& arguments) {
 
 }  // namespace
 
-void add_slurm(CLI::App& app, int& exit) {
+void add_slurm(Verb app, int& exit) {
   auto arguments = std::make_shared<SlurmArguments>();
-  CLI::App* verb = app.add_subcommand("slurm", "`run` as an array job of Slurm, merged at the end");
-  verb->footer(
+  Verb verb = app.add_subcommand("slurm", "`run` as an array job of Slurm, merged at the end");
+  verb.footer(
       "-o holds shards/, slurm/job.sh, its logs and, at the end, the merged run.\n"
       "example: vlaprobe slurm suite/intact.probe --array 8 --jobs 8 -o runs/pi0 --submit \\\n"
       "           --policy 'openpi://127.0.0.1:{port}' --server-command 'serve --port {port}'");
-  add_run_options(*verb, arguments->run);
-  verb->add_option("--array", arguments->array, "N tasks, each with one shard")
-      ->check(CLI::Range(1, 100000));
-  verb->add_option("--nodes", arguments->nodes,
-                   "N tasks, each with one shard and a node of its own")
-      ->check(CLI::Range(1, 100000));
-  verb->add_option("--server-command", arguments->script.server_command,
-                   "shell line that starts each task's server; {port} is its port, here and in P");
-  verb->add_option("--server-wait", arguments->script.server_wait_s,
-                   "seconds until a server answers (600)")
-      ->check(CLI::Range(1, 86400));
-  verb->add_option("--sbatch", arguments->script.sbatch,
-                   "an option of sbatch, as --sbatch=--gres=gpu:1; may be repeated");
-  verb->add_option("--program", arguments->script.program, "path of vlaprobe on the nodes");
-  verb->add_flag("--submit", arguments->submit, "submit it, wait and merge");
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = slurm_verb(*arguments); });
+  add_run_options(verb, arguments->run);
+  verb.add_option("--array", arguments->array, "N tasks, each with one shard").between(1, 100000);
+  verb.add_option("--nodes", arguments->nodes, "N tasks, each with one shard and a node of its own")
+      .between(1, 100000);
+  verb.add_option("--server-command", arguments->script.server_command,
+                  "shell line that starts each task's server; {port} is its port, here and in P");
+  verb.add_option("--server-wait", arguments->script.server_wait_s,
+                  "seconds until a server answers (600)")
+      .between(1, 86400);
+  verb.add_option("--sbatch", arguments->script.sbatch,
+                  "an option of sbatch, as --sbatch=--gres=gpu:1; may be repeated");
+  verb.add_option("--program", arguments->script.program, "path of vlaprobe on the nodes");
+  verb.add_flag("--submit", arguments->submit, "submit it, wait and merge");
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = slurm_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -1,4 +1,4 @@
-#include "runtime/cli/progress.h"
+#include "runtime/cli/full/progress.h"
 
 #include <fmt/format.h>
 

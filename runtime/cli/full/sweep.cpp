@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/filled.h"
-#include "runtime/cli/run_options.h"
+#include "runtime/cli/full/run_options.h"
+#include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
 namespace {
@@ -35,22 +35,22 @@ int sweep_verb(const SweepArguments& arguments) {
 
 }  // namespace
 
-void add_sweep(CLI::App& app, int& exit) {
+void add_sweep(Verb app, int& exit) {
   auto arguments = std::make_shared<SweepArguments>();
-  CLI::App* verb =
+  Verb verb =
       app.add_subcommand("sweep", "the best of several checkpoints, then the whole suite with it");
-  verb->footer(
+  verb.footer(
       "Each checkpoint runs the suite's original tasks in its own folder below -o. The best has "
       "the\n"
       "highest mean success over these tasks, then intention, then comes first. Prints its name.\n"
       "example: vlaprobe sweep suite/intact.probe --policy 'intact://127.0.0.1:8000?model={}' \\\n"
       "           --checkpoints /ckpt/10000,/ckpt/20000 --jobs 8 -o runs/pi0");
-  add_run_options(*verb, arguments->run);
-  verb->add_option("--checkpoints", arguments->checkpoints, "A,B,...: each stands for {} in P")
-      ->delimiter(',')
-      ->required();
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = sweep_verb(*arguments); });
+  add_run_options(verb, arguments->run);
+  verb.add_option("--checkpoints", arguments->checkpoints, "A,B,...: each stands for {} in P")
+      .delimiter(',')
+      .required();
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = sweep_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -2,8 +2,7 @@
 #include <fmt/format.h>
 
 #include "runtime/cli/compile.h"
-#include "runtime/cli/filled.h"
-#include "runtime/cli/verbs.h"
+#include "runtime/cli/full/verbs.h"
 #include "runtime/doctor/doctor.h"
 
 namespace probe::cli {
@@ -30,26 +29,26 @@ int examine(const DoctorArguments& arguments) {
   const auto report = doctor::examine(arguments.assets.root, compile_suite);
   if (!report) return cli::report(report.failure());
   if (arguments.json) {
-    fmt::print("{}\n", doctor::to_json(*report, VLAPROBE_VERSION));
+    fmt::print("{}\n", doctor::to_json(*report, version()));
   } else {
-    fmt::print("{}", doctor::to_text(*report, VLAPROBE_VERSION));
+    fmt::print("{}", doctor::to_text(*report, version()));
   }
   return report->fine() ? kFine : kOutside;
 }
 
 }  // namespace
 
-void add_doctor(CLI::App& app, int& exit) {
+void add_doctor(Verb app, int& exit) {
   auto arguments = std::make_shared<DoctorArguments>();
-  CLI::App* verb = app.add_subcommand(
+  Verb verb = app.add_subcommand(
       "doctor", "what is installed, and whether it draws and settles as it should");
-  verb->footer(
+  verb.footer(
       "golden pictures are compared byte for byte on the build that made them, within a tolerance "
       "elsewhere\nexample: vlaprobe doctor --json");
-  verb->add_flag("--json", arguments->json, "as JSON");
-  add_asset_option(*verb, arguments->assets);
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = examine(*arguments); });
+  verb.add_flag("--json", arguments->json, "as JSON");
+  add_asset_option(verb, arguments->assets);
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = examine(*arguments); });
 }
 
 }  // namespace probe::cli

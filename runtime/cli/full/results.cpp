@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/cli/filled.h"
-#include "runtime/cli/verbs.h"
+#include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/tally.h"
 #include "runtime/run/delivery.h"
 
@@ -49,17 +48,17 @@ int results_verb(const ResultsArguments& arguments) {
 
 }  // namespace
 
-void add_results(CLI::App& app, int& exit) {
+void add_results(Verb app, int& exit) {
   auto arguments = std::make_shared<ResultsArguments>();
-  CLI::App* verb = app.add_subcommand("results", "what a run found: counts, or one row an episode");
-  verb->footer("example: vlaprobe results runs/expert --json");
-  verb->add_option("DIR", arguments->dir, "results folder")->required();
-  CLI::Option* json = verb->add_flag("--json", arguments->json, "a JSON array of rows");
-  verb->add_flag("--csv", arguments->csv, "rows as comma-separated values")->excludes(json);
-  verb->add_flag("--delivery", arguments->delivery,
-                 "whether differing instructions and pictures reached the policy (--json too)");
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = results_verb(*arguments); });
+  Verb verb = app.add_subcommand("results", "what a run found: counts, or one row an episode");
+  verb.footer("example: vlaprobe results runs/expert --json");
+  verb.add_option("DIR", arguments->dir, "results folder").required();
+  const Option json = verb.add_flag("--json", arguments->json, "a JSON array of rows");
+  verb.add_flag("--csv", arguments->csv, "rows as comma-separated values").excludes(json);
+  verb.add_flag("--delivery", arguments->delivery,
+                "whether differing instructions and pictures reached the policy (--json too)");
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = results_verb(*arguments); });
 }
 
 }  // namespace probe::cli

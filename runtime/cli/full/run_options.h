@@ -18,7 +18,7 @@ struct RunArguments {
   AssetOptions assets;
 };
 
-void add_run_options(CLI::App& verb, RunArguments& arguments);
+void add_run_options(Verb verb, RunArguments& arguments);
 
 // All but shard and progress.
 Result<run::RunOptions> to_options(const RunArguments& arguments);

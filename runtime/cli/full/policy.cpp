@@ -1,8 +1,7 @@
 // vlaprobe policy: servers tested, ready profiles shown.
 #include <fmt/format.h>
 
-#include "runtime/cli/filled.h"
-#include "runtime/cli/verbs.h"
+#include "runtime/cli/full/verbs.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/profile_library.h"
@@ -52,31 +51,31 @@ int profiles_verb(const PolicyArguments& arguments) {
 
 }  // namespace
 
-void add_policy(CLI::App& app, int& exit) {
+void add_policy(Verb app, int& exit) {
   auto arguments = std::make_shared<PolicyArguments>();
-  CLI::App* verb = app.add_subcommand("policy", "test a policy server; show ready profiles");
-  verb->require_subcommand(1);
-  verb->footer("example: vlaprobe policy test openpi://localhost:8000?profile=pi0_bridge_openpi");
+  Verb verb = app.add_subcommand("policy", "test a policy server; show ready profiles");
+  verb.require_subcommand();
+  verb.footer("example: vlaprobe policy test openpi://localhost:8000?profile=pi0_bridge_openpi");
 
-  CLI::App* test = verb->add_subcommand(
+  Verb test = verb.add_subcommand(
       "test", "does a server agree with its profile: shapes, rotation, gripper, chunks, sameness");
-  test->footer(
+  test.footer(
       "Asks about ten known observations, runs no simulator. Exit code 2 where something is "
       "wrong.\n"
       "example: vlaprobe policy test "
       "\"intact://gpu:8000?model=/checkpoints/pi0&profile=pi0_bridge\"");
-  test->add_option("P", arguments->policy, "a policy server, as for `run --policy`")->required();
-  test->add_flag("--json", arguments->json, "an object with a check each");
-  refuse_empty_values(*test);
-  test->callback([arguments, &exit] { exit = test_verb(*arguments); });
+  test.add_option("P", arguments->policy, "a policy server, as for `run --policy`").required();
+  test.add_flag("--json", arguments->json, "an object with a check each");
+  test.refuse_empty_values();
+  test.callback([arguments, &exit] { exit = test_verb(*arguments); });
 
-  CLI::App* profiles = verb->add_subcommand(
+  Verb profiles = verb.add_subcommand(
       "profiles", "ready profiles; with a name or a file, that one, read and checked");
-  profiles->footer("fields of a profile:\n" + servers::profile_help() +
-                   "\nexample: vlaprobe policy profiles copy_me > mine.profile");
-  profiles->add_option("NAME", arguments->profile, "a ready profile or a .profile file");
-  refuse_empty_values(*profiles);
-  profiles->callback([arguments, &exit] { exit = profiles_verb(*arguments); });
+  profiles.footer("fields of a profile:\n" + servers::profile_help() +
+                  "\nexample: vlaprobe policy profiles copy_me > mine.profile");
+  profiles.add_option("NAME", arguments->profile, "a ready profile or a .profile file");
+  profiles.refuse_empty_values();
+  profiles.callback([arguments, &exit] { exit = profiles_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -8,9 +8,9 @@
 #include <chrono>
 #include <cstdlib>
 
-#include "runtime/cli/filled.h"
-#include "runtime/cli/progress.h"
-#include "runtime/cli/run_options.h"
+#include "runtime/cli/full/progress.h"
+#include "runtime/cli/full/run_options.h"
+#include "runtime/cli/full/verbs.h"
 #include "runtime/run/policies.h"
 
 namespace probe::cli {
@@ -102,16 +102,15 @@ int run_verb(const CallArguments& arguments) {
 
 }  // namespace
 
-void add_run(CLI::App& app, int& exit) {
+void add_run(Verb app, int& exit) {
   auto arguments = std::make_shared<CallArguments>();
-  CLI::App* verb = app.add_subcommand("run", "evaluate a policy; the same command again continues");
-  verb->footer(
-      "policies:\n" + run::policy_help() +
-      "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
-  add_run_options(*verb, arguments->run);
-  verb->add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them");
-  refuse_empty_values(*verb);
-  verb->callback([arguments, &exit] { exit = run_verb(*arguments); });
+  Verb verb = app.add_subcommand("run", "evaluate a policy; the same command again continues");
+  verb.footer("policies:\n" + run::policy_help() +
+              "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
+  add_run_options(verb, arguments->run);
+  verb.add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them");
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = run_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
 #include "runtime/rejudge/readings.h"
 #include "runtime/rejudge/rejudge.h"
@@ -232,27 +233,26 @@ int judge_verb(JudgeArguments arguments) {
 
 }  // namespace
 
-void add_judge(CLI::App& app, int& exit) {
+void add_judge(Verb app, int& exit) {
   auto arguments = std::make_shared<JudgeArguments>();
-  CLI::App* verb = app.add_subcommand(
+  Verb verb = app.add_subcommand(
       "judge", "stored traces under another plan's metrics: no policy, no physics");
-  verb->footer(
+  verb.footer(
       "tasks are matched by name, or through variants that differ in nothing but what is judged\n"
       "with several suites the table has a line for each, with --metric a column for each and\n"
       "a line a task; `40 +9 -2` is 40 episodes, 9 that were none before, without 2 that were\n"
       "example: vlaprobe judge runs/expert --with suite/semantics.probe --suite ever");
-  verb->add_option("DIR", arguments->dir, "results folder")->required();
-  verb->add_option("--with", arguments->with, "the judging .plan or .probe text")->required();
-  verb->add_option("--suite", arguments->suites,
-                   "judge with this suite's tasks; several, or a glob: a table of them")
-      ->allow_extra_args(false);
-  verb->add_option("--metric", arguments->metric,
-                   "this one alone, task by task and suite by suite");
-  verb->add_option("--tasks", arguments->options.tasks, "glob over the stored task names");
-  verb->add_option("-o,--out", arguments->options.out, "write a results folder");
-  verb->add_flag("--json", arguments->json, "changes and rows as a JSON object");
-  add_asset_option(*verb, arguments->assets);
-  verb->callback([arguments, &exit] { exit = judge_verb(*arguments); });
+  verb.add_option("DIR", arguments->dir, "results folder").required();
+  verb.add_option("--with", arguments->with, "the judging .plan or .probe text").required();
+  verb.add_option("--suite", arguments->suites,
+                  "judge with this suite's tasks; several, or a glob: a table of them")
+      .no_extra_values();
+  verb.add_option("--metric", arguments->metric, "this one alone, task by task and suite by suite");
+  verb.add_option("--tasks", arguments->options.tasks, "glob over the stored task names");
+  verb.add_option("-o,--out", arguments->options.out, "write a results folder");
+  verb.add_flag("--json", arguments->json, "changes and rows as a JSON object");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] { exit = judge_verb(*arguments); });
 }
 
 }  // namespace probe::cli

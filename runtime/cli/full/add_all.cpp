@@ -1,0 +1,27 @@
+#include "runtime/cli/full/add_all.h"
+
+#include "runtime/cli/full/verbs.h"
+
+namespace probe::cli {
+
+void add_all_verbs(Verb program, int& exit) {
+  add_text_verbs(program, exit, draw_phrases);
+  add_preview(program, exit);
+  add_sheet(program, exit);
+  add_run(program, exit);
+  add_sweep(program, exit);
+  add_merge(program, exit);
+  add_slurm(program, exit);
+  add_policy(program, exit);
+  add_results(program, exit);
+  add_replay(program, exit);
+  add_judge(program, exit);
+  add_why(program, exit);
+  add_report(program, exit);
+  add_compare(program, exit);
+  add_export(program, exit);
+  add_assets(program, exit);
+  add_doctor(program, exit);
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,34 @@
+// vlaprobe merge
+#include "runtime/store/merge.h"
+
+#include <fmt/format.h>
+
+#include "runtime/cli/full/verbs.h"
+
+namespace probe::cli {
+namespace {
+
+int merge_verb(const store::MergeOptions& options) {
+  const auto summary = store::merge(options);
+  if (!summary) return report(summary.failure());
+  for (const std::string& note : summary->notes) fmt::print(stderr, "note: {}\n", note);
+  fmt::print(stderr, "{} episodes in {}: {} added now, {} duplicates dropped, {} invalid\n",
+             summary->rows, options.out, summary->added, summary->duplicates, summary->invalid);
+  return kFine;
+}
+
+}  // namespace
+
+void add_merge(Verb app, int& exit) {
+  auto options = std::make_shared<store::MergeOptions>();
+  Verb verb = app.add_subcommand("merge", "join the folders of a run's shards, exactly once");
+  verb.footer("example: vlaprobe merge runs/shard-1 runs/shard-2 -o runs/all");
+  verb.add_option("DIR", options->dirs, "results folders").required();
+  verb.add_option("-o,--out", options->out, "results folder; what it holds stays").required();
+  verb.add_flag("--mixed-builds", options->mixed_builds,
+                "also join what other builds and machines made");
+  verb.refuse_empty_values();
+  verb.callback([options, &exit] { exit = merge_verb(*options); });
+}
+
+}  // namespace probe::cli

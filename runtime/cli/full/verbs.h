@@ -1,0 +1,28 @@
+// The verbs that make worlds or read runs, and with them the simulator's libraries.
+#pragma once
+
+#include "runtime/cli/draw.h"
+#include "runtime/cli/verbs.h"
+
+namespace probe::cli {
+
+void add_preview(Verb app, int& exit);
+void add_sheet(Verb app, int& exit);
+void add_run(Verb app, int& exit);
+void add_sweep(Verb app, int& exit);
+void add_merge(Verb app, int& exit);
+void add_slurm(Verb app, int& exit);
+void add_policy(Verb app, int& exit);
+void add_results(Verb app, int& exit);
+void add_replay(Verb app, int& exit);
+void add_judge(Verb app, int& exit);
+void add_why(Verb app, int& exit);
+void add_report(Verb app, int& exit);
+void add_compare(Verb app, int& exit);
+void add_export(Verb app, int& exit);
+void add_assets(Verb app, int& exit);
+void add_doctor(Verb app, int& exit);
+
+int draw_phrases(const LoadedPlan& loaded, const DrawArguments& arguments);
+
+}  // namespace probe::cli
