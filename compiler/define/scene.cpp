@@ -13,7 +13,7 @@ namespace {
 struct SceneReader {
   Context& context;
   Scene& scene;
-  bool has_surface = false, has_physics = false;
+  bool has_surface = false, has_physics = false, has_backdrop = false, has_cameras = false;
 
   void operator()(const syntax::SceneRobotStmt& stmt) {
     const auto robot = context.symbols.robots.find(stmt.robot, context.diagnostics);
@@ -42,6 +42,7 @@ struct SceneReader {
   }
   void operator()(const syntax::SurfaceStmt& stmt) {
     has_surface = true;
+    scene.surface_span = stmt.height.span;
     scene.surface_z =
         read_si(context, stmt.height, dim::kLength, "`surface` takes a height").value_or(0);
     const auto low = read_point(context, stmt.low, 2, 2, dim::kLength, "`area` takes lengths");
@@ -57,8 +58,12 @@ struct SceneReader {
     assign(scene.fixture_position,
            read_point(context, stmt.at, 3, 3, dim::kLength, "`fixture ... at` takes lengths"));
   }
-  void operator()(const syntax::BackdropStmt& stmt) { scene.backdrop = spelled(stmt.mesh); }
+  void operator()(const syntax::BackdropStmt& stmt) {
+    has_backdrop = true;
+    scene.backdrop = spelled(stmt.mesh);
+  }
   void operator()(const syntax::SceneCameraStmt& stmt) {
+    has_cameras = true;
     scene.views.clear();
     for (const syntax::SceneCamera& written : stmt.cameras) {
       const auto camera = context.symbols.cameras.find(written.camera, context.diagnostics);
@@ -166,13 +171,32 @@ void check_rates(Context& context, const Scene& scene) {
             "Hz: write a multiple of that, such as `500Hz` for 5Hz");
 }
 
+// A mesh behind the objects moves with the surface, a photo cannot.
+void check_photos(Context& context, const Scene& scene) {
+  if (scene.cameras_z == scene.surface_z) return;
+  for (const View& view : scene.views) {
+    if (!view.overlay) continue;
+    context
+        .report(Code::P0304, scene.surface_span,
+                fmt::format("the surface is at {:.6g}cm here and at {:.6g}cm in the photo `{}`",
+                            100 * scene.surface_z, 100 * scene.cameras_z, view.overlay->text))
+        .label(view.overlay->span, "the photo is of the other height")
+        .help("write `camera` again, with a photo of this surface or without one");
+    return;
+  }
+}
+
 }  // namespace
 
 void define_scenes(Context& context) {
   const auto read = [&](const Declared<syntax::SceneDecl>& declared, Scene& scene) {
     SceneReader reader{context, scene};
+    const auto errors = context.mistakes();
     for (const syntax::SceneStmt& stmt : declared.node->body) std::visit(reader, stmt);
     if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
+    if (reader.has_backdrop) scene.backdrop_z = scene.surface_z;
+    if (reader.has_cameras) scene.cameras_z = scene.surface_z;
+    if (context.mistakes() == errors) check_photos(context, scene);
   };
   const auto complete = [&](Scene& scene, bool is_read) {
     if (!is_read) return;

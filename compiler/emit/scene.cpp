@@ -1,4 +1,6 @@
 // Scenes as records, with what stands in them and behind them.
+#include <fmt/format.h>
+
 #include <array>
 
 #include "compiler/emit/emitter.h"
@@ -45,6 +47,14 @@ void Emitter::add_scene(sema::SceneId id) {
     const std::string visual = assets_.find(folder + "visual", kMeshExtensions);
     const bool has_photo = assets_.has(photo);
     if (has_photo && !overlay) {
+      if (scene.backdrop_z != scene.surface_z) {
+        diagnostics_
+            .report(Code::P0304, scene.surface_span,
+                    fmt::format("the surface is at {:.6g}cm here and at {:.6g}cm in the photo `{}`",
+                                100 * scene.surface_z, 100 * scene.backdrop_z, photo))
+            .label(span, "the photo is of the other height")
+            .help("write `backdrop` again, with one that was photographed at this height");
+      }
       record.photo = assets_.add(photo, plan::AssetKind::kPhoto, span, owner);
     }
     if (!has_photo || assets_.has(visual)) {

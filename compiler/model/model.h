@@ -169,6 +169,10 @@ struct Scene {
   std::vector<Quantity> joints;
   Span joints_span;
   double surface_z = 0;
+  Span surface_span;  // of the height
+  // The surface's height in the scene where the backdrop and where the cameras were written, with
+  // their photos: those show it there.
+  double backdrop_z = 0, cameras_z = 0;
   std::array<double, 4> area{};
   std::optional<Spelled> fixture;
   std::array<double, 3> fixture_position{};

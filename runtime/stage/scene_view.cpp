@@ -1,11 +1,14 @@
 // Plan records to a render::SceneSpec, and poses to frames.
 #include "runtime/stage/scene_view.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+
 #include <string>
 
 #include "runtime/base/check.h"
+#include "runtime/stage/backdrop.h"
 
 namespace probe::stage {
 namespace {
@@ -88,6 +91,31 @@ std::uint16_t body_of_link(const plan::Plan& plan, const plan::TaskRecord& task,
   return render::kBackdrop;
 }
 
+// What has to be added to the backdrop's height. A photo shows the table where it stood: a scene
+// whose surface is elsewhere cannot have it.
+Result<double> lift_backdrop(const plan::Plan& plan, const plan::TaskRecord& task,
+                             const SharedAssets& assets) {
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  if (scene.backdrop == plan::kNone) return 0.0;
+  const auto backdrop = assets.mesh(scene.backdrop);
+  const auto fixture =
+      scene.fixture_visual == plan::kNone ? nullptr : assets.mesh(scene.fixture_visual);
+  const auto height =
+      table_height({backdrop.get()}, {fixture.get(), to_vec(scene.fixture_position)}, scene.area);
+  const double lift = backdrop_lift(height, scene.surface_z);
+  if (lift == 0) return lift;
+  for (const plan::ViewRecord& view : plan.views(task)) {
+    if (view.photo == plan::kNone) continue;
+    return Failure{
+        "render",
+        fmt::format("the surface is at {:.3f} m, but the backdrop's table, which the "
+                    "photo `{}` shows, at {:.3f} m: a photo cannot move with the surface",
+                    scene.surface_z, plan.text(plan.assets()[view.photo].path), *height),
+        "scene `" + std::string(plan.text(scene.name)) + "`"};
+  }
+  return lift;
+}
+
 }  // namespace
 
 std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot) {
@@ -119,8 +147,12 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
 
   render::SceneSpec spec;
   if (scene.backdrop != plan::kNone) {
-    spec.statics.push_back(
-        {assets->mesh(scene.backdrop), {}, render::kBackdrop, "backdrop", false});
+    PROBE_ASSIGN(const double lift, lift_backdrop(plan, task, *assets));
+    spec.statics.push_back({assets->mesh(scene.backdrop),
+                            {Vec3(0, 0, lift), Quat::Identity()},
+                            render::kBackdrop,
+                            "backdrop",
+                            false});
   }
   const auto bodies = plan.bodies(task);
   for (std::size_t i = 0; i < bodies.size(); ++i) {

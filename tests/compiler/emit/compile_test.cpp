@@ -223,3 +223,16 @@ suite all trained on lab { tasks variants of { red_on_tray }; seeds 42; expect 2
   REQUIRE(plan.ok());
   CHECK(plan->tasks().size() == 3);
 }
+
+TEST_CASE("a backdrop's photo is of the surface of the scene that names it") {
+  const Folder assets("photos");
+  fs::copy(test::asset_root(), assets.path, fs::copy_options::recursive);
+  test::write_text(assets.path / "scenes/wall/photo.png", "photo");
+  const std::string scenes =
+      "scene pictured like bench { backdrop \"wall\" }\n"
+      "scene low like pictured { surface 72cm area (-50cm, -50cm) .. (50cm, 50cm)";
+  const std::string task = " }\nvariant low_one of red_on_tray { scene low }\n";
+  const std::string small = test::kSmallSuite;
+  CHECK(codes(small + scenes + task, assets.path.string()) == "P0304 ");
+  CHECK(codes(small + scenes + "; backdrop \"wall\"" + task, assets.path.string()) == "");
+}

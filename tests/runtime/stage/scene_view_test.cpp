@@ -35,6 +35,9 @@ camera wrist { mount widowx.gripper_link at (0cm, 0cm, 8cm) look (1, 0, -0.4)
   image 320 x 240; lens 250px, 250px, 160px, 120px }
 scene photographed like table { camera third_view overlay "wall.png" }
 scene wide_photo like table { camera third_view overlay "wide.png" }
+scene lowered like table { surface 82cm area (-34cm, -20cm) .. (4cm, 20cm) }
+scene raised  like table { surface 89cm area (-34cm, -20cm) .. (4cm, 20cm) }
+scene lowered_photo like lowered { camera third_view overlay "wall.png" }
 scene three_eyes like table { camera third_view, wrist, small as left overlay "wall.png" }
 
 variants of carrot_on_plate {
@@ -50,6 +53,9 @@ variants of carrot_on_plate {
   carrot_photo   { scene photographed }
   carrot_eyes    { scene three_eyes }
   carrot_wide    { scene wide_photo }
+  carrot_lowered { scene lowered }
+  carrot_raised  { scene raised }
+  carrot_lowered_photo { scene lowered_photo }
 }
 @allow(confounded, "a picture of both")
 variant carrot_photo_lamp of carrot_photo { light lamp }
@@ -57,6 +63,7 @@ variant eggplant_fine of put_eggplant_in_basket { light lamp }
 suite pictures trained on bridge_v2 {
   tasks { carrot_on_plate, carrot_evening, carrot_lamp, carrot_corners, carrot_no_corners, carrot_nearer,
           carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes, carrot_wide,
+          carrot_lowered, carrot_raised, carrot_lowered_photo,
           put_eggplant_in_basket, eggplant_fine }
   seeds 42
 }
@@ -226,6 +233,61 @@ TEST_CASE("a photo of another shape than the picture is refused with both sizes"
   CHECK(to_text(view.failure()).find("320 x 200 pixels, the camera's picture 640 x 480") !=
         std::string::npos);
   CHECK(view.failure().where == "camera `third_view`");
+}
+
+// Share of the picture that shows the backdrop within a millimetre of height `z`.
+double share_at(const Pictures& pictures, const std::string& task, const Picture& picture,
+                double z) {
+  const plan::Plan& plan = pictures.plan();
+  const plan::TaskRecord& record = plan.tasks()[pictures.task(task)];
+  const plan::CameraRecord& camera = plan.cameras()[plan.views(record)[0].camera];
+  const Pose base = base_pose(plan.scenes()[record.scene]);
+  const auto& at = camera.position;
+  const auto& aim = camera.aim_values;
+  const Vec3 eye = base.apply(Vec3(at[0], at[1], at[2]));
+  const Mat3 axes =
+      base.rotation.toRotationMatrix() * render::look_along(Vec3(aim[0], aim[1], aim[2])).value();
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < picture.ids.size(); ++k) {
+    if (picture.ids[k] != 65535) continue;
+    const double x = static_cast<double>(k % static_cast<std::size_t>(picture.width)) + 0.5;
+    const double y = static_cast<double>(k / static_cast<std::size_t>(picture.width)) + 0.5;
+    const Vec3 point =
+        eye + static_cast<double>(picture.depth[k]) *
+                  (axes * Vec3(1, -(x - camera.cx) / camera.fx, -(y - camera.cy) / camera.fy));
+    count += std::abs(point.z() - z) < 1e-3;
+  }
+  return static_cast<double>(count) / static_cast<double>(picture.ids.size());
+}
+
+TEST_CASE(
+    "the table goes down and up with the surface, so that objects stand on it in the picture") {
+  const Pictures pictures;
+  const auto settled = [&](const std::string& task) {
+    const auto stage = pictures.stage(task);
+    REQUIRE(stage.world->reset(0).ok());
+    return copy(stage.view->render(stage.world->q(), stage.world->objects()));
+  };
+  for (const auto& [task, z] :
+       {std::pair{"carrot_on_plate", 0.87}, {"carrot_lowered", 0.82}, {"carrot_raised", 0.89}}) {
+    const Picture picture = settled(task);
+    INFO(task);
+    CHECK(share_at(pictures, task, picture, z) > 0.25);
+    CHECK(picture.pixels(1) > 500);   // the carrot
+    CHECK(picture.pixels(2) > 2000);  // the plate
+  }
+}
+
+TEST_CASE("a photo cannot go down with the surface, so that such a scene is refused by name") {
+  const Pictures pictures;
+  const std::uint32_t tasks[] = {pictures.task("carrot_lowered_photo")};
+  auto assets = SharedAssets::load(pictures.plan(), pictures.root(), tasks);
+  REQUIRE(assets.ok());
+  const auto view = SceneView::create(pictures.plan(), tasks[0], *assets);
+  REQUIRE_FALSE(view.ok());
+  CHECK(view.failure().where == "scene `lowered_photo`");
+  CHECK(view.failure().message.find("0.870 m") != std::string::npos);
+  CHECK(view.failure().message.find("0.820 m") != std::string::npos);
 }
 
 TEST_CASE("a camera on the wrist sees the fingers in one place and the table pass by") {

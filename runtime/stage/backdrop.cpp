@@ -1,0 +1,101 @@
+#include "runtime/stage/backdrop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace probe::stage {
+namespace {
+
+constexpr int kPlaces = 13;  // a side
+constexpr double kNothing = -std::numeric_limits<double>::infinity();
+
+// Where a plumb line first meets something, at places in the middle of equal parts of the area.
+class Heights {
+ public:
+  explicit Heights(const std::array<double, 4>& area) : area_(area) {
+    const double width = area[2] - area[0], depth = area[3] - area[1];
+    for (int k = 0; k < kPlaces; ++k) {
+      x_.push_back(area[0] + width * (k + 0.5) / kPlaces);
+      y_.push_back(area[1] + depth * (k + 0.5) / kPlaces);
+    }
+    z_.assign(static_cast<std::size_t>(kPlaces) * kPlaces, kNothing);
+  }
+
+  void add(const SeenMesh& seen) {
+    if (seen.mesh == nullptr) return;
+    for (const scene::MeshPart& part : seen.mesh->parts) {
+      const auto corner = [&](std::size_t i) -> Vec3 {
+        const std::size_t at = 3 * std::size_t{part.indices[i]};
+        return Vec3(part.positions[at], part.positions[at + 1], part.positions[at + 2]) +
+               seen.position;
+      };
+      for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
+        add_triangle(corner(i), corner(i + 1), corner(i + 2));
+      }
+    }
+  }
+
+  const std::vector<double>& z() const { return z_; }
+
+ private:
+  void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const auto [left, right] = std::minmax({a.x(), b.x(), c.x()});
+    const auto [front, back] = std::minmax({a.y(), b.y(), c.y()});
+    if (right < area_[0] || left > area_[2] || back < area_[1] || front > area_[3]) return;
+    const auto cross = [](const Vec3& u, const Vec3& v, double x, double y) {
+      return (v.x() - u.x()) * (y - u.y()) - (v.y() - u.y()) * (x - u.x());
+    };
+    const double whole = cross(a, b, c.x(), c.y());
+    if (whole == 0) return;  // upright
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      if (x_[i] < left || x_[i] > right) continue;
+      for (std::size_t j = 0; j < y_.size(); ++j) {
+        const double u = cross(b, c, x_[i], y_[j]) / whole;
+        const double v = cross(c, a, x_[i], y_[j]) / whole;
+        const double w = 1 - u - v;
+        if (u < 0 || v < 0 || w < 0) continue;
+        double& z = z_[i * y_.size() + j];
+        z = std::max(z, u * a.z() + v * b.z() + w * c.z());
+      }
+    }
+  }
+
+  std::array<double, 4> area_;
+  std::vector<double> x_, y_, z_;
+};
+
+}  // namespace
+
+std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fixture,
+                                   const std::array<double, 4>& area) {
+  constexpr double kAgree = 0.005;  // m
+  Heights below(area), above(area);
+  below.add(backdrop);
+  above.add(fixture);
+  std::vector<double> counted;
+  for (std::size_t k = 0; k < below.z().size(); ++k) {
+    if (below.z()[k] > above.z()[k]) counted.push_back(below.z()[k]);
+  }
+  std::sort(counted.begin(), counted.end());
+  // The longest run of heights that agree.
+  std::size_t first = 0, most = 0;
+  for (std::size_t low = 0, high = 0; high < counted.size(); ++high) {
+    while (counted[high] - counted[low] > kAgree) ++low;
+    if (high - low + 1 <= most) continue;
+    most = high - low + 1;
+    first = low;
+  }
+  if (10 * most < below.z().size() || 2 * most < counted.size()) return std::nullopt;
+  return counted[first + most / 2];
+}
+
+double backdrop_lift(std::optional<double> table_height, double surface_z) {
+  constexpr double kMeant = 0.002, kOtherThing = 0.5;  // m
+  if (!table_height) return 0;
+  const double lift = surface_z - *table_height;
+  return std::abs(lift) <= kMeant || std::abs(lift) > kOtherThing ? 0 : lift;
+}
+
+}  // namespace probe::stage

@@ -1,0 +1,31 @@
+// Where the table of a backdrop is. A backdrop is a mesh that is only seen, in world coordinates;
+// if objects rest on a part of it, that part must lie where the surface of the physics is, or
+// pictures would show them afloat or not at all.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "runtime/base/geometry.h"
+#include "runtime/scene/mesh.h"
+
+namespace probe::stage {
+
+// The mesh placed in world, without a turn.
+struct SeenMesh {
+  const scene::Mesh* mesh = nullptr;  // may be null
+  Vec3 position = Vec3::Zero();
+};
+
+// The height (m) at which `backdrop` is level under `area` (x min, y min, x max, y max; m): what a
+// plumb line meets first, at 13 x 13 places; where that is `fixture`, the place does not count.
+// Empty unless at least a tenth of the places and half of those that count agree within 5 mm.
+std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fixture,
+                                   const std::array<double, 4>& area);
+
+// How far (m) the backdrop has to be raised for its table to lie at `surface_z`. 0 where it has no
+// table, one within 2 mm (drawn a little lower so that nothing flickers), or one farther than half
+// a metre away, which is the floor of a room.
+double backdrop_lift(std::optional<double> table_height, double surface_z);
+
+}  // namespace probe::stage

@@ -1,0 +1,79 @@
+#include "runtime/stage/backdrop.h"
+
+#include <doctest/doctest.h>
+
+#include "runtime/scene/mesh_import.h"
+
+namespace probe::stage {
+namespace {
+
+const std::array<double, 4> kArea{-0.2, -0.2, 0.2, 0.2};
+
+void add_level(scene::Mesh& mesh, double z, const std::array<double, 4>& at) {
+  scene::MeshPart part;
+  for (const auto& [x, y] :
+       {std::pair{at[0], at[1]}, {at[2], at[1]}, {at[2], at[3]}, {at[0], at[3]}}) {
+    for (const double value : {x, y, z}) part.positions.push_back(static_cast<float>(value));
+  }
+  part.indices = {0, 1, 2, 0, 2, 3};
+  mesh.parts.push_back(part);
+}
+
+TEST_CASE(
+    "the table is what most plumb lines meet first, not the floor below or a shelf above a part") {
+  scene::Mesh mesh;
+  add_level(mesh, 0, {-5, -5, 5, 5});
+  add_level(mesh, 0.75, {-0.3, -0.5, 0.15, 0.5});
+  add_level(mesh, 1.2, {-0.3, 0.1, 0.3, 0.2});
+  CHECK(table_height({&mesh}, {}, kArea).value() == doctest::Approx(0.75));
+  CHECK(table_height({&mesh, Vec3(0, 0, -0.1)}, {}, kArea).value() == doctest::Approx(0.65));
+}
+
+TEST_CASE("places that a fixture covers say nothing of the backdrop, and nothing is no table") {
+  scene::Mesh bench, basin, walls;
+  add_level(bench, 0.869, {-0.3, -0.5, 0.3, 0.5});
+  add_level(basin, 0.05, {-0.2, -0.2, 0.1, 0.2});
+  const SeenMesh sink{&basin, Vec3(0, 0, 0.88)};
+  CHECK(table_height({&bench}, sink, kArea).value() == doctest::Approx(0.869));
+  add_level(basin, 0.05, {0, -0.2, 0.2, 0.2});
+  CHECK_FALSE(table_height({&bench}, sink, kArea));
+  CHECK_FALSE(table_height({&walls}, {}, kArea));
+  CHECK_FALSE(table_height({}, {}, kArea));
+}
+
+TEST_CASE("a heap has no height of its own") {
+  scene::Mesh heap;
+  for (int k = 0; k < 20; ++k) {
+    add_level(heap, 0.7 + 0.01 * k, {-0.2 + 0.02 * k, -0.2, -0.18 + 0.02 * k, 0.2});
+  }
+  CHECK_FALSE(table_height({&heap}, {}, kArea));
+}
+
+TEST_CASE(
+    "a backdrop is lifted by what is missing, but not by a hair and not from the floor of a room") {
+  CHECK(backdrop_lift(0.87, 0.82) == doctest::Approx(-0.05));
+  CHECK(backdrop_lift(0.87, 0.93) == doctest::Approx(0.06));
+  CHECK(backdrop_lift(0.869, 0.87) == 0);
+  CHECK(backdrop_lift(0.0, 0.75) == 0);
+  CHECK(backdrop_lift(std::nullopt, 0.75) == 0);
+}
+
+TEST_CASE("the tables of our own scenes lie where their surfaces are") {
+  for (const auto& [name, area, z] :
+       {std::tuple{"table", std::array{-0.34, -0.20, 0.04, 0.20}, 0.87},
+        {"sink", std::array{-0.34, -0.12, 0.04, 0.36}, 0.869}}) {
+    const auto mesh =
+        scene::load_mesh(VLAPROBE_SOURCE_DIR "/assets/scenes/" + std::string(name) + "/visual.glb");
+    REQUIRE(mesh.ok());
+    const auto sink = scene::load_mesh(VLAPROBE_SOURCE_DIR "/assets/fixtures/sink/visual.glb");
+    REQUIRE(sink.ok());
+    const bool covered = std::string(name) == "sink";
+    const auto height = table_height(
+        {mesh->get()}, {covered ? sink->get() : nullptr, Vec3(-0.16, 0.13, 0.88)}, area);
+    REQUIRE(height.has_value());
+    CHECK(*height == doctest::Approx(z).epsilon(1e-4));
+  }
+}
+
+}  // namespace
+}  // namespace probe::stage
