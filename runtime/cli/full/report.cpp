@@ -71,7 +71,7 @@ Status write_report(const ReportArguments& arguments) {
   PROBE_ASSIGN(report::Benchmark benchmark, report::load(arguments.dirs, {.sets = arguments.sets}));
   report::PageOptions options{.title = arguments.title,
                               .command = arguments.command,
-                              .program = "vlaprobe " version(),
+                              .program = std::string("vlaprobe ") + version(),
                               .relative_to = "",
                               .published = {},
                               .models = true};
