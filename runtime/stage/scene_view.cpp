@@ -107,7 +107,7 @@ Result<double> lift_backdrop(const plan::Plan& plan, const plan::TaskRecord& tas
   for (const plan::ViewRecord& view : plan.views(task)) {
     if (view.photo == plan::kNone) continue;
     return Failure{
-        "render",
+        Fault::kRender,
         fmt::format("the surface is at {:.3f} m, but the backdrop's table, which the "
                     "photo `{}` shows, at {:.3f} m: a photo cannot move with the surface",
                     scene.surface_z, plan.text(plan.assets()[view.photo].path), *height),
