@@ -14,8 +14,8 @@
 int main(int argc, char** argv) {
   using namespace probe;
   const int exit = cli::run_program(
-      argc, argv, [](cli::Verb program, int& exit) { cli::add_text_verbs(program, exit, nullptr); },
-      false);
+      argc, argv,
+      [](cli::Verb program, int& status) { cli::add_text_verbs(program, status, nullptr); }, false);
   if (exit != cli::kHandOver) return exit;
   const std::string full = (cli::folder_of_program() / "vlaprobe-full").string();
   execv(full.c_str(), argv);
