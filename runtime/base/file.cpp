@@ -1,14 +1,17 @@
 #include "runtime/base/file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <utility>
+#include <vector>
 
 namespace probe {
 namespace {
@@ -34,6 +37,42 @@ std::string without_links(const std::string& path) {
     place = next.is_absolute() ? next : place.parent_path() / next;
   }
   return place.string();
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int file) : file_(file) {}
+  ~Descriptor() {
+    if (file_ >= 0) ::close(file_);
+  }
+  Descriptor(Descriptor&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
+  int get() const { return file_; }
+
+ private:
+  int file_;
+};
+
+// For reading; what is no regular file is not waited for.
+Result<Descriptor> open_regular(const std::string& path, Fault code) {
+  const auto refuse = [&](std::string message) { return Failure{code, std::move(message), path}; };
+  // Without O_NONBLOCK a pipe would be waited for until somebody writes into it.
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (file.get() < 0) {
+    if (errno == ENOENT) return refuse("there is no such file");
+    return refuse(std::string("cannot be opened: ") + std::strerror(errno));
+  }
+  struct stat about {};
+  if (::fstat(file.get(), &about) != 0)
+    return refuse(std::string("cannot be read: ") + std::strerror(errno));
+  if (!S_ISREG(about.st_mode)) return refuse("is no file but a folder, a device or a pipe");
+  return file;
+}
+
+std::string bytes_text(std::size_t bytes) {
+  constexpr std::size_t kMebi = std::size_t{1} << 20;
+  return bytes % kMebi == 0 ? std::to_string(bytes / kMebi) + " MiB"
+                            : std::to_string(bytes) + " bytes";
 }
 
 }  // namespace
@@ -81,18 +120,59 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
   return pending.keep();
 }
 
-Result<std::string> read_file(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return Failure{.code = Fault::kIo, .message = "there is no such file", .where = path};
+Status copy_to_disk(const std::string& from, const std::string& to) {
+  PROBE_ASSIGN(const Descriptor in, open_regular(from, Fault::kIo));
+  const int made = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644);
+  if (made < 0) return io_failure("cannot be created", to);
+  const Descriptor out(made);
+  std::vector<char> buffer(std::size_t{1} << 20);
+  for (;;) {
+    const ssize_t got = ::read(in.get(), buffer.data(), buffer.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return io_failure("cannot be read", from);
+    if (got == 0) break;
+    for (ssize_t done = 0; done < got;) {
+      const ssize_t put =
+          ::write(out.get(), buffer.data() + done, static_cast<std::size_t>(got - done));
+      if (put < 0 && errno == EINTR) continue;
+      if (put < 0) return io_failure("cannot be written", to);
+      done += put;
+    }
   }
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = stream ? static_cast<std::streamoff>(stream.tellg()) : -1;
-  if (size < 0) return Failure{.code = Fault::kIo, .message = "cannot be opened", .where = path};
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  stream.seekg(0);
-  stream.read(bytes.data(), size);
-  if (!stream) return Failure{.code = Fault::kIo, .message = "cannot be read", .where = path};
+  if (::fsync(out.get()) != 0) return io_failure("cannot be forced to the disk", to);
+  return {};
+}
+
+Result<std::string> read_file(const std::string& path, const ReadRules& rules) {
+  const auto refuse = [&](std::string message) {
+    return Failure{rules.code, std::move(message), path};
+  };
+  PROBE_ASSIGN(const Descriptor file, open_regular(path, rules.code));
+  struct stat about {};
+  if (::fstat(file.get(), &about) != 0)
+    return refuse(std::string("cannot be read: ") + std::strerror(errno));
+  const auto too_large = [&] {
+    return refuse("has more than the " + bytes_text(rules.most) + " that are read");
+  };
+  const auto stated = static_cast<std::uintmax_t>(about.st_size);
+  if (stated > rules.most && !rules.only_begin) return too_large();
+  // One byte more than it says, which ends the reading at once; /proc says 0 of everything.
+  std::string bytes(static_cast<std::size_t>(std::min<std::uintmax_t>(stated, rules.most)) + 1,
+                    '\0');
+  std::size_t size = 0;
+  for (;;) {
+    if (size == bytes.size()) bytes.resize(2 * size + 4096);
+    const ssize_t got = ::read(file.get(), bytes.data() + size, bytes.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return refuse(std::string("cannot be read: ") + std::strerror(errno));
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+    if (size <= rules.most) continue;
+    if (!rules.only_begin) return too_large();
+    size = rules.most;
+    break;
+  }
+  bytes.resize(size);
   return bytes;
 }
 

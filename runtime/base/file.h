@@ -1,5 +1,5 @@
 // Files that are whole or absent: written beside their place under another name, forced to the disk
-// and renamed. Bytes of whole files in memory.
+// and renamed. Bytes of whole files in memory; every reader of a whole file is read_file.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,20 @@ class PendingFile {
 // Fails (kIo, where = path) on a folder that is not there or a full disk.
 Status write_file(const std::string& path, std::span<const std::byte> bytes);
 
-// Fails (kIo, where = path) when the file is missing, no regular file or cannot be read.
-Result<std::string> read_file(const std::string& path);
+// The bytes of a regular file into another one, made or replaced, which then are on the disk; its
+// name is not, see sync_folder. Fails (kIo, where = the path at fault).
+Status copy_to_disk(const std::string& from, const std::string& to);
+
+// What read_file refuses, and how.
+struct ReadRules {
+  std::size_t most = std::size_t{1} << 30;  // bytes
+  Fault code = Fault::kIo;                  // of a failure
+  bool only_begin = false;                  // of a larger file that many bytes are enough
+};
+
+// All bytes of a regular file. Fails (rules.code, where = path) when there is none, when it is a
+// folder, a device or a pipe (which is not waited for), has more than the most bytes, or cannot be
+// read.
+Result<std::string> read_file(const std::string& path, const ReadRules& rules = {});
 
 }  // namespace probe

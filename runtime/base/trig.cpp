@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "runtime/base/trig_reduce.h"
+
 namespace probe {
 namespace {
 
@@ -84,9 +86,13 @@ SinCos from_quadrant(long long quadrant, double s, double c) {
 
 SinCos portable_sincos(double x) {
   if (x == 0.0) return {x, 1.0};
-  // Beyond this the reduction is no longer exact; no number is better than a wrong one.
+  if (!std::isfinite(x)) return {std::nan(""), std::nan("")};
+  // Beyond this the cheap reduction below is no longer exact.
   constexpr double kLargest = 1e6;
-  if (!(std::fabs(x) <= kLargest)) return {std::nan(""), std::nan("")};
+  if (std::fabs(x) > kLargest) {
+    const Quarters q = reduce_large(x);
+    return from_quadrant(q.quadrant, sin_kernel(q.r, q.tail), cos_kernel(q.r, q.tail));
+  }
   // Cody-Waite: pi/2 in three parts of 33 bits; n * part is exact for |n| < 2^20.
   constexpr double kInvPio2 = 6.36619772367581382433e-01;
   constexpr double kPio2A = 1.57079632673412561417e+00, kPio2B = 6.07710050630396597660e-11,

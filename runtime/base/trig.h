@@ -10,8 +10,7 @@ struct SinCos {
   double cos;
 };
 
-// Radians, to 1 ulp for |x| up to 1e6; beyond that and for what is not finite the result is not a
-// number.
+// Radians of any size, to 1 ulp; what is not finite gives no number.
 SinCos portable_sincos(double x);
 double portable_sin(double x);
 double portable_cos(double x);

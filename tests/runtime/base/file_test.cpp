@@ -77,6 +77,38 @@ TEST_CASE("a pipe, a device or a folder in the place of a file stays what it is"
   CHECK(folder.entries() == 1);
 }
 
+TEST_CASE("only a regular file is read, and a pipe is not waited for") {
+  const Folder folder;
+  REQUIRE(::mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+  for (const std::string& path :
+       {folder.file("pipe"), std::string("/dev/zero"), folder.file(".")}) {
+    const auto read = read_file(path);
+    REQUIRE_FALSE(read.ok());
+    CHECK(to_text(read.failure()) == path + ": is no file but a folder, a device or a pipe");
+  }
+  const auto absent = read_file(folder.file("absent"), {.code = Fault::kAsset});
+  CHECK(absent.failure().code == Fault::kAsset);
+  CHECK(to_text(absent.failure()) == folder.file("absent") + ": there is no such file");
+  CHECK(read_file(folder.file("pipe/below")).failure().message ==
+        "cannot be opened: Not a directory");
+}
+
+TEST_CASE("a file with more bytes than its reader wants is refused by its size") {
+  const Folder folder;
+  REQUIRE(write_file(folder.file("a"), bytes_of("12345")).ok());
+  CHECK(read_file(folder.file("a"), {.most = 5}).value() == "12345");
+  const auto read = read_file(folder.file("a"), {.most = 4});
+  REQUIRE_FALSE(read.ok());
+  CHECK(read.failure().message == "has more than the 4 bytes that are read");
+  // A hole takes no memory.
+  fs::resize_file(folder.file("a"), std::uintmax_t{1} << 40);
+  CHECK(read_file(folder.file("a"), {.most = std::size_t{3} << 20}).failure().message ==
+        "has more than the 3 MiB that are read");
+  // The kernel says 0 bytes of its own files and gives what it has.
+  CHECK(read_file("/proc/self/status")->starts_with("Name:"));
+  CHECK_FALSE(read_file("/proc/self/status", {.most = 10}).ok());
+}
+
 TEST_CASE("a file behind a symbolic link is written where the link leads") {
   const Folder folder;
   fs::create_directories(folder.file("there"));

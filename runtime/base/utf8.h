@@ -1,0 +1,27 @@
+// UTF-8, one character at a time (utf8proc's decoder: RFC 3629, so no overlong forms, surrogates or
+// code points above U+10FFFF).
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace probe {
+
+struct Utf8Char {
+  char32_t code = 0xfffd;  // U+FFFD where the bytes are no UTF-8
+  std::size_t bytes = 0;   // 0 where they are not
+};
+
+// The character that `text` begins with; `text` is not empty.
+Utf8Char first_utf8(std::string_view text);
+
+// Where the first byte is that is no part of a character; `text.size()` if there is none.
+std::size_t find_bad_utf8(std::string_view text);
+
+// C0, DEL and C1, which terminals obey.
+constexpr bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
+
+// Whether a byte is one after the first of a character.
+constexpr bool is_utf8_tail(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) == 0x80; }
+
+}  // namespace probe
