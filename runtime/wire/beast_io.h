@@ -6,10 +6,12 @@
 #include <boost/beast/core.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/base/result.h"
 #include "runtime/wire/duration.h"
 #include "runtime/wire/endpoint.h"
+#include "runtime/wire/lookup.h"
 
 namespace probe::wire::beast_io {
 
@@ -59,16 +61,16 @@ Status finish(boost::asio::io_context& io, boost::beast::tcp_stream& stream,
 }
 
 inline Status connect_tcp(boost::asio::io_context& io, boost::beast::tcp_stream& stream,
-                          const Endpoint& server, const Deadline& deadline) {
-  tcp::resolver resolver(io);
-  tcp::resolver::results_type addresses;
-  PROBE_TRY(finish(io, stream, deadline, server.name(), "looking up the host", [&](auto done) {
-    resolver.async_resolve(server.host, server.port,
-                           [&addresses, done](error_code error, auto found) {
-                             addresses = std::move(found);
-                             done(error);
-                           });
-  }));
+                          const Endpoint& server, const Deadline& deadline,
+                          const Resolver& resolver) {
+  const auto left = std::chrono::ceil<Duration>(deadline.at - Clock::now());
+  PROBE_ASSIGN(const auto found, look_up(server, left, deadline.stated, resolver));
+  std::vector<tcp::endpoint> addresses;
+  for (const Address& address : found) {
+    error_code error;
+    const auto ip = boost::asio::ip::make_address(address.ip, error);
+    if (!error) addresses.emplace_back(ip, address.port);
+  }
   PROBE_TRY(finish(io, stream, deadline, server.name(), "connecting", [&](auto done) {
     stream.async_connect(addresses,
                          [done](error_code error, const tcp::endpoint&) { done(error); });

@@ -49,8 +49,8 @@ Result<HttpResponse> exchange(const Endpoint& server, const HttpRequest& request
   // The stream refers to the context and must go first.
   asio::io_context io;
   beast::tcp_stream stream(io);
-  PROBE_TRY(
-      beast_io::connect_tcp(io, stream, server, beast_io::Deadline::in(options.connect_timeout)));
+  PROBE_TRY(beast_io::connect_tcp(
+      io, stream, server, beast_io::Deadline::in(options.connect_timeout), options.resolver));
   const auto deadline = beast_io::Deadline::in(options.timeout);
   const auto message = made(server, request);
   const auto written = beast_io::run_until(io, stream, deadline.at, [&](auto done) {

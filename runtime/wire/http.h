@@ -10,6 +10,7 @@
 #include "runtime/base/result.h"
 #include "runtime/wire/duration.h"
 #include "runtime/wire/endpoint.h"
+#include "runtime/wire/lookup.h"
 
 namespace probe::wire {
 
@@ -25,6 +26,7 @@ struct HttpOptions {
   Duration connect_timeout{10'000};
   Duration timeout{30'000};                          // from the first byte sent to the last read
   std::size_t largest_body = std::size_t{64} << 20;  // bytes that are read at most
+  Resolver resolver = {};                            // of the host's name; none: the system's
 };
 
 struct HttpResponse {

@@ -51,7 +51,7 @@ class WebSocket::Connection {
   Status open(const Endpoint& server) {
     const auto deadline = beast_io::Deadline::in(options_.connect_timeout);
     auto& stream = beast::get_lowest_layer(socket_);
-    PROBE_TRY(beast_io::connect_tcp(io_, stream, server, deadline));
+    PROBE_TRY(beast_io::connect_tcp(io_, stream, server, deadline, options_.resolver));
     socket_.set_option(websocket::stream_base::timeout{options_.connect_timeout,
                                                        websocket::stream_base::none(), false});
     socket_.set_option(websocket::stream_base::decorator([this](websocket::request_type& request) {

@@ -13,6 +13,7 @@
 #include "runtime/base/result.h"
 #include "runtime/wire/duration.h"
 #include "runtime/wire/endpoint.h"
+#include "runtime/wire/lookup.h"
 #include "runtime/wire/value.h"
 
 namespace probe::wire {
@@ -22,6 +23,7 @@ struct WebSocketOptions {
   std::size_t largest_message = std::size_t{64}
                                 << 20;  // bytes that are read of one message at most
   std::vector<std::pair<std::string, std::string>> headers;  // of the upgrade request
+  Resolver resolver = {};  // of the host's name; none: the system's
 };
 
 struct Message {

@@ -1,5 +1,6 @@
 #include "runtime/wire/zmq.h"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -25,7 +26,7 @@ class ZmqRequester::Sockets {
       : server_(server), options_(options), context_(1) {}
 
   Result<Bytes> ask(std::span<const std::uint8_t> message, Duration timeout) {
-    if (!request_) open();
+    if (!request_) PROBE_TRY(open());
     Result<Bytes> answer = exchange(message, timeout);
     if (!answer) close();
     return answer;
@@ -39,7 +40,16 @@ class ZmqRequester::Sockets {
   }
 
  private:
-  void open() {
+  Status open() {
+    // Here and not by ZeroMQ, whose own look-up knows no deadline and is waited for at the end.
+    PROBE_ASSIGN(const auto addresses, look_up(server_, options_.connect_timeout,
+                                               options_.connect_timeout, options_.resolver));
+    const auto is_v4 = [](const Address& address) {
+      return address.ip.find(':') == address.ip.npos;
+    };
+    const auto v4 = std::find_if(addresses.begin(), addresses.end(), is_v4);
+    const Address& address = v4 == addresses.end() ? addresses.front() : *v4;
+    const bool is_ipv6 = !is_v4(address);
     reached_ = Reached::kNothing;
     lost_ = has_answered_ = false;
     request_.emplace(context_, zmq::socket_type::req);
@@ -48,7 +58,6 @@ class ZmqRequester::Sockets {
     request_->set(zmq::sockopt::immediate, true);
     request_->set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(options_.largest_message));
     request_->set(zmq::sockopt::handshake_ivl, static_cast<int>(options_.connect_timeout.count()));
-    const bool is_ipv6 = server_.host.find(':') != std::string::npos;
     request_->set(zmq::sockopt::ipv6, is_ipv6);
     // A closed socket keeps its name for a moment: each has another one.
     const std::string monitor = "inproc://monitor" + std::to_string(++opened_);
@@ -58,8 +67,9 @@ class ZmqRequester::Sockets {
     monitor_.emplace(context_, zmq::socket_type::pair);
     monitor_->set(zmq::sockopt::linger, 0);
     monitor_->connect(monitor);
-    const std::string host = is_ipv6 ? "[" + server_.host + "]" : server_.host;
-    request_->connect("tcp://" + host + ":" + server_.port);
+    const std::string host = is_ipv6 ? "[" + address.ip + "]" : address.ip;
+    request_->connect("tcp://" + host + ":" + std::to_string(address.port));
+    return {};
   }
 
   Result<Bytes> exchange(std::span<const std::uint8_t> message, Duration timeout) {
@@ -140,7 +150,7 @@ class ZmqRequester::Sockets {
 
   std::string unconnected() const {
     if (reached_ == Reached::kNothing) {
-      return lost_ ? "connecting: nobody listens there, or there is no such host"
+      return lost_ ? "connecting: nobody listens there"
                    : "connecting took more than " + seconds_text(options_.connect_timeout);
     }
     if (reached_ == Reached::kTcp) return "something listens there that does not speak ZeroMQ";

@@ -9,6 +9,7 @@
 #include "runtime/base/result.h"
 #include "runtime/wire/duration.h"
 #include "runtime/wire/endpoint.h"
+#include "runtime/wire/lookup.h"
 #include "runtime/wire/value.h"
 
 namespace probe::wire {
@@ -16,6 +17,7 @@ namespace probe::wire {
 struct ZmqOptions {
   Duration connect_timeout{10'000};
   std::size_t largest_message = std::size_t{64} << 20;  // bytes that are read of one at most
+  Resolver resolver = {};                               // of the host's name; none: the system's
 };
 
 class ZmqRequester {
