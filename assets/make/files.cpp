@@ -59,7 +59,6 @@ std::string glb_bytes(const std::string& name, const std::vector<Part>& parts) {
     scene::GlbMaterial& written = document.materials.emplace_back();
     written.name = material.name;
     written.base_color = material.base_color;
-    written.emission = material.emission;
     written.roughness = material.roughness;
     scene::GlbPart& arrays = document.parts.emplace_back(index_surface(part.surface));
     arrays.material = document.materials.size() - 1;

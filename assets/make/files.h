@@ -12,10 +12,10 @@
 
 namespace probe::make {
 
+// Nothing shines by itself: it would be seen in the dark.
 struct Material {
   std::string name;
   Colour base_color{1, 1, 1};    // linear factor; a texture replaces it
-  Colour emission{0, 0, 0};      // linear
   std::optional<Image> texture;  // embedded as PNG
   double roughness = 1;
 };

@@ -51,6 +51,21 @@ TEST_CASE("making the assets again gives the bytes that are checked in") {
   CHECK(total < 6'000'000);
 }
 
+TEST_CASE("nothing shines by itself: in the dark every asset of ours is black") {
+  std::size_t seen = 0;
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(VLAPROBE_SOURCE_DIR "/assets")) {
+    if (entry.path().extension() != ".glb") continue;
+    const nlohmann::json header = test::glb_header(test::read_bytes(entry.path().string()));
+    for (const auto& material : header.at("materials")) {
+      const bool glows = material.contains("emissiveFactor") || material.contains("emissiveTexture");
+      CHECK_MESSAGE(!glows, entry.path().string(), ": ", material.value("name", ""));
+    }
+    ++seen;
+  }
+  CHECK(seen >= 34);  // 20 objects, 11 links, a fixture, two scenes
+}
+
 TEST_CASE("files that cannot be written are a failure that names the place") {
   const Status status = make::write_files("/dev/null/assets", {{"a/b.txt", "text"}});
   REQUIRE(!status.ok());
