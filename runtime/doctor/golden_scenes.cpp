@@ -205,11 +205,12 @@ Result<GoldenSettle> settle_golden_objects(const std::string& root) {
   PROBE_ASSIGN(const robot::RobotModel model, robot::load_urdf((fs::path(root) / kUrdf).string()));
   world::WorldSpec spec;
   spec.surface_z = kTable;
-  spec.arm.model = &model;
-  spec.arm.base = {table().base, Quat(0, 0, 0, 1)};
+  spec.articulations.emplace_back();
+  spec.articulations[0].model = &model;
+  spec.articulations[0].base = {table().base, Quat(0, 0, 0, 1)};
   for (std::size_t i = 0; i < kJoints.size(); ++i) {
-    spec.arm.drives.push_back({kJoints[i], 1000, 200, 100});
-    spec.arm.joints.push_back(table().joints[i]);
+    spec.articulations[0].joints.push_back({kJoints[i], 1000, 200, 100});
+    spec.articulations[0].positions.push_back(table().joints[i]);
   }
   double x = -0.3;
   for (const char* name : {"carrot", "green_cube", "orange", "plate"}) {

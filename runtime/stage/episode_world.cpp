@@ -155,20 +155,21 @@ Status EpisodeWorld::read_bodies() {
 
 world::WorldSpec EpisodeWorld::spec_at(std::span<const Pose> poses, bool with_links) const {
   world::WorldSpec spec;
-  spec.arm.model = &parts_->model;
-  spec.arm.base = base_;
+  world::ArticulationSpec& arm = spec.articulations.emplace_back();
+  arm.model = &parts_->model;
+  arm.base = base_;
   for (const plan::DriveRecord& drive : plan_.drives(*robot_)) {
-    spec.arm.drives.push_back(
+    arm.joints.push_back(
         {std::string(plan_.text(drive.joint)), drive.stiffness, drive.damping, drive.limit});
   }
   const auto joints = plan_.joints(*scene_);
-  spec.arm.joints.assign(joints.begin(), joints.end());
+  arm.positions.assign(joints.begin(), joints.end());
   for (std::size_t k = 0; with_links && k < links_.size(); ++k) {
     const auto link = static_cast<std::size_t>(links_[k]);
     const bool finger = k < robot_->fingers.size();
-    spec.arm.links.push_back({parts_->model.links[link].name, parts_->shapes[link],
-                              finger ? robot_->finger_friction : robot_->link_friction,
-                              finger ? robot_->finger_patch : 0});
+    arm.links.push_back({parts_->model.links[link].name, parts_->shapes[link],
+                         finger ? robot_->finger_friction : robot_->link_friction,
+                         finger ? robot_->finger_patch : 0});
   }
   const auto bodies = plan_.bodies(*task_);
   for (std::size_t i = 0; i < object_count_; ++i) {

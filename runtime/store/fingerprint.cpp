@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "runtime/world/arm_dynamics.h"
+#include "runtime/world/multibody.h"
 
 namespace probe::store {
 namespace {

@@ -8,10 +8,11 @@ namespace {
 
 using std::size_t;
 
-// Inverse by Cholesky of the leading n x n block; the rest of `out` stays as it is. Loops run over
-// rows that lie together, so that the usual eight joints vectorise.
+// Inverse by Cholesky of the leading n x n block, written to the block of `out` that begins at
+// `first`; the rest of `out` stays as it is. Loops run over rows that lie together, so that the
+// usual eight joints vectorise.
 template <typename Count>
-bool invert(const JointMatrix& m, Count count, JointMatrix* out) {
+bool invert(const JointMatrix& m, Count count, size_t first, JointMatrix* out) {
   const size_t n = static_cast<size_t>(count);
   double l[kMaxJoints][kMaxJoints];        // lower triangle of L, transposed: l[k][i] = L_ik
   double inverse[kMaxJoints][kMaxJoints];  // of L: inverse[k][j] = (L^-1)_kj, zero above
@@ -39,12 +40,12 @@ bool invert(const JointMatrix& m, Count count, JointMatrix* out) {
     }
   }
   for (size_t i = 0; i < n; ++i) {
-    for (size_t j = 0; j < n; ++j) (*out)[i][j] = 0;
+    for (size_t j = 0; j < n; ++j) (*out)[first + i][first + j] = 0;
   }
   for (size_t k = 0; k < n; ++k) {
     for (size_t i = 0; i <= k; ++i) {
       const double factor = inverse[k][i];
-      for (size_t j = 0; j < n; ++j) (*out)[i][j] += factor * inverse[k][j];
+      for (size_t j = 0; j < n; ++j) (*out)[first + i][first + j] += factor * inverse[k][j];
     }
   }
   return true;
@@ -52,13 +53,15 @@ bool invert(const JointMatrix& m, Count count, JointMatrix* out) {
 
 }  // namespace
 
-void guess_saturation(const Drives& drives, const Joints& joints, const JointMatrix& mass,
-                      double dt, ArmResponse* arm) {
-  for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
+void guess_saturation(const Drives& drives, const Joints& joints, JointRange range,
+                      const JointMatrix& mass, double dt, ArmResponse* arm) {
+  for (size_t k = 0; k < static_cast<size_t>(range.count); ++k) {
+    const size_t i = static_cast<size_t>(range.first) + k;
     arm->flung[i] = false;
     const double e = drives.stiffness[i] * (joints.target[i] - joints.q[i]);
     const double resistance = drives.damping[i] + dt * drives.stiffness[i];
-    const double speed = (mass[i][i] * joints.u[i] + dt * e) / (mass[i][i] + dt * resistance);
+    const double inertia = mass[k][k] + drives.armature[i];
+    const double speed = (inertia * joints.u[i] + dt * e) / (inertia + dt * resistance);
     const double torque = e - resistance * speed;
     const bool beyond = std::fabs(torque) > drives.limit[i];
     arm->saturated[i] = !beyond ? 0 : (torque > 0 ? 1 : -1);
@@ -68,38 +71,52 @@ void guess_saturation(const Drives& drives, const Joints& joints, const JointMat
   }
 }
 
-bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass, double dt,
-             ArmResponse* arm) {
-  const size_t n = static_cast<size_t>(drives.count);
+bool respond(const Drives& drives, const Joints& joints, JointRange range, const JointMatrix& mass,
+             const JointArray* forces, double dt, ArmResponse* arm) {
+  const size_t n = static_cast<size_t>(range.count), first = static_cast<size_t>(range.first);
   JointMatrix m;
   JointArray momentum{};
   for (size_t i = 0; i < n; ++i) {
+    const size_t at = first + i;
     for (size_t j = 0; j < n; ++j) {
       m[i][j] = mass[i][j];
-      momentum[i] += mass[i][j] * joints.u[j];
+      if (i == j) m[i][j] += drives.armature[at];
+      momentum[i] += m[i][j] * joints.u[first + j];
     }
-    if (arm->saturated[i] != 0) {
-      momentum[i] += dt * arm->saturated[i] * drives.limit[i];
+    if (forces != nullptr) momentum[i] += dt * (*forces)[i];
+    if (arm->saturated[at] != 0) {
+      momentum[i] += dt * arm->saturated[at] * drives.limit[at];
       continue;
     }
-    m[i][i] += dt * drives.damping[i] + dt * dt * drives.stiffness[i];
-    momentum[i] += dt * drives.stiffness[i] * (joints.target[i] - joints.q[i]);
+    m[i][i] += dt * drives.damping[at] + dt * dt * drives.stiffness[at];
+    momentum[i] += dt * drives.stiffness[at] * (joints.target[at] - joints.q[at]);
   }
-  const bool good = n == 8 ? invert(m, std::integral_constant<size_t, 8>{}, &arm->response)
-                           : invert(m, n, &arm->response);
+  const bool good = n == 8 ? invert(m, std::integral_constant<size_t, 8>{}, first, &arm->response)
+                           : invert(m, n, first, &arm->response);
   if (!good) return false;
-  arm->free_speed = JointArray{};
   for (size_t i = 0; i < n; ++i) {
-    for (size_t j = 0; j < n; ++j) arm->free_speed[i] += arm->response[i][j] * momentum[j];
+    double speed = 0;
+    for (size_t j = 0; j < n; ++j) speed += arm->response[first + i][first + j] * momentum[j];
+    arm->free_speed[first + i] = speed;
   }
   return true;
 }
 
-bool find_overload(const Drives& drives, const Joints& joints, const JointArray& u, double dt,
-                   bool release, ArmResponse* arm) {
+void hold_still(JointRange range, ArmResponse* arm) {
+  const size_t first = static_cast<size_t>(range.first);
+  for (size_t i = first; i < first + static_cast<size_t>(range.count); ++i) {
+    arm->response[i].fill(0);
+    arm->free_speed[i] = 0;
+    arm->saturated[i] = 0;
+  }
+}
+
+bool find_overload(const Drives& drives, const Joints& joints, JointRange range,
+                   const JointArray& u, double dt, bool release, ArmResponse* arm) {
   constexpr double kOver = 1.001;
   bool any = false;
-  for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
+  const size_t first = static_cast<size_t>(range.first);
+  for (size_t i = first; i < first + static_cast<size_t>(range.count); ++i) {
     const double torque = drives.stiffness[i] * (joints.target[i] - joints.q[i] - dt * u[i]) -
                           drives.damping[i] * u[i];
     if (arm->saturated[i] != 0) {

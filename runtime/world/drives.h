@@ -6,10 +6,11 @@
 
 namespace probe::world {
 
-// The arm as the rows see it: u+ = free_speed + response J^T impulse.
+// Joints as the rows see them: u+ = free_speed + response J^T impulse. Articulations do not feel
+// each other but through rows: W has a block for each, zero for one that sleeps.
 struct ArmResponse {
-  JointMatrix response{};   // W, the inverse of M + dt KD + dt^2 KP
-  JointArray free_speed{};  // u* without contacts
+  JointMatrix response{};   // W, 1/kg and so on: the inverse of M + dt KD + dt^2 KP
+  JointArray free_speed{};  // u*, m/s or rad/s, without contacts
   std::array<int, kMaxJoints>
       saturated{};  // -1, 0, +1: sign of the force limit that replaces the drive
   std::array<bool, kMaxJoints> flung{};  // its force limit is not tried again in this substep
@@ -22,17 +23,25 @@ struct ArmResponse {
 // limit and would exceed it at its present speed presses against something: it stays at its limit.
 // Otherwise each substep would begin with impulses that belong to another drive, and what is held
 // creeps.
-void guess_saturation(const Drives& drives, const Joints& joints, const JointMatrix& mass,
-                      double dt, ArmResponse* arm);
+// `mass` is of the range's joints, counted from 0.
+void guess_saturation(const Drives& drives, const Joints& joints, JointRange range,
+                      const JointMatrix& mass, double dt, ArmResponse* arm);
 
-// W and u* for the given saturation. False if the matrix is not positive definite.
-bool respond(const Drives& drives, const Joints& joints, const JointMatrix& mass, double dt,
-             ArmResponse* arm);
+// W and u* of one articulation for the given saturation: with tau = KP (target - q - dt u+) - KD u+
+// and forces f of its own (weight, motion; null: none) acting at the speed after the substep,
+//   (M + dt KD + dt^2 KP) u* = M u + dt KP (target - q) + dt f ,
+// KP and KD diagonal, M with the joints' armature; a saturated drive gives dt times its limit
+// instead. False if the matrix is not positive definite.
+bool respond(const Drives& drives, const Joints& joints, JointRange range, const JointMatrix& mass,
+             const JointArray* forces, double dt, ArmResponse* arm);
+
+// Its joints do not move and do not give way.
+void hold_still(JointRange range, ArmResponse* arm);
 
 // Marks drives that exceed their limit at the new speeds `u` and unmarks those whose limit flung
 // the joint so far that the drive would already brake; with `release` all that would not reach it.
 // True if there are any.
-bool find_overload(const Drives& drives, const Joints& joints, const JointArray& u, double dt,
-                   bool release, ArmResponse* arm);
+bool find_overload(const Drives& drives, const Joints& joints, JointRange range,
+                   const JointArray& u, double dt, bool release, ArmResponse* arm);
 
 }  // namespace probe::world

@@ -3,6 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "runtime/world/colliders.h"
+
 namespace probe::world {
 namespace {
 
@@ -10,7 +12,7 @@ using std::size_t;
 
 static_assert(std::endian::native == std::endian::little,
               "states are written as they lie in memory");
-constexpr std::uint32_t kMagic = 0x32535756;  // VWS2
+constexpr std::uint32_t kMagic = 0x33535756;  // VWS3
 
 class Writer {
  public:
@@ -94,8 +96,14 @@ template <typename Stream>
 void joint_fields(Stream&& s, auto& joints) {
   for (size_t j = 0; j < kMaxJoints; ++j) {
     s(joints.q[j]), s(joints.u[j]), s(joints.target[j]);
-    s(joints.limit_impulse[j][0]), s(joints.limit_impulse[j][1]), s(joints.saturated[j]);
+    s(joints.limit_impulse[j][0]), s(joints.limit_impulse[j][1]), s(joints.friction_impulse[j]);
+    s(joints.saturated[j]);
   }
+}
+
+template <typename Stream>
+void record_fields(Stream&& s, auto& record) {
+  s(record.frozen), s(record.count), s(record.axes), s(record.offset), s(record.impulse);
 }
 
 bool is_kept(const PairRecord& record, std::uint64_t next_substep) {
@@ -109,27 +117,31 @@ std::vector<std::byte> save_state(const Stepper& stepper) {
   const auto put = [&](const auto& value) { out.put(value); };
   out.put(kMagic);
   out.put(static_cast<std::uint32_t>(stepper.drives.count));
+  out.put(static_cast<std::uint32_t>(stepper.articulations.size()));
   out.put(static_cast<std::uint32_t>(stepper.bodies.size()));
-  out.put(static_cast<std::uint32_t>(stepper.table.records.size()));
+  out.put(static_cast<std::uint32_t>(stepper.table.pairs.size()));
   out.put(stepper.substep);
   out.put(stepper.ambient.tilt_locked);
   joint_fields(put, stepper.joints);
+  for (const Articulation& a : stepper.articulations) out.put(a.calm), out.put(a.asleep);
   for (const Body& body : stepper.bodies) body_fields(put, body);
   std::uint32_t kept = 0;
-  for (const PairRecord& record : stepper.table.records)
-    kept += is_kept(record, stepper.substep) ? 1 : 0;
+  for (const ColliderPair& pair : stepper.table.pairs) {
+    for (const ColliderPair::Entry& entry : pair.near) {
+      kept += is_kept(stepper.table.record(entry.record), stepper.substep) ? 1 : 0;
+    }
+  }
   out.put(kept);
-  for (size_t i = 0; i < stepper.table.records.size(); ++i) {
-    const PairRecord& record = stepper.table.records[i];
-    if (!is_kept(record, stepper.substep)) continue;
-    out.put(static_cast<std::uint32_t>(i));
-    out.put(record.frozen);
-    out.put(record.count);
-    out.put(record.axes);
-    out.put(record.offset);
-    out.put(record.impulse);
-    for (size_t k = 0; k < static_cast<size_t>(record.count); ++k)
-      point_fields(put, record.points[k]);
+  for (size_t p = 0; p < stepper.table.pairs.size(); ++p) {
+    for (const ColliderPair::Entry& entry : stepper.table.pairs[p].near) {
+      const PairRecord& record = stepper.table.record(entry.record);
+      if (!is_kept(record, stepper.substep)) continue;
+      out.put(static_cast<std::uint32_t>(p));
+      out.put(entry.key);
+      record_fields(put, record);
+      for (size_t k = 0; k < static_cast<size_t>(record.count); ++k)
+        point_fields(put, record.points[k]);
+    }
   }
   return out.take();
 }
@@ -137,51 +149,76 @@ std::vector<std::byte> save_state(const Stepper& stepper) {
 Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
   Reader in(bytes);
   const auto get = [&](auto& value) { in.get(&value); };
-  std::uint32_t magic = 0, joints_count = 0, bodies_count = 0, records_count = 0, kept = 0;
+  std::uint32_t magic = 0, joint_count = 0, articulation_count = 0, body_count = 0;
+  std::uint32_t pair_count = 0, kept = 0;
   std::uint64_t substep = 0;
   bool tilt_locked = false;
-  get(magic), get(joints_count), get(bodies_count), get(records_count), get(substep),
-      get(tilt_locked);
+  get(magic), get(joint_count), get(articulation_count), get(body_count), get(pair_count);
+  get(substep), get(tilt_locked);
   if (!in.good() || magic != kMagic)
     return Failure{Fault::kWorld, "the bytes are not a saved world", ""};
-  if (joints_count != static_cast<std::uint32_t>(stepper->drives.count) ||
-      bodies_count != stepper->bodies.size() || records_count != stepper->table.records.size()) {
+  std::vector<ColliderPair>& pairs = stepper->table.pairs;
+  if (joint_count != static_cast<std::uint32_t>(stepper->drives.count) ||
+      articulation_count != stepper->articulations.size() || body_count != stepper->bodies.size() ||
+      pair_count != pairs.size()) {
     return Failure{Fault::kWorld,
                    "the saved state is of a world with other joints, bodies or shapes", ""};
   }
   Joints joints;
   joint_fields(get, joints);
+  struct Rest {
+    int calm = 0;
+    bool asleep = false;
+  };
+  std::vector<Rest> rests(articulation_count);
+  for (Rest& rest : rests) get(rest.calm), get(rest.asleep);
   std::vector<Body> bodies = stepper->bodies;
   for (Body& body : bodies) {
     body_fields(get, body);
     body.axes = body.rotation.toRotationMatrix();
   }
   get(kept);
-  std::vector<PairRecord> records(stepper->table.records.size());
+  struct Kept {
+    std::uint32_t pair = 0, key = 0;
+    PairRecord record;
+  };
+  std::vector<Kept> records;
   for (std::uint32_t n = 0; n < kept && in.good(); ++n) {
-    std::uint32_t index = 0;
-    get(index);
-    if (index >= records.size())
+    Kept& saved = records.emplace_back();
+    PairRecord& record = saved.record;
+    get(saved.pair), get(saved.key);
+    if (saved.pair >= pairs.size() || saved.key >= pairs[saved.pair].keys) {
       return Failure{Fault::kWorld, "the saved state names a pair that is not there", ""};
-    PairRecord& record = records[index];
-    get(record.frozen), get(record.count);
+    }
+    record_fields(get, record);
     if (record.count < 0 || record.count > kMaxPoints) {
       return Failure{Fault::kWorld, "the saved state has a pair with too many points", ""};
     }
-    get(record.axes), get(record.offset), get(record.impulse);
     for (size_t k = 0; k < static_cast<size_t>(record.count); ++k)
       point_fields(get, record.points[k]);
     record.valid = true;
     record.last = substep - 1;
   }
-  if (!in.at_end())
+  if (!in.at_end()) {
     return Failure{Fault::kWorld, "the saved state is cut short or has bytes left over", ""};
+  }
 
   stepper->substep = substep;
   stepper->ambient.tilt_locked = tilt_locked;
   stepper->joints = joints;
   stepper->bodies = std::move(bodies);
-  stepper->table.records = std::move(records);
+  stepper->table.clear();
+  for (const Kept& saved : records) {
+    const std::uint32_t index = stepper->table.find_or_add(&pairs[saved.pair], saved.key);
+    stepper->table.record(index) = saved.record;
+  }
+  for (size_t a = 0; a < rests.size(); ++a) {
+    Articulation& articulation = stepper->articulations[a];
+    articulation.calm = rests[a].calm;
+    articulation.asleep = rests[a].asleep;
+    articulation.tree->update(joints.q);
+    place_links(articulation, joints.u, &stepper->colliders);
+  }
   for (size_t b = 0; b < stepper->bodies.size(); ++b) {
     place_body(stepper->bodies[b], &stepper->colliders[stepper->links + b]);
   }

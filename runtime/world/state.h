@@ -1,5 +1,7 @@
 // The plain data of a world: joints, bodies, what is tested for contact, pair records, contacts of
-// a substep. Only data and one-line helpers; the stages of a substep are functions over it.
+// a substep. Only data and one-line helpers; the stages of a substep are functions over it. SI,
+// world frame unless said otherwise. A force of a joint is in N where it slides and in N m where it
+// turns; so with m and rad, kg and kg m2.
 #pragma once
 
 #include <array>
@@ -12,12 +14,13 @@
 
 namespace probe::world {
 
-// Joint positions of a world, and moving links of its robot. A multiple of 4: rows are padded with
-// zeros to the next one, so that sums over joints have fixed lanes.
+// Joint positions of a world, and moving links of one joint tree. A multiple of 4: rows are padded
+// with zeros to the next one, so that sums over joints have fixed lanes.
 constexpr int kMaxJoints = 32;
 
+// Numbers of the solver; where they come from is told in the README.
 struct Parameters {
-  double dt = 0.002;
+  double dt = 0.002;  // s
   int max_sweeps = 50;
   int jam_sweeps = 200;      // at most, while a sweep still changes more than jam_change:
   double jam_change = 1e-3;  // m/s; something is squeezed between the arm and the table
@@ -34,42 +37,50 @@ struct Parameters {
 using JointArray = std::array<double, kMaxJoints>;
 using JointMatrix = std::array<std::array<double, kMaxJoints>, kMaxJoints>;
 
-// The robot's part of the solver. Unused joints are zero everywhere.
+// Some of the world's joint positions, those of one articulation.
+struct JointRange {
+  int first = 0, count = 0;
+};
+
+// What acts in joints, see JointSpec. Unused joints are zero everywhere.
 struct Drives {
   int count = 0;
   JointArray stiffness{}, damping{}, limit{};
+  JointArray friction{}, armature{};
   JointArray lower{}, upper{};  // joint limits; infinite for continuous joints
   std::array<bool, kMaxJoints> prismatic{};
 };
 
 struct Joints {
   JointArray q{}, u{}, target{};
-  std::array<std::array<double, 2>, kMaxJoints> limit_impulse{};  // lower, upper
+  std::array<std::array<double, 2>, kMaxJoints> limit_impulse{};  // N s, N m s; lower, upper
+  JointArray friction_impulse{};                                  // N s, N m s
   // Drives that ended the last substep at their force limit: its sign, else 0.
   std::array<std::int8_t, kMaxJoints> saturated{};
 };
 
 struct Body {
   // Of the asset.
-  double mass = 0;
+  double mass = 0;  // kg
   Mat3 inertia = Mat3::Zero(),
-       inertia_inverse = Mat3::Zero();  // body axes, about the centre of mass
-  Vec3 model_to_center = Vec3::Zero();  // centre of mass in the model frame
+       inertia_inverse = Mat3::Zero();  // kg m2, 1/(kg m2); body axes, about the centre of mass
+  Vec3 model_to_center = Vec3::Zero();  // m, centre of mass in the model frame
   // State.
-  Vec3 position = Vec3::Zero();  // centre of mass, world
+  Vec3 position = Vec3::Zero();  // m, centre of mass
   Quat rotation = Quat::Identity();
-  Vec3 velocity = Vec3::Zero();
-  Vec3 spin = Vec3::Zero();
-  int calm = 0;  // substeps at rest
+  Vec3 velocity = Vec3::Zero();  // m/s
+  Vec3 spin = Vec3::Zero();      // rad/s
+  int calm = 0;                  // substeps at rest
   bool asleep = false;
   // Derived each substep.
   Mat3 axes = Mat3::Identity();  // the rotation as a matrix
-  Mat3 response = Mat3::Zero();  // world inverse inertia (K); locked axes zero
-  Vec3 start_velocity = Vec3::Zero(), start_spin = Vec3::Zero();  // after gravity, before contacts
+  Mat3 response = Mat3::Zero();  // 1/(kg m2), world inverse inertia (K); locked axes zero
+  // m/s and rad/s after gravity, before contacts.
+  Vec3 start_velocity = Vec3::Zero(), start_spin = Vec3::Zero();
 };
 
 struct Box {
-  Vec3 center = Vec3::Zero(), half = Vec3::Zero();
+  Vec3 center = Vec3::Zero(), half = Vec3::Zero();  // m
 };
 
 inline bool overlaps(const Box& a, const Box& b, double margin) {
@@ -82,22 +93,24 @@ inline bool overlaps(const Box& a, const Box& b, double margin) {
 struct Collider {
   std::shared_ptr<const scene::CollisionShape> shape;
   double friction = 1;
-  double patch = 0;
-  int body = -1;         // index of a free body, -1 for a link
-  int moving_link = -1;  // of the arm: the body that carries the link; -1 for whatever stands still
-                         // and for free bodies
-  std::uint32_t path = 0;                // moving links from the base to this one, one bit each
+  double patch = 0;                      // m
+  int body = -1;                         // index of a free body, -1 for a link or a fixture
+  int articulation = -1;                 // of a link
+  int moving_link = -1;                  // of its tree: the one that carries the link; -1: the base
+  std::uint32_t path = 0;                // moving links from the base to this one, one bit each; 0
+                                         // for what never moves on joints
   Mat3 carrier_axes = Mat3::Identity();  // of a link: frame of its centre of mass in the carrier
-  Vec3 carrier_offset = Vec3::Zero();
-  Box local;             // of all parts, shape frame
+  Vec3 carrier_offset = Vec3::Zero();    // m
+  Box local;                             // of all parts, shape frame
   bool rounded = false;  // has a part that rolls: its manifolds are made anew each substep
   // Derived each substep.
   Mat3 axes = Mat3::Identity();
-  Vec3 position = Vec3::Zero();
-  double reach_speed = 0;  // m/s, bound on the speed of any of its points
+  Vec3 position = Vec3::Zero();  // m
+  double reach_speed = 0;        // m/s, bound on the speed of any of its points
   Box box;
   std::vector<Box> part_boxes;
-  // Of a fixture: parts by the low end of their boxes along x, and the longest of these boxes.
+  // Of what stands still for good: parts by the low end of their boxes along x, and the longest of
+  // these boxes (m).
   std::vector<std::uint32_t> sorted_parts;
   double longest_part = 0;
 };
@@ -107,11 +120,12 @@ constexpr int kMaxPoints = 6;
 // A contact point as it is kept between substeps.
 struct ManifoldPoint {
   Vec3 anchor_a = Vec3::Zero(),
-       anchor_b = Vec3::Zero();  // witness points in the frames of A and B (plane: world)
+       anchor_b = Vec3::Zero();  // m, witness points in the frames of A and B (plane: world)
   Vec3 normal_a = Vec3::Zero();  // from B to A, in A's frame (plane: world)
   int id = -1;                   // plane: vertex + 100 x part
-  double normal_impulse = 0, torsion_impulse = 0;
-  Vec3 friction_impulse = Vec3::Zero();  // world
+  double normal_impulse = 0;     // N s
+  double torsion_impulse = 0;    // N m s
+  Vec3 friction_impulse = Vec3::Zero();  // N s, world
 };
 
 struct FaceRef {
@@ -122,52 +136,76 @@ struct FaceRef {
 // What a pair of parts, or a collider and the plane, remembers.
 struct PairRecord {
   bool valid = false;
-  bool frozen = false;  // all its free bodies sleep; kept as it is
+  bool frozen = false;  // all that could move of it sleeps; kept as it is
   std::int8_t count = 0;
   std::uint64_t last = 0;        // the substep in which it was live
+  std::uint64_t near = 0;        // the substep in which its boxes met last
   Mat3 axes = Mat3::Identity();  // relative pose when the manifold was made: R_A^T R_B (plane: R_A)
-  Vec3 offset = Vec3::Zero();    // R_A^T (x_B - x_A) (plane: x_A)
+  Vec3 offset = Vec3::Zero();    // m, R_A^T (x_B - x_A) (plane: x_A)
   std::array<ManifoldPoint, kMaxPoints> points;
-  Vec3 impulse = Vec3::Zero();    // on A, last substep, world
+  Vec3 impulse = Vec3::Zero();    // N s, on A, last substep, world
   std::uint64_t frozen_from = 0;  // the first substep that did not solve it; only for sums
   FaceRef cached;  // last separating or reference face: changes speed only, never results
 };
 
-// A direction of a contact. Impulse l changes u by wj l, v_A by d l / m, omega_A by ka l; B
-// opposite.
+// One direction of a contact, as the sweeps read it: an impulse l (N s; torsion N m s) along it
+// changes joint speeds by wj l, v_A by d l / m_A, omega_A by ka l, and B's the opposite way.
 struct Row {
-  double* j = nullptr;  // joint column and its response, `Problem::lanes` wide; null without links
-  double* wj = nullptr;
-  Vec3 d, arm_a, arm_b;  // direction, r_A x d, r_B x d
+  Vec3 d, arm_a, arm_b;  // direction, r_A x d, r_B x d (m; torsion: no d, and the normal as arms)
   Vec3 ka, kb;           // K_A (r_A x d), K_B (r_B x d)
-  double body_k = 0;     // bodies' part of k, with the regularisation
-  double k = 1, inverse_k = 1;
-  double bias = 0;
-  double impulse = 0;
-  double start = 0;  // the impulse that the sweeps began with
+  double k = 1, inverse_k = 1;  // 1/kg, kg: speed along the row per impulse (torsion 1/(kg m2))
+  double impulse = 0;           // N s, so far
 };
 
-// Row without direction: torsion about the normal.
+// Rows of one contact in the order that sweeps and warm starts count them.
+enum RowIndex : int { kNormal, kTangent1, kTangent2, kTwist, kRows };
+
+// What the sweeps touch of a contact, all of it and nothing else.
+struct ContactRows {
+  std::array<Row, kRows> rows;
+  // Of all four rows: joint columns J and responses W J^T in turns, `Problem::lanes` wide each;
+  // null without links that move.
+  double* columns = nullptr;
+  int body_a = -1, body_b = -1;  // awake free bodies only, else -1
+  bool torsion = false;
+  double bias = 0;                                // m/s, of the normal row
+  double friction = 0;                            // coefficient
+  double patch = 0;                               // m
+  double grip = 0;                                // N s, friction's bound while bounds are held
+  double inverse_mass_a = 0, inverse_mass_b = 0;  // 1/kg
+};
+
+// The rest of a contact: where it comes from and where its impulses go.
 struct Contact {
   std::uint32_t record = 0, pair = 0;
   std::int8_t point = 0;
-  bool links = false;  // rows have joint columns
-  bool torsion = false;
   int collider_a = -1, collider_b = -1;  // -1: the plane
-  int body_a = -1, body_b = -1;          // awake free bodies only, else -1
-  Vec3 n, p, t1, t2;
-  double gap = 0, friction = 0, patch = 0;
-  double grip = 0;  // N s, the bound of friction while bounds are held
-  double inverse_mass_a = 0, inverse_mass_b = 0;
-  Row normal, tangent1, tangent2, twist;
+  std::uint32_t path_a = 0, path_b = 0;  // moving links that carry A and not B, B and not A
+  Vec3 n, p, t1, t2;                     // normal from B to A, point (m), tangents
+  double gap = 0;                        // m, negative in overlap
+  std::array<double, kRows> body_k{};    // 1/kg, bodies' part of k, with the regularisation
+  std::array<double, kRows> start{};     // N s, impulses that the sweeps began with
 };
 
+// A joint at one of its limits.
 struct LimitRow {
   int joint = 0;
-  double sign = 1;  // +1 lower limit, -1 upper
-  double bias = 0, k = 1, lever = 1;
+  double sign = 1;     // +1 lower limit, -1 upper
+  double bias = 0;     // m/s, rad/s
+  double k = 1;        // 1/kg, 1/(kg m2)
+  double lever = 1;    // m a unit of the joint: makes changes of speed comparable
+  double impulse = 0;  // N s, N m s
+  double start = 0;    // the impulse that the sweeps began with
+};
+
+// A joint that friction holds or brakes.
+struct JointFrictionRow {
+  int joint = 0;
+  double bound = 0;  // N s, N m s: friction x dt
+  double k = 1;
+  double lever = 1;
   double impulse = 0;
-  double start = 0;  // the impulse that the sweeps began with
+  double start = 0;
 };
 
 }  // namespace probe::world

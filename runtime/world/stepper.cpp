@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/world/colliders.h"
 #include "runtime/world/lanes.h"
 
 namespace probe::world {
 namespace {
+
+using std::size_t;
 
 constexpr int kMaxResolves = 5;
 
@@ -17,7 +20,7 @@ Failure stiff_failure() {
 }  // namespace
 
 void Stepper::note_load() {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(drives.count); ++i) {
+  for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
     const double torque = response.saturated[i] != 0
                               ? drives.limit[i]
                               : drives.stiffness[i] * (joints.target[i] - joints.q[i] -
@@ -27,18 +30,87 @@ void Stepper::note_load() {
   }
 }
 
-Status Stepper::advance() {
-  if (arm) {
-    PROBE_TRY(arm->update(joints.q));
-    place_links(*arm, joints.u, links, &colliders);
-    guess_saturation(drives, joints, arm->mass(), parameters.dt, &response);
-    if (!respond(drives, joints, arm->mass(), parameters.dt, &response)) return stiff_failure();
+void Stepper::place_awake() {
+  for (Articulation& a : articulations) {
+    if (a.asleep) continue;
+    a.tree->update(joints.q);
+    place_links(a, joints.u, &colliders);
   }
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  for (size_t b = 0; b < bodies.size(); ++b) {
     if (!bodies[b].asleep) place_body(bodies[b], &colliders[links + b]);
   }
+}
+
+// W and u* of one articulation. Coriolis forces of a passive one are taken at the mean of the
+// speeds before and after: at those before, a folding door without a brake gains a third of its
+// energy in five seconds.
+bool Stepper::respond_one(const Articulation& a) {
+  const JointMatrix& mass = a.tree->mass();
+  if (a.driven) return respond(drives, joints, a.range, mass, nullptr, parameters.dt, &response);
+  JointArray speeds = joints.u;
+  for (int pass = 0;; ++pass) {
+    const JointArray forces = a.tree->own_forces(ambient.gravity, speeds);
+    if (!respond(drives, joints, a.range, mass, &forces, parameters.dt, &response)) return false;
+    // A joint that moves nothing but itself has no such forces.
+    if (pass == 1 || a.range.count < 2) return true;
+    for (int j = a.range.first; j < a.range.first + a.range.count; ++j) {
+      const size_t i = static_cast<size_t>(j);
+      speeds[i] = 0.5 * (joints.u[i] + response.free_speed[i]);
+    }
+  }
+}
+
+// Of all, with the saturation at hand.
+bool Stepper::respond_all() {
+  for (const Articulation& a : articulations) {
+    if (a.asleep) {
+      hold_still(a.range, &response);
+    } else if (!respond_one(a)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Stepper::find_overloads(bool release) {
+  bool any = false;
+  for (const Articulation& a : articulations) {
+    if (a.asleep) continue;
+    any |= find_overload(drives, joints, a.range, problem.u, parameters.dt, release, &response);
+  }
+  return any;
+}
+
+void Stepper::store_joint_impulses() {
+  for (const LimitRow& row : problem.limits) {
+    joints.limit_impulse[static_cast<size_t>(row.joint)][row.sign > 0 ? 0 : 1] = row.impulse;
+  }
+  for (const JointFrictionRow& row : problem.joint_frictions) {
+    joints.friction_impulse[static_cast<size_t>(row.joint)] = row.impulse;
+  }
+}
+
+void Stepper::integrate_all() {
+  joints.u = problem.u;
+  for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
+    joints.saturated[i] = static_cast<std::int8_t>(response.saturated[i]);
+    joints.q[i] += parameters.dt * joints.u[i];
+  }
+  for (Body& body : bodies) {
+    if (!body.asleep) integrate(&body, ambient, parameters.dt);
+  }
+}
+
+Status Stepper::advance() {
+  place_awake();
   Sleepers rest = sleepers();
   if (sleeping) wake_touched(parameters, substep, &rest);
+  for (const Articulation& a : articulations) {
+    if (a.asleep) continue;
+    a.tree->update(joints.q);  // of those that just woke
+    guess_saturation(drives, joints, a.range, a.tree->mass(), parameters.dt, &response);
+  }
+  if (!respond_all()) return stiff_failure();
   for (Body& body : bodies) {
     if (!body.asleep) predict(&body, ambient, parameters.dt);
   }
@@ -46,37 +118,26 @@ Status Stepper::advance() {
   problem.bodies = &bodies;
   problem.joints = drives.count;
   problem.lanes = padded_lanes(drives.count);
-  find_contacts(parameters, plane, substep, colliders, &table, &problem);
-  build_rows(parameters, arm.get(), colliders, &problem);
-  build_limits(parameters, drives, &joints, &problem);
+  find_contacts(parameters, plane, substep, articulations, colliders, &table, &scratch, &problem);
+  build_rows(parameters, articulations, colliders, &problem);
+  build_joint_rows(parameters, drives, articulations, &joints, &problem);
   for (int attempt = 0;; ++attempt) {
     rewind(&problem, response);
-    couple_arm(response, &problem);
+    couple_joints(response, &problem);
     warm_start(&problem, response);
     last_sweeps = solve(parameters, response, &problem);
-    if (!arm || attempt == kMaxResolves ||
-        !find_overload(drives, joints, problem.u, parameters.dt, attempt == 0, &response)) {
+    if (attempt == kMaxResolves || !find_overloads(attempt == 0)) {
       break;
     }
     // A drive would exceed its limit: solve again with it replaced by the limit.
     ++resolves;
-    if (!respond(drives, joints, arm->mass(), parameters.dt, &response)) return stiff_failure();
+    if (!respond_all()) return stiff_failure();
   }
-  if (arm) note_load();
+  note_load();
   store_impulses(problem, &table);
-  for (const LimitRow& row : problem.limits) {
-    joints.limit_impulse[static_cast<std::size_t>(row.joint)][row.sign > 0 ? 0 : 1] = row.impulse;
-  }
-
-  joints.u = problem.u;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(drives.count); ++i)
-    joints.saturated[i] = static_cast<std::int8_t>(response.saturated[i]);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(drives.count); ++i)
-    joints.q[i] += parameters.dt * joints.u[i];
-  for (Body& body : bodies) {
-    if (!body.asleep) integrate(&body, ambient, parameters.dt);
-  }
-  if (sleeping) fall_asleep(problem, substep, &rest);
+  store_joint_impulses();
+  integrate_all();
+  if (sleeping) fall_asleep(problem, drives, substep, &joints, &rest);
   ++substep;
   return {};
 }

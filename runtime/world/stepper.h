@@ -1,7 +1,6 @@
 // One substep after another over the plain data of a world: the order of the stages, nothing else.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -9,6 +8,7 @@
 #include "runtime/world/drives.h"
 #include "runtime/world/pairs.h"
 #include "runtime/world/sleep.h"
+#include "runtime/world/sweeps.h"
 
 namespace probe::world {
 
@@ -17,24 +17,31 @@ struct Stepper {
   Ambient ambient;
   Plane plane;
   bool sleeping = true;
-  std::unique_ptr<ArmDynamics> arm;  // may be null: a world without a robot
+  std::vector<Articulation> articulations;
   Drives drives;
   Joints joints;
   std::vector<Body> bodies;
   std::vector<Collider> colliders;  // links, then bodies, then fixtures
   std::size_t links = 0;
   PairTable table;
+  Candidates scratch;
   Problem problem;
   ArmResponse response;
   std::uint64_t substep = 1;  // the number of the next substep; records compare with it
   int last_sweeps = 0,
       resolves = 0;       // of the last substep, since the start: for tests and benchmarks
-  double drive_load = 0;  // largest torque of a drive over its limit since it was last zeroed
+  double drive_load = 0;  // largest share of its limit that a drive gave since it was last zeroed
 
-  Sleepers sleepers() { return {links, &colliders, &bodies, &table}; }
+  Sleepers sleepers() { return {links, &articulations, &colliders, &bodies, &table}; }
   Status advance();
 
  private:
+  void place_awake();
+  bool respond_one(const Articulation& articulation);
+  bool respond_all();
+  bool find_overloads(bool release);
+  void store_joint_impulses();
+  void integrate_all();
   void note_load();
 };
 

@@ -69,7 +69,7 @@ TEST_CASE("every object comes to rest level in its rest pose") {
   auto arm = world::load_widowx();
   REQUIRE_MESSAGE(arm.ok(), to_text(arm.failure()));
   world::WorldSpec spec;
-  spec.arm = (*arm)->spec;
+  spec.articulations = {(*arm)->spec};
   spec.surface_z = kTable;
   const std::vector<Rest> poses = rest_poses();
   for (std::size_t i = 0; i < poses.size(); ++i) {

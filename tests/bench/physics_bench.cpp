@@ -24,7 +24,7 @@ class Table {
  public:
   Table() : widowx_(need(probe::world::load_widowx())) {
     probe::world::WorldSpec spec;
-    spec.arm = widowx_->spec;
+    spec.articulations = {widowx_->spec};
     spec.surface_z = kSurface;
     const std::string objects = VLAPROBE_SOURCE_DIR "/assets/objects/";
     const auto shape = [](probe::Result<probe::scene::CollisionShape> made) {

@@ -43,7 +43,7 @@ inline Thing load_thing(const std::string& name, double density, const Vec3& hal
 
 struct Robot {
   robot::RobotModel model;
-  std::vector<world::ArmSpec::Link> links;  // fingers first
+  std::vector<world::ArticulationSpec::Link> links;  // fingers first
 };
 
 inline Robot load_robot() {
@@ -62,7 +62,7 @@ inline Robot load_robot() {
   return out;
 }
 
-inline const std::vector<world::Drive> kDrives = {
+inline const std::vector<world::JointSpec> kDrives = {
     {"waist", 1169.789, 330.0, 200},         {"shoulder", 730.0, 180.0, 200},
     {"elbow", 808.460, 152.120, 100},        {"forearm_roll", 1229.130, 309.622, 100},
     {"wrist_angle", 1272.276, 201.050, 100}, {"wrist_rotate", 1056.333, 269.515, 100},
@@ -159,11 +159,12 @@ class WorldTable {
 
   world::WorldSpec spec(const std::vector<Pose>& poses, bool with_links) const {
     world::WorldSpec out;
-    out.arm.model = &robot_.model;
-    out.arm.base = base();
-    out.arm.drives = kDrives;
-    out.arm.joints = kStartJoints;
-    if (with_links) out.arm.links = robot_.links;
+    out.articulations.emplace_back();
+    out.articulations[0].model = &robot_.model;
+    out.articulations[0].base = base();
+    out.articulations[0].joints = kDrives;
+    out.articulations[0].positions = kStartJoints;
+    if (with_links) out.articulations[0].links = robot_.links;
     for (std::size_t i = 0; i < things_.size(); ++i) {
       out.bodies.push_back({things_[i].name, things_[i].shape, things_[i].density, 0.5, poses[i]});
     }

@@ -294,7 +294,7 @@ TEST_CASE("a carrot held beside its centre of mass does not swing, without torsi
         return;
       }
       WorldSpec spec = bench.world->spec();
-      for (ArmSpec::Link& link : spec.arm.links) {
+      for (ArticulationSpec::Link& link : spec.articulations[0].links) {
         if (link.patch > 0) link.patch = patch;
       }
       auto world = World::create(spec);

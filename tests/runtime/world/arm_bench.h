@@ -67,9 +67,9 @@ struct Bench {
   }
 };
 
-inline WorldSpec table_spec(const ArmSpec& arm) {
+inline WorldSpec table_spec(const ArticulationSpec& arm) {
   WorldSpec spec;
-  spec.arm = arm;
+  spec.articulations = {arm};
   spec.surface_z = kTable;
   spec.sleeping = false;
   return spec;
@@ -88,7 +88,7 @@ inline std::shared_ptr<const scene::CollisionShape> object(const std::string& na
 }
 
 inline bool make_bench(Bench* bench, const std::vector<BodySpec>& bodies, bool sleeping = false,
-                       double dt = 0.002) {
+                       double dt = 0.002, const std::vector<ArticulationSpec>& others = {}) {
   auto robot = load_widowx();
   if (!robot.ok()) {
     MESSAGE("skipped: ", to_text(robot.failure()));
@@ -96,6 +96,7 @@ inline bool make_bench(Bench* bench, const std::vector<BodySpec>& bodies, bool s
   }
   bench->robot = std::move(robot).value();
   WorldSpec spec = table_spec(bench->robot->spec);
+  spec.articulations.insert(spec.articulations.end(), others.begin(), others.end());
   spec.bodies = bodies;
   spec.sleeping = sleeping;
   spec.dt = dt;
@@ -104,11 +105,12 @@ inline bool make_bench(Bench* bench, const std::vector<BodySpec>& bodies, bool s
   bench->world = std::move(world).value();
   std::vector<std::string> names;
   for (int i = 0; i < 6; ++i)
-    names.push_back(bench->robot->spec.drives[static_cast<std::size_t>(i)].joint);
+    names.push_back(bench->robot->spec.joints[static_cast<std::size_t>(i)].joint);
   auto chain = robot::Chain::create(bench->robot->model, kTool, names);
   REQUIRE(chain.ok());
   bench->chain = std::make_unique<robot::Chain>(std::move(chain).value());
-  std::copy(spec.arm.joints.begin(), spec.arm.joints.end(), bench->target.begin());
+  std::copy(spec.articulations[0].positions.begin(), spec.articulations[0].positions.end(),
+            bench->target.begin());
   return true;
 }
 
@@ -128,7 +130,10 @@ inline const Vec3 kSpot(-0.15, 0.0, kTable + 0.015);
 inline void close_on(Bench* bench, const Vec3& spot) {
   std::array<double, 8> q = bench->reach(spot);
   q[6] = q[7] = 0.037;
-  bench->world->set_joints(q);
+  const auto all = bench->world->joints();
+  std::vector<double> placed(all.begin(), all.end());
+  std::copy(q.begin(), q.end(), placed.begin());
+  bench->world->set_joints(placed);
   bench->target = q;
   bench->grip(0.014);
   bench->run(200);

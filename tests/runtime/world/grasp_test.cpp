@@ -142,21 +142,22 @@ TEST_CASE("worlds and actions that cannot be are refused with a reason") {
           shape.unit_inertia(2, 2) *= 10;
           s.bodies[0].shape = std::make_shared<scene::CollisionShape>(shape);
         }).find("inertia") != std::string::npos);
-  CHECK(refused([](WorldSpec& s) { s.arm.drives[2].joint = "knee"; }).find("`knee`") !=
+  CHECK(refused([](WorldSpec& s) { s.articulations[0].joints[2].joint = "knee"; }).find("`knee`") !=
         std::string::npos);
-  CHECK(refused([](WorldSpec& s) { s.arm.links[1].name = "tail"; }).find("`tail`") !=
+  CHECK(refused([](WorldSpec& s) { s.articulations[0].links[1].name = "tail"; }).find("`tail`") !=
         std::string::npos);
   CHECK(refused([](WorldSpec& s) {
-          s.arm.drives.erase(s.arm.drives.begin());
-          s.arm.joints.erase(s.arm.joints.begin());
+          s.articulations[0].joints.erase(s.articulations[0].joints.begin());
+          s.articulations[0].positions.erase(s.articulations[0].positions.begin());
         }).find("has no drive") != std::string::npos);
   CHECK(refused([](WorldSpec& s) { s.bodies[0].pose.position.x() = std::nan(""); }).find("cube") !=
         std::string::npos);
   for (const double q : {4.0, -4.0}) {
-    CHECK(refused([&](WorldSpec& s) { s.arm.joints[2] = q; }).find("joint `elbow` starts at") !=
-          std::string::npos);
+    CHECK(refused([&](WorldSpec& s) {
+            s.articulations[0].positions[2] = q;
+          }).find("joint `elbow` starts at") != std::string::npos);
   }
-  CHECK(refused([&](WorldSpec& s) { s.arm.joints[6] = 0.05; })
+  CHECK(refused([&](WorldSpec& s) { s.articulations[0].positions[6] = 0.05; })
             .find("joint `left_finger` starts at 0.050000, beyond its limits of 0.015000 and "
                   "0.037000") != std::string::npos);
 

@@ -11,15 +11,18 @@
 #include <random>
 
 #include "runtime/base/trig.h"
+#include "runtime/world/stepper.h"
 #include "tests/runtime/world/arm_bench.h"
 
 namespace {
 std::atomic<long> g_allocations{0};  // of the whole test program
-}
+std::atomic<long> g_bytes{0};        // asked for, ever
+}  // namespace
 
 // Not inlined: the compiler would see free() meet what it takes for its own operator new.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++g_allocations;
+  g_bytes += static_cast<long>(size);
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
   throw std::bad_alloc();
 }
@@ -61,9 +64,10 @@ TEST_CASE("a drive swings as the closed form of its implicit step says") {
   model.links = {frame, door};
   model.joints = {hinge};
   WorldSpec spec;
-  spec.arm.model = &model;
-  spec.arm.drives = {{"hinge", 40, 0.5, 1e6}};
-  spec.arm.joints = {0.4};
+  spec.articulations.emplace_back();
+  spec.articulations[0].model = &model;
+  spec.articulations[0].joints = {{"hinge", 40, 0.5, 1e6}};
+  spec.articulations[0].positions = {0.4};
   const auto world = make(spec);
   world->set_targets(std::vector<double>{0.1});
   const double dt = spec.dt, m = 0.06 + 2 * 0.3 * 0.3;
@@ -173,6 +177,47 @@ TEST_CASE("substeps do not allocate") {
   CHECK(g_allocations - before == 0);
 }
 
+// A plate of 16 x 16 boxes.
+std::shared_ptr<const scene::CollisionShape> many_parts() {
+  std::vector<std::vector<Vec3>> hulls;
+  for (int x = 0; x < 16; ++x) {
+    for (int y = 0; y < 16; ++y) {
+      std::vector<Vec3>& hull = hulls.emplace_back();
+      for (int i = 0; i < 8; ++i) {
+        hull.emplace_back(0.01 * (x + (i & 1 ? 1 : 0)), 0.01 * (y + (i & 2 ? 1 : 0)),
+                          i & 4 ? 0.01 : 0.0);
+      }
+    }
+  }
+  auto shape = scene::make_collision_shape(hulls, "plate");
+  REQUIRE_MESSAGE(shape.ok(), (shape.ok() ? "" : to_text(shape.failure())));
+  return std::make_shared<scene::CollisionShape>(std::move(shape).value());
+}
+
+TEST_CASE("pairs of parts are remembered where they are near, not for all that could touch") {
+  const auto plate = many_parts();
+  REQUIRE(plate->parts.size() == 256);
+  WorldSpec spec;
+  spec.sleeping = false;
+  spec.bodies = {{"lower", plate, 500, 0.5, at(0, 0, 0.0001)},
+                 {"upper", plate, 500, 0.5, at(0.055, 0.055, 0.0103)}};
+  const long before = g_bytes;
+  const auto world = make(spec);
+  REQUIRE(world->step(200).ok());
+  const long bytes = g_bytes - before;
+  const std::size_t records = world->stepper().table.records_in_use();
+  MESSAGE((bytes / 1024), " KiB asked for, ", records, " records of ", sizeof(PairRecord), " bytes");
+  CHECK(world->body(1).center.z() == doctest::Approx(0.015).epsilon(0.01));
+  // 65,536 records would be 57 MB; each part of the upper is near at most nine of the lower.
+  CHECK(records <= 2 + 9 * 256);
+  CHECK(records >= 100);
+  CHECK(bytes < 8'000'000);
+  // Apart, nothing is remembered but the lower one on the surface.
+  world->set_body(1, at(1, 1, 1));
+  REQUIRE(world->step(1).ok());
+  CHECK(world->stepper().table.records_in_use() == 1);
+}
+
 TEST_CASE("bodies that start deep inside each other part slowly") {
   for (const double shift : {0.0, 1e-4, 0.01}) {
     WorldSpec spec;
@@ -230,8 +275,8 @@ TEST_CASE("impossible bodies, fixtures and robots are refused by name") {
     const auto link = static_cast<std::size_t>(model.find_link("upper_forearm_link"));
     change(model.links[link]);
     WorldSpec with;
-    with.arm = robot.value()->spec;
-    with.arm.model = &model;
+    with.articulations = {robot.value()->spec};
+    with.articulations[0].model = &model;
     return refused(with);
   };
   CHECK(spoilt([](robot::Link& l) { l.mass = -0.3; }).find("`upper_forearm_link`") !=
@@ -270,7 +315,7 @@ TEST_CASE("a target beyond everything stops at limits; bodies that left the room
   if (!make_bench(&bench, {lying("cube", small_cube(), 0.027, kSpot)})) return;
   for (const double target : {1e9, -1e9, 1e300}) {
     std::vector<double> all(8, target);
-    bench.world->set_joints(bench.robot->spec.joints);
+    bench.world->set_joints(bench.robot->spec.positions);
     bench.world->set_targets(all);
     const Status status = bench.world->step(1000);
     // It flails at its force limits; if that flings the cube away, the world says so.
@@ -279,7 +324,7 @@ TEST_CASE("a target beyond everything stops at limits; bodies that left the room
       return;
     }
     for (std::size_t j = 0; j < 8; ++j) {
-      const Drive& drive = bench.robot->spec.drives[j];
+      const JointSpec& drive = bench.robot->spec.joints[j];
       const robot::Joint& joint =
           bench.robot->model
               .joints[static_cast<std::size_t>(bench.robot->model.find_joint(drive.joint))];
@@ -316,7 +361,7 @@ struct Episode {
     spec.bodies = {lying("cube", small_cube(), 0.027, kSpot + shift),
                    lying("carrot", carrot(), 0.055, kSpot + Vec3(0, 0.08, 0.02) + shift)};
     world = make(spec);
-    target.assign(spec.arm.joints.begin(), spec.arm.joints.end());
+    target.assign(spec.articulations[0].positions.begin(), spec.articulations[0].positions.end());
   }
   static std::shared_ptr<const scene::CollisionShape> carrot() {
     static const auto shape = object("carrot");

@@ -112,11 +112,11 @@ TEST_CASE("the other engine's scene: grasped, held, carried, released, at rest")
     REQUIRE(commands.size() > 200);
     REQUIRE(peer.bodies.size() == 4);
     WorldSpec spec;
-    spec.arm = robot.value()->spec;
-    spec.arm.base = Pose{};
-    spec.arm.joints = commands.front().targets;
-    spec.arm.joints[0] = 0;
-    for (std::size_t f : {6U, 7U}) spec.arm.joints[f] = 0.037;
+    spec.articulations = {robot.value()->spec};
+    spec.articulations[0].base = Pose{};
+    spec.articulations[0].positions = commands.front().targets;
+    spec.articulations[0].positions[0] = 0;
+    for (std::size_t f : {6U, 7U}) spec.articulations[0].positions[f] = 0.037;
     spec.bodies = peer.bodies;
     spec.sleeping = false;
     auto made = World::create(spec);
@@ -128,7 +128,7 @@ TEST_CASE("the other engine's scene: grasped, held, carried, released, at rest")
     };
     // Where the hand would be if the arm stood at its targets: what a rigid grasp follows.
     std::vector<std::string> names;
-    for (const Drive& drive : spec.arm.drives) names.push_back(drive.joint);
+    for (const JointSpec& drive : spec.articulations[0].joints) names.push_back(drive.joint);
     auto tree = robot::Tree::create(robot.value()->model, names);
     REQUIRE(tree.ok());
     const auto hand = static_cast<std::size_t>(robot.value()->model.find_link("gripper_link"));

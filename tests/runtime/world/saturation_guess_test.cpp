@@ -16,12 +16,12 @@ TEST_CASE("a jump of the target moves a light joint at its drive's speed, not at
   JointMatrix mass{};
   mass[0][0] = 0.003;
   ArmResponse arm;
-  guess_saturation(drives, joints, mass, 0.002, &arm);
+  guess_saturation(drives, joints, {0, 1}, mass, 0.002, &arm);
   CHECK(arm.saturated[0] == 0);
-  REQUIRE(respond(drives, joints, mass, 0.002, &arm));
+  REQUIRE(respond(drives, joints, {0, 1}, mass, nullptr, 0.002, &arm));
   // 100 N m on 3 g m2 for 2 ms would be 67 rad/s.
   CHECK(arm.free_speed[0] < 300.0 / 200.0);
-  CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, true, &arm));
+  CHECK(!find_overload(drives, joints, {0, 1}, arm.free_speed, 0.002, true, &arm));
 }
 
 TEST_CASE(
@@ -36,7 +36,7 @@ TEST_CASE(
   JointMatrix mass{};
   mass[0][0] = 5;
   ArmResponse arm;
-  guess_saturation(drives, joints, mass, 0.002, &arm);
+  guess_saturation(drives, joints, {0, 1}, mass, 0.002, &arm);
   CHECK(arm.saturated[0] == -1);
 }
 
@@ -57,15 +57,15 @@ TEST_CASE("a drive that presses with its limit against something still does in t
   mass[0][0] = 1e-4;
   ArmResponse arm;
   joints.saturated[0] = 1;
-  guess_saturation(drives, joints, mass, 0.002, &arm);
+  guess_saturation(drives, joints, {0, 1}, mass, 0.002, &arm);
   CHECK(arm.saturated[0] == 1);
   // Moving so fast that the drive would not reach its limit, or never at its limit: a drive again.
   joints.u[0] = 23;
-  guess_saturation(drives, joints, mass, 0.002, &arm);
+  guess_saturation(drives, joints, {0, 1}, mass, 0.002, &arm);
   CHECK(arm.saturated[0] == 0);
   joints.u[0] = 0;
   joints.saturated[0] = 0;
-  guess_saturation(drives, joints, mass, 0.002, &arm);
+  guess_saturation(drives, joints, {0, 1}, mass, 0.002, &arm);
   CHECK(arm.saturated[0] == 0);
 }
 
@@ -77,11 +77,11 @@ TEST_CASE("a drive taken to be at its limit that would not reach it is solved fo
   ArmResponse arm;
   arm.saturated[0] = 1;
   const JointArray moving{22};  // where the drive would push with 4 of its 10 N m
-  CHECK(!find_overload(drives, joints, moving, 0.002, false, &arm));
-  REQUIRE(find_overload(drives, joints, moving, 0.002, true, &arm));
-  REQUIRE(respond(drives, joints, mass, 0.002, &arm));
+  CHECK(!find_overload(drives, joints, {0, 1}, moving, 0.002, false, &arm));
+  REQUIRE(find_overload(drives, joints, {0, 1}, moving, 0.002, true, &arm));
+  REQUIRE(respond(drives, joints, {0, 1}, mass, nullptr, 0.002, &arm));
   CHECK(arm.free_speed[0] < 25);
-  CHECK(!find_overload(drives, joints, arm.free_speed, 0.002, true, &arm));
+  CHECK(!find_overload(drives, joints, {0, 1}, arm.free_speed, 0.002, true, &arm));
 }
 
 TEST_CASE("a limit force that flings its joint gives way to the drive for the rest of a substep") {
@@ -91,13 +91,13 @@ TEST_CASE("a limit force that flings its joint gives way to the drive for the re
   mass[0][0] = 1e-4;
   ArmResponse arm;
   arm.saturated[0] = 1;
-  REQUIRE(respond(drives, joints, mass, 0.002, &arm));
+  REQUIRE(respond(drives, joints, {0, 1}, mass, nullptr, 0.002, &arm));
   CHECK(arm.free_speed[0] == doctest::Approx(200));  // what held it is gone
-  REQUIRE(find_overload(drives, joints, arm.free_speed, 0.002, false, &arm));
+  REQUIRE(find_overload(drives, joints, {0, 1}, arm.free_speed, 0.002, false, &arm));
   CHECK(arm.saturated[0] == 0);
-  CHECK(!find_overload(drives, joints, JointArray{0}, 0.002, false, &arm));  // five times its limit
-  guess_saturation(drives, joints, mass, 0.002, &arm);
-  CHECK(find_overload(drives, joints, JointArray{0}, 0.002, false, &arm));
+  CHECK(!find_overload(drives, joints, {0, 1}, JointArray{0}, 0.002, false, &arm));  // five times its limit
+  guess_saturation(drives, joints, {0, 1}, mass, 0.002, &arm);
+  CHECK(find_overload(drives, joints, {0, 1}, JointArray{0}, 0.002, false, &arm));
 }
 
 }  // namespace

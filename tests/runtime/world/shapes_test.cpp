@@ -264,9 +264,9 @@ TEST_CASE(
   }
   WorldSpec spec = table_spec(robot.value()->spec);
   CHECK(make(spec)->excluded_links().empty());
-  spec.arm.self_collision = true;
+  spec.articulations[0].self_collision = true;
   const auto world = make(spec);
-  const auto& links = spec.arm.links;
+  const auto& links = spec.articulations[0].links;
   REQUIRE(!world->excluded_links().empty());
   for (const ExcludedLinks& out : world->excluded_links()) {
     CHECK(out.a < out.b);
@@ -279,7 +279,7 @@ TEST_CASE(
   run(world.get(), 100);
   CHECK(world->contacts().empty());
   // Folded onto itself: the gripper meets the upper arm or the base and stops there.
-  std::vector<double> q(spec.arm.joints);
+  std::vector<double> q(spec.articulations[0].positions);
   q[1] = -1.7;
   q[2] = 1.55;
   q[4] = 2.1;

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "runtime/world/arm_dynamics.h"
+#include "runtime/world/multibody.h"
 
 namespace probe::world {
 namespace {
@@ -34,7 +34,7 @@ TEST_CASE("a Simbody of the other layout is refused with both sides named") {
 std::string preprocess(const std::string& definitions) {
   const std::string command = "c++ -std=c++17 -E " + definitions +
                               " '" VLAPROBE_SOURCE_DIR
-                              "/runtime/world/arm_dynamics.cpp' 2>&1 >/dev/null";
+                              "/runtime/world/multibody.cpp' 2>&1 >/dev/null";
   FILE* pipe = popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
   std::string text;

@@ -11,7 +11,7 @@
 #include "runtime/robot/ik.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/scene/hull.h"
-#include "runtime/world/arm_dynamics.h"
+#include "runtime/world/joint_tree.h"
 #include "runtime/world/world.h"
 
 namespace probe::world {
@@ -127,13 +127,13 @@ struct Robot {
 
 Robot geared() {
   Robot r{load("geared", geared_arm()), {}, {}, 7};
-  ArmSpec& arm = r.spec.arm;
+  ArticulationSpec& arm = r.spec.articulations.emplace_back();
   for (int i = 1; i <= 7; ++i) {
-    arm.drives.push_back({"joint" + std::to_string(i), 1000, 100, 100});
-    r.arm_joints.push_back(arm.drives.back().joint);
+    arm.joints.push_back({"joint" + std::to_string(i), 1000, 100, 100});
+    r.arm_joints.push_back(arm.joints.back().joint);
   }
-  arm.drives.push_back({"slide1", 1000, 100, 40});
-  arm.joints = {0, -0.785398, 0, -2.356194, 0, kHalfPi, 0.785398, 0.04};
+  arm.joints.push_back({"slide1", 1000, 100, 40});
+  arm.positions = {0, -0.785398, 0, -2.356194, 0, kHalfPi, 0.785398, 0.04};
   arm.links = {{"hand", box({-0.02, -0.1, -0.02}, {0.02, 0.1, 0.06}), 1.0, 0},
                {"finger1", box({-0.009, 0, 0.02}, {0.009, 0.012, 0.0535}), 2.0, 0.01},
                {"finger2", box({-0.009, -0.012, 0.02}, {0.009, 0, 0.0535}), 2.0, 0.01}};
@@ -142,17 +142,17 @@ Robot geared() {
 
 Robot mobile() {
   Robot r{load("mobile", mobile_arm()), {}, {}, 7};
-  ArmSpec& arm = r.spec.arm;
+  ArticulationSpec& arm = r.spec.articulations.emplace_back();
   for (const char* name : {"lift", "shoulder_yaw", "shoulder_pitch", "elbow", "forearm_roll",
                            "wrist_pitch", "gripper_roll"}) {
-    arm.drives.push_back({name, 1500, 200, 300});
+    arm.joints.push_back({name, 1500, 200, 300});
     r.arm_joints.push_back(name);
   }
-  arm.drives.push_back({"pan", 100, 10, 10});
-  arm.drives.push_back({"tilt", 100, 10, 10});
-  arm.drives.push_back({"hinge_left", 50, 2, 10});
-  arm.drives.push_back({"hinge_right", 50, 2, 10});
-  arm.joints = {0.2, 0, 0.3, 0.5, 0, kHalfPi - 0.8, 0, 0, 0, 0, 0};
+  arm.joints.push_back({"pan", 100, 10, 10});
+  arm.joints.push_back({"tilt", 100, 10, 10});
+  arm.joints.push_back({"hinge_left", 50, 2, 10});
+  arm.joints.push_back({"hinge_right", 50, 2, 10});
+  arm.positions = {0.2, 0, 0.3, 0.5, 0, kHalfPi - 0.8, 0, 0, 0, 0, 0};
   const auto finger = box({0, -0.005, -0.012}, {0.1, 0.005, 0.012});
   arm.links = {{"base", box({-0.3, -0.3, -0.2}, {0.1, 0.3, 0.2}), 1.0, 0},
                {"gripper", box({-0.05, -0.05, -0.03}, {0.01, 0.05, 0.03}), 1.0, 0},
@@ -162,7 +162,7 @@ Robot mobile() {
 }
 
 std::unique_ptr<World> make(Robot* r) {
-  r->spec.arm.model = &r->model;
+  r->spec.articulations[0].model = &r->model;
   auto world = World::create(r->spec);
   REQUIRE_MESSAGE(world.ok(), (world.ok() ? "" : to_text(world.failure())));
   return std::move(world).value();
@@ -191,36 +191,114 @@ std::vector<double> reach(const Robot& r, const std::vector<double>& from, const
 
 Vec3 tip(const World& world) { return world.frame_pose("tip").position; }
 
+// Positions a link of the tree, as the multibody library wants them.
+std::vector<double> per_link(const JointTree& tree, const JointArray& q) {
+  std::vector<double> out;
+  for (const JointTree::Follower& motion : tree.motions()) {
+    out.push_back(motion.scale * q[static_cast<std::size_t>(motion.leader)] + motion.offset);
+  }
+  return out;
+}
+
+struct TreePair {
+  std::unique_ptr<JointTree> ours;
+  std::unique_ptr<Multibody> library;
+};
+
+TreePair make_trees(const Robot& r, const Pose& base) {
+  std::vector<int> order;
+  for (const JointSpec& j : r.spec.articulations[0].joints) {
+    order.push_back(r.model.find_joint(j.joint));
+  }
+  auto ours = JointTree::create(r.model, base, order);
+  REQUIRE_MESSAGE(ours.ok(), (ours.ok() ? "" : to_text(ours.failure())));
+  auto library = Multibody::create(r.model.name, (*ours)->tree(), (*ours)->outward());
+  REQUIRE(library.ok());
+  return {std::move(*ours), std::move(*library)};
+}
+
+const Pose kTilted{{0.3, -0.2, 0.1}, Quat(0.8, 0, 0.6, 0)};
+
 TEST_CASE("the mass matrix is the multibody library's own, geared fingers included") {
   for (const bool is_geared : {true, false}) {
     Robot r = is_geared ? geared() : mobile();
-    std::vector<int> order;
-    for (const Drive& d : r.spec.arm.drives) order.push_back(r.model.find_joint(d.joint));
-    const Pose base{{0.3, -0.2, 0.1}, Quat(0.8, 0, 0.6, 0)};
-    auto arm = ArmDynamics::create(r.model, base, order);
-    REQUIRE_MESSAGE(arm.ok(), (arm.ok() ? "" : to_text(arm.failure())));
+    const TreePair trees = make_trees(r, kTilted);
+    const auto n = static_cast<std::size_t>(trees.ours->count());
     JointArray q{};
-    for (std::size_t i = 0; i < order.size(); ++i) q[i] = r.spec.arm.joints[i] + 0.1;
-    REQUIRE((*arm)->update(q).ok());
-    const JointMatrix ours = (*arm)->mass(), library = (*arm)->library_mass();
+    for (std::size_t i = 0; i < n; ++i) q[i] = r.spec.articulations[0].positions[i] + 0.1;
+    trees.ours->update(q);
+    const auto placed = trees.library->place(per_link(*trees.ours, q));
+    REQUIRE(placed.ok());
+    // The library has a speed a link; those of followers go to their leaders.
+    JointMatrix library{};
+    const auto& motions = trees.ours->motions();
+    for (std::size_t a = 0; a < motions.size(); ++a) {
+      for (std::size_t b = 0; b < motions.size(); ++b) {
+        library[static_cast<std::size_t>(motions[a].leader)]
+               [static_cast<std::size_t>(motions[b].leader)] +=
+            motions[a].scale * motions[b].scale * placed->mass[a][b];
+      }
+    }
     double worst = 0, largest = 0;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      for (std::size_t j = 0; j < order.size(); ++j) {
-        worst = std::max(worst, std::fabs(ours[i][j] - library[i][j]));
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        worst = std::max(worst, std::fabs(trees.ours->mass()[i][j] - library[i][j]));
         largest = std::max(largest, std::fabs(library[i][j]));
       }
     }
     CHECK(largest > 0.1);
     CHECK(worst < 1e-12 * largest);
-    CHECK((*arm)->followers().size() == (is_geared ? 1 : 0));
+    CHECK(trees.ours->followers().size() == (is_geared ? 1 : 0));
   }
+}
+
+TEST_CASE("links stand where the multibody library puts them, bit for bit") {
+  std::size_t different = 0, compared = 0;
+  double worst = 0;
+  std::uint64_t draw = 7;
+  const auto uniform = [&] {
+    draw = draw * 6364136223846793005ull + 1442695040888963407ull;
+    return static_cast<double>(draw >> 11) * 0x1.0p-53;
+  };
+  const auto compare = [&](double ours, double library) {
+    ++compared;
+    different += ours != library;
+    worst = std::max(worst, std::fabs(ours - library));
+  };
+  for (const bool is_geared : {true, false}) {
+    for (const Pose& base : {Pose{}, kTilted}) {
+      Robot r = is_geared ? geared() : mobile();
+      const TreePair trees = make_trees(r, base);
+      for (int trial = 0; trial < 300; ++trial) {
+        JointArray q{};
+        for (int i = 0; i < trees.ours->count(); ++i) {
+          q[static_cast<std::size_t>(i)] = 6 * uniform() - 3;
+        }
+        trees.ours->update(q);
+        const auto placed = trees.library->place(per_link(*trees.ours, q));
+        REQUIRE(placed.ok());
+        for (std::size_t k = 0; k < trees.ours->link_count(); ++k) {
+          const MovingLink& link = trees.ours->link(static_cast<int>(k));
+          for (int i = 0; i < 3; ++i) {
+            compare(link.origin[i], placed->origins[k][i]);
+            for (int j = 0; j < 3; ++j) compare(link.axes(i, j), placed->axes[k](i, j));
+          }
+        }
+      }
+    }
+  }
+  MESSAGE(compared, " numbers, ", different, " different, worst ", worst);
+  CHECK(compared > 100000);
+  CHECK(worst < 1e-14);
+  // Another build of the library may round otherwise; Debian's does not.
+  if (multibody_build().library_asserts) CHECK(different == 0);
 }
 
 TEST_CASE("links stand where kinematics says, followers too") {
   Robot r = geared();
   const auto world = make(&r);
   std::vector<std::string> names;
-  for (const Drive& d : r.spec.arm.drives) names.push_back(d.joint);
+  for (const JointSpec& d : r.spec.articulations[0].joints) names.push_back(d.joint);
   auto tree = robot::Tree::create(r.model, names);
   REQUIRE(tree.ok());
   std::vector<double> q = state(*world);
@@ -247,9 +325,9 @@ TEST_CASE("robots of either kind go to their targets and stop at both limits of 
     for (std::size_t i = 0; i < r.arm; ++i) {
       CHECK(std::fabs(world->joints()[i] - target[i]) < 1e-3);
     }
-    const std::vector<double> home = r.spec.arm.joints;
+    const std::vector<double> home = r.spec.articulations[0].positions;
     for (std::size_t i = 0; i < home.size(); ++i) {
-      const Drive& drive = r.spec.arm.drives[i];
+      const JointSpec& drive = r.spec.articulations[0].joints[i];
       const robot::Joint& joint =
           r.model.joints[static_cast<std::size_t>(r.model.find_joint(drive.joint))];
       for (const double side : {-1.0, 1.0}) {
@@ -285,7 +363,8 @@ TEST_CASE("robots of either kind hold a box and carry it up without slip") {
       const auto bare = make(&r);
       Vec3 spot = tip(*bare);
       spot.z() = r.spec.surface_z + half;
-      r.spec.arm.joints = reach(r, state(*bare), spot + Vec3(0, 0, is_geared ? 0.0 : 0.005));
+      r.spec.articulations[0].positions =
+          reach(r, state(*bare), spot + Vec3(0, 0, is_geared ? 0.0 : 0.005));
       r.spec.bodies.push_back(
           {"box",
            std::make_shared<scene::CollisionShape>(scene::make_box_shape(Vec3::Constant(half))),
@@ -333,7 +412,7 @@ TEST_CASE("turning fingers that press with their full force hold a box without c
       const auto bare = make(&r);
       Vec3 spot = tip(*bare);
       spot.z() = r.spec.surface_z + half;
-      r.spec.arm.joints = reach(r, state(*bare), spot + Vec3(0, 0, 0.005));
+      r.spec.articulations[0].positions = reach(r, state(*bare), spot + Vec3(0, 0, 0.005));
       r.spec.bodies.push_back(
           {"box",
            std::make_shared<scene::CollisionShape>(scene::make_box_shape(Vec3::Constant(half))),
@@ -386,7 +465,7 @@ TEST_CASE("a follower's limits bind its leader, and limits that contradict are r
   }
   change("offset='-0.01'", "offset='0.1'");
   r.model = load("geared3", text);
-  r.spec.arm.model = &r.model;
+  r.spec.articulations[0].model = &r.model;
   const auto refused = World::create(r.spec);
   REQUIRE(!refused.ok());
   CHECK(refused.failure().message.find("`slide2` mimics `slide1`") != std::string::npos);
@@ -395,15 +474,16 @@ TEST_CASE("a follower's limits bind its leader, and limits that contradict are r
 TEST_CASE("more joints than a world has room for are refused") {
   std::string text = "<robot name='snake'>" + link("l0");
   Robot r{{}, {}, {}, 0};
+  r.spec.articulations.emplace_back();
   for (int i = 1; i <= kMaxJoints + 1; ++i) {
     const std::string n = std::to_string(i);
     text += link("l" + n) + joint("j" + n, "continuous", "l" + std::to_string(i - 1), "l" + n,
                                   "xyz='0 0 0.1'", i % 2 ? "1 0 0" : "0 1 0");
-    r.spec.arm.drives.push_back({"j" + n, 100, 50, 20});
-    r.spec.arm.joints.push_back(0);
+    r.spec.articulations[0].joints.push_back({"j" + n, 100, 50, 20});
+    r.spec.articulations[0].positions.push_back(0);
   }
   r.model = load("snake", text + "</robot>");
-  r.spec.arm.model = &r.model;
+  r.spec.articulations[0].model = &r.model;
   const auto refused = World::create(r.spec);
   REQUIRE(!refused.ok());
   CHECK(refused.failure().message.find("at most 32") != std::string::npos);

@@ -12,7 +12,7 @@ namespace probe::world {
 
 struct WidowX {
   robot::RobotModel model;
-  ArmSpec spec;
+  ArticulationSpec spec;
 };
 
 inline std::string widowx_folder() { return VLAPROBE_SOURCE_DIR "/assets/robots/widowx"; }
@@ -21,15 +21,15 @@ inline std::string widowx_folder() { return VLAPROBE_SOURCE_DIR "/assets/robots/
 inline Result<std::unique_ptr<WidowX>> load_widowx() {
   auto out = std::make_unique<WidowX>();
   PROBE_ASSIGN(out->model, robot::load_urdf(widowx_folder() + "/wx250s.urdf"));
-  ArmSpec& arm = out->spec;
+  ArticulationSpec& arm = out->spec;
   arm.model = &out->model;
   arm.base = {Vec3(0.147, 0.028, 0.870), Quat(0, 0, 0, 1)};
-  arm.drives = {{"waist", 1169.789, 330.0, 200},         {"shoulder", 730.0, 180.0, 200},
+  arm.joints = {{"waist", 1169.789, 330.0, 200},         {"shoulder", 730.0, 180.0, 200},
                 {"elbow", 808.460, 152.120, 100},        {"forearm_roll", 1229.130, 309.622, 100},
                 {"wrist_angle", 1272.276, 201.050, 100}, {"wrist_rotate", 1056.333, 269.515, 100},
                 {"left_finger", 1000, 200, 60},          {"right_finger", 1000, 200, 60}};
-  arm.joints = {-0.01840777, 0.0398835,  0.22242722, -0.00460194,
-                1.36524296,  0.00153398, 0.037,      0.037};
+  arm.positions = {-0.01840777, 0.0398835,  0.22242722, -0.00460194,
+                   1.36524296,  0.00153398, 0.037,      0.037};
   for (const robot::Link& link : out->model.links) {
     if (link.collisions.empty()) continue;
     scene::TriangleSoup all;
