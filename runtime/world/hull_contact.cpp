@@ -64,7 +64,7 @@ bool best_face(const HullPair& pair, bool of_b, double margin, FaceRef* cached, 
 struct EdgeBest {
   double gap = -1e30;
   Vec3 axis = Vec3::Zero();  // from A to B
-  Vec3 a0, a1, b0, b1;
+  Vec3 a0 = Vec3::Zero(), a1 = Vec3::Zero(), b0 = Vec3::Zero(), b1 = Vec3::Zero();
 };
 
 struct EdgeList {

@@ -16,12 +16,12 @@ using std::size_t;
 constexpr double kRegular = 1e-9;
 constexpr double kRevoluteLever = 0.2;  // m, makes rad/s of a joint comparable to m/s
 
-struct Sides {
+struct BodyPair {
   const Body* a;
   const Body* b;
 };
 
-Sides sides(const ContactRows& c, const std::vector<Body>& bodies) {
+BodyPair body_pair(const ContactRows& c, const std::vector<Body>& bodies) {
   return {c.body_a < 0 ? nullptr : &bodies[static_cast<size_t>(c.body_a)],
           c.body_b < 0 ? nullptr : &bodies[static_cast<size_t>(c.body_b)]};
 }
@@ -30,7 +30,7 @@ Sides sides(const ContactRows& c, const std::vector<Body>& bodies) {
 //   speed = J u + d . v_A + (r_A x d) . omega_A - d . v_B - (r_B x d) . omega_B
 //   k     = J W J^T + sum over bodies of ( 1/m + (r x d) . K (r x d) )
 // Here the bodies' part; returns their k.
-double build_linear(const Contact& c, const ContactRows& rows, const Sides& s, const Vec3& d,
+double build_linear(const Contact& c, const ContactRows& rows, const BodyPair& s, const Vec3& d,
                     Row* row) {
   double k = kRegular;
   row->d = d;
@@ -48,7 +48,7 @@ double build_linear(const Contact& c, const ContactRows& rows, const Sides& s, c
 }
 
 // Torsion about the normal is angular only, so its linear direction is zero and its arms are n.
-double build_twist(const Contact& c, const Sides& s, Row* row) {
+double build_twist(const Contact& c, const BodyPair& s, Row* row) {
   double k = kRegular;
   row->d = Vec3::Zero();
   if (s.a != nullptr) {
@@ -117,7 +117,7 @@ void build_rows(const Parameters& parameters, const std::vector<Articulation>& a
   for (size_t index = 0; index < problem->contacts.size(); ++index) {
     Contact& c = problem->contacts[index];
     ContactRows& rows = problem->rows[index];
-    const Sides s = sides(rows, *problem->bodies);
+    const BodyPair s = body_pair(rows, *problem->bodies);
     c.body_k[kNormal] = build_linear(c, rows, s, c.n, &rows.rows[kNormal]);
     c.body_k[kTangent1] = build_linear(c, rows, s, c.t1, &rows.rows[kTangent1]);
     c.body_k[kTangent2] = build_linear(c, rows, s, c.t2, &rows.rows[kTangent2]);

@@ -21,7 +21,7 @@ constexpr double kTooFast = 50.0;  // m/s
 constexpr double kTooDeep = 1.0;   // m below the surface
 constexpr double kTooFar = 100.0;  // m from the world's origin
 
-Failure fail(std::string message) { return {Fault::kWorld, std::move(message), ""}; }
+Failure lost(std::string message) { return {Fault::kWorld, std::move(message), ""}; }
 
 }  // namespace
 
@@ -38,7 +38,7 @@ Result<std::unique_ptr<World>> World::create(WorldSpec spec) {
   for (size_t b = 0; b < world->spec_.bodies.size(); ++b) {
     const BodySpec& body = world->spec_.bodies[b];
     if (!is_finite(body.pose) || !(body.pose.rotation.norm() > 0.5)) {
-      return fail("body `" + body.name + "` starts at a pose that is not finite or not a rotation");
+      return lost("body `" + body.name + "` starts at a pose that is not finite or not a rotation");
     }
     world->set_body(b, body.pose);
   }
@@ -144,9 +144,9 @@ Status World::check_state() const {
       const std::string& name = spec_.articulations[a].joints[k].joint;
       const size_t i = first + k;
       if (!std::isfinite(j.target[i]))
-        return fail("the target of joint `" + name + "` is not finite");
+        return lost("the target of joint `" + name + "` is not finite");
       if (!std::isfinite(j.q[i]) || !std::isfinite(j.u[i])) {
-        return fail("joint `" + name + "` has a position or speed that is not finite");
+        return lost("joint `" + name + "` has a position or speed that is not finite");
       }
     }
   }
@@ -157,16 +157,16 @@ Status World::check_state() const {
     if (!(body.velocity.squaredNorm() + body.spin.squaredNorm() + body.position.squaredNorm() <
           std::numeric_limits<double>::infinity()) ||
         !body.rotation.coeffs().allFinite()) {
-      return fail("body `" + std::string(name) + "` has a pose or velocity that is not finite");
+      return lost("body `" + std::string(name) + "` has a pose or velocity that is not finite");
     }
     if (body.velocity.squaredNorm() > kTooFast * kTooFast) {
-      return fail("body `" + std::string(name) + "` is faster than 50 m/s");
+      return lost("body `" + std::string(name) + "` is faster than 50 m/s");
     }
     if (body.position.z() < spec_.surface_z - kTooDeep) {
-      return fail("body `" + std::string(name) + "` is more than 1 m below the surface");
+      return lost("body `" + std::string(name) + "` is more than 1 m below the surface");
     }
     if (body.position.squaredNorm() > kTooFar * kTooFar) {
-      return fail("body `" + std::string(name) + "` is farther than 100 m away");
+      return lost("body `" + std::string(name) + "` is farther than 100 m away");
     }
   }
   return {};
