@@ -158,7 +158,7 @@ struct Row {
 };
 
 // Rows of one contact in the order that sweeps and warm starts count them.
-enum RowIndex : int { kNormal, kTangent1, kTangent2, kTwist, kRows };
+enum RowIndex : std::size_t { kNormal, kTangent1, kTangent2, kTwist, kRows };
 
 // What the sweeps touch of a contact, all of it and nothing else.
 struct ContactRows {
