@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/utf8.h"
+
 namespace probe {
 namespace {
 
@@ -37,28 +39,10 @@ bool is_in(const Range (&ranges)[kCount], std::uint32_t code) {
   });
 }
 
-// One character of `text` at `at`: its code point and bytes; a byte that is not UTF-8 is U+FFFD of
-// one byte.
-struct Character {
-  std::uint32_t code;
-  std::size_t bytes;
-};
-Character character_at(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) {
-    return at + i < text.size()
-               ? static_cast<std::uint32_t>(static_cast<unsigned char>(text[at + i]))
-               : 0u;
-  };
-  const std::uint32_t lead = byte(0);
-  if (lead < 0x80) return {lead, 1};
-  const std::size_t bytes = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : lead >= 0xc2 ? 2 : 1;
-  if (bytes == 1 || lead > 0xf4) return {0xfffd, 1};
-  std::uint32_t code = lead & (0x7fu >> bytes);
-  for (std::size_t i = 1; i < bytes; ++i) {
-    if ((byte(i) & 0xc0u) != 0x80u) return {0xfffd, 1};
-    code = code << 6u | (byte(i) & 0x3fu);
-  }
-  return {code, bytes};
+// One character of `text` at `at`; a byte that is not UTF-8 is U+FFFD of one byte.
+Utf8Char character_at(std::string_view text, std::size_t at) {
+  const Utf8Char character = first_utf8(text.substr(at));
+  return character.bytes == 0 ? Utf8Char{character.code, 1} : character;
 }
 
 // A source line as it is printed, and the printed column at which each asked byte begins.
@@ -98,8 +82,7 @@ class PrintedLine {
     constexpr std::size_t kBefore = 1024, kKept = 4096;
     if (line_.size() <= kKept) return;
     skipped_ = mark > kBefore ? mark - kBefore : 0;
-    while (skipped_ > 0 && (static_cast<unsigned char>(line_[skipped_]) & 0xc0u) == 0x80u)
-      --skipped_;
+    while (skipped_ > 0 && is_utf8_tail(line_[skipped_])) --skipped_;
     line_ = line_.substr(skipped_, kKept);
   }
 
@@ -108,7 +91,7 @@ class PrintedLine {
     end = end > skipped_ ? end - skipped_ : 0;
     std::size_t column = 0;
     for (std::size_t at = 0; at < std::min(end, line_.size());) {
-      const Character character = character_at(line_, at);
+      const Utf8Char character = character_at(line_, at);
       column += width(character.code, column);
       at += character.bytes;
     }
@@ -119,7 +102,7 @@ class PrintedLine {
     std::size_t column = 0;
     if (from_ > 0) text_ += kDots;
     for (std::size_t at = 0; at < line_.size();) {
-      const Character character = character_at(line_, at);
+      const Utf8Char character = character_at(line_, at);
       const std::size_t columns = width(character.code, column);
       if (column >= to_) {
         text_ += kDots;
@@ -199,7 +182,7 @@ class Painter {
   static std::string safe(std::string_view text) {
     std::string out;
     for (std::size_t at = 0; at < text.size();) {
-      const Character character = character_at(text, at);
+      const Utf8Char character = character_at(text, at);
       const bool bad =
           character.code == 0xfffd || (character.code != '\n' && is_in(kUnsafe, character.code));
       if (bad) {

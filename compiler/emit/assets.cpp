@@ -1,31 +1,16 @@
 #include "compiler/emit/assets.h"
 
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "runtime/base/asset_path.h"
+#include "runtime/base/file.h"
+#include "runtime/base/paths.h"
 
 namespace probe::emit {
-namespace {
-
-std::optional<std::vector<std::byte>> read_bytes(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) return std::nullopt;
-  const std::streamoff size = in.tellg();
-  if (size < 0) return std::nullopt;
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-  in.seekg(0);
-  in.read(reinterpret_cast<char*>(bytes.data()), size);
-  if (!in) return std::nullopt;
-  return bytes;
-}
-
-}  // namespace
 
 bool AssetTable::has(const std::string& path) const {
-  std::error_code error;
-  return std::filesystem::is_regular_file(std::filesystem::path(root_) / path, error);
+  return is_file((std::filesystem::path(root_) / path).string());
 }
 
 std::string AssetTable::find(const std::string& stem,
@@ -56,11 +41,11 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
   }
   Asset asset{path, kind, 0, {}};
   if (hashes_) {
-    const auto bytes = read_bytes(*file);
+    const auto bytes = read_file(*file);
     if (!bytes) return miss("cannot be read");
     if (bytes->empty()) return miss("is empty");
     asset.byte_size = bytes->size();
-    asset.hash = sha256(std::span<const std::byte>(*bytes));
+    asset.hash = sha256(std::string_view(*bytes));
   }
   if (inspect_) {
     const Status good = inspect_(path, kind, hashes_ ? &asset.hash : nullptr);

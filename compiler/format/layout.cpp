@@ -9,6 +9,7 @@
 #include "compiler/format/format.h"
 #include "compiler/format/lines.h"
 #include "compiler/syntax/lexer.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::format {
 namespace {
@@ -478,7 +479,7 @@ class Layouter {
 
 std::uint32_t width_of(std::string_view text) {
   std::uint32_t width = 0;
-  for (const char c : text) width += (static_cast<unsigned char>(c) & 0xc0u) != 0x80u ? 1 : 0;
+  for (const char c : text) width += is_utf8_tail(c) ? 0 : 1;
   return width;
 }
 

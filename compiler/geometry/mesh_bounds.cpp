@@ -4,8 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
+
+#include "runtime/base/file.h"
 
 namespace probe::sema {
 namespace {
@@ -46,14 +47,9 @@ std::optional<Bounds> bounds_of_obj(std::string_view text) {
 std::optional<Bounds> bounds_of_mesh(const std::string& asset_root, const std::string& mesh) {
   const std::filesystem::path path =
       std::filesystem::path(asset_root) / "objects" / mesh / "collision.obj";
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) return std::nullopt;
-  const std::streamoff size = in.tellg();
-  if (size <= 0) return std::nullopt;
-  std::string text(static_cast<std::size_t>(size), '\0');
-  in.seekg(0);
-  if (!in.read(text.data(), size)) return std::nullopt;
-  return bounds_of_obj(text);
+  const auto text = read_file(path.string());
+  if (!text || text->empty()) return std::nullopt;
+  return bounds_of_obj(*text);
 }
 
 }  // namespace probe::sema

@@ -3,21 +3,16 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <utility>
 
 #include <sys/stat.h>
 
 #include "runtime/base/check.h"
+#include "runtime/base/file.h"
+#include "runtime/base/utf8.h"
 
 namespace probe {
-namespace {
-
-bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xc0u) == 0x80u; }
-
-}  // namespace
 
 SourceFile::SourceFile(std::string name, std::string text)
     : name_(std::move(name)), text_(std::move(text)) {
@@ -56,7 +51,7 @@ LineColumn SourceFile::line_column(std::uint32_t offset) const {
   const std::uint32_t line = line_of(offset);
   const std::string_view before =
       text().substr(line_starts_[line - 1], offset - line_starts_[line - 1]);
-  const auto continuations = std::count_if(before.begin(), before.end(), is_continuation);
+  const auto continuations = std::count_if(before.begin(), before.end(), is_utf8_tail);
   const bool marked =
       line == 1 && before.starts_with("\xef\xbb\xbf");  // a byte order mark is no character
   const std::size_t characters =
@@ -77,16 +72,10 @@ Result<FileId> SourceSet::load(const std::string& path) {
     return Failure{Fault::kIo, std::string("cannot read: ") + std::strerror(errno), path};
   }
   if (!S_ISREG(status.st_mode)) return Failure{Fault::kIo, "cannot read: not a regular file", path};
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "rb"),
-                                                               std::fclose);
-  if (stream == nullptr) {
-    return Failure{Fault::kIo, std::string("cannot read: ") + std::strerror(errno), path};
-  }
-  const auto size = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
-  std::string text(std::min(size, kMaxSourceBytes + 1), '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), stream.get()));
-  if (std::ferror(stream.get()) != 0) return Failure{Fault::kIo, "cannot read: input error", path};
-  return add(path, std::move(text));
+  // One byte more than a source may have, so that the lexer sees that it has more.
+  auto text = read_file(path, {.most = kMaxSourceBytes + 1, .only_begin = true});
+  if (!text) return Failure{Fault::kIo, "cannot read: " + text.failure().message, path};
+  return add(path, std::move(*text));
 }
 
 std::optional<FileId> SourceSet::find(std::string_view name) const {

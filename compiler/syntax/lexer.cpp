@@ -1,6 +1,7 @@
 // One pass over the bytes; every byte ends up in exactly one token.
 #include "compiler/syntax/lexer.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "compiler/syntax/parser.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::syntax {
 namespace {
@@ -16,30 +18,8 @@ constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 // The first byte that is NUL or not UTF-8, if any.
 std::optional<std::size_t> first_unreadable(std::string_view text) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned>(static_cast<unsigned char>(text[i])) : 0u;
-  };
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const unsigned lead = byte(at);
-    if (lead == 0) return at;
-    if (lead < 0x80) {
-      ++at;
-      continue;
-    }
-    const std::size_t bytes = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-    if (lead < 0xc2 || lead > 0xf4) return at;
-    // The second byte has a narrower range after E0 and F0 (no long forms), ED (no surrogates), F4
-    // (at most 10FFFF).
-    const unsigned least = lead == 0xe0 ? 0xa0 : lead == 0xf0 ? 0x90 : 0x80;
-    const unsigned most = lead == 0xed ? 0x9f : lead == 0xf4 ? 0x8f : 0xbf;
-    if (byte(at + 1) < least || byte(at + 1) > most) return at;
-    for (std::size_t i = 2; i < bytes; ++i) {
-      if ((byte(at + i) & 0xc0u) != 0x80u) return at;
-    }
-    at += bytes;
-  }
-  return std::nullopt;
+  const std::size_t at = std::min(text.find('\0'), find_bad_utf8(text));
+  return at < text.size() ? std::optional(at) : std::nullopt;
 }
 
 class Lexer {
@@ -253,7 +233,7 @@ class Lexer {
   void unknown_escape(std::size_t at) {
     // A whole character: the byte after the backslash may begin a longer one.
     std::size_t end = at + 2;
-    while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xc0u) == 0x80u) ++end;
+    while (end < text_.size() && is_utf8_tail(text_[end])) ++end;
     const std::string seen(text_.substr(at, end - at));
     Diagnostic* error = errors_.report(Code::P0105, span(at, end),
                                        "found `" + seen + "`, expected `\\\"`, `\\\\` or `\\n`");
@@ -433,8 +413,7 @@ class Lexer {
     }
     const std::string_view seen = text_.substr(at_, end - at_);
     std::size_t shown = std::min<std::size_t>(seen.size(), 40);
-    while (shown < seen.size() && (static_cast<unsigned char>(seen[shown]) & 0xc0u) == 0x80u)
-      ++shown;
+    while (shown < seen.size() && is_utf8_tail(seen[shown])) ++shown;
     Diagnostic* error = errors_.report(Code::P0101, span(at_, end),
                                        "found `" + std::string(seen.substr(0, shown)) +
                                            "`, expected a name, a number, a string or punctuation");

@@ -3,6 +3,7 @@
 
 #include "compiler/syntax/parser_impl.h"
 #include "compiler/syntax/words.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::syntax {
 namespace {
@@ -36,8 +37,7 @@ std::string Parser::found_text() const {
   constexpr std::size_t kLongest = 40;
   std::string shown(text.substr(0, kLongest));
   if (text.size() > kLongest) {
-    while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xc0u) == 0x80u)
-      shown.pop_back();
+    while (!shown.empty() && is_utf8_tail(text[shown.size()])) shown.pop_back();
     shown += "...";
   }
   return "`" + shown + "`";

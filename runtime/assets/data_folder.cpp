@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "runtime/base/file.h"
 
 namespace probe::assets {
 namespace {
@@ -115,9 +116,12 @@ struct Finder {
 }  // namespace
 
 void read_model_database(const fs::path& file, DataFolder& data) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const Json root = Json::parse(text, nullptr, false);
+  const auto text = read_file(file.string(), {.code = Fault::kAsset});
+  if (!text) {
+    data.odd.push_back(text.failure());
+    return;
+  }
+  const Json root = Json::parse(*text, nullptr, false);
   if (!root.is_object()) {
     data.odd.push_back({Fault::kAsset, "is not a JSON object of models", file.string()});
     return;

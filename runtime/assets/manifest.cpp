@@ -1,8 +1,10 @@
 #include "runtime/assets/manifest.h"
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "runtime/base/file.h"
+#include "runtime/base/paths.h"
 
 namespace probe::assets {
 
@@ -24,9 +26,8 @@ std::string Manifest::to_json() const {
 
 Result<Manifest> read_manifest(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Manifest{};
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!is_there(path)) return Manifest{};
+  PROBE_ASSIGN(const std::string text, read_file(path, {.code = Fault::kAsset}));
   const auto root = nlohmann::json::parse(text, nullptr, false);
   const Failure malformed{Fault::kAsset, "is not a manifest of files with path, bytes and sha256",
                           path};

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "compiler/diag/diagnostic.h"
+#include "runtime/base/say.h"
 
 namespace probe::cli {
 namespace {
@@ -23,7 +24,7 @@ constexpr char kExample[] =
 const char* version() { return VLAPROBE_VERSION; }
 
 int report(const Failure& failure) {
-  fmt::print(stderr, "vlaprobe: {}\n", to_text(failure));
+  say("vlaprobe: {}\n", to_text(failure));
   if (failure.code == Fault::kUsage) return kUser;
   return failure.code == Fault::kInternal ? kOurs : kOutside;
 }
@@ -62,9 +63,9 @@ int run_program(int argc, char** argv, AddVerbs add_verbs, bool is_whole) {
   if (!knows && !is_whole) return kHandOver;
   if (!knows && argc > 1 && argv[1][0] != '-') {
     const auto close = nearest(argv[1], verbs);
-    fmt::print(stderr, "vlaprobe: unknown verb `{}`{}\n", argv[1],
-               close ? fmt::format(", did you mean `{}`?", *close) : "");
-    fmt::print(stderr, "  `vlaprobe --help` lists the verbs\n");
+    say("vlaprobe: unknown verb `{}`{}\n", argv[1],
+        close ? fmt::format(", did you mean `{}`?", *close) : "");
+    say("  `vlaprobe --help` lists the verbs\n");
     return kUser;
   }
   ParsedLine parsed;

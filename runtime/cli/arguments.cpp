@@ -11,6 +11,7 @@
 #include <span>
 
 #include "compiler/diag/diagnostic.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/verbs.h"
 
 namespace probe::cli {
@@ -25,16 +26,15 @@ int report_unknown(const CLI::App& app, const CLI::ParseError& error, std::span<
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   }
   const std::vector<std::string_view> known(names.begin(), names.end());
-  fmt::print(stderr, "vlaprobe: {}\n", error.what());
+  say("vlaprobe: {}\n", error.what());
   for (const char* word : words) {
     const std::string flag(word, std::strcspn(word, "="));
     if (flag.rfind("--", 0) != 0 || std::find(known.begin(), known.end(), flag) != known.end())
       continue;
     const auto close = nearest(flag, known);
-    if (close) fmt::print(stderr, "  did you mean `{}`?\n", *close);
+    if (close) say("  did you mean `{}`?\n", *close);
   }
-  fmt::print(stderr, "  `vlaprobe {}--help` lists what it takes\n",
-             verb == &app ? "" : verb->get_name() + " ");
+  say("  `vlaprobe {}--help` lists what it takes\n", verb == &app ? "" : verb->get_name() + " ");
   return kUser;
 }
 

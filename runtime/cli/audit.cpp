@@ -7,6 +7,7 @@
 #include "compiler/diag/text.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
 
@@ -28,7 +29,7 @@ int audit_verb(const AuditArguments& arguments) {
   auto compiled = build(files, {.asset_root = *root, .library_folders = *library});
   if (!compiled) return report(compiled.failure());
   if (!compiled->ok) {
-    fmt::print(stderr, "{}", render_text(compiled->diagnostics, compiled->sources));
+    say("{}", render_text(compiled->diagnostics, compiled->sources));
     return kUser;
   }
   auto plan = plan::Plan::from_bytes(std::move(compiled->plan));

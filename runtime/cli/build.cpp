@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/base/file.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/compile.h"
+#include "runtime/cli/output.h"
 #include "runtime/plan/plan.h"
 #include "runtime/plan/writer.h"
 
@@ -33,6 +35,10 @@ void add_build(Verb app, int& exit) {
     CompiledText text = compile_text(arguments->files, arguments->assets, arguments->suite, true);
     exit = text.exit;
     if (exit != kFine) return;
+    if (auto spared = check_output(arguments->out, text.files); !spared) {
+      exit = report(spared.failure());
+      return;
+    }
     if (auto written = write_file(arguments->out, text.plan); !written) {
       exit = report(written.failure());
       return;
@@ -51,8 +57,8 @@ void add_build(Verb app, int& exit) {
       return;
     }
     fmt::print("{}\n", to_hex(plan->root()));
-    fmt::print(stderr, "{}: {} tasks, {} episodes, {} bytes\n", arguments->out,
-               plan->tasks().size(), plan->episodes().size(), plan->bytes().size());
+    say("{}: {} tasks, {} episodes, {} bytes\n", arguments->out, plan->tasks().size(),
+        plan->episodes().size(), plan->bytes().size());
   });
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/compile.h"
 #include "runtime/cli/watch.h"
 
@@ -53,11 +54,10 @@ int watch_verb(const CheckArguments& arguments) {
     // An editor's own files come and go in the folder; only news are printed.
     if (first || edited || text.said != last.said || text.exit != last.exit) {
       print_diagnostics(text, arguments.json);
-      fmt::print(stderr, "{}, {} in {}, {:.1f} ms\n", counted(text.errors, "error"),
-                 counted(text.warnings, "warning"), counted(text.files.size(), "file"),
-                 milliseconds);
+      say("{}, {} in {}, {:.1f} ms\n", counted(text.errors, "error"),
+          counted(text.warnings, "warning"), counted(text.files.size(), "file"), milliseconds);
     }
-    if (first) fmt::print(stderr, "watching; Ctrl-C ends\n");
+    if (first) say("watching; Ctrl-C ends\n");
     first = false;
     last = std::move(text);
     // A change, and then until the editor has finished.
@@ -78,8 +78,7 @@ int check_verb(const CheckArguments& arguments) {
   const CompiledText text =
       compile_text(arguments.files, arguments.assets, "", false, arguments.json);
   if (text.errors + text.warnings > 0) {
-    fmt::print(stderr, "{}, {}\n", counted(text.errors, "error"),
-               counted(text.warnings, "warning"));
+    say("{}, {}\n", counted(text.errors, "error"), counted(text.warnings, "warning"));
   }
   return text.exit;
 }

@@ -12,6 +12,7 @@
 #include "runtime/assets/asset_check.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/glob.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/library.h"
 
 namespace probe::cli {
@@ -77,9 +78,9 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
 }
 
 void print_diagnostics(const CompiledText& text, bool json) {
-  std::FILE* const stream = json ? stdout : stderr;
-  fmt::print(stream, "{}", text.said);
-  std::fflush(stream);
+  if (!json) return say("{}", text.said);
+  fmt::print("{}", text.said);
+  std::fflush(stdout);
 }
 
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
@@ -88,15 +89,14 @@ CompiledText compile_text(const std::vector<std::string>& files, const AssetOpti
   if (text.only_assets_missing && !assets.tasks.empty() && assets.tasks != "*") {
     CompiledText chosen = compile_quietly(files, assets, suite, want_plan, json, true);
     if (chosen.exit == kFine) {
-      fmt::print(stderr,
-                 "note: the assets lack what other tasks need; compiled are only the tasks `{}`\n",
-                 assets.tasks);
+      say("note: the assets lack what other tasks need; compiled are only the tasks `{}`\n",
+          assets.tasks);
     }
     text = std::move(chosen);
   }
   print_diagnostics(text, json);
   if (text.only_assets_missing) {
-    fmt::print(stderr, "note: --tasks GLOB takes only tasks that do not need these files\n");
+    say("note: --tasks GLOB takes only tasks that do not need these files\n");
   }
   return text;
 }

@@ -10,6 +10,7 @@
 #include "compiler/diag/text.h"
 #include "compiler/format/format.h"
 #include "runtime/base/file.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/verbs.h"
 
 namespace probe::cli {
@@ -42,7 +43,7 @@ int format_one(const std::string& path, bool check, Tally& tally) {
   if (!text) return report(text.failure());
   if (!text->has_value()) {
     const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-    fmt::print(stderr, "{}", render_text(diagnostics, sources, {.colour = colour}));
+    say("{}", render_text(diagnostics, sources, {.colour = colour}));
     return kUser;
   }
   if (**text == sources.file(*id).text()) return kFine;
@@ -78,8 +79,8 @@ void add_fmt(Verb app, int& exit) {
     }
     for (const std::string& file : tally.changed) fmt::print("{}\n", file);
     if (!tally.changed.empty()) {
-      fmt::print(stderr, "{} of {} files {}\n", tally.changed.size(), arguments->files.size(),
-                 arguments->check ? "not in canonical layout" : "laid out anew");
+      say("{} of {} files {}\n", tally.changed.size(), arguments->files.size(),
+          arguments->check ? "not in canonical layout" : "laid out anew");
     }
   });
 }

@@ -4,6 +4,7 @@
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/base/asset_root.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
 #include "runtime/inspect/task_json.h"
@@ -28,7 +29,7 @@ int count_text(const ListArguments& arguments) {
             {.asset_root = *root, .suite = arguments.suite, .library_folders = *library});
   if (!counted) return report(counted.failure());
   const Compilation& compilation = counted->compilation;
-  fmt::print(stderr, "{}", render_text(compilation.diagnostics, compilation.sources));
+  say("{}", render_text(compilation.diagnostics, compilation.sources));
   if (!compilation.ok) return kUser;
   const inspect::Json numbers = {{"tasks", counted->counts.tasks},
                                  {"episodes", counted->counts.episodes}};
@@ -54,7 +55,7 @@ int list_verb(const ListArguments& arguments) {
   }
   const inspect::Json list = inspect::list(*loaded.plan, *tasks);
   fmt::print("{}", arguments.json ? list.dump(2) + "\n" : inspect::list_text(list));
-  if (!arguments.json) fmt::print(stderr, "{}", summary);
+  if (!arguments.json) say("{}", summary);
   return kFine;
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/load.h"
 
 namespace probe::cli {
@@ -77,18 +78,17 @@ int verify_verb(const VerifyArguments& arguments) {
   } else {
     fmt::print("{}\n", to_hex(plan->root()));
   }
-  fmt::print(stderr, "{}: good, {} tasks, {} episodes, {} bytes\n", arguments.file,
-             plan->tasks().size(), plan->episodes().size(), plan->bytes().size());
-  fmt::print(stderr, "  envelope  {} sections as long as they say, with the SHA-256 they say\n",
-             directory(*plan).size());
-  fmt::print(stderr, "  tables    every index, text and number\n");
-  fmt::print(stderr, "  code      {} programs, {} instructions\n", plan->programs().size(),
-             counts.instructions);
+  say("{}: good, {} tasks, {} episodes, {} bytes\n", arguments.file, plan->tasks().size(),
+      plan->episodes().size(), plan->bytes().size());
+  say("  envelope  {} sections as long as they say, with the SHA-256 they say\n",
+      directory(*plan).size());
+  say("  tables    every index, text and number\n");
+  say("  code      {} programs, {} instructions\n", plan->programs().size(), counts.instructions);
   if (arguments.fast) {
-    fmt::print(stderr, "  identity  left out\n");
+    say("  identity  left out\n");
   } else {
-    fmt::print(stderr, "  identity  {} starts, {} prompts and {} judges give {} episode ids\n",
-               counts.starts, counts.prompts, counts.judges, plan->episodes().size());
+    say("  identity  {} starts, {} prompts and {} judges give {} episode ids\n", counts.starts,
+        counts.prompts, counts.judges, plan->episodes().size());
   }
   return kFine;
 }

@@ -4,15 +4,14 @@
 #include <cctype>
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <span>
 #include <sstream>
 #include <thread>
-#include <tuple>
 
 #include "runtime/base/file.h"
+#include "runtime/base/paths.h"
 #include "runtime/cluster/program.h"
 #include "runtime/run/selection.h"
 #include "runtime/store/store.h"
@@ -52,14 +51,14 @@ std::vector<std::string> run_words(const run::RunOptions& options) {
   if (options.video != run::VideoChoice::kNone) {
     add("--video", options.video == run::VideoChoice::kAll ? "all" : "failures");
   }
-  if (!options.assets.empty()) add("--assets", fs::absolute(options.assets).string());
+  if (!options.assets.empty()) add("--assets", absolute_path(options.assets));
   add("--retries", std::to_string(options.retries));
   add("--give-up-after", std::to_string(options.give_up_after));
   if (options.if_changed == run::IfChanged::kContinue) add("--if-changed", "continue");
   return words;
 }
 
-using EpisodeKey = std::tuple<std::string, int, int>;
+using store::EpisodeKey;
 
 Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
                                              const run::RunOptions& options) {
@@ -73,9 +72,7 @@ Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
   whole.shard = whole.shards = 1;
   PROBE_ASSIGN(const run::Selection selection, run::select_jobs(plan, whole, traits.draws));
   std::set<EpisodeKey> chosen;
-  for (const run::EpisodeJob& job : selection.jobs) {
-    chosen.emplace(plan.text(plan.tasks()[job.task].name), static_cast<int>(job.index), job.seed);
-  }
+  for (const run::EpisodeJob& job : selection.jobs) chosen.insert(run::key_of(plan, job));
   return chosen;
 }
 
@@ -85,13 +82,13 @@ Result<std::set<EpisodeKey>> missing_in(const std::string& dir, std::set<Episode
   if (!record) return chosen;
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
   for (const store::ResultRow& row : rows) {
-    if (!row.invalid) chosen.erase({row.task, row.episode, row.seed});
+    if (!row.invalid) chosen.erase(store::key_of(row));
   }
   return chosen;
 }
 
 Status write_plan(const fs::path& path, const plan::Plan& plan) {
-  if (fs::exists(path)) {
+  if (is_there(path.string())) {
     PROBE_ASSIGN(const plan::Plan there, plan::Plan::open(path.string()));
     if (there.root() == plan.root()) return {};
     return Failure{Fault::kStore,
@@ -166,7 +163,7 @@ Result<std::string> submit(const fs::path& script) {
 
 // The job of an earlier call that has not ended; empty: none.
 Result<std::string> job_under_way(const fs::path& file) {
-  if (!fs::exists(file)) return std::string();
+  if (!is_there(file.string())) return std::string();
   PROBE_ASSIGN(const std::string text, read_file(file.string()));
   const std::string job = trimmed(text);
   if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos) return std::string();
@@ -175,8 +172,9 @@ Result<std::string> job_under_way(const fs::path& file) {
 }
 
 std::string last_line(const fs::path& file) {
-  std::ifstream lines(file);
+  const auto text = read_file(file.string());
   std::string last;
+  std::istringstream lines(text ? *text : std::string());
   for (std::string line; std::getline(lines, line);) {
     if (!trimmed(line).empty()) last = trimmed(line);
   }
@@ -221,7 +219,7 @@ void note_unfinished(const plan::Plan& plan, const std::set<EpisodeKey>& missing
 
 Result<SlurmReport> run_on_slurm(const plan::Plan& plan, const SlurmOptions& options) {
   PROBE_ASSIGN(const auto chosen, chosen_episodes(plan, options.run));
-  const std::string out = fs::absolute(options.run.out).lexically_normal().string();
+  const std::string out = absolute_path(options.run.out);
   const fs::path folder = fs::path(out) / "slurm";
   SlurmReport report;
   report.script = (folder / "job.sh").string();

@@ -4,7 +4,9 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/glob.h"
-#include "runtime/store/stored_trace.h"
+#include "runtime/store/episode_key.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::exporting {
 namespace {
@@ -18,13 +20,22 @@ Result<std::unique_ptr<Sink>> open_sink(const std::string& path, const std::stri
 
 Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportOptions& options) {
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
   ExportReport report;
   for (const store::ResultRow& row : rows) {
     if (!matches_glob(options.tasks, row.task)) continue;
-    PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
-    PROBE_TRY(sink.episode(row, trace));
+    const auto trace = store::prove(plan, row);
+    if (!trace) {
+      report.refused.push_back(to_text(store::key_of(row)) +
+                               " is left out: " + to_text(trace.failure()));
+      continue;
+    }
+    PROBE_TRY(sink.episode(row, *trace));
     ++report.episodes;
-    report.steps += static_cast<int>(trace.steps.size());
+    report.steps += static_cast<int>(trace->steps.size());
+  }
+  if (report.episodes == 0 && !report.refused.empty()) {
+    return Failure{Fault::kTrace, report.refused.front(), dir};
   }
   if (report.episodes == 0) {
     return Failure{Fault::kUsage, "no stored episode matches `" + options.tasks + "`", dir};

@@ -18,10 +18,12 @@ struct ExportOptions {
 struct ExportReport {
   int episodes = 0;
   int steps = 0;
+  std::vector<std::string> refused;  // a sentence for each row that its trace does not bear
 };
 
-// Writes `path` whole or not at all; its ending decides the form: .jsonl, or .h5 or .hdf5. Fails
-// with kUsage for another ending or when no stored episode matches.
+// Writes `path` whole or not at all; its ending decides the form: .jsonl, or .h5 or .hdf5. Rows
+// that their traces do not bear are left out and named. Fails with kUsage for another ending or
+// when no stored episode matches.
 Result<ExportReport> export_run(const std::string& dir, const std::string& path,
                                 const ExportOptions& options = {});
 

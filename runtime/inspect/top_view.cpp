@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <tuple>
 
+#include "runtime/base/file.h"
 #include "runtime/base/geometry.h"
 #include "runtime/base/sha256.h"
 #include "runtime/base/trig.h"
@@ -92,9 +92,7 @@ Pinhole pinhole_of(const plan::CameraRecord& camera, const Pose& mount) {
 }
 
 Status check_urdf(const plan::AssetRecord& asset, const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!file.is_open()) return Failure{Fault::kAsset, "cannot be read", path};
+  PROBE_ASSIGN(const std::string bytes, read_file(path, {.code = Fault::kAsset}));
   if (sha256(bytes) == plan::to_sha256(asset.sha256)) return {};
   return Failure{Fault::kAsset, "has other bytes than when the plan was built", path};
 }

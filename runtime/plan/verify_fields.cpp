@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "runtime/base/utf8.h"
 #include "runtime/plan/verify.h"
 #include "runtime/plan/verify_records.h"
 
@@ -23,12 +24,11 @@ const char* find_text_defect(std::string_view text) {
   if (std::ranges::all_of(text, [](char c) { return c >= 0x20 && c < 0x7f; })) return nullptr;
   const auto* data = reinterpret_cast<const utf8proc_uint8_t*>(text.data());
   const auto size = static_cast<utf8proc_ssize_t>(text.size());
-  for (utf8proc_ssize_t at = 0; at < size;) {
-    utf8proc_int32_t code = 0;
-    const utf8proc_ssize_t length = utf8proc_iterate(data + at, size - at, &code);
-    if (length <= 0) return "is not UTF-8";
-    if (utf8proc_category(code) == UTF8PROC_CATEGORY_CC) return "holds a control character";
-    at += length;
+  for (std::size_t at = 0; at < text.size();) {
+    const Utf8Char character = first_utf8(text.substr(at));
+    if (character.bytes == 0) return "is not UTF-8";
+    if (is_control(character.code)) return "holds a control character";
+    at += character.bytes;
   }
   utf8proc_uint8_t* raw = nullptr;
   const utf8proc_ssize_t composed = utf8proc_map(

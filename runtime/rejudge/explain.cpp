@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "runtime/base/trig.h"
 #include "runtime/plan/readouts.h"
@@ -12,6 +11,7 @@
 #include "runtime/rejudge/dimension.h"
 #include "runtime/rejudge/program_view.h"
 #include "runtime/rejudge/rescore.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 
@@ -313,9 +313,7 @@ Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t tas
 
 Result<EpisodeWhy> why(const std::string& dir, const std::string& task, int episode,
                        std::optional<int> seed, const std::string& metric) {
-  if (!std::filesystem::exists(store::plan_path(dir)))
-    return Failure{Fault::kStore, "no run here: its plan is absent", dir};
-  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
+  PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
   // Names with a suite's prefix are understood here too.
   const auto index = plan.find_task(task);
   const std::string name(index ? plan.text(plan.tasks()[*index].name) : std::string_view(task));

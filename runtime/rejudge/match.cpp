@@ -62,7 +62,7 @@ Result<std::optional<std::uint32_t>> find_judge(const plan::Plan& plan,
 
 Result<Match> match_start(const plan::Plan& plan, std::uint32_t task, const store::ResultRow& row,
                           const plan::Plan& recorded) {
-  const std::string where = fmt::format("{} episode {} seed {}", row.task, row.episode, row.seed);
+  const std::string where = to_text(store::key_of(row));
   const auto episodes = plan.episodes(plan.tasks()[task]);
   const auto index = static_cast<std::uint32_t>(row.episode);
   if (row.episode < 0 || index >= episodes.size()) {

@@ -4,6 +4,8 @@
 
 #include "runtime/base/glob.h"
 #include "runtime/rejudge/stored.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 
 namespace probe::rejudge {
@@ -61,14 +63,14 @@ Result<std::vector<Reading>> read_under(const std::string& dir, const plan::Plan
                                         std::span<const std::string> suites,
                                         const std::string& tasks) {
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
-  PROBE_ASSIGN(const plan::Plan recorded, plan::Plan::open(store::plan_path(dir)));
+  PROBE_ASSIGN(const plan::Plan recorded, store::open_run_plan(dir));
   PROBE_ASSIGN(auto all, jobs_of(plan, recorded, rows, suites, tasks));
   for (const store::ResultRow& row : rows) {
     std::optional<store::Trace> trace;
     for (SuiteJobs& suite : all) {
       if (suite.next == suite.jobs.size() || suite.jobs[suite.next].row != &row) continue;
       if (!trace) {
-        PROBE_ASSIGN(trace, proven_trace(recorded, row));
+        PROBE_ASSIGN(trace, store::prove(recorded, row));
       }
       PROBE_ASSIGN(const Rescored score, rescore(plan, suite.jobs[suite.next].match.task, *trace));
       count_row(plan, *trace, score, suite);

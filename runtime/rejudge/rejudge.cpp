@@ -1,15 +1,14 @@
 #include "runtime/rejudge/rejudge.h"
 
-#include <filesystem>
-
+#include "runtime/base/paths.h"
 #include "runtime/rejudge/stored.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 
 namespace probe::rejudge {
 namespace {
-
-namespace fs = std::filesystem;
 
 // The trace again, with the new plan's names and verdicts in it.
 Result<Sha256> write_judged(const std::string& path, const plan::Plan& plan, const Job& job,
@@ -43,10 +42,9 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
                               const RejudgeOptions& options) {
   PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
-  PROBE_ASSIGN(const plan::Plan recorded, plan::Plan::open(store::plan_path(dir)));
+  PROBE_ASSIGN(const plan::Plan recorded, store::open_run_plan(dir));
   if (!options.out.empty()) {
-    std::error_code error;
-    if (fs::equivalent(options.out, dir, error)) {
+    if (is_same(options.out, dir)) {
       return Failure{Fault::kUsage, "the folder that is judged is not overwritten", options.out};
     }
   }
@@ -57,7 +55,7 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
   if (jobs.empty()) return nothing_judged(options.suite, options.tasks, report.left_out);
   // All refusals come before the first byte is written.
   for (const Job& job : jobs) {
-    PROBE_ASSIGN(const store::Trace trace, proven_trace(recorded, *job.row));
+    PROBE_ASSIGN(const store::Trace trace, store::prove(recorded, *job.row));
     PROBE_TRY(check_measures(plan, job.match.task, trace));
   }
 
@@ -73,13 +71,11 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
     PROBE_ASSIGN(const Rescored score, rescore(plan, job.match.task, trace));
     store::ResultRow row = judged_row(plan, job, score, trace);
     if (store) {
-      const std::string path = store->temporary_trace(row.task, row.episode, row.seed);
+      PROBE_ASSIGN(const std::string path, store->temporary_trace(store::key_of(row)));
       PROBE_ASSIGN(const Sha256 hash, write_judged(path, plan, job, score, trace));
       row.trace_sha256 = to_hex(hash);
       PROBE_TRY(store->commit(row, static_cast<int>(job.match.task)));
-      row.trace = fs::absolute(store::trace_path(options.out, row.task, row.episode, row.seed))
-                      .lexically_normal()
-                      .string();
+      row.trace = absolute_path(store::trace_path(options.out, store::key_of(row)));
     }
     if (row.invalid || job.row->invalid) {
       ++report.invalid;

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 
+#include "runtime/store/episode_key.h"
+
 namespace probe::rejudge {
 
 Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const store::TraceHeader& header = trace.header;
-  const std::string where =
-      fmt::format("{} episode {} seed {}", header.task, header.episode, header.seed);
+  const std::string where = to_text(store::key_of(header));
   const auto refuse = [&](std::string message) {
     return Failure{Fault::kUsage, std::move(message), where};
   };

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "runtime/base/glob.h"
-#include "runtime/store/stored_trace.h"
 
 namespace probe::rejudge {
 namespace {
@@ -52,23 +51,6 @@ Failure nothing_judged(const std::string& suite, const std::string& tasks,
   return {Fault::kUsage,
           "the judging plan has none of the stored tasks, such as `" + left_out.front() + "`",
           suite};
-}
-
-Result<store::Trace> proven_trace(const plan::Plan& recorded, const store::ResultRow& row) {
-  PROBE_ASSIGN(store::Trace trace, store::read_stored_trace(row));
-  const auto task = recorded.find_task(row.task);
-  if (!task || trace.header.plan_root != recorded.root())
-    return Failure{Fault::kTrace, "this trace was not made under the stored plan", row.trace};
-  if (row.invalid) return trace;
-  PROBE_ASSIGN(const Rescored again, rescore(recorded, *task, trace));
-  bool is_same = again.metrics == row.metrics && again.steps.size() == trace.steps.size();
-  for (std::size_t i = 0; is_same && i < again.steps.size(); ++i)
-    is_same = again.steps[i] == trace.steps[i].metrics;
-  if (!is_same) {
-    return Failure{Fault::kTrace, "its verdicts are not what its own plan says of its measurements",
-                   row.trace};
-  }
-  return trace;
 }
 
 store::ResultRow judged_row(const plan::Plan& plan, const Job& job, const Rescored& score,

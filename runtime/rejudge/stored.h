@@ -29,10 +29,6 @@ Result<std::vector<Job>> match_rows(const plan::Plan& plan, const plan::Plan& re
 Failure nothing_judged(const std::string& suite, const std::string& tasks,
                        std::span<const std::string> left_out);
 
-// The row's trace. Fails (kTrace) unless it is whole, the one the row was made with, and its
-// verdicts after every step are what the plan it was recorded under says of its measurements.
-Result<store::Trace> proven_trace(const plan::Plan& recorded, const store::ResultRow& row);
-
 // The row as judged now.
 store::ResultRow judged_row(const plan::Plan& plan, const Job& job, const Rescored& score,
                             const store::Trace& trace);

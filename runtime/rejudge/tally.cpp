@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/rejudge/dimension.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 
 namespace probe::rejudge {
@@ -86,7 +87,7 @@ std::string numbers_text(Column column, const Kind& kind) {
 }  // namespace
 
 std::optional<plan::Plan> stored_plan(const std::string& dir) {
-  auto plan = plan::Plan::open(store::plan_path(dir));
+  auto plan = store::open_run_plan(dir);
   if (!plan) return std::nullopt;
   return std::move(plan).value();
 }

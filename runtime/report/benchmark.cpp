@@ -17,6 +17,8 @@
 #include "runtime/plan/source_line.h"
 #include "runtime/report/categories.h"
 #include "runtime/run/delivery.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 
 namespace probe::report {
@@ -104,7 +106,7 @@ class Loader {
 
   Status add_folder(const std::string& dir) {
     PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
-    PROBE_ASSIGN(std::vector<store::ResultRow> rows, store::read_results(dir));
+    PROBE_ASSIGN(std::vector<store::ResultRow> rows, rows_of(dir));
     PROBE_ASSIGN(const int plan, plan_of(dir, record));
     RunInfo info;
     info.dir = dir;
@@ -121,9 +123,26 @@ class Loader {
     return {};
   }
 
+  Result<std::vector<store::ResultRow>> rows_of(const std::string& dir) {
+    constexpr std::size_t kTold = 5;
+    if (!options_.prove) return store::read_results(dir);
+    PROBE_ASSIGN(store::ProvenResults proven, store::read_proven_results(dir));
+    const auto& refused = proven.refused;
+    for (std::size_t i = 0; i < refused.size() && i < kTold; ++i) {
+      note("warn", printable(refused[i], kLongestText));
+    }
+    if (refused.size() > kTold) {
+      note("warn",
+           fmt::format("{} more rows of `{}` are left out, because their traces do not bear "
+                       "them",
+                       refused.size() - kTold, dir));
+    }
+    return std::move(proven.rows);
+  }
+
   // Opens the folder's plan, or finds the one with the same root.
   Result<int> plan_of(const std::string& dir, const store::RunRecord& record) {
-    auto plan = plan::Plan::open(store::plan_path(dir));
+    auto plan = store::open_run_plan(dir);
     if (!plan) return plan.failure();
     const std::string root = to_hex(plan->root());
     if (root != record.identity.plan_root) {

@@ -134,6 +134,7 @@ std::string name_apart(const std::string& task, const std::string& root);
 struct LoadOptions {
   std::vector<std::string> sets = {};  // columns of the tables; empty: the plan's finest sets
   bool join = true;                    // runs of one policy that do not overlap are one policy's
+  bool prove = false;  // leave out, and name in a note, rows that their traces do not bear
 };
 
 // Folders that cannot be read are a failure that names the folder; what can be read but not used is

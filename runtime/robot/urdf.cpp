@@ -8,13 +8,13 @@
 
 #include <array>
 #include <exception>
-#include <fstream>
 #include <iterator>
 #include <mutex>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "runtime/base/file.h"
 #include "runtime/robot/model_check.h"
 #include "runtime/robot/urdf_text.h"
 
@@ -49,18 +49,8 @@ class Listener : public console_bridge::OutputHandler {
 };
 
 Result<std::string> read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Failure{Fault::kUrdf, "no such file, or not readable", path};
-  std::string text;
-  text.reserve(1 << 16);
-  std::array<char, 1 << 14> block;
-  while (file.read(block.data(), block.size()) || file.gcount() > 0) {
-    text.append(block.data(), std::size_t(file.gcount()));
-    if (text.size() > kLargestFile)
-      return Failure{Fault::kUrdf, "larger than 16 MB, not a URDF", path};
-  }
-  if (file.bad() || text.empty())
-    return Failure{Fault::kUrdf, "the file is empty or a folder", path};
+  PROBE_ASSIGN(std::string text, read_file(path, {.most = kLargestFile, .code = Fault::kUrdf}));
+  if (text.empty()) return Failure{Fault::kUrdf, "the file is empty", path};
   // TinyXML reads a C string and would not see what follows a zero byte.
   if (text.find('\0') != std::string::npos) return Failure{Fault::kUrdf, "not text", path};
   return text;

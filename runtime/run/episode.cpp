@@ -22,7 +22,12 @@ std::string reason(const char* who, const Failure& failure) {
 struct Outcome {
   std::optional<std::string> invalid;
   std::optional<Failure> broken;
+  std::optional<Fault> policy_fault = {};
 };
+
+Outcome policy_failed(const Failure& failure) {
+  return {reason("policy", failure), {}, failure.code};
+}
 
 // Of what the policy sees: a picture's bytes; of several pictures, the hash of their hashes.
 Sha256 hash_of(std::span<const stage::CameraFrame> frames) {
@@ -97,7 +102,7 @@ class Loop {
     first.seed = job_.seed;
     first.draw_seed = draw_seed(job_.seed, Sha256{episode_.episode_id});
     policy_begun_ = true;
-    if (auto begun = policy_.begin(first); !begun) return {reason("policy", begun.failure()), {}};
+    if (auto begun = policy_.begin(first); !begun) return policy_failed(begun.failure());
     return {};
   }
 
@@ -117,9 +122,10 @@ class Loop {
 
     clock = Clock::now();
     const auto action = policy_.act(*observation);
-    if (!action) return {reason("policy", action.failure()), {}};
+    if (!action) return policy_failed(action.failure());
     for (const double value : *action) {
-      if (!std::isfinite(value)) return {"policy: an action with a number that is not finite", {}};
+      if (std::isfinite(value)) continue;
+      return policy_failed({Fault::kPolicy, "an action with a number that is not finite", ""});
     }
     record.action = *action;
     record.policy_s = seconds_since(clock);
@@ -182,6 +188,11 @@ Outcome run_guarded(Loop& loop, int steps) {
 
 }  // namespace
 
+store::EpisodeKey key_of(const plan::Plan& plan, const EpisodeJob& job) {
+  return {std::string(plan.text(plan.tasks()[job.task].name)), static_cast<int>(job.index),
+          job.seed};
+}
+
 std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
   const Sha256 hash = Hasher()
                           .u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(seed)))
@@ -219,10 +230,9 @@ store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& j
   return header;
 }
 
-Result<store::ResultRow> run_episode(stage::Stage& stage, const plan::Plan& plan,
-                                     const EpisodeJob& job, const std::string& policy_name,
-                                     policy::Policy& policy, store::TraceWriter& trace,
-                                     show::FrameSink* frames, int steps) {
+Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job,
+                           const std::string& policy_name, policy::Policy& policy,
+                           store::TraceWriter& trace, show::FrameSink* frames, int steps) {
   const plan::TaskRecord& task = plan.tasks()[job.task];
   const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
   store::ResultRow row;
@@ -241,7 +251,7 @@ Result<store::ResultRow> run_episode(stage::Stage& stage, const plan::Plan& plan
   PROBE_ASSIGN(const Sha256 hash,
                trace.finish({static_cast<std::uint32_t>(row.steps), row.metrics, row.invalid}));
   row.trace_sha256 = to_hex(hash);
-  return row;
+  return Played{std::move(row), outcome.policy_fault};
 }
 
 }  // namespace probe::run

@@ -1,6 +1,7 @@
 // The loop of one episode: a stage and a policy in turns, and the trace of both.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "runtime/base/result.h"
@@ -8,6 +9,7 @@
 #include "runtime/policy/policy.h"
 #include "runtime/show/frame_sink.h"
 #include "runtime/stage/stage.h"
+#include "runtime/store/episode_key.h"
 #include "runtime/store/results.h"
 #include "runtime/store/trace.h"
 
@@ -19,6 +21,7 @@ struct EpisodeJob {
   int seed = 0;
   bool operator==(const EpisodeJob&) const = default;
 };
+store::EpisodeKey key_of(const plan::Plan& plan, const EpisodeJob& job);
 
 // First 8 bytes of SHA-256(seed, episode id): what everything that draws in the episode starts
 // from.
@@ -27,12 +30,17 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id);
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
                                      const std::string& policy, const std::string& fingerprint);
 
+struct Played {
+  store::ResultRow row;               // its `trace` is left empty
+  std::optional<Fault> policy_fault;  // where the policy's failure made the row invalid
+};
+
 // `stage` is of the job's task. Runs the full horizon (`steps` of them if not negative). What goes
 // wrong with the world, the picture or the policy, exceptions included, makes the row invalid; a
-// Failure is only what the trace or the sink could not write. The row's `trace` is left empty.
-Result<store::ResultRow> run_episode(stage::Stage& stage, const plan::Plan& plan,
-                                     const EpisodeJob& job, const std::string& policy_name,
-                                     policy::Policy& policy, store::TraceWriter& trace,
-                                     show::FrameSink* frames = nullptr, int steps = -1);
+// Failure is only what the trace or the sink could not write.
+Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job,
+                           const std::string& policy_name, policy::Policy& policy,
+                           store::TraceWriter& trace, show::FrameSink* frames = nullptr,
+                           int steps = -1);
 
 }  // namespace probe::run

@@ -5,11 +5,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "runtime/base/spelling.h"
 #include "runtime/expert/expert.h"
 #include "runtime/policy/scripted.h"
+#include "runtime/servers/protocol.h"
 #include "runtime/servers/servers.h"
 
 namespace probe::run {
@@ -23,10 +26,10 @@ struct Entry {
   Kind kind;
   PolicyTraits traits;
   std::string_view meaning;
-  servers::Protocol protocol = servers::Protocol::kOpenpi;  // of a server
+  std::optional<servers::Protocol> protocol = {};  // of a server
 };
 
-const std::array kPolicies = {
+const std::array kOwnPolicies = {
     Entry{"expert", "", Kind::kExpert, {}, "the scripted expert, which sees the world's state"},
     Entry{"null", "", Kind::kNull, {}, "stays where it is, gripper open"},
     Entry{"random", "", Kind::kRandom, {true, false, false}, "uniform actions"},
@@ -43,43 +46,21 @@ const std::array kPolicies = {
           "the expert with noise, SIGMA in metres"},
     Entry{
         "replay", "DIR", Kind::kReplay, {true, true, false}, "the recorded actions of another run"},
-    Entry{"openpi",
-          "//HOST:PORT?profile=NAME",
-          Kind::kServer,
-          {true, false, false},
-          "an openpi server",
-          servers::Protocol::kOpenpi},
-    Entry{"intact",
-          "//HOST:PORT?model=PATH",
-          Kind::kServer,
-          {true, false, false},
-          "an INT-ACT server",
-          servers::Protocol::kIntact},
-    Entry{"roboarena",
-          "//HOST:PORT",
-          Kind::kServer,
-          {true, false, false},
-          "a RoboArena server",
-          servers::Protocol::kRoboArena},
-    Entry{"vlaeval",
-          "//HOST:PORT",
-          Kind::kServer,
-          {true, false, false},
-          "a vla-eval server",
-          servers::Protocol::kVlaEval},
-    Entry{"gr00t",
-          "//HOST:PORT",
-          Kind::kServer,
-          {true, false, false},
-          "a GR00T server",
-          servers::Protocol::kGr00t},
-    Entry{"openvla",
-          "//HOST:PORT",
-          Kind::kServer,
-          {true, false, false},
-          "an OpenVLA server",
-          servers::Protocol::kOpenVla},
 };
+
+// Those of this process, then a server of each protocol.
+const std::vector<Entry>& all_policies() {
+  static const std::vector<Entry> entries = [] {
+    std::vector<Entry> all(kOwnPolicies.begin(), kOwnPolicies.end());
+    for (const servers::Protocol protocol : servers::all_protocols()) {
+      const servers::ProtocolRow& row = servers::row_of(protocol);
+      all.push_back(
+          {row.word, row.argument, Kind::kServer, {.draws = true}, row.meaning, protocol});
+    }
+    return all;
+  }();
+  return entries;
+}
 
 std::string form(const Entry& entry) {
   std::string text(entry.name);
@@ -89,7 +70,7 @@ std::string form(const Entry& entry) {
 
 Failure unknown(std::string_view name) {
   std::vector<std::string> names;
-  for (const Entry& entry : kPolicies) names.emplace_back(entry.name);
+  for (const Entry& entry : all_policies()) names.emplace_back(entry.name);
   std::string help = policy_help();
   help.pop_back();  // the last line's end
   return {Fault::kUsage,
@@ -106,7 +87,7 @@ struct Choice {
 Result<Choice> choose(std::string_view text) {
   const std::size_t colon = text.find(':');
   const std::string_view name = text.substr(0, colon);
-  for (const Entry& entry : kPolicies) {
+  for (const Entry& entry : all_policies()) {
     if (entry.name != name) continue;
     const std::string argument = policy_argument(text);
     if (entry.argument.empty() && colon != std::string_view::npos) {
@@ -157,7 +138,7 @@ Result<PolicyTraits> policy_traits(std::string_view text) {
   }
   if (choice.entry->kind == Kind::kServer) {
     PROBE_ASSIGN(const servers::ServerChoice server,
-                 servers::choose_server(choice.entry->protocol, choice.argument));
+                 servers::choose_server(*choice.entry->protocol, choice.argument));
     PolicyTraits traits = choice.entry->traits;
     traits.content = servers::describe(server);
     return traits;
@@ -187,7 +168,7 @@ Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
     case Kind::kServer:
       break;
   }
-  return servers::make_server(choice.entry->protocol, choice.argument, context.queries);
+  return servers::make_server(*choice.entry->protocol, choice.argument, context.queries);
 }
 
 Result<servers::ServerChoice> server_choice(std::string_view text) {
@@ -195,7 +176,7 @@ Result<servers::ServerChoice> server_choice(std::string_view text) {
   if (choice.entry->kind != Kind::kServer) {
     return Failure{Fault::kUsage, "policy `" + std::string(text) + "` is no server", "--policy"};
   }
-  return servers::choose_server(choice.entry->protocol, choice.argument);
+  return servers::choose_server(*choice.entry->protocol, choice.argument);
 }
 
 std::string policy_argument(std::string_view text) {
@@ -205,7 +186,7 @@ std::string policy_argument(std::string_view text) {
 
 std::string policy_help() {
   std::string text;
-  for (const Entry& entry : kPolicies) {
+  for (const Entry& entry : all_policies()) {
     std::string line = "  " + form(entry);
     line.resize(std::max<std::size_t>(line.size() + 2, 36), ' ');
     text += line + std::string(entry.meaning) + "\n";

@@ -1,4 +1,5 @@
-// From what stands after --policy to a Policy. The list of known policies is here and nowhere else.
+// From what stands after --policy to a Policy: the table of policies in this process, and a server
+// of each of servers/protocols.
 #pragma once
 
 #include <functional>

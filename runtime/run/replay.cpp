@@ -4,11 +4,13 @@
 #include <filesystem>
 
 #include "runtime/base/asset_root.h"
+#include "runtime/base/paths.h"
 #include "runtime/run/episode.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/episode_video.h"
 #include "runtime/show/picture_grid.h"
 #include "runtime/store/fingerprint.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 #include "runtime/store/trace_compare.h"
@@ -53,7 +55,7 @@ class ReplayPictures final : public show::FrameSink {
 // A picture's folder is not made: a slip of the pen should not leave folders behind.
 Status check_folder_of(const std::string& file, const char* option) {
   const auto folder = std::filesystem::path(file).parent_path();
-  if (file.empty() || folder.empty() || std::filesystem::is_directory(folder)) return {};
+  if (file.empty() || folder.empty() || is_folder(folder.string())) return {};
   return Failure{Fault::kUsage, "there is no folder `" + folder.string() + "` to write into",
                  option};
 }
@@ -76,7 +78,7 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
   PROBE_TRY(check_folder_of(options.video, "--video"));
   PROBE_TRY(check_folder_of(options.png, "--png"));
   if (auto record = store::read_run_record(dir); !record) return record.failure();
-  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
+  PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
   // Rows have the plan's name; the suite's prefix is understood too.
   std::string name = task;
   if (const auto found = plan.find_task(task))
@@ -107,8 +109,9 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
   TraceActions actions(trace);
   store::TraceComparer comparer(trace);
   ReplayPictures pictures(trace.header, options);
-  PROBE_ASSIGN(const store::ResultRow row, run_episode(*stage, plan, job, trace.header.policy,
-                                                       actions, comparer, &pictures, steps));
+  PROBE_ASSIGN(const Played played, run_episode(*stage, plan, job, trace.header.policy, actions,
+                                                comparer, &pictures, steps));
+  const store::ResultRow& row = played.row;
   PROBE_TRY(pictures.finish());
   report.steps = row.steps;
   report.difference = comparer.difference();

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <mutex>
 #include <set>
-#include <tuple>
 
 #include "runtime/base/asset_root.h"
+#include "runtime/base/paths.h"
 #include "runtime/run/delivery.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/policies.h"
@@ -36,7 +36,7 @@ struct Shared {
   RunSummary& summary;
   policy::QueryMeter& queries;
   bool asks_server = false;
-  std::mutex mutex = {};  // store, summary, progress and the counts below
+  std::mutex mutex = {};  // summary, progress and the counts below
   int lost_in_a_row = 0;  // episodes that a policy server's failures spoiled for good
   std::atomic<bool> given_up = false;
 };
@@ -66,11 +66,6 @@ bool has_failed(const store::ResultRow& row) {
   return false;
 }
 
-fs::path video_path(const std::string& out, const std::string& task, int episode, int seed) {
-  return fs::path(out) / "videos" / task /
-         (std::to_string(episode) + "-" + std::to_string(seed) + ".mp4");
-}
-
 class EpisodeWorker {
  public:
   explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
@@ -88,54 +83,53 @@ class EpisodeWorker {
     }
     const store::TraceHeader header =
         make_trace_header(shared_.plan, job, shared_.options.name, shared_.fingerprint);
-    const std::string path =
-        shared_.store.temporary_trace(header.task, header.episode, header.seed);
+    PROBE_ASSIGN(const std::string path, shared_.store.temporary_trace(store::key_of(header)));
     for (int attempt = 0;; ++attempt) {
-      auto row = write(job, header, path);
-      if (!row) {
+      auto played = write(job, header, path);
+      if (!played) {
         std::error_code ignored;
         fs::remove(path, ignored);
-        return row.failure();
+        return played.failure();
       }
-      if (!is_spoiled(*row) || attempt >= shared_.options.retries || shared_.given_up) {
-        return commit(*row, static_cast<int>(job.task));
+      if (!is_spoiled(*played) || attempt >= shared_.options.retries || shared_.given_up) {
+        return commit(*played, static_cast<int>(job.task));
       }
       const std::lock_guard lock(shared_.mutex);
       ++shared_.summary.call.retried;
-      shared_.summary.call.observations += row->steps;
+      shared_.summary.call.observations += played->row.steps;
     }
   }
 
  private:
-  Result<store::ResultRow> write(const EpisodeJob& job, const store::TraceHeader& header,
-                                 const std::string& path) {
+  Result<Played> write(const EpisodeJob& job, const store::TraceHeader& header,
+                       const std::string& path) {
     PROBE_ASSIGN(auto trace, store::TraceWriter::create(path, header));
     std::optional<show::EpisodeVideo> video;
     if (shared_.options.video != VideoChoice::kNone) {
-      const fs::path file =
-          video_path(shared_.options.out, header.task, header.episode, header.seed);
-      std::error_code ignored;  // the encoder's own opening says what is wrong
-      fs::create_directories(file.parent_path(), ignored);
-      video.emplace(header, file.string());
+      const std::string file = store::video_path(shared_.options.out, store::key_of(header));
+      PROBE_TRY(make_folders(fs::path(file).parent_path().string()));
+      video.emplace(header, file);
     }
-    PROBE_ASSIGN(store::ResultRow row, run_episode(*stage_, shared_.plan, job, shared_.options.name,
-                                                   *policy_, *trace, video ? &*video : nullptr));
+    PROBE_ASSIGN(Played played, run_episode(*stage_, shared_.plan, job, shared_.options.name,
+                                            *policy_, *trace, video ? &*video : nullptr));
     if (video) {
-      const bool keep = shared_.options.video == VideoChoice::kAll || has_failed(row);
+      const bool keep = shared_.options.video == VideoChoice::kAll || has_failed(played.row);
       PROBE_TRY(keep ? video->finish() : video->discard());
     }
-    return row;
+    return played;
   }
 
-  // Whether a policy server kept the episode from its end. Other failures, and those of policies in
-  // this process, would only repeat themselves.
-  bool is_spoiled(const store::ResultRow& row) const {
-    return shared_.asks_server && row.invalid && row.invalid->starts_with("policy: ");
+  // Whether a policy server kept the episode from its end. Other failures, those of policies in
+  // this process, and what profile and server do not agree on would only repeat themselves.
+  bool is_spoiled(const Played& played) const {
+    return shared_.asks_server && played.policy_fault && *played.policy_fault != Fault::kUsage;
   }
 
-  Status commit(const store::ResultRow& row, int task_order) {
-    const std::lock_guard lock(shared_.mutex);
+  Status commit(const Played& played, int task_order) {
+    const store::ResultRow& row = played.row;
+    // Not under the lock: other worlds must not wait for the disk.
     PROBE_TRY(shared_.store.commit(row, task_order));
+    const std::lock_guard lock(shared_.mutex);
     ++shared_.summary.done;
     shared_.summary.call.observations += row.steps;
     for (std::string& note : policy_->notes()) add_once(shared_.summary.notes, std::move(note));
@@ -144,7 +138,7 @@ class EpisodeWorker {
       shared_.options.progress(
           {shared_.summary.done, shared_.summary.skipped, shared_.summary.total, &row});
     }
-    if (!is_spoiled(row)) {
+    if (!is_spoiled(played)) {
       if (!row.invalid) shared_.lost_in_a_row = 0;
       return {};
     }
@@ -204,16 +198,7 @@ void note_idle_tasks(const plan::Plan& plan, const Selection& selection, const s
                           " tasks that have none");
 }
 
-using EpisodeKey = std::tuple<std::string, int, int>;
-
-EpisodeKey key_of(const plan::Plan& plan, const EpisodeJob& job) {
-  return {std::string(plan.text(plan.tasks()[job.task].name)), static_cast<int>(job.index),
-          job.seed};
-}
-
-std::string text_of(const std::string& task, int episode, int seed) {
-  return task + " episode " + std::to_string(episode) + " seed " + std::to_string(seed);
-}
+using store::EpisodeKey;
 
 // Leaves the jobs that are not stored yet, or only as invalid. Returns the others.
 Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, store::Store& store,
@@ -224,13 +209,11 @@ Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, store::Store& s
   for (const EpisodeJob& job : jobs) chosen.insert(key_of(plan, job));
   std::size_t again = 0;
   for (const store::StoredEpisode& episode : stored) {
-    EpisodeKey key{episode.task, episode.episode, episode.seed};
-    if (!chosen.contains(key)) continue;
+    if (!chosen.contains(episode.key)) continue;
     if (episode.valid) {
-      valid.insert(std::move(key));
+      valid.insert(episode.key);
     } else if (++again <= kToldOneByOne) {
-      summary.notes.push_back(text_of(episode.task, episode.episode, episode.seed) +
-                              " was run again: " + episode.why);
+      summary.notes.push_back(to_text(episode.key) + " was run again: " + episode.why);
     }
   }
   if (again > kToldOneByOne) {
@@ -249,9 +232,9 @@ Status note_missing_videos(const RunOptions& options, const std::set<EpisodeKey>
   int missing = 0;
   std::string first;
   for (const store::ResultRow& row : rows) {
-    if (!stored.contains({row.task, row.episode, row.seed})) continue;
+    if (!stored.contains(store::key_of(row))) continue;
     if (options.video == VideoChoice::kFailures && !has_failed(row)) continue;
-    if (fs::exists(video_path(options.out, row.task, row.episode, row.seed))) continue;
+    if (is_there(store::video_path(options.out, store::key_of(row)))) continue;
     if (missing++ == 0) {
       first = row.task + " " + std::to_string(row.episode) + " " + std::to_string(row.seed);
     }
@@ -330,6 +313,19 @@ Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary&
 
 }  // namespace
 
+namespace {
+
+// What the rows' name does not say of the policy: a server's profile; of a policy in this process
+// that goes by another name, which one it is. Two policies under one name are not one run.
+std::string content_of(const RunOptions& options, const PolicyTraits& traits) {
+  if (!traits.content.empty() || options.own_policy) return traits.content;
+  if (options.name.empty() || options.name == options.policy) return "";
+  // A recorded run may have moved since.
+  return "policy " + (traits.recorded ? std::string("replay") : options.policy);
+}
+
+}  // namespace
+
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   RunOptions options = asked;
   run::PolicyTraits traits;
@@ -362,7 +358,8 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks_of(selection.jobs)));
   const store::Fingerprint fingerprint = store::take_fingerprint(stage::asset_digest(plan));
   store::RunRecord record{
-      {to_hex(plan.root()), options.name.empty() ? options.policy : options.name, traits.content},
+      {to_hex(plan.root()), options.name.empty() ? options.policy : options.name,
+       content_of(options, traits)},
       selection.suite,
       selection.seeds,
       fingerprint};

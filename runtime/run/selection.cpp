@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
-#include <tuple>
 
 #include "runtime/base/glob.h"
 #include "runtime/base/spelling.h"
+#include "runtime/store/episode_key.h"
 
 namespace probe::run {
 namespace {
@@ -43,12 +43,12 @@ Failure no_task(const std::string& glob, const std::vector<std::string>& names) 
   return usage(message, "--tasks");
 }
 
-using EpisodeKey = std::tuple<std::string, int, int>;
+using store::EpisodeKey;
 
 std::set<EpisodeKey> keys_of(const std::vector<store::ResultRow>* rows) {
   std::set<EpisodeKey> keys;
   if (rows != nullptr) {
-    for (const store::ResultRow& row : *rows) keys.emplace(row.task, row.episode, row.seed);
+    for (const store::ResultRow& row : *rows) keys.insert(store::key_of(row));
   }
   return keys;
 }
@@ -111,7 +111,7 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
   const std::set<EpisodeKey> held = keys_of(recorded);
   selection.seeds = options.seeds;
   if (selection.seeds.empty()) {
-    for (const auto& [task, episode, seed] : held) selection.seeds.push_back(seed);
+    for (const EpisodeKey& key : held) selection.seeds.push_back(key.seed);
   }
   if (selection.seeds.empty()) {
     if (suite != nullptr) {
@@ -141,8 +141,7 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
       any = true;
       for (const int seed : selection.seeds) {
         if (recorded != nullptr) {
-          const std::string name(plan.text(plan.tasks()[task].name));
-          if (!held.contains({name, static_cast<int>(index), seed})) continue;
+          if (!held.contains(key_of(plan, {task, index, seed}))) continue;
           any_held = true;
         }
         const Sha256 id{plan.episodes(plan.tasks()[task])[index].episode_id};

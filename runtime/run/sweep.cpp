@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
-#include <tuple>
 
 #include "runtime/base/file.h"
 #include "runtime/base/percent.h"
 #include "runtime/plan/plan.h"
 #include "runtime/run/selection.h"
+#include "runtime/store/proof.h"
 
 namespace probe::run {
 namespace {
@@ -76,11 +76,9 @@ Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
                                  const std::string& checkpoint) {
   PROBE_ASSIGN(const auto traits, run::policy_traits(run.policy));
   PROBE_ASSIGN(const Selection selection, select_jobs(plan, run, traits.draws));
-  std::set<std::tuple<std::string, int, int>> chosen;
-  for (const EpisodeJob& job : selection.jobs) {
-    chosen.emplace(plan.text(plan.tasks()[job.task].name), static_cast<int>(job.index), job.seed);
-  }
-  PROBE_ASSIGN(const auto rows, store::read_results(run.out));
+  std::set<store::EpisodeKey> chosen;
+  for (const EpisodeJob& job : selection.jobs) chosen.insert(key_of(plan, job));
+  PROBE_ASSIGN(const auto proven, store::read_proven_results(run.out));
   struct Sums {
     double episodes = 0, success = 0, intention = 0;
   };
@@ -88,8 +86,8 @@ Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
   CheckpointScore score;
   score.checkpoint = checkpoint;
   score.dir = run.out;
-  for (const store::ResultRow& row : rows) {
-    if (row.invalid || !chosen.contains({row.task, row.episode, row.seed})) continue;
+  for (const store::ResultRow& row : proven.rows) {
+    if (row.invalid || !chosen.contains(store::key_of(row))) continue;
     Sums& sums = tasks[row.task];
     ++sums.episodes;
     sums.success += value_of(row, "success");

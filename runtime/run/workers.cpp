@@ -5,6 +5,7 @@
 #include <atomic>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -31,7 +32,13 @@ Status run_jobs(std::size_t count, int workers,
   };
   const auto threads = std::min(count, static_cast<std::size_t>(std::max(workers, 1)));
   std::vector<std::thread> pool;
-  for (std::size_t i = 1; i < threads; ++i) pool.emplace_back(work);
+  for (std::size_t i = 1; i < threads; ++i) {
+    try {
+      pool.emplace_back(work);
+    } catch (const std::system_error&) {
+      break;  // the system gives no more threads: those that there are do all the jobs
+    }
+  }
   if (threads > 0) work();
   for (std::thread& thread : pool) thread.join();
   if (first) return *first;

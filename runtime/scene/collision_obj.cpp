@@ -2,11 +2,10 @@
 // our own, because a general importer welds, splits or triangulates vertices as it likes, and
 // components are defined by shared indices.
 #include <charconv>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <sstream>
 
+#include "runtime/base/file.h"
 #include "runtime/scene/hull.h"
 #include "runtime/scene/mesh_import.h"
 
@@ -34,11 +33,8 @@ std::uint32_t find_root(std::vector<std::uint32_t>* parent, std::uint32_t i) {
 }  // namespace
 
 Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& scale) {
-  std::ifstream file(path);
-  std::error_code error;
-  if (!file || !std::filesystem::is_regular_file(path, error)) {
-    return Failure{Fault::kAsset, "there is no such mesh file", path};
-  }
+  PROBE_ASSIGN(std::string text, read_file(path, {.code = Fault::kAsset}));
+  std::istringstream file(std::move(text));
   TriangleSoup soup;
   std::string line, word;
   for (int number = 1; std::getline(file, line); ++number) {

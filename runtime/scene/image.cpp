@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -154,19 +152,8 @@ Result<Texture> decode_image(std::span<const std::byte> encoded, const std::stri
 }
 
 Result<Texture> load_image(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return asset_failure("there is no such image file", path);
-  }
-  std::ifstream stream(path, std::ios::binary | std::ios::ate);
-  if (!stream) return asset_failure("cannot open the image file", path);
-  const std::streamoff size = stream.tellg();
-  if (size < 0) return asset_failure("cannot read the image file", path);
-  std::vector<std::byte> bytes(static_cast<std::size_t>(size));
-  stream.seekg(0);
-  stream.read(reinterpret_cast<char*>(bytes.data()), size);
-  if (!stream) return asset_failure("cannot read the image file", path);
-  return decode_image(bytes, path);
+  PROBE_ASSIGN(const std::string bytes, read_file(path, {.code = Fault::kAsset}));
+  return decode_image(std::as_bytes(std::span(bytes)), path);
 }
 
 Result<std::string> png_bytes(const Texture& texture) {

@@ -12,13 +12,15 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
 #include <tuple>
 
 #include "runtime/base/asset_path.h"
+#include "runtime/base/file.h"
+#include "runtime/base/libm_binding.h"
+#include "runtime/base/paths.h"
 #include "runtime/scene/color.h"
 #include "runtime/scene/image.h"
 #include "runtime/scene/mesh_counts.h"
@@ -72,10 +74,8 @@ enum class UpAxis { kX, kY, kZ };
 
 // What a Collada file says of itself; the asset element is at its beginning.
 UpAxis read_up_axis(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string head(1 << 16, '\0');
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  head.resize(static_cast<std::size_t>(file.gcount()));
+  const auto read = read_file(path, {.most = std::size_t{1} << 16, .only_begin = true});
+  const std::string head = read ? *read : std::string();
   const std::size_t at = head.find("<up_axis>");
   if (at == head.npos) return UpAxis::kY;  // Collada's default
   if (head.compare(at + 9, 1, "X") == 0) return UpAxis::kX;
@@ -230,8 +230,8 @@ class Import {
     Result<Texture> texture = load_image(file);
     if (!texture) return asset_failure(texture.failure().message, where);
     if (limits_.keep_encoded) {
-      std::ifstream stream(file, std::ios::binary);
-      encoded.bytes.assign(std::istreambuf_iterator<char>(stream), {});
+      PROBE_ASSIGN(const std::string bytes, read_file(file, {.code = Fault::kAsset}));
+      encoded.bytes.assign(bytes.begin(), bytes.end());
     }
     return texture;
   }
@@ -521,14 +521,18 @@ bool is_mesh_extension(std::string_view extension) {
 
 Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path, const Vec3& scale,
                                               const MeshLimits& limits) {
+  // assimp turns nodes by angles of its files.
+  static constexpr std::string_view kAssimp[] = {"libassimp"};
+  static const Result<TrigBinding> bound = bind_trigonometry(kAssimp);
+  if (!bound) return bound.failure();
   if (!scale.allFinite() || (scale.array() == 0).any()) {
     return asset_failure("the scale of a mesh must be finite and not 0", path);
   }
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) return asset_failure("there is no such mesh file", path);
+  if (!is_file(path)) return asset_failure("there is no such mesh file", path);
   if (!is_mesh_extension(lower_extension(path))) {
     return asset_failure("meshes are read from glb, gltf, obj, dae and stl files", path);
   }
+  std::error_code error;
   if (fs::file_size(path, error) > kMaxMeshBytes || error) {
     return asset_failure("larger than 512 MB, the most that is read", path);
   }

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "runtime/base/asset_path.h"
+#include "runtime/base/file.h"
 
 namespace probe::scene {
 namespace {
@@ -18,19 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Result<std::string> read_text(const std::string& path) {
-  const auto fail = [&](const char* what) { return Failure{Fault::kAsset, what, path}; };
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return fail("the file cannot be opened");
-  const std::streamoff size = file.tellg();
-  if (size < 0) return fail("the file cannot be read");
-  if (static_cast<std::size_t>(size) > kMaxMeshBytes) {
-    return fail("larger than 512 MB, the most that is read");
-  }
-  std::string text(static_cast<std::size_t>(size), '\0');
-  file.seekg(0);
-  file.read(text.data(), size);
-  if (!file) return fail("the file cannot be read");
-  return text;
+  return read_file(path, {.most = kMaxMeshBytes, .code = Fault::kAsset});
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -510,6 +510,4 @@ std::string profile_help() {
   return text;
 }
 
-std::string_view to_word(Protocol protocol) { return word_of(protocol); }
-
 }  // namespace probe::servers

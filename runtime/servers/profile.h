@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,7 +12,11 @@
 
 namespace probe::servers {
 
-enum class Protocol { kOpenpi, kIntact, kRoboArena, kVlaEval, kGr00t, kOpenVla };
+enum class Protocol {
+#define PROBE_PROTOCOL(name, row) name,
+#include "runtime/servers/protocols/protocols.def"
+#undef PROBE_PROTOCOL
+};
 enum class Resize {
   kNone,
   kStretch,  // to the size, whatever the shape
@@ -149,5 +154,7 @@ std::string profile_sha256(const Profile& profile);
 std::string profile_help();
 
 std::string_view to_word(Protocol protocol);
+// In the order of protocols.def.
+std::span<const Protocol> all_protocols();
 
 }  // namespace probe::servers

@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "runtime/servers/profile.h"
 
@@ -15,14 +16,6 @@ struct Word {
   E value;
 };
 
-inline constexpr std::array kProtocols = {
-    Word<Protocol>{"openpi", Protocol::kOpenpi},
-    Word<Protocol>{"intact", Protocol::kIntact},
-    Word<Protocol>{"roboarena", Protocol::kRoboArena},
-    Word<Protocol>{"vlaeval", Protocol::kVlaEval},
-    Word<Protocol>{"gr00t", Protocol::kGr00t},
-    Word<Protocol>{"openvla", Protocol::kOpenVla},
-};
 inline constexpr std::array kResizes = {
     Word<Resize>{"none", Resize::kNone},
     Word<Resize>{"stretch", Resize::kStretch},
@@ -85,7 +78,6 @@ inline constexpr std::array kConnections = {
     Word<ConnectionUse>{"per_episode", ConnectionUse::kPerEpisode},
 };
 
-constexpr std::span<const Word<Protocol>> words_of(Protocol) { return kProtocols; }
 constexpr std::span<const Word<Resize>> words_of(Resize) { return kResizes; }
 constexpr std::span<const Word<PixelLayout>> words_of(PixelLayout) { return kPixelLayouts; }
 constexpr std::span<const Word<StateLayout>> words_of(StateLayout) { return kStateLayouts; }
@@ -99,8 +91,15 @@ constexpr std::span<const Word<FullStop>> words_of(FullStop) { return kFullStops
 constexpr std::span<const Word<Ensemble>> words_of(Ensemble) { return kEnsembles; }
 constexpr std::span<const Word<ConnectionUse>> words_of(ConnectionUse) { return kConnections; }
 
+// Protocols have theirs in their rows.
+inline std::vector<Word<Protocol>> words_of(Protocol) {
+  std::vector<Word<Protocol>> words;
+  for (const Protocol protocol : all_protocols()) words.push_back({to_word(protocol), protocol});
+  return words;
+}
+
 template <typename E>
-constexpr std::string_view word_of(E value) {
+std::string_view word_of(E value) {
   for (const auto& word : words_of(E{})) {
     if (word.value == value) return word.text;
   }

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "runtime/base/sha256.h"
+#include "runtime/servers/api_key.h"
 #include "runtime/servers/conversion.h"
 #include "runtime/servers/resize.h"
-#include "runtime/servers/servers.h"
 
 namespace probe::servers {
 namespace {
@@ -127,6 +127,7 @@ Status ServerPolicy::connect() {
   }
   is_open_ = true;
   notes_ = transport_->notes();
+  for (std::string& note : notes_) note = without_key(note);
   queue_ = ChunkQueue(profile_);
   return {};
 }
@@ -154,11 +155,7 @@ Failure ServerPolicy::named(Failure failure) const {
   if (failure.where.empty()) failure.where = server_;
   if (failure.code == Fault::kAnswered) failure.code = Fault::kPolicy;
   // A server may repeat the key that it refuses; this text is stored.
-  if (const std::string key = api_key(); !key.empty()) {
-    for (std::size_t at = 0; (at = failure.message.find(key, at)) != std::string::npos; ++at) {
-      failure.message.replace(at, key.size(), "*");
-    }
-  }
+  failure.message = without_key(failure.message);
   return failure;
 }
 

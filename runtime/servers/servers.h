@@ -1,5 +1,4 @@
-// Policies that are servers: from //HOST:PORT?profile=NAME to a ServerPolicy. The table of
-// protocols is here and nowhere else.
+// Policies that are servers: from //HOST:PORT?profile=NAME to a ServerPolicy.
 #pragma once
 
 #include <memory>
@@ -35,9 +34,5 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice);
 
 Result<std::unique_ptr<policy::Policy>> make_server(Protocol protocol, std::string_view argument,
                                                     policy::QueryMeter* queries);
-
-// What is sent as the Api-Key, from the environment's VLAPROBE_API_KEY; empty: none. It must not
-// get into messages or files.
-std::string api_key();
 
 }  // namespace probe::servers

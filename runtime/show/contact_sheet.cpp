@@ -10,6 +10,8 @@
 #include "runtime/show/picture_grid.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/scene_view.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 
@@ -51,12 +53,13 @@ bool succeeded(const store::ResultRow& row) {
 
 Status write_contact_sheet(const std::string& dir, const std::string& png_path,
                            const SheetOptions& options) {
-  PROBE_ASSIGN(auto rows, store::read_results(dir));
+  PROBE_ASSIGN(auto proven, store::read_proven_results(dir));
+  std::vector<store::ResultRow>& rows = proven.rows;
   std::erase_if(
       rows, [&](const store::ResultRow& row) { return !matches_glob(options.tasks, row.task); });
   if (rows.empty())
     return Failure{Fault::kUsage, "no stored episode of `" + options.tasks + "`", dir};
-  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(store::plan_path(dir)));
+  PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
   PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
 
   // Rows are ordered by task: one view at a time is enough.
@@ -76,11 +79,9 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
       objects = 2 + plan.tasks()[*task].distractors;
       task_name = row.task;
     }
-    // An invalid episode may have ended before its start: then there is nothing to draw.
-    auto read = row.invalid ? store::read_trace_prefix(row.trace) : store::read_stored_trace(row);
-    if (!read && !row.invalid) return read.failure();
-    if (!read || !read->start || read->header.task != row.task) continue;
-    const store::Trace& trace = *read;
+    PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
+    // An episode may have ended before its start: then there is nothing to draw.
+    if (!trace.start) continue;
     GridCell cell;
     cell.caption = caption(row);
     cell.color = succeeded(row) ? kGood : kBad;
@@ -95,7 +96,12 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
   if (cells.empty())
     return Failure{Fault::kUsage, "no stored episode got as far as its start", dir};
   const Picture sheet = lay_out_grid(cells, options.columns);
-  return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
+  PROBE_TRY(scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb));
+  if (proven.refused.empty()) return {};
+  return Failure{Fault::kTrace,
+                 "the sheet lacks " + std::to_string(proven.refused.size()) +
+                     " episodes that their traces do not bear: " + proven.refused.front(),
+                 dir};
 }
 
 }  // namespace probe::show

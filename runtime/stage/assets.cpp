@@ -3,10 +3,11 @@
 #include "runtime/stage/assets.h"
 
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 
+#include "runtime/base/file.h"
+#include "runtime/base/libm_binding.h"
 #include "runtime/plan/plan.h"
 #include "runtime/render/scene_store.h"
 #include "runtime/scene/collision_mesh.h"
@@ -18,19 +19,6 @@ namespace probe::stage {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Read {
-  std::string bytes;
-  bool ok = false;
-};
-
-Read read_bytes(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || fs::is_directory(path)) return {};
-  std::ostringstream all;
-  all << file.rdbuf();
-  return {std::move(all).str(), file.good() || file.eof()};
-}
 
 scene::CollisionShape make_primitive(const robot::Primitive& primitive) {
   switch (primitive.kind) {
@@ -108,14 +96,14 @@ class SharedAssets::Loader {
         fs::path(name).lexically_normal().string().starts_with("..")) {
       return Failure{Fault::kAsset, "the plan names a file outside the asset folder", name};
     }
-    const Read file = read_bytes(path_of(asset));
-    if (!file.ok)
+    const auto bytes = read_file(path_of(asset));
+    if (!bytes)
       return Failure{
           Fault::kAsset,
           "this file of the plan is not in " + assets_.root_ + "; --assets names another folder",
           name};
-    const Sha256 hash = sha256(std::string_view(file.bytes));
-    if (file.bytes.size() != record.byte_size || hash.bytes != record.sha256) {
+    const Sha256 hash = sha256(std::string_view(*bytes));
+    if (bytes->size() != record.byte_size || hash.bytes != record.sha256) {
       return Failure{Fault::kAsset, "its bytes are not the ones the plan was built with", name};
     }
     return {};
@@ -199,6 +187,10 @@ class SharedAssets::Loader {
 
 Result<std::shared_ptr<const SharedAssets>> SharedAssets::load(
     const plan::Plan& plan, const std::string& root, std::span<const std::uint32_t> tasks) {
+  // Here, because every simulation begins here. It is a thing of the process: once is enough.
+  static constexpr std::string_view kMultibody[] = {"libSimTK"};
+  static const Result<TrigBinding> bound = bind_trigonometry(kMultibody);
+  if (!bound) return bound.failure();
   auto assets = std::make_shared<SharedAssets>();
   assets->root_ = root;
   assets->pictures_ = std::make_shared<render::SceneStore>();

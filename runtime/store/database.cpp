@@ -3,6 +3,12 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
+#include <vector>
+
+#include "runtime/base/paths.h"
+#include "runtime/base/printable.h"
+
 namespace probe::store {
 namespace {
 
@@ -22,11 +28,30 @@ Failure sqlite_failure(sqlite3* database, Database::Access access, const std::st
           where};
 }
 
+// Of one value: a row of results has a few thousand bytes.
+constexpr int kLargestValue = 1 << 20;
+
+// SQLite's own advice for databases of strangers (sqlite.org/security.html), and more.
+void distrust(sqlite3* database) {
+  for (const int on : {SQLITE_DBCONFIG_DEFENSIVE}) sqlite3_db_config(database, on, 1, nullptr);
+  for (const int off : {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER,
+                        SQLITE_DBCONFIG_ENABLE_VIEW, SQLITE_DBCONFIG_ENABLE_LOAD_EXTENSION}) {
+    sqlite3_db_config(database, off, 0, nullptr);
+  }
+  sqlite3_limit(database, SQLITE_LIMIT_LENGTH, kLargestValue);
+  sqlite3_limit(database, SQLITE_LIMIT_ATTACHED, 0);
+  sqlite3_limit(database, SQLITE_LIMIT_TRIGGER_DEPTH, 0);
+  sqlite3_limit(database, SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 100);
+}
+
 }  // namespace
 
 Result<Database> Database::open(const std::string& path, Access access) {
   Database database;
   database.path_ = path;
+  if (is_there(path) && !is_file(path)) {
+    return Failure{Fault::kStore, "is no file but a folder, a device or a pipe", path};
+  }
   // Without write permission SQLite falls back to read-only by itself.
   const int flags = SQLITE_OPEN_READWRITE | (access == Access::kWrite ? SQLITE_OPEN_CREATE : 0);
   if (sqlite3_open_v2(path.c_str(), &database.handle_, flags, nullptr) != SQLITE_OK) {
@@ -34,6 +59,7 @@ Result<Database> Database::open(const std::string& path, Access access) {
                    std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_), path};
   }
   sqlite3_busy_timeout(database.handle_, 10000);
+  distrust(database.handle_);
   if (access == Access::kWrite) PROBE_TRY(database.execute("pragma synchronous = full"));
   return database;
 }
@@ -43,6 +69,43 @@ Database::~Database() { sqlite3_close(handle_); }
 Status Database::execute(const char* sql) {
   if (sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr) == SQLITE_OK) return {};
   return sqlite_failure(handle_, Access::kWrite, path_);
+}
+
+Status Database::expect(std::span<const Table> tables) {
+  const auto refuse = [&](const std::string& what) {
+    return Failure{Fault::kStore,
+                   "results.sqlite has " + what +
+                       ", which no run makes; the traces are intact: move this file away and run "
+                       "again",
+                   path_};
+  };
+  Statement things(*this, "select type, name, rootpage from sqlite_master");
+  std::vector<std::string> found;
+  while (things.next()) {
+    const std::string type = things.text(0), name = things.text(1);
+    // SQLite's own, for a primary key.
+    if (type == "index" && name.starts_with("sqlite_autoindex_")) continue;
+    const auto known = std::ranges::find(tables, name, &Table::name);
+    const bool is_virtual = things.number(2) == 0;
+    if (type != "table" || is_virtual || known == tables.end()) {
+      return refuse("the " + printable(type, 20) + " `" + printable(name, 60) + "`");
+    }
+    found.push_back(name);
+  }
+  PROBE_TRY(things.done());
+  for (const std::string& name : found) {
+    const auto known = std::ranges::find(tables, name, &Table::name);
+    Statement columns(*this, "select name, hidden from pragma_table_xinfo(?)");
+    columns.bind(name);
+    while (columns.next()) {
+      const std::string column = columns.text(0);
+      if (columns.number(1) != 0 ||
+          std::ranges::find(known->columns, column) == known->columns.end())
+        return refuse("the column `" + printable(column, 60) + "` in `" + name + "`");
+    }
+    PROBE_TRY(columns.done());
+  }
+  return {};
 }
 
 Statement::Statement(Database& database, const char* sql, Database::Access access)
@@ -88,6 +151,10 @@ std::optional<std::string> Statement::optional_text(int column) const {
 }
 
 int Statement::number(int column) const { return sqlite3_column_int(statement_, column); }
+
+std::size_t Statement::bytes(int column) const {
+  return static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
+}
 
 Status Statement::done() const {
   if (code_ == SQLITE_DONE || code_ == SQLITE_OK || code_ == SQLITE_ROW) return {};

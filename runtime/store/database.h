@@ -1,9 +1,12 @@
 // SQLite behind two classes whose failures are ours. database.cpp is the only file that includes
-// SQLite. Knows nothing of runs.
+// SQLite. Knows nothing of runs. A database may come from a stranger: what it brings along is never
+// run (triggers, views, functions), and values have a largest size.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "runtime/base/result.h"
@@ -18,7 +21,8 @@ class Database {
   enum class Access { kRead, kWrite };
 
   // Readers too may have to roll back what a killed writer left. A writer makes the file if it is
-  // absent and waits for the disk after each transaction. Fails with kStore, where = path.
+  // absent and waits for the disk after each transaction. Fails with kStore, where = path, also on
+  // what is no regular file.
   static Result<Database> open(const std::string& path, Access access);
   ~Database();
   Database(Database&& other) noexcept
@@ -26,6 +30,14 @@ class Database {
   Database& operator=(Database&&) = delete;
 
   Status execute(const char* sql);
+
+  // Fails (kStore) unless the database has nothing but tables, all of them among `tables`, with
+  // those of their columns and no others; a table may be absent.
+  struct Table {
+    std::string_view name;
+    std::span<const std::string_view> columns;
+  };
+  Status expect(std::span<const Table> tables);
   const std::string& path() const { return path_; }
 
  private:
@@ -52,6 +64,7 @@ class Statement {
   std::string text(int column) const;
   std::optional<std::string> optional_text(int column) const;
   int number(int column) const;
+  std::size_t bytes(int column) const;  // of its text
 
   // After the last next(); the failure's place is the database's file.
   Status done() const;

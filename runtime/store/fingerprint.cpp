@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "runtime/base/file.h"
 #include "runtime/world/multibody.h"
 
 namespace probe::store {
@@ -74,16 +74,15 @@ int visit_object(dl_phdr_info* info, std::size_t, void* data) {
 }
 
 std::string program_hash() {
-  std::ifstream file("/proc/self/exe", std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return to_hex(sha256(bytes.view()));
+  const auto bytes = read_file("/proc/self/exe");
+  return to_hex(sha256(bytes ? *bytes : std::string()));
 }
 
 // Vendor, family and the instruction sets that libraries choose their code by; not the clock or the
 // model's name.
 std::string cpu_family() {
-  std::ifstream file("/proc/cpuinfo");
+  const auto text = read_file("/proc/cpuinfo");
+  std::istringstream file(text ? *text : std::string());
   std::string line, vendor, family, sets;
   while (std::getline(file, line) && !line.empty()) {
     const std::size_t colon = line.find(':');

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <tuple>
 
+#include "runtime/base/file.h"
+#include "runtime/base/paths.h"
 #include "runtime/plan/plan.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
-#include "runtime/store/stored_trace.h"
 
 namespace probe::store {
 namespace {
@@ -23,17 +25,13 @@ struct Source {
   std::vector<ResultRow> rows;
 };
 
-using EpisodeKey = std::tuple<std::string, int, int>;
-
 // The best row of an episode so far.
 struct Chosen {
   ResultRow row;
   const Source* source = nullptr;
 };
 
-std::string text_of(const ResultRow& row) {
-  return row.task + " episode " + std::to_string(row.episode) + " seed " + std::to_string(row.seed);
-}
+std::string text_of(const ResultRow& row) { return to_text(key_of(row)); }
 
 Result<Source> read_source(const std::string& dir) {
   Source source;
@@ -81,22 +79,22 @@ Status check_same_run(const std::vector<Source>& sources, bool mixed_builds,
   return {};
 }
 
-// A valid row whose trace shows it, or an invalid one with a trace of whatever length.
-bool is_proven(const ResultRow& row, std::vector<std::string>& notes) {
-  if (row.invalid && fs::exists(row.trace)) return true;
-  const auto trace = read_stored_trace(row);
+bool is_proven(const plan::Plan& plan, const ResultRow& row, std::vector<std::string>& notes) {
+  const auto trace = prove(plan, row);
   if (trace) return true;
   notes.push_back(text_of(row) + " is left out: " + to_text(trace.failure()));
   return false;
 }
 
-Status choose_rows(const std::vector<Source>& sources, std::map<EpisodeKey, Chosen>& chosen,
-                   MergeSummary& summary) {
+Status choose_rows(const plan::Plan& plan, const std::vector<Source>& sources,
+                   std::map<EpisodeKey, Chosen>& chosen, MergeSummary& summary) {
   for (const Source& source : sources) {
     for (const ResultRow& row : source.rows) {
-      if (!is_proven(row, summary.notes)) continue;
-      const auto [at, is_new] =
-          chosen.try_emplace({row.task, row.episode, row.seed}, Chosen{row, &source});
+      if (!is_proven(plan, row, summary.notes)) {
+        ++summary.left_out;
+        continue;
+      }
+      const auto [at, is_new] = chosen.try_emplace(key_of(row), Chosen{row, &source});
       if (is_new) continue;
       Chosen& best = at->second;
       ++summary.duplicates;
@@ -117,29 +115,28 @@ Status choose_rows(const std::vector<Source>& sources, std::map<EpisodeKey, Chos
 }
 
 Status copy(const std::string& from, const std::string& to) {
-  std::error_code error;
-  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-  if (error)
-    return Failure{Fault::kStore, "cannot be copied to " + to + ": " + error.message(), from};
+  if (auto copied = copy_to_disk(from, to); !copied) {
+    return Failure{Fault::kStore, "cannot be copied to " + to + ": " + to_text(copied.failure()),
+                   from};
+  }
   return {};
 }
 
-// The trace first, then the row; a video goes along.
+Status copy_video(const std::string& from, const std::string& to) {
+  PROBE_TRY(make_lasting_folders(fs::path(to).parent_path().string()));
+  PendingFile pending(to);
+  PROBE_TRY(copy(from, pending.temporary()));
+  return pending.keep();
+}
+
+// The trace first, to the disk, then the row; a video goes along.
 Status take_over(const Chosen& chosen, Store& store, const std::string& out, int task_order) {
-  const ResultRow& row = chosen.row;
-  const std::string temporary = store.temporary_trace(row.task, row.episode, row.seed);
-  PROBE_TRY(copy(row.trace, temporary));
-  const fs::path folder = chosen.source->dir;
-  const fs::path video = fs::path("videos") / row.task /
-                         (std::to_string(row.episode) + "-" + std::to_string(row.seed) + ".mp4");
-  if (fs::exists(folder / video)) {
-    std::error_code ignored;  // the copy says what is wrong
-    fs::create_directories((out / video).parent_path(), ignored);
-    const std::string part = (out / video).string() + ".tmp";
-    PROBE_TRY(copy((folder / video).string(), part));
-    fs::rename(part, out / video, ignored);
-  }
-  return store.commit(row, task_order);
+  const EpisodeKey key = key_of(chosen.row);
+  PROBE_ASSIGN(const std::string temporary, store.temporary_trace(key));
+  PROBE_TRY(copy(chosen.row.trace, temporary));
+  const std::string video = video_path(chosen.source->dir, key);
+  if (is_file(video)) PROBE_TRY(copy_video(video, video_path(out, key)));
+  return store.commit(chosen.row, task_order);
 }
 
 std::vector<std::string> folders_of(const MergeOptions& options, bool with_out) {
@@ -169,9 +166,17 @@ Result<MergeSummary> merge(const MergeOptions& options) {
   }
   PROBE_TRY(check_same_run(sources, options.mixed_builds, summary.notes));
   std::map<EpisodeKey, Chosen> chosen;
-  PROBE_TRY(choose_rows(sources, chosen, summary));
+  for (const Source& source : sources) {
+    if (auto own = open_run_plan(source.dir); !own) return own.failure();
+  }
+  PROBE_ASSIGN(const plan::Plan plan, open_run_plan(sources.front().dir));
+  PROBE_TRY(choose_rows(plan, sources, chosen, summary));
+  if (chosen.empty() && summary.left_out > 0) {
+    return Failure{Fault::kStore,
+                   "no row of these folders is shown by its trace: " + summary.notes.back(),
+                   sources.front().dir};
+  }
 
-  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::open(plan_path(sources.front().dir)));
   RunRecord record = sources.front().record;
   std::set<int> seeds;
   for (const Source& source : sources) {

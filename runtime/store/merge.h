@@ -20,13 +20,15 @@ struct MergeSummary {
   int added = 0;       // of them new or better than what was there
   int duplicates = 0;  // rows that another folder had too, or had valid
   int invalid = 0;     // rows in `out` that are not valid
+  int left_out = 0;    // rows that their traces do not show, each named in `notes`
   std::vector<std::string> notes;
 };
 
 // Fails (kUsage) when a folder holds no run, or one of another plan, policy, profile or
 // (unless mixed_builds) build than the first, and (kStore) when two folders have the same
-// episode with different traces; nothing is written then. Valid rows win over invalid ones; a valid
-// row whose trace is not whole counts as absent, with a note. Called again it continues.
+// episode with different traces, a folder's plan is not that of its record, or no row at all is
+// shown by its trace; nothing is written then. Valid rows win over invalid ones; a row
+// that its trace does not bear counts as absent, with a note. Called again it continues.
 Result<MergeSummary> merge(const MergeOptions& options);
 
 }  // namespace probe::store

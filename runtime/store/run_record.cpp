@@ -9,12 +9,12 @@
 namespace probe::store {
 namespace {
 
-Failure failed(const std::string& message, const std::string& where) {
+Failure record_failure(const std::string& message, const std::string& where) {
   return {Fault::kStore, message, where};
 }
 
 Failure bad_record(const std::string& key, const char* wanted, const std::string& where) {
-  return failed(
+  return record_failure(
       "`" + key + "` of its run record is not " + wanted + "; move this file away and run again",
       where);
 }
@@ -50,13 +50,14 @@ std::string record_to_text(const RunRecord& record) {
 Result<RunRecord> record_from_text(const std::string& text, const std::string& where) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) {
-    return failed("its run record is no JSON object; move this file away and run again", where);
+    return record_failure("its run record is no JSON object; move this file away and run again",
+                          where);
   }
   RunRecord record;
   PROBE_ASSIGN(const std::string schema, record_text(json, "schema", where));
   if (schema != "1" && schema != std::to_string(kSchemaVersion)) {
-    return failed("was written by a program with another layout of results (" + schema + ")",
-                  where);
+    return record_failure(
+        "was written by a program with another layout of results (" + schema + ")", where);
   }
   record.schema = schema == "1" ? 1 : kSchemaVersion;
   PROBE_ASSIGN(record.identity.plan_root, record_text(json, "plan_root", where));
@@ -92,9 +93,11 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
   }
   if (there.policy_content != here.policy_content) {
     const auto said = [](const std::string& text) { return text.empty() ? "nothing" : text; };
-    changes.policy_content = "was begun with another profile (recorded " +
-                             said(there.policy_content) + ", now " + said(here.policy_content) +
-                             ")";
+    const bool is_server =
+        !there.policy_content.starts_with("policy ") && !here.policy_content.starts_with("policy ");
+    changes.policy_content =
+        std::string("was begun with another ") + (is_server ? "profile" : "policy") +
+        " (recorded " + said(there.policy_content) + ", now " + said(here.policy_content) + ")";
   }
   for (const std::string& line : differences(stored.fingerprint, asked.fingerprint)) {
     changes.build +=
@@ -149,7 +152,8 @@ Result<RunCall> call_from_json(const std::string& text, const std::string& where
     call.queries.waiting_s = json.at("worlds_waiting_s").get<double>();
     call.queries.most_at_once = json.at("queries_at_once").get<int>();
   } catch (const nlohmann::json::exception& error) {
-    return failed(std::string("the figures of a call cannot be read: ") + error.what(), where);
+    return record_failure(std::string("the figures of a call cannot be read: ") + error.what(),
+                          where);
   }
   return call;
 }

@@ -20,7 +20,8 @@ inline constexpr int kSchemaVersion = 2;
 struct RunIdentity {
   std::string plan_root;  // hex
   std::string policy;
-  std::string policy_content = "";  // PolicyTraits::content: what the name alone does not say
+  // What the name alone does not say: PolicyTraits::content, or which policy goes by another name.
+  std::string policy_content = "";
   bool operator==(const RunIdentity&) const = default;
 };
 

@@ -2,19 +2,20 @@
 // with full sync.
 #include "runtime/store/store.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
+#include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "runtime/base/file.h"
+#include "runtime/base/paths.h"
 #include "runtime/store/database.h"
+#include "runtime/store/folder_lock.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/stored_trace.h"
 
 namespace probe::store {
@@ -40,6 +41,33 @@ alter table episodes add column sent_prompt_sha256 text;
 alter table episodes add column sent_image_sha256 text;
 )";
 
+// Of every version; the two of kRaiseSchema may be absent.
+constexpr std::string_view kRunColumns[] = {"name", "value"};
+constexpr std::string_view kCallColumns[] = {"number", "value"};
+constexpr std::string_view kEpisodeColumns[] = {"task",
+                                                "episode",
+                                                "seed",
+                                                "task_order",
+                                                "episode_id",
+                                                "start_id",
+                                                "policy",
+                                                "metrics",
+                                                "steps",
+                                                "invalid",
+                                                "prompt_sha256",
+                                                "image_sha256",
+                                                "frames_sha256",
+                                                "trace_sha256",
+                                                "trace",
+                                                "sent_prompt_sha256",
+                                                "sent_image_sha256"};
+constexpr Database::Table kTables[] = {
+    {"run", kRunColumns}, {"episodes", kEpisodeColumns}, {"calls", kCallColumns}};
+
+// What is read of one folder: a campaign has a few hundred thousand episodes.
+constexpr int kMostRows = 1'000'000;
+constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+
 Failure failed(const std::string& message, const std::string& where) {
   return {Fault::kStore, message, where};
 }
@@ -50,12 +78,11 @@ std::string database_path(const std::string& dir) {
   return (fs::path(dir) / "results.sqlite").string();
 }
 
-std::string relative_trace(const std::string& task, int episode, int seed) {
-  return "traces/" + task + "/" + std::to_string(episode) + "-" + std::to_string(seed) + ".trace";
-}
+std::string relative_trace(const EpisodeKey& key) { return "traces/" + file_stem(key) + ".trace"; }
 
 // Nothing when the database has no run yet.
 Result<std::optional<RunRecord>> load_record(Database& database) {
+  PROBE_TRY(database.expect(kTables));
   Statement table(database, "select 1 from sqlite_master where name = 'run'");
   const bool begun = table.next();
   PROBE_TRY(table.done());
@@ -67,13 +94,6 @@ Result<std::optional<RunRecord>> load_record(Database& database) {
   }
   PROBE_ASSIGN(RunRecord record, record_from_text(select.text(0), database.path()));
   return std::optional(std::move(record));
-}
-
-void sync_folder(const fs::path& folder) {
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return;
-  ::fsync(file);
-  ::close(file);
 }
 
 std::string metrics_to_text(const std::vector<MetricValue>& metrics) {
@@ -99,6 +119,8 @@ std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& tex
   return metrics;
 }
 
+constexpr int kRowColumns = 16;  // that load_rows selects
+
 Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
   PROBE_ASSIGN(const auto record, load_record(database));
   if (!record) return failed("no run here: results.sqlite is empty", dir);
@@ -109,7 +131,15 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
   sql += " from episodes order by task_order, task, episode, seed";
   Statement select(database, sql.c_str());
   std::vector<ResultRow> rows;
+  std::size_t bytes = 0;
   while (select.next()) {
+    for (int column = 0; column < kRowColumns; ++column) bytes += select.bytes(column);
+    if (bytes > kMostBytes || rows.size() >= kMostRows) {
+      return failed("results.sqlite has more rows than any run: more than " +
+                        std::to_string(kMostRows) + ", or more than " +
+                        std::to_string(kMostBytes >> 20) + " MiB of them",
+                    database.path());
+    }
     ResultRow row;
     row.task = select.text(0);
     row.episode = select.number(1);
@@ -129,7 +159,7 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
     row.trace_sha256 = select.text(10);
     row.episode_id = select.text(11);
     row.start_id = select.text(12);
-    row.trace = fs::absolute(fs::path(dir) / select.text(13)).lexically_normal().string();
+    row.trace = absolute_path((fs::path(dir) / select.text(13)).string());
     row.sent_prompt_sha256 = select.optional_text(14);
     row.sent_image_sha256 = select.optional_text(15);
     rows.push_back(std::move(row));
@@ -138,15 +168,26 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
   return rows;
 }
 
+// "3-42.trace.tmp", "3-42.mp4.1234-0.tmp": what this program writes before it renames.
+bool is_leftover(std::string_view name) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::size_t dash = name.find('-'), dot = name.find('.');
+  if (!name.ends_with(".tmp") || dash == name.npos || dot == name.npos || dash > dot) return false;
+  const std::string_view kind = name.substr(dot);
+  return dash > 0 && name.substr(0, dash).find_first_not_of(kDigits) == name.npos &&
+         dot > dash + 1 &&
+         name.substr(dash + 1, dot - dash - 1).find_first_not_of("-0123456789") == name.npos &&
+         (kind.starts_with(".trace") || kind.starts_with(".mp4"));
+}
+
 class FolderStore final : public Store {
  public:
-  FolderStore(std::string dir, int lock, Database database)
-      : dir_(std::move(dir)), lock_(lock), database_(std::move(database)) {}
-  ~FolderStore() override { ::close(lock_); }
+  FolderStore(std::string dir, FolderLock lock, Database database)
+      : dir_(std::move(dir)), lock_(std::move(lock)), database_(std::move(database)) {}
 
   Status begin(const RunRecord& record, std::span<const std::byte> plan_bytes) {
-    PROBE_TRY(database_.execute(kSchema));
     PROBE_ASSIGN(auto stored, load_record(database_));
+    PROBE_TRY(database_.execute(kSchema));
     if (stored) {
       const RunChanges changes = changes_between(*stored, record);
       for (const std::string& change : {changes.identity, changes.policy_content}) {
@@ -157,11 +198,12 @@ class FolderStore final : public Store {
     remove_leftovers();
     if (stored) {
       record_ = std::move(*stored);
+      PROBE_TRY(put_plan_back(plan_bytes));
       return record_.schema < kSchemaVersion ? raise_schema() : Status();
     }
     // The plan goes first: a folder with a record always has its plan.
     PROBE_TRY(write_file(plan_path(dir_), plan_bytes));
-    sync_folder(dir_);
+    PROBE_TRY(sync_folder(dir_));
     record_ = record;
     record_.schema = kSchemaVersion;
     return write_record("insert into run values ('record', ?)");
@@ -171,13 +213,13 @@ class FolderStore final : public Store {
 
   Result<std::vector<StoredEpisode>> episodes() override {
     PROBE_ASSIGN(const auto rows, load_rows(database_, dir_));
+    const auto plan = open_run_plan(dir_);
     std::vector<StoredEpisode> episodes;
     for (const ResultRow& row : rows) {
-      StoredEpisode episode{row.task, row.episode, row.seed, !row.invalid,
-                            row.invalid.value_or("")};
+      StoredEpisode episode{key_of(row), !row.invalid, row.invalid.value_or("")};
       // A row is worth what its trace can show for it.
       if (episode.valid) {
-        if (const auto trace = read_stored_trace(row); !trace) {
+        if (const auto trace = plan ? prove(*plan, row) : read_stored_trace(row); !trace) {
           episode.valid = false;
           episode.why = to_text(trace.failure());
         }
@@ -187,18 +229,23 @@ class FolderStore final : public Store {
     return episodes;
   }
 
-  std::string temporary_trace(const std::string& task, int episode, int seed) const override {
-    std::error_code ignored;  // the trace's own opening says what is wrong
-    fs::create_directories(fs::path(dir_) / "traces" / task, ignored);
-    return trace_path(dir_, task, episode, seed) + ".tmp";
+  Result<std::string> temporary_trace(const EpisodeKey& key) const override {
+    const std::string trace = trace_path(dir_, key);
+    const std::string folder = fs::path(trace).parent_path().string();
+    if (auto made = make_lasting_folders(folder); !made) {
+      return failed(made.failure().message, folder);
+    }
+    return trace + ".tmp";
   }
 
   Status commit(const ResultRow& row, int task_order) override {
-    const std::string trace = trace_path(dir_, row.task, row.episode, row.seed);
-    if (::rename((trace + ".tmp").c_str(), trace.c_str()) != 0) {
+    const std::string trace = trace_path(dir_, key_of(row));
+    if (std::rename((trace + ".tmp").c_str(), trace.c_str()) != 0) {
       return failed(std::string("cannot be renamed: ") + std::strerror(errno), trace + ".tmp");
     }
-    sync_folder(fs::path(trace).parent_path());
+    // Waiting for the disk here is no business of other threads: each has files of its own.
+    PROBE_TRY(sync_folder(fs::path(trace).parent_path().string()));
+    const std::lock_guard lock(mutex_);
     Statement insert(database_,
                      "insert or replace into episodes (task, episode, seed, task_order, "
                      "episode_id, start_id, policy, metrics, steps, invalid, prompt_sha256, "
@@ -209,13 +256,14 @@ class FolderStore final : public Store {
     insert.bind(row.episode_id).bind(row.start_id).bind(row.policy);
     insert.bind(metrics_to_text(row.metrics)).bind(row.steps).bind(row.invalid);
     insert.bind(row.prompt_sha256).bind(row.image_sha256).bind(row.frames_sha256);
-    insert.bind(row.trace_sha256).bind(relative_trace(row.task, row.episode, row.seed));
+    insert.bind(row.trace_sha256).bind(relative_trace(key_of(row)));
     insert.bind(row.sent_prompt_sha256).bind(row.sent_image_sha256);
     insert.next();
     return insert.done();
   }
 
   Status write_call(const RunCall& call) override {
+    const std::lock_guard lock(mutex_);
     if (call_ == 0) {
       Statement last(database_, "select coalesce(max(number), 0) from calls");
       if (last.next()) call_ = last.number(0) + 1;
@@ -227,6 +275,17 @@ class FolderStore final : public Store {
   }
 
  private:
+  // A plan that was lost, damaged or exchanged since: `plan_bytes` are of the root in the record.
+  Status put_plan_back(std::span<const std::byte> plan_bytes) const {
+    if (plan_bytes.empty()) return {};
+    const auto there = read_file(plan_path(dir_));
+    if (there && std::ranges::equal(std::as_bytes(std::span(*there)), plan_bytes)) return {};
+    // Of one root there may be two files: with other texts, which are not part of it.
+    if (open_run_plan(dir_).ok()) return {};
+    PROBE_TRY(write_file(plan_path(dir_), plan_bytes));
+    return sync_folder(dir_);
+  }
+
   Status write_record(const char* sql) {
     Statement write(database_, sql, Access::kWrite);
     write.bind(record_to_text(record_)).next();
@@ -241,20 +300,29 @@ class FolderStore final : public Store {
     return database_.execute("commit");
   }
 
-  // Traces and videos that a killed process did not finish.
+  // Traces and videos that a killed process did not finish: of our names, and only where no link
+  // leads out of this folder, because what lies behind one is not ours to clean.
   void remove_leftovers() const {
-    for (const char* folder : {"traces", "videos"}) {
-      std::error_code error;
-      for (fs::recursive_directory_iterator at(fs::path(dir_) / folder, error), end;
-           !error && at != end; at.increment(error)) {
-        std::error_code ignored;
-        if (at->path().extension() == ".tmp") fs::remove(at->path(), ignored);
+    for (const char* kind : {"traces", "videos"}) {
+      const std::string all = (fs::path(dir_) / kind).string();
+      if (is_link(all)) continue;
+      const auto tasks = list_folder(all);
+      if (!tasks) continue;
+      for (const std::string& task : *tasks) {
+        const fs::path folder = fs::path(all) / task;
+        if (is_link(folder.string())) continue;
+        const auto names = list_folder(folder.string());
+        if (!names) continue;
+        for (const std::string& name : *names) {
+          if (is_leftover(name)) std::remove((folder / name).c_str());
+        }
       }
     }
   }
 
   std::string dir_;
-  int lock_;
+  FolderLock lock_;
+  std::mutex mutex_;  // of the database
   Database database_;
   RunRecord record_;
   int call_ = 0;  // of this object in the table of calls; 0: not written yet
@@ -264,44 +332,33 @@ class FolderStore final : public Store {
 
 std::string plan_path(const std::string& dir) { return (fs::path(dir) / "suite.plan").string(); }
 
-std::string trace_path(const std::string& dir, const std::string& task, int episode, int seed) {
-  return (fs::path(dir) / relative_trace(task, episode, seed)).string();
+std::string trace_path(const std::string& dir, const EpisodeKey& key) {
+  return (fs::path(dir) / relative_trace(key)).string();
+}
+
+std::string video_path(const std::string& dir, const EpisodeKey& key) {
+  return (fs::path(dir) / "videos" / (file_stem(key) + ".mp4")).string();
 }
 
 Result<std::unique_ptr<Store>> Store::open(const std::string& dir, const RunRecord& record,
                                            std::span<const std::byte> plan_bytes) {
   if (dir.empty()) return failed("no folder to write into", "-o");
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (error) return failed("the folder cannot be made: " + error.message(), dir);
-  const std::string lock_path = (fs::path(dir) / "lock").string();
-  const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock < 0) {
-    return failed(std::string("the folder cannot be written: ") + std::strerror(errno), dir);
-  }
-  // The kernel drops this lock with the process, however it ends.
-  if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
-    ::close(lock);
-    return failed("another run is writing into this folder", dir);
-  }
-  auto database = Database::open(database_path(dir), Access::kWrite);
-  if (!database) {
-    ::close(lock);
-    return database.failure();
-  }
-  auto store = std::make_unique<FolderStore>(dir, lock, std::move(*database));
+  if (auto made = make_lasting_folders(dir); !made) return failed(made.failure().message, dir);
+  PROBE_ASSIGN(FolderLock lock, FolderLock::take(dir));
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kWrite));
+  auto store = std::make_unique<FolderStore>(dir, std::move(lock), std::move(database));
   PROBE_TRY(store->begin(record, plan_bytes));
   return std::unique_ptr<Store>(std::move(store));
 }
 
 Result<std::optional<RunRecord>> find_run_record(const std::string& dir) {
-  if (!fs::exists(database_path(dir))) return std::optional<RunRecord>();
+  if (!is_there(database_path(dir))) return std::optional<RunRecord>();
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
   return load_record(database);
 }
 
 Result<RunRecord> read_run_record(const std::string& dir) {
-  if (!fs::exists(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
+  if (!is_there(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
   PROBE_ASSIGN(auto record, find_run_record(dir));
   if (!record) return failed("no run here: results.sqlite is empty", dir);
   return std::move(*record);
@@ -322,7 +379,7 @@ Result<std::vector<RunCall>> read_run_calls(const std::string& dir) {
 }
 
 Result<std::vector<ResultRow>> read_results(const std::string& dir) {
-  if (!fs::exists(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
+  if (!is_there(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
   return load_rows(database, dir);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/store/episode_key.h"
 #include "runtime/store/results.h"
 #include "runtime/store/run_record.h"
 
@@ -16,13 +17,13 @@ namespace probe::store {
 
 // What has been stored of an episode.
 struct StoredEpisode {
-  std::string task;
-  int episode = 0, seed = 0;
+  EpisodeKey key;
   bool valid = false;  // an invalid one is run again, and so is one whose trace is not its own
   std::string why;     // it is not valid
 };
 
-// One process writes a folder at a time; the methods may be called from any thread, one at a time.
+// One process writes a folder at a time. temporary_trace(), commit() and write_call() may be called
+// from any thread at any time, the others only while no other is.
 class Store {
  public:
   // Makes the folder or continues it, whatever the build. Fails (kStore) when the folder
@@ -37,10 +38,10 @@ class Store {
   // Reads every stored trace to see that it is whole and its row's.
   virtual Result<std::vector<StoredEpisode>> episodes() = 0;
 
-  // Where the trace of this episode is to be written before commit().
-  virtual std::string temporary_trace(const std::string& task, int episode, int seed) const = 0;
-  // Renames the temporary trace and writes the row, replacing an invalid one. `task_order` sorts
-  // rows.
+  // Where the trace of this episode is to be written before commit(); makes its folder.
+  virtual Result<std::string> temporary_trace(const EpisodeKey& key) const = 0;
+  // Renames the temporary trace, whose bytes are on the disk, and writes the row, replacing an
+  // invalid one. `task_order` sorts rows.
   virtual Status commit(const ResultRow& row, int task_order) = 0;
 
   // What this call of `run` has done so far; each write replaces the one before.
@@ -54,6 +55,7 @@ Result<std::vector<RunCall>> read_run_calls(const std::string& dir);
 // The run in `dir`, for readers; fails (kStore) if there is none.
 Result<RunRecord> read_run_record(const std::string& dir);
 std::string plan_path(const std::string& dir);
-std::string trace_path(const std::string& dir, const std::string& task, int episode, int seed);
+std::string trace_path(const std::string& dir, const EpisodeKey& key);
+std::string video_path(const std::string& dir, const EpisodeKey& key);
 
 }  // namespace probe::store

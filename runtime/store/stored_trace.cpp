@@ -2,19 +2,21 @@
 #include "runtime/store/stored_trace.h"
 
 #include "runtime/base/spelling.h"
+#include "runtime/store/episode_key.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::store {
 
 Result<Trace> read_stored_trace(const ResultRow& row) {
   PROBE_ASSIGN(Trace trace, read_trace(row.trace));
   const TraceHeader& header = trace.header;
-  if (to_hex(trace.hash) != row.trace_sha256 || header.task != row.task ||
-      header.episode != row.episode || header.seed != row.seed || header.policy != row.policy ||
-      to_hex(header.start_id) != row.start_id || to_hex(header.episode_id) != row.episode_id) {
+  if (to_hex(trace.hash) != row.trace_sha256 || key_of(header) != key_of(row) ||
+      header.policy != row.policy || to_hex(header.start_id) != row.start_id ||
+      to_hex(header.episode_id) != row.episode_id) {
     return Failure{Fault::kTrace,
                    "this trace is not the one its result row was made with (it is of " +
-                       header.task + " episode " + std::to_string(header.episode) + " seed " +
-                       std::to_string(header.seed) + ", policy `" + header.policy + "`)",
+                       to_text(key_of(header)) + ", policy `" + header.policy + "`)",
                    row.trace};
   }
   if (trace.end->invalid != row.invalid || (!row.invalid && trace.end->metrics != row.metrics)) {
@@ -52,7 +54,8 @@ Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, 
                        std::to_string(*seed),
                    dir};
   }
-  PROBE_ASSIGN(Trace trace, read_stored_trace(*found));
+  PROBE_ASSIGN(const plan::Plan plan, open_run_plan(dir));
+  PROBE_ASSIGN(Trace trace, prove(plan, *found));
   return StoredTrace{*found, std::move(trace)};
 }
 

@@ -10,7 +10,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 
+#include "runtime/base/file.h"
 #include "runtime/store/trace_codec.h"
 
 namespace probe::store {
@@ -21,6 +23,7 @@ using codec::Tag;
 // A forged stream must not fill the memory: what a file may expand to is bounded by its own size.
 // Every step has hashes, check words and times that do not compress, so no real trace comes near.
 constexpr std::size_t kMaxContent = std::size_t{1} << 30;
+constexpr std::size_t kMaxFile = std::size_t{256} << 20;
 constexpr std::size_t kMaxExpansion = 1024;
 constexpr std::size_t kFreeExpansion = std::size_t{1} << 20;
 // The writer's window is 2 MiB; the decoder allocates what the file asks for.
@@ -157,52 +160,35 @@ struct Content {
 
 // What can be decompressed from the front, and why not more.
 Result<Content> decompress(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) {
-    return Failure{Fault::kTrace, std::string("cannot be opened: ") + std::strerror(errno), path};
-  }
-  ZSTD_DCtx* stream = ZSTD_createDCtx();
-  ZSTD_DCtx_setParameter(stream, ZSTD_d_windowLogMax, kMaxWindowLog);
-  std::vector<char> packed(ZSTD_DStreamInSize());
+  PROBE_ASSIGN(const std::string packed,
+               read_file(path, {.most = kMaxFile, .code = Fault::kTrace}));
+  const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> stream(ZSTD_createDCtx(),
+                                                                       ZSTD_freeDCtx);
+  ZSTD_DCtx_setParameter(stream.get(), ZSTD_d_windowLogMax, kMaxWindowLog);
   std::vector<char> plain(ZSTD_DStreamOutSize());
   Content content;
-  bool ended = false;
-  std::size_t total = 0;
+  ZSTD_inBuffer in{packed.data(), packed.size(), 0};
+  const auto at = [&](const char* what) { return what + (" " + std::to_string(in.pos)); };
   for (;;) {
-    const std::size_t got = std::fread(packed.data(), 1, packed.size(), file);
-    if (got == 0) break;
-    ZSTD_inBuffer in{packed.data(), got, 0};
-    while (content.incomplete.empty()) {
-      if (ended && in.pos < in.size) {
-        content.incomplete = "bytes after the end, at byte " + std::to_string(total + in.pos);
-        break;
-      }
-      ZSTD_outBuffer out{plain.data(), plain.size(), 0};
-      const std::size_t code = ZSTD_decompressStream(stream, &out, &in);
-      if (ZSTD_isError(code) != 0) {
-        content.incomplete = "damaged before byte " + std::to_string(total + in.pos) + " (" +
-                             ZSTD_getErrorName(code) + ")";
-        break;
-      }
-      const auto* begin = reinterpret_cast<const std::byte*>(plain.data());
-      content.bytes.insert(content.bytes.end(), begin, begin + out.pos);
-      if (content.bytes.size() > allowed_content(total + in.pos)) {
-        content.incomplete =
-            "expanding beyond any episode at byte " + std::to_string(total + in.pos);
-      }
-      if (code == 0) ended = true;
-      if (in.pos == in.size && out.pos < out.size) break;
+    ZSTD_outBuffer out{plain.data(), plain.size(), 0};
+    const std::size_t code = ZSTD_decompressStream(stream.get(), &out, &in);
+    if (ZSTD_isError(code) != 0) {
+      content.incomplete = at("damaged before byte") + " (" + ZSTD_getErrorName(code) + ")";
+      return content;
     }
-    total += got;
-    if (!content.incomplete.empty()) break;
+    const auto* begin = reinterpret_cast<const std::byte*>(plain.data());
+    content.bytes.insert(content.bytes.end(), begin, begin + out.pos);
+    if (content.bytes.size() > allowed_content(in.pos)) {
+      content.incomplete = at("expanding beyond any episode at byte");
+      return content;
+    }
+    if (code == 0) break;
+    if (in.pos == in.size && out.pos < out.size) {
+      content.incomplete = at("truncated at byte");
+      return content;
+    }
   }
-  const bool read_error = std::ferror(file) != 0;
-  std::fclose(file);
-  ZSTD_freeDCtx(stream);
-  if (read_error) return Failure{Fault::kTrace, "cannot be read", path};
-  if (content.incomplete.empty() && !ended) {
-    content.incomplete = "truncated at byte " + std::to_string(total);
-  }
+  if (in.pos < in.size) content.incomplete = at("bytes after the end, at byte");
   return content;
 }
 
@@ -243,9 +229,8 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
                    std::span<const std::byte> payload) {
   if (!is_known(tag)) return "a chunk of unknown kind";
   if ((tag == Tag::kHead) == has_header) return has_header ? "a second header" : "no header";
-  if (tag != Tag::kHead && tag != Tag::kFingerprint && tag != Tag::kSettled && !trace.start) {
-    return "a step before the settled start";
-  }
+  const bool needs_start = tag == Tag::kStep || tag == Tag::kTime;
+  if (needs_start && !trace.start) return "a step before the settled start";
   if (trace.end && tag != Tag::kHash) return "a chunk after the end";
   ByteReader from(payload);
   switch (tag) {
@@ -284,6 +269,7 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
       trace.end = codec::get_end(payload);
       if (!trace.end) return "an end of another form";
       if (!fits(trace.header, *trace.end)) return "an end with other metrics than its header's";
+      if (!trace.start && !trace.end->invalid) return "a valid end without a settled start";
       return trace.end->steps == trace.steps.size() ? ""
                                                     : "another number of steps than its end says";
     case Tag::kHash:

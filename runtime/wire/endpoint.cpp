@@ -43,12 +43,15 @@ bool is_secret(std::string_view option) {
     if (c != '_' && c != '-' && c != '.')
       name += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   }
-  for (const char* known : {"key", "auth", "authorization", "bearer", "pass", "pwd", "sig"}) {
+  for (const char* known :
+       {"key", "auth", "authorization", "bearer", "pass", "pwd", "sig", "sas", "jwt", "pat"}) {
     if (name == known) return true;
   }
-  for (const char* end : {"apikey", "accesskey", "secretkey", "token", "password", "passwd",
-                          "secret", "signature", "credential", "credentials"}) {
+  for (const char* end : {"apikey", "token", "tok", "sas", "signature", "privatekey"}) {
     if (name.ends_with(end)) return true;
+  }
+  for (const char* part : {"accesskey", "secret", "password", "passwd", "credential"}) {
+    if (name.find(part) != std::string::npos) return true;
   }
   return false;
 }

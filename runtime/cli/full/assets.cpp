@@ -4,6 +4,7 @@
 #include "runtime/assets/import.h"
 #include "runtime/assets/pack.h"
 #include "runtime/base/asset_root.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
@@ -27,10 +28,10 @@ int import_verb(AssetsArguments& arguments) {
     ++counts[static_cast<std::size_t>(line.verdict)];
     fmt::print("{:<8} {}  {}\n", assets::to_word(line.verdict), line.name, line.text);
   }
-  fmt::print(stderr, "{}: {} taken, {} odd, {} missing, {} filled in; {} files, {:.1f} MB\n",
-             arguments.options.to, counts[0], counts[1], counts[2], counts[3], imported->files,
-             static_cast<double>(imported->bytes) / 1e6);
-  fmt::print(stderr, "next: vlaprobe check suite/intact.probe --assets {}\n", arguments.options.to);
+  say("{}: {} taken, {} odd, {} missing, {} filled in; {} files, {:.1f} MB\n", arguments.options.to,
+      counts[0], counts[1], counts[2], counts[3], imported->files,
+      static_cast<double>(imported->bytes) / 1e6);
+  say("next: vlaprobe check suite/intact.probe --assets {}\n", arguments.options.to);
   return kFine;
 }
 

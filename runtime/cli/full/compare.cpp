@@ -16,7 +16,7 @@ struct CompareArguments {
 
 int compare_verb(const CompareArguments& arguments) {
   const std::vector<std::string> dirs = {arguments.a, arguments.b};
-  const auto benchmark = report::load(dirs, {.sets = arguments.sets, .join = false});
+  const auto benchmark = report::load(dirs, {.sets = arguments.sets, .join = false, .prove = true});
   if (!benchmark) return report(benchmark.failure());
   if (benchmark->policies.size() < 2) {
     return report(Failure{Fault::kUsage, "is the same folder twice: there is nothing to compare",

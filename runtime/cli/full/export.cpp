@@ -1,9 +1,11 @@
 // vlaprobe export
 #include "runtime/export/export.h"
+#include "runtime/base/say.h"
 
 #include <fmt/format.h>
 
 #include "runtime/cli/full/verbs.h"
+#include "runtime/cli/output.h"
 
 namespace probe::cli {
 
@@ -21,11 +23,16 @@ void add_export(Verb app, int& exit) {
   verb.add_option("-o,--out", arguments->out, "file to write: .jsonl, .h5 or .hdf5").required();
   verb.add_option("--tasks", arguments->options.tasks, "glob over task names");
   verb.callback([arguments, &exit] {
+    if (auto spared = check_output(arguments->out); !spared) {
+      exit = report(spared.failure());
+      return;
+    }
     auto done = exporting::export_run(arguments->dir, arguments->out, arguments->options);
     exit = done ? kFine : report(done.failure());
     if (done) {
-      fmt::print(stderr, "{}: {} episodes, {} steps\n", arguments->out, done->episodes,
-                 done->steps);
+      for (const std::string& sentence : done->refused) say("vlaprobe: {}\n", sentence);
+      if (!done->refused.empty()) exit = kOutside;
+      say("{}: {} episodes, {} steps\n", arguments->out, done->episodes, done->steps);
     }
   });
 }

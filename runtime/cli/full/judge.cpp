@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
 #include "runtime/rejudge/readings.h"
@@ -194,8 +195,7 @@ int judge_under_several(const JudgeArguments& arguments, const plan::Plan& plan)
   }
   for (const rejudge::Reading& reading : *readings) {
     if (reading.left_out.empty()) continue;
-    fmt::print(stderr, "left out by suite `{}`: {}\n", reading.suite,
-               fmt::join(reading.left_out, ", "));
+    say("left out by suite `{}`: {}\n", reading.suite, fmt::join(reading.left_out, ", "));
   }
   return kFine;
 }
@@ -223,11 +223,9 @@ int judge_verb(JudgeArguments arguments) {
     print_table(*judged);
   }
   for (const std::string& task : judged->left_out)
-    fmt::print(stderr, "left out: the judging plan has no task for `{}`\n", task);
-  fmt::print(stderr, "{} episodes judged, {} of them invalid\n", judged->rows.size(),
-             judged->invalid);
-  if (!arguments.options.out.empty())
-    fmt::print(stderr, "results and traces: {}\n", arguments.options.out);
+    say("left out: the judging plan has no task for `{}`\n", task);
+  say("{} episodes judged, {} of them invalid\n", judged->rows.size(), judged->invalid);
+  if (!arguments.options.out.empty()) say("results and traces: {}\n", arguments.options.out);
   return kFine;
 }
 

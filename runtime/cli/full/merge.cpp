@@ -1,5 +1,6 @@
 // vlaprobe merge
 #include "runtime/store/merge.h"
+#include "runtime/base/say.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +12,13 @@ namespace {
 int merge_verb(const store::MergeOptions& options) {
   const auto summary = store::merge(options);
   if (!summary) return report(summary.failure());
-  for (const std::string& note : summary->notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print(stderr, "{} episodes in {}: {} added now, {} duplicates dropped, {} invalid\n",
-             summary->rows, options.out, summary->added, summary->duplicates, summary->invalid);
-  return kFine;
+  for (const std::string& note : summary->notes) say("note: {}\n", note);
+  say("{} episodes in {}: {} added now, {} duplicates dropped, {} invalid\n", summary->rows,
+      options.out, summary->added, summary->duplicates, summary->invalid);
+  if (summary->left_out == 0) return kFine;
+  say("vlaprobe: {} rows were left out, because their traces do not show them\n",
+      summary->left_out);
+  return kOutside;
 }
 
 }  // namespace

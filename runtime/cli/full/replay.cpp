@@ -1,9 +1,11 @@
 // vlaprobe replay
 #include "runtime/run/replay.h"
+#include "runtime/base/say.h"
 
 #include <fmt/format.h>
 
 #include "runtime/cli/full/verbs.h"
+#include "runtime/cli/output.h"
 
 namespace probe::cli {
 namespace {
@@ -19,18 +21,21 @@ struct ReplayArguments {
 int replay_verb(const ReplayArguments& arguments) {
   run::ReplayOptions options = arguments.options;
   options.assets = arguments.assets.root;
+  for (const std::string& out : {options.video, options.png}) {
+    if (auto spared = check_output(out); !spared) return report(spared.failure());
+  }
   auto report_or =
       run::replay(arguments.dir, arguments.task, arguments.episode, arguments.seed, options);
   if (!report_or) return report(report_or.failure());
   for (const std::string& difference : report_or->fingerprint_differences) {
-    fmt::print(stderr, "not as recorded: {}\n", difference);
+    say("not as recorded: {}\n", difference);
   }
-  if (!options.video.empty()) fmt::print(stderr, "video: {}\n", options.video);
-  if (!options.png.empty()) fmt::print(stderr, "picture: {}\n", options.png);
+  if (!options.video.empty()) say("video: {}\n", options.video);
+  if (!options.png.empty()) say("picture: {}\n", options.png);
   const std::string name =
       fmt::format("{} episode {} seed {}", arguments.task, arguments.episode, report_or->seed);
   if (options.verify && !report_or->identical) {
-    fmt::print(stderr, "vlaprobe: {} differs from its trace: {}\n", name, report_or->difference);
+    say("vlaprobe: {} differs from its trace: {}\n", name, report_or->difference);
     return kOutside;
   }
   fmt::print("{}: {} steps {}\n", name, report_or->steps,

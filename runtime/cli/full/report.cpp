@@ -6,7 +6,9 @@
 #include <thread>
 
 #include "runtime/base/file.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/cli/output.h"
 #include "runtime/report/episode_documents.h"
 #include "runtime/report/page_data.h"
 #include "runtime/report/page_writer.h"
@@ -45,30 +47,10 @@ report::EpisodeDocuments read_traces(const report::Benchmark& benchmark,
       {.jobs = arguments.jobs > 0 ? arguments.jobs : all, .traces = !arguments.no_traces});
 }
 
-// Refuses to write over what a run folder is made of, wherever it lies.
-Status spare_runs(const std::string& out) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path path = fs::weakly_canonical(fs::absolute(out, error), error);
-  if (error) return {};  // writing will say what is wrong
-  for (fs::path dir = path.parent_path(); dir.has_relative_path(); dir = dir.parent_path()) {
-    if (!fs::exists(dir / "results.sqlite", error)) continue;
-    const std::string part = path.lexically_relative(dir).begin()->string();
-    if (part.starts_with("results.sqlite") || part == "suite.plan" || part == "lock" ||
-        part == "traces" || part == "videos") {
-      return Failure{Fault::kUsage,
-                     fmt::format("belongs to the run in `{}` and is not written over; give -o "
-                                 "another name",
-                                 dir.string()),
-                     out};
-    }
-  }
-  return {};
-}
-
 Status write_report(const ReportArguments& arguments) {
-  if (!arguments.out.empty()) PROBE_TRY(spare_runs(arguments.out));
-  PROBE_ASSIGN(report::Benchmark benchmark, report::load(arguments.dirs, {.sets = arguments.sets}));
+  PROBE_TRY(check_output(arguments.out));
+  PROBE_ASSIGN(report::Benchmark benchmark,
+               report::load(arguments.dirs, {.sets = arguments.sets, .prove = true}));
   report::PageOptions options{.title = arguments.title,
                               .command = arguments.command,
                               .program = std::string("vlaprobe ") + version(),
@@ -88,7 +70,7 @@ Status write_report(const ReportArguments& arguments) {
     const std::string text = report::table_text(benchmark, tables, options.published,
                                                 *report::table_format(arguments.format));
     for (const report::Note& note : benchmark.notes)
-      fmt::print(stderr, "{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
+      say("{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
     if (!arguments.out.empty()) return write_file(arguments.out, std::as_bytes(std::span(text)));
     fmt::print("{}", text);
     return {};
@@ -106,10 +88,10 @@ Status write_report(const ReportArguments& arguments) {
                           .whys = std::move(episodes.whys)});
   PROBE_TRY(write_file(arguments.out, std::as_bytes(std::span(page))));
   for (const report::Note& note : benchmark.notes)
-    fmt::print(stderr, "{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
-  fmt::print(stderr, "{}: {} {}, {} episodes, {:.1f} MB\n", arguments.out,
-             benchmark.policies.size(), benchmark.policies.size() == 1 ? "policy" : "policies",
-             benchmark.episodes.size(), static_cast<double>(page.size()) / 1e6);
+    say("{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
+  say("{}: {} {}, {} episodes, {:.1f} MB\n", arguments.out, benchmark.policies.size(),
+      benchmark.policies.size() == 1 ? "policy" : "policies", benchmark.episodes.size(),
+      static_cast<double>(page.size()) / 1e6);
   return {};
 }
 

@@ -3,9 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/tally.h"
 #include "runtime/run/delivery.h"
+#include "runtime/store/proof.h"
 
 namespace probe::cli {
 namespace {
@@ -32,18 +36,21 @@ int delivery_verb(const ResultsArguments& arguments, std::span<const store::Resu
 }
 
 int results_verb(const ResultsArguments& arguments) {
-  auto rows = store::read_results(arguments.dir);
-  if (!rows) return report(rows.failure());
-  if (arguments.delivery) return delivery_verb(arguments, *rows);
+  auto proven = store::read_proven_results(arguments.dir);
+  if (!proven) return report(proven.failure());
+  for (const std::string& sentence : proven->refused) say("vlaprobe: {}\n", sentence);
+  const int exit = proven->refused.empty() ? kFine : kOutside;
+  const std::vector<store::ResultRow>& rows = proven->rows;
+  if (arguments.delivery) return std::max(exit, delivery_verb(arguments, rows));
   if (arguments.json) {
-    fmt::print("{}\n", store::results_to_json(*rows));
+    fmt::print("{}\n", store::results_to_json(rows));
   } else if (arguments.csv) {
-    fmt::print("{}", store::results_to_csv(*rows));
+    fmt::print("{}", store::results_to_csv(rows));
   } else {
     const auto plan = rejudge::stored_plan(arguments.dir);
-    fmt::print("{}", rejudge::tally_text(*rows, plan ? &*plan : nullptr));
+    fmt::print("{}", rejudge::tally_text(rows, plan ? &*plan : nullptr));
   }
-  return kFine;
+  return exit;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // vlaprobe run
 #include "runtime/run/run.h"
+#include "runtime/base/say.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -57,19 +58,19 @@ class ProgressPrinter {
     }
     const auto columns = terminal_columns();
     if (!columns) {
-      if (const auto line = progress_.log_line(now)) fmt::print(stderr, "{}\n", *line);
+      if (const auto line = progress_.log_line(now)) say("{}\n", *line);
       return;
     }
     constexpr double kRedrawEvery = 0.1;  // s
     if (now - drawn_ < kRedrawEvery && progress.done + progress.skipped < progress.total) return;
     drawn_ = now;
     // The last column stays free: a full line would wrap.
-    fmt::print(stderr, "\r\033[K{}", progress_.terminal_line(now, *columns - 1, color_));
+    say("\r\033[K{}", progress_.terminal_line(now, *columns - 1, color_));
     std::fflush(stderr);
     dirty_ = true;
   }
   void clear() {
-    if (dirty_) fmt::print(stderr, "\r\033[K");
+    if (dirty_) say("\r\033[K");
     dirty_ = false;
   }
 

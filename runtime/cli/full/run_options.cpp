@@ -7,6 +7,7 @@
 #include <map>
 
 #include "runtime/base/printable.h"
+#include "runtime/base/say.h"
 #include "runtime/run/policies.h"
 
 namespace probe::cli {
@@ -113,19 +114,17 @@ LoadedPlan load_runnable(const RunArguments& arguments) {
 }
 
 void print_invalid(const store::ResultRow& row) {
-  fmt::print(stderr, "invalid: {} episode {} seed {}: {}\n", row.task, row.episode, row.seed,
-             *row.invalid);
+  say("invalid: {} episode {} seed {}: {}\n", row.task, row.episode, row.seed, *row.invalid);
 }
 
 void print_summary(const run::RunSummary& summary) {
-  for (const std::string& note : summary.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : summary.notes) say("note: {}\n", note);
   if (summary.total == 0) return;
-  fmt::print(stderr, "{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total,
-             summary.out, summary.done, summary.skipped, summary.invalid);
-  if (summary.done > 0) fmt::print(stderr, "{}\n", store::to_text(summary.call));
+  say("{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total, summary.out,
+      summary.done, summary.skipped, summary.invalid);
+  if (summary.done > 0) say("{}\n", store::to_text(summary.call));
   if (summary.call.retried > 0) {
-    fmt::print(stderr, "{} attempts that the server spoiled were made again\n",
-               summary.call.retried);
+    say("{} attempts that the server spoiled were made again\n", summary.call.retried);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
+#include "runtime/cli/output.h"
 #include "runtime/run/replay.h"
 #include "runtime/show/preview.h"
 
@@ -21,6 +22,14 @@ struct SheetArguments {
 void add_camera_option(Verb verb, SheetArguments& arguments) {
   verb.add_option("--camera", arguments.options.camera,
                   "of several cameras, the one to show (default: all, side by side)");
+}
+
+// Before anything is drawn; false when `exit` says why not.
+bool may_write(const SheetArguments& arguments, int& exit) {
+  const std::string inputs[] = {arguments.input};
+  const Status spared = check_output(arguments.out, inputs);
+  if (!spared) exit = report(spared.failure());
+  return spared.ok();
 }
 
 int written(const Status& status, const std::string& path) {
@@ -44,6 +53,7 @@ void add_sheet(Verb app, int& exit) {
   add_asset_option(verb, arguments->assets);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] {
+    if (!may_write(*arguments, exit)) return;
     arguments->options.assets = arguments->assets.root;
     exit = written(show::write_contact_sheet(arguments->input, arguments->out, arguments->options),
                    arguments->out);
@@ -65,6 +75,7 @@ void add_preview(Verb app, int& exit) {
   add_asset_option(verb, arguments->assets);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] {
+    if (!may_write(*arguments, exit)) return;
     arguments->assets.tasks = arguments->task;
     LoadedPlan loaded = load_plan(arguments->input, arguments->assets);
     exit = loaded.exit;

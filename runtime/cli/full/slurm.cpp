@@ -1,5 +1,6 @@
 // vlaprobe slurm
 #include "runtime/cluster/slurm.h"
+#include "runtime/base/say.h"
 
 #include <fmt/format.h>
 
@@ -37,22 +38,20 @@ int slurm_verb(const SlurmArguments& arguments) {
     options.script.program = (folder_of_program() / "vlaprobe").string();
   }
   options.submit = arguments.submit;
-  options.tell = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
+  options.tell = [](const std::string& sentence) { say("{}\n", sentence); };
   const auto done = cluster::run_on_slurm(*loaded.plan, options);
   if (!done) return report(done.failure());
   if (!options.submit) {
-    fmt::print(stderr,
-               "{}: an array of {} tasks for {} episodes; read it, then run sbatch with it, or "
-               "this command with --submit\n",
-               done->script, options.script.tasks, done->total);
+    say("{}: an array of {} tasks for {} episodes; read it, then run sbatch with it, or "
+        "this command with --submit\n",
+        done->script, options.script.tasks, done->total);
     return kFine;
   }
-  for (const std::string& note : done->merged.notes) fmt::print(stderr, "note: {}\n", note);
-  for (const std::string& note : done->notes) fmt::print(stderr, "note: {}\n", note);
-  fmt::print(stderr, "{} of {} episodes are stored in {}\n", done->stored, done->total,
-             options.run.out);
+  for (const std::string& note : done->merged.notes) say("note: {}\n", note);
+  for (const std::string& note : done->notes) say("note: {}\n", note);
+  say("{} of {} episodes are stored in {}\n", done->stored, done->total, options.run.out);
   if (done->stored == done->total) return kFine;
-  fmt::print(stderr, "the same command runs what is missing\n");
+  say("the same command runs what is missing\n");
   return kOutside;
 }
 

@@ -1,5 +1,6 @@
 // vlaprobe sweep
 #include "runtime/run/sweep.h"
+#include "runtime/base/say.h"
 
 #include <fmt/format.h>
 
@@ -25,7 +26,7 @@ int sweep_verb(const SweepArguments& arguments) {
   run::SweepOptions sweeping;
   sweeping.run = std::move(*options);
   sweeping.checkpoints = arguments.checkpoints;
-  sweeping.tell = [](const std::string& sentence) { fmt::print(stderr, "{}\n", sentence); };
+  sweeping.tell = [](const std::string& sentence) { say("{}\n", sentence); };
   const auto swept = run::sweep(*loaded.plan, sweeping);
   if (!swept) return report(swept.failure());
   print_summary(swept->whole);

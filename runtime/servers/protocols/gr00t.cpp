@@ -4,13 +4,15 @@
 #include <array>
 #include <span>
 
-#include "runtime/servers/servers.h"
+#include "runtime/servers/api_key.h"
+#include "runtime/servers/protocol.h"
 #include "runtime/wire/msgpack.h"
 #include "runtime/wire/zmq.h"
 
 namespace probe::servers {
 namespace {
 
+constexpr std::string_view kNested = "n1.6_nested";
 constexpr std::array<std::string_view, 7> kActionNames = {"x",     "y",   "z",      "roll",
                                                           "pitch", "yaw", "gripper"};
 constexpr std::array<std::string_view, 7> kStateNames = kActionNames;
@@ -169,12 +171,14 @@ Result<std::vector<RawAction>> gr00t_actions(const wire::Value& answer) {
   return to_actions(wire::array_f64({static_cast<std::int64_t>(count), 7}, rows));
 }
 
+namespace {
+
 Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile,
                                               const wire::Endpoint& server) {
   Gr00tForm form = Gr00tForm::kN16;
   if (profile.dialect == "n1.5") {
     form = Gr00tForm::kN15;
-  } else if (profile.dialect == "n1.6_nested") {
+  } else if (profile.dialect == kNested) {
     form = Gr00tForm::kN16Nested;
   } else if (!profile.dialect.empty() && profile.dialect != "n1.6") {
     return Failure{Fault::kUsage,
@@ -191,5 +195,37 @@ Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile,
   }
   return std::unique_ptr<Transport>(std::make_unique<Gr00t>(profile, server, form));
 }
+
+// Number by number, or each in a map of its kind.
+std::vector<KeyUse> gr00t_key_uses(const Profile& profile) {
+  const bool is_nested = profile.dialect == kNested;
+  std::vector<KeyUse> uses = image_key_uses(profile);
+  if (is_nested) {
+    for (KeyUse& use : uses) {
+      use.map = "video";
+      use.key = gr00t_nested_image_key(use.key);
+    }
+  } else {
+    for (const std::string_view name : gr00t_state_names(profile.state_layout)) {
+      uses.push_back(state_key_use(profile.state_key + "." + std::string(name)));
+    }
+  }
+  uses.push_back(prompt_key_use(profile));
+  if (is_nested) uses.back().map = "language";
+  return uses;
+}
+
+}  // namespace
+
+constinit const ProtocolRow gr00t_row{
+    .word = "gr00t",
+    .argument = "//HOST:PORT",
+    .meaning = "a GR00T server",
+    .port = "5555",
+    .options = {},
+    .fixed_keys = {},
+    .key_uses = gr00t_key_uses,
+    .make = make_gr00t,
+};
 
 }  // namespace probe::servers

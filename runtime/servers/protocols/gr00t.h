@@ -1,9 +1,8 @@
-// Isaac-GR00T's protocol (MessagePack over ZeroMQ REQ/REP) in its three forms, named by the
-// profile's field `dialect`: n1.6 (flat keys, answers with an info map), n1.6_nested (the same
-// without the simulation wrapper) and n1.5 (one dimension less, no reset).
+// The messages of Isaac-GR00T's protocol (MessagePack over ZeroMQ REQ/REP) in its three forms,
+// named by the profile's field `dialect`: n1.6 (flat keys, answers with an info map), n1.6_nested
+// (the same without the simulation wrapper) and n1.5 (one dimension less, no reset).
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,8 +29,5 @@ std::string gr00t_nested_image_key(std::string_view key);
 // without "action." before their names. Fails (kPolicy) on an error map, with what the server
 // said, and on anything else.
 Result<std::vector<RawAction>> gr00t_actions(const wire::Value& answer);
-
-// Fails (kUsage) on another `dialect` and on a state that cannot be sent number by number.
-Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile, const wire::Endpoint& server);
 
 }  // namespace probe::servers

@@ -2,6 +2,9 @@
 // 200.
 #include "runtime/servers/protocols/openvla.h"
 
+#include <array>
+
+#include "runtime/servers/protocol.h"
 #include "runtime/wire/http.h"
 #include "runtime/wire/json.h"
 
@@ -79,6 +82,9 @@ Result<std::vector<RawAction>> openvla_actions(std::string_view body) {
   return to_actions(answer);
 }
 
+namespace {
+
+// The path is the server's, or /act.
 Result<std::unique_ptr<Transport>> make_openvla(const Profile& profile,
                                                 const wire::Endpoint& server) {
   if (!profile.dialect.empty() && profile.dialect != kEncoded && profile.dialect != "plain") {
@@ -89,5 +95,20 @@ Result<std::unique_ptr<Transport>> make_openvla(const Profile& profile,
   }
   return std::unique_ptr<Transport>(std::make_unique<OpenVla>(profile, server));
 }
+
+constexpr std::array<std::string_view, 2> kOpenVlaKeys = {"unnorm_key", "encoded"};
+
+}  // namespace
+
+constinit const ProtocolRow openvla_row{
+    .word = "openvla",
+    .argument = "//HOST:PORT",
+    .meaning = "an OpenVLA server",
+    .port = "8000",
+    .options = {},
+    .fixed_keys = kOpenVlaKeys,
+    .key_uses = plain_key_uses,
+    .make = make_openvla,
+};
 
 }  // namespace probe::servers

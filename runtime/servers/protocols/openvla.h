@@ -1,8 +1,8 @@
-// OpenVLA's protocol: POST /act with JSON, arrays as json_numpy writes them, in two forms named by
-// the profile's field `dialect`: plain, and "encoded", a JSON text inside a JSON text.
+// The messages of OpenVLA's protocol: POST /act with JSON, arrays as json_numpy writes them, in two
+// forms named by the profile's field `dialect`: plain, and "encoded", a JSON text inside a JSON
+// text.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,9 +19,5 @@ Result<std::string> openvla_request(const Profile& profile, const Request& reque
 // The actions of an answer's body, in either form. Fails (kPolicy) on the text "error", which
 // is all that OpenVLA says when it fails, and on what to_actions refuses.
 Result<std::vector<RawAction>> openvla_actions(std::string_view body);
-
-// Fails (kUsage) on another `dialect`. The path is the server's, or /act.
-Result<std::unique_ptr<Transport>> make_openvla(const Profile& profile,
-                                                const wire::Endpoint& server);
 
 }  // namespace probe::servers

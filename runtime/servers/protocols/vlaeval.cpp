@@ -1,8 +1,7 @@
 // allenai/vla-evaluation-harness: src/vla_eval/connection.py, model_servers/serve.py. An error is a
 // message like any other there; a text is not.
-#include "runtime/servers/protocols/vlaeval.h"
-
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 
@@ -288,12 +287,38 @@ class VlaEval : public Transport {
   Clock::time_point started_;
 };
 
-}  // namespace
-
 Result<std::unique_ptr<Transport>> make_vlaeval(const Profile& profile,
                                                 const wire::Endpoint& server) {
   PROBE_ASSIGN(const Choices choices, read_choices(server));
   return std::unique_ptr<Transport>(std::make_unique<VlaEval>(profile, server, choices));
 }
+
+// Pictures are in a map of their own.
+std::vector<KeyUse> vlaeval_key_uses(const Profile& profile) {
+  std::vector<KeyUse> uses = plain_key_uses(profile);
+  for (KeyUse& use : uses) {
+    if (use.field.starts_with("image")) use.map = "images";
+  }
+  return uses;
+}
+
+// `pictures`: raw, png, jpeg; else raw to this machine and png to others. `send_state`: true,
+// false; else what the server asks for.
+constexpr std::array<std::string_view, 2> kVlaEvalOptions = {"pictures", "send_state"};
+constexpr std::array<std::string_view, 4> kVlaEvalKeys = {"images", "task_name", "base_pose",
+                                                          "tcp_pose"};
+
+}  // namespace
+
+constinit const ProtocolRow vlaeval_row{
+    .word = "vlaeval",
+    .argument = "//HOST:PORT",
+    .meaning = "a vla-eval server",
+    .port = "8000",
+    .options = kVlaEvalOptions,
+    .fixed_keys = kVlaEvalKeys,
+    .key_uses = vlaeval_key_uses,
+    .make = make_vlaeval,
+};
 
 }  // namespace probe::servers

@@ -1,8 +1,9 @@
 // A stored trace is believed when row, file and plan say the same of it.
-#include "runtime/rejudge/stored.h"
+#include "runtime/store/proof.h"
 
 #include <functional>
 
+#include "runtime/rejudge/rescore.h"
 #include "tests/runtime/rejudge/made_trace.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -43,6 +44,7 @@ Stored stored(const plan::Plan& plan, const std::string& path,
   row.task = trace.header.task;
   row.episode = 1;
   row.metrics = trace.end->metrics;
+  row.steps = static_cast<int>(trace.end->steps);
   row.invalid = trace.end->invalid;
   row.trace_sha256 = to_hex(*hash);
   row.start_id = to_hex(trace.header.start_id);
@@ -58,7 +60,7 @@ TEST_CASE("a trace is proven by its row, its header and the verdicts of its own 
   const plan::Plan plan = small();
   const std::string path = folder / "a.trace";
   const auto message = [&](const store::ResultRow& row) {
-    const auto trace = proven_trace(plan, row);
+    const auto trace = store::prove(plan, row);
     return trace.ok() ? std::string() : std::string(to_word(trace.failure().code)) + ": " + trace.failure().message;
   };
   const store::ResultRow good = stored(plan, path).row;
@@ -77,6 +79,8 @@ TEST_CASE("a trace is proven by its row, its header and the verdicts of its own 
   CHECK(forged([](store::ResultRow& r) { r.trace_sha256[3] ^= 1; }).starts_with(other));
   CHECK(forged([](store::ResultRow& r) { r.metrics[0].value = 1 - r.metrics[0].value; }) ==
         "trace: this trace ended with other verdicts than its result row says");
+  CHECK(forged([](store::ResultRow& r) { r.steps = 30; }) ==
+        "trace: this trace has 60 steps, its result row says 30");
   CHECK(forged([](store::ResultRow& r) { r.invalid = "it was unlucky"; }) ==
         "trace: this trace ended with other verdicts than its result row says");
 }
@@ -86,7 +90,7 @@ TEST_CASE("a forger who seals a trace with fresh hashes is found by judging it a
   const plan::Plan plan = small();
   const auto message = [&](const std::function<void(store::Trace&)>& change) {
     const store::ResultRow row = stored(plan, folder / "forged.trace", change).row;
-    const auto trace = proven_trace(plan, row);
+    const auto trace = store::prove(plan, row);
     return trace.ok() ? std::string() : trace.failure().message;
   };
   const std::string lies = "its verdicts are not what its own plan says of its measurements";
@@ -98,8 +102,14 @@ TEST_CASE("a forger who seals a trace with fresh hashes is found by judging it a
   CHECK(message([](store::Trace& t) { t.steps[2].sample.tcp.x() = 0.3; }) == lies);
   CHECK(message([](store::Trace& t) { t.header.plan_root.bytes[0] ^= 1; }) ==
         "this trace was not made under the stored plan");
-  CHECK(message([](store::Trace& t) { t.steps.pop_back(), --t.end->steps; }).find("has 59 steps") !=
-        std::string::npos);
+  CHECK(message([](store::Trace& t) { t.steps.pop_back(), --t.end->steps; }) ==
+        "this trace has 59 of the task's 60 steps and gives no reason");
+  // An episode may end early, but then it says why, and its row too.
+  CHECK(message([](store::Trace& t) {
+          t.steps.resize(30);
+          t.end->steps = 30;
+          t.end->invalid = "policy: gone";
+        }).empty());
 }
 
 }  // namespace probe::rejudge

@@ -83,8 +83,9 @@ inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::
         row.invalid = outcome.invalid;
         row.prompt_sha256 = to_hex(sha256(plan.text(of_plan.prompt)));
         row.image_sha256 = "picture";
-        std::ofstream(
-            (*store)->temporary_trace(name, episode, seed));  // no report reads it unasked
+        std::ofstream((*store)
+                          ->temporary_trace({name, episode, seed})
+                          .value());  // no report reads it unasked
         REQUIRE((*store)->commit(row, static_cast<int>(*task)).ok());
       }
     }

@@ -149,9 +149,9 @@ TEST_CASE("a Panda-like robot with a continuous and a mimicking joint loads") {
 TEST_CASE("a file that is not there or is no XML is named") {
   const auto missing = load_urdf("/nowhere/robot.urdf");
   REQUIRE(!missing.ok());
-  CHECK(to_text(missing.failure()) == "/nowhere/robot.urdf: no such file, or not readable");
+  CHECK(to_text(missing.failure()) == "/nowhere/robot.urdf: there is no such file");
   CHECK(!load_urdf("/tmp").ok());
-  CHECK(load_message("") == "the file is empty or a folder");
+  CHECK(load_message("") == "the file is empty");
   CHECK(load_message("solid ascii stl").starts_with("not XML"));
   CHECK(load_message("<robot name='r'><link name='a'></robot>").starts_with("not XML"));
   CHECK(load_message(std::string("<robot\0name='r'/>", 17)) == "not text");

@@ -25,16 +25,16 @@ namespace fs = std::filesystem;
 // holds for: as a server does that is restarted now and then.
 class Unsteady final : public policy::Policy {
  public:
-  Unsteady(std::atomic<int>& begun, std::function<bool(int)> fails, policy::QueryMeter* meter)
-      : begun_(begun), fails_(std::move(fails)), meter_(meter) {}
+  Unsteady(std::atomic<int>& begun, std::function<bool(int)> fails, policy::QueryMeter* meter,
+           Fault fault)
+      : begun_(begun), fails_(std::move(fails)), meter_(meter), fault_(fault) {}
   Status begin(const policy::EpisodeStart&) override {
     failing_ = fails_(begun_++);
     return {};
   }
   Result<policy::Action> act(const policy::Observation& observation) override {
     const policy::QueryMeter::InFlight flight(meter_);
-    if (failing_ && observation.step == 1)
-      return Failure{Fault::kPolicy, "closed in mid-message", "h:1"};
+    if (failing_ && observation.step == 1) return Failure{fault_, "closed in mid-message", "h:1"};
     return policy::Action{0, 0, 0, 0, 0, 0, 1};
   }
 
@@ -42,11 +42,13 @@ class Unsteady final : public policy::Policy {
   std::atomic<int>& begun_;
   std::function<bool(int)> fails_;
   policy::QueryMeter* meter_;
+  Fault fault_;
   bool failing_ = false;
 };
 
 struct Server {
   std::atomic<int> begun = 0;
+  Fault fault = Fault::kPolicy;
 
   RunOptions options(const std::string& out, std::function<bool(int)> fails,
                      const std::string& content = "profile a sha256 1") {
@@ -59,7 +61,7 @@ struct Server {
         [this,
          fails](const run::PolicyContext& context) -> Result<std::unique_ptr<policy::Policy>> {
           return std::unique_ptr<policy::Policy>(
-              std::make_unique<Unsteady>(begun, fails, context.queries));
+              std::make_unique<Unsteady>(begun, fails, context.queries, fault));
         }};
     return options;
   }
@@ -115,6 +117,20 @@ TEST_CASE("a server that is gone ends the run with words that help, and the run 
   CHECK(hashes(folder / "run").size() == 6);
 }
 
+TEST_CASE("what profile and server do not agree on is not tried again, whatever its words") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  Server server;
+  server.fault = Fault::kUsage;
+  RunOptions options = server.options(folder / "run", always);
+  options.give_up_after = 1;
+  const RunSummary summary = must_run(plan, options);
+  CHECK(summary.invalid == 2);
+  CHECK(summary.call.retried == 0);
+  CHECK(server.begun == 2);
+  CHECK(read_results(folder / "run")->at(0).invalid == "policy: h:1: closed in mid-message");
+}
+
 TEST_CASE("failures that are not in a row do not end a run, and 0 never does") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(6, 2);
@@ -128,6 +144,20 @@ TEST_CASE("failures that are not in a row do not end a run, and 0 never does") {
   options.give_up_after = 0;
   options.jobs = 2;
   CHECK(must_run(plan, options).invalid == 6);
+}
+
+TEST_CASE("two policies of this process under one name are not one run") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  RunOptions options = options_for(folder / "run", "null");
+  options.name = "mine";
+  must_run(plan, options);
+  CHECK(must_run(plan, options).skipped == 2);
+  options.policy = "random";
+  const auto mixed = run(plan, options);
+  REQUIRE_FALSE(mixed.ok());
+  CHECK(mixed.failure().message.starts_with(
+      "was begun with another policy (recorded policy null, now policy random); "));
 }
 
 TEST_CASE("another plan, profile or build is refused, forked or continued, as the user says") {

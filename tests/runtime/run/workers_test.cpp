@@ -3,8 +3,12 @@
 #include "runtime/run/workers.h"
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <mutex>
 #include <set>
 #include <string>
@@ -43,6 +47,24 @@ TEST_CASE("every job runs once, with the same results for any number of workers"
   CHECK(run_jobs(0, 2, []() -> Result<Worker> {
           return Failure{Fault::kInternal, "never made", ""};
         }).ok());
+}
+
+TEST_CASE("where the system gives no thread one does all the jobs") {
+  const auto expected = run_fake(1);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    // No room for another stack.
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const rlim_t most = pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + (2 << 20);
+    const rlimit limit{most, most};
+    ::setrlimit(RLIMIT_AS, &limit);
+    ::_exit(run_fake(4) == expected ? 42 : 1);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 42);
 }
 
 TEST_CASE("the first failure stops the hand-out and is returned") {

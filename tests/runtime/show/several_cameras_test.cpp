@@ -71,11 +71,11 @@ Episode watch(const plan::Plan& plan, const std::string& task, const std::string
   REQUIRE(trace.ok());
   EpisodeVideo video(header, folder + "/" + task + ".mp4");
   Episode episode;
-  auto row = run_episode(**stage, plan, job, "watcher", episode.watcher, **trace, &video, 2);
-  REQUIRE_MESSAGE(row.ok(), (row.ok() ? "" : to_text(row.failure())));
-  CHECK_MESSAGE(!row->invalid, row->invalid.value_or(""));
+  auto played = run_episode(**stage, plan, job, "watcher", episode.watcher, **trace, &video, 2);
+  REQUIRE_MESSAGE(played.ok(), (played.ok() ? "" : to_text(played.failure())));
+  CHECK_MESSAGE(!played->row.invalid, played->row.invalid.value_or(""));
   REQUIRE(video.finish().ok());
-  episode.row = std::move(*row);
+  episode.row = std::move(played->row);
   return episode;
 }
 

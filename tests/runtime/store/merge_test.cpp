@@ -7,11 +7,15 @@
 #include <filesystem>
 
 #include "runtime/base/check.h"
+#include "runtime/base/file.h"
+#include "runtime/policy/scripted.h"
 #include "runtime/run/run.h"
 #include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/store/sample_run.h"
 
 namespace probe::store {
 using namespace probe::run;
@@ -42,9 +46,16 @@ void make_invalid(const std::string& dir, const ResultRow& row) {
   auto record = read_run_record(dir);
   auto store = Store::open(dir, *record, {});
   REQUIRE(store.ok());
-  fs::copy_file(row.trace, (*store)->temporary_trace(row.task, row.episode, row.seed));
+  const auto trace = read_trace(row.trace);
+  REQUIRE(trace.ok());
+  auto writer = TraceWriter::create((*store)->temporary_trace(key_of(row)).value(), trace->header);
+  REQUIRE((*writer)->start(*trace->start).ok());
+  for (const TraceStep& step : trace->steps) REQUIRE((*writer)->step(step).ok());
+  TraceEnd end = *trace->end;
+  end.invalid = "policy: gone";
   ResultRow changed = row;
-  changed.invalid = "policy: gone";
+  changed.invalid = end.invalid;
+  changed.trace_sha256 = to_hex((*writer)->finish(end).value());
   REQUIRE((*store)->commit(changed, 0).ok());
 }
 
@@ -87,6 +98,50 @@ TEST_CASE("merged shards are a single run, in any order, once or twice") {
   CHECK(continued->done == 0);
 }
 
+TEST_CASE(
+    "rows that traces do not bear are left out by name, and a folder of nothing else is refused") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  for (const char* name : {"a", "b"}) must_run(plan, options_for(folder / name, "null"));
+  const std::vector<ResultRow> rows = *read_results(folder / "a");
+  fs::remove(rows[0].trace);
+  change_database(folder / "b", "update episodes set metrics = replace(metrics, ',0', ',1')");
+  const MergeSummary summary = must_merge({{folder / "a", folder / "b"}, folder / "ab"});
+  CHECK(summary.rows == 1);
+  CHECK(summary.left_out == 3);
+  REQUIRE(summary.notes.size() == 3);
+  CHECK(summary.notes[0].starts_with(to_text(key_of(rows[0])) + " is left out: "));
+  const auto none = merge({{folder / "b"}, folder / "none"});
+  REQUIRE_FALSE(none.ok());
+  CHECK(none.failure().message.starts_with("no row of these folders is shown by its trace: "));
+  CHECK_FALSE(fs::exists(folder / "none"));
+}
+
+TEST_CASE(
+    "a folder whose plan is not that of its record is not merged, and run puts the plan back") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2), other = table_plan(2, 3);
+  for (const char* name : {"a", "b"}) must_run(plan, options_for(folder / name, "null"));
+  const auto swap = [&](std::span<const std::byte> bytes) {
+    REQUIRE(write_file(plan_path(folder / "b"), bytes).ok());
+  };
+  const auto refusal = [&] {
+    const auto merged = merge({{folder / "a", folder / "b"}, folder / "ab"});
+    REQUIRE_FALSE(merged.ok());
+    CHECK(merged.failure().where == plan_path(folder / "b"));
+    CHECK_FALSE(fs::exists(folder / "ab"));
+    return merged.failure().message;
+  };
+  swap(other.bytes());
+  CHECK(refusal().starts_with("is not the plan of this run (root "));
+  swap({});
+  CHECK(refusal().starts_with("the plan of this run cannot be read: "));
+  fs::remove(plan_path(folder / "b"));
+  CHECK(refusal().starts_with("the plan of this run cannot be read: "));
+  must_run(plan, options_for(folder / "b", "null"));
+  CHECK(must_merge({{folder / "a", folder / "b"}, folder / "ab"}).rows == 2);
+}
+
 TEST_CASE("a valid row wins over an invalid one wherever it stands, and damage counts as absent") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(2, 2);
@@ -113,9 +168,13 @@ TEST_CASE("what does not belong together is refused before anything is written")
   const plan::Plan plan = table_plan(1, 2);
   must_run(plan, options_for(folder / "a", "null"));
   must_run(table_plan(1, 3), options_for(folder / "plan", "null"));
-  RunOptions reach = options_for(folder / "trace", "reach");
-  reach.name = "null";
-  must_run(plan, reach);
+  // The same policy by all that the record says, with other actions.
+  RunOptions other_actions = options_for(folder / "trace", "null");
+  other_actions.own_policy =
+      OwnPolicy{{}, [](const PolicyContext&) -> Result<std::unique_ptr<policy::Policy>> {
+                  return policy::make_random();
+                }};
+  must_run(plan, other_actions);
   must_run(plan, options_for(folder / "policy", "reach"));
   const auto refusal = [&](const std::string& other) {
     const auto merged = merge({{folder / "a", folder / other}, folder / "out"});

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 #include <signal.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,7 +12,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "runtime/plan/plan.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/store/sample_run.h"
 #include "tests/runtime/store/sample_trace.h"
 
 namespace probe::store {
@@ -19,52 +22,6 @@ using namespace probe::run;
 namespace {
 
 namespace fs = std::filesystem;
-
-RunRecord record_of(const std::string& policy = "null", const std::string& root = "aa") {
-  return {{root, policy}, "smoke", {42}, {{{"cpu", "test"}}}};
-}
-
-std::span<const std::byte> plan_bytes() {
-  static constexpr std::byte kBytes[] = {std::byte{1}, std::byte{2}};
-  return kBytes;
-}
-
-ResultRow row_of(int episode, std::optional<std::string> invalid = std::nullopt) {
-  ResultRow row;
-  row.task = "carrot_on_plate";
-  row.episode = episode;
-  row.seed = 42;
-  row.policy = "null";
-  row.metrics = {{"success", true, 1}, {"height", false, 0.1}};
-  row.steps = 60;
-  row.invalid = std::move(invalid);
-  row.prompt_sha256 = to_hex(sha256(std::string_view("put carrot on plate")));
-  return row;
-}
-
-Status store_episode(Store& store, ResultRow row) {
-  TraceHeader header = sample_header();
-  header.task = row.task;
-  header.episode = row.episode;
-  header.seed = row.seed;
-  row.start_id = to_hex(header.start_id);
-  row.episode_id = to_hex(header.episode_id);
-  PROBE_ASSIGN(auto trace,
-               TraceWriter::create(store.temporary_trace(row.task, row.episode, row.seed), header));
-  PROBE_TRY(trace->start(sample_start()));
-  PROBE_TRY(trace->step(sample_step(1)));
-  PROBE_ASSIGN(const Sha256 hash, trace->finish({1, row.metrics, row.invalid}));
-  row.trace_sha256 = to_hex(hash);
-  return store.commit(row, 0);
-}
-
-// What a stranger's hand does to results.sqlite.
-void change_database(const std::string& dir, const std::string& sql) {
-  sqlite3* database = nullptr;
-  REQUIRE(sqlite3_open((dir + "/results.sqlite").c_str(), &database) == SQLITE_OK);
-  CHECK(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK);
-  sqlite3_close(database);
-}
 
 TEST_CASE("rows come back in order, with an absolute trace path") {
   TemporaryFolder folder;
@@ -98,13 +55,13 @@ TEST_CASE("valid rows are kept, invalid ones and lost traces are run again") {
     REQUIRE(store_episode(**store, row_of(1, "policy: gone")).ok());
     REQUIRE(store_episode(**store, row_of(2)).ok());
   }
-  fs::remove(trace_path(dir, "carrot_on_plate", 2, 42));
+  fs::remove(trace_path(dir, {"carrot_on_plate", 2, 42}));
   auto store = Store::open(dir, record_of(), plan_bytes());
   REQUIRE(store.ok());
   const auto episodes = (*store)->episodes();
   REQUIRE(episodes.ok());
   REQUIRE(episodes->size() == 3);
-  for (const StoredEpisode& episode : *episodes) CHECK(episode.valid == (episode.episode == 0));
+  for (const StoredEpisode& episode : *episodes) CHECK(episode.valid == (episode.key.episode == 0));
   REQUIRE(store_episode(**store, row_of(1)).ok());
   const auto rows = read_results(dir);
   CHECK(rows->size() == 3);
@@ -119,7 +76,7 @@ TEST_CASE("a truncated, swapped or foreign trace does not count as stored") {
   for (int episode = 0; episode < 4; ++episode) {
     REQUIRE(store_episode(**store, row_of(episode)).ok());
   }
-  const auto path = [&](int episode) { return trace_path(dir, "carrot_on_plate", episode, 42); };
+  const auto path = [&](int episode) { return trace_path(dir, {"carrot_on_plate", episode, 42}); };
   fs::resize_file(path(1), fs::file_size(path(1)) - 20);
   fs::copy_file(path(0), path(2), fs::copy_options::overwrite_existing);
   REQUIRE(write_sample_trace(path(3), 2).ok());  // of the right episode, but other content
@@ -313,6 +270,87 @@ TEST_CASE("kill -9 at any time leaves whole rows with whole traces, each once") 
   for (const auto& entry : fs::recursive_directory_iterator(dir)) {
     CHECK(entry.path().extension() != ".tmp");
   }
+}
+
+TEST_CASE(
+    "a database that brings triggers, views or columns of its own is refused by their names") {
+  for (const auto& [sql, what] :
+       {std::pair(
+            "create trigger t after insert on episodes begin update episodes set steps = 0; end",
+            "the trigger `t`"),
+        std::pair("create view v as select 1", "the view `v`"),
+        std::pair("create index i on episodes (steps)", "the index `i`"),
+        std::pair("create table more (a)", "the table `more`"),
+        std::pair("alter table episodes add column x", "the column `x` in `episodes`"),
+        std::pair("alter table run add column y as (1)", "the column `y` in `run`"),
+        std::pair("drop table calls; create view calls as with recursive c(n) as (select 1 union "
+                  "all select n + 1 from c) select n as number, '' as value from c",
+                  "the view `calls`")}) {
+    CAPTURE(sql);
+    TemporaryFolder folder;
+    const std::string dir = folder / "run";
+    {
+      auto store = Store::open(dir, record_of(), plan_bytes());
+      REQUIRE(store.ok());
+      REQUIRE(store_episode(**store, row_of(0)).ok());
+    }
+    change_database(dir, sql);
+    const std::string wanted = std::string("results.sqlite has ") + what +
+                               ", which no run makes; the traces are intact: "
+                               "move this file away and run again";
+    const auto rows = read_results(dir);
+    REQUIRE_FALSE(rows.ok());
+    CHECK(rows.failure().message == wanted);
+    CHECK(read_run_calls(dir).failure().message == wanted);
+    const auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE_FALSE(store.ok());
+    CHECK(store.failure().message == wanted);
+  }
+}
+
+TEST_CASE("a value of megabytes in a database is refused before it fills the memory") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    REQUIRE(store_episode(**store, row_of(0)).ok());
+  }
+  change_database(dir, "update episodes set prompt_sha256 = hex(zeroblob(4000000))");
+  const auto rows = read_results(dir);
+  REQUIRE_FALSE(rows.ok());
+  CHECK(rows.failure().message.find("too big") != std::string::npos);
+}
+
+TEST_CASE("a database, a plan or a trace that is a pipe is refused and not waited for") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  fs::create_directories(dir);
+  REQUIRE(::mkfifo((dir + "/results.sqlite").c_str(), 0600) == 0);
+  CHECK(read_results(dir).failure().message == "is no file but a folder, a device or a pipe");
+  CHECK_FALSE(Store::open(dir, record_of(), plan_bytes()).ok());
+  CHECK(read_trace(dir + "/results.sqlite").failure().message ==
+        "is no file but a folder, a device or a pipe");
+  CHECK_FALSE(plan::Plan::open(dir + "/results.sqlite").ok());
+}
+
+TEST_CASE("what a killed process left is removed, but nothing behind a link and no other's file") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run", elsewhere = folder / "elsewhere";
+  fs::create_directories(dir + "/traces/carrot");
+  fs::create_directories(elsewhere + "/carrot");
+  for (const std::string& name :
+       {dir + "/traces/carrot/3-42.trace.tmp", dir + "/traces/carrot/notes.tmp",
+        dir + "/traces/own.tmp", elsewhere + "/carrot/3-42.mp4.77-0.tmp"}) {
+    std::ofstream(name) << "x";
+  }
+  fs::create_symlink(elsewhere, dir + "/videos");
+  fs::create_symlink(elsewhere + "/carrot", dir + "/traces/linked");
+  REQUIRE(Store::open(dir, record_of(), plan_bytes()).ok());
+  CHECK_FALSE(fs::exists(dir + "/traces/carrot/3-42.trace.tmp"));
+  CHECK(fs::exists(dir + "/traces/carrot/notes.tmp"));
+  CHECK(fs::exists(dir + "/traces/own.tmp"));
+  CHECK(fs::exists(elsewhere + "/carrot/3-42.mp4.77-0.tmp"));
 }
 
 TEST_CASE("rows print as JSON with the promised keys") {

@@ -106,8 +106,7 @@ TEST_CASE("a flipped bit is found, wherever it is") {
 
 TEST_CASE("other files are not traces") {
   TemporaryFolder folder;
-  CHECK(read_trace(folder / "absent.trace").failure().message ==
-        "cannot be opened: No such file or directory");
+  CHECK(read_trace(folder / "absent.trace").failure().message == "there is no such file");
   write_file(folder / "text", "put carrot on plate");
   CHECK(read_trace(folder / "text").failure().message.starts_with("not a trace"));
   REQUIRE(write_sample_trace(folder / "a.trace", 1).ok());
@@ -115,6 +114,28 @@ TEST_CASE("other files are not traces") {
   CHECK(read_trace(folder / "more.trace").failure().message.find("bytes after the end") !=
         std::string::npos);
   CHECK_FALSE(read_trace(folder.path).ok());
+}
+
+TEST_CASE("an episode that failed before it started leaves a trace that is whole") {
+  run::TemporaryFolder folder;
+  const std::string path = folder / "a.trace";
+  auto writer = TraceWriter::create(path, sample_header());
+  REQUIRE(writer.ok());
+  std::vector<MetricValue> metrics;
+  for (const auto& metric : sample_header().metrics)
+    metrics.push_back({metric.name, metric.is_bool, 0});
+  const auto hash = (*writer)->finish({0, metrics, "world: an object fell off the table"});
+  REQUIRE(hash.ok());
+  const auto trace = read_trace(path);
+  REQUIRE_MESSAGE(trace.ok(), to_text(trace.failure()));
+  CHECK_FALSE(trace->start.has_value());
+  CHECK(trace->steps.empty());
+  CHECK(trace->end->invalid == "world: an object fell off the table");
+  CHECK(trace->hash == *hash);
+  // Without a reason it is no such episode.
+  auto forged = TraceWriter::create(path, sample_header());
+  REQUIRE((*forged)->finish({0, metrics, std::nullopt}).ok());
+  CHECK(read_trace(path).failure().message.starts_with("a valid end without a settled start"));
 }
 
 TEST_CASE("a full disk is told") {

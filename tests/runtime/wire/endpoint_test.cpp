@@ -61,6 +61,8 @@ TEST_CASE("a secret inside an option's value is refused as well, and never repea
         "//h?model=https://h/x?api_key=hunter2", "//h?model=/m%23access_token=hunter2",
         "//h?model=https://g/%3Fto%3Dhttps%253A%252F%252Fu%253Ahunter2%2540h",
         "//h?model=https://h/x?a=1&hf_token=hunter2", "//h?model=https://u:a&hunter2@h/x",
+        "//h?model=s3://b/m?AWSAccessKeyId=hunter2", "//h?hf_tok=hunter2",
+        "//h?model=https://h/x?sas=hunter2", "//h?client_secret_value=hunter2",
         "//h/act;token=hunter2", "u:hunter2@h", "//h?=hunter2"}) {
     const auto refused = parse_endpoint(text, "1");
     REQUIRE_MESSAGE(!refused.ok(), text);

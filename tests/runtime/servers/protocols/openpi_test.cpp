@@ -1,5 +1,5 @@
 // The openpi client against a server of the same rules, byte by byte and by what it does.
-#include "runtime/servers/protocols/openpi.h"
+#include "runtime/servers/protocol.h"
 
 #include <doctest/doctest.h>
 #include <stdlib.h>
@@ -215,8 +215,8 @@ TEST_CASE("a server that answers connecting with an error is told at once") {
 TEST_CASE("a request in which two things have one key is not sent") {
   Profile profile;
   profile.images = {{"", "prompt"}};
-  for (const auto make : {make_openpi, make_roboarena}) {
-    auto transport = make(profile, {});
+  for (const Protocol protocol : {Protocol::kOpenpi, Protocol::kRoboArena}) {
+    auto transport = row_of(protocol).make(profile, {});
     REQUIRE(transport.ok());
     Request request;
     request.images.push_back({"prompt", wire::array_u8({1, 1, 3}, {1, 2, 3})});

@@ -1,12 +1,11 @@
 // vla-eval's messages byte by byte, and its client against a server of the same rules.
-#include "runtime/servers/protocols/vlaeval.h"
+#include "runtime/servers/protocols/vlaeval_messages.h"
 
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "runtime/scene/image.h"
-#include "runtime/servers/protocols/vlaeval_messages.h"
 #include "runtime/servers/servers.h"
 #include "tests/hex.h"
 #include "tests/runtime/servers/asking.h"

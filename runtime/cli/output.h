@@ -1,0 +1,17 @@
+// One rule for every verb that writes a file with -o or the like: what was asked about is not what
+// is written over.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "runtime/base/result.h"
+
+namespace probe::cli {
+
+// Fails (kUsage, where = out) when `out` is one of the files that the verb reads, Probe text that
+// is there, or part of a run's folder (its database, plan, lock, traces and videos), also through
+// links. An empty `out` is none.
+Status check_output(const std::string& out, std::span<const std::string> inputs = {});
+
+}  // namespace probe::cli

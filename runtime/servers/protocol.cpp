@@ -1,0 +1,54 @@
+// The table of protocols.
+#include "runtime/servers/protocol.h"
+
+#include <array>
+
+namespace probe::servers {
+namespace {
+
+constexpr Protocol kAll[] = {
+#define PROBE_PROTOCOL(name, row) Protocol::name,
+#include "runtime/servers/protocols/protocols.def"
+#undef PROBE_PROTOCOL
+};
+
+}  // namespace
+
+const ProtocolRow& row_of(Protocol protocol) {
+  static constexpr const ProtocolRow* kRows[] = {
+#define PROBE_PROTOCOL(name, row) &row,
+#include "runtime/servers/protocols/protocols.def"
+#undef PROBE_PROTOCOL
+  };
+  return *kRows[static_cast<std::size_t>(protocol)];
+}
+
+std::span<const Protocol> all_protocols() { return kAll; }
+
+std::string_view to_word(Protocol protocol) { return row_of(protocol).word; }
+
+std::vector<KeyUse> image_key_uses(const Profile& profile) {
+  std::vector<KeyUse> uses;
+  for (std::size_t i = 0; i < profile.images.size(); ++i) {
+    const ImageRule& image = profile.images[i];
+    uses.push_back(
+        {"", image.key, "image " + std::to_string(i + 1),
+         "`image` (" + (image.camera.empty() ? "first" : image.camera) + " -> " + image.key + ")"});
+  }
+  return uses;
+}
+
+KeyUse state_key_use(const std::string& key) { return {"", key, "state.key", "`state.key`"}; }
+
+KeyUse prompt_key_use(const Profile& profile) {
+  return {"", profile.prompt_key, "prompt.key", "`prompt.key`"};
+}
+
+std::vector<KeyUse> plain_key_uses(const Profile& profile) {
+  std::vector<KeyUse> uses = image_key_uses(profile);
+  if (profile.state_layout != StateLayout::kNone) uses.push_back(state_key_use(profile.state_key));
+  uses.push_back(prompt_key_use(profile));
+  return uses;
+}
+
+}  // namespace probe::servers

@@ -1,0 +1,55 @@
+// All that the rest of the program must know of a protocol: one row each, in the protocol's own
+// file of protocols/. protocols/protocols.def lists them.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/servers/profile.h"
+#include "runtime/servers/transport.h"
+#include "runtime/wire/endpoint.h"
+
+namespace probe::servers {
+
+// A key in one map of a request, and what of the profile stands under it.
+struct KeyUse {
+  std::string map;  // empty: the outermost
+  std::string key;
+  std::string field;  // of the profile, as in Mistake; empty: the protocol's own
+  std::string shown;  // what messages call it
+};
+
+struct ProtocolRow {
+  std::string_view word;      // before "://", and `protocol` of a profile
+  std::string_view argument;  // what follows the colon of --policy, for people
+  std::string_view meaning;   // for people: "an openpi server"
+  std::string_view port;      // where its servers usually listen
+  // What an address may say besides a profile's fields.
+  std::span<const std::string_view> options;
+  // In the outermost map of a request: the protocol's own, and those that its servers look for; a
+  // picture under such a key would be taken for something else.
+  std::span<const std::string_view> fixed_keys;
+  // What of a profile is sent under which key; the order and form of a request are make's.
+  std::vector<KeyUse> (*key_uses)(const Profile& profile);
+  // Fails (kUsage) on an option's or a field's value that the protocol does not know.
+  Result<std::unique_ptr<Transport>> (*make)(const Profile& profile, const wire::Endpoint& server);
+};
+
+const ProtocolRow& row_of(Protocol protocol);
+
+// The uses of most protocols, for key_uses: a key for each picture, for the state where there is
+// one, and for the instruction, all in the outermost map.
+std::vector<KeyUse> plain_key_uses(const Profile& profile);
+std::vector<KeyUse> image_key_uses(const Profile& profile);
+KeyUse prompt_key_use(const Profile& profile);
+KeyUse state_key_use(const std::string& key);
+
+#define PROBE_PROTOCOL(name, row) extern const ProtocolRow row;
+#include "runtime/servers/protocols/protocols.def"
+#undef PROBE_PROTOCOL
+
+}  // namespace probe::servers

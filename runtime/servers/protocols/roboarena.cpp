@@ -1,0 +1,164 @@
+// RoboArena's dialect of openpi's protocol (roboarena/policy_server.py): {"endpoint": "infer" |
+// "reset"}, and a server that says which pictures it wants and what its actions are.
+#include <algorithm>
+#include <array>
+
+#include "runtime/robot/rotation.h"
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/protocols/openpi_connection.h"
+
+namespace probe::servers {
+namespace {
+
+// Of the DROID robot, whose arm has seven joints.
+constexpr std::size_t kArmJoints = 7;
+constexpr std::size_t kFingers = 2;
+
+class RoboArena : public Transport {
+ public:
+  RoboArena(const Profile& profile, const wire::Endpoint& server)
+      : profile_(profile), connection_(server) {}
+
+  Status open(const Deadlines& deadlines) override {
+    PROBE_ASSIGN(config_, connection_.open(profile_, deadlines));
+    return {};
+  }
+  void close() override { connection_.close(); }
+
+  Status adapt(Profile& profile) const override {
+    PROBE_TRY(check_action_space());
+    PROBE_TRY(choose_images(profile));
+    const wire::Value* size = config_.find("image_resolution");
+    if (size == nullptr || *size == wire::Value()) return {};
+    const auto sides = wire::to_numbers(*size);
+    if (!sides || sides->size() != 2 || (*sides)[0] < 1 || (*sides)[1] < 1 || (*sides)[0] > 4096 ||
+        (*sides)[1] > 4096) {
+      return bad("expected `image_resolution` [height, width] or nil, got " +
+                 wire::describe(*size));
+    }
+    for (ImageRule& image : profile.images) {
+      if (image.width > 0) continue;
+      image.height = static_cast<int>((*sides)[0]);
+      image.width = static_cast<int>((*sides)[1]);
+      image.resize = Resize::kPad;
+    }
+    return {};
+  }
+
+  Status begin_episode(const policy::EpisodeStart& start, const Deadlines& deadlines) override {
+    session_ = std::string(start.task) + "/" + std::to_string(start.index) + "/" +
+               std::to_string(start.seed);
+    PROBE_TRY(connection_.send(wire::Map{{"endpoint", "reset"}}, deadlines.answer));
+    PROBE_ASSIGN(const wire::Message answer, connection_.receive_message(deadlines.answer));
+    if (answer.is_text && answer.text() == "reset successful") return {};
+    return bad("reset: expected the text `reset successful`, got " +
+               (answer.is_text ? last_lines(answer.text()) : "a binary message"));
+  }
+
+  Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
+    wire::Map map;
+    append_images(request, &map);
+    const policy::Proprioception& measured = request.proprioception;
+    std::vector<double> joints = measured.joints;
+    if (joints.size() >= kFingers) joints.resize(joints.size() - kFingers);
+    joints.resize(kArmJoints, 0.0);
+    const Vec3& at = measured.tcp_in_base.position;
+    const Vec3 rpy = robot::to_rpy(measured.tcp_in_base.rotation);
+    map.emplace_back("observation/joint_position", state_array(profile_, joints));
+    map.emplace_back("observation/cartesian_position",
+                     state_array(profile_, {at.x(), at.y(), at.z(), rpy.x(), rpy.y(), rpy.z()}));
+    map.emplace_back("observation/gripper_position",
+                     state_array(profile_, {1 - measured.openness}));  // DROID: 1 is closed
+    if (wants("needs_session_id")) map.emplace_back("session_id", session_);
+    map.emplace_back(profile_.prompt_key, request.prompt);
+    map.emplace_back("endpoint", "infer");
+    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
+    const wire::Value* actions = answer.find("actions");
+    return to_actions(actions == nullptr ? answer : *actions);
+  }
+
+  std::vector<std::string> remarks() const override { return metadata_remarks(config_); }
+
+ private:
+  bool wants(std::string_view what) const {
+    const wire::Value* value = config_.find(what);
+    return value != nullptr && *value == wire::Value(true);
+  }
+
+  Status check_action_space() const {
+    const wire::Value* space = config_.find("action_space");
+    if (space == nullptr || *space == wire::Value("cartesian_velocity")) return {};
+    return Failure{Fault::kUsage,
+                   "the server's `action_space` is " + wire::describe(*space) +
+                       "; only \"cartesian_velocity\", changes of the end effector, can be "
+                       "done here",
+                   ""};
+  }
+
+  // The profile's pictures that the server wants, and an error where it wants one more.
+  Status choose_images(Profile& profile) const {
+    std::vector<std::string> wanted;
+    const wire::Value* count = config_.find("n_external_cameras");
+    const auto* cameras = count == nullptr ? nullptr : count->as<std::int64_t>();
+    if (cameras == nullptr) return {};
+    for (std::int64_t i = 0; i < std::clamp<std::int64_t>(*cameras, 0, 16); ++i) {
+      const std::string key = "observation/exterior_image_" + std::to_string(i);
+      wanted.push_back(key + "_left");
+      if (wants("needs_stereo_camera")) wanted.push_back(key + "_right");
+    }
+    if (wants("needs_wrist_camera")) {
+      wanted.emplace_back("observation/wrist_image_left");
+      if (wants("needs_stereo_camera")) wanted.emplace_back("observation/wrist_image_right");
+    }
+    std::vector<ImageRule> images;
+    for (const std::string& key : wanted) {
+      const auto rule = std::find_if(profile.images.begin(), profile.images.end(),
+                                     [&](const ImageRule& image) { return image.key == key; });
+      if (rule == profile.images.end()) {
+        return Failure{
+            Fault::kUsage,
+            "the server wants the picture `" + key + "`, for which the profile has no `image` line",
+            ""};
+      }
+      images.push_back(*rule);
+    }
+    profile.images = std::move(images);
+    return {};
+  }
+
+  Profile profile_;
+  OpenpiConnection connection_;
+  wire::Value config_;
+  std::string session_;
+};
+
+Result<std::unique_ptr<Transport>> make_roboarena(const Profile& profile,
+                                                  const wire::Endpoint& server) {
+  return std::unique_ptr<Transport>(std::make_unique<RoboArena>(profile, server));
+}
+
+// Its state is of its own form, whatever the profile says.
+std::vector<KeyUse> roboarena_key_uses(const Profile& profile) {
+  std::vector<KeyUse> uses = image_key_uses(profile);
+  uses.push_back(prompt_key_use(profile));
+  return uses;
+}
+
+constexpr std::array<std::string_view, 5> kRoboArenaKeys = {
+    "endpoint", "session_id", "observation/joint_position", "observation/cartesian_position",
+    "observation/gripper_position"};
+
+}  // namespace
+
+constinit const ProtocolRow roboarena_row{
+    .word = "roboarena",
+    .argument = "//HOST:PORT",
+    .meaning = "a RoboArena server",
+    .port = "8000",
+    .options = {},
+    .fixed_keys = kRoboArenaKeys,
+    .key_uses = roboarena_key_uses,
+    .make = make_roboarena,
+};
+
+}  // namespace probe::servers

@@ -1,0 +1,29 @@
+// One process writes a run's folder at a time.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "runtime/base/result.h"
+
+namespace probe::store {
+
+class FolderLock {
+ public:
+  // As flock(2): 0, or -1 with errno.
+  using LockCall = int (*)(int file, int operation);
+
+  // Makes DIR/lock and locks it until the end of this object or of the process, however that ends.
+  // Fails (kStore, where = dir) saying whether another run has the lock, the file system gives
+  // none, or the folder cannot be written. `call`: the system's, unless a test has its own.
+  static Result<FolderLock> take(const std::string& dir, LockCall call = nullptr);
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+  FolderLock& operator=(FolderLock&&) = delete;
+
+ private:
+  explicit FolderLock(int file) : file_(file) {}
+  int file_;
+};
+
+}  // namespace probe::store

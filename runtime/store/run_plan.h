@@ -1,0 +1,15 @@
+// The plan of a run's folder, believed only if it is the one that the run was made with.
+#pragma once
+
+#include <string>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+
+namespace probe::store {
+
+// Fails (kStore, where = the file) when it is absent, damaged or of another root than the run's
+// record names, and as read_run_record does.
+Result<plan::Plan> open_run_plan(const std::string& dir);
+
+}  // namespace probe::store

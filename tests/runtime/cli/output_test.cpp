@@ -1,0 +1,79 @@
+// What no -o may name.
+#include "runtime/cli/output.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/runtime/cli/program.h"
+
+namespace probe::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string refusal(const fs::path& out, const std::vector<std::string>& inputs = {}) {
+  const Status status = check_output(out.string(), inputs);
+  if (status.ok()) return "";
+  CHECK(status.failure().code == Fault::kUsage);
+  CHECK(status.failure().where == out.string());
+  return status.failure().message;
+}
+
+TEST_CASE("a file that is read is not written over, by whatever name it is called") {
+  const test::Sandbox box;
+  test::write_file(box / "a.plan", "x");
+  fs::create_symlink("a.plan", box / "link.plan");
+  const std::vector<std::string> inputs = {(box / "a.plan").string()};
+  const char* kRead = "is read by this command and is not written over; give -o another name";
+  CHECK(refusal(box / "a.plan", inputs) == kRead);
+  CHECK(refusal(box / "link.plan", inputs) == kRead);
+  CHECK(refusal(box / "./a.plan", inputs) == kRead);
+  CHECK(refusal(box / "b.plan", inputs).empty());
+  CHECK(refusal(box / "no/such/folder/a.plan", inputs).empty());
+}
+
+TEST_CASE("Probe text that is there is not written over, a new file of that name is written") {
+  const test::Sandbox box;
+  test::write_file(box / "g.probe", "task a {}\n");
+  CHECK(refusal(box / "g.probe") == "is Probe text and is not written over; give -o another name");
+  CHECK(refusal(box / "new.probe").empty());
+}
+
+TEST_CASE("what a run is made of is not written over, also through links") {
+  const test::Sandbox box;
+  test::write_file(box / "run/results.sqlite", "x");
+  test::write_file(box / "run/suite.plan", "x");
+  test::write_file(box / "run/traces/carrot/0-0.trace", "x");
+  fs::create_symlink("run/suite.plan", box / "plan.png");
+  fs::create_symlink("run", box / "same");
+  for (const char* out :
+       {"run/results.sqlite", "run/results.sqlite-journal", "run/suite.plan", "run/lock",
+        "run/traces/carrot/0-0.trace", "run/videos/x.mp4", "plan.png", "same/suite.plan"}) {
+    CAPTURE(out);
+    CHECK(refusal(box / out).starts_with("belongs to the run in `"));
+  }
+  for (const char* out : {"run/page.html", "run/carrot.png", "other.png", ""}) {
+    CHECK(refusal(*out == 0 ? fs::path() : box / out).empty());
+  }
+}
+
+// The verbs themselves, with files that would be lost.
+TEST_CASE("build and draw leave the text and the plan that they were given") {
+  const test::Sandbox box;
+  const test::Outcome built = box.vlaprobe("build \"$SUITE\" -o g.plan");
+  REQUIRE_MESSAGE(built.exit == 0, built.err);
+  const std::string plan = test::read_file(box / "g.plan");
+  fs::copy_file(VLAPROBE_SOURCE_DIR "/examples/goal.probe", box / "g.probe");
+  const std::string text = test::read_file(box / "g.probe");
+  CHECK(box.vlaprobe("build g.probe -o g.probe").exit == 1);
+  CHECK(test::read_file(box / "g.probe") == text);
+  CHECK(box.vlaprobe("draw g.plan carrot_on_plate -o g.plan").exit == 1);
+  CHECK(box.vlaprobe("preview g.plan carrot_on_plate -o g.plan").exit == 1);
+  CHECK(test::read_file(box / "g.plan") == plan);
+}
+
+}  // namespace
+}  // namespace probe::cli

@@ -1,0 +1,50 @@
+// What is left of a key in words that others read.
+#include "runtime/servers/api_key.h"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+
+namespace probe::servers {
+namespace {
+
+constexpr std::string_view kKey = "sk-proj-0123456789abcdefABCDEF-tail";
+
+struct Key {
+  explicit Key(const char* value) { ::setenv("VLAPROBE_API_KEY", value, 1); }
+  ~Key() { ::unsetenv("VLAPROBE_API_KEY"); }
+};
+
+TEST_CASE("a key is not shown, whole or cut at either end") {
+  CHECK(without_key("bad key sk-proj-0123456789abcdefABCDEF-tail!", kKey) == "bad key *!");
+  for (std::size_t cut = 6; cut <= kKey.size(); ++cut) {
+    CAPTURE(cut);
+    CHECK(without_key("no: " + std::string(kKey.substr(0, cut)) + "...", kKey) == "no: *...");
+    CHECK(without_key(std::string(kKey.substr(kKey.size() - cut)) + " no", kKey) == "* no");
+  }
+  CHECK(without_key("twice sk-proj-0123456789abcdefABCDEF-tail, sk-proj-0123456789", kKey) ==
+        "twice *, *");
+}
+
+TEST_CASE("other words stay, and a short key is only taken out whole") {
+  CHECK(without_key("the project's tail", kKey) == "the project's tail");
+  CHECK(without_key("abc abcd", "abcd") == "abc *");
+  CHECK(without_key("anything", "") == "anything");
+}
+
+TEST_CASE("a key that could end a header's line is refused by the variable's name") {
+  for (const char* key : {"abc\r\nX-Admin: 1", "abc\n", "a\x01z", "\x7f"}) {
+    const Key set(key);
+    const Status status = check_api_key();
+    REQUIRE_FALSE(status.ok());
+    CHECK(status.failure().code == Fault::kUsage);
+    CHECK(to_text(status.failure()) ==
+          "VLAPROBE_API_KEY: holds a line break or another control character, which no key has");
+  }
+  const Key set("sk-1 with blanks");
+  CHECK(check_api_key().ok());
+  CHECK(without_key("sk-1 with blanks") == "*");
+}
+
+}  // namespace
+}  // namespace probe::servers
