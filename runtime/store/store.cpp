@@ -303,6 +303,12 @@ class FolderStore final : public Store {
   // Traces and videos that a killed process did not finish: of our names, and only where no link
   // leads out of this folder, because what lies behind one is not ours to clean.
   void remove_leftovers() const {
+    // "suite.plan.1234-0.tmp": killed before the folder had its plan.
+    const auto own = list_folder(dir_);
+    for (const std::string& name : own ? *own : std::vector<std::string>{}) {
+      if (name.starts_with("suite.plan.") && name.ends_with(".tmp"))
+        std::remove((fs::path(dir_) / name).c_str());
+    }
     for (const char* kind : {"traces", "videos"}) {
       const std::string all = (fs::path(dir_) / kind).string();
       if (is_link(all)) continue;

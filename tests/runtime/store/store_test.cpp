@@ -243,6 +243,16 @@ TEST_CASE("a folder that cannot be written is named") {
   }
 }
 
+TEST_CASE("what a kill left of a plan goes with the next opening") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  fs::create_directories(dir);
+  std::ofstream(dir + "/suite.plan.4711-0.tmp") << "half";
+  REQUIRE(Store::open(dir, record_of(), plan_bytes()).ok());
+  CHECK_FALSE(fs::exists(dir + "/suite.plan.4711-0.tmp"));
+  CHECK(fs::exists(dir + "/suite.plan"));
+}
+
 TEST_CASE("kill -9 at any time leaves whole rows with whole traces, each once") {
   TemporaryFolder folder;
   const std::string dir = folder / "run";
