@@ -40,9 +40,9 @@ std::optional<std::vector<JointVector>> Reach::follow(std::span<const double> q,
   const std::span<double> now = std::span(joints).first(chain_.joint_count());
   std::copy_n(q.begin(), now.size(), now.begin());
   Pose at = chain_.pose(now);
-  constexpr int kMostSteps = 200;
+  constexpr int kMostSolves = 200;
   for (const Pose& goal : way) {
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < kMostSolves; ++i) {
       at = stepped(at, goal, 0.05, 0.3);
       if (!robot::solve_ik(chain_, at, now,
                            {.position_tolerance = 1e-5, .rotation_tolerance = 1e-5})

@@ -236,7 +236,7 @@ void TileTracer::shade(const TopScene& scene, const CameraRays& rays, int tile,
 
 void TileTracer::catch_shadow(const TopScene& scene, const CameraRays& rays, int tile,
                               const LightTable& lights, const TopScene& dynamics) {
-  constexpr float kPi = 3.14159265358979323846f;
+  constexpr float kPiHere = 3.14159265358979323846f;
   gather(scene, rays, tile, true);
   test_suns(lights, {&dynamics, nullptr});
   for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
@@ -244,7 +244,7 @@ void TileTracer::catch_shadow(const TopScene& scene, const CameraRays& rays, int
     for (std::size_t s = 0; s < lights.suns.size(); ++s) {
       const LightRay& sun = lights.suns[s];
       const float facing = input_.nx[i] * sun.x + input_.ny[i] * sun.y + input_.nz[i] * sun.z;
-      const float light = sun.irradiance * std::clamp(facing, 0.0f, 1.0f) / kPi;
+      const float light = sun.irradiance * std::clamp(facing, 0.0f, 1.0f) / kPiHere;
       all += light;
       // A face turned away was dark in the photo too.
       const bool away = points_.gx[i] * sun.x + points_.gy[i] * sun.y + points_.gz[i] * sun.z <= 0;

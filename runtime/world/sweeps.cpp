@@ -28,7 +28,9 @@ template <typename Lanes>
 inline double row_speed(const ContactRows& c, RowIndex which, const Sides& s, const double* u,
                         Lanes lanes) {
   const Row& row = c.rows[which];
-  double v = c.columns != nullptr ? dot_joints(c.columns + 2 * which * lanes, u, lanes) : 0.0;
+  double v = c.columns != nullptr
+                 ? dot_joints(c.columns + 2 * static_cast<int>(which) * lanes, u, lanes)
+                 : 0.0;
   if (s.a != nullptr) v += row.d.dot(s.a->velocity) + row.arm_a.dot(s.a->spin);
   if (s.b != nullptr) v -= row.d.dot(s.b->velocity) + row.arm_b.dot(s.b->spin);
   return v;
@@ -38,7 +40,8 @@ template <typename Lanes>
 inline void push(const ContactRows& c, RowIndex which, const Sides& s, double impulse, double* u,
                  Lanes lanes) {
   const Row& row = c.rows[which];
-  if (c.columns != nullptr) add_scaled(u, c.columns + (2 * which + 1) * lanes, impulse, lanes);
+  if (c.columns != nullptr)
+    add_scaled(u, c.columns + (2 * static_cast<int>(which) + 1) * lanes, impulse, lanes);
   if (s.a != nullptr) {
     s.a->velocity += (impulse * c.inverse_mass_a) * row.d;
     s.a->spin += impulse * row.ka;
