@@ -1,17 +1,22 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, runs every test. The last line is "N passed, N failed".
+# Installs what is missing, builds, runs every test, saying how far it is. The last line is "N passed, N failed".
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
+. "$root/.ci/progress.sh"
 "$root/.ci/install"
 "$root/.ci/build"
 
-passed=0 failed=0
+passed=0 failed=0 ran=0 programs=0
+progress_said=$SECONDS
+# Of with_progress: the programs that are done, of all.
+progress_programs() { echo "$ran $programs ${passed:+$passed cases passed, $failed failed}"; }
 # run_program PROGRAM NAME: in its own folder; its log beside it is shown if anything failed.
 run_program() {
   local program=$1 name=$2 folder log summary p f status=0
   folder=$(dirname "$program")
   log="$folder/$(basename "$program").log"
-  (cd "$folder" && "$program") >"$log" 2>&1 || status=$?
+  with_progress "testing, $name" progress_programs "$log" env -C "$folder" "$program" || status=$?
+  ran=$((ran + 1)) progress_said=$SECONDS
   # doctest's summary: "[doctest] test cases: 7 | 7 passed | 0 failed | 0 skipped"
   summary=$(grep -a 'test cases:' "$log" | tail -n 1 | sed 's/\x1b\[[0-9;]*m//g' || true)
   p=$(sed -n 's/.* \([0-9]*\) passed.*/\1/p' <<<"$summary")
@@ -25,6 +30,7 @@ run_program() {
   grep -a 'SKIPPED' "$log" | sed 's/^/    /' | sort -u || true
   if [ "$f" -ne 0 ]; then cat "$log"; fi
 }
+programs=$(find "$root/build/tests" -maxdepth 1 -name 'test_*' -type f -executable | wc -l)
 for program in "$root"/build/tests/test_*; do
   [ -x "$program" ] && run_program "$program" "$(basename "$program")"
 done
@@ -33,8 +39,10 @@ done
 if [ "${VLAPROBE_SIMBODY:-}" = source ] || "$root/.ci/simbody_source" --where >/dev/null 2>&1; then
   fast=$root/build/simbody-source
   log=$root/build/simbody-source.log
-  if cmake -S "$root" -B "$fast" -G Ninja -DVLAPROBE_SIMBODY=source >"$log" 2>&1 &&
-    cmake --build "$fast" --target test_runtime_world >>"$log" 2>&1; then
+  if with_progress "configuring with the fast Simbody, which may be built first" progress_unknown "$log" \
+      cmake -S "$root" -B "$fast" -G Ninja -DVLAPROBE_SIMBODY=source &&
+    with_progress "building with the fast Simbody" progress_ninja "$log" \
+      cmake --build "$fast" --target test_runtime_world; then
     run_program "$fast/tests/test_runtime_world" "test_runtime_world, fast"
   else
     cat "$log"; failed=$((failed + 1))
@@ -44,7 +52,10 @@ fi
 # Fuzzing: a minute each over parser and checker, plan reader and judge, trace reader. VLAPROBE_FUZZ_SECONDS=0 skips.
 seconds=${VLAPROBE_FUZZ_SECONDS:-60}
 if [ "$seconds" -gt 0 ]; then
-  fuzz=$("$root/tests/fuzz/run.sh" "$seconds" 2>&1) || true
+  log=$root/build/fuzz.log
+  with_progress "fuzzing, $seconds s a target after building them" progress_unknown "$log" \
+    "$root/tests/fuzz/run.sh" "$seconds" || true
+  fuzz=$(cat "$log")
   echo "$fuzz"
   t=$(sed -n 's/^\([0-9]*\) targets, [0-9]* failed$/\1/p' <<<"$fuzz")
   f=$(sed -n 's/^[0-9]* targets, \([0-9]*\) failed$/\1/p' <<<"$fuzz")

@@ -14,7 +14,9 @@ namespace {
 // Worth a place on one line, in this order.
 constexpr std::array<std::string_view, 4> kShown = {"success", "intention", "grasp", "wrong"};
 constexpr int kBarWidth = 20;
-constexpr double kLogEvery = 60;  // s
+// A log has a line every ten seconds while somebody may be looking, then one a minute: runs take
+// days.
+constexpr double kLogOften = 10, kLogSeldom = 60, kOftenFor = 120;  // s
 
 }  // namespace
 
@@ -97,7 +99,8 @@ std::string Progress::terminal_line(double now, std::size_t columns, bool color)
 }
 
 std::optional<std::string> Progress::log_line(double now) {
-  if (now - logged_ < kLogEvery) return std::nullopt;
+  const double every = now - begun_ < kOftenFor ? kLogOften : kLogSeldom;
+  if (logged_ && now - *logged_ < every) return std::nullopt;
   logged_ = now;
   std::string line = counts();
   for (const Rate& rate : rates_) line += ", " + rate_text(rate);

@@ -1,5 +1,6 @@
-// What `run` says while it runs: one line that is redrawn on a terminal, one line a minute in a
-// log. Pure: the clock and the terminal's width are given, nothing is printed.
+// What `run` says while it runs: one line that is redrawn on a terminal; in a log one at once, one
+// every ten seconds, and one a minute when it takes longer. Pure: the clock and the terminal's
+// width are given, nothing is printed.
 #pragma once
 
 #include <optional>
@@ -14,7 +15,7 @@ namespace probe::cli {
 class Progress {
  public:
   // Seconds of a clock that only goes forward, here and below.
-  explicit Progress(double now) : begun_(now), logged_(now) {}
+  explicit Progress(double now) : begun_(now) {}
 
   void add(const run::RunProgress& progress);
 
@@ -22,7 +23,7 @@ class Progress {
   // `color`: the bar's full part in green.
   std::string terminal_line(double now, std::size_t columns, bool color) const;
 
-  // A line with everything, when the last one is a minute old; nothing otherwise.
+  // A line with everything, when it is time for one; nothing otherwise.
   std::optional<std::string> log_line(double now);
 
  private:
@@ -36,7 +37,8 @@ class Progress {
   std::string rate_text(const Rate& rate) const;
   std::string time_left(double now) const;
 
-  double begun_, logged_;
+  double begun_;
+  std::optional<double> logged_;
   int done_ = 0, skipped_ = 0, total_ = 0, invalid_ = 0;
   std::vector<Rate> rates_;  // of this call's valid episodes
 };

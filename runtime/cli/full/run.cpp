@@ -45,8 +45,8 @@ std::optional<std::size_t> terminal_columns() {
   return size.ws_col;
 }
 
-// A line that is redrawn on a terminal, one a minute elsewhere, and one for each episode that went
-// wrong.
+// A line that is redrawn on a terminal, one now and then elsewhere, and one for each episode that
+// went wrong.
 class ProgressPrinter {
  public:
   void operator()(const run::RunProgress& progress) {
