@@ -29,8 +29,8 @@ plan::Slice Emitter::add_views(const std::vector<sema::View>& views, sema::Scene
   for (const sema::View& view : views) {
     const std::uint32_t photo =
         rows.empty() ? records().scenes[scenes_[scene]].photo : add_photo(view.overlay, owner);
-    const plan::ViewRecord& row =
-        rows.emplace_back(writer_.text(view.name), cameras_[view.camera], photo);
+    rows.push_back({writer_.text(view.name), cameras_[view.camera], photo});
+    const plan::ViewRecord& row = rows.back();
     key.insert(key.end(), {row.name.offset, row.name.length, row.camera, row.photo});
   }
   const auto [at, is_new] = views_.try_emplace(std::move(key), plan::Slice{});
