@@ -175,6 +175,9 @@ TEST_CASE("what does not belong together is refused before anything is written")
                   return policy::make_random();
                 }};
   must_run(plan, other_actions);
+  RunOptions reach = options_for(folder / "content", "reach");
+  reach.name = "null";
+  must_run(plan, reach);
   must_run(plan, options_for(folder / "policy", "reach"));
   const auto refusal = [&](const std::string& other) {
     const auto merged = merge({{folder / "a", folder / other}, folder / "out"});
@@ -186,6 +189,8 @@ TEST_CASE("what does not belong together is refused before anything is written")
   CHECK(refusal("plan").starts_with("holds a run of another plan (root "));
   CHECK(refusal("policy").starts_with("holds a run of policy `reach`, not `null`, as " +
                                       (folder / "a") + " does"));
+  CHECK(refusal("content").starts_with(
+      "was begun with another policy (recorded policy reach, now nothing) than "));
   CHECK(refusal("trace").starts_with("carrot_on_plate episode 0 seed 42 has the trace "));
   CHECK(refusal("nothing").starts_with("cannot be merged: no run here"));
 
