@@ -8,15 +8,13 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "runtime/base/sha256.h"
 #include "runtime/scene/glb_writer.h"
 
 namespace probe::make {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Vertices with equal bits are stored once, in order of first use.
 scene::GlbPart index_surface(const Surface& surface) {

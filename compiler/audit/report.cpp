@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "compiler/audit/audit.h"
+#include "runtime/base/json.h"
 
 namespace probe::audit {
 namespace {
@@ -55,12 +55,12 @@ std::string to_text(const Audit& audit) {
 }
 
 std::string to_json(const Audit& audit) {
-  nlohmann::ordered_json json = {{"suite", audit.suite},
-                                 {"tasks", audit.tasks},
-                                 {"comparisons", audit.comparisons},
-                                 {"findings", nlohmann::ordered_json::array()}};
+  Json json = {{"suite", audit.suite},
+               {"tasks", audit.tasks},
+               {"comparisons", audit.comparisons},
+               {"findings", Json::array()}};
   for (const Finding& finding : audit.findings) {
-    nlohmann::ordered_json entry = {{"kind", name(finding.kind)}};
+    Json entry = {{"kind", name(finding.kind)}};
     if (!finding.code.empty()) entry["code"] = finding.code;
     entry["tasks"] = finding.tasks;
     if (!finding.baseline.empty()) {
@@ -73,8 +73,7 @@ std::string to_json(const Audit& audit) {
       entry["line"] = finding.place.line;
       entry["column"] = finding.place.column;
     }
-    entry["allowed"] =
-        finding.allowed ? nlohmann::ordered_json(*finding.allowed) : nlohmann::ordered_json();
+    entry["allowed"] = finding.allowed ? Json(*finding.allowed) : Json();
     json["findings"].push_back(std::move(entry));
   }
   if (!audit.unchecked.empty()) json["unchecked"] = audit.unchecked;

@@ -1,12 +1,10 @@
 // Diagnostics as JSON; the order of keys is the order of json.h.
 #include "compiler/diag/json.h"
 
-#include <nlohmann/json.hpp>
+#include "runtime/base/json.h"
 
 namespace probe {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 void put_place(Json& out, const Span& span, const SourceSet& sources) {
   if (span.is_none()) {
@@ -67,7 +65,7 @@ std::string render_json(const Diagnostics& diagnostics, const SourceSet& sources
     out.push_back(to_json(*item, sources));
   }
   // Messages quote the user's bytes, which need not be UTF-8.
-  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return out.dump(2) + "\n";
 }
 
 }  // namespace probe

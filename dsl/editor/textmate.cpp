@@ -1,7 +1,6 @@
 #include "dsl/editor/textmate.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
 
@@ -9,8 +8,6 @@
 
 namespace probe::editor {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -54,6 +51,7 @@ std::string units() {
   return alternatives({
 #define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) text,
 #include "compiler/syntax/units.def"
+#include "runtime/base/json.h"
   });
 }
 

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 
 namespace probe::assets {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
 constexpr int kDepth = 6;
 
 bool read_point(const Json& box, const char* name, std::array<double, 3>& out) {
@@ -37,7 +35,7 @@ std::string read_info(const Json& entry, ModelInfo& info) {
     if (!std::isfinite(size) || size <= 0) return "has a box without size";
     if (size > 100) return "has a box of more than 100 m";
   }
-  if (const auto scales = entry.find("scales"); scales != entry.end() && scales->is_array()) {
+  if (const Json* scales = entry.find("scales"); scales != nullptr && scales->is_array()) {
     for (const Json& scale : *scales) {
       if (!scale.is_number() || !(scale.get<double>() > 0))
         return "has a scale that is not above 0";
@@ -45,7 +43,7 @@ std::string read_info(const Json& entry, ModelInfo& info) {
     }
   }
   if (info.scales.empty()) info.scales.push_back(1);
-  if (const auto density = entry.find("density"); density != entry.end() && density->is_number()) {
+  if (const Json* density = entry.find("density"); density != nullptr && density->is_number()) {
     info.density = density->get<double>();
   }
   if (!std::isfinite(info.density) || info.density < 0) return "has a density below 0";
@@ -121,7 +119,7 @@ void read_model_database(const fs::path& file, DataFolder& data) {
     data.odd.push_back(text.failure());
     return;
   }
-  const Json root = Json::parse(*text, nullptr, false);
+  const Json root = Json::parse(*text).sorted();
   if (!root.is_object()) {
     data.odd.push_back({Fault::kAsset, "is not a JSON object of models", file.string()});
     return;

@@ -1,9 +1,9 @@
 #include "runtime/assets/manifest.h"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/base/paths.h"
 
 namespace probe::assets {
@@ -14,21 +14,20 @@ const ManifestEntry* Manifest::find(std::string_view path) const {
 }
 
 std::string Manifest::to_json() const {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   for (const auto& [path, entry] : files) {
-    nlohmann::ordered_json file = {
-        {"path", path}, {"bytes", entry.bytes}, {"sha256", entry.sha256}};
+    Json file = {{"path", path}, {"bytes", entry.bytes}, {"sha256", entry.sha256}};
     if (!entry.source.empty()) file["source"] = entry.source;
     list.push_back(std::move(file));
   }
-  return nlohmann::ordered_json{{"files", list}}.dump(1) + "\n";
+  return Json{{"files", list}}.dump(1) + "\n";
 }
 
 Result<Manifest> read_manifest(const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "manifest.json").string();
   if (!is_there(path)) return Manifest{};
   PROBE_ASSIGN(const std::string text, read_file(path, {.code = Fault::kAsset}));
-  const auto root = nlohmann::json::parse(text, nullptr, false);
+  const auto root = Json::parse(text);
   const Failure malformed{Fault::kAsset, "is not a manifest of files with path, bytes and sha256",
                           path};
   if (!root.is_object() || !root.contains("files") || !root["files"].is_array()) return malformed;

@@ -1,9 +1,8 @@
 // vlaprobe build
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/compile.h"
 #include "runtime/cli/output.h"
@@ -49,10 +48,10 @@ void add_build(Verb app, int& exit) {
       return;
     }
     if (arguments->json) {
-      const nlohmann::ordered_json json = {{"root", to_hex(plan->root())},
-                                           {"tasks", plan->tasks().size()},
-                                           {"episodes", plan->episodes().size()},
-                                           {"bytes", plan->bytes().size()}};
+      const Json json = {{"root", to_hex(plan->root())},
+                         {"tasks", plan->tasks().size()},
+                         {"episodes", plan->episodes().size()},
+                         {"bytes", plan->bytes().size()}};
       fmt::print("{}\n", json.dump(2));
       return;
     }

@@ -3,24 +3,24 @@
 
 #include <algorithm>
 #include <cctype>
-#include <nlohmann/json.hpp>
 
 #include "compiler/diag/essays.h"
+#include "runtime/base/json.h"
 #include "runtime/cli/verbs.h"
 
 namespace probe::cli {
 namespace {
 
-nlohmann::ordered_json row(Code code) {
+Json row(Code code) {
   const CodeInfo& row = info(code);
   return {{"code", row.text},
           {"severity", to_text(row.severity)},
-          {"allow", row.slug.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(row.slug)},
+          {"allow", row.slug.empty() ? Json() : Json(row.slug)},
           {"title", row.title}};
 }
 
 int list_codes(bool json) {
-  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  Json all = Json::array();
   for (const Code code : all_codes()) all.push_back(row(code));
   if (json) {
     fmt::print("{}\n", all.dump(2));
@@ -57,7 +57,7 @@ int explain(const std::string& word, bool json) {
                    ""});
   }
   if (json) {
-    nlohmann::ordered_json entry = row(*code);
+    Json entry = row(*code);
     entry["essay"] = essay(*code);
     fmt::print("{}\n", entry.dump(2));
   } else {

@@ -4,12 +4,12 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <span>
 
 #include "compiler/diag/text.h"
 #include "compiler/format/format.h"
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/verbs.h"
 
@@ -74,7 +74,7 @@ void add_fmt(Verb app, int& exit) {
       exit = std::max(exit, format_one(file, arguments->check, tally));
     }
     if (arguments->json) {
-      fmt::print("{}\n", nlohmann::json(tally.changed).dump());
+      fmt::print("{}\n", Json(tally.changed).dump());
       return;
     }
     for (const std::string& file : tally.changed) fmt::print("{}\n", file);

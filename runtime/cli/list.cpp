@@ -31,8 +31,7 @@ int count_text(const ListArguments& arguments) {
   const Compilation& compilation = counted->compilation;
   say("{}", render_text(compilation.diagnostics, compilation.sources));
   if (!compilation.ok) return kUser;
-  const inspect::Json numbers = {{"tasks", counted->counts.tasks},
-                                 {"episodes", counted->counts.episodes}};
+  const Json numbers = {{"tasks", counted->counts.tasks}, {"episodes", counted->counts.episodes}};
   fmt::print("{}", arguments.json ? numbers.dump() + "\n"
                                   : fmt::format("{} tasks, {} episodes\n", counted->counts.tasks,
                                                 counted->counts.episodes));
@@ -45,7 +44,7 @@ int list_verb(const ListArguments& arguments) {
   if (!loaded.plan) return loaded.exit;
   const auto tasks = select_tasks(*loaded.plan, arguments.suite, loaded.exit);
   if (!tasks) return loaded.exit;
-  const inspect::Json count = inspect::count(*loaded.plan, *tasks);
+  const Json count = inspect::count(*loaded.plan, *tasks);
   const std::string summary =
       fmt::format("{} tasks, {} episodes\n", count["tasks"].get<std::size_t>(),
                   count["episodes"].get<std::size_t>());
@@ -53,7 +52,7 @@ int list_verb(const ListArguments& arguments) {
     fmt::print("{}", arguments.json ? count.dump() + "\n" : summary);
     return kFine;
   }
-  const inspect::Json list = inspect::list(*loaded.plan, *tasks);
+  const Json list = inspect::list(*loaded.plan, *tasks);
   fmt::print("{}", arguments.json ? list.dump(2) + "\n" : inspect::list_text(list));
   if (!arguments.json) say("{}", summary);
   return kFine;
@@ -64,7 +63,7 @@ int show_verb(const ListArguments& arguments) {
   if (!loaded.plan) return loaded.exit;
   const auto index = find_task(*loaded.plan, arguments.task, loaded.exit);
   if (!index) return loaded.exit;
-  const inspect::Json task = inspect::describe(*loaded.plan, *index);
+  const Json task = inspect::describe(*loaded.plan, *index);
   fmt::print("{}", arguments.json ? task.dump(2) + "\n" : inspect::describe_text(task));
   return kFine;
 }

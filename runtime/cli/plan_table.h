@@ -3,10 +3,10 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
+#include "runtime/base/json.h"
 #include "runtime/cli/load.h"
 
 namespace probe::cli {
@@ -16,8 +16,8 @@ struct PlanTable {
   const char* about;
   const char* footer;
   const char* json;  // what --json gives
-  std::function<nlohmann::ordered_json(const LoadedPlan&, std::span<const std::uint32_t>)> make;
-  std::string (*text)(const nlohmann::ordered_json&);
+  std::function<Json(const LoadedPlan&, std::span<const std::uint32_t>)> make;
+  std::string (*text)(const Json&);
 };
 void add_plan_table(Verb app, int& exit, PlanTable table);
 

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <set>
 
+#include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/load.h"
 
@@ -47,17 +47,17 @@ std::string section_name(const plan::DirectoryEntry& entry) {
 }
 
 void print_json(const plan::Plan& plan, const Counts& counts, bool fast) {
-  nlohmann::ordered_json json = {{"root", to_hex(plan.root())},
-                                 {"bytes", plan.bytes().size()},
-                                 {"identity", !fast},
-                                 {"tasks", plan.tasks().size()},
-                                 {"episodes", plan.episodes().size()},
-                                 {"programs", plan.programs().size()},
-                                 {"instructions", counts.instructions},
-                                 {"starts", counts.starts},
-                                 {"prompts", counts.prompts},
-                                 {"judges", counts.judges}};
-  json["sections"] = nlohmann::ordered_json::array();
+  Json json = {{"root", to_hex(plan.root())},
+               {"bytes", plan.bytes().size()},
+               {"identity", !fast},
+               {"tasks", plan.tasks().size()},
+               {"episodes", plan.episodes().size()},
+               {"programs", plan.programs().size()},
+               {"instructions", counts.instructions},
+               {"starts", counts.starts},
+               {"prompts", counts.prompts},
+               {"judges", counts.judges}};
+  json["sections"] = Json::array();
   for (const plan::DirectoryEntry& entry : directory(plan)) {
     json["sections"].push_back({{"name", section_name(entry)},
                                 {"offset", entry.offset},

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/doctor/golden_starts.h"
 #include "runtime/render/renderer.h"
 #include "runtime/scene/mesh_cache.h"
@@ -36,12 +36,12 @@ std::string code_level() {
 Result<Sha256> check_manifest(const std::string& root, DoctorReport& report) {
   const std::string path = (fs::path(root) / "manifest.json").string();
   PROBE_ASSIGN(const std::string text, read_file(path));
-  const auto json = nlohmann::json::parse(text, nullptr, false);
-  const auto files = json.is_object() ? json.value("files", nlohmann::json()) : nlohmann::json();
+  const auto json = Json::parse(text);
+  const auto files = json.is_object() ? json.value("files", Json()) : Json();
   if (!files.is_array() && !files.is_object()) {
     return Failure{Fault::kAsset, "is no manifest of assets", path};
   }
-  const auto check = [&](const std::string& name, const nlohmann::json& entry) {
+  const auto check = [&](const std::string& name, const Json& entry) {
     ++report.asset_files;
     const auto bytes = read_file((fs::path(root) / name).string());
     if (!bytes) {
@@ -103,7 +103,7 @@ Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite)
 }
 
 std::string to_json(const DoctorReport& report, const std::string& version) {
-  nlohmann::ordered_json json;
+  Json json;
   json["version"] = version;
   json["fine"] = report.fine();
   json["cpu"] = value_of(report.fingerprint, "cpu");
@@ -124,7 +124,7 @@ std::string to_json(const DoctorReport& report, const std::string& version) {
     auto& golden = json["golden"];
     golden["folder"] = report.golden_folder;
     golden["other_build"] = report.golden->other_build;
-    golden["frames"] = nlohmann::ordered_json::array();
+    golden["frames"] = Json::array();
     for (const GoldenCheck& check : report.golden->frames) {
       golden["frames"].push_back({{"name", check.name},
                                   {"result", to_text(check.state)},

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/scene/image.h"
 
 namespace probe::doctor {
@@ -152,8 +152,8 @@ Status write_golden(const std::string& folder, std::span<const GoldenFrame> fram
                     const GoldenSettle& settle) {
   std::error_code error;
   fs::create_directories(folder, error);
-  nlohmann::json json;
-  json["fingerprint"] = nlohmann::json::parse(store::to_json(picture_fingerprint()));
+  Json json;
+  json["fingerprint"] = Json::parse(store::to_json(picture_fingerprint()));
   for (const GoldenFrame& frame : frames) {
     PROBE_TRY(scene::write_png(file_of(folder, frame.name), frame.width, 3 * frame.height,
                                stacked(frame)));
@@ -163,7 +163,7 @@ Status write_golden(const std::string& folder, std::span<const GoldenFrame> fram
   for (const Vec3& p : settle.positions) {
     json["settle"]["positions_m"].push_back({p.x(), p.y(), p.z()});
   }
-  const std::string text = json.dump(2) + "\n";
+  const std::string text = json.sorted().dump(2) + "\n";
   return write_file((fs::path(folder) / "golden.json").string(), std::as_bytes(std::span(text)));
 }
 
@@ -171,7 +171,7 @@ Result<GoldenReport> check_golden(const std::string& folder, std::span<const Gol
                                   const GoldenSettle& settle) {
   const std::string index = (fs::path(folder) / "golden.json").string();
   PROBE_ASSIGN(const std::string text, read_file(index));
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = Json::parse(text);
   if (!json.is_object() || !json.contains("fingerprint") || !json.contains("frames")) {
     return Failure{Fault::kAsset, "is not the index of golden pictures", index};
   }
@@ -184,7 +184,7 @@ Result<GoldenReport> check_golden(const std::string& folder, std::span<const Gol
   for (const GoldenFrame& frame : frames) {
     GoldenCheck check;
     check.name = frame.name;
-    if (const auto hash = json["frames"].find(frame.name); hash != json["frames"].end()) {
+    if (const Json* hash = json["frames"].find(frame.name); hash != nullptr) {
       const auto golden = load_golden(folder, frame.name);
       if (golden) {
         const bool within = compare(*golden, frame, check);
@@ -194,8 +194,9 @@ Result<GoldenReport> check_golden(const std::string& folder, std::span<const Gol
     }
     report.frames.push_back(std::move(check));
   }
-  const auto at = json.value("settle", nlohmann::json::object());
-  const auto places = at.value("positions_m", std::vector<std::vector<double>>{});
+  const auto at = json.value("settle", Json::object());
+  const auto places =
+      at.value("positions_m", Json::array()).get<std::vector<std::vector<double>>>();
   if (places.size() != settle.positions.size()) return report;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].size() != 3) return report;

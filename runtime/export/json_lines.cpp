@@ -2,14 +2,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "runtime/export/export.h"
 
 namespace probe::exporting {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json xyz(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Json wxyz(const Quat& q) { return {q.w(), q.x(), q.y(), q.z()}; }
@@ -139,7 +137,7 @@ class JsonLines final : public Sink {
   }
   Status line(const Json& json) {
     // What is not UTF-8 in a recorded text is replaced, never thrown.
-    const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    const std::string text = json.dump() + "\n";
     if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) return failed();
     return {};
   }

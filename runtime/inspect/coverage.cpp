@@ -16,8 +16,6 @@
 namespace probe::inspect {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Row {
   std::size_t tasks = 0, variants = 0, confounded = 0;
   std::array<std::size_t, plan::kAxisTable.size()> axes{};

@@ -2,10 +2,10 @@
 // comparisons below it on each axis. Knows only what a plan holds, so nothing of phrases.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
+#include "runtime/base/json.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::inspect {
@@ -16,9 +16,9 @@ namespace probe::inspect {
 // differs from their own baseline; `confounded` ones differ on more than one; `tasks` are the base
 // itself and all below it, of which `ood` counts those with something that was not seen in
 // training. Objects are those of the plan; of `tasks` alone is counted.
-nlohmann::ordered_json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
+Json coverage(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
 // Axis by base, with a dot in every empty cell; bases side by side as far as a screen is wide. Also
 // says `unused_phrases`, an array of "object.phrase", where somebody added it.
-std::string coverage_text(const nlohmann::ordered_json& coverage);
+std::string coverage_text(const Json& coverage);
 
 }  // namespace probe::inspect

@@ -11,8 +11,6 @@
 namespace probe::inspect {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 // In quotes, as DOT reads it.
 std::string dot_string(std::string_view text) {
   std::string quoted = "\"";

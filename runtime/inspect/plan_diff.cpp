@@ -10,8 +10,6 @@
 namespace probe::inspect {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct Changes {
   bool prompt = false, judge = false;  // equal
   std::size_t starts = 0, episodes = 0, of_a = 0, of_b = 0;

@@ -2,9 +2,9 @@
 // equal identity are the same experiment, so their results can be kept.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "runtime/base/json.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::inspect {
@@ -12,7 +12,7 @@ namespace probe::inspect {
 // {a, b, only_a[], only_b[], changed[], equal}: the roots, names of tasks, and how many tasks are
 // equal in all four. A changed task is {task, prompt, judge, starts, episodes, of_a, of_b}: whether
 // the ids are equal, how many of starts and episodes are at equal index, and their numbers.
-nlohmann::ordered_json diff_plans(const plan::Plan& a, const plan::Plan& b);
-std::string plan_diff_text(const nlohmann::ordered_json& diff);
+Json diff_plans(const plan::Plan& a, const plan::Plan& b);
+std::string plan_diff_text(const Json& diff);
 
 }  // namespace probe::inspect

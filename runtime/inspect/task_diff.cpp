@@ -13,8 +13,6 @@
 namespace probe::inspect {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json side(const plan::Plan& plan, const plan::TaskRecord& task) {
   Json json;
   json["prompt"] = plan.text(task.prompt);

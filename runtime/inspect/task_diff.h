@@ -2,9 +2,9 @@
 // equal.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "runtime/base/json.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::inspect {
@@ -15,8 +15,8 @@ namespace probe::inspect {
 // `of` is the larger number of the two. `left` and `right` are {prompt, source, target,
 // distractors[], baseline, scene, camera, light, horizon, metrics[], instructions, episodes}; a
 // word is {text, differs}.
-nlohmann::ordered_json diff_tasks(const plan::Plan& plan, std::uint32_t a, std::uint32_t b);
+Json diff_tasks(const plan::Plan& plan, std::uint32_t a, std::uint32_t b);
 // A table of two columns with a star at the lines that differ, then axes and identities.
-std::string diff_text(const nlohmann::ordered_json& diff);
+std::string diff_text(const Json& diff);
 
 }  // namespace probe::inspect

@@ -168,14 +168,13 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
 std::string list_text(const Json& list) {
   constexpr std::size_t kScreen = 100, kLeast = 30;
   std::size_t width = 0;
-  for (const Json& task : list)
-    width = std::max(width, task["task"].get_ref<const std::string&>().size());
+  for (const Json& task : list) width = std::max(width, task["task"].text().size());
   // Long instructions go on below themselves.
   const std::size_t before = width + 8;
   const std::size_t room = before + kLeast < kScreen ? kScreen - before : kLeast;
   std::string text;
   for (const Json& task : list) {
-    const auto lines = lines_of(task["prompt"].get_ref<const std::string&>(), room);
+    const auto lines = lines_of(task["prompt"].text(), room);
     fmt::format_to(std::back_inserter(text), "{:<{}}  {:>4}  {}\n", task["task"].get<std::string>(),
                    width, task["episodes"].get<std::size_t>(), lines[0]);
     for (std::size_t i = 1; i < lines.size(); ++i)

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
+#include "runtime/base/json.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::inspect {
-
-using Json = nlohmann::ordered_json;
 
 // Indices of all tasks, or of the members of a suite of the plan.
 std::vector<std::uint32_t> all_tasks(const plan::Plan& plan);

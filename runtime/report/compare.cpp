@@ -15,7 +15,6 @@
 namespace probe::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Scope = ComparedRow::Scope;
 
 struct Shared {

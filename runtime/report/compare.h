@@ -2,10 +2,10 @@
 // how large, on which axes; plain words first, then numbers, and what the data cannot tell.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "runtime/base/json.h"
 #include "runtime/report/benchmark.h"
 #include "runtime/report/tables.h"
 
@@ -41,6 +41,6 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
                            const CompareOptions& options = {});
 
 std::string to_text(const Benchmark& benchmark, const Comparison& comparison);
-nlohmann::ordered_json to_json(const Benchmark& benchmark, const Comparison& comparison);
+Json to_json(const Benchmark& benchmark, const Comparison& comparison);
 
 }  // namespace probe::report

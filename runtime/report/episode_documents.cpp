@@ -4,18 +4,16 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <tuple>
 #include <unordered_map>
 
+#include "runtime/base/json.h"
 #include "runtime/rejudge/explain.h"
 #include "runtime/run/workers.h"
 #include "runtime/store/stored_trace.h"
 
 namespace probe::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // A distance is written for every so many control steps.
 constexpr std::size_t kEvery = 2;
@@ -221,9 +219,7 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
   if (problems > kNotes)
     documents.notes.push_back(
         fmt::format("{} further episodes without a timeline", problems - kNotes));
-  const auto dumped = [](const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  };
+  const auto dumped = [](const Json& json) { return json.dump(); };
   documents.timelines = dumped({{"every", kEvery}, {"bodies", bodies}, {"e", std::move(lines)}});
   documents.whys = dumped({{"strings", texts.texts()}, {"e", std::move(whys)}});
   return documents;

@@ -9,8 +9,6 @@
 namespace probe::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json finding(const char* level, std::string text, const char* see) {
   return {{"level", level}, {"text", std::move(text)}, {"see", see}};
 }

@@ -13,8 +13,6 @@ namespace probe::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
 // "success" is drawn as "success"; a name's underscores are for programs.
 std::string label_of(const std::string& name) {
   if (name == "wrong") return "wrong object";

@@ -1,10 +1,10 @@
 // The document `data` of the report page, as PAGE_DATA.md describes it.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "runtime/base/json.h"
 #include "runtime/report/benchmark.h"
 #include "runtime/report/published.h"
 #include "runtime/report/tables.h"
@@ -18,15 +18,13 @@ struct PageOptions {
   bool models = true;                          // mixed models, which take seconds
 };
 
-nlohmann::ordered_json page_data(const Benchmark& benchmark, const Tables& tables,
-                                 const PageOptions& options);
-inline nlohmann::ordered_json page_data(const Benchmark& benchmark, const PageOptions& options) {
+Json page_data(const Benchmark& benchmark, const Tables& tables, const PageOptions& options);
+inline Json page_data(const Benchmark& benchmark, const PageOptions& options) {
   return page_data(benchmark, make_tables(benchmark), options);
 }
 
 // Its parts.
-nlohmann::ordered_json tables_json(const Benchmark& benchmark, const Tables& tables,
-                                   const PageOptions& options);
+Json tables_json(const Benchmark& benchmark, const Tables& tables, const PageOptions& options);
 // Of how many tasks a published percentage is, over all and by category, and how many episodes each
 // has: theirs have no starts of ours, so the first plan's suite and seeds stand for them.
 struct PublishedSizes {
@@ -35,21 +33,19 @@ struct PublishedSizes {
 };
 PublishedSizes published_sizes(const Benchmark& benchmark);
 
-nlohmann::ordered_json external_json(const Benchmark& benchmark,
-                                     const std::vector<PublishedTable>& published);
+Json external_json(const Benchmark& benchmark, const std::vector<PublishedTable>& published);
 // [{level, text, see}], most important first.
-nlohmann::ordered_json findings(const Benchmark& benchmark, const Tables& tables);
+Json findings(const Benchmark& benchmark, const Tables& tables);
 
 // [k, n, low, high], ends rounded to four digits; null without an episode.
-nlohmann::ordered_json to_json(const std::optional<Estimate>& estimate);
+Json to_json(const std::optional<Estimate>& estimate);
 double rounded(double value);  // to four digits behind the point
 // "p = 0.19", "p < 0.0001".
 std::string p_text(double p);
 
 // Adds both answers of a contrast by name, the same in every document: {units, low, high, p,
 // p_adjusted?, real?, detectable?, more?}; `scale` of differences (1: rates, 100: points).
-void put_answers(nlohmann::ordered_json& json, const Contrast& contrast, double scale = 1,
-                 bool adjusted = true);
+void put_answers(Json& json, const Contrast& contrast, double scale = 1, bool adjusted = true);
 inline constexpr char kOnTheseStarts[] = "on_these_starts";
 inline constexpr char kForStartsNeverTried[] = "for_starts_never_tried";
 

@@ -14,8 +14,6 @@
 namespace probe::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 double p_value(double p) { return p < 1e-4 ? p : rounded(p); }
 
 Json pair_json(const Contrast& c) {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "runtime/base/percent.h"
 #include "runtime/report/categories.h"
 #include "runtime/report/page_data.h"
@@ -12,8 +12,6 @@
 
 namespace probe::report {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // The paper calls the tasks without a baseline "original".
 std::string column_name(const Benchmark& benchmark, std::size_t category) {
@@ -171,7 +169,7 @@ std::string to_json_text(const Benchmark& benchmark, const Tables& tables,
   if (!published.empty()) json["published"] = external_json(benchmark, published);
   json["notes"] = Json::array();
   for (const Note& note : benchmark.notes) json["notes"].push_back(note.text);
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(1) + "\n";
 }
 
 std::string tex(const std::string& text) {

@@ -1,10 +1,10 @@
 #include "runtime/run/delivery.h"
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
 
+#include "runtime/base/json.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/plan.h"
 
@@ -127,7 +127,7 @@ std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
 }
 
 std::string to_json(std::span<const DeliveryFinding> findings) {
-  auto array = nlohmann::ordered_json::array();
+  auto array = Json::array();
   for (const DeliveryFinding& finding : findings) {
     const char* kind = finding.kind == DeliveryFinding::Kind::kSamePrompt    ? "same_prompt"
                        : finding.kind == DeliveryFinding::Kind::kManyPrompts ? "many_prompts"

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/base/percent.h"
 #include "runtime/plan/plan.h"
 #include "runtime/run/selection.h"
@@ -124,12 +124,12 @@ std::string sentence(const CheckpointScore& score) {
 
 Status write_choice(const plan::Plan& plan, const SweepOptions& options,
                     const SweepSummary& summary) {
-  nlohmann::ordered_json json;
+  Json json;
   json["plan_root"] = to_hex(plan.root());
   json["policy"] = options.run.policy;
   json["rule"] = kRule;
   json["best"] = summary.scores[summary.best].checkpoint;
-  json["checkpoints"] = nlohmann::ordered_json::array();
+  json["checkpoints"] = Json::array();
   for (const CheckpointScore& score : summary.scores) {
     json["checkpoints"].push_back({{"checkpoint", score.checkpoint},
                                    {"folder", fs::path(score.dir).filename().string()},
@@ -138,8 +138,7 @@ Status write_choice(const plan::Plan& plan, const SweepOptions& options,
                                    {"success", score.success},
                                    {"intention", score.intention}});
   }
-  const std::string text =
-      json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  const std::string text = json.dump(2) + "\n";
   return write_file((fs::path(options.run.out) / "sweep.json").string(),
                     std::as_bytes(std::span(text)));
 }

@@ -1,15 +1,13 @@
 #include "runtime/scene/glb_writer.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "runtime/base/json.h"
 #include "runtime/scene/image.h"
 
 namespace probe::scene {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int kFloat = 5126, kUint16 = 5123, kUint32 = 5125;  // glTF component types
 constexpr int kArrayBuffer = 34962, kElementBuffer = 34963;

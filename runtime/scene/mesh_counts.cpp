@@ -6,19 +6,17 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/scene/mesh_references.h"
 
 namespace probe::scene {
 namespace {
-
-using Json = nlohmann::json;
 
 Failure no_mesh(const std::string& what) { return {Fault::kAsset, what, ""}; }
 
@@ -26,15 +24,15 @@ Failure no_mesh(const std::string& what) { return {Fault::kAsset, what, ""}; }
 
 // A table's field: absent, or a whole number of at most kMaxMeshBytes.
 Status check_field(const Json& entry, const char* table, std::size_t index, const char* field) {
-  const auto found = entry.find(field);
-  if (found == entry.end()) return {};
+  const Json* found = entry.find(field);
+  if (found == nullptr) return {};
   if (found->is_number_unsigned() && found->get<std::uint64_t>() <= kMaxMeshBytes) return {};
   return no_mesh(std::string("`") + field + "` of `" + table + "` " + std::to_string(index) +
                  " is " + found->dump() + ", not a number that such a file can have");
 }
 
 Status check_gltf(std::string_view text) {
-  const Json root = Json::parse(text.begin(), text.end(), nullptr, false);
+  const Json root = Json::parse(text);
   if (!root.is_object()) return no_mesh("the glTF description is no JSON object");
   struct Table {
     const char* name;
@@ -44,8 +42,8 @@ Status check_gltf(std::string_view text) {
                           {"bufferViews", {"byteLength", "byteOffset", "byteStride"}},
                           {"accessors", {"count", "byteOffset"}}};
   for (const Table& table : tables) {
-    const auto list = root.find(table.name);
-    if (list == root.end()) continue;
+    const Json* list = root.find(table.name);
+    if (list == nullptr) continue;
     if (!list->is_array()) return no_mesh(std::string("`") + table.name + "` is no list");
     std::size_t index = 0;
     for (const Json& entry : *list) {

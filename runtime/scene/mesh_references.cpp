@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 
 namespace probe::scene {
 namespace {
@@ -38,11 +38,11 @@ std::string_view json_chunk(std::string_view glb) {
 
 std::vector<std::string> named_by_gltf(std::string_view json) {
   std::vector<std::string> names;
-  const auto root = nlohmann::json::parse(json.begin(), json.end(), nullptr, false);
+  const auto root = Json::parse(json);
   if (!root.is_object()) return names;
   for (const char* table : {"buffers", "images"}) {
-    const auto list = root.find(table);
-    if (list == root.end() || !list->is_array()) continue;
+    const Json* list = root.find(table);
+    if (list == nullptr || !list->is_array()) continue;
     for (const auto& entry : *list) {
       if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
       const std::string uri = entry["uri"].get<std::string>();

@@ -5,9 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "runtime/base/json.h"
 #include "runtime/robot/rotation.h"
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/server_policy.h"
@@ -303,22 +303,22 @@ std::string to_text(const Conformance& conformance) {
 }
 
 std::string to_json(const Conformance& conformance) {
-  nlohmann::ordered_json json = {{"server", conformance.server},
-                                 {"profile", conformance.profile},
-                                 {"queries", conformance.queries},
-                                 {"connect_s", conformance.connect_s},
-                                 {"first_s", conformance.first_s},
-                                 {"median_s", conformance.median_s},
-                                 {"slowest_s", conformance.slowest_s},
-                                 {"remarks", conformance.remarks},
-                                 {"checks", nlohmann::ordered_json::array()}};
+  Json json = {{"server", conformance.server},
+               {"profile", conformance.profile},
+               {"queries", conformance.queries},
+               {"connect_s", conformance.connect_s},
+               {"first_s", conformance.first_s},
+               {"median_s", conformance.median_s},
+               {"slowest_s", conformance.slowest_s},
+               {"remarks", conformance.remarks},
+               {"checks", Json::array()}};
   for (const Check& check : conformance.checks) {
     json["checks"].push_back({{"name", check.name},
                               {"verdict", to_word(check.verdict)},
                               {"found", check.found},
                               {"fix", check.fix}});
   }
-  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json.dump(1);
 }
 
 }  // namespace probe::servers

@@ -9,10 +9,10 @@
 #include <array>
 #include <cstring>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/world/multibody.h"
 
 namespace probe::store {
@@ -117,13 +117,13 @@ Fingerprint take_fingerprint(const Sha256& assets) {
 }
 
 std::string to_json(const Fingerprint& fingerprint) {
-  nlohmann::json json = nlohmann::json::object();
+  Json json = Json::object();
   for (const auto& [name, value] : fingerprint.entries) json[name] = value;
-  return json.dump();
+  return json.sorted().dump();
 }
 
 Result<Fingerprint> fingerprint_from_json(std::string_view text) {
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  const Json json = Json::parse(text);
   Fingerprint fingerprint;
   if (!json.is_object()) return Failure{Fault::kStore, "a fingerprint is not a JSON object", ""};
   for (const auto& [name, value] : json.items()) {

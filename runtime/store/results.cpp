@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
+
+#include "runtime/base/json.h"
 
 namespace probe::store {
 namespace {
@@ -45,9 +46,7 @@ std::string cell(const ResultRow& row, const std::string& metric) {
   return "";
 }
 
-nlohmann::ordered_json or_null(const std::optional<std::string>& text) {
-  return text ? nlohmann::ordered_json(*text) : nullptr;
-}
+Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : nullptr; }
 
 // Every metric that some row has, in order of first use.
 std::vector<std::string> metric_names(std::span<const ResultRow> rows) {
@@ -66,9 +65,9 @@ std::vector<std::string> metric_names(std::span<const ResultRow> rows) {
 
 std::string results_to_json(std::span<const ResultRow> rows) {
   const std::vector<std::string> names = metric_names(rows);
-  auto array = nlohmann::ordered_json::array();
+  auto array = Json::array();
   for (const ResultRow& row : rows) {
-    nlohmann::ordered_json json;
+    Json json;
     json["task"] = row.task;
     json["episode"] = row.episode;
     json["seed"] = row.seed;
@@ -96,7 +95,7 @@ std::string results_to_json(std::span<const ResultRow> rows) {
     array.push_back(std::move(json));
   }
   // A policy's error text may hold any bytes; what is not UTF-8 is replaced, never thrown.
-  return array.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return array.dump(1) + "\n";
 }
 
 std::string results_to_csv(std::span<const ResultRow> rows) {

@@ -2,8 +2,8 @@
 #include "runtime/store/run_record.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "runtime/base/percent.h"
 
 namespace probe::store {
@@ -19,11 +19,10 @@ Failure bad_record(const std::string& key, const char* wanted, const std::string
       where);
 }
 
-Result<std::string> record_text(const nlohmann::json& json, const char* key,
-                                const std::string& where) {
-  const auto found = json.find(key);
-  if (found == json.end() || !found->is_string()) return bad_record(key, "a text", where);
-  return found->get<std::string>();
+Result<std::string> record_text(const Json& json, const char* key, const std::string& where) {
+  const Json* found = json.find(key);
+  if (found == nullptr || !found->is_string()) return bad_record(key, "a text", where);
+  return found->text();
 }
 
 std::string short_form(const std::string& text, std::size_t length) {
@@ -37,18 +36,18 @@ std::string percent(double part, double whole) {
 }  // namespace
 
 std::string record_to_text(const RunRecord& record) {
-  const nlohmann::json json = {{"schema", std::to_string(record.schema)},
-                               {"plan_root", record.identity.plan_root},
-                               {"policy", record.identity.policy},
-                               {"policy_content", record.identity.policy_content},
-                               {"suite", record.suite},
-                               {"seeds", record.seeds},
-                               {"fingerprint", to_json(record.fingerprint)}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  const Json json = {{"schema", std::to_string(record.schema)},
+                     {"plan_root", record.identity.plan_root},
+                     {"policy", record.identity.policy},
+                     {"policy_content", record.identity.policy_content},
+                     {"suite", record.suite},
+                     {"seeds", record.seeds},
+                     {"fingerprint", to_json(record.fingerprint)}};
+  return json.sorted().dump();
 }
 
 Result<RunRecord> record_from_text(const std::string& text, const std::string& where) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = Json::parse(text);
   if (!json.is_object()) {
     return record_failure("its run record is no JSON object; move this file away and run again",
                           where);
@@ -66,8 +65,8 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
     PROBE_ASSIGN(record.identity.policy_content, record_text(json, "policy_content", where));
   }
   PROBE_ASSIGN(record.suite, record_text(json, "suite", where));
-  const auto seeds = json.find("seeds");
-  if (seeds == json.end() || !seeds->is_array()) {
+  const Json* seeds = json.find("seeds");
+  if (seeds == nullptr || !seeds->is_array()) {
     return bad_record("seeds", "a list of whole numbers", where);
   }
   for (const auto& seed : *seeds) {
@@ -120,41 +119,49 @@ std::string to_text(const RunCall& call) {
 }
 
 std::string call_to_json(const RunCall& call) {
-  const nlohmann::json json = {{"fingerprint", to_json(call.fingerprint)},
-                               {"worlds", call.worlds},
-                               {"ended", call.ended},
-                               {"episodes", call.episodes},
-                               {"retried", call.retried},
-                               {"observations", call.observations},
-                               {"elapsed_s", call.elapsed_s},
-                               {"queries", call.queries.queries},
-                               {"server_busy_s", call.queries.busy_s},
-                               {"worlds_waiting_s", call.queries.waiting_s},
-                               {"queries_at_once", call.queries.most_at_once}};
-  return json.dump();
+  const Json json = {{"fingerprint", to_json(call.fingerprint)},
+                     {"worlds", call.worlds},
+                     {"ended", call.ended},
+                     {"episodes", call.episodes},
+                     {"retried", call.retried},
+                     {"observations", call.observations},
+                     {"elapsed_s", call.elapsed_s},
+                     {"queries", call.queries.queries},
+                     {"server_busy_s", call.queries.busy_s},
+                     {"worlds_waiting_s", call.queries.waiting_s},
+                     {"queries_at_once", call.queries.most_at_once}};
+  return json.sorted().dump();
 }
 
 Result<RunCall> call_from_json(const std::string& text, const std::string& where) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const Json json = Json::parse(text);
+  std::string missing;
+  const auto number = [&](const char* key) {
+    const Json* found = json.find(key);
+    if (found != nullptr && found->is_number()) return *found;
+    missing = key;
+    return Json(0);
+  };
   RunCall call;
-  try {
-    PROBE_ASSIGN(call.fingerprint,
-                 fingerprint_from_json(json.at("fingerprint").get<std::string>()));
-    call.worlds = json.at("worlds").get<int>();
-    call.ended = json.at("ended").get<bool>();
-    call.episodes = json.at("episodes").get<int>();
-    call.retried = json.at("retried").get<int>();
-    call.observations = json.at("observations").get<std::int64_t>();
-    call.elapsed_s = json.at("elapsed_s").get<double>();
-    call.queries.elapsed_s = call.elapsed_s;
-    call.queries.queries = json.at("queries").get<std::int64_t>();
-    call.queries.busy_s = json.at("server_busy_s").get<double>();
-    call.queries.waiting_s = json.at("worlds_waiting_s").get<double>();
-    call.queries.most_at_once = json.at("queries_at_once").get<int>();
-  } catch (const nlohmann::json::exception& error) {
-    return record_failure(std::string("the figures of a call cannot be read: ") + error.what(),
-                          where);
+  const Json* fingerprint = json.find("fingerprint");
+  const Json* ended = json.find("ended");
+  if (fingerprint == nullptr || !fingerprint->is_string()) missing = "fingerprint";
+  if (ended == nullptr || !ended->is_boolean()) missing = "ended";
+  call.worlds = number("worlds").get<int>();
+  call.episodes = number("episodes").get<int>();
+  call.retried = number("retried").get<int>();
+  call.observations = number("observations").get<std::int64_t>();
+  call.elapsed_s = number("elapsed_s").get<double>();
+  call.queries.elapsed_s = call.elapsed_s;
+  call.queries.queries = number("queries").get<std::int64_t>();
+  call.queries.busy_s = number("server_busy_s").get<double>();
+  call.queries.waiting_s = number("worlds_waiting_s").get<double>();
+  call.queries.most_at_once = number("queries_at_once").get<int>();
+  if (!missing.empty()) {
+    return record_failure("the figures of a call cannot be read: `" + missing + "`", where);
   }
+  call.ended = ended->get<bool>();
+  PROBE_ASSIGN(call.fingerprint, fingerprint_from_json(fingerprint->text()));
   return call;
 }
 

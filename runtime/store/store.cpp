@@ -8,9 +8,9 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
-#include <nlohmann/json.hpp>
 
 #include "runtime/base/file.h"
+#include "runtime/base/json.h"
 #include "runtime/base/paths.h"
 #include "runtime/store/database.h"
 #include "runtime/store/folder_lock.h"
@@ -97,7 +97,7 @@ Result<std::optional<RunRecord>> load_record(Database& database) {
 }
 
 std::string metrics_to_text(const std::vector<MetricValue>& metrics) {
-  nlohmann::json json = nlohmann::json::array();
+  Json json = Json::array();
   for (const MetricValue& metric : metrics) {
     json.push_back({metric.name, metric.is_bool ? 1 : 0, metric.value});
   }
@@ -105,7 +105,7 @@ std::string metrics_to_text(const std::vector<MetricValue>& metrics) {
 }
 
 std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& text) {
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  const auto json = Json::parse(text);
   if (!json.is_array()) return std::nullopt;
   std::vector<MetricValue> metrics;
   for (const auto& entry : json) {

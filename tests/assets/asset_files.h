@@ -12,13 +12,13 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "runtime/base/geometry.h"
+#include "runtime/base/json.h"
 
 namespace probe::test {
 
@@ -41,12 +41,12 @@ struct Bounds {
 };
 
 // The header of a binary glTF file.
-inline nlohmann::json glb_header(const std::string& bytes) {
+inline Json glb_header(const std::string& bytes) {
   std::uint32_t length = 0;
   REQUIRE(bytes.size() > 20);
   std::memcpy(&length, bytes.data() + 12, 4);
   REQUIRE(bytes.size() >= 20 + length);
-  return nlohmann::json::parse(bytes.substr(20, length));
+  return Json::parse(bytes.substr(20, length));
 }
 
 struct Visual {
@@ -57,7 +57,7 @@ struct Visual {
 // Positions are read from the binary chunk, not from the accessor's min and max.
 inline Visual read_visual(const std::string& path) {
   const std::string bytes = read_bytes(path);
-  const nlohmann::json header = glb_header(bytes);
+  const Json header = glb_header(bytes);
   std::uint32_t length = 0;
   std::memcpy(&length, bytes.data() + 12, 4);
   const std::size_t start = 20 + length + 8;

@@ -5,7 +5,7 @@
 using namespace probe;
 
 TEST_CASE("the manifest gives size and hash of every file, sorted by path") {
-  const auto manifest = nlohmann::json::parse(test::read_bytes(test::asset_path("manifest.json")));
+  const auto manifest = Json::parse(test::read_bytes(test::asset_path("manifest.json")));
   std::vector<std::string> paths;
   for (const auto& entry : manifest.at("files")) {
     const std::string path = entry.at("path");
@@ -21,7 +21,7 @@ TEST_CASE("the manifest gives size and hash of every file, sorted by path") {
 }
 
 TEST_CASE("no mesh lies in the asset folders that the manifest does not name") {
-  const auto manifest = nlohmann::json::parse(test::read_bytes(test::asset_path("manifest.json")));
+  const auto manifest = Json::parse(test::read_bytes(test::asset_path("manifest.json")));
   std::set<std::string> named;
   for (const auto& entry : manifest.at("files")) named.insert(entry.at("path"));
   const std::filesystem::path root = test::asset_path("");
@@ -56,9 +56,10 @@ TEST_CASE("nothing shines by itself: in the dark every asset of ours is black") 
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(VLAPROBE_SOURCE_DIR "/assets")) {
     if (entry.path().extension() != ".glb") continue;
-    const nlohmann::json header = test::glb_header(test::read_bytes(entry.path().string()));
+    const Json header = test::glb_header(test::read_bytes(entry.path().string()));
     for (const auto& material : header.at("materials")) {
-      const bool glows = material.contains("emissiveFactor") || material.contains("emissiveTexture");
+      const bool glows =
+          material.contains("emissiveFactor") || material.contains("emissiveTexture");
       CHECK_MESSAGE(!glows, entry.path().string(), ": ", material.value("name", ""));
     }
     ++seen;

@@ -42,7 +42,7 @@ TEST_CASE("objects fill the published boxes to a tenth of a millimetre") {
     MESSAGE("skipped: " << path << " is not there");
     return;
   }
-  const auto objects = nlohmann::json::parse(test::read_bytes(path)).at("objects");
+  const auto objects = Json::parse(test::read_bytes(path)).at("objects");
   for (const std::string& name : test::object_names()) {
     CAPTURE(name);
     const auto& entry = objects.at(name == "half_sponge" ? "sponge_small" : name);

@@ -3,11 +3,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 #include "dsl/editor/textmate.h"
+#include "runtime/base/json.h"
 
 using namespace probe;
 
@@ -35,7 +35,7 @@ TEST_CASE("the editor's grammar is the one that the tables of words and units gi
 }
 
 TEST_CASE("numbers match with their longest unit") {
-  const auto grammar = nlohmann::json::parse(editor::textmate_grammar());
+  const auto grammar = Json::parse(editor::textmate_grammar());
   std::string pattern = grammar["repository"]["numbers"]["patterns"][0]["match"];
   pattern.erase(0, pattern.find(')') + 1);  // without what stands before it
   const std::regex number(pattern);
@@ -48,11 +48,11 @@ TEST_CASE("numbers match with their longest unit") {
 }
 
 TEST_CASE("the extension's parts are there and refer to one another") {
-  const auto package = nlohmann::json::parse(read(kExtension / "package.json"));
+  const auto package = Json::parse(read(kExtension / "package.json"));
   const auto& contributes = package["contributes"];
   for (const std::string& path : {contributes["languages"][0]["configuration"].get<std::string>(),
                                   contributes["grammars"][0]["path"].get<std::string>()}) {
-    CHECK_MESSAGE(nlohmann::json::accept(read(kExtension / path)), path);
+    CHECK_MESSAGE(Json::accept(read(kExtension / path)), path);
   }
   CHECK(contributes["grammars"][0]["scopeName"] == "source.probe");
 }

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -15,6 +14,7 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/base/json.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::test {
@@ -28,11 +28,11 @@ struct PublishedPose {
 };
 
 struct Published {
-  nlohmann::json tasks, objects;
+  Json tasks, objects;
   std::map<std::string, std::vector<PublishedPose>> starts;  // by task, in the file's order
 
   // The released entry of a task of ours.
-  const nlohmann::json* find(std::string_view task) const {
+  const Json* find(std::string_view task) const {
     for (const auto& entry : tasks) {
       if (entry["name"] == "widowx_" + std::string(task)) return &entry;
     }
@@ -52,7 +52,7 @@ inline const Published* published() {
     const std::filesystem::path folder = VLAPROBE_SOURCE_DIR "/../shared/reference";
     std::ifstream list(folder / "intact_tasks.json"), starts(folder / "intact_starts.csv");
     if (!list || !starts) return std::nullopt;
-    const nlohmann::json file = nlohmann::json::parse(list);
+    const Json file = Json::parse(list);
     Published out{file["tasks"], file["objects"], {}};
     std::string line;
     std::getline(starts, line);  // the names of the columns

@@ -177,7 +177,7 @@ TEST_CASE("the rule of success of every task agrees with the published one") {
     const plan::TaskRecord& task = plan.tasks()[t];
     const std::string name(plan.text(task.name));
     CAPTURE(name);
-    const nlohmann::json* entry = released->find(name);
+    const Json* entry = released->find(name);
     REQUIRE(entry != nullptr);
     const std::string rule = (*entry)["success"];
     CAPTURE(rule);

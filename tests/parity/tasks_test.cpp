@@ -34,7 +34,7 @@ TEST_CASE("instructions, horizons, roles and canonical tasks equal the published
     const plan::TaskRecord& task = plan.tasks()[t];
     const std::string name(plan.text(task.name));
     CAPTURE(name);
-    const nlohmann::json* entry = released->find(name);
+    const Json* entry = released->find(name);
     REQUIRE(entry != nullptr);
     CHECK(plan.text(task.prompt) == (*entry)["instruction"].get<std::string>());
     prompts += plan.text(task.prompt) == (*entry)["instruction"].get<std::string>();

@@ -25,8 +25,7 @@ int compare_verb(const CompareArguments& arguments) {
   const auto compared = report::compare(*benchmark, 0, 1, {.metrics = arguments.metrics});
   if (!compared) return report(compared.failure());
   if (arguments.json) {
-    fmt::print("{}\n", report::to_json(*benchmark, *compared)
-                           .dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", report::to_json(*benchmark, *compared).dump(1));
   } else {
     fmt::print("{}", report::to_text(*benchmark, *compared));
   }

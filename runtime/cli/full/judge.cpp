@@ -3,8 +3,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
@@ -22,8 +22,6 @@ struct JudgeArguments {
   bool json = false;
   AssetOptions assets;
 };
-
-using Json = nlohmann::ordered_json;
 
 Json changes_json(const std::vector<rejudge::MetricChange>& changes) {
   Json list = Json::array();

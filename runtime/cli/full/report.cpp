@@ -26,9 +26,7 @@ struct ReportArguments {
   std::string command;  // as it was called
 };
 
-std::string dump(const nlohmann::ordered_json& json, int indent = -1) {
-  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
+std::string dump(const Json& json, int indent = -1) { return json.dump(indent); }
 
 report::EpisodeDocuments read_traces(const report::Benchmark& benchmark,
                                      const ReportArguments& arguments) {

@@ -1,8 +1,7 @@
 // vlaprobe why
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "runtime/base/json.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/explain.h"
 
@@ -17,25 +16,23 @@ struct WhyArguments {
 };
 
 void print_json(const rejudge::EpisodeWhy& why) {
-  nlohmann::ordered_json json = {
+  Json json = {
       {"task", why.task}, {"episode", why.episode}, {"seed", why.seed}, {"steps", why.steps}};
-  json["invalid"] = why.invalid ? nlohmann::ordered_json(*why.invalid) : nullptr;
-  json["metrics"] = nlohmann::ordered_json::array();
+  json["invalid"] = why.invalid ? Json(*why.invalid) : nullptr;
+  json["metrics"] = Json::array();
   for (const rejudge::MetricWhy& metric : why.metrics) {
-    nlohmann::ordered_json entry = {{"metric", metric.name}, {"value", metric.value},
-                                    {"shown", metric.shown}, {"readout", metric.readout},
-                                    {"step", metric.step},   {"when", metric.when},
-                                    {"file", metric.file},   {"line", metric.line}};
+    Json entry = {{"metric", metric.name},     {"value", metric.value}, {"shown", metric.shown},
+                  {"readout", metric.readout}, {"step", metric.step},   {"when", metric.when},
+                  {"file", metric.file},       {"line", metric.line}};
     if (metric.is_bool) entry["value"] = metric.value != 0;
-    entry["conditions"] = nlohmann::ordered_json::array();
+    entry["conditions"] = Json::array();
     for (const rejudge::Condition& c : metric.conditions) {
       entry["conditions"].push_back({{"file", c.file},
                                      {"line", c.line},
                                      {"text", c.text},
                                      {"bodies", c.bodies},
                                      {"measured", c.measured},
-                                     {"truth", c.is_number ? nlohmann::ordered_json(nullptr)
-                                                           : nlohmann::ordered_json(c.truth)},
+                                     {"truth", c.is_number ? Json(nullptr) : Json(c.truth)},
                                      {"decides", c.decides},
                                      {"alike", c.alike}});
     }

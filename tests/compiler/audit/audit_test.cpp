@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "compiler/diag/text.h"
+#include "runtime/base/json.h"
 
 using namespace probe;
 using audit::Kind;
@@ -207,7 +207,7 @@ TEST_CASE("a variant that moves the goal alone is no irregularity") {
 }
 
 TEST_CASE("the JSON names kind, tasks, axes, place and reason") {
-  const auto json = nlohmann::json::parse(audit::to_json(published().audit));
+  const auto json = Json::parse(audit::to_json(published().audit));
   CHECK(json["suite"] == "intact");
   CHECK(json["tasks"] == 50);
   CHECK(json["comparisons"] == 46);

@@ -1,8 +1,7 @@
 #include "compiler/diag/json.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 using namespace probe;
 
@@ -14,7 +13,7 @@ TEST_CASE("json carries place, labels and the fix with bytes and lines") {
       .point("a unit touches its number")
       .label({id, 0, 3}, "here")
       .fix_by("write `2 x 2`", {id, 10, 13}, "2 x 2");
-  const auto json = nlohmann::json::parse(render_json(diagnostics, sources));
+  const auto json = Json::parse(render_json(diagnostics, sources));
   REQUIRE(json.size() == 1);
   const auto& item = json[0];
   CHECK(item["code"] == "P0301");
@@ -41,7 +40,7 @@ TEST_CASE("json has a null fix, a null file for no place, and survives bytes tha
   Diagnostics diagnostics;
   diagnostics.report(Code::P0102, {id, 0, 1}, "found `\xff`");
   diagnostics.report(Code::P0801, {}, "no place");
-  const auto json = nlohmann::json::parse(render_json(diagnostics, sources));
+  const auto json = Json::parse(render_json(diagnostics, sources));
   CHECK(json[0]["fix"].is_null());
   CHECK(json[0]["labels"].empty());
   CHECK(json[1]["file"].is_null());
@@ -49,5 +48,5 @@ TEST_CASE("json has a null fix, a null file for no place, and survives bytes tha
 }
 
 TEST_CASE("no diagnostics are an empty array") {
-  CHECK(nlohmann::json::parse(render_json({}, {})) == nlohmann::json::array());
+  CHECK(Json::parse(render_json({}, {})) == Json::array());
 }

@@ -1,11 +1,11 @@
 // What `doctor` says of a whole installation and of a damaged one.
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
-using nlohmann::json;
+using json = Json;
+
 using probe::test::Sandbox;
 namespace fs = std::filesystem;
 

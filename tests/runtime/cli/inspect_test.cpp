@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
 using probe::test::contains;
@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-nlohmann::json parsed(const Outcome& outcome) {
+Json parsed(const Outcome& outcome) {
   REQUIRE(outcome.exit == 0);
-  auto json = nlohmann::json::parse(outcome.out, nullptr, false);
+  auto json = Json::parse(outcome.out);
   REQUIRE_FALSE(json.is_discarded());
   return json;
 }
@@ -137,7 +137,7 @@ TEST_CASE("two tasks and two plans are compared") {
   Sandbox box;
   const auto tasks =
       parsed(box.vlaprobe("diff $SUITE carrot_on_plate carrot_on_plate_lang_color --json"));
-  CHECK(tasks["axes"] == nlohmann::json{"language.appearance"});
+  CHECK(tasks["axes"] == Json{"language.appearance"});
   CHECK(tasks["equal"]["starts"] == 24);
   REQUIRE(box.vlaprobe("build $SUITE -o x.plan").exit == 0);
   const auto plans = parsed(box.vlaprobe("diff x.plan $SUITE --json"));

@@ -1,12 +1,11 @@
 // verify, dis and diff on plan files as users have them.
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
 using namespace probe::test;
-using nlohmann::json;
+using json = Json;
 
 TEST_CASE("verify says the root on standard output and what was checked on the other") {
   Sandbox box;
@@ -21,7 +20,7 @@ TEST_CASE("verify says the root on standard output and what was checked on the o
   CHECK(fast.out == whole.out);
   CHECK(contains(fast.err, "left out"));
   const Outcome told = box.vlaprobe("verify x.plan --json");
-  const json object = json::parse(told.out, nullptr, false);
+  const json object = json::parse(told.out);
   REQUIRE(object.is_object());
   CHECK(object["root"].get<std::string>() + "\n" == whole.out);
   CHECK(object["sections"][0]["name"] == "STRS");

@@ -1,8 +1,7 @@
 // The verb `policy` as a user types it.
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
+#include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
 namespace probe::test {
@@ -29,7 +28,7 @@ TEST_CASE("a policy test of no server is an error, of an absent one a finding") 
   CHECK(expert.err.find("`expert` is no server") != std::string::npos);
   const Outcome absent = sandbox.vlaprobe("policy test openpi://127.0.0.1:1 --json");
   CHECK(absent.exit == 2);
-  const auto json = nlohmann::json::parse(absent.out);
+  const auto json = Json::parse(absent.out);
   CHECK(json["checks"][0]["name"] == "connection");
   CHECK(json["checks"][0]["verdict"] == "wrong");
 }

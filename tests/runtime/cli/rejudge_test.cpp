@@ -2,12 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
 using namespace probe::test;
-using nlohmann::json;
+using json = Json;
 
 namespace {
 
@@ -25,7 +25,7 @@ const Sandbox& sandbox() {
 }
 
 json parsed(const std::string& text) {
-  const json value = json::parse(text, nullptr, false);
+  const json value = json::parse(text);
   REQUIRE(!value.is_discarded());
   return value;
 }

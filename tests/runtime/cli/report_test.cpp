@@ -3,12 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
 using namespace probe::test;
-using nlohmann::json;
+using json = Json;
 
 namespace {
 
@@ -35,8 +35,7 @@ json document(const std::string& page, const std::string& id) {
   const auto begin = page.find(open);
   REQUIRE(begin != std::string::npos);
   const auto end = page.find("</script>", begin);
-  const json value =
-      json::parse(page.substr(begin + open.size(), end - begin - open.size()), nullptr, false);
+  const json value = json::parse(page.substr(begin + open.size(), end - begin - open.size()));
   REQUIRE(!value.is_discarded());
   return value;
 }
@@ -115,7 +114,7 @@ TEST_CASE("a report refuses what it cannot read, and names it") {
 TEST_CASE("the numbers of a report are there as JSON too") {
   const Outcome report = sandbox().vlaprobe("report 'a run' expert --json");
   REQUIRE_MESSAGE(report.exit == 0, report.err);
-  const json data = json::parse(report.out, nullptr, false);
+  const json data = json::parse(report.out);
   REQUIRE(!data.is_discarded());
   CHECK(data["format"] == "vlaprobe-report");
   CHECK(data["tables"].contains("main"));

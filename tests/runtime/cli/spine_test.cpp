@@ -5,12 +5,13 @@
 
 #include <chrono>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
-using nlohmann::json;
+using json = Json;
+
 using probe::test::Outcome;
 using probe::test::read_file;
 using probe::test::Sandbox;

@@ -1,12 +1,12 @@
 // What is exported is what was recorded, read back with the other tools' own libraries.
 #include "runtime/export/export.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
 #include <hdf5.h>
 
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/runtime/store/sample_trace.h"
@@ -105,8 +105,8 @@ TEST_CASE("JSON lines have an episode line and a line a step with exact numbers"
   REQUIRE((*sink)->episode(in.row, in.trace).ok());
   REQUIRE((*sink)->finish().ok());
   std::ifstream file(folder / "x.jsonl");
-  std::vector<nlohmann::json> lines;
-  for (std::string line; std::getline(file, line);) lines.push_back(nlohmann::json::parse(line));
+  std::vector<Json> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(Json::parse(line));
   REQUIRE(lines.size() == 5);
   CHECK(lines[0]["kind"] == "episode");
   CHECK(lines[0]["metrics"]["success"] == true);

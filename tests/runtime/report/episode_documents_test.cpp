@@ -1,8 +1,7 @@
 #include "runtime/report/episode_documents.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 using namespace probe;
 using namespace probe::report;
@@ -46,8 +45,8 @@ TEST_CASE("an episode whose trace is gone has no timeline, and a note says so") 
   row.trace = "/nowhere/t/0-42.trace";
   const std::vector<EpisodeTrace> episodes(8, EpisodeTrace{&row, nullptr, 0});
   const auto documents = episode_documents(episodes, {}, 1, {.jobs = 2});
-  const auto timelines = nlohmann::json::parse(documents.timelines);
-  CHECK(timelines["e"] == nlohmann::json::parse("[0,0,0,0,0,0,0,0]"));
+  const auto timelines = Json::parse(documents.timelines);
+  CHECK(timelines["e"] == Json::parse("[0,0,0,0,0,0,0,0]"));
   CHECK(timelines["bodies"].size() == 1);
   REQUIRE(documents.notes.size() == 6);
   CHECK(documents.notes[0].find("/nowhere/t/0-42.trace") != std::string::npos);

@@ -1,11 +1,10 @@
 #include "runtime/report/page_writer.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
 
-#include <nlohmann/json.hpp>
-
 using namespace probe::report;
-using nlohmann::json;
+using json = Json;
 
 TEST_CASE("nothing inside a result can end the script element it stands in") {
   const std::string hostile = "</script><script>alert(1)</script><!-- & \xE2\x80\xA8\xE2\x80\xA9";

@@ -129,8 +129,7 @@ TEST_CASE("LaTeX and JSON hold the names as text") {
   CHECK(latex.find("my\\_policy \\& 50\\% \\{x\\}") != std::string::npos);
   CHECK(latex.find("\\toprule") != std::string::npos);
   CHECK(latex.find("\\cell{33.3}{8/24}{") != std::string::npos);
-  const auto json =
-      nlohmann::json::parse(table_text(made.benchmark, tables, {}, TableFormat::kJson));
+  const auto json = Json::parse(table_text(made.benchmark, tables, {}, TableFormat::kJson));
   CHECK(json["main"][0]["policy"] == "my_policy & 50% {x}");
   CHECK(json["task_differences"][0]["pairs"].contains("both"));
 }
@@ -141,8 +140,7 @@ TEST_CASE("every table of differences answers both questions by name") {
       [](const std::string& task, int, int) { return Outcome{.success = task == kBase}; },
       {.tasks = {kBase, kVariant, "carrot_on_plate_lang_color"}});
   const Tables tables = make_tables(made.benchmark);
-  const auto json =
-      nlohmann::json::parse(table_text(made.benchmark, tables, {}, TableFormat::kJson));
+  const auto json = Json::parse(table_text(made.benchmark, tables, {}, TableFormat::kJson));
   REQUIRE(!json["category_differences"].empty());
   for (const char* table : {"category_differences", "task_differences"}) {
     for (const auto& row : json[table]) {

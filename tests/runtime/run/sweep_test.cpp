@@ -1,11 +1,11 @@
 // Checkpoints compared on the original tasks, and the whole suite with the best.
 #include "runtime/run/sweep.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "compiler/emit/compile.h"
 #include "runtime/base/file.h"
@@ -71,7 +71,7 @@ TEST_CASE("the best checkpoint on the original tasks runs the whole suite; of eq
   CHECK(read_results(folder / "sweep/0")->size() == 2);
   CHECK(read_run_record(folder / "sweep/0.2")->identity.policy == "noisy:0.2");
   CHECK(told.back() == "best: 0.0; now the whole suite");
-  const auto json = nlohmann::json::parse(read_file(folder / "sweep/sweep.json").value());
+  const auto json = Json::parse(read_file(folder / "sweep/sweep.json").value());
   CHECK(json["best"] == "0.0");
   CHECK(json["checkpoints"].size() == 3);
   CHECK(json["checkpoints"][2]["folder"] == "0");

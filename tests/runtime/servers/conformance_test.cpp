@@ -1,9 +1,8 @@
 // A policy test against servers that each do one thing wrong.
 #include "runtime/servers/conformance.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include "tests/servers/python_server.h"
 
@@ -49,7 +48,7 @@ TEST_CASE("a server that does as its profile says passes every check") {
   }
   CHECK(result.queries == 10);
   CHECK(result.median_s > 0);
-  const auto json = nlohmann::json::parse(to_json(result));
+  const auto json = Json::parse(to_json(result));
   CHECK(json["checks"].size() == result.checks.size());
   CHECK(json["checks"][0]["verdict"] == "fine");
 }

@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <functional>
-#include <nlohmann/json.hpp>
 
+#include "runtime/base/json.h"
 #include "runtime/servers/protocols/gr00t.h"
 #include "runtime/servers/protocols/openvla.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
@@ -62,7 +62,7 @@ int refused(const Bytes& good, int count, std::uint64_t key,
     ++failures;
     REQUIRE_FALSE(status.failure().message.empty());
     REQUIRE(status.failure().message.size() < 2000);
-    REQUIRE_NOTHROW(nlohmann::json(status.failure().message).dump());
+    REQUIRE_NOTHROW(Json(status.failure().message).dump());
   }
   return failures;
 }

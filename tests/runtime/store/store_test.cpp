@@ -1,5 +1,6 @@
 // A run's folder: resume, refusal, and what a killed process leaves.
 #include "runtime/store/store.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
 #include <signal.h>
@@ -10,7 +11,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "runtime/plan/plan.h"
 #include "tests/runtime/run/temporary_folder.h"
@@ -122,9 +122,9 @@ TEST_CASE("a run record of another form names the file and the key") {
                                                         {"fingerprint", "\"5\""}}) {
     CAPTURE(key);
     CAPTURE(json);
-    auto record = nlohmann::json{{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
-                                 {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
-    record[key] = nlohmann::json::parse(json);
+    auto record = Json{{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
+                       {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
+    record[key] = Json::parse(json);
     change_database(dir, "update run set value = '" + record.dump() + "'");
     const auto read = read_run_record(dir);
     REQUIRE_FALSE(read.ok());
@@ -168,8 +168,8 @@ TEST_CASE("a folder of the first schema is read, and raised when it is written")
   change_database(dir, "alter table episodes drop column sent_prompt_sha256");
   change_database(dir, "alter table episodes drop column sent_image_sha256");
   change_database(dir, "drop table calls");
-  const nlohmann::json old = {{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
-                              {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
+  const Json old = {{"schema", "1"}, {"plan_root", "aa"}, {"policy", "null"},
+                    {"suite", "s"},  {"seeds", {42}},     {"fingerprint", "{}"}};
   change_database(dir, "update run set value = '" + old.dump() + "'");
   REQUIRE_MESSAGE(read_results(dir).ok(), to_text(read_results(dir).failure()));
   CHECK(read_results(dir)->size() == 1);
@@ -365,7 +365,7 @@ TEST_CASE("what a killed process left is removed, but nothing behind a link and 
 
 TEST_CASE("rows print as JSON with the promised keys") {
   std::vector<ResultRow> rows = {row_of(0), row_of(1, "policy: \xff closed, \"late\"")};
-  const auto json = nlohmann::json::parse(results_to_json(rows));
+  const auto json = Json::parse(results_to_json(rows));
   REQUIRE(json.size() == 2);
   CHECK(json[0]["success"] == true);
   CHECK(json[0]["height"] == 0.1);

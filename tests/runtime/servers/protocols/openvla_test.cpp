@@ -1,9 +1,8 @@
 // OpenVLA's requests as text, and its client against a server of the same rules.
 #include "runtime/servers/protocols/openvla.h"
+#include "runtime/base/json.h"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include "tests/runtime/servers/asking.h"
 
@@ -37,7 +36,7 @@ TEST_CASE("an OpenVLA request is json_numpy's text, plain or encoded") {
             .ends_with(", \"unnorm_key\": \"bridge_orig\"}"));
   profile.unnorm_key.clear();
   profile.dialect = "encoded";
-  const auto encoded = nlohmann::json::parse(openvla_request(profile, small_request()).value());
+  const auto encoded = Json::parse(openvla_request(profile, small_request()).value());
   CHECK(encoded.size() == 1);
   CHECK(encoded["encoded"] == plain);
 }
@@ -49,7 +48,7 @@ TEST_CASE("OpenVLA's answers are read in both forms, and its `error` is one") {
   const std::vector<RawAction> expected{{0.1, 0, 0, 0, 0, 0, 1}};
   REQUIRE_MESSAGE(openvla_actions(action).ok(), openvla_actions(action).failure().message);
   CHECK(*openvla_actions(action) == expected);
-  CHECK(*openvla_actions(nlohmann::json(action).dump()) == expected);
+  CHECK(*openvla_actions(Json(action).dump()) == expected);
   CHECK(*openvla_actions("[0.1, 0, 0, 0, 0, 0, 1]") == expected);
   CHECK(openvla_actions("\"error\"")
             .failure()

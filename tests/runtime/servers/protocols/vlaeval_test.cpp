@@ -1,9 +1,8 @@
 // vla-eval's messages byte by byte, and its client against a server of the same rules.
+#include "runtime/base/json.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
 
 #include <doctest/doctest.h>
-
-#include <nlohmann/json.hpp>
 
 #include "runtime/scene/image.h"
 #include "runtime/servers/servers.h"
@@ -14,7 +13,8 @@ namespace probe::servers {
 using namespace probe::policy;
 namespace {
 
-using nlohmann::json;
+using json = Json;
+
 using test::PythonServer;
 
 Request request_of(std::int64_t height, std::int64_t width, wire::Bytes pixels) {
