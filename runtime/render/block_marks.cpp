@@ -36,13 +36,13 @@ BlockMarks::BlockMarks(const Camera& camera, const CameraRays& rays)
       blocks_y_(2 * rays.tiles_y),
       marks_(static_cast<std::size_t>(blocks_x_) * static_cast<std::size_t>(blocks_y_), 0) {}
 
-void BlockMarks::clear() { std::fill(marks_.begin(), marks_.end(), std::uint8_t{0}); }
-void BlockMarks::mark_all() { std::fill(marks_.begin(), marks_.end(), std::uint8_t{1}); }
+void BlockMarks::clear() { std::fill(marks_.begin(), marks_.end(), InstanceSet{0}); }
+void BlockMarks::mark_all() { std::fill(marks_.begin(), marks_.end(), kAllInstances); }
 
-unsigned BlockMarks::tile_blocks(int tile_x, int tile_y) const {
-  const std::uint8_t* top = marks_.data() + at(2 * tile_x, 2 * tile_y);
-  const std::uint8_t* bottom = marks_.data() + at(2 * tile_x, 2 * tile_y + 1);
-  return static_cast<unsigned>(top[0] | top[1] << 1 | bottom[0] << 2 | bottom[1] << 3);
+BlockSets BlockMarks::tile_blocks(int tile_x, int tile_y) const {
+  const InstanceSet* top = marks_.data() + at(2 * tile_x, 2 * tile_y);
+  const InstanceSet* bottom = marks_.data() + at(2 * tile_x, 2 * tile_y + 1);
+  return {top[0], top[1], bottom[0], bottom[1]};
 }
 
 void BlockMarks::mark(const std::vector<Instance>& instances) {
@@ -52,7 +52,8 @@ void BlockMarks::mark(const std::vector<Instance>& instances) {
   lens.row(0) = (camera_.fx * right + camera_.cx * forward).transpose();
   lens.row(1) = (camera_.fy * down + camera_.cy * forward).transpose();
   lens.row(2) = forward.transpose();
-  for (const Instance& instance : instances) {
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const Instance& instance = instances[i];
     // From the floats Embree was given, so that both see the same triangle.
     Mat3 rotation;
     Vec3 translation;
@@ -67,11 +68,14 @@ void BlockMarks::mark(const std::vector<Instance>& instances) {
       for (int c = 0; c < 3; ++c) rows[4 * r + c] = static_cast<float>(linear(r, c));
       rows[4 * r + 3] = static_cast<float>(offset[r]);
     }
-    for (const MeshGeometry::Part& part : instance.geometry->parts) mark_part(part, rows);
+    for (const MeshGeometry::Part& part : instance.geometry->parts) {
+      mark_part(part, rows, instance_bit(i));
+    }
   }
 }
 
-void BlockMarks::mark_part(const MeshGeometry::Part& part, const float (&rows)[12]) {
+void BlockMarks::mark_part(const MeshGeometry::Part& part, const float (&rows)[12],
+                           InstanceSet bit) {
   const std::size_t count = part.x.size();
   if (x_.size() < count) {
     x_.resize(count);
@@ -87,7 +91,7 @@ void BlockMarks::mark_part(const MeshGeometry::Part& part, const float (&rows)[1
     if (nearest > nearest_) {
       mark_rectangle(
           std::min(std::min(x_[a], x_[b]), x_[c]), std::max(std::max(x_[a], x_[b]), x_[c]),
-          std::min(std::min(y_[a], y_[b]), y_[c]), std::max(std::max(y_[a], y_[b]), y_[c]));
+          std::min(std::min(y_[a], y_[b]), y_[c]), std::max(std::max(y_[a], y_[b]), y_[c]), bit);
       continue;
     }
     if (std::max(std::max(z_[a], z_[b]), z_[c]) <= nearest_) continue;
@@ -100,13 +104,13 @@ void BlockMarks::mark_part(const MeshGeometry::Part& part, const float (&rows)[1
                         rows[4 * r + 2] * part.z[v] + rows[4 * r + 3];
       }
     }
-    mark_clipped(corners);
+    mark_clipped(corners, bit);
   }
 }
 
 // A triangle that crosses the nearest depth: the rectangle of what lies beyond. Corners are (x z, y
 // z, z).
-void BlockMarks::mark_clipped(const float (&corners)[3][3]) {
+void BlockMarks::mark_clipped(const float (&corners)[3][3], InstanceSet bit) {
   float min_x = INFINITY, max_x = -INFINITY, min_y = INFINITY, max_y = -INFINITY;
   const auto add = [&](float xz, float yz, float z) {
     min_x = std::min(min_x, xz / z);
@@ -126,10 +130,11 @@ void BlockMarks::mark_clipped(const float (&corners)[3][3]) {
       add(a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), cut);
     }
   }
-  if (min_x <= max_x) mark_rectangle(min_x, max_x, min_y, max_y);
+  if (min_x <= max_x) mark_rectangle(min_x, max_x, min_y, max_y, bit);
 }
 
-void BlockMarks::mark_rectangle(float min_x, float max_x, float min_y, float max_y) {
+void BlockMarks::mark_rectangle(float min_x, float max_x, float min_y, float max_y,
+                                InstanceSet bit) {
   // Clamped as floats: a far-away triangle's pixels do not fit an int.
   if (!(max_x >= -0.5f) || !(min_x <= max_x_ + 1.5f) || !(max_y >= -0.5f) ||
       !(min_y <= max_y_ + 1.5f)) {
@@ -140,8 +145,8 @@ void BlockMarks::mark_rectangle(float min_x, float max_x, float min_y, float max
   const int y0 = static_cast<int>(std::clamp(min_y - 0.5f, 0.0f, max_y_)) / kBlockSide;
   const int y1 = static_cast<int>(std::clamp(max_y + 0.5f, 0.0f, max_y_)) / kBlockSide;
   for (int y = y0; y <= y1; ++y) {
-    std::uint8_t* row = marks_.data() + at(0, y);
-    for (int x = x0; x <= x1; ++x) row[x] = 1;
+    InstanceSet* row = marks_.data() + at(0, y);
+    for (int x = x0; x <= x1; ++x) row[x] |= bit;
   }
 }
 

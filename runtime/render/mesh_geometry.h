@@ -36,7 +36,7 @@ struct MeshGeometry {
   std::vector<Part> parts;                  // geomID is the index
   ScenePtr scene;
 
-  // Fails (code "render") on a mesh whose arrays do not fit together.
+  // Fails (kRender) on a mesh whose arrays do not fit together.
   static Result<std::shared_ptr<const MeshGeometry>> build(std::shared_ptr<const scene::Mesh> mesh);
 };
 

@@ -73,11 +73,11 @@ class SceneStore;
 class Renderer {
  public:
   // `store` is where meshes' ray structures and static pictures are shared; null: this renderer has
-  // its own. Fails (code "render") on whatever cannot be drawn, naming it.
+  // its own. Fails (kRender) on whatever cannot be drawn, naming it.
   static Result<std::unique_ptr<Renderer>> create(SceneSpec spec,
                                                   std::shared_ptr<SceneStore> store = nullptr);
   virtual ~Renderer() = default;
-  // `poses`: one per dynamic visual, world. Fails (code "render") on a non-finite pose, naming the
+  // `poses`: one per dynamic visual, world. Fails (kRender) on a non-finite pose, naming the
   // visual. The first call traces the static picture, if no renderer of the store has yet.
   virtual Result<FrameView> render(std::span<const Pose> poses) = 0;
   // The same through another camera of the spec's size, for one that moves: the static picture is

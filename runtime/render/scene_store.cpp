@@ -15,7 +15,8 @@ Result<std::vector<std::shared_ptr<const MeshGeometry>>> SceneStore::geometries(
   std::vector<std::shared_ptr<const MeshGeometry>> found;
   for (const Visual& visual : visuals) {
     if (!visual.mesh) {
-      return Failure{.code = Fault::kRender, .message = "the visual has no mesh", .where = visual.name};
+      return Failure{
+          .code = Fault::kRender, .message = "the visual has no mesh", .where = visual.name};
     }
     std::shared_ptr<const MeshGeometry>& known = geometries_[visual.mesh.get()];
     if (!known) {

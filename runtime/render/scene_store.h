@@ -26,7 +26,7 @@ class SceneStore {
   SceneStore();
   ~SceneStore();
 
-  // One a visual; made at the first call for a mesh. Fails (code "render"), naming the visual, on
+  // One a visual; made at the first call for a mesh. Fails (kRender), naming the visual, on
   // one without a mesh, or with a mesh whose arrays do not fit together.
   Result<std::vector<std::shared_ptr<const MeshGeometry>>> geometries(
       std::span<const Visual> visuals);

@@ -9,28 +9,6 @@
 namespace probe::render {
 namespace {
 
-Result<LightTable> make_lights(const Lights& lights) {
-  LightTable table;
-  if (!std::isfinite(lights.ambient) || lights.ambient < 0) {
-    return Failure{
-        .code = Fault::kRender, .message = "ambient light must be finite, 0 or more", .where = ""};
-  }
-  table.ambient = static_cast<float>(lights.ambient);
-  for (const Sun& sun : lights.suns) {
-    const double length = sun.direction.norm();
-    if (!sun.direction.allFinite() || !(length > 0) || !std::isfinite(sun.power) || sun.power < 0) {
-      return Failure{.code = Fault::kRender,
-                     .message = "a sun needs a direction and a power of 0 or more",
-                     .where = ""};
-    }
-    const Vec3 towards = -sun.direction / length;
-    table.suns.push_back({static_cast<float>(towards.x()), static_cast<float>(towards.y()),
-                          static_cast<float>(towards.z()), static_cast<float>(sun.power),
-                          sun.shadow});
-  }
-  return table;
-}
-
 // How much of each source pixel lies in target pixel `index`.
 struct Share {
   int source;
@@ -141,32 +119,33 @@ class StaticTracer {
     const CameraRays& rays = out_.rays;
     Picture& picture = out_.picture;
     const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
-    tracer_->trace(statics(), out_.origins, rays, tile, 0xF, out_.farthest.data() + base);
+    tracer_->trace(statics(), out_.origins, rays, tile, kAllBlocks, out_.farthest.data() + base);
     if (!out_.photo) {
       const Casters casters{nullptr, &statics()};
       tracer_->shade(statics(), rays, tile, out_.lights, {casters, casters, occlusion_rays_});
     }
     const TileHits& hits = tracer_->hits();
     const ShadeOutput& colors = tracer_->colors();
+    const std::size_t count = static_cast<std::size_t>(hits.count);
+    for (std::size_t i = 0; i < count; ++i) out_.farthest[base + hits.sample[i]] = hits.t[i];
     const int n = out_.samples;
+    if (n == 1) {
+      show_hits(hits, statics(), rays, tile, out_.photo ? nullptr : &colors, picture);
+      return;
+    }
     const int left = tile % rays.tiles_x * kTileSide, top = tile / rays.tiles_x * kTileSide;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(hits.count); ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       const std::size_t sample = hits.sample[i];
-      out_.farthest[base + sample] = hits.t[i];
       const int x = left + kTileOffsets[sample].x, y = top + kTileOffsets[sample].y;
       if (x >= rays.width || y >= rays.height) continue;
       if (!out_.linear.empty()) {
         out_.linear[base + sample] = {capped(colors.r[i]), capped(colors.g[i]),
                                       capped(colors.b[i])};
       }
-      if (n > 1 && (x % n != 0 || y % n != 0)) continue;
-      const std::size_t pixel = n > 1 ? pixel_at(x / n, y / n) : pixel_at(x, y);
+      if (x % n != 0 || y % n != 0) continue;
+      const std::size_t pixel = picture.at(x / n, y / n);
       picture.depth[pixel] = hits.t[i] * rays.cosine[base + sample];
       picture.segmentation[pixel] = statics().instances()[hits.instance[i]].id;
-      if (out_.photo || n > 1) continue;
-      picture.rgb[3 * pixel] = to_display_byte(colors.r[i]);
-      picture.rgb[3 * pixel + 1] = to_display_byte(colors.g[i]);
-      picture.rgb[3 * pixel + 2] = to_display_byte(colors.b[i]);
     }
   }
 
@@ -202,7 +181,7 @@ class StaticTracer {
         const int x = tile % rays.tiles_x * kTileSide + kTileOffsets[sample].x;
         const int y = tile / rays.tiles_x * kTileSide + kTileOffsets[sample].y;
         if (x >= rays.width || y >= rays.height) continue;
-        auto& sum = sums[pixel_at(x / n, y / n)];
+        auto& sum = sums[picture.at(x / n, y / n)];
         const auto& c = out_.linear[static_cast<std::size_t>(tile) * kTileSamples + sample];
         for (std::size_t k = 0; k < 3; ++k) sum[k] += c[k];
       }
@@ -215,16 +194,34 @@ class StaticTracer {
     }
   }
 
-  std::size_t pixel_at(int x, int y) const {
-    return count_of(out_.picture.width, y) + static_cast<std::size_t>(x);
-  }
-
   StaticPicture& out_;
   int occlusion_rays_;
   std::unique_ptr<TileTracer> tracer_ = std::make_unique<TileTracer>();
 };
 
 }  // namespace
+
+Result<LightTable> make_lights(const Lights& lights) {
+  LightTable table;
+  if (!std::isfinite(lights.ambient) || lights.ambient < 0) {
+    return Failure{
+        .code = Fault::kRender, .message = "ambient light must be finite, 0 or more", .where = ""};
+  }
+  table.ambient = static_cast<float>(lights.ambient);
+  for (const Sun& sun : lights.suns) {
+    const double length = sun.direction.norm();
+    if (!sun.direction.allFinite() || !(length > 0) || !std::isfinite(sun.power) || sun.power < 0) {
+      return Failure{.code = Fault::kRender,
+                     .message = "a sun needs a direction and a power of 0 or more",
+                     .where = ""};
+    }
+    const Vec3 towards = -sun.direction / length;
+    table.suns.push_back({static_cast<float>(towards.x()), static_cast<float>(towards.y()),
+                          static_cast<float>(towards.z()), static_cast<float>(sun.power),
+                          sun.shadow});
+  }
+  return table;
+}
 
 Status StaticPicture::check(const SceneSpec& spec) {
   PROBE_TRY(check_quality(spec));
@@ -243,16 +240,10 @@ Status StaticPicture::trace(const SceneSpec& spec, const Camera& camera,
   PROBE_ASSIGN(lights, make_lights(spec.lights));
   origins.set(scene->top, rays.origin);
 
-  const std::size_t pixels = count_of(camera.width, camera.height);
-  picture.width = camera.width;
-  picture.height = camera.height;
-  picture.depth.assign(pixels, 0);
-  picture.segmentation.assign(pixels, 0);
+  picture.clear(camera.width, camera.height);
   if (spec.photo) {
     PROBE_TRY(check_photo(*spec.photo));
     picture.rgb = fit_photo(*spec.photo, picture.width, picture.height);
-  } else {
-    picture.rgb.assign(3 * pixels, 0);
   }
   photo = spec.photo;
   const FlushDenormals guard;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/picture.h"
 #include "runtime/render/renderer.h"
 #include "runtime/render/shading.h"
 #include "runtime/render/shadow_marks.h"
@@ -17,13 +18,8 @@
 
 namespace probe::render {
 
-// Raster order, row 0 on top; see FrameView.
-struct Picture {
-  int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;
-  std::vector<float> depth;
-  std::vector<std::uint16_t> segmentation;
-};
+// Fails (kRender) on light that is not finite, negative or has no direction.
+Result<LightTable> make_lights(const Lights& lights);
 
 struct StaticPicture {
   std::shared_ptr<const StaticScene> scene;
@@ -42,7 +38,7 @@ struct StaticPicture {
 
   bool casts() const { return lights.any_shadow(); }
 
-  // Traces all of it, through `camera` in the place of `spec`'s. Fails (code "render") on a camera,
+  // Traces all of it, through `camera` in the place of `spec`'s. Fails (kRender) on a camera,
   // lights, a photo or a quality that cannot be; then it is not to be used.
   Status trace(const SceneSpec& spec, const Camera& camera,
                std::shared_ptr<const StaticScene> seen);

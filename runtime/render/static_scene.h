@@ -15,7 +15,7 @@ struct StaticScene {
   TopScene top;
   Sha256 key;
 
-  // `meshes`: one a visual of `statics`. Fails (code "render"), naming the visual, as TopScene
+  // `meshes`: one a visual of `statics`. Fails (kRender), naming the visual, as TopScene
   // does.
   static Result<std::shared_ptr<const StaticScene>> make(
       const std::vector<Visual>& statics, std::vector<std::shared_ptr<const MeshGeometry>> meshes);

@@ -59,7 +59,7 @@ PROBE_CLONES void normalise(float* __restrict nx, float* __restrict ny, float* _
 
 // Every lane's numbers are written, and the place moves on only behind a hit: no branch to guess.
 void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
-                               unsigned blocks, const float* farthest) {
+                               const BlockSets& blocks, const float* farthest) {
   constexpr std::size_t n = 8;
   alignas(32) static constexpr int kAll[n] = {-1, -1, -1, -1, -1, -1, -1, -1};
   RTCIntersectContext context;
@@ -72,13 +72,13 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
     packet.ray.org_z[k] = rays.origin[2];
     packet.ray.tnear[k] = kNearest;
     packet.ray.time[k] = 0;
-    packet.ray.mask[k] = ~0u;
     packet.ray.id[k] = 0;
     packet.ray.flags[k] = 0;
   }
   std::size_t count = 0;
-  for (unsigned block = 0; block < 4; ++block) {
-    if ((blocks >> block & 1u) == 0) continue;
+  for (std::size_t block = 0; block < 4; ++block) {
+    if (blocks[block] == 0) continue;
+    std::fill_n(packet.ray.mask, n, blocks[block]);
     for (std::size_t first = 64 * block; first < 64 * (block + 1); first += n) {
       const std::size_t from = base + first;
       std::memcpy(packet.ray.dir_x, rays.dx.data() + from, sizeof(float) * n);
@@ -104,17 +104,45 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
 }
 
 void TileTracer::trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
-                       int tile, unsigned blocks, const float* farthest) {
+                       int tile, const BlockSets& blocks, const float* farthest) {
   const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
   trace_packets(scene.scene(), rays, base, blocks, farthest);
+  find_triangles(scene);
   for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
     const Instance& instance = scene.instances()[hits_.instance[i]];
-    const TriangleData& triangle =
-        instance.geometry->parts[hits_.part[i]].triangles[hits_.primitive[i]];
     const std::size_t ray = base + hits_.sample[i];
     const Vec4 d = to_mesh(instance, rays.dx[ray], rays.dy[ray], rays.dz[ray]);
-    refine(triangle, load4(origins.of(hits_.instance[i])), d, hits_.t[i], hits_.u[i], hits_.v[i]);
+    refine(*hits_.triangle[i], load4(origins.of(hits_.instance[i])), d, hits_.t[i], hits_.u[i],
+           hits_.v[i]);
   }
+}
+
+// Records lie all over the memory: asked for together, they come while the first is worked on.
+void TileTracer::find_triangles(const TopScene& scene) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
+    const MeshGeometry& geometry = *scene.instances()[hits_.instance[i]].geometry;
+    const TriangleData* triangle =
+        geometry.parts[hits_.part[i]].triangles.data() + hits_.primitive[i];
+    hits_.triangle[i] = triangle;
+    __builtin_prefetch(triangle);
+    __builtin_prefetch(reinterpret_cast<const char*>(triangle) + 64);
+  }
+}
+
+void TileTracer::drop(const std::array<bool, kTileSamples>& hidden) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
+    hits_.sample[count] = hits_.sample[i];
+    hits_.instance[count] = hits_.instance[i];
+    hits_.part[count] = hits_.part[i];
+    hits_.primitive[count] = hits_.primitive[i];
+    hits_.triangle[count] = hits_.triangle[i];
+    hits_.t[count] = hits_.t[i];
+    hits_.u[count] = hits_.u[i];
+    hits_.v[count] = hits_.v[i];
+    count += hidden[hits_.sample[count]] ? 0 : 1;
+  }
+  hits_.count = static_cast<int>(count);
 }
 
 void StoredHits::add_tile(const TileHits& tile) {
@@ -125,13 +153,13 @@ void StoredHits::add_tile(const TileHits& tile) {
   first.push_back(static_cast<std::uint32_t>(hits.size()));
 }
 
-void TileTracer::take(const StoredHits& stored, int tile, unsigned blocks,
-                      const std::array<bool, kTileSamples>& hidden) {
+void TileTracer::take(const TopScene& scene, const StoredHits& stored, int tile,
+                      const BlockSets& blocks, const std::array<bool, kTileSamples>& hidden) {
   std::size_t count = 0;
   const auto at = static_cast<std::size_t>(tile);
   for (std::size_t k = stored.first[at]; k < stored.first[at + 1]; ++k) {
     const StoredHits::Hit& hit = stored.hits[k];
-    if ((blocks >> (hit.sample / 64) & 1u) == 0 || hidden[hit.sample]) continue;
+    if (blocks[hit.sample / 64] == 0 || hidden[hit.sample]) continue;
     hits_.sample[count] = hit.sample;
     hits_.instance[count] = hit.instance;
     hits_.part[count] = hit.part;
@@ -142,15 +170,17 @@ void TileTracer::take(const StoredHits& stored, int tile, unsigned blocks,
     ++count;
   }
   hits_.count = static_cast<int>(count);
+  find_triangles(scene);
 }
 
 void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile, bool points) {
   const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
   const auto count = static_cast<std::size_t>(hits_.count);
+  textured_count_ = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Instance& instance = scene.instances()[hits_.instance[i]];
     const MeshGeometry::Part& part = instance.geometry->parts[hits_.part[i]];
-    const TriangleData& tri = part.triangles[hits_.primitive[i]];
+    const TriangleData& tri = *hits_.triangle[i];
     const std::size_t ray = base + hits_.sample[i];
     const float u = hits_.u[i], v = hits_.v[i], w = 1 - u - v;
     const Vec4 d{rays.dx[ray], rays.dy[ray], rays.dz[ray], 0};
@@ -167,17 +197,22 @@ void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile,
     input_.vz[i] = -d[2];
 
     const scene::Material& material = part.material;
-    scene::LinearRgb albedo{material.base_color[0], material.base_color[1], material.base_color[2]};
+    input_.albedo_r[i] = material.base_color[0];
+    input_.albedo_g[i] = material.base_color[1];
+    input_.albedo_b[i] = material.base_color[2];
     scene::LinearRgb emission{material.emission[0], material.emission[1], material.emission[2]};
     if (part.base_color != nullptr || part.emission != nullptr) {
       const float tu = w * tri.uv0[0] + u * tri.uv1[0] + v * tri.uv2[0];
       const float tv = w * tri.uv0[1] + u * tri.uv1[1] + v * tri.uv2[1];
-      if (part.base_color != nullptr) albedo = scene::sample_texture(*part.base_color, tu, tv);
+      if (part.base_color != nullptr) {
+        const scene::Footprint at = scene::footprint_at(*part.base_color, tu, tv);
+        __builtin_prefetch(at.upper + at.left);
+        __builtin_prefetch(at.lower + at.left);
+        footprints_[textured_count_] = at;
+        textured_[textured_count_++] = static_cast<std::uint8_t>(i);
+      }
       if (part.emission != nullptr) emission = scene::sample_texture(*part.emission, tu, tv);
     }
-    input_.albedo_r[i] = albedo.r;
-    input_.albedo_g[i] = albedo.g;
-    input_.albedo_b[i] = albedo.b;
     input_.emission_r[i] = emission.r;
     input_.emission_g[i] = emission.g;
     input_.emission_b[i] = emission.b;
@@ -196,8 +231,19 @@ void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile,
       points_.gz[i] = g[2] * side;
     }
   }
+  read_textures();
   normalise(input_.nx.data(), input_.ny.data(), input_.nz.data(), side_.data(), hits_.count);
   pad(input_, hits_.count);
+}
+
+void TileTracer::read_textures() {
+  for (std::size_t k = 0; k < textured_count_; ++k) {
+    const std::size_t i = textured_[k];
+    const scene::LinearRgb albedo = scene::sample_at(footprints_[k]);
+    input_.albedo_r[i] = albedo.r;
+    input_.albedo_g[i] = albedo.g;
+    input_.albedo_b[i] = albedo.b;
+  }
 }
 
 void TileTracer::test_suns(const LightTable& lights, const Casters& casters) {

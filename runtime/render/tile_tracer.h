@@ -12,6 +12,7 @@
 #include "runtime/render/occlusion.h"
 #include "runtime/render/shading.h"
 #include "runtime/render/top_scene.h"
+#include "runtime/scene/color.h"
 
 namespace probe::render {
 
@@ -22,6 +23,7 @@ struct TileHits {
   static constexpr std::size_t kRoom = kTileSamples + 1;
   std::array<std::uint8_t, kRoom> sample;
   std::array<std::uint32_t, kRoom> instance, part, primitive;
+  std::array<const TriangleData*, kRoom> triangle;  // that of the three
   alignas(64) std::array<float, kRoom> t, u, v;
 };
 
@@ -40,13 +42,15 @@ struct StoredHits {
 
 class TileTracer {
  public:
-  // Traces the blocks of `blocks` (bit b: samples 64 b .. 64 b + 63) up to `farthest[sample]`, then
-  // recomputes t, u and v of every hit in our own code, so that only the choice of the triangle is
-  // Embree's.
+  // Traces the blocks (b: samples 64 b .. 64 b + 63) against their instances, up to
+  // `farthest[sample]`, then recomputes t, u and v of every hit in our own code, so that only the
+  // choice of the triangle is Embree's.
   void trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays, int tile,
-             unsigned blocks, const float* farthest);
+             const BlockSets& blocks, const float* farthest);
+  // Leaves out the samples in `hidden`.
+  void drop(const std::array<bool, kTileSamples>& hidden);
   // Takes hits of that tile and blocks which were traced before, leaving out samples in `hidden`.
-  void take(const StoredHits& stored, int tile, unsigned blocks,
+  void take(const TopScene& scene, const StoredHits& stored, int tile, const BlockSets& blocks,
             const std::array<bool, kTileSamples>& hidden);
   // Attributes, textures and the shading law for all hits on `scene`.
   void shade(const TopScene& scene, const CameraRays& rays, int tile, const LightTable& lights,
@@ -61,14 +65,20 @@ class TileTracer {
   const std::array<float, kTileSamples>& light_left() const { return light_left_; }
 
  private:
-  void trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base, unsigned blocks,
-                     const float* farthest);
+  void find_triangles(const TopScene& scene);
+  void read_textures();
+  void trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
+                     const BlockSets& blocks, const float* farthest);
   void gather(const TopScene& scene, const CameraRays& rays, int tile, bool points);
   void test_suns(const LightTable& lights, const Casters& casters);
 
   TileHits hits_{};
   ShadeInput input_{};
   std::array<float, kTileSamples> side_{};  // of the normals, see normalise()
+  // Hits whose colour is a texture's, and where in it.
+  std::size_t textured_count_ = 0;
+  std::array<std::uint8_t, kTileSamples> textured_{};
+  std::array<scene::Footprint, kTileSamples> footprints_{};
   ShadeOutput output_{};
   SurfacePoints points_{};  // of the hits, only where light is traced
   LightFactors factors_;

@@ -32,6 +32,7 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
     instance.name = visual.name;
     GeometryPtr handle(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(handle.get(), instance.geometry->scene.get());
+    if (dynamic) rtcSetGeometryMask(handle.get(), instance_bit(i));
     rtcAttachGeometryByID(top.scene_.get(), handle.get(),
                           static_cast<unsigned>(top.handles_.size()));
     top.instances_.push_back(std::move(instance));
@@ -57,21 +58,26 @@ Status TopScene::place(std::span<const Pose> poses) {
                    .message = "the pose is not finite, not rigid or farther than 1000 km",
                    .where = instances_[i].name};
   }
+  moved_ = placed_ ? 0 : kAllInstances;
+  placed_ = true;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Instance& instance = instances_[i];
     const Pose pose = poses[i] * instance.origin;
     instance.exact_rotation = pose.rotation.toRotationMatrix();
     instance.exact_translation = pose.position;
+    const InstanceSet bit = instance_bit(i);
     float columns[12];
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
         const float value = static_cast<float>(instance.exact_rotation(r, c));
+        if (instance.rotation[3 * r + c] != value) moved_ |= bit;
         instance.rotation[3 * r + c] = value;
         instance.rows[r][c] = instance.columns[c][r] = value;
         columns[3 * c + r] = value;
       }
-      instance.translation[r] = static_cast<float>(pose.position[r]);
-      columns[9 + r] = instance.translation[r];
+      const float value = static_cast<float>(pose.position[r]);
+      if (instance.translation[r] != value) moved_ |= bit;
+      instance.translation[r] = columns[9 + r] = value;
     }
     rtcSetGeometryTransform(handles_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(handles_[i].get());
@@ -80,15 +86,20 @@ Status TopScene::place(std::span<const Pose> poses) {
   return device_->check("placing instances");
 }
 
-void RayOrigins::set(const TopScene& scene, const std::array<float, 3>& point) {
+InstanceSet RayOrigins::set(const TopScene& scene, const std::array<float, 3>& point) {
+  InstanceSet changed = points_.size() == scene.instances().size() ? 0 : kAllInstances;
   points_.resize(scene.instances().size());
   const Vec3 from(point[0], point[1], point[2]);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Instance& instance = scene.instances()[i];
     const Vec3 eye = instance.exact_rotation.transpose() * (from - instance.exact_translation);
-    for (int k = 0; k < 3; ++k)
-      points_[i][static_cast<std::size_t>(k)] = static_cast<float>(eye[k]);
+    for (int k = 0; k < 3; ++k) {
+      float& coordinate = points_[i][static_cast<std::size_t>(k)];
+      if (coordinate != static_cast<float>(eye[k])) changed |= instance_bit(i);
+      coordinate = static_cast<float>(eye[k]);
+    }
   }
+  return changed;
 }
 
 }  // namespace probe::render

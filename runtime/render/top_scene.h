@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/render/embree_device.h"
+#include "runtime/render/instance_set.h"
 #include "runtime/render/mesh_geometry.h"
 #include "runtime/render/renderer.h"
 
@@ -34,7 +35,7 @@ class TopScene {
  public:
   enum class Kind { kStatic, kDynamic };
 
-  // `meshes`: one a visual. Fails (code "render"), naming the visual, on an origin that is not
+  // `meshes`: one a visual. Fails (kRender), naming the visual, on an origin that is not
   // finite.
   static Result<TopScene> create(const std::vector<Visual>& visuals,
                                  std::vector<std::shared_ptr<const MeshGeometry>> meshes,
@@ -44,6 +45,9 @@ class TopScene {
   // before any change.
   Status place(std::span<const Pose> poses);
 
+  // Those whose transform, as Embree was given it, the last place() changed in any bit.
+  InstanceSet moved() const { return moved_; }
+
   RTCScene scene() const { return scene_.get(); }
   const std::vector<Instance>& instances() const { return instances_; }
   bool empty() const { return instances_.empty(); }
@@ -51,6 +55,8 @@ class TopScene {
  private:
   std::shared_ptr<EmbreeDevice> device_;
   std::vector<Instance> instances_;
+  InstanceSet moved_ = kAllInstances;
+  bool placed_ = false;
   std::vector<GeometryPtr> handles_;
   ScenePtr scene_;
 };
@@ -59,7 +65,8 @@ class TopScene {
 // Belongs to a camera, since many look at the same scene.
 class RayOrigins {
  public:
-  void set(const TopScene& scene, const std::array<float, 3>& point);
+  // Gives the instances for which it changed in any bit.
+  InstanceSet set(const TopScene& scene, const std::array<float, 3>& point);
   const float* of(std::size_t instance) const { return points_[instance].data(); }
 
  private:

@@ -41,31 +41,53 @@ struct LinearRgb {
   float r, g, b;
 };
 
-// Bilinear between decoded texels, wrapping on both axes; row 0 lies at v = 0. u and v must be
-// finite.
-inline LinearRgb sample_texture(const Texture& texture, float u, float v) {
+// Four texels and their weights: where a bilinear sample reads. Apart from the reading, so that a
+// loop over many samples can wait for all texels at once.
+struct Footprint {
+  const std::uint8_t* upper = nullptr;  // rows of RGBA bytes
+  const std::uint8_t* lower = nullptr;
+  int left = 0, right = 0;  // bytes into a row
+  float across = 0, down = 0;
+};
+
+// Wrapping on both axes; row 0 lies at v = 0. u and v must be finite.
+inline Footprint footprint_at(const Texture& texture, float u, float v) {
   const int width = texture.width, height = texture.height;
   const float x = (u - std::floor(u)) * static_cast<float>(width) - 0.5f;
   const float y = (v - std::floor(v)) * static_cast<float>(height) - 0.5f;
   const float floor_x = std::floor(x), floor_y = std::floor(y);
-  const float ax = x - floor_x, ay = y - floor_y;
   int x0 = static_cast<int>(floor_x), y0 = static_cast<int>(floor_y);
   int x1 = x0 + 1, y1 = y0 + 1;
   if (x0 < 0) x0 += width;
   if (y0 < 0) y0 += height;
   if (x1 >= width) x1 -= width;
   if (y1 >= height) y1 -= height;
-  const std::uint8_t* row0 =
-      texture.rgba.data() + 4 * static_cast<std::size_t>(y0) * static_cast<std::size_t>(width);
-  const std::uint8_t* row1 =
-      texture.rgba.data() + 4 * static_cast<std::size_t>(y1) * static_cast<std::size_t>(width);
-  const std::uint8_t *a = row0 + 4 * x0, *b = row0 + 4 * x1, *c = row1 + 4 * x0, *d = row1 + 4 * x1;
-  const auto mix = [ax, ay, a, b, c, d](int k) {
-    const float top = kSrgbToLinear[a[k]] * (1 - ax) + kSrgbToLinear[b[k]] * ax;
-    const float bottom = kSrgbToLinear[c[k]] * (1 - ax) + kSrgbToLinear[d[k]] * ax;
-    return top * (1 - ay) + bottom * ay;
+  const std::size_t stride = 4 * static_cast<std::size_t>(width);
+  const std::uint8_t* texels = texture.rgba.data();
+  return {texels + stride * static_cast<std::size_t>(y0),
+          texels + stride * static_cast<std::size_t>(y1),
+          4 * x0,
+          4 * x1,
+          x - floor_x,
+          y - floor_y};
+}
+
+// Between decoded texels.
+inline LinearRgb sample_at(const Footprint& at) {
+  using Rgbx = float __attribute__((vector_size(16)));  // three channels in one register
+  const auto texel = [](const std::uint8_t* rgba) {
+    return Rgbx{kSrgbToLinear[rgba[0]], kSrgbToLinear[rgba[1]], kSrgbToLinear[rgba[2]], 0};
   };
-  return {mix(0), mix(1), mix(2)};
+  const Rgbx top = texel(at.upper + at.left) * (1 - at.across) +
+                   texel(at.upper + at.right) * at.across;
+  const Rgbx bottom = texel(at.lower + at.left) * (1 - at.across) +
+                      texel(at.lower + at.right) * at.across;
+  const Rgbx mixed = top * (1 - at.down) + bottom * at.down;
+  return {mixed[0], mixed[1], mixed[2]};
+}
+
+inline LinearRgb sample_texture(const Texture& texture, float u, float v) {
+  return sample_at(footprint_at(texture, u, v));
 }
 
 }  // namespace probe::scene

@@ -356,6 +356,89 @@ TEST_CASE("a cached frame equals a full one on random poses, entering and leavin
   }
 }
 
+// Balls before a wall, more than an instance set has bits.
+SceneSpec crowd(std::size_t bodies) {
+  SceneSpec spec;
+  spec.camera = plain_camera(200, 150);
+  spec.lights = {.ambient = 0.3, .suns = {{Vec3(1, -0.3, -0.5), 2.2}}};
+  spec.statics = {visual(square(0.5), kBackdrop, "wall")};
+  spec.statics[0].origin = at(1.2, 0.1, 0);
+  for (std::size_t b = 0; b < bodies; ++b) {
+    spec.dynamics.push_back(visual(b % 2 == 0 ? sphere(0.05, 12) : square(0.06),
+                                   static_cast<std::uint16_t>(b), "body"));
+  }
+  return spec;
+}
+
+Pose somewhere(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const double far = 0.5 * unit(random) + 0.7;
+  return {Vec3(far, 0.4 * unit(random), 0.3 * unit(random)),
+          Quat(unit(random), unit(random), unit(random), 1.1).normalized()};
+}
+
+TEST_CASE("where nothing has moved the picture is kept, and still it is the full one") {
+  for (const std::size_t bodies : {3, 40}) {
+    CAPTURE(bodies);
+    SceneSpec spec = crowd(bodies);
+    const auto cached = make(spec);
+    const auto full = make(spec);
+    Camera elsewhere = spec.camera;
+    elsewhere.position = Vec3(0.1, -0.1, 0.05);
+    std::mt19937 random(11);
+    std::vector<Pose> poses(bodies);
+    for (Pose& pose : poses) pose = somewhere(random);
+    int different = 0;
+    for (int frame = 0; frame < 120; ++frame) {
+      for (Pose& pose : poses) {
+        if (random() % 4 == 0) pose = somewhere(random);
+      }
+      // A look through another camera, as the picture's owner may take between two frames.
+      if (frame % 9 == 0) REQUIRE(cached->render_from(elsewhere, poses).ok());
+      const Copy kept(draw(*cached, poses));
+      const Result<FrameView> whole = full->render_full(poses);
+      REQUIRE(whole.ok());
+      different += kept == Copy(*whole) ? 0 : 1;
+    }
+    CHECK(different == 0);
+  }
+}
+
+TEST_CASE("a camera that moves shows in every mode what one standing there shows") {
+  for (const Mode& mode : {Mode{},
+                           {.photo = true},
+                           {.shadow = true},
+                           {.samples = 2},
+                           {.occlusion = 4},
+                           {.shadow = true, .samples = 2, .occlusion = 3}}) {
+    CAPTURE(mode.shadow);
+    CAPTURE(mode.samples);
+    CAPTURE(mode.occlusion);
+    SceneSpec spec = crowd(5);
+    spec.lights.suns[0].shadow = mode.shadow;
+    spec.photo = mode.photo ? gradient(200, 150) : nullptr;
+    spec.samples = mode.samples;
+    spec.occlusion_rays = mode.occlusion;
+    const auto moving = make(spec);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int frame = 0; frame < 12; ++frame) {
+      SceneSpec there = spec;
+      there.camera.position = 0.2 * Vec3(unit(random), unit(random), unit(random));
+      there.camera.forward_left_up =
+          look_along(Vec3(1, 0.4 * unit(random), 0.4 * unit(random))).value();
+      std::vector<Pose> poses(5);
+      for (Pose& pose : poses) pose = somewhere(random);
+      const Result<FrameView> seen = moving->render_from(there.camera, poses);
+      REQUIRE(seen.ok());
+      const auto standing = make(there);
+      const Result<FrameView> whole = standing->render_full(poses);
+      REQUIRE(whole.ok());
+      CHECK(Copy(*seen) == Copy(*whole));
+    }
+  }
+}
+
 // A floor one metre under the camera's sight, a roof over its middle, the sun above both.
 SceneSpec roofed_floor() {
   SceneSpec spec;
