@@ -10,8 +10,10 @@
 #include <map>
 
 #include "runtime/base/json.h"
+#include "runtime/base/check.h"
 #include "runtime/base/sha256.h"
 #include "runtime/scene/glb_writer.h"
+#include "runtime/scene/image.h"
 
 namespace probe::make {
 namespace {
@@ -62,7 +64,11 @@ std::string glb_bytes(const std::string& name, const std::vector<Part>& parts) {
     arrays.material = document.materials.size() - 1;
     if (material.texture) {
       written.base_color_image = static_cast<int>(document.images.size());
-      document.images.push_back({png_bytes(*material.texture), "image/png"});
+      const Image& image = *material.texture;
+      auto png =
+          scene::png_bytes(image.width, image.height, image.rgb, scene::PngEffort::kSmallest);
+      PROBE_CHECK(png.ok(), "a texture has the size that it says");
+      document.images.push_back({std::move(png).value(), "image/png"});
     } else {
       arrays.uv.clear();
     }

@@ -1,7 +1,5 @@
 #include "assets/make/image.h"
 
-#include <png.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -42,12 +40,6 @@ double linear_to_srgb(double linear) {
   return (low + high) / 2;
 }
 
-void append_png(png_structp png, png_bytep data, png_size_t size) {
-  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
-}
-
-void flush_nothing(png_structp) {}
-
 }  // namespace
 
 void Image::set(int column, int row, const Colour& colour) {
@@ -58,26 +50,6 @@ void Image::set(int column, int row, const Colour& colour) {
     rgb[at + channel] =
         static_cast<std::uint8_t>(std::floor(std::clamp(colour[channel], 0.0, 255.0) + 0.5));
   }
-}
-
-std::string png_bytes(const Image& image) {
-  std::string out;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png_create_info_struct(png);
-  png_set_write_fn(png, &out, append_png, flush_nothing);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width),
-               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_compression_level(png, 9);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-  png_write_info(png, info);
-  const std::size_t stride = static_cast<std::size_t>(image.width) * 3;
-  for (int row = 0; row < image.height; ++row) {
-    png_write_row(png, image.rgb.data() + static_cast<std::size_t>(row) * stride);
-  }
-  png_write_end(png, nullptr);
-  png_destroy_write_struct(&png, &info);
-  return out;
 }
 
 double hash01(std::uint32_t x, std::uint32_t y, std::uint32_t seed) {

@@ -21,9 +21,6 @@ struct Image {
   void set(int column, int row, const Colour& colour);  // rounds and clamps
 };
 
-// The PNG file of an image: 8-bit RGB, fixed filter and compression level, no time stamp.
-std::string png_bytes(const Image& image);
-
 // A fixed integer hash of a lattice point, uniform in [0, 1).
 double hash01(std::uint32_t x, std::uint32_t y, std::uint32_t seed);
 

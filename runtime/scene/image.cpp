@@ -33,11 +33,13 @@ struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
+// 8 bits a channel.
 struct PngFormat {
   int color_type;
-  int bit_depth;
   std::size_t bytes_per_pixel;
+  PngEffort effort = PngEffort::kQuick;
 };
+constexpr PngFormat kRgb{PNG_COLOR_TYPE_RGB, 3};
 
 // libpng would print; our callers get a Failure instead.
 [[noreturn]] void on_png_error(png_structp png, png_const_charp) { png_longjmp(png, 1); }
@@ -56,12 +58,13 @@ bool encode_png(std::FILE* file, int width, int height, const PngFormat& format,
     return false;
   }
   png_init_io(png, file);
-  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height),
-               format.bit_depth, format.color_type, PNG_INTERLACE_NONE,
-               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_compression_level(png, 4);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
+               format.color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  const bool smallest = format.effort == PngEffort::kSmallest;
+  png_set_compression_level(png, smallest ? 9 : 4);
+  if (smallest) png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_write_info(png, info);
-  if (format.bit_depth == 16) png_set_swap(png);  // our numbers are little endian, PNG's big
   const std::size_t stride = static_cast<std::size_t>(width) * format.bytes_per_pixel;
   for (int row = 0; row < height; ++row) {
     png_write_row(png, pixels + static_cast<std::size_t>(row) * stride);
@@ -93,21 +96,6 @@ Result<std::string> png_in_memory(int width, int height, const PngFormat& format
   const std::unique_ptr<char, void (*)(void*)> owned(data, std::free);
   if (!fine) return Failure{Fault::kIo, "no memory to write a picture", ""};
   return std::string(data, size);
-}
-
-Status write_any(const std::string& path, int width, int height, const PngFormat& format,
-                 std::span<const std::uint8_t> pixels) {
-  PROBE_TRY(check_size(width, height, format.bytes_per_pixel, pixels.size(), path));
-  PendingFile pending(path);
-  std::unique_ptr<std::FILE, FileCloser> file(std::fopen(pending.temporary().c_str(), "wb"));
-  if (!file) return io_failure("cannot create the file", path);
-  errno = 0;
-  // libpng hides short writes of stdio's buffer; flush and close tell of a full disk.
-  bool fine = encode_png(file.get(), width, height, format, pixels.data());
-  fine = fine && std::fflush(file.get()) == 0;
-  fine = (std::fclose(file.release()) == 0) && fine;
-  if (!fine) return io_failure("cannot write the picture", path);
-  return pending.keep();
 }
 
 }  // namespace
@@ -157,13 +145,16 @@ Result<Texture> load_image(const std::string& path) {
 }
 
 Result<std::string> png_bytes(const Texture& texture) {
-  return png_in_memory(texture.width, texture.height, {PNG_COLOR_TYPE_RGB_ALPHA, 8, 4},
+  return png_in_memory(texture.width, texture.height, {PNG_COLOR_TYPE_RGB_ALPHA, 4},
                        texture.rgba.data());
 }
 
-Result<std::string> png_bytes(int width, int height, std::span<const std::uint8_t> rgb) {
+Result<std::string> png_bytes(int width, int height, std::span<const std::uint8_t> rgb,
+                              PngEffort effort) {
   PROBE_TRY(check_size(width, height, 3, rgb.size(), ""));
-  return png_in_memory(width, height, {PNG_COLOR_TYPE_RGB, 8, 3}, rgb.data());
+  PngFormat format = kRgb;
+  format.effort = effort;
+  return png_in_memory(width, height, format, rgb.data());
 }
 
 Result<std::string> jpeg_bytes(int width, int height, std::span<const std::uint8_t> rgb,
@@ -182,18 +173,17 @@ Result<std::string> jpeg_bytes(int width, int height, std::span<const std::uint8
 
 Status write_png(const std::string& path, int width, int height,
                  std::span<const std::uint8_t> rgb) {
-  return write_any(path, width, height, {PNG_COLOR_TYPE_RGB, 8, 3}, rgb);
-}
-
-Status write_png_gray(const std::string& path, int width, int height,
-                      std::span<const std::uint8_t> gray) {
-  return write_any(path, width, height, {PNG_COLOR_TYPE_GRAY, 8, 1}, gray);
-}
-
-Status write_png_gray16(const std::string& path, int width, int height,
-                        std::span<const std::uint16_t> gray) {
-  return write_any(path, width, height, {PNG_COLOR_TYPE_GRAY, 16, 2},
-                   {reinterpret_cast<const std::uint8_t*>(gray.data()), gray.size_bytes()});
+  PROBE_TRY(check_size(width, height, 3, rgb.size(), path));
+  PendingFile pending(path);
+  std::unique_ptr<std::FILE, FileCloser> file(std::fopen(pending.temporary().c_str(), "wb"));
+  if (!file) return io_failure("cannot create the file", path);
+  errno = 0;
+  // libpng hides short writes of stdio's buffer; flush and close tell of a full disk.
+  bool fine = encode_png(file.get(), width, height, kRgb, rgb.data());
+  fine = fine && std::fflush(file.get()) == 0;
+  fine = (std::fclose(file.release()) == 0) && fine;
+  if (!fine) return io_failure("cannot write the picture", path);
+  return pending.keep();
 }
 
 }  // namespace probe::scene

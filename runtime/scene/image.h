@@ -30,19 +30,17 @@ Result<ImageSize> image_size(std::span<const std::byte> encoded, const std::stri
 // A texture as the bytes of a PNG file.
 Result<std::string> png_bytes(const Texture& texture);
 // A picture of 3 bytes a pixel, rows from the top, as the bytes of a PNG or a JPEG file; quality
-// 1 to 100, above 90 with the colours at full resolution. Same picture, same bytes. Fails
-// (kIo) when `rgb` has another size.
-Result<std::string> png_bytes(int width, int height, std::span<const std::uint8_t> rgb);
+// 1 to 100, above 90 with the colours at full resolution. Same picture, same bytes. Fails (kIo)
+// when `rgb` has another size. `kSmallest` takes many times longer: for files that are kept for
+// good.
+enum class PngEffort { kQuick, kSmallest };
+Result<std::string> png_bytes(int width, int height, std::span<const std::uint8_t> rgb,
+                              PngEffort effort = PngEffort::kQuick);
 Result<std::string> jpeg_bytes(int width, int height, std::span<const std::uint8_t> rgb,
                                int quality);
 
 // Writes beside the target and renames, so that the file is whole or absent; a full disk is a
-// Failure (kIo). Rows from the top. `rgb` has 3 bytes a pixel, `gray` 1 byte or 1 16-bit
-// number a pixel.
+// Failure (kIo). Rows from the top, 3 bytes a pixel.
 Status write_png(const std::string& path, int width, int height, std::span<const std::uint8_t> rgb);
-Status write_png_gray(const std::string& path, int width, int height,
-                      std::span<const std::uint8_t> gray);
-Status write_png_gray16(const std::string& path, int width, int height,
-                        std::span<const std::uint16_t> gray);
 
 }  // namespace probe::scene

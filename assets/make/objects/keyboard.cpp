@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "assets/make/generators.h"
+#include "assets/make/legend_font.h"
 #include "assets/make/shapes.h"
-#include "runtime/show/font.h"
 
 namespace probe::make {
 namespace {
@@ -90,7 +90,7 @@ Image top_texture() {
       }
     }
     if (key.legend == ' ') continue;
-    const auto& glyph = show::kFont[static_cast<std::size_t>(key.legend - ' ')];
+    const auto& glyph = kFont[static_cast<std::size_t>(key.legend - ' ')];
     const int left = static_cast<int>(x0 + w / 2) - 7, upper = static_cast<int>(y0 + h / 2) - 10;
     for (int y = 0; y < 21; ++y) {
       for (int x = 0; x < 15; ++x) {
