@@ -1,5 +1,6 @@
 #include "runtime/wire/value.h"
 
+#include <Eigen/Core>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -34,15 +35,7 @@ double load(const std::uint8_t* at) {
 double load_half(const std::uint8_t* at) {
   std::uint16_t bits = 0;
   std::memcpy(&bits, at, sizeof bits);
-  const double sign = (bits & 0x8000) != 0 ? -1 : 1;
-  const int exponent = (bits >> 10) & 0x1f;
-  const double fraction = bits & 0x3ff;
-  if (exponent == 0) return sign * std::ldexp(fraction, -24);
-  if (exponent == 31) {
-    return fraction != 0 ? std::numeric_limits<double>::quiet_NaN()
-                         : sign * std::numeric_limits<double>::infinity();
-  }
-  return sign * std::ldexp(fraction + 1024, exponent - 25);
+  return static_cast<double>(Eigen::numext::bit_cast<Eigen::half>(bits));
 }
 
 struct Reader {

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include <string>
 #include <string_view>
 
@@ -97,6 +99,14 @@ TEST_CASE("numbers are read from arrays of any dtype, lists and nested lists") {
   const auto numbers = to_numbers(half);
   REQUIRE(numbers.ok());
   CHECK(*numbers == std::vector<double>{1, -2, 0x1p-24, 65504});
+  const auto edges =
+      to_numbers(Array{"<f2", {5}, {0x00, 0x7c, 0x00, 0xfc, 0x01, 0x7e, 0x00, 0x80, 0xff, 0x83}});
+  REQUIRE(edges.ok());
+  CHECK((*edges)[0] == INFINITY);
+  CHECK((*edges)[1] == -INFINITY);
+  CHECK(std::isnan((*edges)[2]));
+  CHECK(std::signbit((*edges)[3]));
+  CHECK((*edges)[4] == -1023 * 0x1p-24);  // the largest below the normal numbers
   const auto nested = to_numbers(List{List{1, 2.5}, List{array_f32({2}, {3, 4})}});
   REQUIRE(nested.ok());
   CHECK(*nested == std::vector<double>{1, 2.5, 3, 4});
