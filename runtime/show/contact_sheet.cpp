@@ -95,7 +95,7 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
   }
   if (cells.empty())
     return Failure{Fault::kUsage, "no stored episode got as far as its start", dir};
-  const Picture sheet = lay_out_grid(cells, options.columns);
+  PROBE_ASSIGN(const Picture sheet, lay_out_grid(cells, options.columns));
   PROBE_TRY(scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb));
   if (proven.refused.empty()) return {};
   return Failure{Fault::kTrace,

@@ -33,7 +33,8 @@ Status EpisodeVideo::frame(std::span<const stage::CameraFrame> frames, int step,
     PROBE_ASSIGN(writer_, VideoWriter::create(file_.temporary(), picture.width, picture.height,
                                               frames_per_second_));
   }
-  draw_overlay(picture, {instruction_, caption_, step, horizon_, metrics});
+  PROBE_ASSIGN(Lettering* const lettering, Lettering::shared());
+  draw_overlay(picture, {instruction_, caption_, step, horizon_, metrics}, *lettering);
   return writer_->add(picture.rgb);
 }
 

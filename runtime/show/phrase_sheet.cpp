@@ -5,7 +5,7 @@
 
 #include "runtime/base/asset_root.h"
 #include "runtime/scene/image.h"
-#include "runtime/show/overlay.h"
+#include "runtime/show/lettering.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/stage.h"
 
@@ -72,6 +72,7 @@ Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
                      const std::string& png_path, const std::string& assets_folder) {
   if (rows.empty()) return Failure{Fault::kUsage, "no phrase refers to an object", ""};
   PROBE_ASSIGN(const std::string root, find_asset_root(assets_folder));
+  PROBE_ASSIGN(Lettering* const lettering, Lettering::shared());
   const int step = kCrop + kMargin;
   Picture sheet = make_picture(kCrop + kWordsWidth + 3 * kMargin,
                                static_cast<int>(rows.size()) * step + kMargin, kGround);
@@ -103,10 +104,13 @@ Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
       if (square) paste(sheet, crop(frames[i].frame, *square), kMargin, y);
     }
     const int x = kCrop + 2 * kMargin;
-    draw_text(sheet, x, y + kCrop / 2 - 20, fit_text(row.words, kWordsWidth, 2), kWords, 2);
-    draw_text(sheet, x, y + kCrop / 2 + 6,
-              fit_text(row.note + (square ? "" : "  (hidden in this picture)"), kWordsWidth, 1),
-              kNote);
+    const auto write = [&](int top, const std::string& words,
+                           const std::array<std::uint8_t, 3>& color, int size) {
+      lettering->draw(sheet, x, top, lettering->fit(words, kWordsWidth, size), color, size);
+    };
+    write(y + kCrop / 2 - 24, row.words, kWords, 2 * kSmallText);
+    write(y + kCrop / 2 + 6, row.note + (square ? "" : "  (hidden in this picture)"), kNote,
+          kSmallText);
     y += step;
   }
   return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);

@@ -4,16 +4,18 @@
 #include <algorithm>
 
 #include "runtime/base/check.h"
+#include "runtime/show/lettering.h"
 
 namespace probe::show {
 namespace {
 
-constexpr int kGap = 4, kCaption = kGlyphHeight + 4;
+constexpr int kGap = 4, kCaption = line_height(kSmallText) + 2;
 
 }  // namespace
 
-Picture lay_out_grid(const std::vector<GridCell>& cells, int columns) {
+Result<Picture> lay_out_grid(const std::vector<GridCell>& cells, int columns) {
   PROBE_CHECK(!cells.empty() && !cells[0].pictures.empty(), "a grid has pictures");
+  PROBE_ASSIGN(Lettering* const lettering, Lettering::shared());
   columns = std::max(1, std::min(columns, static_cast<int>(cells.size())));
   const int rows = (static_cast<int>(cells.size()) + columns - 1) / columns;
   const int width = cells[0].pictures[0].width, height = cells[0].pictures[0].height;
@@ -23,7 +25,8 @@ Picture lay_out_grid(const std::vector<GridCell>& cells, int columns) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     int x = kGap + static_cast<int>(i) % columns * step_x;
     const int y = kGap + static_cast<int>(i) / columns * step_y;
-    draw_text(sheet, x, y + height + 3, fit_text(cells[i].caption, strip, 1), cells[i].color);
+    lettering->draw(sheet, x, y + height + 1, lettering->fit(cells[i].caption, strip, kSmallText),
+                    cells[i].color, kSmallText);
     for (const Picture& picture : cells[i].pictures) {
       paste(sheet, picture, x, y);
       x += width + 1;

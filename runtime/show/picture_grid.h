@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
-#include "runtime/show/overlay.h"
+#include "runtime/show/picture.h"
 #include "runtime/stage/scene_view.h"
 
 namespace probe::show {
@@ -18,8 +18,8 @@ struct GridCell {
   std::array<std::uint8_t, 3> color{200, 200, 200};
 };
 
-// `cells` is not empty.
-Picture lay_out_grid(const std::vector<GridCell>& cells, int columns);
+// `cells` is not empty. Fails (kVideo) without a font for the captions.
+Result<Picture> lay_out_grid(const std::vector<GridCell>& cells, int columns);
 
 // A picture as wide as a cell's.
 Picture shrink_to(const Picture& picture, int cell_width);

@@ -30,7 +30,7 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
     return Failure{Fault::kUsage,
                    "task `" + std::string(plan.text(record.name)) + "` has no starts", ""};
   }
-  const Picture sheet = lay_out_grid(cells, options.columns);
+  PROBE_ASSIGN(const Picture sheet, lay_out_grid(cells, options.columns));
   return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
 }
 

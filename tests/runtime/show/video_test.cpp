@@ -19,7 +19,8 @@ Picture frame(int number) {
   Picture picture = make_picture(320, 240, {static_cast<std::uint8_t>(4 * number), 90, 60});
   const std::vector<MetricValue> metrics = {
       {"success", true, 0}, {"grasp", true, 1}, {"height", false, 0.25}};
-  draw_overlay(picture, {"put carrot on plate", "carrot_on_plate", number, 60, metrics});
+  draw_overlay(picture, {"put carrot on plate", "carrot_on_plate", number, 60, metrics},
+               *Lettering::shared().value());
   return picture;
 }
 
@@ -67,18 +68,6 @@ TEST_CASE("a video that cannot be written names its file") {
   REQUIRE(video.ok());
   CHECK_FALSE((*video)->add(std::vector<std::uint8_t>(5)).ok());
   CHECK_FALSE(inspect_video(folder / "absent.mp4").ok());
-}
-
-TEST_CASE("text is drawn with the letters' pixels and cut where the room ends") {
-  Picture picture = make_picture(40, 10, {0, 0, 0});
-  draw_text(picture, 0, 0, "I", {255, 255, 255});
-  // The letter I: a stem in the middle column between two bars.
-  CHECK(picture.rgb[3 * (3 * 40 + 2)] == 255);
-  CHECK(picture.rgb[3 * (3 * 40 + 1)] == 0);
-  CHECK(picture.rgb[3 * 1] == 255);
-  CHECK(fit_text("put carrot on plate", 60, 1) == "put carr..");
-  CHECK(fit_text("short", 60, 1) == "short");
-  draw_text(picture, 38, 8, "over the edge", {9, 9, 9}, 3);  // clipped, not written past the end
 }
 
 TEST_CASE("shrinking keeps the mean and pasting keeps inside") {
