@@ -9,8 +9,8 @@
 #include <fstream>
 #include <map>
 
-#include "runtime/base/json.h"
 #include "runtime/base/check.h"
+#include "runtime/base/json.h"
 #include "runtime/base/sha256.h"
 #include "runtime/scene/glb_writer.h"
 #include "runtime/scene/image.h"

@@ -1,7 +1,7 @@
 // libFuzzer over the parser, the formatter and the checker: any bytes give a tree, a layout that is
 // a fixed point, and diagnostics whose spans lie in the text. A text with a `use` is checked
 // together with the suite's world.
-// links: probe_compiler_format probe_compiler_sema
+// links: probe_compiler_format probe_compiler_check
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
