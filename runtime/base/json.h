@@ -46,6 +46,13 @@ class Json {
     for (const T& element : elements) push_back(Json(element));
   }
 
+  // A pair is an array of two.
+  template <class A, class B>
+  Json(const std::pair<A, B>& pair) : Json(array()) {
+    push_back(Json(pair.first));
+    push_back(Json(pair.second));
+  }
+
   Json(const Json& other);
   Json(Json&& other) noexcept;
   Json& operator=(const Json& other);

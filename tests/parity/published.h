@@ -14,6 +14,7 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/base/file.h"
 #include "runtime/base/json.h"
 #include "runtime/plan/plan.h"
 
@@ -50,9 +51,10 @@ inline double decimal(const std::string& text) {
 inline const Published* published() {
   static const std::optional<Published> data = []() -> std::optional<Published> {
     const std::filesystem::path folder = VLAPROBE_SOURCE_DIR "/../shared/reference";
-    std::ifstream list(folder / "intact_tasks.json"), starts(folder / "intact_starts.csv");
+    const auto list = read_file((folder / "intact_tasks.json").string());
+    std::ifstream starts(folder / "intact_starts.csv");
     if (!list || !starts) return std::nullopt;
-    const Json file = Json::parse(list);
+    const Json file = Json::parse(*list);
     Published out{file["tasks"], file["objects"], {}};
     std::string line;
     std::getline(starts, line);  // the names of the columns

@@ -16,6 +16,7 @@ TEST_CASE("braces of pairs that begin with a text are an object, all others an a
   CHECK(Json{"one"}.dump() == R"(["one"])");
   CHECK(Json::array({{"a", 1}}).dump() == R"([["a",1]])");
   CHECK(Json(std::vector<std::string>{"x"}).dump() == R"(["x"])");
+  CHECK(Json(std::vector<std::pair<std::string, std::string>>{{"a", "b"}}).dump() == R"([["a","b"]])");
 }
 
 TEST_CASE("an object keeps the order in which keys were added, until it is sorted") {
