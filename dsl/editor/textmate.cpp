@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compiler/syntax/words.h"
+#include "runtime/base/json.h"
 
 namespace probe::editor {
 namespace {
@@ -51,7 +52,6 @@ std::string units() {
   return alternatives({
 #define PROBE_UNIT(id, text, scale, length, time, angle, mass, pixel) text,
 #include "compiler/syntax/units.def"
-#include "runtime/base/json.h"
   });
 }
 

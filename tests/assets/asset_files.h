@@ -62,7 +62,7 @@ inline Visual read_visual(const std::string& path) {
   std::memcpy(&length, bytes.data() + 12, 4);
   const std::size_t start = 20 + length + 8;
   Visual visual;
-  for (const auto& primitive : header.at("meshes").at(0).at("primitives")) {
+  for (const auto& primitive : header.at("meshes")[0].at("primitives")) {
     const auto& position =
         header["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()];
     const auto& view = header["bufferViews"][position["bufferView"].get<std::size_t>()];

@@ -47,7 +47,7 @@ TEST_CASE("objects fill the published boxes to a tenth of a millimetre") {
     CAPTURE(name);
     const auto& entry = objects.at(name == "half_sponge" ? "sponge_small" : name);
     const auto vector = [&](const char* key) -> Vec3 {
-      return Vec3(entry.at(key)[0], entry.at(key)[1], entry.at(key)[2]) *
+      return Vec3(entry.at(key)[0].get<double>(), entry.at(key)[1].get<double>(), entry.at(key)[2].get<double>()) *
              entry.at("scale").get<double>();
     };
     const test::Bounds seen = test::read_visual(test::object_file(name, "visual.glb")).box;

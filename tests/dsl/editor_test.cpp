@@ -36,7 +36,7 @@ TEST_CASE("the editor's grammar is the one that the tables of words and units gi
 
 TEST_CASE("numbers match with their longest unit") {
   const auto grammar = Json::parse(editor::textmate_grammar());
-  std::string pattern = grammar["repository"]["numbers"]["patterns"][0]["match"];
+  std::string pattern = grammar["repository"]["numbers"]["patterns"][0]["match"].text();
   pattern.erase(0, pattern.find(')') + 1);  // without what stands before it
   const std::regex number(pattern);
   std::smatch match;
@@ -52,7 +52,7 @@ TEST_CASE("the extension's parts are there and refer to one another") {
   const auto& contributes = package["contributes"];
   for (const std::string& path : {contributes["languages"][0]["configuration"].get<std::string>(),
                                   contributes["grammars"][0]["path"].get<std::string>()}) {
-    CHECK_MESSAGE(Json::accept(read(kExtension / path)), path);
+    CHECK_MESSAGE(!Json::parse(read(kExtension / path)).is_discarded(), path);
   }
   CHECK(contributes["grammars"][0]["scopeName"] == "source.probe");
 }

@@ -68,7 +68,7 @@ TEST_CASE("boxes and densities are the published ones") {
     CAPTURE(name);
     REQUIRE(released->objects.contains(name));
     const auto& entry = released->objects[name];
-    const double scale = entry["scale"];
+    const double scale = entry["scale"].get<double>();
     for (std::size_t i = 0; i < 3; ++i) {
       // A scale of 1.25 is written out in the catalogue: a rounding apart.
       CHECK(std::abs(object.box_min[i] - entry["bbox_min"][i].get<double>() * scale) < 1e-15);

@@ -179,7 +179,7 @@ TEST_CASE("the rule of success of every task agrees with the published one") {
     CAPTURE(name);
     const Json* entry = released->find(name);
     REQUIRE(entry != nullptr);
-    const std::string rule = (*entry)["success"];
+    const std::string rule = (*entry)["success"].text();
     CAPTURE(rule);
     const Bodies bodies = bodies_of(plan, task);
     const auto success = plan.find_metric(task, "success");

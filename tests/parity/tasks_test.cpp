@@ -40,8 +40,8 @@ TEST_CASE("instructions, horizons, roles and canonical tasks equal the published
     prompts += plan.text(task.prompt) == (*entry)["instruction"].get<std::string>();
     CHECK(task.horizon == (*entry)["max_control_steps"].get<std::uint32_t>());
     horizons += task.horizon == (*entry)["max_control_steps"].get<std::uint32_t>();
-    std::vector<std::string> want = {(*entry)["source"], (*entry)["target"]}, have;
-    for (const auto& other : (*entry)["distractors"]) want.push_back(other);
+    std::vector<std::string> want = {(*entry)["source"].text(), (*entry)["target"].text()}, have;
+    for (const auto& other : (*entry)["distractors"]) want.push_back(other.text());
     for (const plan::BodyRecord& body : plan::slice_of(plan.tables().bodies, task.bodies)) {
       if (body.kind == static_cast<std::uint32_t>(plan::BodyKind::kObject))
         have.emplace_back(plan.text(plan.objects()[body.index].name));
@@ -63,7 +63,7 @@ TEST_CASE("the eleven categories are computed as published") {
   if (released == nullptr) return;
   const plan::Plan& plan = test::suite_plan();
   std::map<std::string, std::vector<std::string>> want;
-  for (const auto& entry : released->tasks) want[entry["category"]].push_back(entry["name"]);
+  for (const auto& entry : released->tasks) want[entry["category"].text()].push_back(entry["name"].text());
   std::string counts;
   std::size_t tasks = 0;
   for (auto& [category, names] : want) {

@@ -18,7 +18,7 @@ TEST_CASE("audit says what is irregular in the published suite, with places and 
         "allowed: published on the distractor scene, compared with the clean one",
         "suite `intact`, 50 tasks, 46 comparisons: "})
     CHECK_MESSAGE(contains(text.out, part), part);
-  const auto json = Json::parse(box.vlaprobe("audit $SUITE --json").out);
+  const auto json = probe::Json::parse(box.vlaprobe("audit $SUITE --json").out);
   REQUIRE_FALSE(json.is_discarded());
   CHECK(json["findings"].size() >= 20);
 }

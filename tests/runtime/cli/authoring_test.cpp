@@ -44,7 +44,7 @@ TEST_CASE("run takes a suite of the file itself, never one of a file that it use
                                     "suite second_mine { tasks { mine }; seeds 3 }\n"
                                     "suite other { tasks { carrot_on_plate }; seeds 1 }\n");
   REQUIRE(box.vlaprobe("run own.probe --policy null -o own --episodes 0-0").exit == 0);
-  const auto rows = Json::parse(box.vlaprobe("results own --json").out);
+  const auto rows = probe::Json::parse(box.vlaprobe("results own --json").out);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0]["task"] == "mine");
   CHECK(rows[0]["seed"] == 3);
@@ -80,7 +80,7 @@ TEST_CASE(
                  "  phrase glow appearance \"glowing thing\" means color orange }\n"
                  "task lone like carrot_on_plate { source bright }\n"
                  "suite one { tasks { lone }; seeds 1 }\n");
-  const auto json = Json::parse(box.vlaprobe("coverage mine.probe --suite one --json").out);
+  const auto json = probe::Json::parse(box.vlaprobe("coverage mine.probe --suite one --json").out);
   REQUIRE(json["bases"].size() == 1);
   CHECK(json["bases"][0]["ood"]["source"] == 1);
   CHECK(json["bases"][0]["tasks"] == 1);

@@ -32,7 +32,7 @@ TEST_CASE("compare says in words what differs, report gives the tables, both ref
         std::string::npos);
   const Outcome json = box.vlaprobe("compare reach null --json --metrics intention");
   REQUIRE(json.exit == 0);
-  CHECK(Json::parse(json.out)["rows"][0]["a"]["k"] == 4);
+  CHECK(probe::Json::parse(json.out)["rows"][0]["a"]["k"] == 4);
 
   const Outcome csv = box.vlaprobe("report reach null --format csv");
   REQUIRE_MESSAGE(csv.exit == 0, csv.err);

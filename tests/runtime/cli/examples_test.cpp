@@ -36,7 +36,7 @@ TEST_CASE("every example runs: the first start of each of its tasks, with the po
     const Outcome run = box.vlaprobe("run '" + entry.path().string() +
                                      "' --policy null --episodes 0-0 --jobs 2 -o " + name);
     CHECK_MESSAGE(run.exit == 0, name, ": ", run.err);
-    const auto rows = Json::parse(box.vlaprobe("results " + name + " --json").out);
+    const auto rows = probe::Json::parse(box.vlaprobe("results " + name + " --json").out);
     CHECK_MESSAGE(!rows.empty(), name);
     for (const auto& row : rows) CHECK_MESSAGE(row["invalid"].is_null(), name);
     ++seen;

@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Json parsed(const Outcome& outcome) {
+probe::Json parsed(const Outcome& outcome) {
   REQUIRE(outcome.exit == 0);
-  auto json = Json::parse(outcome.out);
+  auto json = probe::Json::parse(outcome.out);
   REQUIRE_FALSE(json.is_discarded());
   return json;
 }
@@ -137,7 +137,7 @@ TEST_CASE("two tasks and two plans are compared") {
   Sandbox box;
   const auto tasks =
       parsed(box.vlaprobe("diff $SUITE carrot_on_plate carrot_on_plate_lang_color --json"));
-  CHECK(tasks["axes"] == Json{"language.appearance"});
+  CHECK(tasks["axes"] == probe::Json{"language.appearance"});
   CHECK(tasks["equal"]["starts"] == 24);
   REQUIRE(box.vlaprobe("build $SUITE -o x.plan").exit == 0);
   const auto plans = parsed(box.vlaprobe("diff x.plan $SUITE --json"));

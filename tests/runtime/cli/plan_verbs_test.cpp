@@ -5,7 +5,7 @@
 #include "tests/runtime/cli/program.h"
 
 using namespace probe::test;
-using json = Json;
+using json = probe::Json;
 
 TEST_CASE("verify says the root on standard output and what was checked on the other") {
   Sandbox box;

@@ -7,7 +7,7 @@
 #include "tests/runtime/cli/program.h"
 
 using namespace probe::test;
-using json = Json;
+using json = probe::Json;
 
 namespace {
 

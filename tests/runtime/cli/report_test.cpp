@@ -8,7 +8,7 @@
 #include "tests/runtime/cli/program.h"
 
 using namespace probe::test;
-using json = Json;
+using json = probe::Json;
 
 namespace {
 
@@ -52,7 +52,7 @@ TEST_CASE("a report is one page with every episode, its timeline, its video and 
   CHECK(data["title"] == "Two <policies>");
   CHECK(page.find("Two <policies>") == std::string::npos);
   CHECK(data["policies"].size() == 2);
-  const std::size_t count = data["episodes"]["count"];
+  const std::size_t count = data["episodes"]["count"].get<std::size_t>();
   CHECK(count >= 3);
   const json timelines = document(page, "timelines");
   REQUIRE(timelines["e"].size() == count);

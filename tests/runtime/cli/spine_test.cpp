@@ -10,7 +10,7 @@
 #include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
-using json = Json;
+using json = probe::Json;
 
 using probe::test::Outcome;
 using probe::test::read_file;
@@ -130,7 +130,7 @@ TEST_CASE("the 24 starts are those of the released benchmark") {
     for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
     if (cells.size() < 8 || cells[0] != "widowx_carrot_on_plate") continue;
     const int episode = std::stoi(cells[1]);
-    const json& object = starts.at(static_cast<std::size_t>(episode)).at(seen[episode]++);
+    const json& object = starts[static_cast<std::size_t>(episode)][seen[episode]++];
     CHECK(object["object"] == cells[2]);
     const char* keys[] = {"x_m", "y_m", "roll_deg", "pitch_deg", "yaw_deg"};
     for (std::size_t k = 0; k < 5; ++k)

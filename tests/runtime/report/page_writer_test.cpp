@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 using namespace probe::report;
-using json = Json;
+using json = probe::Json;
 
 TEST_CASE("nothing inside a result can end the script element it stands in") {
   const std::string hostile = "</script><script>alert(1)</script><!-- & \xE2\x80\xA8\xE2\x80\xA9";

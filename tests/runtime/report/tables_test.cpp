@@ -146,7 +146,7 @@ TEST_CASE("every table of differences answers both questions by name") {
     for (const auto& row : json[table]) {
       for (const char* question : {"on_these_starts", "for_starts_never_tried"}) {
         CHECK(row[question].contains("p_adjusted"));
-        CHECK(row[question]["low"] <= row["points"]);
+        CHECK(row[question]["low"].get<double>() <= row["points"].get<double>());
       }
     }
   }

@@ -13,7 +13,7 @@ namespace probe::servers {
 using namespace probe::policy;
 namespace {
 
-using json = Json;
+using json = probe::Json;
 
 using test::PythonServer;
 
