@@ -1,5 +1,5 @@
-// Observations a second of the whole loop at 640 x 480: settle, render, act, 100 substeps, judge,
-// hash, trace, store.
+// Observations a second of the whole loop at 640 x 480, also with a wrist camera of 224 x 224
+// beside it: settle, render, act, 100 substeps, judge, hash, trace, store.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -15,8 +15,10 @@ namespace {
 using probe::bench::need;
 namespace fs = std::filesystem;
 
-void loop(benchmark::State& state, const std::string& policy, int jobs) {
-  const probe::plan::Plan& plan = probe::bench::suite_plan();
+void run_all(benchmark::State& state, const probe::bench::Fixture& fixture,
+             const std::string& policy, int jobs) {
+  const probe::plan::Plan& plan = fixture.plan;
+  const auto& task = plan.tasks()[fixture.task];
   const fs::path dir = fs::temp_directory_path() / "vlaprobe-bench";
   const int episodes = 24;
   probe::store::RunCall call;
@@ -27,10 +29,10 @@ void loop(benchmark::State& state, const std::string& policy, int jobs) {
     probe::run::RunOptions options;
     options.policy = policy;
     options.out = dir.string();
-    options.suite = "intact";
+    options.suite = fixture.suite;
     options.jobs = jobs;
     options.assets = probe::bench::asset_root();
-    options.tasks = "carrot_on_plate";
+    options.tasks = std::string(plan.text(task.name));
     options.seeds = {42};
     const auto summary = need(probe::run::run(plan, options));
     call = summary.call;
@@ -38,13 +40,20 @@ void loop(benchmark::State& state, const std::string& policy, int jobs) {
       state.SkipWithError("an episode was not valid");
   }
   fs::remove_all(dir);
-  const double steps = plan.tasks()[probe::bench::bench_task()].horizon;
+  const double steps = task.horizon;
   state.counters["rate"] = benchmark::Counter(
       static_cast<double>(state.iterations()) * episodes * steps, benchmark::Counter::kIsRate);
   if (call.queries.queries == 0) return;
   state.counters["server_busy_percent"] = 100 * call.queries.busy_s / call.elapsed_s;
   state.counters["worlds_waiting_percent"] =
       100 * call.queries.waiting_s / (call.elapsed_s * call.worlds);
+}
+
+void loop(benchmark::State& state, const std::string& policy, int jobs) {
+  run_all(state, probe::bench::one_camera(), policy, jobs);
+}
+void two_cameras(benchmark::State& state) {
+  run_all(state, probe::bench::two_cameras(), "expert", 1);
 }
 
 // Over a real connection, pictures and all; `milliseconds` is the server's time an answer, which
@@ -62,6 +71,7 @@ BENCHMARK_CAPTURE(loop, two, "expert", 2)
     ->Name("loop/two_cores")
     ->UseRealTime()
     ->Unit(benchmark::kSecond);
+BENCHMARK(two_cameras)->Name("loop/one_core_two_cameras")->UseRealTime()->Unit(benchmark::kSecond);
 BENCHMARK_CAPTURE(served, instant, 0, 2)
     ->Name("loop/served")
     ->UseRealTime()

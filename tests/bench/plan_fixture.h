@@ -1,7 +1,9 @@
-// The suite, compiled once, and the assets of its first task.
+// What benchmarks run, compiled once: a task of the suite, and the same with a camera on the wrist.
 #pragma once
 
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include "compiler/emit/compile.h"
 #include "runtime/plan/plan.h"
@@ -10,23 +12,40 @@
 
 namespace probe::bench {
 
-inline const plan::Plan& suite_plan() {
-  static const plan::Plan plan = [] {
-    const std::string files[] = {suite_path()};
-    Compilation compiled = need(build(files, {.asset_root = asset_root(), .suite = ""}));
-    return need(plan::Plan::from_bytes(std::move(compiled.plan)));
-  }();
-  return plan;
+// A plan, one of its tasks and what that needs.
+struct Fixture {
+  plan::Plan plan;
+  std::string suite;
+  std::uint32_t task = 0;
+  std::shared_ptr<const stage::SharedAssets> assets;
+};
+
+inline Fixture make_fixture(const std::string& file, const std::string& suite,
+                            std::string_view task) {
+  const std::string files[] = {file};
+  Compilation compiled = need(build(files, {.asset_root = asset_root(), .suite = ""}));
+  Fixture out{need(plan::Plan::from_bytes(std::move(compiled.plan))), suite, 0, nullptr};
+  out.task = out.plan.find_task(task).value();
+  const std::uint32_t tasks[] = {out.task};
+  out.assets = need(stage::SharedAssets::load(out.plan, asset_root(), tasks));
+  return out;
 }
 
-inline std::uint32_t bench_task() { return suite_plan().find_task("carrot_on_plate").value(); }
-
-inline std::shared_ptr<const stage::SharedAssets> suite_assets() {
-  static const auto assets = [] {
-    const std::uint32_t tasks[] = {bench_task()};
-    return need(stage::SharedAssets::load(suite_plan(), asset_root(), tasks));
-  }();
-  return assets;
+// One camera of 640 x 480.
+inline const Fixture& one_camera() {
+  static const Fixture fixture = make_fixture(suite_path(), "intact", "carrot_on_plate");
+  return fixture;
 }
+
+// A camera of 224 x 224 on the wrist in addition, with the arm in its picture.
+inline const Fixture& two_cameras() {
+  static const Fixture fixture =
+      make_fixture(VLAPROBE_SOURCE_DIR "/examples/wrist_camera.probe", "eyes", "carrot_two_eyes");
+  return fixture;
+}
+
+inline const plan::Plan& suite_plan() { return one_camera().plan; }
+inline std::uint32_t bench_task() { return one_camera().task; }
+inline std::shared_ptr<const stage::SharedAssets> suite_assets() { return one_camera().assets; }
 
 }  // namespace probe::bench
