@@ -9,9 +9,9 @@
 #include <mutex>
 #include <optional>
 #include <span>
-#include <type_traits>
 
 #include "runtime/base/file.h"
+#include "runtime/scene/mesh_bytes.h"
 #include "runtime/scene/mesh_references.h"
 
 namespace probe::scene {
@@ -45,92 +45,6 @@ Result<Sha256> key_of(const std::string& path, const Vec3& scale, const MeshLimi
   return hasher.finish();
 }
 
-class Packer {
- public:
-  template <typename T>
-  void value(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  template <typename T>
-  void array(const std::vector<T>& values) {
-    value(static_cast<std::uint64_t>(values.size()));
-    bytes_.append(reinterpret_cast<const char*>(values.data()), sizeof(T) * values.size());
-  }
-  std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
-// Reads what Packer wrote; false after the end.
-class Unpacker {
- public:
-  explicit Unpacker(std::string_view bytes) : bytes_(bytes) {}
-  template <typename T>
-  bool value(T& value) {
-    if (bytes_.size() < sizeof value) return false;
-    std::memcpy(&value, bytes_.data(), sizeof value);
-    bytes_.remove_prefix(sizeof value);
-    return true;
-  }
-  template <typename T>
-  bool array(std::vector<T>& values) {
-    std::uint64_t count = 0;
-    if (!value(count) || count > bytes_.size() / sizeof(T)) return false;
-    values.resize(count);
-    if (count > 0) std::memcpy(values.data(), bytes_.data(), sizeof(T) * count);
-    bytes_.remove_prefix(sizeof(T) * count);
-    return true;
-  }
-  bool at_end() const { return bytes_.empty(); }
-
- private:
-  std::string_view bytes_;
-};
-
-std::string pack(const Mesh& mesh) {
-  Packer out;
-  out.array(mesh.materials);
-  out.value(static_cast<std::uint64_t>(mesh.parts.size()));
-  for (const MeshPart& part : mesh.parts) {
-    out.value(part.material);
-    out.array(part.positions);
-    out.array(part.normals);
-    out.array(part.uv);
-    out.array(part.indices);
-  }
-  out.value(static_cast<std::uint64_t>(mesh.textures.size()));
-  for (const Texture& texture : mesh.textures) {
-    out.value(texture.width);
-    out.value(texture.height);
-    out.array(texture.rgba);
-  }
-  return out.take();
-}
-
-bool unpack(std::string_view bytes, Mesh& mesh) {
-  Unpacker in(bytes);
-  std::uint64_t count = 0;
-  // A part or texture takes more than a byte, which bounds the counts.
-  if (!in.array(mesh.materials) || !in.value(count) || count > bytes.size()) return false;
-  mesh.parts.resize(count);
-  for (MeshPart& part : mesh.parts) {
-    if (!in.value(part.material) || !in.array(part.positions) || !in.array(part.normals) ||
-        !in.array(part.uv) || !in.array(part.indices)) {
-      return false;
-    }
-  }
-  if (!in.value(count) || count > bytes.size()) return false;
-  mesh.textures.resize(count);
-  for (Texture& texture : mesh.textures) {
-    if (!in.value(texture.width) || !in.value(texture.height) || !in.array(texture.rgba)) {
-      return false;
-    }
-  }
-  return in.at_end();
-}
-
 struct FileHead {
   char magic[16] = {};
   Sha256 key;
@@ -149,7 +63,7 @@ std::shared_ptr<Mesh> read_cached(const std::string& file, const Sha256& key) {
     return nullptr;
   }
   auto mesh = std::make_shared<Mesh>();
-  return unpack(payload, *mesh) ? mesh : nullptr;
+  return read_mesh(payload, *mesh) ? mesh : nullptr;
 }
 
 // A full disk or a folder that cannot be written costs time, not the mesh.
@@ -157,7 +71,11 @@ void try_to_keep(const std::string& file, const Sha256& key, const Mesh& mesh) {
   std::error_code error;
   fs::create_directories(fs::path(file).parent_path(), error);
   if (error) return;
-  const std::string payload = pack(mesh);
+  std::string payload;
+  write_mesh(mesh, [&payload](std::string_view bytes) {
+    payload += bytes;
+    return true;
+  });
   FileHead head;
   std::memcpy(head.magic, kMagic.data(), sizeof head.magic);
   head.key = key;

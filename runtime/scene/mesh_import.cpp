@@ -2,6 +2,7 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/GltfMaterial.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
@@ -13,16 +14,20 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <optional>
 #include <set>
+#include <span>
 #include <tuple>
 
+#include "runtime/base/apart.h"
 #include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
 #include "runtime/base/libm_binding.h"
 #include "runtime/base/paths.h"
 #include "runtime/scene/color.h"
 #include "runtime/scene/image.h"
+#include "runtime/scene/mesh_bytes.h"
 #include "runtime/scene/mesh_counts.h"
 #include "runtime/scene/mesh_references.h"
 #include "runtime/scene/vertex_colors.h"
@@ -36,8 +41,38 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_GenNormals | aiPro
                             aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices |
                             aiProcess_SortByPType | aiProcess_ImproveCacheLocality;
 
+// What a mesh may cost; one of a million triangles or with a picture of 8192 x 8192 takes a fifth.
+constexpr ApartLimits kReaderLimits{
+    .memory = std::size_t{2} << 30, .answer = std::size_t{768} << 20, .clock_s = 120};
+
+// Of all pictures that a mesh's materials show: one of the largest and half as much again.
+constexpr std::size_t kMaxTexels = std::size_t{96} << 20;
+
 Failure asset_failure(std::string message, const std::string& path) {
   return {.code = Fault::kAsset, .message = std::move(message), .where = path};
+}
+
+// An OBJ file with `.5` as `0.5` in the lines of vertices, where assimp counts no number that
+// begins with a point. Nothing where it has none, which are nearly all.
+std::optional<std::string> with_leading_zeros(const std::string& path) {
+  const auto text = read_file(path, {.most = kMaxMeshBytes});
+  if (!text) return std::nullopt;
+  std::string out;
+  std::size_t copied = 0;
+  char before = '\n', of_line = ' ';
+  for (std::size_t at = 0; at < text->size(); ++at) {
+    const char c = (*text)[at];
+    if (before == '\n') of_line = c;
+    const bool is_bare = c == '.' && of_line == 'v' &&
+                         (before == ' ' || before == '\t' || before == '-' || before == '+');
+    if (is_bare) {
+      out.append(*text, copied, at - copied).append("0");
+      copied = at;
+    }
+    before = c;
+  }
+  if (copied == 0) return std::nullopt;
+  return out.append(*text, copied);
 }
 
 // Lets assimp open the mesh and the files it names inside the asset folder, nothing else.
@@ -53,7 +88,15 @@ class NamedFiles : public Assimp::DefaultIOSystem {
   bool Exists(const char* path) const override { return !find(path).empty(); }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     const std::string file = find(path);
-    return file.empty() ? nullptr : DefaultIOSystem::Open(file.c_str(), mode);
+    if (file.empty()) return nullptr;
+    if (lower_extension(file) == ".obj") {
+      if (const auto text = with_leading_zeros(file)) {
+        auto* bytes = new std::uint8_t[text->size()];
+        std::copy(text->begin(), text->end(), bytes);
+        return new Assimp::MemoryIOStream(bytes, text->size(), true);  // which then owns them
+      }
+    }
+    return DefaultIOSystem::Open(file.c_str(), mode);
   }
 
  private:
@@ -99,15 +142,14 @@ class Import {
     if (extension == ".dae" && limits.turn_up_axis) up_ = read_up_axis(path);
   }
 
-  Result<std::shared_ptr<const Mesh>> run() {
-    mesh_.name = path_;
+  Result<Mesh> run() {
     PROBE_TRY(read_materials());
     PROBE_TRY(read_parts());
     PROBE_TRY(check_size());
     bake_colors();
     fold_constant_textures();
     drop_unused_textures();
-    return std::make_shared<const Mesh>(std::move(mesh_));
+    return std::move(mesh_);
   }
 
  private:
@@ -209,7 +251,7 @@ class Import {
       if (embedded->mHeight == 0) {  // a compressed file of mWidth bytes
         const auto* bytes = reinterpret_cast<const char*>(embedded->pcData);
         if (limits_.keep_encoded) encoded.bytes.assign(bytes, embedded->mWidth);
-        return decode_image({reinterpret_cast<const std::byte*>(bytes), embedded->mWidth}, where);
+        return decode({reinterpret_cast<const std::byte*>(bytes), embedded->mWidth}, where);
       }
       if (embedded->mWidth > kMaxImageSide || embedded->mHeight > kMaxImageSide) {
         return asset_failure(
@@ -227,13 +269,23 @@ class Import {
     if (name.starts_with("*")) return asset_failure("the embedded texture is not there", where);
 
     PROBE_ASSIGN(const std::string file, find_reference(name, where));
-    Result<Texture> texture = load_image(file);
-    if (!texture) return asset_failure(texture.failure().message, where);
-    if (limits_.keep_encoded) {
-      PROBE_ASSIGN(const std::string bytes, read_file(file, {.code = Fault::kAsset}));
-      encoded.bytes.assign(bytes.begin(), bytes.end());
-    }
+    auto bytes = read_file(file, {.code = Fault::kAsset});
+    if (!bytes) return asset_failure(bytes.failure().message, where);
+    PROBE_ASSIGN(Texture texture, decode(std::as_bytes(std::span(*bytes)), where));
+    if (limits_.keep_encoded) encoded.bytes = std::move(*bytes);
     return texture;
+  }
+
+  // One small file can name a large picture many times.
+  Result<Texture> decode(std::span<const std::byte> bytes, const std::string& where) {
+    PROBE_ASSIGN(const ImageSize size, image_size(bytes, where));
+    texels_ += static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+    if (texels_ > kMaxTexels) {
+      return asset_failure(
+          "the mesh's pictures have more than " + std::to_string(kMaxTexels) + " pixels in all",
+          where);
+    }
+    return decode_image(bytes, where);
   }
 
   // assimp may give back a decoded or otherwise tidied name, but means one of the files found.
@@ -477,10 +529,10 @@ class Import {
   Mesh mesh_;
   std::vector<std::vector<LinearRgb>> colors_;  // of each part, one a vertex or none
   std::map<std::string, int> texture_index_;
+  std::size_t texels_ = 0;
 };
 
-Result<std::shared_ptr<const Mesh>> load(const std::string& path, const Vec3& scale,
-                                         const MeshLimits& limits) {
+Result<Mesh> load(const std::string& path, const Vec3& scale, const MeshLimits& limits) {
   PROBE_ASSIGN(const std::vector<MeshReference> references,
                mesh_references(path, limits.asset_root));
   if (limits.self_contained && !references.empty()) {
@@ -504,7 +556,9 @@ Result<std::shared_ptr<const Mesh>> load(const std::string& path, const Vec3& sc
                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(path, kSteps);
   if (scene == nullptr) {
-    return asset_failure(std::string("cannot read the mesh: ") + importer.GetErrorString(), path);
+    const std::string why = importer.GetErrorString();
+    if (why.find("bad_alloc") != why.npos) throw std::bad_alloc();
+    return asset_failure("cannot read the mesh: " + why, path);
   }
   if ((scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE) != 0) {
     return asset_failure("the mesh file is incomplete", path);
@@ -537,11 +591,27 @@ Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path, const Vec
     return asset_failure("larger than 512 MB, the most that is read", path);
   }
   // assimp catches its own exceptions, except that of an exhausted memory.
-  try {
-    return load(path, scale, limits);
-  } catch (const std::exception& exception) {
-    return asset_failure(std::string("cannot read the mesh: ") + exception.what(), path);
-  }
+  const auto work = [&](const AnswerWriter& write) {
+    const auto read = [&]() -> Result<Mesh> {
+      try {
+        return load(path, scale, limits);
+      } catch (const std::bad_alloc&) {
+        throw;
+      } catch (const std::exception& exception) {
+        return asset_failure(std::string("cannot read the mesh: ") + exception.what(), path);
+      }
+    };
+    return write_import(read(), write);
+  };
+  ApartLimits most = kReaderLimits;
+  most.cpu_s = limits.cpu_s;
+  const auto answer = run_apart(work, most);
+  if (!answer) return asset_failure("the mesh " + answer.failure().message, path);
+  auto mesh = read_import(answer->bytes());
+  if (!mesh) return asset_failure("the mesh makes its reader give half an answer", path);
+  if (!*mesh) return mesh->failure();
+  (*mesh)->name = path;
+  return std::make_shared<const Mesh>(std::move(**mesh));
 }
 
 }  // namespace probe::scene

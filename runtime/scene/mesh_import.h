@@ -26,6 +26,7 @@ struct MeshLimits {
   bool turn_up_axis = true;
   // Refuse a mesh that names other files: a plan freezes one file a mesh.
   bool self_contained = false;
+  int cpu_s = 10;  // seconds of computing, after which reading is given up
   // Keep the encoded bytes of the textures in Mesh::encoded, for writing the mesh again.
   bool keep_encoded = false;
 };
@@ -34,8 +35,10 @@ struct MeshLimits {
 // stay rigid and lengths are metres. glTF, OBJ and STL are taken in the axes they are written in.
 // Fails (kAsset, where = path) on a missing, unreadable or oversized file, no triangles or
 // more than the limit, a coordinate that is not finite or beyond the extent, no size at all, a file
-// it names that is missing or lies outside the asset root, a texture above kMaxImageSide; the
-// message names that file.
+// it names that is missing or lies outside the asset root, a texture above kMaxImageSide, textures
+// of more than 96 Mi pixels in all; the
+// message names that file. The file is read in a process of its own (runtime/base/apart.h): one that
+// makes its reader crash, takes 10 s of computing or 2 GiB is a failure like any other.
 Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path,
                                               const Vec3& scale = {1, 1, 1},
                                               const MeshLimits& limits = {});

@@ -1,0 +1,51 @@
+// Work on files of strangers by code of others, in a process of its own with limits: where it
+// crashes, hangs or eats the memory, that is a Failure here. The process is a copy of this one, so
+// programs, tests and callers of the library need no second program.
+//
+// A copy has only the thread that asked for it. The C library keeps malloc and stdio usable there;
+// whatever else could be locked by another thread is not to be used in `work` (OpenMP, getaddrinfo,
+// tables that are made at first use). The time on the clock ends what waits nevertheless.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "runtime/base/result.h"
+
+namespace probe {
+
+struct ApartLimits {
+  std::size_t memory = std::size_t{2} << 30;  // bytes of address space beyond this process' own
+  std::size_t answer = std::size_t{1} << 30;  // bytes
+  int cpu_s = 10;                             // seconds of computing
+  int clock_s = 120;                          // seconds on the clock
+};
+
+// Appends to the answer; false when it takes no more.
+using AnswerWriter = std::function<bool(std::string_view)>;
+
+// The bytes that came back, mapped.
+class Answer {
+ public:
+  Answer() = default;
+  Answer(const char* data, std::size_t mapped, std::size_t size)
+      : data_(data), mapped_(mapped), size_(size) {}
+  ~Answer();
+  Answer(Answer&& other) noexcept;
+  Answer& operator=(Answer&&) = delete;
+  std::string_view bytes() const { return {data_, size_}; }
+
+ private:
+  const char* data_ = nullptr;
+  std::size_t mapped_ = 0, size_ = 0;
+};
+
+// What `work` wrote when it returned true. Fails (kIo, no place) when it returned false, ended by a
+// signal or a limit, or no process could be started; the message is a clause: "takes more than 10 s
+// of computing". Exceptions end the process. `work` sees this process' memory, not its files.
+Result<Answer> run_apart(const std::function<bool(const AnswerWriter&)>& work,
+                         const ApartLimits& limits = {});
+
+}  // namespace probe
