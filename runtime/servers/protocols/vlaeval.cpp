@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 
+#include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
 #include "runtime/wire/websocket.h"
 
