@@ -12,6 +12,9 @@ namespace asio = boost::asio;
 namespace http = beast::http;
 using beast_io::error_code;
 
+// Of what is not yet understood: a header, a chunk's own line, the fields behind the last chunk.
+constexpr std::size_t kLargestBuffer = 256 << 10;
+
 // Of a response's header, which no server of ours comes near.
 constexpr std::uint32_t kLargestHeader = 64 << 10;
 
@@ -30,6 +33,10 @@ http::request<http::string_body> made(const Endpoint& server, const HttpRequest&
 std::string reason(const error_code& error, const HttpOptions& options) {
   if (error == http::error::body_limit) {
     return "an answer of more than " + std::to_string(options.largest_body >> 20) + " MiB";
+  }
+  if (error == http::error::buffer_overflow) {
+    return "the answer is no HTTP (a line of more than " + std::to_string(kLargestBuffer >> 10) +
+           " KiB)";
   }
   if (error == http::error::partial_message) {
     return "the server closed the connection in the middle of its answer";
@@ -64,7 +71,7 @@ Result<HttpResponse> exchange(const Endpoint& server, const HttpRequest& request
   http::response_parser<http::string_body> parser;
   parser.body_limit(options.largest_body);
   parser.header_limit(kLargestHeader);
-  beast::flat_buffer buffer;
+  beast::flat_buffer buffer(kLargestBuffer);
   const auto too_large = [&] {
     const auto length = parser.content_length();
     return length && *length > options.largest_body;

@@ -80,9 +80,10 @@ void append(std::string& out, const Value& value) {
 
 // ---- reading ----------------------------------------------------------------------------------
 
-// Before parsing, which would build every level.
-bool is_too_deep(std::string_view text) {
+// Before parsing, which would build every level and every value.
+Status check_extent(std::string_view text) {
   int depth = 0;
+  std::size_t values = 1;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
@@ -92,10 +93,14 @@ bool is_too_deep(std::string_view text) {
       continue;
     }
     if (c == '"') in_string = true;
-    if ((c == '[' || c == '{') && ++depth > kMostLevels) return true;
+    const bool opens = c == '[' || c == '{';
+    if (opens && ++depth > kMostLevels)
+      return bad_json("JSON of more than " + std::to_string(kMostLevels) + " levels");
     if (c == ']' || c == '}') --depth;
+    if ((opens || c == ',') && ++values > kMostValues)
+      return bad_json("JSON of more than " + std::to_string(kMostValues) + " values");
   }
-  return false;
+  return {};
 }
 
 Result<Value> read_marked(const Json& map) {
@@ -107,6 +112,7 @@ Result<Value> read_marked(const Json& map) {
     return bad_json("an array needs `__numpy__` and `dtype` as texts and a list `shape`");
   }
   Array array{dtype->get<std::string>(), {}, {}};
+  if (shape->size() > kMostDimensions) return bad_json("an array's `shape` has too many sizes");
   for (const Json& n : *shape) {
     if (!n.is_number_unsigned() || n.get<std::uint64_t>() > (std::uint64_t{1} << 40)) {
       return bad_json("an array's `shape` is not made of sizes");
@@ -166,8 +172,7 @@ std::string to_json(const Value& value) {
 
 Result<Value> from_json(std::string_view text) {
   if (text.empty()) return bad_json("no JSON but an empty text");
-  if (is_too_deep(text))
-    return bad_json("JSON of more than " + std::to_string(kMostLevels) + " levels");
+  PROBE_TRY(check_extent(text));
   const Json json = Json::parse(text, nullptr, false);
   if (json.is_discarded()) {
     return bad_json("no JSON but " + describe(std::string(text.substr(0, 200))));

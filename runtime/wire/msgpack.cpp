@@ -128,6 +128,8 @@ Result<Value> read_marked(const msgpack::object_map& map) {
     return bad_msgpack("an array needs `data`, `dtype` and a list `shape`");
   }
   Array array{std::string(text_of(*dtype)), {}, bytes_of(*data)};
+  if (shape->via.array.size > kMostDimensions)
+    return bad_msgpack("an array's `shape` has too many sizes");
   for (std::uint32_t i = 0; i < shape->via.array.size; ++i) {
     const msgpack::object& n = shape->via.array.ptr[i];
     if (n.type != msgpack::type::POSITIVE_INTEGER || n.via.u64 > (std::uint64_t{1} << 40)) {
@@ -197,6 +199,37 @@ Result<Value> read(const msgpack::object& object) {
   }
 }
 
+// How many values a message has, at most kMostValues + 1: each takes a byte there and a hundred
+// here. Of what is cut off or no message the unpacker says so.
+std::size_t count_values(std::span<const std::uint8_t> bytes) {
+  std::size_t values = 0;
+  for (std::size_t at = 0; at < bytes.size() && values <= kMostValues; ++values) {
+    const std::uint8_t mark = bytes[at++];
+    // The bytes of a number, or of the size of what follows, by the mark's last bits.
+    const auto size_of = [&](std::size_t size_bytes) {
+      std::size_t size = 0;
+      for (std::size_t i = 0; i < size_bytes && at < bytes.size(); ++i)
+        size = size << 8 | bytes[at++];
+      return size;
+    };
+    std::size_t behind = 0;
+    if (mark >= 0xa0 && mark <= 0xbf) behind = mark & 0x1f;                               // text
+    if (mark >= 0xc4 && mark <= 0xc6) behind = size_of(std::size_t{1} << (mark - 0xc4));  // bin
+    if (mark >= 0xc7 && mark <= 0xc9) behind = 1 + size_of(std::size_t{1} << (mark - 0xc7));
+    if (mark == 0xca) behind = 4;
+    if (mark == 0xcb) behind = 8;
+    if (mark >= 0xcc && mark <= 0xcf) behind = std::size_t{1} << (mark - 0xcc);
+    if (mark >= 0xd0 && mark <= 0xd3) behind = std::size_t{1} << (mark - 0xd0);
+    if (mark >= 0xd4 && mark <= 0xd8) behind = 1 + (std::size_t{1} << (mark - 0xd4));
+    if (mark >= 0xd9 && mark <= 0xdb) behind = size_of(std::size_t{1} << (mark - 0xd9));
+    if (mark == 0xdc || mark == 0xde) behind = 2;  // the count of a list or map, whose
+    if (mark == 0xdd || mark == 0xdf) behind = 4;  // values stand behind it
+    if (behind > bytes.size() - at) break;
+    at += behind;
+  }
+  return values;
+}
+
 }  // namespace
 
 Bytes to_msgpack(const Value& value, ArrayStyle style) {
@@ -208,6 +241,10 @@ Bytes to_msgpack(const Value& value, ArrayStyle style) {
 
 Result<Value> from_msgpack(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return bad_msgpack("not a MessagePack message: it is empty");
+  if (count_values(bytes) > kMostValues) {
+    return bad_msgpack("a MessagePack message of more than " + std::to_string(kMostValues) +
+                       " values");
+  }
   const msgpack::unpack_limit limit(kElements, kElements, bytes.size(), bytes.size(), bytes.size(),
                                     kDepth);
   try {

@@ -77,6 +77,7 @@ Result<Array> from_npy(const Bytes& file) {
     std::int64_t n = 0;
     const auto [end, error] = std::from_chars(shape.data(), shape.data() + shape.size(), n);
     if (error != std::errc()) return bad_npy("has a shape that is not made of sizes");
+    if (array.shape.size() == kMostDimensions) return bad_npy("has a shape of too many sizes");
     array.shape.push_back(n);
     shape.remove_prefix(static_cast<std::size_t>(end - shape.data()));
     const std::size_t next = shape.find_first_not_of(", ");

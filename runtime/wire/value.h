@@ -11,6 +11,12 @@
 
 namespace probe::wire {
 
+// Of one message: the numbers, texts, lists and maps that are read, and the dimensions of an array. A
+// value takes a hundred times the byte it may have in a message; pictures and actions are arrays,
+// which count once.
+inline constexpr std::size_t kMostValues = std::size_t{1} << 20;
+inline constexpr std::size_t kMostDimensions = 32;
+
 // An n-dimensional array as numpy holds it in C order.
 struct Array {
   std::string dtype;  // numpy's dtype.str: "|u1", "<f4", "<f8", "<i4", "<i8", "|b1"

@@ -1,6 +1,11 @@
 #include "runtime/wire/zmq.h"
 
+#include <linux/tcp.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -11,12 +16,26 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// How often what comes in is held against its limit while an answer is waited for.
+constexpr Duration kLook{20};
+
 Duration left_until(Clock::time_point deadline) {
   const auto left = std::chrono::ceil<Duration>(deadline - Clock::now());
   return std::max(left, Duration::zero());
 }
 
 }  // namespace
+
+// The bytes that came over a TCP connection so far; nothing where it is gone.
+std::optional<std::uint64_t> bytes_received(int connection) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  // Older systems fill in less.
+  constexpr std::size_t kNeeded = offsetof(tcp_info, tcpi_bytes_received) + sizeof(std::uint64_t);
+  if (::getsockopt(connection, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 || size < kNeeded)
+    return std::nullopt;
+  return info.tcpi_bytes_received;
+}
 
 // A REQ socket and the socket that tells what happens to its connection. Without the latter a
 // server that is gone would look like one that is slow.
@@ -76,11 +95,16 @@ class ZmqRequester::Sockets {
     if (!wait(ZMQ_POLLOUT, Clock::now() + options_.connect_timeout)) return failed(unconnected());
     // What happened to earlier connections is no news of this one.
     while (has_news()) note_event();
-    lost_ = false;
+    lost_ = is_flooded_ = false;
+    received_ = bytes_received(connection_).value_or(0);
     if (!request_->send(zmq::buffer(message.data(), message.size()), zmq::send_flags::dontwait)) {
       return failed(unconnected());
     }
     if (!wait(ZMQ_POLLIN, Clock::now() + timeout)) {
+      if (is_flooded_) {
+        return failed("an answer of more than " + std::to_string(options_.largest_message >> 20) +
+                      " MiB");
+      }
       if (!lost_) return failed("no answer in " + seconds_text(timeout));
       // Any bytes at all can pass for a first version's greeting.
       return failed(
@@ -102,15 +126,24 @@ class ZmqRequester::Sockets {
       zmq::pollitem_t items[] = {{request_->handle(), 0, events, 0},
                                  {monitor_->handle(), 0, ZMQ_POLLIN, 0}};
       const Duration left = left_until(deadline);
-      zmq::poll(items, 2, left);
+      zmq::poll(items, 2, std::min(left, kLook));
       if ((items[0].revents & events) != 0) return true;
       if ((items[1].revents & ZMQ_POLLIN) != 0) {
         note_event();
         if (lost_) return false;
         continue;
       }
+      if (events == ZMQ_POLLIN && is_flood()) return false;
       if (left == Duration::zero()) return false;
     }
+  }
+
+  // ZeroMQ limits each part of a message and keeps any number of them until the last one is there.
+  bool is_flood() {
+    constexpr std::size_t kFrames = 1 << 16;  // bytes for greetings and heads
+    const auto now = bytes_received(connection_);
+    is_flooded_ = now && *now > received_ + options_.largest_message + kFrames;
+    return is_flooded_;
   }
 
   bool has_news() {
@@ -127,8 +160,12 @@ class ZmqRequester::Sockets {
     std::uint16_t kind = 0;
     if (event.size() < sizeof kind) return;
     std::memcpy(&kind, event.data(), sizeof kind);
+    std::int32_t value = -1;
+    if (event.size() >= sizeof kind + sizeof value)
+      std::memcpy(&value, event.data<char>() + sizeof kind, sizeof value);
     switch (kind) {
       case ZMQ_EVENT_CONNECTED:
+        connection_ = value;
         if (reached_ == Reached::kNothing) reached_ = Reached::kTcp;
         break;
       case ZMQ_EVENT_HANDSHAKE_SUCCEEDED:
@@ -166,6 +203,9 @@ class ZmqRequester::Sockets {
   zmq::context_t context_;
   std::optional<zmq::socket_t> request_, monitor_;
   int opened_ = 0;
+  int connection_ = -1;         // ZeroMQ's, to be asked only how much came over it
+  std::uint64_t received_ = 0;  // bytes before the last send
+  bool is_flooded_ = false;     // more came since than an answer may have
   Reached reached_ = Reached::kNothing;
   bool has_answered_ = false;
   bool lost_ = false;  // the connection ended since the last send

@@ -9,6 +9,8 @@
 /huge     answers with 2 MiB
 /claims   promises 2 TiB
 /header   an endless header
+/chunk    a chunk whose extension does not end
+/trailer  fields behind the last chunk that do not end
 /error    status 500 with a traceback
 """
 import asyncio
@@ -46,6 +48,16 @@ async def handle(reader, writer):
         writer.write(answer(b"", length=2 << 40))
     elif path == "/header":
         writer.write(b"HTTP/1.1 200 OK\r\n" + b"".join(b"X%d: y\r\n" % i for i in range(20000)))
+    elif path in ("/chunk", "/trailer"):
+        writer.write(b"HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n")
+        writer.write(b"1;x=" if path == "/chunk" else b"0\r\n")
+        line = b"y" * 65536 if path == "/chunk" else b"X: y\r\n" * 8192
+        try:
+            while True:
+                writer.write(line)
+                await writer.drain()
+        except ConnectionError:
+            pass
     elif path == "/error":
         writer.write(answer(b"Traceback: ValueError", "500 Internal Server Error"))
     try:

@@ -6,10 +6,12 @@ never     never answers
 huge      answers with 2 MiB
 parts     answers in two parts
 With the argument `raw` it is no ZeroMQ server: it sends HTTP to whoever connects; with `silent`
-it accepts and says nothing.
+it accepts and says nothing; with `flood` it speaks ZMTP 3.0 and answers in parts without an end,
+which ZeroMQ itself would keep until the last.
 """
 import os
 import socket
+import struct
 import sys
 import time
 
@@ -28,7 +30,29 @@ def serve_raw(text):
             kept.pop().close()
 
 
+def serve_flood():
+    listener = socket.create_server(("127.0.0.1", 0))
+    print("port", listener.getsockname()[1], flush=True)
+    os.close(1)
+    connection = listener.accept()[0]
+    connection.sendall(b"\xff" + bytes(8) + b"\x7f\x03\x00NULL" + bytes(48))
+    got = b""
+    while len(got) < 64:
+        got += connection.recv(64 - len(got))
+    ready = b"\x05READY\x0bSocket-Type" + struct.pack(">I", 3) + b"REP"
+    connection.sendall(bytes([4, len(ready)]) + ready)
+    connection.recv(65536)
+    try:
+        connection.sendall(b"\x01\x00")
+        while True:
+            connection.sendall(b"\x01\x01x" * 10000)
+    except OSError:
+        pass
+
+
 def main():
+    if len(sys.argv) > 1 and sys.argv[1] == "flood":
+        return serve_flood()
     if len(sys.argv) > 1:
         serve_raw(b"HTTP/1.1 400 Bad Request\r\n\r\n" if sys.argv[1] == "raw" else b"")
     server = zmq.Context().socket(zmq.REP)

@@ -62,6 +62,8 @@ TEST_CASE("each way of not answering over HTTP has its words") {
   CHECK(failure_at("/claims") == "an answer of more than 1 MiB");
   CHECK(failure_at("/garbage").starts_with("the answer is no HTTP ("));
   CHECK(failure_at("/header").starts_with("the answer is no HTTP ("));
+  CHECK(failure_at("/chunk") == "the answer is no HTTP (a line of more than 256 KiB)");
+  CHECK(failure_at("/trailer") == "the answer is no HTTP (a line of more than 256 KiB)");
 }
 
 TEST_CASE("an HTTP server that is not there is named") {

@@ -58,6 +58,10 @@ TEST_CASE("what is no JSON or no array is refused with what it was") {
   CHECK_FALSE(from_json("{} {}").ok());
   CHECK(from_json(std::string(100, '[') + std::string(100, ']')).failure().message ==
         "JSON of more than 64 levels");
+  std::string many = "[";
+  for (int i = 0; i < 1 << 20; ++i) many += "0,";
+  CHECK(from_json(many + "0]").failure().message == "JSON of more than 1048576 values");
+  CHECK(from_json("\"" + many + many + "\"").ok());
   CHECK(from_json(R"({"__numpy__": "AAAA", "dtype": "|u1", "shape": [7]})").failure().message ==
         "an array of shape 7 and dtype |u1 has 3 bytes");
   CHECK_FALSE(from_json(R"({"__numpy__": "AAAA", "dtype": "|u1"})").ok());

@@ -84,6 +84,37 @@ TEST_CASE("a message that claims more than it holds costs no memory") {
   CHECK_FALSE(from_msgpack(Bytes(100000, 0x91)).ok());     // lists in lists
 }
 
+TEST_CASE("a message of millions of values is refused before one of them is made") {
+  const auto failure = [](const Bytes& bytes) {
+    const auto read = from_msgpack(bytes);
+    REQUIRE_FALSE(read.ok());
+    return read.failure().message;
+  };
+  const std::string many = "a MessagePack message of more than 1048576 values";
+  const Bytes head = from_hex("dcffff");
+  for (const std::uint8_t value : from_hex("c0 90 80 a0 01 ff")) {
+    Bytes lists = from_hex("dc0040");  // 64 lists of 65535 elements in a list
+    for (int i = 0; i < 64; ++i) {
+      lists.insert(lists.end(), head.begin(), head.end());
+      lists.insert(lists.end(), 65535, value);
+    }
+    CHECK(failure(lists) == many);
+  }
+  // What stands in texts, bytes and numbers is no value.
+  const Value large = Map{{"a", Bytes(3 << 20, 0xc0)},
+                          {"b", std::string(3 << 20, 'x')},
+                          {"c", array_f64({1 << 19}, std::vector<double>(1 << 19, -1.5))},
+                          {"d", List(60000, Value(0.1))},
+                          {"e", List(60000, Value(std::int64_t{1} << 40))}};
+  const auto back = from_msgpack(to_msgpack(large, ArrayStyle::kTextKeys));
+  REQUIRE_MESSAGE(back.ok(), (back ? "" : to_text(back.failure())));
+  CHECK(*back == large);
+  Array deep = array_u8({1}, {7});
+  deep.shape.assign(33, 1);
+  for (const ArrayStyle style : {ArrayStyle::kBinKeys, ArrayStyle::kNpy})
+    CHECK_FALSE(from_msgpack(to_msgpack(deep, style)).ok());
+}
+
 TEST_CASE("an array whose bytes do not fit its shape is refused, naming both") {
   Array array = array_f32({4, 7}, std::vector<double>(28, 0.0));
   array.shape = {4, 8};

@@ -65,6 +65,12 @@ TEST_CASE("a ZeroMQ server that dies or floods is told from one that is slow") {
   CHECK(failure_of(*socket, "echo", 5s) == "connecting: nobody listens there");
 }
 
+TEST_CASE("an answer in parts that do not end is given up at the limit") {
+  const test::PythonServer server("zmq_server.py", {"flood"});
+  const auto socket = requester(server.port(), 4 << 20);
+  CHECK(failure_of(*socket, "echo", 10s) == "an answer of more than 4 MiB");
+}
+
 TEST_CASE("what listens without speaking ZeroMQ is named") {
   {
     const test::PythonServer server("zmq_server.py", {"raw"});
