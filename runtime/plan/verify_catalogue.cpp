@@ -42,19 +42,31 @@ Status RecordCheck::check(const AssetRecord& a) const {
   return check_zero({&a.zero2, 1});
 }
 
+Status RecordCheck::check_friction(const double& value) const {
+  PROBE_TRY(check_not_negative(value, "a friction"));
+  return check_magnitude(value, Magnitude::kFriction);
+}
+
+Status RecordCheck::check_length(const double& value, const char* what) const {
+  PROBE_TRY(check_not_negative(value, what));
+  return check_magnitude(value, Magnitude::kLength);
+}
+
 Status RecordCheck::check(const ObjectRecord& o) const {
   PROBE_TRY(check_word(o.name, "the name of an object"));
   PROBE_TRY(check_text(o.text));
   PROBE_TRY(check_asset(o.visual, AssetKind::kVisualMesh, true));
   PROBE_TRY(check_asset(o.collision, AssetKind::kCollisionMesh, true));
-  PROBE_TRY(check_finite(o.box_min));
-  PROBE_TRY(check_finite(o.box_max));
+  PROBE_TRY(check_magnitude(o.box_min, Magnitude::kPlace));
+  PROBE_TRY(check_magnitude(o.box_max, Magnitude::kPlace));
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(o.box_min[i] < o.box_max[i]))
       return fail(Rule::kBox, &o.box_min[i], "a box has a positive extent on each axis");
+    PROBE_TRY(check_magnitude(o.box_max[i] - o.box_min[i], Magnitude::kExtent, o.box_min[i]));
   }
   PROBE_TRY(check_positive(o.density, "a density"));
-  PROBE_TRY(check_not_negative(o.friction, "a friction"));
+  PROBE_TRY(check_magnitude(o.density, Magnitude::kDensity));
+  PROBE_TRY(check_friction(o.friction));
   return check_zero(o.zero);
 }
 
@@ -62,7 +74,10 @@ Status RecordCheck::check(const DriveRecord& d) const {
   PROBE_TRY(check_name(d.joint, "the joint of a drive"));
   PROBE_TRY(check_not_negative(d.stiffness, "a stiffness"));
   PROBE_TRY(check_not_negative(d.damping, "a damping"));
-  return check_positive(d.limit, "the limit of a drive");
+  PROBE_TRY(check_magnitude(d.stiffness, Magnitude::kGain));
+  PROBE_TRY(check_magnitude(d.damping, Magnitude::kGain));
+  PROBE_TRY(check_positive(d.limit, "the limit of a drive"));
+  return check_magnitude(d.limit, Magnitude::kForce);
 }
 
 Status RecordCheck::check(const RobotRecord& r) const {
@@ -73,17 +88,18 @@ Status RecordCheck::check(const RobotRecord& r) const {
     return fail(Rule::kControl, &r.control, fmt::format("control law {} is not known", r.control));
   }
   PROBE_TRY(check_positive(r.control_hz, "a control rate"));
+  PROBE_TRY(check_magnitude(r.control_hz, Magnitude::kControlRate));
   for (const FingerRecord& finger : r.fingers) {
     PROBE_TRY(check_name(finger.link, "the link of a finger"));
     PROBE_TRY(check_unit(finger.opens, "the opening axis of a finger"));
   }
-  PROBE_TRY(check_finite({&r.grip_closed, 1}));
-  PROBE_TRY(check_finite({&r.grip_open, 1}));
-  PROBE_TRY(check_not_negative(r.finger_friction, "a friction"));
-  PROBE_TRY(check_not_negative(r.finger_patch, "a patch radius"));
-  PROBE_TRY(check_not_negative(r.link_friction, "a friction"));
-  PROBE_TRY(check_not_negative(r.reach_min, "a reach"));
-  PROBE_TRY(check_not_negative(r.reach_max, "a reach"));
+  PROBE_TRY(check_magnitude(r.grip_closed, Magnitude::kJointPosition));
+  PROBE_TRY(check_magnitude(r.grip_open, Magnitude::kJointPosition));
+  PROBE_TRY(check_friction(r.finger_friction));
+  PROBE_TRY(check_length(r.finger_patch, "a patch radius"));
+  PROBE_TRY(check_friction(r.link_friction));
+  PROBE_TRY(check_length(r.reach_min, "a reach"));
+  PROBE_TRY(check_length(r.reach_max, "a reach"));
   if (r.reach_min > r.reach_max)
     return fail(Rule::kReach, &r.reach_min, "the least reach is not more than the greatest");
   PROBE_TRY(check_zero(r.zero));
@@ -107,13 +123,16 @@ Status RecordCheck::check(const RobotRecord& r) const {
 Status RecordCheck::check(const CameraRecord& c) const {
   PROBE_TRY(check_word(c.name, "the name of a camera"));
   PROBE_TRY(check_name(c.mount_link, "the mount of a camera"));
-  PROBE_TRY(check_finite(c.position));
+  PROBE_TRY(check_magnitude(c.position, Magnitude::kPlace));
   PROBE_TRY(check_finite(c.aim_values));
   if (c.aim == static_cast<std::uint32_t>(CameraAim::kLook)) {
     if (c.aim_values[0] == 0 && c.aim_values[1] == 0 && c.aim_values[2] == 0) {
       return fail(Rule::kCameraDirection, &c.aim_values,
                   "a camera looks in a direction other than zero");
     }
+    const auto& look = c.aim_values;
+    PROBE_TRY(
+        check_magnitude(std::hypot(look[0], look[1], look[2]), Magnitude::kDirection, look[0]));
     if (c.aim_values[3] != 0)
       return fail(Rule::kCameraFourth, &c.aim_values[3],
                   "the fourth number of a direction is zero");
@@ -134,8 +153,10 @@ Status RecordCheck::check(const CameraRecord& c) const {
   }
   PROBE_TRY(check_positive(c.fx, "a focal length"));
   PROBE_TRY(check_positive(c.fy, "a focal length"));
-  PROBE_TRY(check_finite({&c.cx, 1}));
-  PROBE_TRY(check_finite({&c.cy, 1}));
+  PROBE_TRY(check_magnitude(c.fx, Magnitude::kFocal));
+  PROBE_TRY(check_magnitude(c.fy, Magnitude::kFocal));
+  PROBE_TRY(check_magnitude(c.cx, Magnitude::kPixel));
+  PROBE_TRY(check_magnitude(c.cy, Magnitude::kPixel));
   return check_zero(c.zero2);
 }
 
@@ -144,7 +165,10 @@ Status RecordCheck::check(const SunRecord& s) const {
   if (s.direction == std::array<double, 3>{0, 0, 0}) {
     return fail(Rule::kSunDirection, &s.direction, "light travels in a direction other than zero");
   }
+  PROBE_TRY(check_magnitude(std::hypot(s.direction[0], s.direction[1], s.direction[2]),
+                            Magnitude::kDirection, s.direction[0]));
   PROBE_TRY(check_not_negative(s.power, "the power of a sun"));
+  PROBE_TRY(check_magnitude(s.power, Magnitude::kLight));
   if (s.shadow > 1) return fail(Rule::kSunShadow, &s.shadow, "a sun casts shadows (1) or none (0)");
   return check_zero(s.zero);
 }
@@ -152,6 +176,7 @@ Status RecordCheck::check(const SunRecord& s) const {
 Status RecordCheck::check(const LightRecord& l) const {
   PROBE_TRY(check_word(l.name, "the name of a light"));
   PROBE_TRY(check_not_negative(l.ambient, "ambient light"));
+  PROBE_TRY(check_magnitude(l.ambient, Magnitude::kLight));
   PROBE_TRY(check_slice(l.suns, t.suns.size(), "SUNS"));
   if (l.suns.count > kMaxSuns) {
     return fail(Rule::kSunCount, &l.suns,
@@ -174,8 +199,8 @@ Status RecordCheck::check(const SceneRecord& s) const {
   PROBE_TRY(check_asset(s.fixture_visual, AssetKind::kVisualMesh, true));
   PROBE_TRY(check_asset(s.fixture_collision, AssetKind::kCollisionMesh, true));
   PROBE_TRY(check_zero(s.zero));
-  PROBE_TRY(check_finite(s.fixture_position));
-  PROBE_TRY(check_finite(s.base_position));
+  PROBE_TRY(check_magnitude(s.fixture_position, Magnitude::kPlace));
+  PROBE_TRY(check_magnitude(s.base_position, Magnitude::kPlace));
   PROBE_TRY(check_unit(s.base_rotation, "the rotation of a robot's base"));
   const RobotRecord& r = t.robots[s.robot];
   PROBE_TRY(check_slice(s.joints, t.reals.size(), "REAL"));
@@ -184,19 +209,23 @@ Status RecordCheck::check(const SceneRecord& s) const {
                 fmt::format("a scene gives {} joint positions, its robot has {} drives",
                             s.joints.count, r.drives.count));
   }
-  PROBE_TRY(check_finite({&s.surface_z, 1}));
-  PROBE_TRY(check_finite(s.area));
+  PROBE_TRY(check_magnitude(slice_of(t.reals, s.joints), Magnitude::kJointPosition));
+  PROBE_TRY(check_magnitude(s.surface_z, Magnitude::kPlace));
+  PROBE_TRY(check_magnitude(s.area, Magnitude::kPlace));
   if (!(s.area[0] < s.area[2]) || !(s.area[1] < s.area[3])) {
     return fail(Rule::kArea, &s.area, "the area of a surface has a positive extent on each axis");
   }
+  for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
+    PROBE_TRY(check_magnitude(s.area[i + 2] - s.area[i], Magnitude::kExtent, s.area[i]));
   PROBE_TRY(check_positive(s.physics_hz, "a physics rate"));
+  PROBE_TRY(check_magnitude(s.physics_hz, Magnitude::kPhysicsRate));
   const double substeps = s.physics_hz / r.control_hz;
   if (!(substeps >= 1 && substeps <= kMaxSubsteps && substeps == std::floor(substeps))) {
     return fail(Rule::kSubsteps, &s.physics_hz,
                 fmt::format("a control step has a whole number of physics steps up to {}, not {}",
                             kMaxSubsteps, substeps));
   }
-  PROBE_TRY(check_not_negative(s.friction, "a friction"));
+  PROBE_TRY(check_friction(s.friction));
   return check_zero(s.zero2);
 }
 

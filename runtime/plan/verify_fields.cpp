@@ -142,6 +142,20 @@ Status FieldCheck::check_positive(const double& value, const char* what) const {
               fmt::format("{} is finite and greater than zero, not {}", what, value));
 }
 
+Status FieldCheck::check_magnitude(double value, Magnitude magnitude, const double& place) const {
+  const MagnitudeInfo& known = info(magnitude);
+  if (known.fits(value)) return {};
+  return fail(Rule::kMagnitude, &place,
+              fmt::format("{} is from {:g} to {:g}{}{}, not {:g}", known.what, known.least,
+                          known.most, known.unit.empty() ? "" : " ", known.unit, value));
+}
+
+Status FieldCheck::check_magnitude(std::span<const double> values, Magnitude magnitude) const {
+  PROBE_TRY(check_finite(values));
+  for (const double& value : values) PROBE_TRY(check_magnitude(value, magnitude, value));
+  return {};
+}
+
 Status RecordCheck::run() const {
 #define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored) PROBE_TRY(each(t.member));
 #include "runtime/plan/sections.def"

@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "runtime/base/result.h"
+#include "runtime/plan/magnitudes.h"
 #include "runtime/plan/tables.h"
 #include "runtime/plan/verify_place.h"
 
@@ -45,6 +46,14 @@ class FieldCheck {
   // Finite and at least 0, or greater than 0.
   Status check_not_negative(const double& value, const char* what) const;
   Status check_positive(const double& value, const char* what) const;
+
+  // Finite, and as large as magnitudes.def says.
+  Status check_magnitude(std::span<const double> values, Magnitude magnitude) const;
+  Status check_magnitude(const double& value, Magnitude magnitude) const {
+    return check_magnitude({&value, 1}, magnitude);
+  }
+  // Of what is computed from the field at `place`.
+  Status check_magnitude(double value, Magnitude magnitude, const double& place) const;
 
   // No two records of a table have one name.
   template <typename Record>

@@ -33,6 +33,10 @@ class RecordCheck : FieldCheck {
     return {};
   }
 
+  // Not negative, and of a magnitude that friction and lengths have.
+  Status check_friction(const double& value) const;
+  Status check_length(const double& value, const char* what) const;
+
   Status check(const AssetRecord& asset) const;
   Status check(const ObjectRecord& object) const;
   Status check(const RobotRecord& robot) const;

@@ -77,7 +77,7 @@ Status RecordCheck::check(const BodyRecord& b) const {
 Status RecordCheck::check(const PlacementRecord& p) const {
   PROBE_TRY(check_index(p.object, t.objects.size(), "OBJT"));
   PROBE_TRY(check_zero(p.zero));
-  PROBE_TRY(check_finite(p.position));
+  PROBE_TRY(check_magnitude(p.position, Magnitude::kPlace));
   return check_unit(p.rotation, "the rotation of a placement");
 }
 
@@ -103,7 +103,7 @@ Status RecordCheck::check(const TaskRecord& k) const {
     return fail(Rule::kOod, &k.ood, fmt::format("ood bits {:#x} are not all known", k.ood));
   PROBE_TRY(check_zero(k.zero));
   PROBE_TRY(check_text(k.allow));
-  PROBE_TRY(check_not_negative(k.drop, "a drop"));
+  PROBE_TRY(check_length(k.drop, "a drop"));
   PROBE_TRY(check_not_negative(k.settle, "a settling time"));
   if (k.settle > kMaxSettle)
     return fail(Rule::kSettle, &k.settle,

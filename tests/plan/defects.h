@@ -170,6 +170,37 @@ inline std::vector<Defect> catalogue_defects() {
       {"CAMR", "pixels a side", [](Records& r, Writer&) { r.cameras[0].width = 0; }},
       {"CAMR", "samples", [](Records& r, Writer&) { r.cameras[0].samples = 9; }},
       {"CAMR", "focal", [](Records& r, Writer&) { r.cameras[0].fy = 0; }},
+      {"CAMR", "a focal length is from", [](Records& r, Writer&) { r.cameras[0].fx = 5e-324; }},
+      {"CAMR", "a focal length is from", [](Records& r, Writer&) { r.cameras[0].fy = 1e300; }},
+      {"CAMR", "the middle of a picture", [](Records& r, Writer&) { r.cameras[0].cx = -1e308; }},
+      {"CAMR", "a coordinate", [](Records& r, Writer&) { r.cameras[0].position[2] = 1e9; }},
+      {"CAMR", "the length of a direction",
+       [](Records& r, Writer&) {
+         r.cameras[0].aim_values = {1e-200, 0, 0, 0};
+       }},
+      {"SUNS", "the length of a direction",
+       [](Records& r, Writer&) {
+         r.suns[0].direction = {1e300, 1e300, 0};
+       }},
+      {"SUNS", "a light's strength", [](Records& r, Writer&) { r.suns[0].power = 1e39; }},
+      {"LITE", "a light's strength", [](Records& r, Writer&) { r.lights[0].ambient = 1e7; }},
+      {"SCNE", "a coordinate", [](Records& r, Writer&) { r.scenes[0].base_position[1] = 1e308; }},
+      {"SCNE", "a coordinate", [](Records& r, Writer&) { r.scenes[0].surface_z = -1e4; }},
+      {"SCNE", "an extent",
+       [](Records& r, Writer&) {
+         r.scenes[0].area = {0, 0, 5e-324, 1};
+       }},
+      {"SCNE", "a friction", [](Records& r, Writer&) { r.scenes[0].friction = 1e10; }},
+      {"SCNE", "a physics rate", [](Records& r, Writer&) { r.scenes[0].physics_hz = 1e-300; }},
+      {"REAL", "a joint's position", [](Records& r, Writer&) { r.reals[0] = 1e6; }},
+      {"DRIV", "a drive's gain", [](Records& r, Writer&) { r.drives[0].stiffness = 1e20; }},
+      {"DRIV", "the limit of a drive", [](Records& r, Writer&) { r.drives[0].limit = 1e-300; }},
+      {"ROBT", "a control rate", [](Records& r, Writer&) { r.robots[0].control_hz = 1e-9; }},
+      {"ROBT", "a joint's position", [](Records& r, Writer&) { r.robots[0].grip_open = 1e5; }},
+      {"ROBT", "a length", [](Records& r, Writer&) { r.robots[0].reach_max = 1e5; }},
+      {"OBJT", "a density", [](Records& r, Writer&) { r.objects[0].density = 5e-324; }},
+      {"OBJT", "an extent",
+       [](Records& r, Writer&) { r.objects[0].box_max[1] = r.objects[0].box_min[1] + 1e-12; }},
       {"SUNS", "other than zero",
        [](Records& r, Writer&) {
          r.suns[0].direction = {0, 0, 0};
@@ -219,6 +250,8 @@ inline std::vector<Defect> task_defects() {
        [](Records& r, Writer&) {
          r.placements[0].rotation = {1, 1, 0, 0};
        }},
+      {"PLAC", "a coordinate", [](Records& r, Writer&) { r.placements[0].position[0] = 1e20; }},
+      {"TASK", "a length", [](Records& r, Writer&) { r.tasks[0].drop = 1e4; }},
       {"PLAC", "finite", [](Records& r, Writer&) { r.placements[0].position[2] = kInf; }},
       {"TASK", "two tasks are called",
        [](Records& r, Writer&) { r.tasks[1].name = r.tasks[0].name; }},

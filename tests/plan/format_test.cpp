@@ -2,6 +2,8 @@
 // that knows only the page finds in a file what Plan finds.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <cstring>
 #include <fstream>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "runtime/plan/axes.h"
+#include "runtime/plan/magnitudes.h"
 #include "runtime/plan/plan.h"
 #include "runtime/plan/readouts.h"
 #include "runtime/plan/rules.h"
@@ -329,5 +332,17 @@ TEST_CASE("a reader that knows the page alone finds what Plan finds") {
       CHECK(page_reader.number(at, 1) == code[i].op);
       CHECK(page_reader.number(at + 4, 2) == code[i].a);
     }
+  }
+}
+
+TEST_CASE("the page's magnitudes are the verifier's") {
+  for (const MagnitudeInfo& known : kMagnitudes) {
+    CAPTURE(known.what);
+    const std::string unit = known.unit.empty() ? "" : " " + std::string(known.unit);
+    const std::size_t row = page().find("| " + std::string(known.what));
+    REQUIRE(row != std::string::npos);
+    const std::string line = page().substr(row, page().find('\n', row) - row);
+    const std::string least = known.least == 0 ? "0" : fmt::format("{:g}{}", known.least, unit);
+    CHECK(line.ends_with(fmt::format("| {} | {:g}{} |", least, known.most, unit)));
   }
 }
