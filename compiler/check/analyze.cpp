@@ -55,6 +55,7 @@ Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& 
   Context context{sources, reporter, found, asset_root, model, files};
   collect_names(files, context.symbols, found);
   check_repeats(context);
+  check_allows(files, found);
   define_model(context);
   check_model({model, context.symbols, sources, files, roots, asset_root}, reporter);
   const bool lacks_names =

@@ -6,9 +6,11 @@ void check_model(const Checked& checked, Reporter& reporter) {
   const Model& model = checked.model;
   check_comparisons(model, reporter);
   check_phrases(model, reporter);
+  check_mentions(model, reporter);
   check_starts(model, reporter);
   check_metrics(model, reporter);
   check_expectations(model, reporter);
+  check_samples(model, reporter);
   check_tags(model, reporter);
   check_magnitudes(checked.symbols, reporter);
   check_boxes(model, checked.asset_root, reporter);

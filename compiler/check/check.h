@@ -29,9 +29,11 @@ void check_model(const Checked& checked, Reporter& reporter);
 
 void check_comparisons(const Model& model, Reporter& reporter);     // P0701-P0703
 void check_phrases(const Model& model, Reporter& reporter);         // P0401-P0407
+void check_mentions(const Model& model, Reporter& reporter);        // P0404
 void check_starts(const Model& model, Reporter& reporter);          // P0501-P0505
 void check_metrics(const Model& model, Reporter& reporter);         // P0604-P0605
 void check_expectations(const Model& model, Reporter& reporter);    // P0504, P0211
+void check_samples(const Model& model, Reporter& reporter);         // P0706
 void check_tags(const Model& model, Reporter& reporter);            // P0705
 void check_magnitudes(const Symbols& symbols, Reporter& reporter);  // P0303
 void check_boxes(const Model& model, const std::string& asset_root,

@@ -64,7 +64,7 @@ void check_edge(const Model& model, const Task& task, Reporter& reporter) {
   const Task& baseline = model.tasks[task.baseline];
   if (baseline.abstract) {
     reporter.report(
-        Code::P0703, task.baseline_span,
+        Situation::kAbstractBaseline, task.baseline_span,
         "`" + task.name + "` is compared with the abstract task `" + baseline.name + "`");
     return;
   }

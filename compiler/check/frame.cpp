@@ -46,7 +46,7 @@ void check_frame(const TaskStarts& starts) {
                               ? "lies " + std::to_string(static_cast<long>(std::ceil(most))) +
                                     " pixels outside the image of"
                               : "lies behind";
-  Diagnostic& said = starts.reporter.report(Code::P0505, starts.place({worst->object}),
+  Diagnostic& said = starts.reporter.report(Situation::kOutOfFrame, starts.place({worst->object}),
                                             "`" + starts.object(*worst).name + "` " + how + " `" +
                                                 camera.name + "` in `" + starts.task.name + "`; " +
                                                 std::to_string(bad) + " of " + std::to_string(all) +

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "compiler/check/check.h"
+#include "runtime/plan/limits.h"
 #include "runtime/plan/readouts.h"
 
 namespace probe::sema {
@@ -105,13 +106,26 @@ void check_success(const Model& model, Reporter& reporter, const Task& task,
   const bool is_condition = success != task.judged.end() && plan::info(success->readout).is_truth();
   if (is_condition || !reported.insert({place.file.value, place.begin}).second) return;
   if (success == task.judged.end()) {
-    reporter.report(Code::P0206, place, "metrics `" + metrics.name + "` have no `success`")
+    reporter
+        .report(Situation::kNoSuccess, place, "metrics `" + metrics.name + "` have no `success`")
         .label(task.span, "judged by them")
         .help("an episode is scored by `success = at end ...`");
   } else {
     reporter.report(Code::P0601, success->readout_span, "expected `success` to be true or false")
         .help("an episode is scored by it: " + words_of_truths() + " a condition");
   }
+}
+
+void check_count(const Model& model, Reporter& reporter, const Task& task,
+                 std::set<std::pair<std::uint32_t, std::uint32_t>>& reported) {
+  if (task.judged.size() <= plan::kMaxMetrics) return;
+  const Span& place = model.metrics[task.metrics].span;
+  if (!reported.insert({place.file.value, place.begin}).second) return;
+  reporter
+      .report(Situation::kTooManyMetrics, place,
+              "expected at most " + std::to_string(plan::kMaxMetrics) +
+                  " metrics of a task, found " + std::to_string(task.judged.size()))
+      .label(task.span, "judged by them");
 }
 
 }  // namespace
@@ -135,6 +149,7 @@ void check_metrics(const Model& model, Reporter& reporter) {
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
     check_success(model, reporter, task, without_success);
+    check_count(model, reporter, task, without_success);
     for (const Metric& metric : task.judged) {
       HoldFinder finder{model, task.horizon, {}};
       finder.visit(metric.expr);

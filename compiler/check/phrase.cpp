@@ -1,16 +1,16 @@
 // P04xx: every phrase must single out its referent among the objects of the task, and every
 // instruction must be a sentence that a policy can be given.
-#include <utf8proc.h>
-
 #include <algorithm>
-#include <cstdlib>
 #include <set>
 
 #include "compiler/check/check.h"
 #include "compiler/define/query.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
+#include "compiler/define/wording.h"
+#include "runtime/base/utf8.h"
 #include "runtime/plan/axes.h"
+#include "runtime/plan/text_rule.h"
 
 namespace probe::sema {
 namespace {
@@ -144,7 +144,8 @@ struct TaskLanguage {
       return slot.name.text == role || slot.name.text == model.objects[id].name;
     };
     if (is("source", task.source)) {
-      reporter.report(Code::P0404, slot.span, "the source cannot be the object to avoid");
+      reporter.report(Situation::kAvoidsSource, slot.span,
+                      "the source cannot be the object to avoid");
       return false;
     }
     if (!is("target", task.target) || task.baseline == TaskId::kNone) return true;
@@ -153,7 +154,7 @@ struct TaskLanguage {
         plan::moves(task.axes, plan::Axis::kGoal))
       return true;
     reporter
-        .report(Code::P0404, slot.span,
+        .report(Situation::kAvoidsTarget, slot.span,
                 "`" + task.name + "` says to avoid the target and is judged as `" + baseline.name +
                     "` is")
         .help("change the goal with the words, or avoid a distractor");
@@ -189,7 +190,7 @@ struct TaskLanguage {
                               std::string(slot.the && !object.bare ? "the " : "") +
                               object.text.text;
     Diagnostic& diagnostic = reporter.report(
-        Code::P0404, slot.span,
+        Situation::kAbsentSlot, slot.span,
         "\"" + words + "\" names an object that is not in the scene of `" + task.name + "`");
     const std::string other =
         task_with(objects.id(static_cast<std::size_t>(missing - objects.begin())));
@@ -215,37 +216,18 @@ struct TaskLanguage {
   void check_sentence() const {
     const Span& span = task.say_span.is_none() ? task.span : task.say_span;
     if (task.prompt.empty()) {
-      reporter.report(Code::P0406, span, "the instruction of `" + task.name + "` is empty");
+      reporter.report(Situation::kNoWords, span, "the instruction of `" + task.name + "` is empty");
     } else if (task.prompt.size() > kMaxPromptBytes) {
-      reporter.report(Code::P0406, span,
+      reporter.report(Situation::kPromptTooLong, span,
                       "the instruction of `" + task.name + "` is longer than " +
                           std::to_string(kMaxPromptBytes) + " bytes");
     } else if (task.prompt.find_first_of("{}") != std::string::npos) {
-      reporter.report(Code::P0406, span,
+      reporter.report(Situation::kBraces, span,
                       "braces are left in the instruction of `" + task.name + "`");
-    } else if (!is_nfc(task.prompt)) {
-      reporter.report(Code::P0406, span,
-                      "the instruction of `" + task.name + "` is not in composed form (NFC)");
+    } else if (const char* defect = plan::find_text_defect(task.prompt)) {
+      reporter.report(Situation::kPromptForm, span,
+                      "the instruction of `" + task.name + "` " + defect);
     }
-  }
-
-  static std::string fold_case(const std::string& text) {
-    utf8proc_uint8_t* folded = nullptr;
-    const auto size = utf8proc_map(
-        reinterpret_cast<const utf8proc_uint8_t*>(text.data()),
-        static_cast<utf8proc_ssize_t>(text.size()), &folded,
-        static_cast<utf8proc_option_t>(UTF8PROC_CASEFOLD | UTF8PROC_COMPOSE | UTF8PROC_STABLE));
-    if (size < 0) return text;
-    const std::string result(reinterpret_cast<const char*>(folded), static_cast<std::size_t>(size));
-    std::free(folded);
-    return result;
-  }
-  static bool is_nfc(const std::string& text) {
-    utf8proc_uint8_t* normal =
-        utf8proc_NFC(reinterpret_cast<const utf8proc_uint8_t*>(text.c_str()));
-    const bool same = normal != nullptr && text == reinterpret_cast<const char*>(normal);
-    std::free(normal);
-    return same;
   }
 };
 

@@ -26,7 +26,7 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
       char degrees[32];
       std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / 3.14159265358979);
       starts.reporter
-          .report(Code::P0502, starts.place({placed[i].object, placed[0].object}),
+          .report(Situation::kNoGrasp, starts.place({placed[i].object, placed[0].object}),
                   "`" + robot.name + "` cannot " +
                       (i == 0 ? "grasp `" + starts.object(placed[0]).name + "` from above"
                               : "place `" + starts.object(placed[0]).name + "` on `" +
@@ -53,7 +53,7 @@ bool check_reach(const TaskStarts& starts, Arms& arms) {
       const double away = std::sqrt(dx * dx + dy * dy);
       if (away >= robot.reach_min && away <= robot.reach_max) continue;
       starts.reporter
-          .report(Code::P0502, starts.place({placed.object}),
+          .report(Situation::kOutOfAnnulus, starts.place({placed.object}),
                   "`" + starts.object(placed).name + "` is " + centimetres(away) +
                       " from the base of `" + robot.name + "` in `" + starts.task.name +
                       "`, which reaches " + centimetres(robot.reach_min) + " to " +

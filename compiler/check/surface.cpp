@@ -16,7 +16,7 @@ bool check_surface(const TaskStarts& starts) {
           shape.centre.y - ry >= scene.area[1] && shape.centre.y + ry <= scene.area[3];
       if (inside) continue;
       starts.reporter
-          .report(Code::P0505, starts.place({placed.object}),
+          .report(Situation::kOverEdge, starts.place({placed.object}),
                   "`" + starts.object(placed).name + "` stands over the edge of `" + scene.name +
                       "` in `" + starts.task.name + "`")
           .point("episode " + std::to_string(e) + ": " + at(starts.object(placed), placed))

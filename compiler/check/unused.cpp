@@ -1,11 +1,11 @@
 // P0205: what a file of tasks declares and nothing mentions. A file that others use, or that has no
 // tasks of its own, is a library: what it offers need not be used by whoever checks it.
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <unordered_map>
 
 #include "compiler/check/check.h"
+#include "compiler/names/uses.h"
 
 namespace probe::sema {
 namespace {
@@ -55,17 +55,6 @@ bool declares_tasks(const syntax::File& file) {
   return false;
 }
 
-bool is_used_file(const Checked& checked, const syntax::File& file) {
-  const std::string own = std::filesystem::path(checked.sources.file(file.id).name()).filename();
-  for (const syntax::File* other : checked.files) {
-    for (const syntax::Decl& decl : other->decls) {
-      const auto* use = std::get_if<syntax::UseDecl>(&decl.node);
-      if (use != nullptr && std::filesystem::path(use->path.value).filename() == own) return true;
-    }
-  }
-  return false;
-}
-
 // Phrases may share a name over objects; one mention uses all of them. A `derive` over an axis
 // uses every phrase of it.
 struct PhraseUse {
@@ -111,7 +100,7 @@ void check_unused(const Checked& checked, Reporter& reporter) {
   for (const syntax::File* file : checked.files) {
     const bool is_root = std::any_of(checked.roots.begin(), checked.roots.end(),
                                      [&](FileId id) { return id.value == file->id.value; });
-    if (is_root && declares_tasks(*file) && !is_used_file(checked, *file)) files.push_back(file);
+    if (is_root && declares_tasks(*file) && !is_used(checked.files, *file)) files.push_back(file);
   }
   if (files.empty()) return;
   Counts words;

@@ -28,6 +28,7 @@ std::optional<std::uint32_t> find_value(Context& context, AttributeId attribute,
   }
   Diagnostic& diagnostic = context.report(Code::P0204, value.span,
                                           "`" + std::string(value.text) + "` is no " + record.name);
+  diagnostic.subject = record.name + " " + std::string(value.text);
   if (const auto near = nearest(value.text, candidates)) {
     diagnostic.point("did you mean `" + std::string(*near) + "`?")
         .fix_by("write `" + std::string(*near) + "`", value.span, std::string(*near));

@@ -4,6 +4,8 @@
 
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
+#include "compiler/define/wording.h"
+#include "compiler/model/same.h"
 #include "compiler/names/name_table.h"
 #include "runtime/plan/axes.h"
 
@@ -111,47 +113,13 @@ bool same_scene(const Scene& a, const Scene& b) {
          a.friction == b.friction;
 }
 
-bool same_goal(const Task& a, const Task& b) {
-  return a.horizon == b.horizon && std::equal(a.judged.begin(), a.judged.end(), b.judged.begin(),
-                                              b.judged.end(), [](const Metric& p, const Metric& q) {
-                                                return p.name == q.name && p.readout == q.readout &&
-                                                       p.expr == q.expr;
-                                              });
-}
-
-// What is said apart from articles and from the words chosen for an object: the literal words with
-// the object that stands between them.
-std::vector<std::string> skeleton(const Model& model, const Task& task) {
-  std::vector<std::string> words;
-  for (const Template::Part& part : model.templates[task.say].parts) {
-    if (part.slot) {
-      const std::string& name = part.slot->name.text;
-      const bool is_role = name == "source" || name == "target";
-      const ObjectId role = name == "source" ? task.source : task.target;
-      // An object that fills a role is that role, however the text names it.
-      std::string object = is_role ? model.objects[role].name : name;
-      if (object == model.objects[task.source].name) object = "{source";
-      if (object == model.objects[task.target].name) object = "{target";
-      words.push_back(std::move(object));
-      continue;
-    }
-    const std::string& text = part.literal;
-    for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
-      const std::size_t end = std::min(text.find(' ', at), text.size());
-      std::string word = text.substr(at, end - at);
-      if (word != "the" && word != "a" && word != "an") words.push_back(std::move(word));
-      at = end;
-    }
-  }
-  return words;
-}
-
-// Another verb or a negation brings its own words; without them, other words are a paraphrase.
-bool says_otherwise(const Model& model, const Task& a, const Task& b) {
-  const Template& first = model.templates[a.say];
-  const Template& second = model.templates[b.say];
-  return first.frame == second.frame && has_negation(first) == has_negation(second) &&
-         skeleton(model, a) != skeleton(model, b);
+bool same_goal(const Model& model, const Task& a, const Task& b) {
+  return a.horizon == b.horizon &&
+         std::equal(a.judged.begin(), a.judged.end(), b.judged.begin(), b.judged.end(),
+                    [&](const Metric& p, const Metric& q) {
+                      return p.name == q.name && p.readout == q.readout &&
+                             same_expression(model, p.expr, q.expr);
+                    });
 }
 
 bool is_seen(const Object& object) { return !object.seen_in.empty(); }
@@ -165,7 +133,7 @@ bool is_same_body(const Object& a, const Object& b) {
 // Whether a policy hears, sees and is judged by the same, whatever declarations say it.
 bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
   const Layout& layout = model.layouts[a.layout];
-  if (!same_goal(a, b) || !same_layout(layout, model.layouts[b.layout]) ||
+  if (!same_goal(model, a, b) || !same_layout(layout, model.layouts[b.layout]) ||
       (a.scene != b.scene && !same_scene(model.scenes[a.scene], model.scenes[b.scene])) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) || a.distractors.size() != b.distractors.size())
@@ -220,7 +188,7 @@ class Comparison {
       case plan::Axis::kDistractors:
         return sorted(task_.distractors) != sorted(baseline_.distractors);
       case plan::Axis::kLanguageAction:
-        return say.frame != said.frame;
+        return asks_otherwise(model_, task_, baseline_);
       case plan::Axis::kLanguageNegation:
         return has_negation(say) != has_negation(said);
       case plan::Axis::kLanguageAppearance:
@@ -228,7 +196,7 @@ class Comparison {
         return phrase_moves(axis, syntax::Role::kSource) ||
                phrase_moves(axis, syntax::Role::kTarget);
       case plan::Axis::kLanguageParaphrase:
-        return says_otherwise(model_, task_, baseline_);
+        return is_reworded(model_, task_, baseline_);
       case plan::Axis::kLayout:
         return !same_layout(model_.layouts[task_.layout], model_.layouts[baseline_.layout]) ||
                !same_poses(model_, task_, baseline_);
@@ -245,7 +213,7 @@ class Comparison {
         return (!scene_moves_ || !task_.cameras.empty() || !baseline_.cameras.empty()) &&
                !same_cameras(model_, task_, baseline_);
       case plan::Axis::kGoal:
-        return !same_goal(task_, baseline_);
+        return !same_goal(model_, task_, baseline_);
     }
     return false;
   }
@@ -337,14 +305,14 @@ bool uses(const Model& model, const Task& task, plan::Axis axis) {
   const Task& root = root_of(model, task);
   switch (axis) {
     case plan::Axis::kLanguageAction:
-      return root.complete && model.templates[task.say].frame != model.templates[root.say].frame;
+      return root.complete && asks_otherwise(model, task, root);
     case plan::Axis::kLanguageNegation:
       return has_negation(model.templates[task.say]);
     case plan::Axis::kLanguageAppearance:
     case plan::Axis::kLanguageCommonsense:
       return has_phrase(model, task, axis);
     case plan::Axis::kLanguageParaphrase:
-      return root.complete && says_otherwise(model, task, root);
+      return root.complete && is_reworded(model, task, root);
     case plan::Axis::kObjectSource:
     case plan::Axis::kObjectTarget:
     case plan::Axis::kDistractors:

@@ -6,11 +6,10 @@
 #include "compiler/define/record.h"
 #include "compiler/define/robot.h"
 #include "compiler/names/quantities.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 namespace {
-
-constexpr std::uint32_t kLargestSide = 8192;  // of a picture as it is traced
 
 struct CameraReader {
   Context& context;
@@ -18,7 +17,8 @@ struct CameraReader {
 
   void operator()(const syntax::MountStmt& stmt) {
     if (stmt.frame.parts.size() != 2) {
-      context.report(Code::P0201, stmt.frame.span, "expected `robot.link` to mount the camera on");
+      context.report(Situation::kMountPath, stmt.frame.span,
+                     "expected `robot.link` to mount the camera on");
     } else {
       const auto robot = context.symbols.robots.find(stmt.frame.parts[0], context.diagnostics);
       camera.mount_link = spelled(stmt.frame.parts[1]);
@@ -41,11 +41,12 @@ struct CameraReader {
     const auto is_zero = [](double value) { return value == 0; };
     if (aim && looks && std::all_of(values.begin(), values.end(), is_zero)) {
       context
-          .report(Code::P0304, stmt.direction.span, "a camera looks along a direction, found none")
+          .report(Situation::kNoDirection, stmt.direction.span,
+                  "a camera looks along a direction, found none")
           .help("a direction is a vector, such as `look (1, 0, -1)`");
     } else if (aim && looks && values[0] == 0 && values[1] == 0) {
       context
-          .report(Code::P0304, stmt.direction.span,
+          .report(Situation::kVerticalView, stmt.direction.span,
                   "the view is vertical, which leaves its roll open")
           .help("give the orientation with `quat`");
     }
@@ -57,7 +58,7 @@ struct CameraReader {
     for (const double value : camera.aim_values) squares += value * value;
     const double length = std::sqrt(squares);
     if (std::abs(length - 1) > 1e-3) {
-      context.report(Code::P0304, span,
+      context.report(Situation::kNotUnit, span,
                      "expected a unit quaternion (w, x, y, z), found one of another length");
       return;
     }
@@ -70,16 +71,17 @@ struct CameraReader {
     if (!stmt.samples) return;
     const auto samples = stmt.samples->value;
     if (samples != 1 && samples != 4 && samples != 16) {
-      context.report(Code::P0304, stmt.samples->span, "expected 1, 4 or 16 samples a pixel");
+      context.report(Situation::kSampleCount, stmt.samples->span,
+                     "expected 1, 4 or 16 samples a pixel");
       return;
     }
     // The renderer traces a picture of all samples and averages it.
     const std::uint32_t across = samples == 16 ? 4 : samples == 4 ? 2 : 1;
-    if (std::max(camera.width, camera.height) * across > kLargestSide) {
-      context.report(Code::P0304, stmt.samples->span,
+    if (std::max(camera.width, camera.height) * across > plan::kMaxPixels) {
+      context.report(Situation::kImageTooLarge, stmt.samples->span,
                      "with " + std::to_string(samples) +
                          " samples a pixel an image side is at most " +
-                         std::to_string(kLargestSide / across) + " pixels");
+                         std::to_string(plan::kMaxPixels / across) + " pixels");
       return;
     }
     if (samples > 1) camera.samples = static_cast<std::uint32_t>(samples);
@@ -98,9 +100,11 @@ struct CameraReader {
     }
   }
   std::uint32_t size(const syntax::Int& value) {
-    if (value.value >= 1 && value.value <= kLargestSide)
+    if (value.value >= 1 && value.value <= plan::kMaxPixels)
       return static_cast<std::uint32_t>(value.value);
-    context.report(Code::P0304, value.span, "expected an image side between 1 and 8192 pixels");
+    context.report(
+        Situation::kImageTooLarge, value.span,
+        "expected an image side between 1 and " + std::to_string(plan::kMaxPixels) + " pixels");
     return 1;
   }
 };

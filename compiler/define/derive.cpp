@@ -7,16 +7,15 @@
 #include "compiler/define/set.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::sema {
 namespace {
 
 bool is_identifier(const std::string& text) {
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-  };
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
-    return is_letter(c) || (c >= '0' && c <= '9');
+    return is_letter(c) || c == '_' || (c >= '0' && c <= '9');
   });
 }
 
@@ -89,7 +88,9 @@ class Derive {
       fits = false;
     }
     if (tasks_ != nullptr) return fits;
-    context_.report(Code::P0206, node_.name.text.span, "this `derive` goes over no set of tasks")
+    context_
+        .report(Situation::kStatementMissing, node_.name.text.span,
+                "this `derive` goes over no set of tasks")
         .help("add a binder such as `for t in tasks`");
     return false;
   }
@@ -97,7 +98,7 @@ class Derive {
   bool check_frame(const syntax::Name& frame) {
     std::vector<std::string_view> frames;
     for (const Template& known : context_.model.templates) {
-      if (known.frame == frame.text) return true;
+      if (known.frame == fold_case(frame.text)) return true;
       if (!known.name.empty() &&
           std::find(frames.begin(), frames.end(), known.frame) == frames.end())
         frames.push_back(known.frame);
@@ -224,7 +225,7 @@ class Derive {
       Task other = base;
       for (std::size_t i = 0; i < declared.size(); ++i) {
         other.say = static_cast<TemplateId>(i);
-        if (model.templates[other.say].frame == templates->frame.text &&
+        if (model.templates[other.say].frame == fold_case(templates->frame.text) &&
             axes_between(model, other, base) != 0)
           values.push_back(declared[i].text);
       }
@@ -286,7 +287,7 @@ class Derive {
   }
 
   bool report_limit() {
-    context_.report(Code::P0210, node_.name.text.span,
+    context_.report(Situation::kTooManyTasks, node_.name.text.span,
                     "the suite grows beyond " + std::to_string(kMaxTasks) + " tasks here");
     return false;
   }

@@ -92,7 +92,8 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprNumber& number
   if (number.value.unit == syntax::Unit::kUnknown) return poison(span);
   const auto quantity = make_quantity(number.value.digits, to_text(number.value.unit));
   if (!quantity) {
-    context_.report(Code::P0304, span, "more digits or a larger exponent than is kept");
+    context_.report(Situation::kTooManyDigits, span,
+                    "more digits or a larger exponent than is kept");
     return poison(span);
   }
   arena().quantities.push_back(*quantity);

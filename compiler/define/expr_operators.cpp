@@ -114,7 +114,7 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprHold& hold) {
   const ExprRef operand = condition(hold.operand);
   if (is_poison(operand)) return operand;
   if (hold.steps.value < 1 || hold.steps.value > 65535) {
-    context_.report(Code::P0304, hold.steps.span, "expected 1 to 65535 steps");
+    context_.report(Situation::kHoldLength, hold.steps.span, "expected 1 to 65535 steps");
     return poison(span);
   }
   return add(ExprOp::kHold, bool_type(), hold.for_span, {operand},

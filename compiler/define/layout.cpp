@@ -1,28 +1,36 @@
 // `layout`: cells, places and turns as written. What starts they give is starts.cpp.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 namespace {
 
 // centre - spread + 2 spread i / (n - 1), in exact decimals wherever the result is one, rounded
-// once.
+// once. Decimals that are too long for that are calculated in doubles.
 double grid_coordinate(const Decimal& centre, const Decimal& spread, std::uint64_t i,
                        std::uint64_t n) {
   if (n == 1) return centre.to_double();
   const int steps = static_cast<int>(n - 1);
-  const Decimal sum = centre * steps + spread * (2 * static_cast<int>(i) - steps);
+  const int at = 2 * static_cast<int>(i) - steps;
+  const auto whole = times(centre, steps), part = times(spread, at);
+  const auto sum = whole && part ? plus(*whole, *part) : std::nullopt;
+  if (!sum) return centre.to_double() + spread.to_double() * at / steps;
   // A few more decimal places turn a half, a quarter or a fifth of a step into a decimal too.
-  Decimal finer = sum;
-  for (int digits = 0; digits < 4; ++digits, finer.mantissa *= 10, --finer.exponent) {
-    if (finer.mantissa % steps == 0)
-      return Decimal{finer.mantissa / steps, finer.exponent}.to_double();
+  std::optional<Decimal> finer = sum;
+  for (int digits = 0; digits < 4 && finer; ++digits) {
+    if (finer->mantissa % steps == 0)
+      return Decimal{finer->mantissa / steps, finer->exponent}.to_double();
+    finer = times(*finer, 10);
+    if (finer) --finer->exponent;
   }
   // A third of a step is no decimal: round the numerator and the quotient.
-  return sum.to_double() / steps;
+  return sum->to_double() / steps;
 }
 
 struct LayoutReader {
@@ -32,20 +40,22 @@ struct LayoutReader {
 
   void operator()(const syntax::CellsStmt& stmt) {
     Cells cells{std::string(stmt.name.text), stmt.span, {}, {}};
-    const auto at = read_point(context, stmt.at, 2, 2, dim::kLength, "`grid ... at` takes lengths");
+    const auto at = read_point(context, stmt.at, 2, 2, dim::kLength,
+                               Takes::places("`grid ... at` takes lengths"));
     const bool fits =
         stmt.nx.value >= 1 && stmt.ny.value >= 1 && stmt.nx.value <= 1000 && stmt.ny.value <= 1000;
     if (!fits)
-      context.report(Code::P0304, join(stmt.nx.span, stmt.ny.span),
+      context.report(Situation::kGridSide, join(stmt.nx.span, stmt.ny.span),
                      "expected 1 to 1000 cells a side");
     for (const syntax::Point& point : stmt.spreads) {
-      const auto spread = read_point(context, point, 2, 2, dim::kLength, "`spread` takes lengths");
+      const auto spread =
+          read_point(context, point, 2, 2, dim::kLength, Takes::places("`spread` takes lengths"));
       if (!spread || !at || !fits) continue;
       const auto is_flat = [&](std::size_t axis, std::uint64_t side) {
         return side > 1 && (*spread)[axis].si() == 0;
       };
       if (is_flat(0, stmt.nx.value) || is_flat(1, stmt.ny.value)) {
-        context.report(Code::P0304, point.span, "cells of one row lie in the same place")
+        context.report(Situation::kFlatGrid, point.span, "cells of one row lie in the same place")
             .help("a side of more than one cell needs a spread");
         continue;
       }
@@ -94,8 +104,8 @@ struct LayoutReader {
     Place record;
     record.span = stmt.span;
     record.what = placed_names(stmt.names);
-    if (const auto at =
-            read_point(context, stmt.at, 2, 2, dim::kLength, "`place ... at` takes lengths")) {
+    if (const auto at = read_point(context, stmt.at, 2, 2, dim::kLength,
+                                   Takes::places("`place ... at` takes lengths"))) {
       record.at = {(*at)[0].si(), (*at)[1].si()};
     }
     place(std::move(record));
@@ -139,23 +149,24 @@ struct LayoutReader {
         read_si(context, stmt.value, dim::kLength, "`jitter` takes a length").value_or(0);
     layout.jitter_span = stmt.value.span;
     if (layout.jitter >= 0) return;
-    context.report(Code::P0304, stmt.value.span, "expected a jitter of 0 or more");
+    context.report(Situation::kNegative, stmt.value.span, "expected a jitter of 0 or more");
     layout.jitter = 0;
   }
   void operator()(const syntax::DropStmt& stmt) {
     layout.has_drop = true;
     layout.drop = read_si(context, stmt.height, dim::kLength, "`drop` takes a height").value_or(0);
     if (layout.drop < 0)
-      context.report(Code::P0304, stmt.height.span, "objects are dropped from above the surface");
+      context.report(Situation::kNegative, stmt.height.span,
+                     "objects are dropped from above the surface");
     if (!stmt.settle) return;
     // A phase of the drop; a minute is far beyond what any object needs and still quick to
     // simulate.
-    constexpr double kLongestSettle = 60;
     layout.settle =
         read_positive(context, *stmt.settle, dim::kTime, "`settle` takes a time").value_or(1);
-    if (layout.settle > kLongestSettle)
-      context.report(Code::P0304, stmt.settle->span,
-                     "expected at most 60s to settle, found `" +
+    if (layout.settle > plan::kMaxSettle)
+      context.report(Situation::kSettleTooLong, stmt.settle->span,
+                     "expected at most " + fmt::format("{:g}", plan::kMaxSettle) +
+                         "s to settle, found `" +
                          std::string(context.sources.text(stmt.settle->span)) + "`");
   }
   void operator()(const syntax::ExpectEpisodesStmt& stmt) {
@@ -167,10 +178,14 @@ struct LayoutReader {
 // Objects are put down before an episode and judged when they lie still.
 void require_rest(Context& context, const Layout& layout) {
   if (!layout.has_drop) {
-    context.report(Code::P0206, layout.span, "layout `" + layout.name + "` has no `drop`")
+    context
+        .report(Situation::kStatementMissing, layout.span,
+                "layout `" + layout.name + "` has no `drop`")
         .help("write how objects are put down, such as `drop 50cm settle 0.5s`");
   } else if (layout.settle == 0) {
-    context.report(Code::P0206, layout.span, "layout `" + layout.name + "` has no `settle`")
+    context
+        .report(Situation::kStatementMissing, layout.span,
+                "layout `" + layout.name + "` has no `settle`")
         .help("without time to come to rest, such as `settle 0.5s`, objects are judged in the air");
   }
 }

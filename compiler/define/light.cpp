@@ -2,6 +2,7 @@
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 
@@ -27,11 +28,11 @@ void define_lights(Context& context) {
         light.ambient =
             read_si(context, ambient->value, dim::kNumber, "`ambient` takes a number").value_or(0);
         if (light.ambient < 0)
-          context.report(Code::P0304, ambient->value.span,
+          context.report(Situation::kNegative, ambient->value.span,
                          "expected an ambient light of 0 or more");
         if (!ambient->occlusion) continue;
         if (ambient->occlusion->value < 1 || ambient->occlusion->value > plan::kMaxOcclusion) {
-          context.report(Code::P0304, ambient->occlusion->span,
+          context.report(Situation::kOcclusionRays, ambient->occlusion->span,
                          "expected 1 to 16 rays to find how open a place is");
           continue;
         }
@@ -43,12 +44,16 @@ void define_lights(Context& context) {
       assign(sun.direction, read_point(context, written.direction, 3, 3, dim::kNumber,
                                        "`sun` takes a direction of plain numbers"));
       if (sun.direction == std::array<double, 3>{})
-        context.report(Code::P0304, written.direction.span,
+        context.report(Situation::kNoDirection, written.direction.span,
                        "a sun shines along a direction, found none");
       sun.power =
           read_positive(context, written.power, dim::kNumber, "`power` takes a number").value_or(1);
       sun.shadow = written.shadow ? 1 : 0;
       light.suns.push_back(sun);
+      if (light.suns.size() == plan::kMaxSuns + 1) {
+        context.report(Situation::kTooManySuns, written.span,
+                       "expected at most " + std::to_string(plan::kMaxSuns) + " suns in a light");
+      }
     }
     context.model.lights.add(std::move(light));
   }

@@ -6,6 +6,7 @@
 #include "compiler/define/define.h"
 #include "compiler/define/expr.h"
 #include "compiler/define/record.h"
+#include "compiler/names/texts.h"
 #include "runtime/plan/readouts.h"
 
 namespace probe::sema {
@@ -13,6 +14,7 @@ Metric read_metric(Context& context, const syntax::File& file, const syntax::Met
   Metric metric;
   metric.name = std::string(stmt.name.text);
   metric.span = stmt.name.span;
+  check_name(context.diagnostics, stmt.name);
   metric.readout = stmt.readout.kind;
   metric.readout_span = stmt.readout.span;
   ExprReader reader(context, file);

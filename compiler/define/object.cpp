@@ -5,6 +5,7 @@
 #include "compiler/define/query.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
+#include "compiler/names/texts.h"
 
 namespace probe::sema {
 namespace {
@@ -60,7 +61,7 @@ struct ObjectReader {
       object.box_min[i] = (*low)[i].si();
       object.box_max[i] = (*high)[i].si();
       if (object.box_min[i] < object.box_max[i]) continue;
-      context.report(Code::P0304, stmt.span,
+      context.report(Situation::kCornersSwapped, stmt.span,
                      "the second corner of a box lies above the first on every axis");
       return;
     }
@@ -97,7 +98,8 @@ struct ObjectReader {
   void operator()(const syntax::NameStmt& stmt) {
     object.text = spelled(stmt.text);
     if (object.text.text.find_first_not_of(' ') == std::string::npos)
-      context.report(Code::P0406, object.text.span, "an object's name has no words");
+      context.report(Situation::kNoWords, object.text.span, "an object's name has no words");
+    check_text(context.diagnostics, object.text, "an object's name");
     object.bare = stmt.bare;
   }
   void operator()(const syntax::PhraseStmt& stmt) {
@@ -108,6 +110,7 @@ struct ObjectReader {
                   {},
                   {}};
     if (const auto axis = phrase_axis(context.diagnostics, stmt.axis)) phrase.axis = *axis;
+    check_text(context.diagnostics, phrase.text, "a phrase");
     if (!compile_query(context, file, stmt.means, phrase.means)) return;
     phrase.means_text = std::string(context.sources.text(file[stmt.means].span));
     for (Phrase& known : object.phrases) {

@@ -16,7 +16,7 @@ namespace probe::sema {
 inline void require(Context& context, bool is_there, std::string_view kind, const std::string& name,
                     const Span& span, std::string_view statement) {
   if (is_there) return;
-  context.report(Code::P0206, span,
+  context.report(Situation::kStatementMissing, span,
                  std::string(kind) + " `" + name + "` has no `" + std::string(statement) + "`");
 }
 

@@ -3,10 +3,12 @@
 #include "compiler/define/robot.h"
 
 #include <filesystem>
+#include <set>
 
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 namespace {
@@ -19,7 +21,7 @@ struct RobotReader {
   void check_above_zero(const syntax::Quantity& written, double value, const char* why) {
     if (value > 0) return;
     context
-        .report(Code::P0304, written.span,
+        .report(Situation::kNotPositive, written.span,
                 "expected a value above zero, found `" +
                     std::string(context.sources.text(written.span)) + "`")
         .point(why);
@@ -40,11 +42,11 @@ struct RobotReader {
       robot.fingers.push_back(std::move(record));
     }
     if (robot.fingers.size() == 2 && robot.fingers[0].link.text == robot.fingers[1].link.text) {
-      context.report(Code::P0304, stmt.fingers[1].link.span,
+      context.report(Situation::kFingerCount, stmt.fingers[1].link.span,
                      "expected two fingers, found `" + robot.fingers[0].link.text + "` twice");
     }
     if (robot.fingers.size() != 2) {
-      context.report(Code::P0304, stmt.span,
+      context.report(Situation::kFingerCount, stmt.span,
                      "expected 2 fingers, found " + std::to_string(robot.fingers.size()));
     }
   }
@@ -62,7 +64,7 @@ struct RobotReader {
     robot.reach_max =
         read_positive(context, stmt.most, dim::kLength, "`reach` takes lengths").value_or(1);
     if (robot.reach_min >= 0 && robot.reach_min < robot.reach_max) return;
-    context.report(Code::P0304, stmt.span,
+    context.report(Situation::kReachOrder, stmt.span,
                    "expected the nearest reach below the farthest, both from 0, found `" +
                        std::string(context.sources.text(stmt.span)) + "`");
   }
@@ -98,6 +100,11 @@ struct RobotReader {
       }
       drive.joint = spelled(joint);
       robot.drives.push_back(drive);
+      if (robot.drives.size() == plan::kMaxDrives + 1) {
+        context.report(
+            Situation::kTooManyDrives, joint.span,
+            "expected at most " + std::to_string(plan::kMaxDrives) + " drives of a robot");
+      }
     }
   }
   void operator()(const syntax::GripStmt& stmt) {
@@ -106,7 +113,7 @@ struct RobotReader {
         read_si(context, stmt.closed, dim::kLength, "`grip` takes lengths").value_or(0);
     robot.grip_open = read_si(context, stmt.open, dim::kLength, "`grip` takes lengths").value_or(1);
     if (robot.grip_closed >= robot.grip_open) {
-      context.report(Code::P0304, stmt.span,
+      context.report(Situation::kGripOrder, stmt.span,
                      "expected the closed position below the open one, found `" +
                          std::string(context.sources.text(stmt.span)) + "`");
     }
@@ -115,9 +122,12 @@ struct RobotReader {
           read_positive(context, *stmt.friction, dim::kNumber, "`friction` takes a number")
               .value_or(1);
     }
-    if (stmt.patch)
-      robot.finger_patch =
-          read_si(context, *stmt.patch, dim::kLength, "`patch` takes a length").value_or(0);
+    if (!stmt.patch) return;
+    robot.finger_patch =
+        read_si(context, *stmt.patch, dim::kLength, "`patch` takes a length").value_or(0);
+    if (robot.finger_patch < 0)
+      context.report(Situation::kNegative, stmt.patch->span,
+                     "expected a patch radius of 0 or more");
   }
 };
 
@@ -176,7 +186,7 @@ void check_fingers(Context& context, const Robot& robot) {
     const robot::Joint& joint = robot.model->joints[static_cast<std::size_t>(above)];
     if (joint.kind == robot::JointKind::kPrismatic && joint.axis.dot(opens) < 0) {
       context
-          .report(Code::P0304, finger.link.span,
+          .report(Situation::kFingerDirection, finger.link.span,
                   "finger `" + finger.link.text + "` is said to open against its joint's motion")
           .point("`" + joint.name + "` moves it the other way as its position grows")
           .label(robot.urdf.span, "the joint is described here");
@@ -188,9 +198,21 @@ void check_fingers(Context& context, const Robot& robot) {
   }
   if (ways.size() != 2 || ways[0].dot(ways[1]) < 0.9) return;
   context
-      .report(Code::P0304, robot.fingers[1].link.span,
+      .report(Situation::kFingerDirection, robot.fingers[1].link.span,
               "expected fingers that open apart, found both opening in one direction")
       .label(robot.fingers[0].link.span, "opens the same way");
+}
+
+void check_mesh_count(Context& context, const Robot& robot) {
+  std::set<std::string> files;
+  for (const robot::Link& link : robot.model->links) {
+    for (const robot::MeshRef& mesh : link.visuals) files.insert("visual " + mesh.path);
+    for (const robot::MeshRef& mesh : link.collisions) files.insert("collision " + mesh.path);
+  }
+  if (files.size() <= plan::kMaxMeshes) return;
+  context.report(Situation::kTooManyMeshes, robot.urdf.span,
+                 "expected at most " + std::to_string(plan::kMaxMeshes) +
+                     " meshes in a robot description, found " + std::to_string(files.size()));
 }
 
 void load_model(Context& context, Robot& robot) {
@@ -198,12 +220,13 @@ void load_model(Context& context, Robot& robot) {
   auto model = robot::load_urdf(path);
   if (!model.ok()) {
     context
-        .report(Code::P0202, robot.urdf.span,
+        .report(Situation::kUrdfUnreadable, robot.urdf.span,
                 "the robot description cannot be read: " + model.failure().message)
         .note("looked for `" + robot.urdf.text + "` in the assets folder");
     return;
   }
   robot.model = std::move(model).value();
+  check_mesh_count(context, robot);
   check_link(context, robot.tcp, robot);
   for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);
   for (const Drive& drive : robot.drives) check_drive(context, drive, robot);

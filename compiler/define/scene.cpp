@@ -6,6 +6,8 @@
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
+#include "compiler/names/texts.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 namespace {
@@ -50,7 +52,7 @@ struct SceneReader {
     if (!low || !high) return;
     scene.area = {(*low)[0].si(), (*low)[1].si(), (*high)[0].si(), (*high)[1].si()};
     if (scene.area[0] < scene.area[2] && scene.area[1] < scene.area[3]) return;
-    context.report(Code::P0304, join(stmt.low.span, stmt.high.span),
+    context.report(Situation::kCornersSwapped, join(stmt.low.span, stmt.high.span),
                    "the second corner of an area lies above the first on both axes");
   }
   void operator()(const syntax::FixtureStmt& stmt) {
@@ -71,6 +73,7 @@ struct SceneReader {
       View view;
       const syntax::Name& name = written.as ? *written.as : written.camera;
       view.name = std::string(name.text);
+      check_name(context.diagnostics, name);
       view.span = name.span;
       view.camera = static_cast<CameraId>(*camera);
       view.is_named = written.as.has_value();
@@ -78,7 +81,7 @@ struct SceneReader {
       add_view(std::move(view));
     }
     if (scene.views.size() > plan::kMaxViews) {
-      context.report(Code::P0304, stmt.span,
+      context.report(Situation::kTooManyViews, stmt.span,
                      "expected at most " + std::to_string(plan::kMaxViews) +
                          " cameras in a scene, found " + std::to_string(scene.views.size()));
     }
@@ -125,7 +128,7 @@ void check_joint_limits(Context& context, const Scene& scene, const Robot& robot
     const double q = scene.joints[i].si();
     if (q >= joint.lower - kRounding && q <= joint.upper + kRounding) continue;
     context
-        .report(Code::P0304, scene.joints_span,
+        .report(Situation::kJointLimit, scene.joints_span,
                 fmt::format("joint `{}` starts at {:.6g}, beyond its limits of {:.6g} and {:.6g}",
                             joint.name, q, joint.lower, joint.upper))
         .point("number " + std::to_string(i + 1));
@@ -136,7 +139,7 @@ void check_joints(Context& context, const Scene& scene) {
   if (scene.robot == RobotId::kNone || scene.joints_span.is_none()) return;
   const Robot& robot = context.model.robots[scene.robot];
   if (scene.joints.size() != robot.drives.size()) {
-    context.report(Code::P0304, scene.joints_span,
+    context.report(Situation::kJointCount, scene.joints_span,
                    "expected " + std::to_string(robot.drives.size()) +
                        " joints, one per drive of `" + robot.name + "`, found " +
                        std::to_string(scene.joints.size()));
@@ -161,10 +164,9 @@ void check_rates(Context& context, const Scene& scene) {
   const double control_hz = context.model.robots[scene.robot].control_hz;
   if (control_hz == 0) return;
   const double substeps = scene.physics_hz / control_hz;
-  constexpr double kMostSubsteps = 100000;
-  if (substeps >= 1 && substeps <= kMostSubsteps && substeps == std::floor(substeps)) return;
+  if (substeps >= 1 && substeps <= plan::kMaxSubsteps && substeps == std::floor(substeps)) return;
   context
-      .report(Code::P0304, scene.physics_span,
+      .report(Situation::kSubsteps, scene.physics_span,
               "expected a whole number of physics steps in a control step, found " +
                   fmt::format("{:.6g}", substeps))
       .help("the robot is controlled at " + fmt::format("{:.6g}", control_hz) +
@@ -177,7 +179,7 @@ void check_photos(Context& context, const Scene& scene) {
   for (const View& view : scene.views) {
     if (!view.overlay) continue;
     context
-        .report(Code::P0304, scene.surface_span,
+        .report(Situation::kPhotoMoved, scene.surface_span,
                 fmt::format("the surface is at {:.6g}cm here and at {:.6g}cm in the photo `{}`",
                             100 * scene.surface_z, 100 * scene.cameras_z, view.overlay->text))
         .label(view.overlay->span, "the photo is of the other height")

@@ -2,41 +2,15 @@
 #include "compiler/define/set.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
 #include "compiler/define/template.h"
+#include "compiler/names/uses.h"
 #include "runtime/base/sha256.h"
 
 namespace probe::sema {
 namespace {
-
-// Files by what they use, so that `tasks` and `variants of` can mean those of a file and of what it
-// uses.
-std::set<std::uint32_t> visible_files(const Context& context, const syntax::File& file) {
-  std::set<std::uint32_t> visible;
-  std::vector<const syntax::File*> open = {&file};
-  while (!open.empty()) {
-    const syntax::File* at = open.back();
-    open.pop_back();
-    if (!visible.insert(at->id.value).second) continue;
-    const std::filesystem::path folder =
-        std::filesystem::path(context.sources.file(at->id).name()).parent_path();
-    for (const syntax::Decl& decl : at->decls) {
-      const auto* use = std::get_if<syntax::UseDecl>(&decl.node);
-      if (use == nullptr) continue;
-      const std::string used = (folder / use->path.value).lexically_normal().string();
-      for (const syntax::File* other : context.files) {
-        const std::filesystem::path name(context.sources.file(other->id).name());
-        // A library file is found in a folder of its own.
-        const std::string path = name.lexically_normal().generic_string();
-        if (path == used || path.ends_with("/" + use->path.value)) open.push_back(other);
-      }
-    }
-  }
-  return visible;
-}
 
 // Which tasks are in a set.
 class Mask {
@@ -78,10 +52,12 @@ void SetReader::define(SetId id) {
   state = kOpen;
   Diagnostics* const heard = diagnostics_;
   if (preview_) diagnostics_ = &unheard_;
+  std::vector<CutComparison> outer = take_cuts();
   std::vector<TaskId> members = read(*declared.file, declared.node->tasks);
   diagnostics_ = heard;
   context_.model.sets[id] = {std::string(declared.node->name.text), declared.node->name.span,
-                             std::move(members), !declared.decl->complete};
+                             std::move(members), std::exchange(cuts_, std::move(outer)),
+                             !declared.decl->complete};
   state = kDone;
 }
 
@@ -103,7 +79,7 @@ SetReader::Members SetReader::read_node(const syntax::File&, const Span&,
     if (seen.has(id)) continue;
     if (context_.symbols.task_decls[*found].abstract) {
       diagnostics_
-          ->report(Code::P0703, name.span,
+          ->report(Situation::kAbstractMember, name.span,
                    "`" + std::string(name.text) + "` is abstract: it is copied, never run")
           .label(context_.symbols.task_decls[*found].name.span, "declared here")
           .help("name the tasks that are `like " + std::string(name.text) + "`");
@@ -118,11 +94,11 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
                                         const syntax::TaskSetName& set) {
   if (set.name.text.empty()) return {};  // a syntax error, reported
   if (set.name.text == "tasks") {
-    const std::set<std::uint32_t> visible = visible_files(context_, file);
+    const std::set<FileId> visible = visible_files(context_.files, file);
     Members members;
     for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
       const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
-      if (!task.abstract && !task.name.empty() && visible.contains(task.file.value))
+      if (!task.abstract && !task.name.empty() && visible.contains(task.file))
         members.push_back(static_cast<TaskId>(i));
     }
     return members;
@@ -134,29 +110,31 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
     return {};
   }
   define(static_cast<SetId>(*found));
-  return context_.model.sets[static_cast<SetId>(*found)].members;
+  const TaskSet& read = context_.model.sets[static_cast<SetId>(*found)];
+  cuts_.insert(cuts_.end(), read.cuts.begin(), read.cuts.end());
+  return read.members;
 }
 SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
                                         const syntax::TaskSetVariants& variants) {
   const Mask of(context_.model.tasks.size(), read(file, variants.of));
   // A file that uses this one may add variants; the set here does not grow by them.
-  const std::set<std::uint32_t> visible = visible_files(context_, file);
+  const std::set<FileId> visible = visible_files(context_.files, file);
   Members members;
   for (std::size_t i = 0; i < context_.model.tasks.size(); ++i) {
     const Task& task = context_.model.tasks[static_cast<TaskId>(i)];
     if (!task.abstract && task.baseline != TaskId::kNone && of.has(task.baseline) &&
-        visible.contains(task.file.value))
+        visible.contains(task.file))
       members.push_back(static_cast<TaskId>(i));
   }
   return members;
 }
-SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
+SetReader::Members SetReader::read_node(const syntax::File& file, const Span& span,
                                         const syntax::TaskSetSample& sample) {
   if (sample.of.value == syntax::TaskSetId::kNone) return {};  // a syntax error, reported
   Members members = read(file, sample.of);
   if (sample.count.value > members.size()) {
     diagnostics_
-        ->report(Code::P0304, sample.count.span,
+        ->report(Situation::kSampleTooLarge, sample.count.span,
                  "a sample of " + std::to_string(sample.count.value) + " from a set of " +
                      std::to_string(members.size()) + " tasks")
         .label(file[sample.of].span, "this set");
@@ -173,7 +151,13 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
   draws.resize(sample.count.value);
   Mask kept(context_.model.tasks.size());
   for (const auto& [draw, id] : draws) kept.add(id);
+  const Mask all(context_.model.tasks.size(), members);
   std::erase_if(members, [&](TaskId id) { return !kept.has(id); });
+  for (const TaskId id : members) {
+    const TaskId baseline = context_.model.tasks[id].baseline;
+    if (baseline != TaskId::kNone && all.has(baseline) && !kept.has(baseline))
+      cuts_.push_back({id, span});
+  }
   return members;
 }
 SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,

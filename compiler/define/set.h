@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compiler/names/context.h"
@@ -19,6 +20,8 @@ class SetReader {
 
   void define(SetId id);
   std::vector<TaskId> read(const syntax::File& file, syntax::TaskSetId id);
+  // What samples cut in the sets that were read since the last call.
+  std::vector<CutComparison> take_cuts() { return std::exchange(cuts_, {}); }
 
   // The words a condition may use; to be checked once, before any task is asked.
   bool check_condition(const syntax::File& file, syntax::CondId id);
@@ -42,6 +45,7 @@ class SetReader {
   Diagnostics unheard_;
   Diagnostics* diagnostics_;
   std::vector<State> states_;
+  std::vector<CutComparison> cuts_;
 };
 
 }  // namespace probe::sema

@@ -62,7 +62,7 @@ struct Enumerator {
     for (std::size_t i = 0; i < objects.size(); ++i) {
       if (placed[i]) continue;
       return LayoutProblem{
-          LayoutProblem::kNotPlaced,
+          Situation::kNotPlaced,
           "layout `" + layout.name + "` places no `" + model.objects[objects[i]].name + "`",
           layout.span};
     }
@@ -92,7 +92,7 @@ struct Enumerator {
     turn_count = turns[longest].size();
     for (std::size_t i = 0; i < turns.size(); ++i) {
       if (turns[i].size() == turn_count || turns[i].size() == 1) continue;
-      return LayoutProblem{LayoutProblem::kRestCount,
+      return LayoutProblem{Situation::kTurnsOutOfStep,
                            "`" + model.objects[objects[longest]].name + "` has " +
                                std::to_string(turn_count) + " turns and `" +
                                model.objects[objects[i]].name + "` has " +
@@ -185,24 +185,14 @@ double draw(const Sha256& hash) {
   return static_cast<double>(bits >> 11) * 0x1p-52 - 1.0;
 }
 
-// Every draw has its own key, the start as the grid gives it with the object and the axis, so that
-// no other task, start or object shifts it.
-void jitter(const Model& model, double most, Start& start) {
-  std::vector<std::pair<std::string, const Start::Placed*>> rows;
-  for (const Start::Placed& placed : start.placed)
-    rows.emplace_back(model.objects[placed.object].name, &placed);
-  std::sort(rows.begin(), rows.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  Hasher whole;
-  whole.text("start");
-  for (const auto& [name, placed] : rows)
-    whole.text(name).f64(placed->x).f64(placed->y).f64s(placed->turn.rotation);
-  const Sha256 key = whole.finish();
+// Every draw has its own key, the number of the start with the object's name and the axis: no other
+// task or object shifts it, whatever else stands in the scene.
+void jitter(const Model& model, double most, std::size_t index, Start& start) {
   for (Start::Placed& placed : start.placed) {
     double* const axes[] = {&placed.x, &placed.y};
     for (std::uint8_t axis = 0; axis < 2; ++axis) {
       Hasher hasher;
-      hasher.text("jitter").hash(key).text(model.objects[placed.object].name).u8(axis);
+      hasher.text("jitter").u64(index).text(model.objects[placed.object].name).u8(axis);
       *axes[axis] += most * draw(hasher.finish());
     }
   }
@@ -222,7 +212,7 @@ std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, co
   while (true) {
     count += enumerator.count(grids);
     if (count > static_cast<double>(most)) {
-      problem = LayoutProblem{LayoutProblem::kTooMany,
+      problem = LayoutProblem{Situation::kTooManyEpisodes,
                               "the suite grows beyond " + std::to_string(kMaxEpisodes) +
                                   " episodes with layout `" + layout.name + "`",
                               layout.span};
@@ -242,13 +232,13 @@ std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, co
       cells = layout.cells[item.cells].grids.front().size();
       span = item.place->span;
     }
-    problem = LayoutProblem{LayoutProblem::kTooFewCells,
+    problem = LayoutProblem{Situation::kTooFewCells,
                             std::to_string(enumerator.objects.size()) + " objects for " +
                                 std::to_string(cells) + " cells",
                             span};
   }
   if (layout.jitter > 0) {
-    for (Start& start : starts) jitter(model, layout.jitter, start);
+    for (std::size_t i = 0; i < starts.size(); ++i) jitter(model, layout.jitter, i, starts[i]);
   }
   return starts;
 }
@@ -268,27 +258,13 @@ std::vector<double> starts_key(const Task& task) {
   return key;
 }
 
-Code code_of(LayoutProblem::Kind kind) {
-  switch (kind) {
-    case LayoutProblem::kNotPlaced:
-      return Code::P0206;
-    case LayoutProblem::kTooFewCells:
-      return Code::P0503;
-    case LayoutProblem::kRestCount:
-      return Code::P0304;
-    case LayoutProblem::kTooMany:
-      return Code::P0210;
-  }
-  return Code::P0304;
-}
-
 void report_problem(Context& context, const Task& task, const LayoutProblem& problem) {
   // Where the layout is fine for the task that this one copies, what came in here is to blame.
   const bool like_is_fine =
       task.like != TaskId::kNone && !context.model.tasks[task.like].starts.empty();
   const bool is_newcomer = like_is_fine && is_within(task.distractors_span, task.decl_span);
   context
-      .report(code_of(problem.kind), is_newcomer ? task.distractors_span : task.layout_span,
+      .report(problem.what, is_newcomer ? task.distractors_span : task.layout_span,
               problem.message + " in `" + task.name + "`")
       .label(problem.span, "the layout");
 }
@@ -312,7 +288,7 @@ void define_starts(Context& context) {
       if (problem) {
         // What a layout lacks, its copies lack.
         const bool is_known = incomplete_layouts.contains(layout.like);
-        const bool is_layout = problem->kind == LayoutProblem::kNotPlaced;
+        const bool is_layout = problem->what == Situation::kNotPlaced;
         if (is_layout && (!incomplete_layouts.insert(task.layout).second || is_known)) continue;
         report_problem(context, task, *problem);
         continue;
@@ -322,7 +298,7 @@ void define_starts(Context& context) {
     task.starts = *starts;
     episodes += task.starts.size();
     if (episodes <= kMaxEpisodes) continue;
-    context.report(Code::P0210, task.span,
+    context.report(Situation::kTooManyEpisodes, task.span,
                    "the suite grows beyond " + std::to_string(kMaxEpisodes) + " episodes with `" +
                        task.name + "`");
     return;

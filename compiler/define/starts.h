@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "compiler/diag/diagnostic.h"
 #include "compiler/model/model.h"
 
 namespace probe::sema {
 
 // Why a layout gives no starts for a task.
 struct LayoutProblem {
-  enum Kind { kNotPlaced, kTooFewCells, kRestCount, kTooMany };
-  Kind kind = kNotPlaced;
+  Situation what = Situation::kNotPlaced;
   std::string message;
   Span span;  // within the layout
 };

@@ -3,6 +3,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/set.h"
+#include "compiler/names/texts.h"
 
 namespace probe::sema {
 namespace {
@@ -17,15 +18,25 @@ struct SuiteReader {
   void operator()(const syntax::SuiteTasksStmt& stmt) {
     has_tasks = true;
     suite.members = sets.read(file, stmt.tasks);
+    // The suite may have the baseline from elsewhere, or not have the variant after all.
+    const auto has = [&](TaskId id) {
+      return std::find(suite.members.begin(), suite.members.end(), id) != suite.members.end();
+    };
+    for (const CutComparison& cut : sets.take_cuts()) {
+      if (has(cut.task) && !has(context.model.tasks[cut.task].baseline)) suite.cuts.push_back(cut);
+    }
   }
-  void operator()(const syntax::PrefixStmt& stmt) { suite.prefix = stmt.prefix.value; }
+  void operator()(const syntax::PrefixStmt& stmt) {
+    check_text(context.diagnostics, spelled(stmt.prefix), "a prefix");
+    suite.prefix = stmt.prefix.value;
+  }
   void operator()(const syntax::SeedsStmt& stmt) {
     has_seeds = true;
     for (const syntax::Int& seed : stmt.seeds) {
       const auto value = static_cast<std::uint32_t>(seed.value);
       const auto& known = suite.seeds;
       if (seed.value > 0xfffffffeu) {
-        context.report(Code::P0304, seed.span, "a seed is below 4294967295");
+        context.report(Situation::kSeedTooLarge, seed.span, "a seed is below 4294967295");
       } else if (std::find(known.begin(), known.end(), value) != known.end()) {
         context
             .report(Code::P0203, seed.span, "seed `" + std::to_string(value) + "` is listed twice")
@@ -57,9 +68,12 @@ void define_suites(Context& context) {
     for (const syntax::SuiteStmt& stmt : node.body) std::visit(reader, stmt);
     suite.broken = !declared.decl->complete || !reader.has_tasks;
     if (declared.decl->complete && !reader.has_tasks)
-      context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `tasks`");
+      context.report(Situation::kStatementMissing, suite.span,
+                     "suite `" + suite.name + "` has no `tasks`");
     if (declared.decl->complete && !reader.has_seeds) {
-      context.report(Code::P0206, suite.span, "suite `" + suite.name + "` has no `seeds`")
+      context
+          .report(Situation::kStatementMissing, suite.span,
+                  "suite `" + suite.name + "` has no `seeds`")
           .help("each seed runs every episode once: `seeds 42`");
     }
     if (suite.seeds.empty()) suite.seeds.push_back(0);

@@ -9,8 +9,10 @@
 #include "compiler/define/metrics.h"
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
+#include "compiler/define/wording.h"
 #include "compiler/names/like.h"
 #include "compiler/names/quantities.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 namespace {
@@ -123,8 +125,10 @@ struct TaskReader {
   void operator()(const syntax::HorizonStmt& stmt) {
     task.horizon_span = stmt.span;
     task.horizon = stmt.steps.value;
-    if (task.horizon >= 1 && task.horizon <= 100000) return;
-    context.report(Code::P0304, stmt.steps.span, "expected a horizon between 1 and 100000 steps");
+    if (task.horizon >= 1 && task.horizon <= plan::kMaxHorizon) return;
+    context.report(
+        Situation::kHorizon, stmt.steps.span,
+        "expected a horizon between 1 and " + std::to_string(plan::kMaxHorizon) + " steps");
     poisoned = true;
   }
   void operator()(const syntax::MetricStmt& stmt) {
@@ -199,7 +203,7 @@ void check_cameras(Context& context, const Task& task, bool& poisoned) {
     const Camera& camera = context.model.cameras[view.camera];
     if (camera.mount_robot == scene.robot) continue;
     context
-        .report(Code::P0201, task.span,
+        .report(Situation::kOtherRobot, task.span,
                 "camera `" + camera.name + "` of `" + task.name +
                     "` is mounted on a robot that is not in scene `" + scene.name + "`")
         .label(camera.mount_link.span, "this link");
@@ -239,8 +243,7 @@ std::vector<Metric> judged_metrics(const Model& model, const Task& task) {
 }
 
 // A comparison is each task's own; what is allowed of a text holds for the tasks that keep it.
-void read_allows(Context& context, const syntax::Decl& decl,
-                 const std::vector<syntax::TaskStmt>& body, Task& task) {
+void read_allows(const syntax::Decl& decl, const std::vector<syntax::TaskStmt>& body, Task& task) {
   task.allow_confounded.reset();
   const auto says = [](const syntax::TaskStmt& stmt) {
     return std::holds_alternative<syntax::SayStmt>(stmt);
@@ -250,12 +253,9 @@ void read_allows(Context& context, const syntax::Decl& decl,
   task.allow_absent = false;
   for (const syntax::Allow& allow : decl.allows) {
     const auto code = code_from_slug(allow.what.text);
-    if (!code) {
-      context.report(Code::P0208, allow.what.span,
-                     "`" + std::string(allow.what.text) + "` is nothing that can be allowed");
-    } else if (*code == Code::P0701) {
+    if (code == Code::P0701) {
       task.allow_confounded = allow.reason.value;
-    } else if (*code == Code::P0404) {
+    } else if (code == Code::P0404) {
       task.allow_absent = true;
     }
   }
@@ -311,7 +311,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   task.baseline = TaskId::kNone;
   task.axes = 0;
   const About about(context_.reporter, task.decl_span);
-  read_allows(context_, *declared.decl, *declared.body, task);
+  read_allows(*declared.decl, *declared.body, task);
   TaskReader reader{context_, declared, task, poisoned};
   for (const syntax::TaskStmt& stmt : *declared.body) {
     if (!std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
@@ -348,8 +348,8 @@ void TaskTable::report_missing(const Task& task, const std::string& missing) {
     return;
   const auto [first, is_new] = missing_.try_emplace({task.like, missing}, nullptr);
   if (is_new || !is_copy) {
-    first->second =
-        &context_.report(Code::P0206, task.span, "task `" + task.name + "` has no " + missing);
+    first->second = &context_.report(Situation::kStatementMissing, task.span,
+                                     "task `" + task.name + "` has no " + missing);
   } else if (first->second->notes.empty()) {
     first->second->note("nor has any other task that lacks it and is `like " +
                         context_.model.tasks[task.like].name + "`");
@@ -392,7 +392,7 @@ void break_cycles(Context& context) {
     }
     if (at != TaskId::kNone && !safe[static_cast<std::size_t>(at)]) {
       const Task& task = model.tasks[at];
-      context.report(Code::P0703, task.baseline_span,
+      context.report(Situation::kBaselineCircle, task.baseline_span,
                      "task `" + task.name + "` is compared with itself over its baselines");
       for (auto member = std::find(chain.begin(), chain.end(), at); member != chain.end();
            ++member) {

@@ -4,13 +4,10 @@
 #include <algorithm>
 
 #include "compiler/define/define.h"
+#include "compiler/define/wording.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::sema {
-std::string first_word(const std::vector<Template::Part>& parts) {
-  if (parts.empty() || parts[0].slot) return {};
-  const std::string& text = parts[0].literal;
-  return text.substr(0, text.find(' '));
-}
 
 TemplateId add_template(Context& context, const syntax::TemplateText& text, std::string name,
                         const Span& span, const std::optional<syntax::Name>& frame) {
@@ -30,7 +27,7 @@ TemplateId add_template(Context& context, const syntax::TemplateText& text, std:
     if (slot.category) ref.category = spelled(*slot.category);
     record.parts.push_back({{}, std::move(ref)});
   }
-  record.frame = frame ? std::string(frame->text) : first_word(record.parts);
+  record.frame = frame ? fold_case(frame->text) : first_word(record.parts);
   return context.model.templates.add(std::move(record));
 }
 
@@ -63,11 +60,6 @@ std::string render_prompt(const Model& model, const Task& task) {
     prompt += *words.text;
   }
   return prompt;
-}
-
-bool has_negation(const Template& say) {
-  return std::any_of(say.parts.begin(), say.parts.end(),
-                     [](const Template::Part& part) { return part.slot && part.slot->avoid; });
 }
 
 void define_templates(Context& context) {

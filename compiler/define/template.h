@@ -7,12 +7,9 @@
 
 namespace probe::sema {
 
-// `frame` absent: the first word of the text is the verb frame.
+// `frame` absent: the first word of the text is the verb frame. Frames have no case.
 TemplateId add_template(Context& context, const syntax::TemplateText& text, std::string name,
                         const Span& span, const std::optional<syntax::Name>& frame);
-
-// Empty when a slot stands first.
-std::string first_word(const std::vector<Template::Part>& parts);
 
 // The words for one role in one task: the chosen phrase, or the object's name.
 struct Referring {
@@ -24,8 +21,5 @@ Referring referring(const Model& model, const Task& task, syntax::Role role);
 
 // Slots that name an object which does not exist print nothing; which was reported.
 std::string render_prompt(const Model& model, const Task& task);
-
-// An instruction that mentions something it warns against.
-bool has_negation(const Template& say);
 
 }  // namespace probe::sema

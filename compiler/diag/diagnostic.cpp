@@ -10,6 +10,11 @@
 namespace probe {
 namespace {
 
+constexpr auto kSituations = std::to_array<Code>({
+#define PROBE_SITUATION(code, name, meaning) Code::code,
+#include "compiler/diag/codes.def"
+});
+
 constexpr auto kCodes = std::to_array<CodeInfo>({
 #define PROBE_CODE(code, severity, slug, title) \
   {Code::code, #code, Severity::severity, slug, title},
@@ -19,6 +24,8 @@ constexpr auto kCodes = std::to_array<CodeInfo>({
 }  // namespace
 
 const CodeInfo& info(Code code) { return kCodes[static_cast<std::size_t>(code)]; }
+
+Code code_of(Situation situation) { return kSituations[static_cast<std::size_t>(situation) - 1]; }
 
 std::string_view to_text(Severity severity) {
   return severity == Severity::kError ? "error" : "warning";
@@ -52,6 +59,12 @@ Diagnostic& Diagnostics::report(Code code, const Span& primary, std::string mess
   diagnostic.message = std::move(message);
   diagnostic.primary = primary;
   return add(std::move(diagnostic));
+}
+
+Diagnostic& Diagnostics::report(Situation situation, const Span& primary, std::string message) {
+  Diagnostic& diagnostic = report(code_of(situation), primary, std::move(message));
+  diagnostic.situation = situation;
+  return diagnostic;
 }
 
 Diagnostic& Diagnostics::add(Diagnostic diagnostic) {

@@ -24,6 +24,13 @@ enum class Code : std::uint16_t {
 #include "compiler/diag/codes.def"
 };
 
+// What is the case, where a code stands for several things.
+enum class Situation : std::uint16_t {
+  kNone,  // the code says it all
+#define PROBE_SITUATION(code, name, meaning) name,
+#include "compiler/diag/codes.def"
+};
+
 struct CodeInfo {
   Code code;
   std::string_view text;  // "P0402"
@@ -37,6 +44,7 @@ std::string_view to_text(Severity severity);  // "error", "warning"
 std::optional<Code> code_from_text(std::string_view text);
 // The code that @allow(slug, ...) silences.
 std::optional<Code> code_from_slug(std::string_view slug);
+Code code_of(Situation situation);  // not of kNone
 // Every code in the order of codes.def.
 std::vector<Code> all_codes();
 
@@ -61,8 +69,10 @@ struct Fix {
 
 struct Diagnostic {
   Code code = Code::P0101;
+  Situation situation = Situation::kNone;
   Severity severity = Severity::kError;
   std::string message;
+  std::string subject;  // the name that is not known; the same one is missed once
   Span primary;
   std::string primary_label;  // behind the carets; may be empty
   std::vector<Label> labels;
@@ -103,6 +113,7 @@ class Diagnostics {
   // With the severity of the code's table line. The reference stays valid while the collector
   // lives.
   Diagnostic& report(Code code, const Span& primary, std::string message);
+  Diagnostic& report(Situation situation, const Span& primary, std::string message);
   Diagnostic& add(Diagnostic diagnostic);
   void silence(Silenced silenced) { silenced_.push_back(std::move(silenced)); }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "compiler/check/analyze.h"
@@ -157,7 +158,8 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
   return std::move(compilation);
 }
 
-// The named files that no other named file uses: each begins a program of its own.
+// The named files, but for those that another named file uses without being used by them: each
+// begins a program of its own.
 Result<std::vector<std::string>> program_roots(std::span<const std::string> files,
                                                const CompileOptions& options, SourceSet& sources) {
   std::vector<std::string> names;
@@ -166,21 +168,23 @@ Result<std::vector<std::string>> program_roots(std::span<const std::string> file
     if (std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(std::move(name));
   }
-  std::set<std::string> used;
+  std::map<std::string, std::set<std::string>> reached;  // by name
   for (const std::string& name : names) {
     Diagnostics again;  // what is wrong is said when the program is checked
     PROBE_ASSIGN(const syntax::Program program,
                  syntax::load_program(sources, name, options.library_folders, again));
-    for (const syntax::ParseResult& result : program.files) {
-      const std::string& reached = sources.file(result.file.id).name();
-      if (reached != name) used.insert(reached);
-    }
+    for (const syntax::ParseResult& result : program.files)
+      reached[name].insert(sources.file(result.file.id).name());
   }
-  // Files that use each other have no first one; then all are one program's roots.
-  const auto unused = std::stable_partition(names.begin(), names.end(),
-                                            [&](const auto& name) { return !used.contains(name); });
-  if (unused != names.begin()) names.erase(unused, names.end());
-  return names;
+  // Files that use each other have no first one: all of them are checked.
+  std::vector<std::string> roots;
+  for (const std::string& name : names) {
+    const bool is_below = std::any_of(names.begin(), names.end(), [&](const std::string& other) {
+      return reached[other].contains(name) && !reached[name].contains(other);
+    });
+    if (!is_below) roots.push_back(name);
+  }
+  return roots;
 }
 
 void merge(Compilation&& program, Compilation& all) {

@@ -57,7 +57,8 @@ struct Compilation {
 // found no error.
 //
 // Diagnoses the files and everything they use. Each file that no other named one uses is a program
-// of its own, so two of them may declare the same names. Assets are looked for and inspected, not
+// of its own, so two of them may declare the same names; of files that use each other, each is one
+// too, and what is said of both is said once. Assets are looked for and inspected, not
 // hashed. A Failure is only for the outside: a root file that cannot be read (kIo), a suite
 // that no file declares (kUsage).
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options);

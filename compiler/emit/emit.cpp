@@ -27,11 +27,10 @@ std::vector<TaskId> Emitter::choose_tasks() const {
   std::vector<bool> wanted(model_.tasks.size(), options_.suite.empty());
   for (const sema::Suite& suite : model_.suites) {
     if (options_.suite.empty() || suite.name != options_.suite) continue;
-    for (TaskId id : suite.members) {
-      for (; id != TaskId::kNone && !wanted[static_cast<std::size_t>(id)];
-           id = model_.tasks[id].baseline) {
-        wanted[static_cast<std::size_t>(id)] = true;
-      }
+    for (const TaskId id : suite.members) {
+      wanted[static_cast<std::size_t>(id)] = true;
+      const TaskId baseline = model_.tasks[id].baseline;
+      if (baseline != TaskId::kNone) wanted[static_cast<std::size_t>(baseline)] = true;
     }
   }
   std::vector<TaskId> chosen;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -94,9 +95,9 @@ class Emitter {
   // Tasks of one shape share one program.
   std::uint32_t add_program(lower::Program program, std::uint64_t horizon, double control_hz);
 
-  // P0603 at once; P0602 when a metric is constant in every program that has it: over the
-  // distractors of a task without any it may be.
-  void note_constants(const lower::Program& program, std::uint64_t horizon, double control_hz);
+  // P0603 at once; P0602 when a metric is constant in every program and for every horizon that has
+  // it: over the distractors of a task without any it may be.
+  void note_constants(std::uint32_t program, std::uint64_t horizon, double control_hz);
   void report_constants();
   bool needs(const sema::Task& task, const AssetOwner& owner) const;
 
@@ -132,6 +133,7 @@ class Emitter {
   Used<sema::SceneId> scenes_;
   Used<TaskId> tasks_;
   std::vector<lower::Program> programs_;
+  std::set<std::tuple<std::uint32_t, std::uint64_t, double>> noted_;  // program, horizon, control
   struct Constant {
     lower::ProgramMetric metric;
     bool varies = false;

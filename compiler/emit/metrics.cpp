@@ -10,9 +10,11 @@ namespace probe::emit {
 std::uint32_t Emitter::add_program(lower::Program program, std::uint64_t horizon,
                                    double control_hz) {
   for (std::size_t i = 0; i < programs_.size(); ++i) {
-    if (programs_[i].same_as(program)) return static_cast<std::uint32_t>(i);
+    if (!programs_[i].same_as(program)) continue;
+    // What is constant depends on how long an episode is.
+    note_constants(static_cast<std::uint32_t>(i), horizon, control_hz);
+    return static_cast<std::uint32_t>(i);
   }
-  note_constants(program, horizon, control_hz);
   plan::ProgramRecord record;
   record.constants = plan::append(records().constants, std::span<const double>(program.constants));
   record.states =
@@ -29,11 +31,13 @@ std::uint32_t Emitter::add_program(lower::Program program, std::uint64_t horizon
   }
   records().programs.push_back(record);
   programs_.push_back(std::move(program));
+  note_constants(size32(programs_) - 1, horizon, control_hz);
   return size32(programs_) - 1;
 }
 
-void Emitter::note_constants(const lower::Program& program, std::uint64_t horizon,
-                             double control_hz) {
+void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double control_hz) {
+  if (!noted_.insert({index, horizon, control_hz}).second) return;
+  const lower::Program& program = programs_[index];
   const lower::Findings findings = lower::find_constants(program, horizon, control_hz);
   for (const std::size_t at : findings.contradictions) {
     const Span& span = program.spans[at];

@@ -41,7 +41,8 @@ void Emitter::report_misses(const std::vector<TaskId>& chosen) {
       names += (count == 1 ? "`" : ", `") + model_.tasks[id].name + "`";
     }
     if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
-    diagnostics_.report(Code::P0202, miss.span, "asset `" + miss.path + "` " + miss.why)
+    diagnostics_
+        .report(Situation::kAssetMissing, miss.span, "asset `" + miss.path + "` " + miss.why)
         .note("looked for it in the assets folder `" + options_.asset_root + "`")
         .note("needed by " + names);
   }

@@ -49,7 +49,7 @@ void Emitter::add_scene(sema::SceneId id) {
     if (has_photo && !overlay) {
       if (scene.backdrop_z != scene.surface_z) {
         diagnostics_
-            .report(Code::P0304, scene.surface_span,
+            .report(Situation::kPhotoMoved, scene.surface_span,
                     fmt::format("the surface is at {:.6g}cm here and at {:.6g}cm in the photo `{}`",
                                 100 * scene.surface_z, 100 * scene.backdrop_z, photo))
             .label(span, "the photo is of the other height")

@@ -1,6 +1,7 @@
 // Tasks as records, with their bodies, placements and episodes.
 #include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::emit {
 
@@ -43,6 +44,14 @@ void Emitter::add_task(const sema::Task& task) {
   for (const sema::View& view : views) add_camera(view.camera);
   add_light(light_of(model_, task));
   const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
+  if (bodies.size() > plan::kMaxBodies) {
+    diagnostics_.report(Situation::kTooManyBodies,
+                        task.distractors_span.is_none() ? task.span : task.distractors_span,
+                        "`" + task.name + "` has " + std::to_string(bodies.size()) +
+                            " bodies with the links of its robot, at most " +
+                            std::to_string(plan::kMaxBodies) + " can be judged");
+    return;
+  }
   auto program = lower::lower_task(model_, task, bodies, diagnostics_);
   if (!program) return;
 

@@ -275,7 +275,8 @@ class Lowering {
     if (!(limit.number >= 0 && limit.number <= kHalfTurn)) {
       if (ok_)
         diagnostics_
-            .report(Code::P0304, model_.exprs.nodes[node.args[angle_on_left ? 1 : 0]].span,
+            .report(Situation::kAngleRange,
+                    model_.exprs.nodes[node.args[angle_on_left ? 1 : 0]].span,
                     "the angle between two vectors is 0deg to 180deg")
             .label(between.span, "compared with this");
       ok_ = false;

@@ -317,10 +317,17 @@ struct Task {
   std::vector<ObjectId> objects() const;
 };
 
+// A variant that a `sample` took without the baseline that it is compared with.
+struct CutComparison {
+  TaskId task = TaskId::kNone;
+  Span sample;
+};
+
 struct TaskSet {
   std::string name;
   Span span;
   std::vector<TaskId> members;
+  std::vector<CutComparison> cuts;
   bool broken = false;  // its text is torn
 };
 
@@ -336,7 +343,8 @@ struct Suite {
     Span span;
   };
   std::optional<Expect> expect;
-  bool broken = false;  // its text is torn, or has no `tasks`
+  std::vector<CutComparison> cuts;  // of members whose baseline is no member
+  bool broken = false;              // its text is torn, or has no `tasks`
 };
 
 struct Model {

@@ -30,9 +30,12 @@ const Unit* find_unit(std::string_view spelling) {
   return nullptr;
 }
 
-Decimal::Wide scaled(const Decimal& value, int to_exponent) {
+// The mantissa at a lower exponent.
+std::optional<Decimal::Wide> scaled(const Decimal& value, int to_exponent) {
   Decimal::Wide mantissa = value.mantissa;
-  for (int e = value.exponent; e > to_exponent; --e) mantissa *= 10;
+  for (int e = value.exponent; e > to_exponent; --e) {
+    if (__builtin_mul_overflow(mantissa, Decimal::Wide{10}, &mantissa)) return std::nullopt;
+  }
   return mantissa;
 }
 
@@ -118,16 +121,19 @@ double Decimal::to_double() const {
   return value;
 }
 
-Decimal operator+(const Decimal& a, const Decimal& b) {
-  const int exponent = a.exponent < b.exponent ? a.exponent : b.exponent;
-  return {scaled(a, exponent) + scaled(b, exponent), exponent};
+std::optional<Decimal> plus(const Decimal& a, const Decimal& b) {
+  Decimal sum{0, a.exponent < b.exponent ? a.exponent : b.exponent};
+  const auto left = scaled(a, sum.exponent), right = scaled(b, sum.exponent);
+  if (!left || !right || __builtin_add_overflow(*left, *right, &sum.mantissa)) return std::nullopt;
+  return sum;
 }
 
-Decimal operator-(const Decimal& a, const Decimal& b) {
-  return a + Decimal{-b.mantissa, b.exponent};
+std::optional<Decimal> times(const Decimal& a, int factor) {
+  Decimal product{0, a.exponent};
+  if (__builtin_mul_overflow(a.mantissa, Decimal::Wide{factor}, &product.mantissa))
+    return std::nullopt;
+  return product;
 }
-
-Decimal operator*(const Decimal& a, int factor) { return {a.mantissa * factor, a.exponent}; }
 
 std::optional<Decimal> parse_decimal(std::string_view text) {
   Decimal value;
@@ -160,8 +166,8 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
     value.exponent += shift;
   }
-  // Sums align two decimals in 128 bits: below 1e14 with at least 1e-18 resolution (1e-21 after the
-  // unit) they cannot overflow there.
+  // Below 1e14 with a resolution of at least 1e-18 (1e-21 after the unit), so that two of them can
+  // be added in 128 bits.
   if (value.mantissa == 0) value.exponent = 0;
   if (value.exponent < -18 || kept + value.exponent > 14) return std::nullopt;
   if (negative) value.mantissa = -value.mantissa;

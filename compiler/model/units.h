@@ -59,9 +59,9 @@ struct Decimal {
   double to_double() const;
 };
 
-Decimal operator+(const Decimal& a, const Decimal& b);
-Decimal operator-(const Decimal& a, const Decimal& b);
-Decimal operator*(const Decimal& a, int factor);
+// Exact; nothing where 128 bits do not hold the result.
+std::optional<Decimal> plus(const Decimal& a, const Decimal& b);
+std::optional<Decimal> times(const Decimal& a, int factor);
 
 // Of "20.6", "1e-6", "-3"; nothing when the text is no decimal number or has more than 30
 // significant digits.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "compiler/names/texts.h"
+
 namespace probe::sema {
 namespace {
 
@@ -65,6 +67,28 @@ bool is_in_derive(const Context& context, const Span& span) {
 
 }  // namespace
 
+void check_allows(const std::vector<const syntax::File*>& files, Diagnostics& diagnostics) {
+  std::vector<std::string_view> words;
+  for (const Code code : all_codes()) {
+    if (!info(code).slug.empty()) words.push_back(info(code).slug);
+  }
+  for (const syntax::File* file : files) {
+    for (const syntax::Decl& decl : file->decls) {
+      for (const syntax::Allow& allow : decl.allows) {
+        check_text(diagnostics, spelled(allow.reason), "the reason");
+        if (allow.what.text.empty() || code_from_slug(allow.what.text)) continue;
+        Diagnostic& unknown = diagnostics.report(
+            Code::P0208, allow.what.span,
+            "`" + std::string(allow.what.text) + "` is nothing that can be allowed");
+        const auto near = nearest(allow.what.text, words);
+        if (!near) continue;
+        unknown.point("did you mean `" + std::string(*near) + "`?")
+            .fix_by("write `" + std::string(*near) + "`", allow.what.span, std::string(*near));
+      }
+    }
+  }
+}
+
 void say(const Context& context, std::span<const FileId> roots, bool lacks_names,
          Diagnostics& out) {
   std::vector<Allowed> allows = collect_allows(context);
@@ -89,8 +113,8 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
     if (context.reporter.was_broken && is_in_torso(context, diagnostic.primary)) continue;
     const bool is_unknown = diagnostic.code == Code::P0201 || diagnostic.code == Code::P0204;
     if (lacks_names && is_unknown && !diagnostic.fix) continue;
-    if (is_unknown) {
-      Said& name = unknown[diagnostic.message];
+    if (!diagnostic.subject.empty()) {
+      Said& name = unknown[diagnostic.subject];
       if (name.count++ == 0) {
         name.last = &out.add(diagnostic);
       } else if (name.last->fix && diagnostic.fix) {
@@ -114,7 +138,7 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
       place.last->note("the same holds for " + std::to_string(place.count - place.limit) +
                        " more tasks");
   }
-  for (auto& [message, name] : unknown) {
+  for (auto& [subject, name] : unknown) {
     if (name.count > 1)
       name.last->note("so it is named at " + std::to_string(name.count - 1) + " more place" +
                       (name.count > 2 ? "s" : ""));

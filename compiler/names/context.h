@@ -29,8 +29,9 @@ struct Context {
   // Grows with every mistake: whether something was wrong between two calls.
   std::size_t mistakes() const { return diagnostics.error_count() + unread; }
   bool has_errors() const { return reporter.has_errors(); }
-  Diagnostic& report(Code code, const Span& span, std::string message) {
-    return diagnostics.report(code, span, std::move(message));
+  // `what`: a Code or a Situation.
+  Diagnostic& report(auto what, const Span& span, std::string message) {
+    return diagnostics.report(what, span, std::move(message));
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/names/texts.h"
+
 namespace probe::sema {
 
 std::optional<std::uint32_t> NameTable::declare(const syntax::Name& name,
@@ -15,6 +17,7 @@ std::optional<std::uint32_t> NameTable::declare(const syntax::Name& name,
         .label(names_[at->second].span, "first declared here");
     return std::nullopt;
   }
+  check_name(diagnostics, name);
   names_.push_back(name);
   return index;
 }
@@ -37,8 +40,10 @@ std::optional<std::uint32_t> NameTable::find(const syntax::Name& name,
 Diagnostic& report_unknown(Diagnostics& diagnostics, std::string_view kind,
                            const syntax::Name& name,
                            const std::vector<std::string_view>& candidates) {
-  Diagnostic& diagnostic = diagnostics.report(
-      Code::P0201, name.span, "unknown " + std::string(kind) + " `" + std::string(name.text) + "`");
+  Diagnostic& diagnostic =
+      diagnostics.report(Situation::kUnknownName, name.span,
+                         "unknown " + std::string(kind) + " `" + std::string(name.text) + "`");
+  diagnostic.subject = std::string(kind) + " " + std::string(name.text);
   auto near = nearest(name.text, candidates);
   if (!near && name.text.size() > 2) {
     // `bridge` for `bridge_v2`: the only one that begins so.

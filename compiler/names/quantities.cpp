@@ -6,7 +6,7 @@
 namespace probe::sema {
 
 std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& written,
-                                      const Dimension& wanted, std::string_view takes) {
+                                      const Dimension& wanted, const Takes& takes) {
   if (written.unit == syntax::Unit::kUnknown) {
     ++context.unread;
     return std::nullopt;
@@ -15,7 +15,7 @@ std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& 
   const auto quantity = make_quantity(digits, to_text(written.unit));
   if (!quantity) {
     context
-        .report(Code::P0304, written.span,
+        .report(Situation::kTooManyDigits, written.span,
                 "`" + digits + "` has more digits or a larger exponent than is kept")
         .help("18 digits, values below 1e14, steps down to 1e-18");
     return std::nullopt;
@@ -24,11 +24,9 @@ std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& 
   Diagnostic& diagnostic =
       context.report(Code::P0302, written.span,
                      "expected " + name_of(wanted) + ", found " + name_of(quantity->dimension));
-  diagnostic.point(std::string(takes));
+  diagnostic.point(std::string(takes.text));
   // A layout's numbers are seen beside the first surface they may mean.
-  const bool is_place =
-      takes.starts_with("`grid") || takes.starts_with("`spread") || takes.starts_with("`place");
-  if (quantity->dimension == dim::kNumber && is_place && context.model.scenes.size() != 0 &&
+  if (quantity->dimension == dim::kNumber && takes.is_place && context.model.scenes.size() != 0 &&
       !context.model.scenes[static_cast<SceneId>(0)].broken) {
     const std::array<double, 4>& area = context.model.scenes[static_cast<SceneId>(0)].area;
     char depth[32];
@@ -43,21 +41,21 @@ std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& 
 }
 
 std::optional<double> read_si(Context& context, const syntax::Quantity& written,
-                              const Dimension& wanted, std::string_view takes) {
+                              const Dimension& wanted, const Takes& takes) {
   const auto quantity = read_quantity(context, written, wanted, takes);
   if (!quantity) return std::nullopt;
   return quantity->si();
 }
 
 std::optional<double> read_positive(Context& context, const syntax::Quantity& written,
-                                    const Dimension& wanted, std::string_view takes) {
+                                    const Dimension& wanted, const Takes& takes) {
   const auto value = read_si(context, written, wanted, takes);
   if (value && !(*value > 0)) {
     context
-        .report(Code::P0304, written.span,
+        .report(Situation::kNotPositive, written.span,
                 "expected a value above zero, found `" +
                     std::string(context.sources.text(written.span)) + "`")
-        .point(std::string(takes));
+        .point(std::string(takes.text));
     return std::nullopt;
   }
   return value;
@@ -65,7 +63,7 @@ std::optional<double> read_positive(Context& context, const syntax::Quantity& wr
 
 std::optional<std::vector<Quantity>> read_point(Context& context, const syntax::Point& point,
                                                 std::size_t least, std::size_t most,
-                                                const Dimension& wanted, std::string_view takes) {
+                                                const Dimension& wanted, const Takes& takes) {
   const std::size_t count = point.coordinates.size();
   if (count < least || count > most) {
     const std::string wants = least == most ? std::to_string(least)
@@ -73,7 +71,7 @@ std::optional<std::vector<Quantity>> read_point(Context& context, const syntax::
     context
         .report(Code::P0302, point.span,
                 "expected " + wants + " coordinates, found " + std::to_string(count))
-        .point(std::string(takes));
+        .point(std::string(takes.text));
     return std::nullopt;
   }
   std::vector<Quantity> values;

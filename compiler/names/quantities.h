@@ -10,18 +10,30 @@
 
 namespace probe::sema {
 
-// `takes` finishes the message at the number: "`density` takes a density".
+// What a statement takes, to finish the message at the number: "`density` takes a density".
+struct Takes {
+  std::string_view text;
+  bool is_place = false;  // on the surface, whose size is then a hint
+
+  Takes(const char* words) : text(words) {}
+  static Takes places(const char* words) {
+    Takes takes(words);
+    takes.is_place = true;
+    return takes;
+  }
+};
+
 std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& written,
-                                      const Dimension& wanted, std::string_view takes);
+                                      const Dimension& wanted, const Takes& takes);
 std::optional<double> read_si(Context& context, const syntax::Quantity& written,
-                              const Dimension& wanted, std::string_view takes);
+                              const Dimension& wanted, const Takes& takes);
 // As read_si, and P0304 unless the value is above zero.
 std::optional<double> read_positive(Context& context, const syntax::Quantity& written,
-                                    const Dimension& wanted, std::string_view takes);
+                                    const Dimension& wanted, const Takes& takes);
 // Every coordinate, of which there must be `least` to `most`.
 std::optional<std::vector<Quantity>> read_point(Context& context, const syntax::Point& point,
                                                 std::size_t least, std::size_t most,
-                                                const Dimension& wanted, std::string_view takes);
+                                                const Dimension& wanted, const Takes& takes);
 std::optional<Turn> read_turn(Context& context, const syntax::Pose& pose);
 std::optional<std::vector<Turn>> read_turns(Context& context,
                                             const std::vector<syntax::Pose>& poses);

@@ -16,8 +16,9 @@ struct Reporter {
   std::map<std::size_t, Span> about = {};  // by diagnostic: the declaration it is about
 
   bool has_errors() const { return was_broken || diagnostics.has_errors(); }
-  Diagnostic& report(Code code, const Span& span, std::string message) {
-    return diagnostics.report(code, span, std::move(message));
+  // `what`: a Code or a Situation.
+  Diagnostic& report(auto what, const Span& span, std::string message) {
+    return diagnostics.report(what, span, std::move(message));
   }
 };
 

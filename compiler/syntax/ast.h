@@ -287,6 +287,7 @@ struct Readout {
 
 struct UseDecl {
   Text path;
+  FileId file = {};  // what the loader found there
 };
 
 struct Relation {  // `carrot on plate`

@@ -38,11 +38,12 @@ class Loader {
       stack_.pop_back();
       return;
     }
-    const Decl& decl = top.parsed.file.decls[top.next_decl++];
-    if (const auto* use = std::get_if<UseDecl>(&decl.node)) follow(*use);
+    Decl& decl = top.parsed.file.decls[top.next_decl++];
+    if (auto* use = std::get_if<UseDecl>(&decl.node)) follow(*use);
   }
 
-  void follow(const UseDecl& use) {
+  // The stack may move under `use` when a file is opened: nothing is done with it after that.
+  void follow(UseDecl& use) {
     const std::filesystem::path wanted(use.path.value);
     std::vector<std::string> tried;
     if (!wanted.empty()) {
@@ -57,6 +58,7 @@ class Loader {
     for (const std::string& path : tried) {
       const Result<FileId> loaded = sources_.load(path);
       if (loaded.ok()) {
+        use.file = *loaded;
         // A file that is being read or was read is not read again: circles of `use` are harmless.
         const bool known = std::find(seen_.begin(), seen_.end(), *loaded) != seen_.end();
         if (!known) open(*loaded);
@@ -65,8 +67,8 @@ class Loader {
       if (path == tried.front()) reason = loaded.failure().message;
     }
     program_.ok = false;
-    Diagnostic& error =
-        diagnostics_.report(Code::P0202, use.path.span, "cannot use `" + use.path.value + "`");
+    Diagnostic& error = diagnostics_.report(Situation::kUseMissing, use.path.span,
+                                            "cannot use `" + use.path.value + "`");
     error.point(reason).note("the names that it declares are unknown; they are not listed");
     if (!tried.empty()) {
       std::string places = "looked for";

@@ -2,6 +2,9 @@
 
 #include <utf8proc.h>
 
+#include <cstdlib>
+#include <memory>
+
 namespace probe {
 
 Utf8Char first_utf8(std::string_view text) {
@@ -27,6 +30,17 @@ std::size_t find_bad_utf8(std::string_view text) {
     at += bytes;
   }
   return at;
+}
+
+std::string fold_case(std::string_view text) {
+  utf8proc_uint8_t* raw = nullptr;
+  const utf8proc_ssize_t size = utf8proc_map(
+      reinterpret_cast<const utf8proc_uint8_t*>(text.data()),
+      static_cast<utf8proc_ssize_t>(text.size()), &raw,
+      static_cast<utf8proc_option_t>(UTF8PROC_CASEFOLD | UTF8PROC_COMPOSE | UTF8PROC_STABLE));
+  const std::unique_ptr<utf8proc_uint8_t, void (*)(void*)> folded(raw, std::free);
+  if (size < 0) return std::string(text);
+  return {reinterpret_cast<const char*>(folded.get()), static_cast<std::size_t>(size)};
 }
 
 }  // namespace probe

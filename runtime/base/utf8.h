@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace probe {
@@ -17,6 +18,10 @@ Utf8Char first_utf8(std::string_view text);
 
 // Where the first byte is that is no part of a character; `text.size()` if there is none.
 std::size_t find_bad_utf8(std::string_view text);
+
+// The text without its cases, composed: what two spellings of one word have in common. As it is
+// where it is no UTF-8.
+std::string fold_case(std::string_view text);
 
 // C0, DEL and C1, which terminals obey.
 constexpr bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }

@@ -10,6 +10,15 @@
 #include "runtime/plan/writer.h"
 
 namespace probe::cli {
+namespace {
+
+// Tasks that stand in the plan of one suite without being its members.
+std::size_t only_baselines(const plan::Plan& plan, const std::string& suite) {
+  const auto index = plan.find_suite(suite);
+  return index ? plan.tasks().size() - plan.members(plan.suites()[*index]).size() : 0;
+}
+
+}  // namespace
 
 void add_build(Verb app, int& exit) {
   struct BuildArguments {
@@ -25,7 +34,8 @@ void add_build(Verb app, int& exit) {
       "example: vlaprobe build suite/intact.probe -o intact.plan");
   verb.add_option("F", arguments->files, ".probe texts").required();
   verb.add_option("-o,--out", arguments->out, "plan file to write").required();
-  verb.add_option("--suite", arguments->suite, "only this suite's tasks");
+  verb.add_option("--suite", arguments->suite,
+                  "only this suite's tasks, and the baselines that they are compared with");
   verb.add_option("--tasks", arguments->assets.tasks,
                   "glob: only these tasks, where the assets lack what others need");
   verb.add_flag("--json", arguments->json, "root and sizes as a JSON object");
@@ -50,13 +60,16 @@ void add_build(Verb app, int& exit) {
     if (arguments->json) {
       const Json json = {{"root", to_hex(plan->root())},
                          {"tasks", plan->tasks().size()},
+                         {"only_baselines", only_baselines(*plan, arguments->suite)},
                          {"episodes", plan->episodes().size()},
                          {"bytes", plan->bytes().size()}};
       fmt::print("{}\n", json.dump(2));
       return;
     }
     fmt::print("{}\n", to_hex(plan->root()));
-    say("{}: {} tasks, {} episodes, {} bytes\n", arguments->out, plan->tasks().size(),
+    const std::size_t more = only_baselines(*plan, arguments->suite);
+    say("{}: {} tasks{}, {} episodes, {} bytes\n", arguments->out, plan->tasks().size(),
+        more == 0 ? "" : fmt::format(", {} of them only baselines of the others", more),
         plan->episodes().size(), plan->bytes().size());
   });
 }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "runtime/base/result.h"
+#include "runtime/plan/limits.h"
 #include "runtime/plan/tables.h"
 
 namespace probe::plan {
@@ -14,19 +15,6 @@ namespace probe::plan {
 struct VerifyOptions {
   bool identity = true;  // stage 4, recomputing all ids; `--fast` leaves it out
 };
-
-// Limits that bound the work per record. A plan beyond one of them is refused with a sentence that
-// names it.
-inline constexpr std::size_t kMaxInstructions = 4096;
-inline constexpr std::size_t kMaxBodies = 256;
-inline constexpr std::size_t kMaxMetrics = 256;
-inline constexpr std::size_t kMaxConstants = 65536;
-inline constexpr std::size_t kMaxDrives = 64;
-inline constexpr std::size_t kMaxSuns = 64;
-inline constexpr std::size_t kMaxStringBytes = 4096;
-inline constexpr std::size_t kMaxMeshes = 256;
-inline constexpr std::uint32_t kMaxPixels = 8192;  // a side of an image
-inline constexpr double kMaxSubsteps = 100000;     // physics steps in a control step
 
 // All four stages. A Failure has kPlan, a message that ends with the id of the rule in
 // brackets, and `where` = "SECTION at byte N".

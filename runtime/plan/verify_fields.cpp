@@ -63,10 +63,12 @@ Status FieldCheck::check_name(const StringRef& ref, const char* what) const {
 Status FieldCheck::check_word(const StringRef& ref, const char* what) const {
   PROBE_TRY(check_name(ref, what));
   const std::string_view name = t.text(ref);
-  const auto is_letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-  };
-  const auto is_part = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto is_part = [&](char c) { return is_letter(c) || c == '_' || (c >= '0' && c <= '9'); };
+  if (name.size() > kMaxNameBytes) {
+    return fail(Rule::kWord, &ref,
+                fmt::format("{} has at most {} bytes, not {}", what, kMaxNameBytes, name.size()));
+  }
   if (is_letter(name[0]) && std::ranges::all_of(name, is_part)) return {};
   return fail(Rule::kWord, &ref,
               fmt::format("{} is letters, digits and _, a letter first, not `{}`", what, name));

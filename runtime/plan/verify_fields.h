@@ -13,12 +13,10 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/magnitudes.h"
 #include "runtime/plan/tables.h"
+#include "runtime/plan/text_rule.h"
 #include "runtime/plan/verify_place.h"
 
 namespace probe::plan {
-
-// Null when `text` is UTF-8 in normal form C without control characters, else what it is instead.
-const char* find_text_defect(std::string_view text);
 
 class FieldCheck {
  public:

@@ -14,9 +14,6 @@ namespace probe::plan {
 namespace {
 
 constexpr std::uint32_t kAllOod = (1u << kNovelty.size()) - 1;
-// A day at 5 Hz is 432,000 steps; more is a unit slip.
-constexpr std::uint32_t kMaxHorizon = 1'000'000;
-constexpr double kMaxSettle = 60;  // s
 
 }  // namespace
 

@@ -41,9 +41,9 @@ std::string apply(std::string text, std::vector<Replacement> replacements) {
 // Codes that nothing emits yet. Empty when the language is whole.
 const std::set<Code> kNotEmittedYet = {};
 
-// Codes of plans, and a guard against a gap in the compiler's own list of axes: no text leads to
-// them; the tests of the plan and of the emitter hold them.
-bool has_no_text(Code code) { return info(code).text.starts_with("P08") || code == Code::P0704; }
+// A guard against a gap in the compiler's own list of axes: no text leads to it; the tests of the
+// emitter hold it.
+bool has_no_text(Code code) { return code == Code::P0704; }
 
 }  // namespace
 

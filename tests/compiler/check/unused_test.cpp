@@ -17,11 +17,11 @@ object third like red { phrase odd appearance "strange thing" means color red }
 # a comment that names third and lonely is no use
 task t like red_on_tray { say used }
 )");
-  std::vector<syntax::ParseResult> files;
-  files.push_back(syntax::parse(sources, library, diagnostics));
-  files.push_back(syntax::parse(sources, tasks, diagnostics));
-  sema::analyze(sources, {&files[0].file, &files[1].file}, test::asset_root(), diagnostics,
-                {tasks});
+  const auto program = syntax::load_program(sources, "tasks.probe", {}, diagnostics);
+  REQUIRE(program.ok());
+  REQUIRE(program->files.front().file.id == library);
+  sema::analyze(sources, {&program->files[0].file, &program->files[1].file}, test::asset_root(),
+                diagnostics, {tasks});
   std::string said;
   for (const Diagnostic& item : diagnostics.items())
     said += std::string(info(item.code).text) + " " + item.message + "\n";

@@ -113,3 +113,52 @@ TEST_CASE("what is heard, seen and judged alike is one experiment, whatever decl
                            "variant v of red_on_tray { source twin }")
             ->codes() == "");
 }
+
+TEST_CASE("metrics that say the same are one goal, wherever they stand") {
+  const auto a = analyze_with_suite(R"(
+predicate up_high(o: object, least: length = 5cm) = height(o) > least
+predicate far_up(o: object, least: length = 5cm) = height(o) > least
+metrics one { success = at end (up_high(source) and no x in distractors: up_high(x, 50mm)) }
+metrics two { success = at end (far_up(source) and no x in distractors: far_up(x, 5cm)) }
+metrics three { success = at end (far_up(target) and no x in distractors: far_up(x, 5cm)) }
+task t like red_on_tray { metrics one }
+variant same of t { metrics two; light night }
+variant other of t { metrics three }
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  CHECK(axes(a->task("same")) == "light");
+  CHECK(axes(a->task("other")) == "goal");
+}
+
+TEST_CASE("a verb is one in any case, and a capital alone is a paraphrase") {
+  const auto a =
+      analyze_with_suite("variant v of red_on_tray { say \"Put {source} on {the target}\" }");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  CHECK(axes(a->task("v")) == "language.paraphrase");
+}
+
+TEST_CASE("words that ask for something else are another action, not a paraphrase") {
+  const auto moved = [](const std::string& from, const std::string& to) {
+    const auto a = analyze_with_suite("task t like red_on_tray { distractors blue; say \"" + from +
+                                      "\" }\nvariant v of t { say \"" + to + "\" }");
+    CHECK_MESSAGE(a->codes() == "", a->said());
+    return axes(a->task("v"));
+  };
+  CHECK(moved("put {source} left of {target}", "put {source} right of {target}") ==
+        "language.action");
+  CHECK(moved("put {source} to the left of {target}", "put it, {the source}, on the right") ==
+        "language.action");
+  CHECK(moved("first move {source} then {blue}", "first move {blue} then {source}") ==
+        "language.action");
+  CHECK(moved("first move {source}, then move {blue}", "first take {blue} and then {source}") ==
+        "language.action");
+  CHECK(moved("put {source} on {target}", "put {target} on {source}") == "language.action");
+  CHECK(moved("put {source} on {target}", "put {source} under {target}") == "language.action");
+  // The same in other words.
+  CHECK(moved("put {source} on {target}", "put {source} down on top of {target}") ==
+        "language.paraphrase");
+  CHECK(moved("put {source} above {target}", "put, with {target} below, {source}") ==
+        "language.paraphrase");
+  CHECK(moved("pick {source}, then drop it on {target}",
+              "pick first {source}, then drop it onto {target}") == "language.paraphrase");
+}

@@ -157,3 +157,8 @@ TEST_CASE("an expansion beyond the limit is stopped and said once") {
                            "spread (10cm, 10cm) }\ntask t like red_on_tray { layout huge }")
             ->codes() == "P0210");
 }
+
+TEST_CASE("a derived name begins with a letter, as every name does") {
+  const auto a = analyze_with_suite("derive \"_{t}\" for t in { red_on_tray } { light night }");
+  CHECK(a->codes() == "P0101");
+}

@@ -141,3 +141,42 @@ TEST_CASE("jitter moves every object by its own draw, and other tasks shift noth
   CHECK(most > 0.003);
   CHECK(analyze_with_suite("layout l like pairs { jitter -5mm }")->codes() == "P0304");
 }
+
+TEST_CASE(
+    "the draw of an object depends on the start and its own name, not on what stands around") {
+  const auto a = analyze_with_suite(R"(
+layout shaken like pairs { jitter 5mm }
+task t like red_on_tray { layout shaken }
+variant crowded of t { distractors pale }
+variant other of t { source blue }
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  const auto& plain = a->task("t").starts;
+  const auto& crowded = a->task("crowded").starts;
+  const auto& other = a->task("other").starts;
+  REQUIRE(plain.size() == crowded.size());
+  REQUIRE(plain.size() == other.size());
+  std::size_t moved = 0;
+  for (std::size_t e = 0; e < plain.size(); ++e) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(crowded[e].placed[i].x == plain[e].placed[i].x);
+      CHECK(crowded[e].placed[i].y == plain[e].placed[i].y);
+    }
+    CHECK(other[e].placed[1].x == plain[e].placed[1].x);
+    CHECK(other[e].placed[1].y == plain[e].placed[1].y);
+    moved += other[e].placed[0].x != plain[e].placed[0].x ? 1 : 0;
+  }
+  CHECK(moved == plain.size());
+}
+
+TEST_CASE("cells of a grid ascend even where no decimal holds them") {
+  const auto a = analyze_with_suite(
+      "layout l like pairs { cells far = grid 7 x 1 at (99999999999999m, 0cm) spread "
+      "(99999999999998.999m, 0.000000000000000001mm) }");
+  for (const sema::Layout& layout : a->model.layouts) {
+    if (layout.name != "l") continue;
+    const auto& grid = layout.cells.back().grids.front();
+    REQUIRE(grid.size() == 7);
+    for (std::size_t i = 1; i < grid.size(); ++i) CHECK(grid[i].x > grid[i - 1].x);
+  }
+}

@@ -39,7 +39,7 @@ TEST_CASE("json has a null fix, a null file for no place, and survives bytes tha
   const FileId id = sources.add("b\xff.probe", "\xff");
   Diagnostics diagnostics;
   diagnostics.report(Code::P0102, {id, 0, 1}, "found `\xff`");
-  diagnostics.report(Code::P0801, {}, "no place");
+  diagnostics.report(Code::P0202, {}, "no place");
   const auto json = Json::parse(render_json(diagnostics, sources));
   CHECK(json[0]["fix"].is_null());
   CHECK(json[0]["labels"].empty());

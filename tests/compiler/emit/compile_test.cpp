@@ -236,3 +236,83 @@ TEST_CASE("a backdrop's photo is of the surface of the scene that names it") {
   CHECK(codes(small + scenes + task, assets.path.string()) == "P0304 ");
   CHECK(codes(small + scenes + "; backdrop \"wall\"" + task, assets.path.string()) == "");
 }
+
+TEST_CASE("what the verifier would refuse is said of its place in the text, by check as by build") {
+  const std::string small = test::kSmallSuite;
+  const auto refused = [&](const std::string& more) {
+    const Folder folder("refused");
+    const std::string file = folder.write("x.probe", small + more);
+    const auto checked = check(std::span<const std::string>(&file, 1), {test::asset_root(), ""});
+    REQUIRE(checked.ok());
+    std::string said;
+    for (const Diagnostic& item : checked->diagnostics.items()) {
+      CHECK_FALSE(item.primary.is_none());
+      said += std::string(info(item.code).text) + " ";
+    }
+    CHECK(codes(small + more) == said);
+    return said;
+  };
+  CHECK(refused("variant v of red_on_tray { say \"put {source}\\non {target}\" }") == "P0406 ");
+  CHECK(refused("object o like red { name \"a\\nb\" }") == "P0304 ");
+  CHECK(refused("object o like red { phrase p appearance \"a\\nb\" means color red }") == "P0304 ");
+  CHECK(refused("suite s { tasks tasks; seeds 1; prefix \"a\\n\" }") == "P0304 ");
+  CHECK(refused(
+            "@allow(confounded, \"a\\nb\")\nvariant v of red_on_tray { light night; say take }") ==
+        "P0304 ");
+  const std::string longer(4097, 'x');
+  CHECK(refused("suite s { tasks tasks; seeds 1; prefix \"" + longer + "\" }") == "P0304 ");
+  const std::string name(256, 'x');
+  CHECK(refused("set " + name + " = tasks") == "P0304 ");
+  CHECK(refused("variant " + name + " of red_on_tray { light night }") == "P0304 ");
+  CHECK(refused("derive \"" + name.substr(11) + "{t}\" for t in { red_on_tray } { light night }") ==
+        "P0304 ");
+  CHECK(codes(small + "set " + name.substr(1) + " = tasks") == "");
+  std::string suns, metrics;
+  for (int i = 0; i < 65; ++i) suns += "; sun (0, 0, -1) power 1";
+  for (int i = 0; i < 256; ++i) metrics += "m" + std::to_string(i) + " = max height(source)\n";
+  CHECK(refused("light l { ambient 0.1" + suns + " }\nvariant v of red_on_tray { light l }") ==
+        "P0304 ");
+  CHECK(refused("metrics many like plain { " + metrics +
+                " }\ntask t like red_on_tray { metrics many }") == "P0304 ");
+  CHECK(refused("task t like red_on_tray { horizon 100001 steps }") == "P0304 ");
+  CHECK(refused("robot other { urdf \"arm/arm.urdf\"; tcp tool; control ee_delta_pose 5Hz\n"
+                "fingers left opens +y, right opens -y\n"
+                "drive waist stiffness 100Nm/rad damping 10Nms/rad limit 20Nm\n"
+                "drive l, r stiffness 1000N/m damping 200Ns/m limit 60N\n"
+                "grip 1cm .. 4cm friction 2 patch -1cm }") == "P0304 ");
+}
+
+TEST_CASE("files that use each other are checked beside others") {
+  const Folder folder("circle");
+  folder.write("base.probe", test::kSmallSuite);
+  const std::vector<std::string> files = {
+      folder.write("a.probe", "use \"base.probe\"\nvariant va of red_on_tray { light night }\n"),
+      folder.write("c.probe",
+                   "use \"base.probe\"\nuse \"d.probe\"\nvariant vc of red_on_tray { say no }\n"),
+      folder.write("d.probe", "use \"c.probe\"\nvariant vd of red_on_tray { say nor }\n")};
+  const auto checked = check(files, {test::asset_root(), ""});
+  REQUIRE(checked.ok());
+  std::string said;
+  for (const Diagnostic& item : checked->diagnostics.items()) said += item.message + "\n";
+  CHECK_MESSAGE(checked->diagnostics.size() == 2, said);
+}
+
+TEST_CASE("a plan of one suite has the baselines of its tasks and not those of the baselines") {
+  const Folder folder("chain");
+  const std::string file = folder.write("x.probe", std::string(test::kSmallSuite) + R"(
+variant dark of red_on_tray { light night }
+variant dark_blue of dark { source blue }
+suite last trained on lab { tasks { dark_blue }; seeds 1 }
+)");
+  const Compilation all = build_ok(file);
+  const Compilation last = build_ok(file, "last");
+  const auto whole = plan::Plan::from_bytes(all.plan);
+  const auto plan = plan::Plan::from_bytes(last.plan);
+  REQUIRE(plan.ok());
+  REQUIRE(plan->tasks().size() == 2);
+  CHECK(plan->text(plan->tasks()[0].name) == "dark");
+  CHECK(plan->tasks()[0].baseline == plan::kNone);
+  CHECK(plan->tasks()[1].axes == static_cast<std::uint32_t>(plan::Axis::kObjectSource));
+  // What a task is does not depend on what else is built.
+  CHECK(plan->episodes()[24].episode_id == whole->episodes()[48].episode_id);
+}

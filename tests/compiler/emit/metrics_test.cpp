@@ -103,3 +103,21 @@ TEST_CASE("a condition over no distractors is constant only where no task has an
   CHECK(codes(metric) == "P0602");
   CHECK(codes(metric, "task u like red_on_tray { metrics m; distractors blue }") == "");
 }
+
+TEST_CASE(
+    "a metric that only a shorter episode makes constant is none where tasks share a program") {
+  const std::string late = "metrics m like plain { late = once step > 100 }\n";
+  const auto said = [&](const std::string& first, const std::string& second) {
+    auto a =
+        test::analyze_with_suite(late + "task a like red_on_tray { metrics m; horizon " + first +
+                                 " steps }\nvariant b of a { horizon " + second + " steps }");
+    REQUIRE_MESSAGE(!a->diagnostics.has_errors(), a->said());
+    const auto bytes = emit::emit(a->model, a->sources, {a->files[0].file.id},
+                                  {test::asset_root(), "", "", false}, a->diagnostics);
+    REQUIRE(bytes.ok());
+    return a->codes();
+  };
+  CHECK(said("60", "200") == "");
+  CHECK(said("200", "60") == "");
+  CHECK(said("60", "90") == "P0602");
+}

@@ -40,9 +40,17 @@ TEST_CASE("degrees turn into radians with one rounding of the degrees") {
 
 TEST_CASE("sums of decimals are exact before they are rounded") {
   const Decimal a = *parse_decimal("-0.16");
-  CHECK((a - *parse_decimal("0.05")).to_double() == -0.21);
+  CHECK(plus(a, *parse_decimal("-0.05"))->to_double() == -0.21);
   CHECK(-0.16 - 0.05 != -0.21);
-  CHECK((a + *parse_decimal("0.075") * 2).to_double() == -0.01);
+  CHECK(plus(a, *times(*parse_decimal("0.075"), 2))->to_double() == -0.01);
+}
+
+TEST_CASE("a sum or product that 128 bits do not hold is none") {
+  const Decimal large = make_quantity("99999999999999", "m")->exact;
+  const Decimal small = make_quantity("1e-18", "mm")->exact;
+  REQUIRE(plus(large, small).has_value());
+  CHECK_FALSE(times(*plus(large, small), 999'999).has_value());
+  CHECK_FALSE(plus(Decimal{large.mantissa, 20}, small).has_value());
 }
 
 TEST_CASE("what is no plain decimal is refused") {

@@ -13,3 +13,16 @@ TEST_CASE("an @allow silences warnings about its declaration, and a word when th
                            "variant v of red_on_tray { distractors blue_two }")
             ->codes() == "P0209");
 }
+
+TEST_CASE(
+    "a word that nothing can be allowed by is reported on every declaration, with the nearest") {
+  for (const std::string decl : {"object o like red { unseen }", "light l { ambient 0.1 }",
+                                 "suite s { tasks tasks; seeds 1 }", "set s = tasks",
+                                 "variant v of red_on_tray { light night }"}) {
+    CAPTURE(decl);
+    const auto a = analyze_with_suite("@allow(confunded, \"why\")\n" + decl);
+    CHECK(a->codes().starts_with("P0208"));
+    REQUIRE(a->diagnostics.items().front().fix.has_value());
+    CHECK(a->diagnostics.items().front().fix->message == "write `confounded`");
+  }
+}

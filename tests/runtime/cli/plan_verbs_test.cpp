@@ -30,6 +30,19 @@ TEST_CASE("verify says the root on standard output and what was checked on the o
   CHECK(size < object["bytes"].get<std::size_t>());
 }
 
+TEST_CASE("a plan of one suite says how many of its tasks are only there to be compared with") {
+  Sandbox box;
+  const std::string example = VLAPROBE_SOURCE_DIR "/examples/negation.probe";
+  const Outcome built =
+      box.vlaprobe("build " + example + " -o x.plan --suite negated --assets $ASSETS");
+  CHECK(built.exit == 0);
+  CHECK_MESSAGE(contains(built.err, "3 tasks, 1 of them only baselines of the others"), built.err);
+  const Outcome told =
+      box.vlaprobe("build " + example + " -o y.plan --suite negated --json --assets $ASSETS");
+  CHECK(json::parse(told.out)["only_baselines"] == 1);
+  CHECK_FALSE(contains(box.vlaprobe("build $SUITE -o z.plan --assets $ASSETS").err, "baselines"));
+}
+
 TEST_CASE(
     "a plan of another major version, cut short, or of something else says so in every verb") {
   Sandbox box;

@@ -1,0 +1,153 @@
+// P0404 for words that are written out: "put {source} on the towel" where no towel is. Reads
+// English as far as it must: a name counts where a noun stands.
+#include <algorithm>
+#include <array>
+#include <map>
+#include <string_view>
+
+#include "compiler/check/check.h"
+#include "runtime/base/utf8.h"
+
+namespace probe::sema {
+namespace {
+
+// What stands before a noun that is meant...
+constexpr auto kBefore = std::to_array<std::string_view>(
+    {"a",     "an",      "the",  "this",   "that",    "each",  "every",   "both",    "any",
+     "no",    "in",      "into", "inside", "on",      "onto",  "to",      "towards", "from",
+     "of",    "off",     "over", "under",  "above",   "below", "behind",  "beside",  "near",
+     "with",  "without", "by",   "at",     "between", "and",   "or",      "not",     "than",
+     "avoid", "up",      "down", "around", "against", "until", "another", "other"});
+// ... and what may follow it, beside a sign and the end.
+constexpr auto kAfter = std::to_array<std::string_view>(
+    {"in",      "into",  "inside", "on",      "onto",  "to",     "towards", "from",   "of",
+     "off",     "over",  "under",  "above",   "below", "behind", "beside",  "near",   "with",
+     "without", "by",    "at",     "between", "and",   "or",     "not",     "than",   "up",
+     "down",    "then",  "first",  "before",  "after", "while",  "until",   "around", "against",
+     "is",      "as",    "so",     "that",    "where", "when",   "instead", "please", "alone",
+     "away",    "there", "but",    "should"});
+
+bool has(const auto& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+struct Word {
+  std::string text;   // folded, without signs
+  bool ends = false;  // a sign or the end of the literal words follows
+};
+
+// The words of a template; a slot is one empty word.
+std::vector<Word> words_of(const Template& say) {
+  constexpr std::string_view kSigns = ".,;:!?()\"";
+  std::vector<Word> words;
+  for (const Template::Part& part : say.parts) {
+    if (part.slot) {
+      words.push_back({{}, true});
+      continue;
+    }
+    const std::string text = fold_case(part.literal);
+    for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
+      const std::size_t end = std::min(text.find(' ', at), text.size());
+      Word word{text.substr(at, end - at)};
+      while (!word.text.empty() && kSigns.find(word.text.back()) != kSigns.npos) {
+        word.text.pop_back();
+        word.ends = true;
+      }
+      if (!word.text.empty()) words.push_back(std::move(word));
+      at = end;
+    }
+  }
+  if (!words.empty()) words.back().ends = true;
+  return words;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    parts.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return parts;
+}
+
+struct Mentions {
+  const Model& model;
+  std::map<std::vector<std::string>, std::vector<ObjectId>> called = {};  // by folded name
+  std::map<TemplateId, std::vector<const std::vector<std::string>*>> known = {};
+
+  explicit Mentions(const Model& all) : model(all) {
+    for (std::size_t i = 0; i < model.objects.size(); ++i) {
+      const auto id = model.objects.id(i);
+      const std::vector<std::string> name = split(fold_case(model.objects[id].text.text));
+      if (!name.empty()) called[name].push_back(id);
+    }
+  }
+
+  // The names that a template has among its own words, each once.
+  const std::vector<const std::vector<std::string>*>& in(TemplateId id) {
+    const auto [at, is_new] = known.try_emplace(id);
+    if (!is_new) return at->second;
+    const std::vector<Word> words = words_of(model.templates[id]);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const bool is_object_of_verb = i == 1;
+      if (i == 0 || !(is_object_of_verb || has(kBefore, words[i - 1].text))) continue;
+      const auto* name = longest(words, i);
+      if (name == nullptr) continue;
+      const std::size_t last = i + name->size() - 1;
+      const bool is_noun = words[last].ends || has(kAfter, words[last + 1].text);
+      if (is_noun && std::find(at->second.begin(), at->second.end(), name) == at->second.end())
+        at->second.push_back(name);
+      i = last;
+    }
+    return at->second;
+  }
+
+ private:
+  const std::vector<std::string>* longest(const std::vector<Word>& words, std::size_t from) const {
+    const std::vector<std::string>* found = nullptr;
+    for (const auto& [name, objects] : called) {
+      bool fits = from + name.size() <= words.size();
+      for (std::size_t k = 0; fits && k < name.size(); ++k)
+        fits = words[from + k].text == name[k] && (k + 1 == name.size() || !words[from + k].ends);
+      if (fits && (found == nullptr || name.size() > found->size())) found = &name;
+    }
+    return found;
+  }
+};
+
+// An object of the scene may be meant: it has these words at the end of its own.
+bool is_there(const Model& model, const Task& task, const std::vector<std::string>& name) {
+  const std::vector<ObjectId> objects = task.objects();
+  return std::any_of(objects.begin(), objects.end(), [&](ObjectId id) {
+    const std::vector<std::string> own = split(fold_case(model.objects[id].text.text));
+    return own.size() >= name.size() &&
+           std::equal(name.begin(), name.end(),
+                      own.end() - static_cast<std::ptrdiff_t>(name.size()));
+  });
+}
+
+}  // namespace
+
+void check_mentions(const Model& model, Reporter& reporter) {
+  Mentions mentions(model);
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete || (task.keeps_absent && !task.allow_absent)) continue;
+    const About about(reporter, task.decl_span);
+    for (const std::vector<std::string>* name : mentions.in(task.say)) {
+      if (is_there(model, task, *name)) continue;
+      const Object& object = model.objects[mentions.called.at(*name).front()];
+      Diagnostic& absent = reporter.report(
+          Situation::kAbsentWord, task.say_span.is_none() ? task.span : task.say_span,
+          "\"" + object.text.text + "\" names an object that is not in the scene of `" + task.name +
+              "`");
+      absent.label(model.templates[task.say].span, "said here")
+          .help("add `distractors " + object.name + "`, or write `{the " + object.name +
+                "}` so that the words follow the object");
+      // Only a warning can be silenced: a suite that was published like this says so.
+      if (task.allow_absent) absent.severity = Severity::kWarning;
+    }
+  }
+}
+
+}  // namespace probe::sema

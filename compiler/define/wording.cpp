@@ -1,0 +1,173 @@
+#include "compiler/define/wording.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "runtime/base/utf8.h"
+
+namespace probe::sema {
+namespace {
+
+// A word of an instruction, or the object that a slot stands for.
+struct Word {
+  std::string text;
+  bool is_object = false;
+  bool operator==(const Word&) const = default;
+};
+
+using Pair = std::pair<std::string_view, std::string_view>;
+
+// Where one of a pair is said and the other is not, another thing is asked for.
+constexpr auto kOpposites = std::to_array<Pair>({{"left", "right"},
+                                                 {"leftmost", "rightmost"},
+                                                 {"leftward", "rightward"},
+                                                 {"clockwise", "counterclockwise"},
+                                                 {"clockwise", "anticlockwise"},
+                                                 {"front", "behind"},
+                                                 {"front", "back"},
+                                                 {"nearest", "farthest"},
+                                                 {"closest", "farthest"},
+                                                 {"closest", "furthest"},
+                                                 {"inside", "outside"},
+                                                 {"open", "close"},
+                                                 {"push", "pull"},
+                                                 {"larger", "smaller"},
+                                                 {"bigger", "smaller"}});
+
+// These have other uses ("on top" of what is "at the bottom"), so they count only where the rest is
+// the same, word by word.
+constexpr auto kOppositesInPlace = std::to_array<Pair>(
+    {{"above", "below"},  {"above", "under"},  {"over", "under"},  {"on", "under"},
+     {"on", "below"},     {"on", "beside"},    {"on", "near"},     {"on", "behind"},
+     {"onto", "under"},   {"in", "on"},        {"into", "onto"},   {"into", "behind"},
+     {"on", "off"},       {"onto", "off"},     {"in", "out"},      {"to", "from"},
+     {"up", "down"},      {"top", "bottom"},   {"upper", "lower"}, {"near", "far"},
+     {"towards", "away"}, {"before", "after"}, {"first", "last"},  {"with", "without"},
+     {"and", "or"}});
+
+bool is_pair(const auto& pairs, std::string_view a, std::string_view b) {
+  return std::any_of(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    return (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a);
+  });
+}
+
+bool has(const std::vector<Word>& words, std::string_view text) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](const Word& word) { return !word.is_object && word.text == text; });
+}
+
+// The name of the object of a slot; one that fills a role is that role, however the text names it.
+std::string object_of(const Model& model, const Task& task, const std::string& slot) {
+  const std::string& source = model.objects[task.source].name;
+  const std::string& target = model.objects[task.target].name;
+  if (slot == "source" || slot == source) return "source";
+  return slot == "target" || slot == target ? "target" : slot;
+}
+
+// The words with their signs and in their case, but for articles; `{the source}` is one of them,
+// whatever words are chosen for it.
+std::vector<Word> words_of(const Model& model, const Task& task) {
+  std::vector<Word> words;
+  for (const Template::Part& part : model.templates[task.say].parts) {
+    if (part.slot) {
+      words.push_back({object_of(model, task, part.slot->name.text), true});
+      continue;
+    }
+    const std::string& text = part.literal;
+    for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
+      const std::size_t end = std::min(text.find(' ', at), text.size());
+      std::string word = text.substr(at, end - at);
+      if (word != "the" && word != "a" && word != "an") words.push_back({std::move(word)});
+      at = end;
+    }
+  }
+  return words;
+}
+
+// A word in one case and without the signs around it.
+std::string plain(std::string_view word) {
+  constexpr std::string_view kSigns = ".,;:!?()\"'";
+  const std::size_t begin = word.find_first_not_of(kSigns);
+  if (begin == word.npos) return {};
+  return fold_case(word.substr(begin, word.find_last_not_of(kSigns) + 1 - begin));
+}
+
+std::vector<Word> plain(std::vector<Word> words) {
+  for (Word& word : words) {
+    if (!word.is_object) word.text = plain(word.text);
+  }
+  std::erase_if(words, [](const Word& word) { return word.text.empty(); });
+  return words;
+}
+
+bool says_the_opposite(const std::vector<Word>& a, const std::vector<Word>& b) {
+  const auto says_first = [&](std::string_view one, std::string_view other) {
+    return has(a, one) && !has(a, other) && has(b, other) && !has(b, one);
+  };
+  for (const auto& [one, other] : kOpposites) {
+    if (says_first(one, other) || says_first(other, one)) return true;
+  }
+  return false;
+}
+
+// The same words around other objects, or opposites in one place.
+bool differs_in_place(const std::vector<Word>& a, const std::vector<Word>& b) {
+  if (a.size() != b.size() || a == b) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] == b[i] || (a[i].is_object && b[i].is_object)) continue;
+    if (a[i].is_object || b[i].is_object) return false;
+    if (!is_pair(kOpposites, a[i].text, b[i].text) &&
+        !is_pair(kOppositesInPlace, a[i].text, b[i].text))
+      return false;
+  }
+  return true;
+}
+
+std::vector<std::string> objects_in_order(const std::vector<Word>& words,
+                                          const std::vector<Word>& also_in) {
+  std::vector<std::string> objects;
+  for (const Word& word : words) {
+    const bool is_shared = std::find(also_in.begin(), also_in.end(), word) != also_in.end();
+    const bool is_new = std::find(objects.begin(), objects.end(), word.text) == objects.end();
+    if (word.is_object && is_shared && is_new) objects.push_back(word.text);
+  }
+  return objects;
+}
+
+// Two sequences that take their objects in another order.
+bool goes_the_other_way(const std::vector<Word>& a, const std::vector<Word>& b) {
+  const auto is_sequence = [](const std::vector<Word>& words) {
+    return has(words, "then") || has(words, "first") || has(words, "afterwards");
+  };
+  return is_sequence(a) && is_sequence(b) && objects_in_order(a, b) != objects_in_order(b, a);
+}
+
+}  // namespace
+
+std::string first_word(const std::vector<Template::Part>& parts) {
+  if (parts.empty() || parts[0].slot) return {};
+  const std::string& text = parts[0].literal;
+  return plain(std::string_view(text).substr(0, text.find(' ')));
+}
+
+bool has_negation(const Template& say) {
+  return std::any_of(say.parts.begin(), say.parts.end(),
+                     [](const Template::Part& part) { return part.slot && part.slot->avoid; });
+}
+
+bool asks_otherwise(const Model& model, const Task& a, const Task& b) {
+  if (model.templates[a.say].frame != model.templates[b.say].frame) return true;
+  if (a.say == b.say) return false;
+  const std::vector<Word> here = plain(words_of(model, a)), there = plain(words_of(model, b));
+  return says_the_opposite(here, there) || differs_in_place(here, there) ||
+         goes_the_other_way(here, there);
+}
+
+bool is_reworded(const Model& model, const Task& a, const Task& b) {
+  return has_negation(model.templates[a.say]) == has_negation(model.templates[b.say]) &&
+         !asks_otherwise(model, a, b) && words_of(model, a) != words_of(model, b);
+}
+
+}  // namespace probe::sema

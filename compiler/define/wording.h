@@ -1,0 +1,28 @@
+// What instructions say, apart from how they say it: which differences of words are a paraphrase
+// and which ask for something else.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "compiler/model/model.h"
+
+namespace probe::sema {
+
+// The verb of words on the spot: the first one, whatever its case and the signs around it. Empty
+// when a slot stands first.
+std::string first_word(const std::vector<Template::Part>& parts);
+
+// An instruction that mentions something it warns against.
+bool has_negation(const Template& say);
+
+// Whether two instructions ask for different actions: their verb frames differ, or one says `left`
+// where the other says `right`, or the same words stand around other objects ("put A on B", "put B
+// on A"), or a sequence goes the other way ("first A, then B", "first B, then A").
+bool asks_otherwise(const Model& model, const Task& a, const Task& b);
+
+// Whether two instructions ask for the same in other words, articles aside. A negation brings its
+// own words.
+bool is_reworded(const Model& model, const Task& a, const Task& b);
+
+}  // namespace probe::sema

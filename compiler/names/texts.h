@@ -1,0 +1,17 @@
+// Texts and names that go into a plan as they are: what its verifier would refuse is said here,
+// where it is written.
+#pragma once
+
+#include <string_view>
+
+#include "compiler/diag/diagnostic.h"
+#include "compiler/names/symbols.h"
+
+namespace probe::sema {
+
+// P0304 for a text in another form than a plan keeps, or longer. `what`: "the name of an object".
+void check_text(Diagnostics& diagnostics, const Spelled& text, std::string_view what);
+// P0304 for a name that is longer than a plan keeps.
+void check_name(Diagnostics& diagnostics, const syntax::Name& name);
+
+}  // namespace probe::sema

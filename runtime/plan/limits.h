@@ -1,0 +1,24 @@
+// How much of anything a plan may hold: one number each, for the compiler, which names the place in
+// the text, and for the verifier, which names the record. They bound the work per record.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace probe::plan {
+
+inline constexpr std::size_t kMaxInstructions = 4096;  // of a program
+inline constexpr std::size_t kMaxBodies = 256;         // of a task
+inline constexpr std::size_t kMaxMetrics = 256;        // of a task
+inline constexpr std::size_t kMaxConstants = 65536;    // of a program
+inline constexpr std::size_t kMaxDrives = 64;          // of a robot
+inline constexpr std::size_t kMaxMeshes = 256;         // that a robot's description names
+inline constexpr std::size_t kMaxSuns = 64;            // of a light
+inline constexpr std::size_t kMaxStringBytes = 4096;
+inline constexpr std::size_t kMaxNameBytes = 255;      // of a declaration, which names files
+inline constexpr std::uint32_t kMaxPixels = 8192;      // a side of an image
+inline constexpr std::uint32_t kMaxHorizon = 100'000;  // control steps: over 5 hours at 5 Hz
+inline constexpr double kMaxSubsteps = 100'000;        // physics steps in a control step
+inline constexpr double kMaxSettle = 60;               // s
+
+}  // namespace probe::plan

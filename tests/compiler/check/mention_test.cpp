@@ -1,0 +1,49 @@
+#include <doctest/doctest.h>
+
+#include "tests/compiler/small_suite.h"
+
+using namespace probe;
+using test::analyze_with_suite;
+
+namespace {
+
+std::string codes(const std::string& words, const std::string& more = "") {
+  return analyze_with_suite(more + "variant v of red_on_tray { say \"" + words + "\" }")->codes();
+}
+
+const std::string kTowel = "object towel like pale { name \"towel\" }\n";
+const std::string kOrange = "object orange like pale { name \"orange\" }\n";
+const std::string kCan = "object can like pale { name \"can\" }\n";
+
+}  // namespace
+
+TEST_CASE("words that are written out name what is in the scene") {
+  CHECK(codes("put {source} on the towel", kTowel) == "P0404");
+  CHECK(codes("put {source} on {target}, then move towel", kTowel) == "");
+  CHECK(codes("put the towel, please", kTowel) == "P0404");
+  CHECK(codes("put the Pale Block on {target}") == "P0404");
+  CHECK(codes("put {source} on the towel",
+              kTowel + "variant w of red_on_tray { distractors towel }\n") == "P0404");
+  const auto there =
+      analyze_with_suite(kTowel +
+                         "variant v of red_on_tray { distractors towel }\n"
+                         "variant w of v { say \"put {source} on {target}, beside the towel\" }");
+  CHECK_MESSAGE(there->codes() == "", there->said());
+}
+
+TEST_CASE("a name that is an adjective, a verb or part of another name is no mention") {
+  CHECK(codes("put {source} on the orange square", kOrange) == "");
+  CHECK(codes("put {source} on the orange", kOrange) == "P0404");
+  CHECK(codes("please, if you can put {source} on {target}", kCan) == "");
+  // `red block` may be meant.
+  CHECK(codes("put the block on {target}", "object block like pale { name \"block\" }\n") == "");
+}
+
+TEST_CASE("a published sentence that tells of what is not there is kept under an allow") {
+  const auto a = analyze_with_suite(
+      kTowel +
+      "@allow(absent, \"published so\")\n"
+      "variant v of red_on_tray { say \"put {source} on {target}, not on the towel\" }\n"
+      "variant w of v { light night }");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+}
