@@ -15,7 +15,7 @@ namespace {
 constexpr int kSteps = 7;
 
 // One control step of a made-up world: objects near their limits, contacts at random.
-struct Situation {
+struct Arrangement {
   std::vector<vm::BodyStart> starts;
   std::vector<vm::StepSample> steps;
 };
@@ -41,9 +41,9 @@ class Worlds {
  public:
   explicit Worlds(std::uint64_t seed) : draw_(seed) {}
 
-  Situation make(const plan::Plan& plan, const plan::TaskRecord& task) {
+  Arrangement make(const plan::Plan& plan, const plan::TaskRecord& task) {
     const Bodies bodies = bodies_of(plan, task);
-    Situation world;
+    Arrangement world;
     world.starts.resize(task.bodies.count);
     for (std::size_t i = 0; i < bodies.objects; ++i) {
       world.starts[i].half = {between(0.01, 0.06), between(0.01, 0.06), between(0.002, 0.03)};
@@ -106,7 +106,7 @@ double level(const Vec3& a) { return std::sqrt(a.x() * a.x() + a.y() * a.y()); }
 // The published rules, from their description.
 struct PublishedRule {
   const Bodies& bodies;
-  const Situation& world;
+  const Arrangement& world;
 
   const vm::StepSample& last() const { return world.steps.back(); }
   bool near(double slack) const {
@@ -187,7 +187,7 @@ TEST_CASE("the rule of success of every task agrees with the published one") {
     Worlds worlds(t);
     bool agrees = true;
     for (int i = 0; i < 2000; ++i) {
-      const Situation world = worlds.make(plan, task);
+      const Arrangement world = worlds.make(plan, task);
       vm::Judge judge(plan, t);
       REQUIRE(judge.begin(world.starts).ok());
       for (const vm::StepSample& step : world.steps) REQUIRE(judge.step(step).ok());
