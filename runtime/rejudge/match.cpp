@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/plan/ids.h"
+#include "runtime/store/episode_key.h"
 
 namespace probe::rejudge {
 namespace {

@@ -111,6 +111,7 @@ class Loader {
     RunInfo info;
     info.dir = dir;
     info.plan = plan;
+    info.content = record.identity.policy_content;
     info.fingerprint = index_in(benchmark_.fingerprints, record.fingerprint.entries);
     info.seeds = record.seeds;
     if (info.fingerprint > 0) {
@@ -311,6 +312,7 @@ class Loader {
     const plan::Plan& file = benchmark_.plan_files[static_cast<std::size_t>(plan)];
     const PlanTasks& map = maps_[static_cast<std::size_t>(plan)];
     note_delivery(dir, file, rows);
+    note_reading(dir, info);
     std::vector<Episode> episodes;
     std::set<int> tasks;
     std::size_t unknown = 0;
@@ -438,6 +440,16 @@ class Loader {
                        "lists them",
                        dir, findings.size() - kNamed, dir));
     }
+  }
+
+  // What the questions at the beginning of its calls showed. A folder whose calls cannot be read
+  // has been told of with its rows.
+  void note_reading(const std::string& dir, RunInfo& info) {
+    const auto calls = store::read_run_calls(dir);
+    if (!calls) return;
+    info.reading = store::summarize_readings(*calls);
+    for (const std::string& finding : info.reading.findings)
+      note("bad", fmt::format("`{}`: {}", dir, finding));
   }
 
   void note_runs() {

@@ -13,6 +13,7 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/store/results.h"
+#include "runtime/store/run_record.h"
 
 namespace probe::report {
 
@@ -75,7 +76,9 @@ struct RunInfo {
   int plan = 0, fingerprint = 0;
   std::vector<int> seeds;
   int done = 0, expected = 0, invalid = 0, videos = 0;
-  int tasks = 0;  // that have an episode
+  int tasks = 0;                       // that have an episode
+  store::ReadingSummary reading = {};  // of a policy server
+  std::string content = {};            // RunIdentity::policy_content
 };
 
 enum class Role : std::uint8_t { kModel, kCeiling, kFloor, kRandom, kProbe };

@@ -127,6 +127,25 @@ Json delivery_json(const Benchmark& benchmark) {
                                            label, sent - own, sent, first)}});
     }
   }
+  for (std::size_t p = 0; p < benchmark.policies.size(); ++p) {
+    const Policy& policy = benchmark.policies[p];
+    for (const RunInfo& run : policy.runs) {
+      // Which profile asked: of some policies there is one as published and one as meant.
+      if (run.content.find(" profile ") != std::string::npos) {
+        rows.push_back({{"level", "good"},
+                        {"policy", p},
+                        {"text", fmt::format("{}: asked by {}", policy.label, run.content)}});
+      }
+      const bool is_good = run.reading.findings.empty();
+      if (is_good && run.reading.good.empty()) continue;
+      for (const std::string& text :
+           is_good ? std::vector{run.reading.good} : run.reading.findings) {
+        rows.push_back({{"level", is_good ? "good" : "bad"},
+                        {"policy", p},
+                        {"text", fmt::format("{}: {}", policy.label, text)}});
+      }
+    }
+  }
   std::map<std::pair<int, int>, std::string> pictures;
   std::size_t same = 0, other = 0;
   for (const Episode& e : benchmark.episodes) {

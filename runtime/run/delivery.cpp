@@ -36,6 +36,20 @@ std::string visible_axes(std::uint32_t axes) {
   return names;
 }
 
+const char* delivery_word(DeliveryFinding::Kind kind) {
+  switch (kind) {
+    case DeliveryFinding::Kind::kSamePrompt:
+      return "same_prompt";
+    case DeliveryFinding::Kind::kManyPrompts:
+      return "many_prompts";
+    case DeliveryFinding::Kind::kSamePicture:
+      return "same_picture";
+    case DeliveryFinding::Kind::kNothing:
+      break;
+  }
+  return "nothing";
+}
+
 class Detector {
  public:
   Detector(const plan::Plan& plan, std::span<const store::ResultRow> rows) : plan_(plan) {
@@ -45,13 +59,21 @@ class Detector {
     }
     for (const store::ResultRow& row : rows) {
       const auto found = tasks.find(row.task);
+      if (found == tasks.end()) continue;
+      ++(row.invalid ? invalid_ : valid_);
       // Before the first request nothing was sent, and a row without a picture never got so far.
-      if (found == tasks.end() || row.image_sha256.empty()) continue;
+      if (row.image_sha256.empty()) continue;
       rows_[found->second].push_back(&row);
     }
   }
 
   std::vector<DeliveryFinding> find() {
+    if (valid_ == 0) {
+      add({DeliveryFinding::Kind::kNothing, "", "", "", 0, invalid_,
+           "no episode is valid" +
+               (invalid_ == 0 ? std::string() : ", " + count_of(invalid_, "episode") + " invalid") +
+               ": what reached the policy cannot be said"});
+    }
     for (const auto& [task, rows] : rows_) {
       check_prompt(task, rows);
       check_pictures(task, rows);
@@ -114,6 +136,7 @@ class Detector {
   void add(DeliveryFinding finding) { findings_.push_back(std::move(finding)); }
 
   const plan::Plan& plan_;
+  int valid_ = 0, invalid_ = 0;
   std::map<std::uint32_t, std::vector<const store::ResultRow*>> rows_;  // by task
   std::map<std::string_view, std::uint32_t> first_with_;  // a sent text: its first task
   std::vector<DeliveryFinding> findings_;
@@ -129,10 +152,7 @@ std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
 std::string to_json(std::span<const DeliveryFinding> findings) {
   auto array = Json::array();
   for (const DeliveryFinding& finding : findings) {
-    const char* kind = finding.kind == DeliveryFinding::Kind::kSamePrompt    ? "same_prompt"
-                       : finding.kind == DeliveryFinding::Kind::kManyPrompts ? "many_prompts"
-                                                                             : "same_picture";
-    array.push_back({{"kind", kind},
+    array.push_back({{"kind", delivery_word(finding.kind)},
                      {"task", finding.task},
                      {"other", finding.other},
                      {"axes", finding.axes},

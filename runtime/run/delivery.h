@@ -19,6 +19,7 @@ struct DeliveryFinding {
     kSamePrompt,   // two instructions of the plan, one text sent
     kManyPrompts,  // one instruction of the plan, several texts sent
     kSamePicture,  // a variant and its baseline, equal first pictures of different starts
+    kNothing,      // no valid episode: what reached the policy cannot be said
   };
   Kind kind = Kind::kSamePrompt;
   std::string task, other;  // the variant and its baseline, or any two tasks; `other` may be empty
@@ -30,12 +31,13 @@ struct DeliveryFinding {
 };
 
 // Of rows of one run of `plan`; tasks that the plan does not have are passed over. A policy in this
-// process is compared by what it was shown. Ascending by the plan's task order.
+// process is compared by what it was shown. Ascending by the plan's task order. Without a valid row
+// the first finding is that nothing can be said, and invalid ones may have others.
 std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
                                             std::span<const store::ResultRow> rows);
 
 // A JSON array of objects {kind, task, other, axes, episodes, compared, sentence}; kinds are
-// same_prompt, many_prompts, same_picture.
+// same_prompt, many_prompts, same_picture, nothing.
 std::string to_json(std::span<const DeliveryFinding> findings);
 
 }  // namespace probe::run

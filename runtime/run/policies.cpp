@@ -168,7 +168,8 @@ Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
     case Kind::kServer:
       break;
   }
-  return servers::make_server(*choice.entry->protocol, choice.argument, context.queries);
+  return servers::make_server(*choice.entry->protocol, choice.argument, context.queries,
+                              context.model);
 }
 
 Result<servers::ServerChoice> server_choice(std::string_view text) {

@@ -15,8 +15,9 @@ namespace probe::policy {
 class QueryMeter;
 }
 namespace probe::servers {
+class SharedModel;
 struct ServerChoice;
-}
+}  // namespace probe::servers
 
 namespace probe::run {
 
@@ -34,6 +35,7 @@ struct PolicyTraits {
 struct PolicyContext {
   policy::RecordedActions recorded_actions;
   policy::QueryMeter* queries = nullptr;  // of the run; told of each query to a server; may be null
+  std::shared_ptr<servers::SharedModel> model = nullptr;  // of the run's connections; may be null
 };
 
 // Fail (kUsage) on an unknown policy, with the known ones and the nearest spelling, and on a

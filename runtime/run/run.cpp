@@ -15,6 +15,7 @@
 #include "runtime/run/recorded.h"
 #include "runtime/run/selection.h"
 #include "runtime/run/workers.h"
+#include "runtime/servers/reading.h"
 #include "runtime/show/episode_video.h"
 #include "runtime/stage/assets.h"
 #include "runtime/store/fingerprint.h"
@@ -35,21 +36,25 @@ struct Shared {
   store::Store& store;
   RunSummary& summary;
   policy::QueryMeter& queries;
+  std::shared_ptr<servers::SharedModel> model;  // of all connections to a server
   bool asks_server = false;
   std::mutex mutex = {};  // summary, progress and the counts below
   int lost_in_a_row = 0;  // episodes that a policy server's failures spoiled for good
   std::atomic<bool> given_up = false;
 };
 
-run::PolicyContext context_with(policy::QueryMeter* queries) {
+run::PolicyContext context_with(policy::QueryMeter* queries,
+                                std::shared_ptr<servers::SharedModel> model) {
   run::PolicyContext context = policy_context();
   context.queries = queries;
+  context.model = std::move(model);
   return context;
 }
 
 Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
-                                                    policy::QueryMeter* queries) {
-  const run::PolicyContext context = context_with(queries);
+                                                    policy::QueryMeter* queries,
+                                                    std::shared_ptr<servers::SharedModel> model) {
+  const run::PolicyContext context = context_with(queries, std::move(model));
   return options.own_policy ? options.own_policy->make(context)
                             : run::make_policy(options.policy, context);
 }
@@ -71,7 +76,7 @@ class EpisodeWorker {
   explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
 
   Status begin() {
-    PROBE_ASSIGN(policy_, make_policy(shared_.options, &shared_.queries));
+    PROBE_ASSIGN(policy_, make_policy(shared_.options, &shared_.queries, shared_.model));
     return {};
   }
 
@@ -296,6 +301,13 @@ Result<std::string> choose_folder(const RunOptions& options, store::RunRecord& r
   }
 }
 
+// Before the first episode: the server is there, has its model, and reads.
+Result<policy::Reading> prove(const std::string& policy,
+                              std::shared_ptr<servers::SharedModel> model) {
+  PROBE_ASSIGN(const servers::ServerChoice choice, run::server_choice(policy));
+  return servers::prove_reading(choice, std::move(model));
+}
+
 // Whether what makes tasks different reached the policy, over all that the folder holds.
 Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary& summary) {
   constexpr std::size_t kTold = 5;
@@ -336,7 +348,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   }
   // Made once before anything else, so that a policy that cannot be had is told before the folder
   // exists.
-  if (auto made = make_policy(options, nullptr); !made) return made.failure();
+  if (auto made = make_policy(options, nullptr, nullptr); !made) return made.failure();
   std::vector<store::ResultRow> recorded;
   if (traits.recorded) {
     PROBE_ASSIGN(recorded, recorded_rows(run::policy_argument(options.policy)));
@@ -376,6 +388,12 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   summary.call.fingerprint = fingerprint;
   summary.call.worlds =
       static_cast<int>(std::min(selection.jobs.size(), static_cast<std::size_t>(options.jobs)));
+  const auto model = std::make_shared<servers::SharedModel>();
+  if (!options.own_policy && !traits.content.empty()) {
+    PROBE_ASSIGN(summary.call.reading, prove(options.policy, model));
+    for (std::string& finding : policy::findings_of(*summary.call.reading))
+      summary.notes.push_back(std::move(finding));
+  }
   PROBE_TRY(store->write_call(summary.call));
   policy::QueryMeter queries;
   Shared shared{.plan = plan,
@@ -386,6 +404,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
                 .store = *store,
                 .summary = summary,
                 .queries = queries,
+                .model = model,
                 .asks_server = !traits.content.empty()};
   const auto make_worker = [&shared]() -> Result<Worker> {
     auto worker = std::make_shared<EpisodeWorker>(shared);

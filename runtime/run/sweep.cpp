@@ -11,7 +11,9 @@
 #include "runtime/base/percent.h"
 #include "runtime/plan/plan.h"
 #include "runtime/run/selection.h"
+#include "runtime/servers/servers.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/store.h"
 
 namespace probe::run {
 namespace {
@@ -52,6 +54,27 @@ Status check(const SweepOptions& options) {
     if (!known.insert(checkpoint).second) {
       return misused("`" + checkpoint + "` is named twice", "--checkpoints");
     }
+  }
+  return {};
+}
+
+// What a run of each checkpoint could not do either; and a server that loads what it likes, asked
+// for two checkpoints, would be compared with itself.
+Status check_policies(const SweepOptions& options) {
+  std::map<std::string, std::string> asked;  // a server that ignores checkpoints: the first of them
+  for (const std::string& checkpoint : options.checkpoints) {
+    const std::string policy = with_checkpoint(options.run.policy, checkpoint);
+    PROBE_TRY(run::policy_traits(policy));
+    const auto choice = run::server_choice(policy);
+    if (!choice || choice->profile.checkpoint == servers::CheckpointUse::kNamed) continue;
+    const auto [first, is_first] = asked.emplace(choice->server.name(), checkpoint);
+    if (is_first) continue;
+    return misused("the server at " + first->first +
+                       " does not load the checkpoint that it is told (`" +
+                       "checkpoint = ignored` in profile `" + choice->profile.name + "`): `" +
+                       first->second + "` and `" + checkpoint +
+                       "` would be one model; start a server for each and write {} into the port",
+                   "--policy");
   }
   return {};
 }
@@ -110,6 +133,32 @@ Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
   return score;
 }
 
+// Of the newest call that asked; a folder that was whole before was asked then.
+std::string answers_of(const std::string& dir) {
+  std::string hash;
+  if (const auto calls = store::read_run_calls(dir)) {
+    for (const store::RunCall& call : *calls) {
+      if (call.reading && !call.reading->answers_sha256.empty())
+        hash = call.reading->answers_sha256;
+    }
+  }
+  return hash;
+}
+
+// Two checkpoints that answer alike may be one model.
+std::vector<std::string> alike(const std::vector<CheckpointScore>& scores) {
+  std::vector<std::string> sentences;
+  std::map<std::string, std::string> first_with;
+  for (const CheckpointScore& score : scores) {
+    if (score.answers_sha256.empty()) continue;
+    const auto [first, is_first] = first_with.emplace(score.answers_sha256, score.checkpoint);
+    if (is_first) continue;
+    sentences.push_back("checkpoints `" + first->second + "` and `" + score.checkpoint +
+                        "` answer bit for bit the same: are they one model?");
+  }
+  return sentences;
+}
+
 bool is_better(const CheckpointScore& a, const CheckpointScore& b) {
   return a.success != b.success ? a.success > b.success : a.intention > b.intention;
 }
@@ -136,8 +185,10 @@ Status write_choice(const plan::Plan& plan, const SweepOptions& options,
                                    {"tasks", score.tasks},
                                    {"episodes", score.episodes},
                                    {"success", score.success},
-                                   {"intention", score.intention}});
+                                   {"intention", score.intention},
+                                   {"answers_sha256", score.answers_sha256}});
   }
+  json["alike"] = summary.alike;
   const std::string text = json.dump(2) + "\n";
   return write_file((fs::path(options.run.out) / "sweep.json").string(),
                     std::as_bytes(std::span(text)));
@@ -162,10 +213,8 @@ std::string checkpoint_folder(const std::string& checkpoint) {
 
 Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options) {
   PROBE_TRY(check(options));
-  // What none of them could run with is told before the first is run.
-  for (const std::string& checkpoint : options.checkpoints) {
-    PROBE_TRY(run::policy_traits(with_checkpoint(options.run.policy, checkpoint)));
-  }
+  // What cannot be run is told before the first is run.
+  PROBE_TRY(check_policies(options));
   const auto tell = [&](const std::string& text) {
     if (options.tell) options.tell(text);
   };
@@ -177,9 +226,12 @@ Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options) 
     PROBE_ASSIGN(const RunSummary ran, run(plan, originals));
     originals.out = ran.out;  // a fork, perhaps
     PROBE_ASSIGN(CheckpointScore score, score_of(plan, originals, checkpoint));
+    score.answers_sha256 = answers_of(originals.out);
     tell(sentence(score));
     summary.scores.push_back(std::move(score));
   }
+  summary.alike = alike(summary.scores);
+  for (const std::string& sentence : summary.alike) tell(sentence);
   for (std::size_t i = 1; i < summary.scores.size(); ++i) {
     if (is_better(summary.scores[i], summary.scores[summary.best])) summary.best = i;
   }

@@ -26,12 +26,17 @@ struct CheckpointScore {
   std::string dir;
   int tasks = 0, episodes = 0;
   double success = 0, intention = 0;  // mean over the tasks of the share of episodes
+  // What its server answered to the questions at the run's beginning, see policy::Reading; empty of
+  // a policy in this process.
+  std::string answers_sha256 = "";
 };
 
 struct SweepSummary {
   std::vector<CheckpointScore> scores;  // in the order of the checkpoints
   std::size_t best = 0;                 // highest success, then intention, then the first named
-  RunSummary whole;                     // the best one's run of the whole suite
+  // Of checkpoints whose servers gave bit-equal answers: sentences.
+  std::vector<std::string> alike;
+  RunSummary whole;  // the best one's run of the whole suite
 };
 
 // Runs what is missing, also when it was killed before. Writes OUT/sweep.json with scores, rule and

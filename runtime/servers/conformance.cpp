@@ -8,21 +8,16 @@
 #include <optional>
 
 #include "runtime/base/json.h"
-#include "runtime/robot/rotation.h"
 #include "runtime/servers/api_key.h"
-#include "runtime/servers/server_policy.h"
+#include "runtime/servers/questions.h"
 
 namespace probe::servers {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Chunk = std::vector<RawAction>;
 
-constexpr int kWidth = 640, kHeight = 480;
 constexpr int kObservations = 6;
 constexpr int kRepeats = 3;
-constexpr int kHorizon = 60;
-constexpr const char* kPrompts[] = {"put carrot on plate", "put the spoon on the towel"};
 
 double seconds_since(Clock::time_point from) {
   return std::chrono::duration<double>(Clock::now() - from).count();
@@ -32,38 +27,6 @@ std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", value);
   return text;
-}
-
-// A brown table under a grey wall with an orange and a blue thing on it; `index` moves them. No
-// policy knows it, but every policy takes it for a picture.
-wire::Bytes picture(int index) {
-  wire::Bytes rgb;
-  rgb.reserve(static_cast<std::size_t>(kWidth) * kHeight * 3);
-  const int left = 150 + 40 * index, right = 420 - 30 * index;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      int color[3] = {165, 165, 170};
-      if (y > 140) color[0] = 150 + (x * 7 + y * 3) % 17, color[1] = 115, color[2] = 80;
-      if (std::abs(x - left) < 28 && std::abs(y - 300) < 14) {
-        color[0] = 230, color[1] = 120, color[2] = 30;
-      }
-      const int dx = x - right, dy = y - 330;
-      if (dx * dx + 3 * dy * dy < 60 * 60) color[0] = 60, color[1] = 90, color[2] = 190;
-      for (const int channel : color) rgb.push_back(static_cast<std::uint8_t>(channel));
-    }
-  }
-  return rgb;
-}
-
-// The WidowX at the start of its table tasks, gripper open.
-policy::Proprioception at_start() {
-  Mat3 down;
-  down << 0, 0, 1, 0, 1, 0, -1, 0, 0;
-  policy::Proprioception measured;
-  measured.tcp_in_base = {{0.3, 0.0, 0.14}, Quat(down)};
-  measured.openness = 1;
-  measured.joints = {-0.018, 0.040, 0.222, -0.005, 1.365, 0.002, 0.037, 0.037};
-  return measured;
 }
 
 // A failure's words, with what would mend the commonest: a key that the server does not find.
@@ -95,13 +58,13 @@ double difference(const Chunk& a, const Chunk& b) {
 class Session {
  public:
   Session(const ServerChoice& choice, Transport& transport, Conformance& result)
-      : profile_(choice.profile), transport_(transport), result_(result) {}
+      : questions_(choice.profile, transport), transport_(transport), result_(result) {}
 
   void run() {
     if (!connect()) return;
     std::vector<Chunk> chunks;
     for (int i = 0; i < kObservations; ++i) {
-      auto chunk = ask("answer", i, kPrompts[0]);
+      auto chunk = ask("answer", {.picture = i});
       if (!chunk) return;
       chunks.push_back(std::move(*chunk));
     }
@@ -109,7 +72,8 @@ class Session {
                               Verdict::kFine,
                               std::to_string(kObservations) + " observations answered with actions",
                               {}});
-    for (Check& check : judge_answers(profile_, chunks)) result_.checks.push_back(std::move(check));
+    for (Check& check : judge_answers(profile(), chunks))
+      result_.checks.push_back(std::move(check));
     double changes = 0;
     for (const Chunk& chunk : chunks) changes = std::max(changes, difference(chunk, chunks[0]));
     check_sameness(chunks[0], changes);
@@ -119,8 +83,7 @@ class Session {
  private:
   bool connect() {
     const auto begun = Clock::now();
-    auto opened = transport_.open(deadlines());
-    if (opened) opened = transport_.adapt(profile_);
+    const auto opened = questions_.open();
     result_.connect_s = seconds_since(begun);
     if (!opened) {
       result_.checks.push_back(failed_check("connection", opened.failure()));
@@ -133,38 +96,12 @@ class Session {
     return true;
   }
 
-  // The first answer of an episode. On a failure the check is written and the session is over.
-  std::optional<Chunk> ask(const char* name, int index, const char* prompt) {
-    policy::EpisodeStart start;
-    start.task = "policy_test";
-    start.prompt = prompt;
-    start.index = index;
-    start.horizon = kHorizon;
-    const wire::Bytes rgb = picture(index);
-    const policy::Image image{kWidth, kHeight, rgb};
-    // One picture stands for every camera that the profile names.
-    std::vector<policy::CameraImage> cameras;
-    for (const ImageRule& rule : profile_.images) cameras.push_back({rule.camera, image});
-    policy::Observation seen;
-    seen.image = image;
-    seen.cameras = cameras;
-    seen.prompt = prompt;
-    seen.proprioception = at_start();
-    seen.horizon = kHorizon;
-    auto answer = [&]() -> Result<Chunk> {
-      if (profile_.connection == ConnectionUse::kPerEpisode && result_.queries > 0) {
-        transport_.close();
-        PROBE_TRY(transport_.open(deadlines()));
-      }
-      PROBE_TRY(transport_.begin_episode(start, deadlines()));
-      PROBE_ASSIGN(const Request request, to_request(profile_, seen));
-      const auto begun = Clock::now();
-      ++result_.queries;
-      PROBE_ASSIGN(Chunk chunk, transport_.ask(request, deadlines()));
-      times_.push_back(seconds_since(begun));
-      PROBE_TRY(transport_.end_episode({true, false, 1}, deadlines()));
-      return chunk;
-    }();
+  const Profile& profile() const { return questions_.profile(); }
+
+  // On a failure the check is written and the session is over.
+  std::optional<Chunk> ask(const char* name, const Question& question) {
+    auto answer = questions_.ask(question);
+    result_.queries = questions_.asked();
     if (!answer) {
       result_.checks.push_back(failed_check(name, answer.failure()));
       judge_times();
@@ -177,7 +114,7 @@ class Session {
   void check_sameness(const Chunk& first, double changes) {
     double noise = 0;
     for (int i = 0; i < kRepeats; ++i) {
-      const auto again = ask("repetition", 0, kPrompts[0]);
+      const auto again = ask("repetition", {});
       if (!again) return;
       noise = std::max(noise, difference(first, *again));
     }
@@ -204,7 +141,7 @@ class Session {
       result_.checks.push_back(
           {"picture", Verdict::kFine, "other pictures have other answers", {}});
     }
-    const auto other = ask("instruction", 0, kPrompts[1]);
+    const auto other = ask("instruction", {.words = 1});
     if (!other) return;
     if (difference(first, *other) <= noise) {
       result_.checks.push_back(
@@ -219,9 +156,10 @@ class Session {
   }
 
   void judge_times() {
-    if (times_.empty()) return;
-    result_.first_s = times_.front();
-    std::vector<double> later(times_.begin() + (times_.size() > 1 ? 1 : 0), times_.end());
+    const std::vector<double>& times = questions_.times();
+    if (times.empty()) return;
+    result_.first_s = times.front();
+    std::vector<double> later(times.begin() + (times.size() > 1 ? 1 : 0), times.end());
     std::sort(later.begin(), later.end());
     result_.median_s = later[later.size() / 2];
     result_.slowest_s = later.back();
@@ -230,25 +168,17 @@ class Session {
                 "first answer " + number(result_.first_s) + " s, then " + number(result_.median_s) +
                     " s, slowest " + number(result_.slowest_s) + " s",
                 {}};
-    if (result_.slowest_s > profile_.answer_s / 2) {
+    if (result_.slowest_s > profile().answer_s / 2) {
       check.verdict = Verdict::kWarning;
-      check.found += ", near the profile's limit of " + number(profile_.answer_s) + " s";
+      check.found += ", near the profile's limit of " + number(profile().answer_s) + " s";
       check.fix = {"timeout.answer_s = " + number(4 * result_.slowest_s)};
     }
     result_.checks.push_back(std::move(check));
   }
 
-  Deadlines deadlines() const {
-    const double answer =
-        times_.empty() ? std::max(profile_.first_s, profile_.answer_s) : profile_.answer_s;
-    return {wire::Duration(static_cast<std::int64_t>(profile_.connect_s * 1000)),
-            wire::Duration(static_cast<std::int64_t>(answer * 1000))};
-  }
-
-  Profile profile_;
+  Questions questions_;
   Transport& transport_;
   Conformance& result_;
-  std::vector<double> times_;
 };
 
 }  // namespace

@@ -30,7 +30,7 @@ struct Number {
 using Slot = std::variant<std::string*, Count, Number, std::optional<double>*, std::vector<double>*,
                           std::vector<ImageRule>*, Protocol*, StateLayout*, StateFrame*,
                           NumberType*, Normalisation*, RotationForm*, GripperRange*, PromptCase*,
-                          FullStop*, Ensemble*, ConnectionUse*>;
+                          FullStop*, Ensemble*, ConnectionUse*, CheckpointUse*>;
 
 struct Field {
   std::string_view name;
@@ -115,6 +115,8 @@ constexpr Field kFields[] = {
      "weight of an answer over that of the one before it"},
     {"connection", [](Profile& p) -> Slot { return &p.connection; },
      "whether a new one is made for each episode"},
+    {"checkpoint", [](Profile& p) -> Slot { return &p.checkpoint; },
+     "intact: whether the server loads the one that the address names"},
     {"timeout.wait_s",
      [](Profile& p) -> Slot {
        return Number{&p.wait_s, kLongest};

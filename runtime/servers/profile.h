@@ -64,6 +64,12 @@ enum class ConnectionUse {
   kPerEpisode,  // made anew for each episode, for servers that keep something and hear no reset
 };
 
+// What becomes of the checkpoint that an address names, at servers that are told one.
+enum class CheckpointUse {
+  kNamed,
+  kIgnored,  // the server loads what its own configuration says
+};
+
 struct ImageRule {
   std::string camera;  // empty: the scene's first
   std::string key;
@@ -117,6 +123,7 @@ struct Profile {
   double ensemble_ratio = 1;
 
   ConnectionUse connection = ConnectionUse::kKept;
+  CheckpointUse checkpoint = CheckpointUse::kNamed;
 
   // Seconds.
   double wait_s = 30;       // for a server that is not there, trying again

@@ -77,6 +77,10 @@ inline constexpr std::array kConnections = {
     Word<ConnectionUse>{"kept", ConnectionUse::kKept},
     Word<ConnectionUse>{"per_episode", ConnectionUse::kPerEpisode},
 };
+inline constexpr std::array kCheckpoints = {
+    Word<CheckpointUse>{"named", CheckpointUse::kNamed},
+    Word<CheckpointUse>{"ignored", CheckpointUse::kIgnored},
+};
 
 constexpr std::span<const Word<Resize>> words_of(Resize) { return kResizes; }
 constexpr std::span<const Word<PixelLayout>> words_of(PixelLayout) { return kPixelLayouts; }
@@ -90,6 +94,8 @@ constexpr std::span<const Word<PromptCase>> words_of(PromptCase) { return kCases
 constexpr std::span<const Word<FullStop>> words_of(FullStop) { return kFullStops; }
 constexpr std::span<const Word<Ensemble>> words_of(Ensemble) { return kEnsembles; }
 constexpr std::span<const Word<ConnectionUse>> words_of(ConnectionUse) { return kConnections; }
+
+constexpr std::span<const Word<CheckpointUse>> words_of(CheckpointUse) { return kCheckpoints; }
 
 // Protocols have theirs in their rows.
 inline std::vector<Word<Protocol>> words_of(Protocol) {

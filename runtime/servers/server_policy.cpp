@@ -1,24 +1,15 @@
 #include "runtime/servers/server_policy.h"
 
 #include <algorithm>
-#include <thread>
 
 #include "runtime/base/sha256.h"
 #include "runtime/servers/api_key.h"
+#include "runtime/servers/connecting.h"
 #include "runtime/servers/conversion.h"
 #include "runtime/servers/resize.h"
 
 namespace probe::servers {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr wire::Duration kFirstPause{100};
-constexpr wire::Duration kLongestPause{5000};
-
-wire::Duration to_duration(double seconds) {
-  return wire::Duration(static_cast<std::int64_t>(seconds * 1000));
-}
 
 Result<policy::Image> camera_image(const policy::Observation& observation,
                                    const std::string& camera) {
@@ -79,7 +70,7 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   if (!is_open_) PROBE_TRY(connect());
   if (auto begun = transport_->begin_episode(start, deadlines()); !begun) {
     drop();
-    return named(begun.failure());
+    return named(begun.failure(), server_);
   }
   in_episode_ = true;
   return {};
@@ -89,11 +80,11 @@ Result<policy::Action> ServerPolicy::act(const policy::Observation& observation)
   if (queue_.wants_answer()) {
     if (auto asked = ask(observation); !asked) {
       drop();
-      return named(asked.failure());
+      return named(asked.failure(), server_);
     }
   }
   auto action = to_action(profile_, queue_.take());
-  if (!action) return named(action.failure());
+  if (!action) return named(action.failure(), server_);
   return action;
 }
 
@@ -105,26 +96,8 @@ void ServerPolicy::end(const policy::EpisodeEnd& end) {
 }
 
 Status ServerPolicy::connect() {
-  const auto limit = Clock::now() + to_duration(given_.wait_s);
   has_answered_ = false;
-  wire::Duration pause = kFirstPause;
-  for (int attempt = 1;; ++attempt) {
-    profile_ = given_;
-    auto opened = transport_->open(deadlines());
-    bool is_answer = opened.ok();
-    if (opened) opened = transport_->adapt(profile_);
-    if (opened) break;
-    transport_->close();
-    is_answer = is_answer || opened.failure().code == Fault::kAnswered;
-    Failure failure = named(opened.failure());
-    if (is_answer || failure.code == Fault::kUsage) return failure;
-    if (Clock::now() + pause > limit) {
-      if (attempt > 1) failure.message += " (tried " + std::to_string(attempt) + " times)";
-      return failure;
-    }
-    std::this_thread::sleep_for(pause);
-    pause = std::min(2 * pause, kLongestPause);
-  }
+  PROBE_TRY(open_patiently(*transport_, given_, server_, &profile_));
   is_open_ = true;
   notes_ = transport_->notes();
   for (std::string& note : notes_) note = without_key(note);
@@ -149,14 +122,6 @@ Deadlines ServerPolicy::deadlines() const {
   return {to_duration(profile_.connect_s),
           to_duration(has_answered_ ? profile_.answer_s
                                     : std::max(profile_.first_s, profile_.answer_s))};
-}
-
-Failure ServerPolicy::named(Failure failure) const {
-  if (failure.where.empty()) failure.where = server_;
-  if (failure.code == Fault::kAnswered) failure.code = Fault::kPolicy;
-  // A server may repeat the key that it refuses; this text is stored.
-  failure.message = without_key(failure.message);
-  return failure;
 }
 
 void ServerPolicy::drop() {

@@ -45,7 +45,6 @@ class ServerPolicy : public policy::Policy {
   Status connect();
   Status ask(const policy::Observation& observation);
   Deadlines deadlines() const;
-  Failure named(Failure failure) const;
   void drop();
 
   Profile given_;    // as chosen

@@ -52,15 +52,19 @@ std::string describe(const ServerChoice& choice) {
   return text;
 }
 
-Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice) {
+Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
+                                                  std::shared_ptr<SharedModel> model) {
   PROBE_TRY(check_api_key());
-  return row_of(choice.profile.protocol).make(choice.profile, choice.server);
+  auto transport = row_of(choice.profile.protocol).make(choice.profile, choice.server);
+  if (transport && model) (*transport)->share(std::move(model));
+  return transport;
 }
 
 Result<std::unique_ptr<policy::Policy>> make_server(Protocol protocol, std::string_view argument,
-                                                    policy::QueryMeter* queries) {
+                                                    policy::QueryMeter* queries,
+                                                    std::shared_ptr<SharedModel> model) {
   PROBE_ASSIGN(ServerChoice choice, choose_server(protocol, argument));
-  PROBE_ASSIGN(std::unique_ptr<Transport> transport, make_transport(choice));
+  PROBE_ASSIGN(std::unique_ptr<Transport> transport, make_transport(choice, std::move(model)));
   return std::unique_ptr<policy::Policy>(std::make_unique<ServerPolicy>(
       std::move(choice.profile), choice.server.name(), std::move(transport), queries));
 }

@@ -10,6 +10,7 @@
 #include "runtime/policy/policy.h"
 #include "runtime/policy/query_meter.h"
 #include "runtime/servers/profile.h"
+#include "runtime/servers/shared_model.h"
 #include "runtime/servers/transport.h"
 #include "runtime/wire/endpoint.h"
 
@@ -30,9 +31,12 @@ Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument)
 // Without the address: what does the same at another address has the same.
 std::string describe(const ServerChoice& choice);
 
-Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice);
+// `model` is what all connections of a run have in common, or nothing.
+Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
+                                                  std::shared_ptr<SharedModel> model = nullptr);
 
 Result<std::unique_ptr<policy::Policy>> make_server(Protocol protocol, std::string_view argument,
-                                                    policy::QueryMeter* queries);
+                                                    policy::QueryMeter* queries,
+                                                    std::shared_ptr<SharedModel> model = nullptr);
 
 }  // namespace probe::servers

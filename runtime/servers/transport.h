@@ -20,6 +20,8 @@
 
 namespace probe::servers {
 
+class SharedModel;
+
 // What a server sent and nothing can be done with.
 inline Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
@@ -55,6 +57,9 @@ Failure answered(std::string message);
 class Transport {
  public:
   virtual ~Transport() = default;
+
+  // Before open(): what the connections of a run have in common; else each is on its own.
+  virtual void share(std::shared_ptr<SharedModel> /*shared*/) {}
 
   // Connects and does what the protocol wants first (metadata, hello, which model). One attempt.
   virtual Status open(const Deadlines& deadlines) = 0;

@@ -118,18 +118,75 @@ std::string to_text(const RunCall& call) {
          percent(call.queries.waiting_s, call.elapsed_s * call.worlds) + " of theirs";
 }
 
+ReadingSummary summarize_readings(const std::vector<RunCall>& calls) {
+  ReadingSummary summary;
+  for (const RunCall& call : calls) {
+    if (!call.reading) continue;
+    const auto findings = policy::findings_of(*call.reading);
+    if (findings.empty()) ++summary.proven;
+    for (const std::string& finding : findings) {
+      if (std::ranges::find(summary.findings, finding) == summary.findings.end())
+        summary.findings.push_back(finding);
+    }
+  }
+  if (summary.findings.empty() && summary.proven > 0) {
+    summary.good = "other words and other pictures had other answers when the run began";
+  }
+  return summary;
+}
+
+namespace {
+
+Json reading_to_json(const policy::Reading& reading) {
+  auto measured = Json::object();
+  for (const auto& [field, value] : reading.measured) measured[field] = value;
+  return {{"server", reading.server},     {"answers", reading.answers},
+          {"failure", reading.failure},   {"is_deaf", reading.is_deaf},
+          {"is_blind", reading.is_blind}, {"answers_sha256", reading.answers_sha256},
+          {"measured", measured}};
+}
+
+// Nothing where a part is missing or of another type.
+std::optional<policy::Reading> reading_from_json(const Json& json) {
+  const auto text = [&](const char* key) -> std::optional<std::string> {
+    const Json* found = json.find(key);
+    if (found == nullptr || !found->is_string()) return std::nullopt;
+    return found->text();
+  };
+  const auto flag = [&](const char* key) {
+    const Json* found = json.find(key);
+    return found != nullptr && found->is_boolean() && found->get<bool>();
+  };
+  const auto server = text("server"), failure = text("failure"), hash = text("answers_sha256");
+  const Json *answers = json.find("answers"), *measured = json.find("measured");
+  if (!server || !failure || !hash || answers == nullptr || !answers->is_number_integer() ||
+      measured == nullptr || !measured->is_object()) {
+    return std::nullopt;
+  }
+  policy::Reading reading{
+      *server, answers->get<int>(), *failure, flag("is_deaf"), flag("is_blind"), *hash, {}};
+  for (const auto& [field, value] : measured->items()) {
+    if (!value.is_string()) return std::nullopt;
+    reading.measured.emplace_back(field, value.text());
+  }
+  return reading;
+}
+
+}  // namespace
+
 std::string call_to_json(const RunCall& call) {
-  const Json json = {{"fingerprint", to_json(call.fingerprint)},
-                     {"worlds", call.worlds},
-                     {"ended", call.ended},
-                     {"episodes", call.episodes},
-                     {"retried", call.retried},
-                     {"observations", call.observations},
-                     {"elapsed_s", call.elapsed_s},
-                     {"queries", call.queries.queries},
-                     {"server_busy_s", call.queries.busy_s},
-                     {"worlds_waiting_s", call.queries.waiting_s},
-                     {"queries_at_once", call.queries.most_at_once}};
+  Json json = {{"fingerprint", to_json(call.fingerprint)},
+               {"worlds", call.worlds},
+               {"ended", call.ended},
+               {"episodes", call.episodes},
+               {"retried", call.retried},
+               {"observations", call.observations},
+               {"elapsed_s", call.elapsed_s},
+               {"queries", call.queries.queries},
+               {"server_busy_s", call.queries.busy_s},
+               {"worlds_waiting_s", call.queries.waiting_s},
+               {"queries_at_once", call.queries.most_at_once}};
+  if (call.reading) json["reading"] = reading_to_json(*call.reading);
   return json.sorted().dump();
 }
 
@@ -157,6 +214,10 @@ Result<RunCall> call_from_json(const std::string& text, const std::string& where
   call.queries.busy_s = number("server_busy_s").get<double>();
   call.queries.waiting_s = number("worlds_waiting_s").get<double>();
   call.queries.most_at_once = number("queries_at_once").get<int>();
+  if (const Json* reading = json.find("reading")) {
+    call.reading = reading_from_json(*reading);
+    if (!call.reading) missing = "reading";
+  }
   if (!missing.empty()) {
     return record_failure("the figures of a call cannot be read: `" + missing + "`", where);
   }

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "runtime/base/result.h"
 #include "runtime/policy/query_meter.h"
+#include "runtime/policy/reading.h"
 #include "runtime/store/fingerprint.h"
 
 namespace probe::store {
@@ -58,11 +60,21 @@ struct RunCall {
   std::int64_t observations = 0;  // of all attempts
   double elapsed_s = 0;           // of the episodes, without what comes before the first
   policy::QueryFigures queries;
+  std::optional<policy::Reading> reading = {};  // of a policy server; not of older programs' calls
 };
 
 // "212.0 observations/s; ..., with shares of busy server and waiting worlds where there was a
 // server".
 std::string to_text(const RunCall& call);
+
+// What the questions at the beginning of a folder's calls showed of its policy server.
+struct ReadingSummary {
+  std::vector<std::string> findings;  // each sentence once
+  int proven = 0;                     // calls whose policy read pictures and instructions
+  // "other words and other pictures had other answers", where that was asked and nothing is wrong.
+  std::string good;
+};
+ReadingSummary summarize_readings(const std::vector<RunCall>& calls);
 
 std::string call_to_json(const RunCall& call);
 Result<RunCall> call_from_json(const std::string& text, const std::string& where);

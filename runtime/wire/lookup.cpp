@@ -1,9 +1,11 @@
 #include "runtime/wire/lookup.h"
 
+#include <arpa/inet.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <charconv>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -20,6 +22,23 @@ struct Answer {
   std::condition_variable changed;
   std::optional<Result<std::vector<Address>>> addresses;
 };
+
+// An address written as numbers, which nobody has to be asked for.
+std::optional<Address> numeric(const Endpoint& server) {
+  in_addr four{};
+  in6_addr six{};
+  if (::inet_pton(AF_INET, server.host.c_str(), &four) != 1 &&
+      ::inet_pton(AF_INET6, server.host.c_str(), &six) != 1) {
+    return std::nullopt;
+  }
+  std::uint16_t port = 0;
+  const char* end = server.port.data() + server.port.size();
+  if (const auto read = std::from_chars(server.port.data(), end, port);
+      read.ec != std::errc() || read.ptr != end) {
+    return std::nullopt;
+  }
+  return Address{server.host, port};
+}
 
 Failure failed(const std::string& message, const std::string& where) {
   return {Fault::kPolicy, "looking up the host" + message, where};
@@ -48,6 +67,9 @@ Result<std::vector<Address>> system_resolver(const std::string& host, const std:
 
 Result<std::vector<Address>> look_up(const Endpoint& server, Duration time, Duration stated,
                                      const Resolver& resolver) {
+  if (!resolver) {
+    if (auto address = numeric(server)) return std::vector{std::move(*address)};
+  }
   const auto answer = std::make_shared<Answer>();
   const auto ask = [answer, host = server.host, port = server.port,
                     resolve = resolver ? resolver : Resolver(system_resolver)] {

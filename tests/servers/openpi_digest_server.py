@@ -26,9 +26,12 @@ def actions(observation):
             b"shape": [4, 7]}
 
 
+model = None  # of all connections, as INT-ACT's server has it
+
+
 async def handle(socket):
+    global model
     await socket.send(msgpack.packb({}))
-    model = None
     async for message in socket:
         # An array's keys are bytes, which makes all maps' keys of both kinds.
         asked = msgpack.unpackb(message, strict_map_key=False)

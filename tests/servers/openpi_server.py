@@ -2,13 +2,15 @@
 strict as they are.
 
 openpi_server.py openpi|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] [seen=HABIT]
-                 [key=KEY] [lacks=MODEL]
+                 [key=KEY] [lacks=MODEL] [port=N]
 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or
 those of recorded_actions, or with `seen` small ones that depend on picture and instruction alone,
 where HABIT is `fine` or what is to be wrong: unit, inverted, euler, vector, normalised, noise, deaf,
-blind, nan, six. `record` gets every message that comes, a line of hexadecimal digits each. With
-`key` a client without this Api-Key is refused; INT-ACT's server fails to load the model `lacks`.
+blind, nan, six, or keeps: the instruction of the first question since the last reset, of whichever
+connection, as INT-ACT's wrapper of Octo does. `record` gets every message that comes, a line of hexadecimal digits each. With
+`key` a client without this Api-Key is refused; INT-ACT's server, which has one model for all its
+connections, fails to load the model `lacks` and then can load no other.
 """
 import asyncio
 import functools
@@ -51,6 +53,7 @@ dialect = sys.argv[1]
 options = dict(word.split("=", 1) for word in sys.argv[2:])
 chunk = int(options.get("chunk", 1))
 episodes = recorded_actions.load(options["actions"]) if "actions" in options else None
+BROKEN = object()
 METADATA = {
     "openpi": {},
     "intact": {},
@@ -82,17 +85,24 @@ def seen_actions(image, prompt, habit):
     return actions[:, :6] if habit == "six" else actions
 
 
+kept = None  # instruction, of all connections
+loaded = None  # model, of all connections
+
+
 class Policy:
     def __init__(self):
         self.recorded = recorded_actions.RecordedPolicy(episodes) if episodes else None
         self.count = 0
-        self.model = None
 
     def infer(self, image, prompt=""):
+        global kept
         assert image.dtype == numpy.uint8 and image.ndim == 3 and image.shape[2] == 3, image.shape
         if self.recorded:
             return self.recorded.answer(image, chunk)
         if "seen" in options:
+            if options["seen"] == "keeps":
+                kept = prompt if kept is None else kept
+                prompt = kept
             return seen_actions(image, prompt, options["seen"])
         actions = numpy.zeros((chunk, 7))
         actions[:, 0] = (self.count + numpy.arange(chunk)) / 1000
@@ -101,6 +111,8 @@ class Policy:
         return actions
 
     def reset(self):
+        global kept
+        kept = None
         self.count = 0
         if self.recorded:
             self.recorded.reset()
@@ -115,19 +127,25 @@ def answer_openpi(policy, request):
 
 
 def answer_intact(policy, request):
+    global loaded
     if "new_model_path" in request:
+        if loaded is BROKEN:
+            raise AttributeError("'OctoPolicyWrapper' object has no attribute 'model'")
         if request["new_model_path"] == options.get("lacks"):
+            loaded = BROKEN
             raise FileNotFoundError(request["new_model_path"])
-        policy.model = request["new_model_path"]
+        loaded = request["new_model_path"]
         return pack({"status": "model switched"})
-    if policy.model is None:
+    if loaded is None and "reset" in request:
+        raise ValueError("Model is not initialized. Please initialize model first.")
+    if loaded is None:
         raise AttributeError("'NoneType' object has no attribute 'preprocess'")
     if "reset" in request:
         policy.reset()
         return pack({"status": "reset"})
     assert request["observation.state"]["agent"]["eef_pos"].shape == (8,)
     assert isinstance(request["task"], str)
-    actions = policy.infer(request["observation.images.top"])
+    actions = policy.infer(request["observation.images.top"], request["task"])
     return pack(actions if chunk > 1 else [actions[0]])
 
 
@@ -175,7 +193,7 @@ async def check(path, headers):
 
 
 async def main():
-    async with websockets.serve(handle, "127.0.0.1", 0, compression=None, max_size=None,
+    async with websockets.serve(handle, "127.0.0.1", int(options.get("port", 0)), compression=None, max_size=None,
                                 process_request=check) as server:
         print("port", server.sockets[0].getsockname()[1])
         sys.stdout.flush()

@@ -10,6 +10,7 @@
 #include "runtime/rejudge/tally.h"
 #include "runtime/run/delivery.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/store.h"
 
 namespace probe::cli {
 namespace {
@@ -18,6 +19,16 @@ struct ResultsArguments {
   std::string dir;
   bool json = false, csv = false, delivery = false;
 };
+
+// What the questions at the beginning of the run showed of a policy server. A folder of an older
+// program has none.
+void print_readings(const std::string& dir) {
+  const auto calls = store::read_run_calls(dir);
+  if (!calls) return;
+  const store::ReadingSummary summary = store::summarize_readings(*calls);
+  for (const std::string& finding : summary.findings) fmt::print("{}\n", finding);
+  if (!summary.good.empty()) fmt::print("{}\n", summary.good);
+}
 
 // Whether what makes tasks different reached the policy.
 int delivery_verb(const ResultsArguments& arguments, std::span<const store::ResultRow> rows) {
@@ -29,6 +40,7 @@ int delivery_verb(const ResultsArguments& arguments, std::span<const store::Resu
     return kFine;
   }
   for (const run::DeliveryFinding& finding : findings) fmt::print("{}\n", finding.sentence);
+  print_readings(arguments.dir);
   if (findings.empty()) {
     fmt::print("every instruction and picture that should differ reached the policy different\n");
   }
@@ -49,6 +61,7 @@ int results_verb(const ResultsArguments& arguments) {
   } else {
     const auto plan = rejudge::stored_plan(arguments.dir);
     fmt::print("{}", rejudge::tally_text(rows, plan ? &*plan : nullptr));
+    print_readings(arguments.dir);
   }
   return exit;
 }

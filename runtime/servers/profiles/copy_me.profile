@@ -35,6 +35,7 @@ chunk.use = 4                        # of an answer, before the next question; o
 ensemble = none                      # temporal: a question every step (then without chunk.use)
 ensemble.ratio = 1
 connection = kept                    # per_episode: for servers that keep something and hear no reset
+checkpoint = named                   # ignored: an INT-ACT server that loads what it is configured to
 
 timeout.wait_s = 60                  # a server that is not there
 timeout.connect_s = 60               # one attempt to connect

@@ -58,6 +58,13 @@ class Gr00t : public Transport {
   void close() override { socket_.reset(); }
 
   Status begin_episode(const policy::EpisodeStart&, const Deadlines& deadlines) override {
+    return reset(deadlines);
+  }
+  Status end_episode(const policy::EpisodeEnd&, const Deadlines& deadlines) override {
+    return reset(deadlines);
+  }
+  // N1.5 has none and keeps nothing.
+  Status reset(const Deadlines& deadlines) {
     if (form_ == Gr00tForm::kN15) return {};
     auto reset = exchange({{"endpoint", "reset"}, {"data", wire::Map{{"options", wire::Value()}}}},
                           deadlines.answer);

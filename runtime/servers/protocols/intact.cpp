@@ -1,9 +1,10 @@
-// INT-ACT's dialect of openpi's protocol (policy_server_client): {"new_model_path"} on each
-// connection, {"reset"} after each episode, the state inside {"agent": {"eef_pos"}}.
+// INT-ACT's dialect of openpi's protocol (policy_server_client): {"new_model_path"} once a
+// run, {"reset"} before and after each episode, the state inside {"agent": {"eef_pos"}}.
 #include <array>
 
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/openpi_connection.h"
+#include "runtime/servers/shared_model.h"
 
 namespace probe::servers {
 namespace {
@@ -13,10 +14,17 @@ class Intact : public Transport {
   Intact(const Profile& profile, const wire::Endpoint& server, std::string model)
       : profile_(profile), connection_(server), model_(std::move(model)) {}
 
+  void share(std::shared_ptr<SharedModel> shared) override { shared_ = std::move(shared); }
+
   Status open(const Deadlines& deadlines) override {
     PROBE_ASSIGN(metadata_, connection_.open(profile_, deadlines));
+    if (was_open_) PROBE_TRY(see_model(deadlines));
     // Loading a model takes as long as a first answer.
-    return expect_status({{"new_model_path", model_}}, "model switched", deadlines);
+    PROBE_TRY(shared_->load_once([&] {
+      return expect_status({{"new_model_path", model_}}, "model switched", deadlines);
+    }));
+    was_open_ = true;
+    return {};
   }
   void close() override { connection_.close(); }
 
@@ -38,13 +46,38 @@ class Intact : public Transport {
                wire::describe(answer));
   }
 
+  // Its wrappers keep the instruction (Octo's until a reset), pictures and chunks. Whoever was
+  // killed or cut off in an episode has not said that it ended.
+  Status begin_episode(const policy::EpisodeStart&, const Deadlines& deadlines) override {
+    return reset(deadlines);
+  }
   Status end_episode(const policy::EpisodeEnd&, const Deadlines& deadlines) override {
-    return expect_status({{"reset", true}}, "reset", deadlines);
+    return reset(deadlines);
   }
 
+  std::vector<std::string> notes() const override {
+    if (profile_.checkpoint == CheckpointUse::kNamed) return {};
+    return {"the server does not load `model` = " + model_ +
+            " but what its own configuration names (profile field `checkpoint`)"};
+  }
   std::vector<std::string> remarks() const override { return metadata_remarks(metadata_); }
 
  private:
+  // After a connection was lost: a server that was restarted has no model and refuses a reset,
+  // whereupon it closes.
+  Status see_model(const Deadlines& deadlines) {
+    const std::uint64_t generation = shared_->generation();
+    const Status there = reset(deadlines);
+    if (there || there.failure().code != Fault::kAnswered) return there;
+    shared_->forget(generation);
+    PROBE_ASSIGN(metadata_, connection_.open(profile_, deadlines));
+    return {};
+  }
+
+  Status reset(const Deadlines& deadlines) {
+    return expect_status({{"reset", true}}, "reset", deadlines);
+  }
+
   Status expect_status(wire::Map request, const std::string& wanted, const Deadlines& deadlines) {
     const std::string asked = request.front().first;
     PROBE_ASSIGN(const wire::Value answer,
@@ -58,7 +91,9 @@ class Intact : public Transport {
   Profile profile_;
   OpenpiConnection connection_;
   std::string model_;
+  std::shared_ptr<SharedModel> shared_ = std::make_shared<SharedModel>();
   wire::Value metadata_;
+  bool was_open_ = false;
 };
 
 // Its servers begin without a model, so the address must name one.

@@ -15,7 +15,8 @@ namespace probe::servers {
 Result<std::unique_ptr<Transport>> make_openpi(const Profile& profile,
                                                const wire::Endpoint& server);
 
-// INT-ACT's: {"new_model_path"} on each connection, {"reset"} after each episode, the state inside
+// INT-ACT's: {"new_model_path"} once a run, {"reset"} before and after each episode, the state
+// inside
 // {"agent": {"eef_pos"}}. Fails (kUsage) without the option `model`, because its servers
 // begin without one.
 Result<std::unique_ptr<Transport>> make_intact(const Profile& profile,

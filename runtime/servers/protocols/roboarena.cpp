@@ -48,6 +48,12 @@ class RoboArena : public Transport {
   Status begin_episode(const policy::EpisodeStart& start, const Deadlines& deadlines) override {
     session_ = std::string(start.task) + "/" + std::to_string(start.index) + "/" +
                std::to_string(start.seed);
+    return reset(deadlines);
+  }
+  Status end_episode(const policy::EpisodeEnd&, const Deadlines& deadlines) override {
+    return reset(deadlines);
+  }
+  Status reset(const Deadlines& deadlines) {
     PROBE_TRY(connection_.send(wire::Map{{"endpoint", "reset"}}, deadlines.answer));
     PROBE_ASSIGN(const wire::Message answer, connection_.receive_message(deadlines.answer));
     if (answer.is_text && answer.text() == "reset successful") return {};

@@ -153,6 +153,40 @@ TEST_CASE("fifty policies make a table in little time") {
   CHECK(data["tables"]["main"]["rows"].size() == 200);
 }
 
+TEST_CASE("a server's profile, and whether it reads, stand with what reached the policy") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  const auto lines_of = [&](const std::string& name, const policy::Reading& reading) {
+    fake_run(
+        folder / name, plan, "gr00t://h:1",
+        {.tasks = kFour, .last = 1, .content = "gr00t profile gr00t_bridge_as_published sha256 1"},
+        always(true));
+    auto store = store::Store::open(folder / name, store::read_run_record(folder / name).value(),
+                                    plan.bytes());
+    REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
+    store::RunCall call;
+    call.reading = reading;
+    REQUIRE((*store)->write_call(call).ok());
+    store->reset();
+    const Benchmark benchmark = loaded({folder / name});
+    std::string lines;
+    const Json data = page_data(benchmark, {.title = "one"});
+    for (const auto& row : data["tables"]["delivery"])
+      lines += row["level"].text() + ": " + row["text"].text() + "\n";
+    return lines;
+  };
+  policy::Reading reading{"h:1", 3, "", false, false, "ab", {}};
+  const std::string good = lines_of("good", reading);
+  CHECK(good.find("good: gr00t://h:1: asked by gr00t profile gr00t_bridge_as_published") !=
+        std::string::npos);
+  CHECK(good.find("good: gr00t://h:1: other words and other pictures had other answers") !=
+        std::string::npos);
+  reading.is_deaf = true;
+  CHECK(lines_of("deaf", reading)
+            .find("bad: gr00t://h:1: the policy at h:1 answers two "
+                  "instructions with one picture bit for bit the same") != std::string::npos);
+}
+
 TEST_CASE("the document has every key that the page is promised") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;

@@ -50,6 +50,7 @@ struct FakeRunOptions {
   std::vector<std::string> tasks;  // empty: none
   int first = 0, last = 23;        // starts
   std::vector<int> seeds = {42};
+  std::string content = "";  // RunIdentity::policy_content
 };
 
 // Makes DIR with a row for every task, start and seed.
@@ -58,6 +59,7 @@ inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::
   store::RunRecord record;
   record.identity.plan_root = to_hex(plan.root());
   record.identity.policy = policy;
+  record.identity.policy_content = options.content;
   record.suite = plan.text(plan.suites()[0].name);
   record.seeds = options.seeds;
   record.fingerprint.entries = {{"cpu", "test"}};

@@ -99,4 +99,21 @@ TEST_CASE("distractors that the policy's picture does not show are found, start 
   CHECK(to_json(findings).find("\"kind\": \"same_picture\"") != std::string::npos);
 }
 
+TEST_CASE("with no valid episode nothing is said of what reached the policy") {
+  const plan::Plan plan = suite();
+  const auto none = check_delivery(plan, {});
+  REQUIRE(none.size() == 1);
+  CHECK(none[0].kind == DeliveryFinding::Kind::kNothing);
+  CHECK(none[0].sentence == "no episode is valid: what reached the policy cannot be said");
+  std::vector<ResultRow> rows = rows_of(plan);
+  for (ResultRow& row : rows) row.invalid = "policy: gone";
+  const auto invalid = check_delivery(plan, rows);
+  REQUIRE(invalid.size() == 1);
+  CHECK(invalid[0].sentence ==
+        "no episode is valid, 9 episodes invalid: what reached the policy cannot be said");
+  CHECK(to_json(invalid).find("\"kind\": \"nothing\"") != std::string::npos);
+  rows[4].invalid.reset();
+  CHECK(check_delivery(plan, rows).empty());
+}
+
 }  // namespace probe::run

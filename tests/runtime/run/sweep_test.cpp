@@ -50,6 +50,19 @@ SweepOptions options_for(const std::string& out) {
   return options;
 }
 
+TEST_CASE("checkpoints at one server that ignores what it is told to load are refused") {
+  TemporaryFolder folder;
+  const plan::Plan plan = two_tasks(folder);
+  SweepOptions options = options_for(folder / "sweep");
+  options.run.policy = "intact://127.0.0.1:1?profile=octo_bridge&model={}";
+  options.checkpoints = {"/a", "/b"};
+  const auto swept = sweep(plan, options);
+  REQUIRE_FALSE(swept.ok());
+  CHECK(swept.failure().code == Fault::kUsage);
+  CHECK(swept.failure().message.find("`/a` and `/b` would be one model") != std::string::npos);
+  CHECK_FALSE(fs::exists(folder / "sweep"));
+}
+
 TEST_CASE("the best checkpoint on the original tasks runs the whole suite; of equals the first") {
   TemporaryFolder folder;
   const plan::Plan plan = two_tasks(folder);
@@ -101,6 +114,33 @@ TEST_CASE("INT-ACT checkpoints are switched on their server, each into its own f
   CHECK(a->at(0).trace_sha256 != b->at(0).trace_sha256);
   CHECK(swept->best == 0);
   CHECK(swept->whole.call.queries.queries == 0);  // all was there
+}
+
+TEST_CASE("checkpoints that answer bit for bit the same are told, and each run has its proof") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  // It loads whatever it is told and is always the same.
+  const test::PythonServer server("openpi_server.py", {"intact", "seen=deaf"});
+  REQUIRE_FALSE(server.port().empty());
+  SweepOptions options = options_for(folder / "sweep");
+  options.run.policy = "intact://127.0.0.1:" + server.port() + "?model={}";
+  options.run.jobs = 1;
+  options.checkpoints = {"/ckpt/a", "/ckpt/b"};
+  const auto swept = sweep(plan, options);
+  REQUIRE_MESSAGE(swept.ok(), to_text(swept.failure()));
+  REQUIRE(swept->alike.size() == 1);
+  CHECK(swept->alike[0].starts_with("checkpoints `/ckpt/a` and `/ckpt/b` answer bit for bit"));
+  const auto json = Json::parse(read_file(folder / "sweep/sweep.json").value());
+  CHECK(json["alike"].size() == 1);
+  const auto calls = read_run_calls(swept->scores[0].dir);
+  REQUIRE(calls.ok());
+  REQUIRE(calls->size() == 1);
+  REQUIRE(calls->at(0).reading.has_value());
+  CHECK(calls->at(0).reading->answers_sha256 == swept->scores[0].answers_sha256);
+  const ReadingSummary summary = summarize_readings(*calls);
+  REQUIRE(summary.findings.size() == 1);
+  CHECK(summary.findings[0].find("two instructions") != std::string::npos);
+  CHECK(summary.good.empty());
 }
 
 TEST_CASE("what cannot be swept is told before anything runs") {

@@ -55,6 +55,14 @@ constexpr const char* kSlow = "looking up the host took more than 0.2 s";
 
 }  // namespace
 
+TEST_CASE("an address written as numbers is there at once, whatever the system's resolver does") {
+  for (const char* ip : {"127.0.0.1", "::1"}) {
+    const auto found = look_up({ip, "8000", "/", {}}, Duration(0), Duration(0));
+    REQUIRE_MESSAGE(found.ok(), to_text(found.failure()));
+    CHECK(*found == std::vector<Address>{{ip, 8000}});
+  }
+}
+
 TEST_CASE("a name server that never answers does not outlive the time for connecting") {
   const Silent silent;
   const auto begun = Clock::now();

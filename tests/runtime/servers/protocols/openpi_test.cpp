@@ -13,6 +13,7 @@
 #include "runtime/run/policies.h"
 #include "runtime/servers/server_policy.h"
 #include "runtime/servers/servers.h"
+#include "runtime/servers/shared_model.h"
 #include "runtime/wire/msgpack.h"
 #include "tests/runtime/servers/asking.h"
 #include "tests/servers/python_server.h"
@@ -122,7 +123,7 @@ TEST_CASE("a chunk is done without asking again, and the first request is proved
   CHECK(first_number(*policy, picture.observation()) == 8 / 1000.0);
 }
 
-TEST_CASE("INT-ACT hears the model first, infers, and a reset after each episode") {
+TEST_CASE("INT-ACT hears the model first, infers, and a reset before and after each episode") {
   const ServerRecord record;
   const PythonServer server("openpi_server.py", {"intact", record.option()});
   const auto policy = made("intact", server, "&model=/m");
@@ -134,13 +135,40 @@ TEST_CASE("INT-ACT hears the model first, infers, and a reset after each episode
     policy->end({true, false, 2});
   }
   const auto lines = record.lines();
-  REQUIRE(lines.size() == 7);
+  REQUIRE(lines.size() == 9);
   CHECK(lines[0] == "81ae6e65775f6d6f64656c5f70617468a22f6d");
-  CHECK(lines[3] == "81a57265736574c3");
-  CHECK(lines[6] == lines[3]);
-  CHECK(lines[1].find("b1" + hex("observation.state") + "81a5" + hex("agent") + "81a7" +
+  for (const std::size_t reset : {1u, 4u, 5u, 8u}) CHECK(lines[reset] == "81a57265736574c3");
+  CHECK(lines[2].find("b1" + hex("observation.state") + "81a5" + hex("agent") + "81a7" +
                       hex("eef_pos") + "84c40b") != std::string::npos);
-  CHECK(lines[1].find("a4" + hex("task") + "b3") != std::string::npos);
+  CHECK(lines[2].find("a4" + hex("task") + "b3") != std::string::npos);
+}
+
+TEST_CASE("an episode after one that was killed is not done with the killed one's instruction") {
+  Picture picture;
+  Observation carrot = picture.observation(), spoon = carrot;
+  spoon.prompt = "put the spoon on the towel";
+  Action fresh{};
+  {
+    const PythonServer server("openpi_server.py", {"intact", "seen=keeps"});
+    const auto policy = made("intact", server, "&model=/m");
+    require_begin(*policy);
+    const auto action = policy->act(spoon);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    fresh = *action;
+  }
+  const PythonServer server("openpi_server.py", {"intact", "seen=keeps"});
+  {
+    const auto killed = made("intact", server, "&model=/m");
+    require_begin(*killed);
+    const auto action = killed->act(carrot);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    CHECK(*action != fresh);
+  }  // without an end: the process is gone
+  const auto policy = made("intact", server, "&model=/m");
+  require_begin(*policy);
+  const auto action = policy->act(spoon);
+  REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+  CHECK(*action == fresh);
 }
 
 TEST_CASE("INT-ACT's chunks are bare arrays") {
@@ -155,8 +183,10 @@ TEST_CASE("INT-ACT's chunks are bare arrays") {
         std::string::npos);
 }
 
-TEST_CASE("RoboArena's server says what it wants") {
-  const PythonServer server("openpi_server.py", {"roboarena"});
+TEST_CASE(
+    "RoboArena's server says what it wants, and hears a reset before and after each episode") {
+  const ServerRecord record;
+  const PythonServer server("openpi_server.py", {"roboarena", record.option()});
   const auto policy = made("roboarena", server);
   Picture picture;
   for (int episode = 0; episode < 2; ++episode) {
@@ -165,6 +195,12 @@ TEST_CASE("RoboArena's server says what it wants") {
     CHECK(first_number(*policy, picture.observation(1)) == 1 / 1000.0);
     policy->end({true, false, 2});
   }
+  std::string said;
+  for (const std::string& line : record.lines()) {
+    const bool is_reset = line.find(hex("endpoint") + "a5" + hex("reset")) != std::string::npos;
+    said += is_reset ? "reset " : "infer ";
+  }
+  CHECK(said == "reset infer infer reset reset infer infer reset ");
 }
 
 TEST_CASE("a traceback is shown by its last lines, and the next episode connects again") {
@@ -210,6 +246,66 @@ TEST_CASE("a server that answers connecting with an error is told at once") {
   CHECK(begun.failure().message.find("FileNotFoundError: /nowhere") != std::string::npos);
   CHECK(begun.failure().message.find("tried") == std::string::npos);
   CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(20));
+}
+
+TEST_CASE("the connections of a run have an INT-ACT server load its model once") {
+  const ServerRecord record;
+  const PythonServer server("openpi_server.py", {"intact", record.option()});
+  PolicyContext context;
+  context.model = std::make_shared<SharedModel>();
+  const std::string address = "intact://127.0.0.1:" + server.port() + "?model=/m";
+  Picture picture;
+  for (int world = 0; world < 3; ++world) {
+    const auto policy = make_policy(address, context);
+    REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
+    require_begin(**policy);
+    first_number(**policy, picture.observation());
+  }
+  int loads = 0;
+  for (const std::string& line : record.lines()) loads += line.find(hex("new_model_path")) == 4;
+  CHECK(loads == 1);
+}
+
+TEST_CASE("why an INT-ACT server could not load its model is said with every later failure") {
+  const ServerRecord record;
+  const PythonServer server("openpi_server.py", {"intact", "lacks=/nowhere", record.option()});
+  PolicyContext context;
+  context.model = std::make_shared<SharedModel>();
+  for (int world = 0; world < 3; ++world) {
+    const auto policy =
+        make_policy("intact://127.0.0.1:" + server.port() + "?model=/nowhere", context);
+    REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
+    const auto begun = (*policy)->begin(start());
+    REQUIRE_FALSE(begun.ok());
+    CHECK(begun.failure().message.find("FileNotFoundError: /nowhere") != std::string::npos);
+  }
+  CHECK(record.lines().size() == 1);
+}
+
+TEST_CASE("an INT-ACT server that was restarted is told its model again") {
+  const ServerRecord record;
+  auto server = std::make_unique<PythonServer>("openpi_server.py",
+                                               std::vector<std::string>{"intact", record.option()});
+  PolicyContext context;
+  context.model = std::make_shared<SharedModel>();
+  const std::string port = server->port();
+  const auto policy = make_policy("intact://127.0.0.1:" + port + "?model=/m", context);
+  REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
+  Picture picture;
+  require_begin(**policy);
+  server->stop();
+  CHECK_FALSE((*policy)->act(picture.observation()).ok());
+  (*policy)->end({false, false, 0});
+  server = std::make_unique<PythonServer>(
+      "openpi_server.py", std::vector<std::string>{"intact", record.option(), "port=" + port});
+  require_begin(**policy);
+  CHECK(first_number(**policy, picture.observation()) == 0);
+  std::string said;
+  for (const std::string& line : record.lines()) {
+    said += line.find(hex("new_model_path")) == 4 ? "model " : line.size() < 30 ? "reset " : "ask ";
+  }
+  // The first reset after the restart is refused.
+  CHECK(said == "model reset reset model reset ask ");
 }
 
 TEST_CASE("a request in which two things have one key is not sent") {

@@ -1,0 +1,28 @@
+// Proof of reading: what the first questions of a run showed of a policy server. Plain data, stored
+// with each call of `run`; knows no protocol.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace probe::policy {
+
+struct Reading {
+  std::string server;   // HOST:PORT
+  int answers = 0;      // that came; 0: nothing was asked, or nothing was answered
+  std::string failure;  // why it ended early; empty where it did not
+  // Answers equal bit for bit: of two instructions with one picture, of one instruction with two
+  // pictures.
+  bool is_deaf = false, is_blind = false;
+  // Over all answers, hex: two servers with equal ones can be one model. Empty where not all came.
+  std::string answers_sha256;
+  // Fields that the profile leaves open, with the value that the answers show.
+  std::vector<std::pair<std::string, std::string>> measured;
+  bool operator==(const Reading&) const = default;
+};
+
+// Sentences on what is not as it should be; none where the policy reads.
+std::vector<std::string> findings_of(const Reading& reading);
+
+}  // namespace probe::policy

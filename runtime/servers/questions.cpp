@@ -1,0 +1,97 @@
+#include "runtime/servers/questions.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+
+#include "runtime/servers/connecting.h"
+#include "runtime/servers/server_policy.h"
+
+namespace probe::servers {
+namespace {
+
+using QuestionClock = std::chrono::steady_clock;
+
+constexpr int kWidth = 640, kHeight = 480;
+constexpr int kHorizon = 60;
+constexpr const char* kWords[kInstructions] = {"put carrot on plate", "put the spoon on the towel"};
+
+// A brown table under a grey wall with an orange and a blue thing on it; `index` moves them. No
+// policy knows it, but every policy takes it for a picture.
+wire::Bytes known_picture(int index) {
+  wire::Bytes rgb;
+  rgb.reserve(static_cast<std::size_t>(kWidth) * kHeight * 3);
+  const int left = 150 + 40 * index, right = 420 - 30 * index;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      int color[3] = {165, 165, 170};
+      if (y > 140) color[0] = 150 + (x * 7 + y * 3) % 17, color[1] = 115, color[2] = 80;
+      if (std::abs(x - left) < 28 && std::abs(y - 300) < 14) {
+        color[0] = 230, color[1] = 120, color[2] = 30;
+      }
+      const int dx = x - right, dy = y - 330;
+      if (dx * dx + 3 * dy * dy < 60 * 60) color[0] = 60, color[1] = 90, color[2] = 190;
+      for (const int channel : color) rgb.push_back(static_cast<std::uint8_t>(channel));
+    }
+  }
+  return rgb;
+}
+
+}  // namespace
+
+policy::Proprioception known_state(bool is_mirrored) {
+  Mat3 down;
+  down << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  const double side = is_mirrored ? -1 : 1;
+  policy::Proprioception measured;
+  measured.tcp_in_base = {{0.3, side * 0.05, 0.14}, Quat(down)};
+  measured.openness = 1;
+  // The waist turns by as much as the tool stands aside, to within a degree.
+  measured.joints = {side * 0.165, 0.040, 0.222, -0.005, 1.365, 0.002, 0.037, 0.037};
+  return measured;
+}
+
+Status Questions::open() {
+  PROBE_TRY(transport_.open(deadlines()));
+  return transport_.adapt(profile_);
+}
+
+Result<Chunk> Questions::ask(const Question& question) {
+  const char* words = kWords[question.words];
+  policy::EpisodeStart start;
+  start.task = "policy_test";
+  start.prompt = words;
+  start.index = question.picture;
+  start.horizon = kHorizon;
+  const wire::Bytes rgb = known_picture(question.picture);
+  const policy::Image image{kWidth, kHeight, rgb};
+  // One picture stands for every camera that the profile names.
+  std::vector<policy::CameraImage> cameras;
+  for (const ImageRule& rule : profile_.images) cameras.push_back({rule.camera, image});
+  policy::Observation seen;
+  seen.image = image;
+  seen.cameras = cameras;
+  seen.prompt = words;
+  seen.proprioception = known_state(question.is_mirrored);
+  seen.horizon = kHorizon;
+  if (profile_.connection == ConnectionUse::kPerEpisode && asked_ > 0) {
+    transport_.close();
+    PROBE_TRY(transport_.open(deadlines()));
+  }
+  PROBE_TRY(transport_.begin_episode(start, deadlines()));
+  PROBE_ASSIGN(const Request request, to_request(profile_, seen));
+  const auto begun = QuestionClock::now();
+  ++asked_;
+  PROBE_ASSIGN(Chunk chunk, transport_.ask(request, deadlines()));
+  times_.push_back(std::chrono::duration<double>(QuestionClock::now() - begun).count());
+  PROBE_TRY(transport_.end_episode({true, false, 1}, deadlines()));
+  return chunk;
+}
+
+Deadlines Questions::deadlines() const {
+  return {to_duration(profile_.connect_s),
+          to_duration(times_.empty() ? std::max(profile_.first_s, profile_.answer_s)
+                                     : profile_.answer_s)};
+}
+
+}  // namespace probe::servers

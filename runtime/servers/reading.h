@@ -1,0 +1,19 @@
+// The questions that a run begins with: does the server read its pictures and instructions at all.
+#pragma once
+
+#include <memory>
+
+#include "runtime/base/result.h"
+#include "runtime/policy/reading.h"
+#include "runtime/servers/servers.h"
+
+namespace probe::servers {
+
+// One picture with two instructions, one instruction with two pictures, over one connection that is
+// closed again. Waits for a server that is not there, and has it load its model, before any other
+// connection of the run. Fails as a connection does (kPolicy, kUsage); what goes wrong with the
+// answers is told in the reading.
+Result<policy::Reading> prove_reading(const ServerChoice& choice,
+                                      std::shared_ptr<SharedModel> model = nullptr);
+
+}  // namespace probe::servers
