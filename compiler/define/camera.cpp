@@ -27,8 +27,8 @@ struct CameraReader {
         check_link(context, camera.mount_link, context.model.robots[camera.mount_robot]);
       }
     }
-    assign(camera.position,
-           read_point(context, stmt.at, 3, 3, dim::kLength, "`mount ... at` takes lengths"));
+    assign(camera.position, read_point(context, stmt.at, 3, 3, dim::kLength,
+                                       {"`mount ... at` takes lengths", plan::Magnitude::kPlace}));
     const bool looks = stmt.kind == syntax::MountKind::kLook;
     camera.aim = looks ? plan::CameraAim::kLook : plan::CameraAim::kQuat;
     camera.aim_values = {};
@@ -49,6 +49,9 @@ struct CameraReader {
           .report(Situation::kVerticalView, stmt.direction.span,
                   "the view is vertical, which leaves its roll open")
           .help("give the orientation with `quat`");
+    } else if (aim && looks) {
+      check_magnitude(context, stmt.direction.span, std::hypot(values[0], values[1], values[2]),
+                      plan::Magnitude::kDirection);
     }
     if (aim && !looks) make_unit(stmt.direction.span);
   }
@@ -95,8 +98,10 @@ struct CameraReader {
     }
     double* const to[] = {&camera.fx, &camera.fy, &camera.cx, &camera.cy};
     for (std::size_t i = 0; i < 4; ++i) {
+      const plan::Magnitude magnitude = i < 2 ? plan::Magnitude::kFocal : plan::Magnitude::kPixel;
       *to[i] =
-          read_positive(context, stmt.values[i], dim::kPixel, "`lens` takes pixels").value_or(1);
+          read_positive(context, stmt.values[i], dim::kPixel, {"`lens` takes pixels", magnitude})
+              .value_or(1);
     }
   }
   std::uint32_t size(const syntax::Int& value) {

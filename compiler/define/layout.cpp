@@ -145,8 +145,9 @@ struct LayoutReader {
       layout.orients.push_back({spelled(stmt.what), *turns});
   }
   void operator()(const syntax::JitterStmt& stmt) {
-    layout.jitter =
-        read_si(context, stmt.value, dim::kLength, "`jitter` takes a length").value_or(0);
+    layout.jitter = read_si(context, stmt.value, dim::kLength,
+                            {"`jitter` takes a length", plan::Magnitude::kLength})
+                        .value_or(0);
     layout.jitter_span = stmt.value.span;
     if (layout.jitter >= 0) return;
     context.report(Situation::kNegative, stmt.value.span, "expected a jitter of 0 or more");
@@ -154,7 +155,9 @@ struct LayoutReader {
   }
   void operator()(const syntax::DropStmt& stmt) {
     layout.has_drop = true;
-    layout.drop = read_si(context, stmt.height, dim::kLength, "`drop` takes a height").value_or(0);
+    layout.drop = read_si(context, stmt.height, dim::kLength,
+                          {"`drop` takes a height", plan::Magnitude::kLength})
+                      .value_or(0);
     if (layout.drop < 0)
       context.report(Situation::kNegative, stmt.height.span,
                      "objects are dropped from above the surface");

@@ -1,4 +1,6 @@
 // `light`: an ambient part and any number of suns.
+#include <cmath>
+
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
@@ -25,8 +27,9 @@ void define_lights(Context& context) {
     light.span = declared.node->name.span;
     for (const syntax::LightStmt& stmt : declared.node->body) {
       if (const auto* ambient = std::get_if<syntax::AmbientStmt>(&stmt)) {
-        light.ambient =
-            read_si(context, ambient->value, dim::kNumber, "`ambient` takes a number").value_or(0);
+        light.ambient = read_si(context, ambient->value, dim::kNumber,
+                                {"`ambient` takes a number", plan::Magnitude::kLight})
+                            .value_or(0);
         if (light.ambient < 0)
           context.report(Situation::kNegative, ambient->value.span,
                          "expected an ambient light of 0 or more");
@@ -43,11 +46,17 @@ void define_lights(Context& context) {
       plan::SunRecord sun;
       assign(sun.direction, read_point(context, written.direction, 3, 3, dim::kNumber,
                                        "`sun` takes a direction of plain numbers"));
-      if (sun.direction == std::array<double, 3>{})
+      if (sun.direction == std::array<double, 3>{}) {
         context.report(Situation::kNoDirection, written.direction.span,
                        "a sun shines along a direction, found none");
-      sun.power =
-          read_positive(context, written.power, dim::kNumber, "`power` takes a number").value_or(1);
+      } else {
+        check_magnitude(context, written.direction.span,
+                        std::hypot(sun.direction[0], sun.direction[1], sun.direction[2]),
+                        plan::Magnitude::kDirection);
+      }
+      sun.power = read_positive(context, written.power, dim::kNumber,
+                                {"`power` takes a number", plan::Magnitude::kLight})
+                      .value_or(1);
       sun.shadow = written.shadow ? 1 : 0;
       light.suns.push_back(sun);
       if (light.suns.size() == plan::kMaxSuns + 1) {

@@ -41,7 +41,8 @@ struct ObjectReader {
     const syntax::Quantity* sides[] = {&stmt.x, &stmt.y, &stmt.z};
     begin_box(stmt.span);
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto side = read_positive(context, *sides[i], dim::kLength, "`box` takes lengths");
+      const auto side = read_positive(context, *sides[i], dim::kLength,
+                                      {"`box` takes lengths", plan::Magnitude::kExtent});
       if (!side) {
         object.box_is_read = false;
         continue;
@@ -54,13 +55,19 @@ struct ObjectReader {
   void operator()(const syntax::BoxCornersStmt& stmt) {
     begin_box(stmt.span);
     object.box_is_read = false;
-    const auto low = read_point(context, stmt.low, 3, 3, dim::kLength, "`box` takes lengths");
-    const auto high = read_point(context, stmt.high, 3, 3, dim::kLength, "`box` takes lengths");
+    const auto low = read_point(context, stmt.low, 3, 3, dim::kLength,
+                                {"`box` takes lengths", plan::Magnitude::kPlace});
+    const auto high = read_point(context, stmt.high, 3, 3, dim::kLength,
+                                 {"`box` takes lengths", plan::Magnitude::kPlace});
     if (!low || !high) return;
     for (std::size_t i = 0; i < 3; ++i) {
       object.box_min[i] = (*low)[i].si();
       object.box_max[i] = (*high)[i].si();
-      if (object.box_min[i] < object.box_max[i]) continue;
+      const double extent = object.box_max[i] - object.box_min[i];
+      if (extent > 0) {
+        if (!check_magnitude(context, stmt.span, extent, plan::Magnitude::kExtent)) return;
+        continue;
+      }
       context.report(Situation::kCornersSwapped, stmt.span,
                      "the second corner of a box lies above the first on every axis");
       return;
@@ -69,13 +76,15 @@ struct ObjectReader {
   }
   void operator()(const syntax::DensityStmt& stmt) {
     object.has_density = true;
-    object.density =
-        read_positive(context, stmt.value, dim::kDensity, "`density` takes a density").value_or(1);
+    object.density = read_positive(context, stmt.value, dim::kDensity,
+                                   {"`density` takes a density", plan::Magnitude::kDensity})
+                         .value_or(1);
   }
   void operator()(const syntax::FrictionStmt& stmt) {
     object.has_friction = true;
-    object.friction =
-        read_positive(context, stmt.value, dim::kNumber, "`friction` takes a number").value_or(1);
+    object.friction = read_positive(context, stmt.value, dim::kNumber,
+                                    {"`friction` takes a number", plan::Magnitude::kFriction})
+                          .value_or(1);
   }
   void operator()(const syntax::IsStmt& stmt) { facts(stmt.facts, Truth::kYes, has_is); }
   void operator()(const syntax::MaybeStmt& stmt) { facts(stmt.facts, Truth::kUnknown, has_maybe); }

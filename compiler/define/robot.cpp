@@ -55,14 +55,17 @@ struct RobotReader {
     if (stmt.law.text != "ee_delta_pose") {
       report_unknown(context.diagnostics, "control law", stmt.law, {"ee_delta_pose"});
     }
-    robot.control_hz =
-        read_positive(context, stmt.rate, dim::kRate, "`control` takes a frequency").value_or(1);
+    robot.control_hz = read_positive(context, stmt.rate, dim::kRate,
+                                     {"`control` takes a frequency", plan::Magnitude::kControlRate})
+                           .value_or(1);
   }
   void operator()(const syntax::ReachStmt& stmt) {
-    robot.reach_min =
-        read_si(context, stmt.least, dim::kLength, "`reach` takes lengths").value_or(0);
-    robot.reach_max =
-        read_positive(context, stmt.most, dim::kLength, "`reach` takes lengths").value_or(1);
+    robot.reach_min = read_si(context, stmt.least, dim::kLength,
+                              {"`reach` takes lengths", plan::Magnitude::kLength})
+                          .value_or(0);
+    robot.reach_max = read_positive(context, stmt.most, dim::kLength,
+                                    {"`reach` takes lengths", plan::Magnitude::kLength})
+                          .value_or(1);
     if (robot.reach_min >= 0 && robot.reach_min < robot.reach_max) return;
     context.report(Situation::kReachOrder, stmt.span,
                    "expected the nearest reach below the farthest, both from 0, found `" +
@@ -76,15 +79,17 @@ struct RobotReader {
     const bool slides = stiffness && stiffness->dimension == dim::kLinearStiffness;
     Drive drive;
     drive.span = stmt.span;
-    const auto k = read_quantity(context, stmt.stiffness,
-                                 slides ? dim::kLinearStiffness : dim::kAngularStiffness,
-                                 "a stiffness is in Nm/rad, or in N/m for a sliding joint");
+    const auto k = read_quantity(
+        context, stmt.stiffness, slides ? dim::kLinearStiffness : dim::kAngularStiffness,
+        {"a stiffness is in Nm/rad, or in N/m for a sliding joint", plan::Magnitude::kGain});
     const auto d = read_quantity(
         context, stmt.damping, slides ? dim::kLinearDamping : dim::kAngularDamping,
-        slides ? "a sliding joint is damped in Ns/m" : "a turning joint is damped in Nms/rad");
+        {slides ? "a sliding joint is damped in Ns/m" : "a turning joint is damped in Nms/rad",
+         plan::Magnitude::kGain});
     const auto f = read_quantity(
         context, stmt.limit, slides ? dim::kForce : dim::kTorque,
-        slides ? "a sliding joint is limited in N" : "a turning joint is limited in Nm");
+        {slides ? "a sliding joint is limited in N" : "a turning joint is limited in Nm",
+         plan::Magnitude::kForce});
     if (!k || !d || !f) return;
     check_above_zero(stmt.stiffness, k->si(), "a drive without stiffness holds nothing");
     check_above_zero(stmt.damping, d->si(), "a drive without damping swings for ever");
@@ -109,9 +114,12 @@ struct RobotReader {
   }
   void operator()(const syntax::GripStmt& stmt) {
     has_grip = true;
-    robot.grip_closed =
-        read_si(context, stmt.closed, dim::kLength, "`grip` takes lengths").value_or(0);
-    robot.grip_open = read_si(context, stmt.open, dim::kLength, "`grip` takes lengths").value_or(1);
+    robot.grip_closed = read_si(context, stmt.closed, dim::kLength,
+                                {"`grip` takes lengths", plan::Magnitude::kJointPosition})
+                            .value_or(0);
+    robot.grip_open = read_si(context, stmt.open, dim::kLength,
+                              {"`grip` takes lengths", plan::Magnitude::kJointPosition})
+                          .value_or(1);
     if (robot.grip_closed >= robot.grip_open) {
       context.report(Situation::kGripOrder, stmt.span,
                      "expected the closed position below the open one, found `" +
@@ -119,12 +127,14 @@ struct RobotReader {
     }
     if (stmt.friction) {
       robot.finger_friction =
-          read_positive(context, *stmt.friction, dim::kNumber, "`friction` takes a number")
+          read_positive(context, *stmt.friction, dim::kNumber,
+                        {"`friction` takes a number", plan::Magnitude::kFriction})
               .value_or(1);
     }
     if (!stmt.patch) return;
-    robot.finger_patch =
-        read_si(context, *stmt.patch, dim::kLength, "`patch` takes a length").value_or(0);
+    robot.finger_patch = read_si(context, *stmt.patch, dim::kLength,
+                                 {"`patch` takes a length", plan::Magnitude::kLength})
+                             .value_or(0);
     if (robot.finger_patch < 0)
       context.report(Situation::kNegative, stmt.patch->span,
                      "expected a patch radius of 0 or more");

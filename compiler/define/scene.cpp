@@ -20,8 +20,8 @@ struct SceneReader {
   void operator()(const syntax::SceneRobotStmt& stmt) {
     const auto robot = context.symbols.robots.find(stmt.robot, context.diagnostics);
     if (robot) scene.robot = static_cast<RobotId>(*robot);
-    const auto at =
-        read_point(context, stmt.at, 2, 3, dim::kLength, "`robot ... at` takes lengths");
+    const auto at = read_point(context, stmt.at, 2, 3, dim::kLength,
+                               {"`robot ... at` takes lengths", plan::Magnitude::kPlace});
     assign(scene.base_position, at);
     scene.base_on_surface = at && at->size() == 2;
     if (const auto yaw = read_quantity(context, stmt.yaw, dim::kAngle, "`yaw` takes an angle")) {
@@ -35,8 +35,9 @@ struct SceneReader {
     for (const syntax::Quantity& value : stmt.positions.coordinates) {
       const auto as_is = make_quantity("0", to_text(value.unit));
       const bool is_length = as_is && as_is->dimension == dim::kLength;
-      const auto read = read_quantity(context, value, is_length ? dim::kLength : dim::kAngle,
-                                      "a joint is at an angle or a length");
+      const auto read =
+          read_quantity(context, value, is_length ? dim::kLength : dim::kAngle,
+                        {"a joint is at an angle or a length", plan::Magnitude::kJointPosition});
       if (read) scene.joints.push_back(*read);
     }
     if (scene.joints.size() != stmt.positions.coordinates.size())
@@ -45,20 +46,32 @@ struct SceneReader {
   void operator()(const syntax::SurfaceStmt& stmt) {
     has_surface = true;
     scene.surface_span = stmt.height.span;
-    scene.surface_z =
-        read_si(context, stmt.height, dim::kLength, "`surface` takes a height").value_or(0);
-    const auto low = read_point(context, stmt.low, 2, 2, dim::kLength, "`area` takes lengths");
-    const auto high = read_point(context, stmt.high, 2, 2, dim::kLength, "`area` takes lengths");
+    scene.surface_z = read_si(context, stmt.height, dim::kLength,
+                              {"`surface` takes a height", plan::Magnitude::kPlace})
+                          .value_or(0);
+    const auto low = read_point(context, stmt.low, 2, 2, dim::kLength,
+                                {"`area` takes lengths", plan::Magnitude::kPlace});
+    const auto high = read_point(context, stmt.high, 2, 2, dim::kLength,
+                                 {"`area` takes lengths", plan::Magnitude::kPlace});
     if (!low || !high) return;
     scene.area = {(*low)[0].si(), (*low)[1].si(), (*high)[0].si(), (*high)[1].si()};
-    if (scene.area[0] < scene.area[2] && scene.area[1] < scene.area[3]) return;
-    context.report(Situation::kCornersSwapped, join(stmt.low.span, stmt.high.span),
-                   "the second corner of an area lies above the first on both axes");
+    const Span corners = join(stmt.low.span, stmt.high.span);
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
+      const double extent = scene.area[i + 2] - scene.area[i];
+      if (extent > 0) {
+        if (!check_magnitude(context, corners, extent, plan::Magnitude::kExtent)) return;
+        continue;
+      }
+      context.report(Situation::kCornersSwapped, corners,
+                     "the second corner of an area lies above the first on both axes");
+      return;
+    }
   }
   void operator()(const syntax::FixtureStmt& stmt) {
     scene.fixture = spelled(stmt.mesh);
     assign(scene.fixture_position,
-           read_point(context, stmt.at, 3, 3, dim::kLength, "`fixture ... at` takes lengths"));
+           read_point(context, stmt.at, 3, 3, dim::kLength,
+                      {"`fixture ... at` takes lengths", plan::Magnitude::kPlace}));
   }
   void operator()(const syntax::BackdropStmt& stmt) {
     has_backdrop = true;
@@ -105,11 +118,12 @@ struct SceneReader {
   void operator()(const syntax::PhysicsStmt& stmt) {
     has_physics = true;
     scene.physics_span = stmt.rate.span;
-    scene.physics_hz =
-        read_positive(context, stmt.rate, dim::kRate, "`physics` takes a frequency").value_or(1);
-    scene.friction =
-        read_positive(context, stmt.friction, dim::kNumber, "`friction` takes a number")
-            .value_or(1);
+    scene.physics_hz = read_positive(context, stmt.rate, dim::kRate,
+                                     {"`physics` takes a frequency", plan::Magnitude::kPhysicsRate})
+                           .value_or(1);
+    scene.friction = read_positive(context, stmt.friction, dim::kNumber,
+                                   {"`friction` takes a number", plan::Magnitude::kFriction})
+                         .value_or(1);
     if (stmt.window_step)
       context.report(Code::P0101, stmt.span, "`window step` is not available yet");
   }

@@ -1,9 +1,21 @@
 #include "compiler/names/quantities.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstdio>
 
 namespace probe::sema {
+
+bool check_magnitude(Context& context, const Span& span, double value, plan::Magnitude magnitude) {
+  const plan::MagnitudeInfo& known = plan::info(magnitude);
+  if (known.fits(value)) return true;
+  context.report(Situation::kMagnitude, span,
+                 fmt::format("expected {} from {:g} to {:g}{}{}, found `{}`", known.what,
+                             known.least, known.most, known.unit.empty() ? "" : " ", known.unit,
+                             context.sources.text(span)));
+  return false;
+}
 
 std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& written,
                                       const Dimension& wanted, const Takes& takes) {
@@ -20,7 +32,11 @@ std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& 
         .help("18 digits, values below 1e14, steps down to 1e-18");
     return std::nullopt;
   }
-  if (quantity->dimension == wanted) return quantity;
+  if (quantity->dimension == wanted) {
+    const bool fits = !takes.magnitude ||
+                      check_magnitude(context, written.span, quantity->si(), *takes.magnitude);
+    return fits ? quantity : std::nullopt;
+  }
   Diagnostic& diagnostic =
       context.report(Code::P0302, written.span,
                      "expected " + name_of(wanted) + ", found " + name_of(quantity->dimension));

@@ -7,21 +7,27 @@
 #include <vector>
 
 #include "compiler/names/context.h"
+#include "runtime/plan/magnitudes.h"
 
 namespace probe::sema {
 
 // What a statement takes, to finish the message at the number: "`density` takes a density".
 struct Takes {
   std::string_view text;
-  bool is_place = false;  // on the surface, whose size is then a hint
+  std::optional<plan::Magnitude> magnitude;  // what a plan holds of it; none: any number
+  bool is_place = false;                     // on the surface, whose size is then a hint
 
-  Takes(const char* words) : text(words) {}
+  Takes(const char* words, std::optional<plan::Magnitude> of = {}) : text(words), magnitude(of) {}
   static Takes places(const char* words) {
-    Takes takes(words);
+    Takes takes(words, plan::Magnitude::kPlace);
     takes.is_place = true;
     return takes;
   }
 };
+
+// P0304 for a value that world and renderer cannot compute with (runtime/plan/magnitudes.def).
+// Whether it is none.
+bool check_magnitude(Context& context, const Span& span, double value, plan::Magnitude magnitude);
 
 std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& written,
                                       const Dimension& wanted, const Takes& takes);

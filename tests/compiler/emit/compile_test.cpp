@@ -282,6 +282,31 @@ TEST_CASE("what the verifier would refuse is said of its place in the text, by c
                 "grip 1cm .. 4cm friction 2 patch -1cm }") == "P0304 ");
 }
 
+TEST_CASE("a number that world and renderer cannot compute with is refused at its place") {
+  const auto said = [](const std::string& more) {
+    const auto a = test::analyze_with_suite(more);
+    return a->codes() == "P0304" ? a->underlined() : a->said();
+  };
+  CHECK(said("object o like red { density 1e7kg/m3 }") == "1e7kg/m3");
+  CHECK(said("object o like red { friction 1001 }") == "1001");
+  CHECK(said("object o like red { box 3km x 2cm x 2cm }").find("P0301") != std::string::npos);
+  CHECK(said("object o like red { box 3000m x 2cm x 2cm }") == "3000m");
+  CHECK(said("object o like red { box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1e-8m) }") ==
+        "box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1e-8m)");
+  CHECK(said("light l { ambient 1e7 }") == "1e7");
+  CHECK(said("light l { ambient 1; sun (0, 0, -1e-9) power 1 }") == "(0, 0, -1e-9)");
+  CHECK(said("light l { ambient 1; sun (0, 0, -1) power 1e7 }") == "1e7");
+  CHECK(said("camera c like eye { lens 1e-3px, 30px, 32px, 24px }") == "1e-3px");
+  CHECK(said("camera c like eye { mount arm.base at (0m, 0m, 1e4m) look (1, 0, -1) }") == "1e4m");
+  CHECK(said("camera c like eye { mount arm.base at (0m, 0m, 1m) look (1e-9, 0, -1e-9) }") ==
+        "(1e-9, 0, -1e-9)");
+  CHECK(said("scene s like bench { physics 1e7Hz friction 1 }") == "1e7Hz");
+  CHECK(said("scene s like bench { surface 2000m area (-50cm, -50cm) .. (50cm, 50cm) }") ==
+        "2000m");
+  CHECK(said("layout l like pairs { drop 2000m settle 1s }") == "2000m");
+  CHECK(said("layout l like pairs { jitter 2000m }") == "2000m");
+}
+
 TEST_CASE("files that use each other are checked beside others") {
   const Folder folder("circle");
   folder.write("base.probe", test::kSmallSuite);

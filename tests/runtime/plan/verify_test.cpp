@@ -112,6 +112,17 @@ TEST_CASE("stage 2 names what is wrong with tasks, episodes and lists") {
   check_defects(task_defects());
 }
 
+TEST_CASE("a name is as long as a file's may be, and no longer") {
+  const auto named = [](std::size_t size) {
+    return failure_after([&](Records& r, Writer& w) {
+      r.tasks[1].name = w.text(std::string(size, 'x'));
+      w.fill_ids();
+    });
+  };
+  CHECK(named(255).message == "");
+  CHECK(named(256).message == "the name of a task has at most 255 bytes, not 256 [word]");
+}
+
 TEST_CASE("stage 3 names what is wrong with a program") { check_defects(code_defects()); }
 
 TEST_CASE("stage 4 recomputes all ids") {
