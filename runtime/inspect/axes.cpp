@@ -39,36 +39,53 @@ std::string frame_of(const plan::Plan& plan, const plan::TaskRecord& task) {
   return text;
 }
 
+// Whether one is the other's baseline and the compiler says that the axis does not move between
+// them.
+bool is_kept(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b,
+             plan::Axis axis) {
+  const plan::TaskRecord* const table = plan.tasks().data();
+  const auto is_of = [&](const plan::TaskRecord& variant, const plan::TaskRecord& baseline) {
+    return variant.baseline == static_cast<std::uint32_t>(&baseline - table) &&
+           !plan::moves(variant.axes, axis);
+  };
+  return is_of(a, b) || is_of(b, a);
+}
+
 // Where things stand, in what order, and how they get there. A turn counts only where the same
-// object stands in both: rest poses belong to the object. Heights belong to the scene.
+// object stands in both: rest poses belong to the object. Heights belong to the scene. `jitter`
+// shifts every object in its own way, and the plan does not say by how much: where nothing but
+// another object stands elsewhere, the compiler's word for a task and its baseline decides.
 bool same_layout(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b,
                  bool same_distractors) {
   const auto ours = plan.episodes(a);
   const auto theirs = plan.episodes(b);
   if (a.drop != b.drop || a.settle != b.settle || ours.size() != theirs.size()) return false;
   const std::size_t compared = same_distractors ? 2 + std::size_t{a.distractors} : 2;
+  const bool is_said_to_be = is_kept(plan, a, b, plan::Axis::kLayout);
   for (std::size_t e = 0; e < ours.size(); ++e) {
     const auto here = plan.placements(ours[e]);
     const auto there = plan.placements(theirs[e]);
     for (std::size_t i = 0; i < compared; ++i) {
-      if (here[i].position[0] != there[i].position[0] ||
-          here[i].position[1] != there[i].position[1])
-        return false;
-      if (here[i].object == there[i].object && here[i].rotation != there[i].rotation) return false;
+      const bool is_other = here[i].object != there[i].object;
+      const bool stands_there = here[i].position[0] == there[i].position[0] &&
+                                here[i].position[1] == there[i].position[1];
+      if (!stands_there && !(is_other && is_said_to_be)) return false;
+      if (!is_other && here[i].rotation != there[i].rotation) return false;
     }
   }
   return true;
 }
 
 // A quantifier over objects unrolls with their number, so equal metrics may be unequal programs
-// when the scenes hold different bodies; then the words they were written with decide, as far as
-// the plan has them.
+// when the scenes hold different bodies; then the compiler's word for a task and its baseline
+// decides, or the words they were written with, as far as the plan has them.
 bool same_goal(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
   if (a.horizon != b.horizon) return false;
   if (a.judge_id == b.judge_id) return true;
   const auto ours = plan.metrics(a);
   const auto theirs = plan.metrics(b);
   if (a.bodies.count == b.bodies.count || ours.size() != theirs.size()) return false;
+  if (is_kept(plan, a, b, plan::Axis::kGoal)) return true;
   const plan::MetricRecord* const table = plan.metrics().data();
   for (std::size_t m = 0; m < ours.size(); ++m) {
     if (plan.text(ours[m].name) != plan.text(theirs[m].name) || ours[m].type != theirs[m].type ||

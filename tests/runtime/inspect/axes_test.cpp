@@ -53,3 +53,20 @@ suite moved { tasks { same_places, other_places }; seeds 1 }
   CHECK(axes_between(moved, base, *moved.find_task("same_places")).empty());
   CHECK(axes_between(moved, base, *moved.find_task("other_places")) == Names{"layout"});
 }
+
+TEST_CASE("a layout that shifts objects is the same layout for another object") {
+  const plan::Plan shaken = test::compile_small(R"(
+layout shaken like grid_24 { jitter 2mm }
+task carrots like on_table { source carrot; target plate; layout shaken }
+variants of carrots { spoons { source spoon }; covered { distractors towel }; straight { layout grid_24 } }
+)");
+  const std::uint32_t base = *shaken.find_task("carrots");
+  CHECK(axes_between(shaken, base, *shaken.find_task("spoons")) == Names{"object.source"});
+  CHECK(axes_between(shaken, *shaken.find_task("spoons"), base) == Names{"object.source"});
+  CHECK(axes_between(shaken, base, *shaken.find_task("covered")) == Names{"distractors"});
+  CHECK(axes_between(shaken, base, *shaken.find_task("straight")) == Names{"layout"});
+  for (const char* name : {"spoons", "covered", "straight"}) {
+    const plan::TaskRecord& task = shaken.tasks()[*shaken.find_task(name)];
+    CHECK(axes_between(shaken, *shaken.find_task(name), base) == plan::axis_names(task.axes));
+  }
+}
