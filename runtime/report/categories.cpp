@@ -61,6 +61,26 @@ std::vector<Category> finest(const std::vector<Category>& sets) {
   return kept;
 }
 
+// A set whose every task stands in another column is no column of its own: `quiet` of
+// suite/beyond.probe serves to derive tasks from, and its five are in `core` and `ood_source`. Of
+// two ways to divide the same tasks the one that is declared first stays. Returns what was left
+// out, in the order of the text.
+std::vector<std::string> drop_covered(std::vector<Category>& columns) {
+  std::map<int, int> uses;
+  for (const Category& column : columns) {
+    for (const int t : column.tasks) ++uses[t];
+  }
+  std::vector<std::string> dropped;
+  for (std::size_t i = columns.size(); i-- > 0;) {
+    const std::vector<int>& tasks = columns[i].tasks;
+    if (std::any_of(tasks.begin(), tasks.end(), [&](int t) { return uses[t] == 1; })) continue;
+    for (const int t : tasks) --uses[t];
+    dropped.insert(dropped.begin(), columns[i].name);
+    columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return dropped;
+}
+
 bool are_originals(const Benchmark& benchmark, const Category& set) {
   return std::all_of(set.tasks.begin(), set.tasks.end(), [&](int t) {
     return benchmark.tasks[static_cast<std::size_t>(t)].baseline == kAbsent;
@@ -103,6 +123,15 @@ void find_categories(Benchmark& benchmark, const std::vector<std::string>& sets)
   std::vector<Category> chosen;
   if (sets.empty()) {
     chosen = finest(all);
+    std::string dropped;
+    for (const std::string& name : drop_covered(chosen))
+      dropped += (dropped.empty() ? "`" : ", `") + name + "`";
+    if (!dropped.empty()) {
+      benchmark.notes.push_back(
+          {"note", fmt::format("sets without a column, since other columns have all their tasks: "
+                               "{}; `--sets` chooses columns",
+                               dropped)});
+    }
     std::stable_partition(chosen.begin(), chosen.end(),
                           [&](const Category& c) { return are_originals(benchmark, c); });
   }

@@ -124,6 +124,26 @@ TEST_CASE("runs of different plans are joined where tasks agree and kept apart w
     CHECK(estimate(benchmark, policy, success, benchmark.categories[0].tasks)->count.n == 2);
 }
 
+TEST_CASE("a set that only serves to make others is no column") {
+  RunsFolder folder;
+  const std::string file = folder / "mine.probe";
+  std::ofstream(file) << "use \"" VLAPROBE_SOURCE_DIR "/suite/intact.probe\"\n"
+                      << "set quiet = { carrot_on_plate, coke_can_on_plate_clean }\n"
+                      << "derive \"{t}_dark\" for t in quiet { light faint }\n"
+                      << "set dark = variants of quiet where axis light\n"
+                      << "suite mine trained on bridge_v2 { tasks published | dark; seeds 42 }\n";
+  const plan::Plan plan = plan_of(file);
+  fake_run(folder / "a", plan, "pi0", {.tasks = {"carrot_on_plate_dark"}, .last = 1}, always(true));
+  const Benchmark benchmark = loaded({folder / "a"});
+  REQUIRE(benchmark.categories.size() == 12);
+  CHECK(benchmark.categories[0].name == "core");
+  CHECK(benchmark.categories.back().name == "dark");
+  CHECK(says(benchmark, "since other columns have all their tasks: `quiet`"));
+  const Benchmark chosen = loaded({folder / "a"}, {.sets = {"quiet", "dark"}});
+  REQUIRE(chosen.categories.size() == 2);
+  CHECK(chosen.categories[0].tasks.size() == 2);
+}
+
 TEST_CASE("what a name says is text, whatever it looks like") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;

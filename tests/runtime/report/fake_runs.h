@@ -19,8 +19,7 @@
 
 namespace probe::report {
 
-inline plan::Plan suite_plan(const std::string& file = "intact.probe") {
-  const std::string path = std::string(VLAPROBE_SOURCE_DIR "/suite/") + file;
+inline plan::Plan plan_of(const std::string& path) {
   auto compiled =
       build(std::span(&path, 1), {.asset_root = VLAPROBE_SOURCE_DIR "/assets", .suite = ""});
   REQUIRE(compiled.ok());
@@ -28,6 +27,10 @@ inline plan::Plan suite_plan(const std::string& file = "intact.probe") {
   auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
   REQUIRE(plan.ok());
   return std::move(plan).value();
+}
+
+inline plan::Plan suite_plan(const std::string& file = "intact.probe") {
+  return plan_of(std::string(VLAPROBE_SOURCE_DIR "/suite/") + file);
 }
 
 // In memory where that is possible: each row of a run waits for the disk.
