@@ -20,7 +20,13 @@ std::uint32_t Emitter::add_program(lower::Program program, std::uint64_t horizon
   record.states =
       plan::append(records().states, std::span<const plan::StateRecord>(program.states));
   for (std::size_t i = 0; i < program.code.size(); ++i) {
-    add_span(kCodeSpan, size32(records().code) + static_cast<std::uint32_t>(i), program.spans[i]);
+    const std::uint32_t index = size32(records().code) + static_cast<std::uint32_t>(i);
+    const auto places = program.places.find(static_cast<std::uint32_t>(i));
+    if (places == program.places.end()) {
+      add_span(kCodeSpan, index, program.spans[i]);
+      continue;
+    }
+    for (const Span& place : places->second) add_span(kCodeSpan, index, place);
   }
   record.code = plan::append(records().code, std::span<const plan::Instruction>(program.code));
   record.metrics = {size32(records().metrics), size32(program.metrics)};

@@ -1,5 +1,6 @@
 #include "compiler/lower/builder.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -18,14 +19,22 @@ std::uint16_t Builder::append(Op op, std::uint16_t a, std::uint16_t b, bool has_
   const std::uint16_t dst = results_;
   program_.code.push_back({static_cast<std::uint8_t>(op), 0, dst, a, b});
   program_.spans.push_back(span_);
-  if (has_result) ++results_;
+  if (has_result) {
+    ++results_;
+    makers_.push_back(static_cast<std::uint32_t>(program_.code.size() - 1));
+  }
   return dst;
+}
+
+std::uint16_t Builder::ask(std::uint16_t result) {
+  asked_.try_emplace({result, program_.metrics.size()}, span_);
+  return result;
 }
 
 std::uint16_t Builder::emit(Op op, std::uint16_t a, std::uint16_t b) {
   const auto [at, is_new] = known_.try_emplace({op, a, b}, 0);
   if (is_new) at->second = append(op, a, b, true);
-  return at->second;
+  return ask(at->second);
 }
 
 std::uint16_t Builder::constant_slot(double value) {
@@ -124,7 +133,7 @@ Value Builder::monitor(Op op, const Value& a, std::uint16_t n) {
     program_.states.push_back({static_cast<std::uint16_t>(op), n});
     at->second = append(op, input, slot, true);
   }
-  return Value::of_register(at->second);
+  return Value::of_register(ask(at->second));
 }
 
 void Builder::emit_metric(const Value& value, ProgramMetric metric) {
@@ -134,7 +143,37 @@ void Builder::emit_metric(const Value& value, ProgramMetric metric) {
   append(op, input, static_cast<std::uint16_t>(program_.metrics.size() - 1), false);
 }
 
+// A shared truth stands at several places in the text, and an explanation of one metric must not
+// cite another's. What was asked for and then folded away counts for nothing.
+void Builder::find_places() {
+  std::vector<std::vector<Span>> places(makers_.size());
+  for (const plan::Instruction& end : program_.code) {
+    if (end.op != static_cast<std::uint8_t>(Op::kEMITB) &&
+        end.op != static_cast<std::uint8_t>(Op::kEMITR))
+      continue;
+    std::vector<bool> is_used(makers_.size());
+    is_used[end.a] = true;
+    for (std::size_t r = end.a + std::size_t{1}; r-- > 0;) {
+      if (!is_used[r]) continue;
+      const plan::Instruction& in = program_.code[makers_[r]];
+      const plan::OpInfo& info = *plan::find_op(in.op);
+      if (plan::is_register(info.a)) is_used[in.a] = true;
+      if (plan::is_register(info.b)) is_used[in.b] = true;
+      if (info.result != plan::Kind::kBool) continue;
+      const auto asked = asked_.find({static_cast<std::uint16_t>(r), std::size_t{end.b}});
+      places[r].push_back(asked == asked_.end() ? program_.spans[makers_[r]] : asked->second);
+    }
+  }
+  for (std::size_t r = 0; r < places.size(); ++r) {
+    const Span& first = program_.spans[makers_[r]];
+    const bool is_one_place = std::all_of(places[r].begin(), places[r].end(),
+                                          [&](const Span& place) { return place == first; });
+    if (!is_one_place) program_.places[makers_[r]] = std::move(places[r]);
+  }
+}
+
 Program Builder::finish() {
+  find_places();
   program_.code.push_back({static_cast<std::uint8_t>(Op::kEND), 0, results_, 0, 0});
   program_.spans.push_back(span_);
   return std::move(program_);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "compiler/lower/program.h"
@@ -81,6 +82,9 @@ class Builder {
  private:
   std::uint16_t constant_slot(double value);
   std::uint16_t append(plan::Op op, std::uint16_t a, std::uint16_t b, bool has_result);
+  // The metric that is being made asks for a register's instruction here.
+  std::uint16_t ask(std::uint16_t result);
+  void find_places();
 
   Program program_;
   Span span_;
@@ -89,6 +93,8 @@ class Builder {
   std::map<std::tuple<plan::Op, std::uint16_t, std::uint16_t>, std::uint16_t> known_;
   std::map<std::tuple<plan::Op, std::uint16_t, std::uint16_t>, std::uint16_t> monitors_;
   std::map<std::uint64_t, std::uint16_t> constants_;  // by bit pattern
+  std::vector<std::uint32_t> makers_;                 // of each register, into the code
+  std::map<std::pair<std::uint16_t, std::size_t>, Span> asked_;  // by register and metric
 };
 
 }  // namespace probe::lower

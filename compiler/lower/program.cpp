@@ -58,10 +58,11 @@ bool Program::same_as(const Program& other) const {
            (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0);
   };
   return same_bytes(constants, other.constants) && same_bytes(states, other.states) &&
-         same_bytes(code, other.code) &&
+         same_bytes(code, other.code) && spans == other.spans && places == other.places &&
          std::equal(metrics.begin(), metrics.end(), other.metrics.begin(), other.metrics.end(),
                     [](const ProgramMetric& a, const ProgramMetric& b) {
-                      return a.name == b.name && a.type == b.type && a.readout == b.readout;
+                      return a.name == b.name && a.type == b.type && a.readout == b.readout &&
+                             a.span == b.span;
                     });
 }
 

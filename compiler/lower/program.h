@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,13 @@ struct Program {
   std::vector<double> constants;
   std::vector<plan::StateRecord> states;
   std::vector<plan::Instruction> code;
-  std::vector<Span> spans;  // one per instruction
+  std::vector<Span> spans;  // one per instruction: the text that asked for it first
+  // Of a truth that metrics share, asked for at other places than `spans` says: its place in each
+  // metric that depends on it, in the order of the metrics. By instruction.
+  std::map<std::uint32_t, std::vector<Span>> places;
   std::vector<ProgramMetric> metrics;
 
-  // Equal in everything that is judged; spans do not count.
+  // Equal in everything that is judged and read out of the same text: an explanation cites it.
   bool same_as(const Program& other) const;
 };
 

@@ -304,7 +304,8 @@ struct SuiteRecord {
 static_assert(sizeof(SuiteRecord) == 64);
 
 // Where an instruction or a record came from, ascending by (what, index). `what` 1: kCode
-// instruction, 2: kTasks, 3: kObjects, 4: kMetrics.
+// instruction, 2: kTasks, 3: kObjects, 4: kMetrics. A truth that several metrics share may have one
+// for each metric that depends on it, in their order.
 struct SpanRecord {
   std::uint32_t what = 0;
   std::uint32_t index = 0;

@@ -178,10 +178,14 @@ std::optional<std::uint32_t> Plan::find_metric(const TaskRecord& task,
   return find_name(tables_, metrics(task), name);
 }
 
-const SpanRecord* Plan::span_of(std::uint32_t what, std::uint32_t index) const {
+std::span<const SpanRecord> Plan::spans_of(std::uint32_t what, std::uint32_t index) const {
   const auto key = [](const SpanRecord& s) { return std::pair(s.what, s.index); };
-  const auto it = std::ranges::lower_bound(spans(), std::pair(what, index), {}, key);
-  return it != spans().end() && key(*it) == std::pair(what, index) ? &*it : nullptr;
+  const auto found = std::ranges::equal_range(spans(), std::pair(what, index), {}, key);
+  return {found.begin(), found.end()};
+}
+const SpanRecord* Plan::span_of(std::uint32_t what, std::uint32_t index) const {
+  const auto found = spans_of(what, index);
+  return found.empty() ? nullptr : found.data();
 }
 
 }  // namespace probe::plan

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <tuple>
 
 #include "runtime/base/check.h"
 #include "runtime/plan/ids.h"
@@ -117,9 +116,9 @@ std::vector<std::byte> Writer::lay_out() const {
 }
 
 Result<std::vector<std::byte>> Writer::finish() {
-  std::ranges::sort(records.spans, {}, [](const SpanRecord& s) {
-    return std::tuple(s.what, s.index, s.text, s.begin, s.end);
-  });
+  // Those of one thing keep the order in which they were added.
+  std::ranges::stable_sort(records.spans, {},
+                           [](const SpanRecord& s) { return std::pair(s.what, s.index); });
   // Ids follow indices, so tables are looked at before ids are computed, and the bytes once more
   // afterwards.
   std::vector<std::byte> bytes = lay_out();

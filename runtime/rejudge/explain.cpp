@@ -145,7 +145,7 @@ class Explainer {
       PROBE_TRY(judge_.step(trace.steps[i].sample));
       count_runs();
       for (std::size_t k = 0; k < chosen.size(); ++k) {
-        if (out[k].step == static_cast<int>(i) + 1) describe(histories[k], out[k]);
+        if (out[k].step == static_cast<int>(i) + 1) describe(chosen[k], histories[k], out[k]);
       }
     }
     return out;
@@ -183,15 +183,15 @@ class Explainer {
     }
   }
 
-  void describe(const History& h, MetricWhy& why) const {
+  void describe(std::uint32_t metric, const History& h, MetricWhy& why) const {
     if (!h.is_truth) {
       Condition value;
-      view_.locate(h.core, value);
-      value.bodies = view_.bodies(h.core);
+      view_.locate(h.core, metric, value);
+      value.bodies = view_.bodies(h.core, false);
       value.measured = quantity(judge_.register_value(h.core).x(), dimensions_[h.core]);
       value.is_number = true;
-      // Where the metric is declared: equal subexpressions of several metrics are computed once,
-      // at the first one's place.
+      // Where the metric is declared: equal numbers of several metrics are computed once, at the
+      // first one's place.
       if (!why.file.empty()) {
         value.file = why.file;
         value.line = why.line;
@@ -203,14 +203,13 @@ class Explainer {
     const auto regs = view_.conditions(h.core);
     const auto deciding = view_.deciding(h.core, judge_);
     std::vector<Condition> all;
-    for (const std::uint16_t reg : regs) all.push_back(condition(reg));
+    for (const std::uint16_t reg : regs) all.push_back(condition(reg, metric));
     const auto same_text = [](const Condition& a, const Condition& b) {
       return a.line == b.line && a.file == b.file && a.text == b.text;
     };
     for (std::size_t i = 0; i < all.size(); ++i) {
       std::size_t copies = 0, listed = 0;
       for (const Condition& other : all) copies += same_text(other, all[i]) ? 1 : 0;
-      if (copies == 1) all[i].bodies.clear();
       all[i].decides = deciding[regs[i]];
       Condition* twin = nullptr;
       for (Condition& other : why.conditions) {
@@ -227,10 +226,13 @@ class Explainer {
     }
   }
 
-  Condition condition(std::uint16_t reg) const {
+  Condition condition(std::uint16_t reg, std::uint32_t metric) const {
     Condition c;
-    view_.locate(reg, c);
-    c.bodies = view_.bodies(reg);
+    view_.locate(reg, metric, c);
+    const std::uint16_t compared = view_.op(reg) == Op::kHOLD ? view_.at(reg).a : reg;
+    const bool is_comparison = view_.op(compared) == Op::kLT || view_.op(compared) == Op::kLE;
+    const bool swapped = is_comparison && c.text.find('>') != std::string::npos;
+    c.bodies = view_.bodies(compared, swapped);
     c.truth = judge_.register_value(reg).x() != 0;
     const plan::Instruction& in = view_.at(reg);
     if (view_.op(reg) == Op::kHOLD) {
@@ -244,7 +246,6 @@ class Explainer {
     }
     // The judge knows < and <= alone; people read the comparison as it was written.
     const bool is_strict = view_.op(reg) == Op::kLT;
-    const bool swapped = c.text.find('>') != std::string::npos;
     const Dimension dimension =
         dimensions_[in.a] == Dimension::kAny ? dimensions_[in.b] : dimensions_[in.a];
     auto [left, right] =

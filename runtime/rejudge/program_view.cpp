@@ -38,6 +38,20 @@ ProgramView::ProgramView(const plan::Plan& plan, const plan::TaskRecord& task)
   for (std::uint32_t i = 0; i < code_.size(); ++i) {
     if (plan::find_op(code_[i].op)->result != Kind::kUnused) index_.push_back(i);
   }
+  for (std::uint32_t m = 0; m < program_.metrics.count; ++m) uses_.push_back(below(emitted(m)));
+}
+
+std::vector<bool> ProgramView::below(std::uint16_t reg) const {
+  std::vector<bool> below(registers());
+  below[reg] = true;
+  for (std::size_t i = registers(); i-- > 0;) {
+    if (!below[i]) continue;
+    const plan::Instruction& in = at(static_cast<std::uint16_t>(i));
+    const plan::OpInfo& info = *plan::find_op(in.op);
+    if (plan::is_register(info.a)) below[in.a] = true;
+    if (plan::is_register(info.b)) below[in.b] = true;
+  }
+  return below;
 }
 
 std::uint16_t ProgramView::emitted(std::uint32_t metric) const {
@@ -51,36 +65,48 @@ std::uint16_t ProgramView::hold(std::uint16_t reg) const {
   return plan_.states(program_)[at(reg).b].n;
 }
 
-void ProgramView::locate(std::uint16_t reg, Condition& condition) const {
+void ProgramView::locate(std::uint16_t reg, std::uint32_t metric, Condition& condition) const {
   condition.text = plan::find_op(at(reg).op)->name;
-  const plan::SpanRecord* span = plan_.span_of(1, program_.code.first + index_[reg]);
-  if (span == nullptr) return;
-  const plan::TextRecord& text = plan_.texts()[span->text];
+  const auto places = plan_.spans_of(1, program_.code.first + index_[reg]);
+  if (places.empty()) return;
+  // One place for all, or one for each metric that depends on it.
+  std::size_t before = 0, users = 0;
+  for (std::uint32_t m = 0; m < uses_.size(); ++m) {
+    if (!uses_[m][reg]) continue;
+    ++users;
+    if (m < metric) ++before;
+  }
+  const plan::SpanRecord& span = places[places.size() == users ? before : 0];
+  const plan::TextRecord& text = plan_.texts()[span.text];
   const std::string_view source = plan_.tables().source(text);
   condition.file = plan_.tables().path(text);
-  condition.line = plan::line_at(source, span->begin).number;
-  condition.text = one_line(source.substr(span->begin, span->end - span->begin));
+  condition.line = plan::line_at(source, span.begin).number;
+  condition.text = one_line(source.substr(span.begin, span.end - span.begin));
 }
 
-std::string ProgramView::bodies(std::uint16_t reg) const {
-  std::vector<bool> below(registers());
-  below[reg] = true;
-  std::vector<std::uint16_t> found;
-  for (std::size_t i = registers(); i-- > 0;) {
-    if (!below[i]) continue;
-    const plan::Instruction& in = at(static_cast<std::uint16_t>(i));
-    const plan::OpInfo& info = *plan::find_op(in.op);
-    if (plan::is_register(info.a)) below[in.a] = true;
-    if (plan::is_register(info.b)) below[in.b] = true;
-    if (plan::is_body(info.b)) found.push_back(in.b);
-    if (plan::is_body(info.a)) found.push_back(in.a);
-  }
+std::string ProgramView::bodies(std::uint16_t reg, bool swapped) const {
+  std::vector<bool> seen(registers());
+  std::vector<std::uint16_t> open = {reg}, named;
   std::string out;
-  std::vector<std::uint16_t> named;
-  for (auto it = found.rbegin(); it != found.rend(); ++it) {
-    if (std::ranges::find(named, *it) != named.end()) continue;
-    named.push_back(*it);
-    out += (out.empty() ? "" : ", ") + std::string(plan_.text(plan_.bodies(task_)[*it].name));
+  const auto name = [&](std::uint16_t body) {
+    if (std::ranges::find(named, body) != named.end()) return;
+    named.push_back(body);
+    out += (out.empty() ? "" : ", ") + std::string(plan_.text(plan_.bodies(task_)[body].name));
+  };
+  while (!open.empty()) {
+    const std::uint16_t next = open.back();
+    open.pop_back();
+    if (seen[next]) continue;
+    seen[next] = true;
+    const plan::Instruction& in = at(next);
+    const plan::OpInfo& info = *plan::find_op(in.op);
+    if (plan::is_body(info.a)) name(in.a);
+    if (plan::is_body(info.b)) name(in.b);
+    // The operand that is to be looked at first is pushed last.
+    const bool is_turned = swapped && next == reg;
+    if (is_turned && plan::is_register(info.a)) open.push_back(in.a);
+    if (plan::is_register(info.b)) open.push_back(in.b);
+    if (!is_turned && plan::is_register(info.a)) open.push_back(in.a);
   }
   return out;
 }

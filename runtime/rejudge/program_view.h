@@ -26,10 +26,12 @@ class ProgramView {
   std::uint16_t emitted(std::uint32_t metric) const;
   std::uint16_t hold(std::uint16_t reg) const;  // HOLD's n
 
-  // Fills file, line and text of the words that a register's instruction came from.
-  void locate(std::uint16_t reg, Condition& condition) const;
-  // Whose measurements a register depends on, in the order of the code.
-  std::string bodies(std::uint16_t reg) const;
+  // Fills file, line and text of the words by which a metric asks for a register's instruction.
+  // Metrics share equal conditions; each has its own words for them.
+  void locate(std::uint16_t reg, std::uint32_t metric, Condition& condition) const;
+  // Whose measurements a register depends on, in the order of its operands: what is pushed after
+  // what pushes. `swapped`: the right operand was written first.
+  std::string bodies(std::uint16_t reg, bool swapped) const;
 
   // Conditions below a truth: comparisons and HOLD, in the order of the code, each once.
   std::vector<std::uint16_t> conditions(std::uint16_t reg) const;
@@ -43,12 +45,14 @@ class ProgramView {
 
  private:
   bool is_condition(std::uint16_t reg) const;
+  std::vector<bool> below(std::uint16_t reg) const;  // the registers that it depends on, and itself
 
   const plan::Plan& plan_;
   const plan::TaskRecord& task_;
   const plan::ProgramRecord& program_;
   std::span<const plan::Instruction> code_;
-  std::vector<std::uint32_t> index_;  // into code_, by register
+  std::vector<std::uint32_t> index_;     // into code_, by register
+  std::vector<std::vector<bool>> uses_;  // by metric and register
 };
 
 }  // namespace probe::rejudge

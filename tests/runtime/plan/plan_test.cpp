@@ -35,6 +35,22 @@ TEST_CASE("what is written is read back") {
   CHECK(plan.span_of(1, 1) == nullptr);
 }
 
+TEST_CASE("the places of one thing keep the order in which they were added") {
+  Writer w = small_writer();
+  const std::uint32_t text = w.records.spans.front().text;
+  w.records.spans.insert(w.records.spans.begin(), {{1, 3, text, 9, 10}, {1, 3, text, 2, 4}});
+  auto bytes = w.finish();
+  REQUIRE(bytes.ok());
+  const auto plan = Plan::from_bytes(std::move(*bytes));
+  REQUIRE(plan.ok());
+  const auto places = plan->spans_of(1, 3);
+  REQUIRE(places.size() == 2);
+  CHECK(places[0].begin == 9);
+  CHECK(places[1].begin == 2);
+  CHECK(plan->span_of(1, 3) == places.data());
+  CHECK(plan->spans_of(1, 2).empty());
+}
+
 TEST_CASE("the same calls give the same bytes") { CHECK(small_plan() == small_plan()); }
 
 TEST_CASE("a task is found by its name and by a suite's prefix and name") {
