@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <iterator>
 
 #include "runtime/render/clones.h"
 #include "runtime/render/vec4.h"
@@ -41,6 +41,15 @@ inline Vec4 to_world(const Instance& instance, Vec4 d) {
          load4(instance.columns[2]) * splat(d[2]);
 }
 
+inline void intersect(const int* valid, RTCScene scene, RTCIntersectContext& context,
+                      RTCRayHit8& packet) {
+  rtcIntersect8(valid, scene, &context, &packet);
+}
+inline void intersect(const int* valid, RTCScene scene, RTCIntersectContext& context,
+                      RTCRayHit16& packet) {
+  rtcIntersect16(valid, scene, &context, &packet);
+}
+
 // Normals, not yet of unit length, are divided by their length; `side` is -1 where they turn away
 // from the viewer.
 PROBE_CLONES void normalise(float* __restrict nx, float* __restrict ny, float* __restrict nz,
@@ -55,17 +64,46 @@ PROBE_CLONES void normalise(float* __restrict nx, float* __restrict ny, float* _
   }
 }
 
+template <class Packet>
+__attribute__((always_inline)) inline void load_rays(const float* __restrict dx,
+                                                     const float* __restrict dy,
+                                                     const float* __restrict dz,
+                                                     const float* __restrict farthest,
+                                                     InstanceSet set, Packet& __restrict packet) {
+  for (std::size_t k = 0; k < std::size(packet.ray.tfar); ++k) {
+    packet.ray.dir_x[k] = dx[k];
+    packet.ray.dir_y[k] = dy[k];
+    packet.ray.dir_z[k] = dz[k];
+    packet.ray.tfar[k] = farthest[k];
+    packet.ray.mask[k] = set;
+    packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+// Cloned, so that rays are written in registers as wide as those in which Embree reads: what was
+// written in halves is slow to read as a whole.
+PROBE_CLONES void load(const float* dx, const float* dy, const float* dz, const float* farthest,
+                       InstanceSet set, RTCRayHit8& packet) {
+  load_rays(dx, dy, dz, farthest, set, packet);
+}
+PROBE_CLONES void load(const float* dx, const float* dy, const float* dz, const float* farthest,
+                       InstanceSet set, RTCRayHit16& packet) {
+  load_rays(dx, dy, dz, farthest, set, packet);
+}
+
 }  // namespace
 
 // Every lane's numbers are written, and the place moves on only behind a hit: no branch to guess.
+template <class Packet>
 void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
                                const BlockSets& blocks, const float* farthest) {
-  constexpr std::size_t n = 8;
-  alignas(32) static constexpr int kAll[n] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  constexpr std::size_t n = std::size(decltype(Packet::ray.tfar){});
+  alignas(64) static constexpr int kAll[16] = {-1, -1, -1, -1, -1, -1, -1, -1,
+                                               -1, -1, -1, -1, -1, -1, -1, -1};
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(32) RTCRayHit8 packet;
+  Packet packet;
   for (std::size_t k = 0; k < n; ++k) {
     packet.ray.org_x[k] = rays.origin[0];
     packet.ray.org_y[k] = rays.origin[1];
@@ -78,16 +116,11 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
   std::size_t count = 0;
   for (std::size_t block = 0; block < 4; ++block) {
     if (blocks[block] == 0) continue;
-    std::fill_n(packet.ray.mask, n, blocks[block]);
     for (std::size_t first = 64 * block; first < 64 * (block + 1); first += n) {
       const std::size_t from = base + first;
-      std::memcpy(packet.ray.dir_x, rays.dx.data() + from, sizeof(float) * n);
-      std::memcpy(packet.ray.dir_y, rays.dy.data() + from, sizeof(float) * n);
-      std::memcpy(packet.ray.dir_z, rays.dz.data() + from, sizeof(float) * n);
-      std::memcpy(packet.ray.tfar, farthest + first, sizeof(float) * n);
-      std::fill_n(packet.hit.geomID, n, RTC_INVALID_GEOMETRY_ID);
-      std::fill_n(packet.hit.instID[0], n, RTC_INVALID_GEOMETRY_ID);
-      rtcIntersect8(kAll, scene, &context, &packet);
+      load(rays.dx.data() + from, rays.dy.data() + from, rays.dz.data() + from, farthest + first,
+           blocks[block], packet);
+      intersect(kAll, scene, context, packet);
       for (std::size_t k = 0; k < n; ++k) {
         hits_.sample[count] = static_cast<std::uint8_t>(first + k);
         hits_.instance[count] = packet.hit.instID[0][k];
@@ -106,15 +139,50 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
 void TileTracer::trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
                        int tile, const BlockSets& blocks, const float* farthest) {
   const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
-  trace_packets(scene.scene(), rays, base, blocks, farthest);
-  find_triangles(scene);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
-    const Instance& instance = scene.instances()[hits_.instance[i]];
-    const std::size_t ray = base + hits_.sample[i];
-    const Vec4 d = to_mesh(instance, rays.dx[ray], rays.dy[ray], rays.dz[ray]);
-    refine(*hits_.triangle[i], load4(origins.of(hits_.instance[i])), d, hits_.t[i], hits_.u[i],
-           hits_.v[i]);
+  if (scene.wide_packets()) {
+    trace_packets<RTCRayHit16>(scene.scene(), rays, base, blocks, farthest);
+  } else {
+    trace_packets<RTCRayHit8>(scene.scene(), rays, base, blocks, farthest);
   }
+  find_triangles(scene);
+  refine_hits(scene, origins, rays, base);
+}
+
+void TileTracer::refine_hits(const TopScene& scene, const RayOrigins& origins,
+                             const CameraRays& rays, std::size_t base) {
+  const auto count = static_cast<std::size_t>(hits_.count);
+  for (std::size_t first = 0, n = 0; first < count; first += n) {
+    n = hits_.run(first);
+    const TriangleData& triangle = *hits_.triangle[first];
+    const Instance& instance = scene.instances()[hits_.instance[first]];
+    const float* origin = origins.of(hits_.instance[first]);
+    if (n >= kLongRun) {
+      refine_run(triangle, instance, origin, run_rays(rays, base, first, n), n, &hits_.t[first],
+                 &hits_.u[first], &hits_.v[first]);
+      continue;
+    }
+    for (std::size_t i = first; i < first + n; ++i) {
+      const std::size_t ray = base + hits_.sample[i];
+      const Vec4 d = to_mesh(instance, rays.dx[ray], rays.dy[ray], rays.dz[ray]);
+      refine(triangle, load4(origin), d, hits_.t[i], hits_.u[i], hits_.v[i]);
+    }
+  }
+}
+
+// In place where no sample between was missed.
+RunRays TileTracer::run_rays(const CameraRays& rays, std::size_t base, std::size_t first,
+                             std::size_t count) {
+  const std::size_t from = base + hits_.sample[first];
+  if (hits_.sample[first + count - 1] - hits_.sample[first] + std::size_t{1} == count) {
+    return {&rays.dx[from], &rays.dy[from], &rays.dz[from]};
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t ray = base + hits_.sample[first + i];
+    run_rays_[0][i] = rays.dx[ray];
+    run_rays_[1][i] = rays.dy[ray];
+    run_rays_[2][i] = rays.dz[ray];
+  }
+  return {run_rays_[0].data(), run_rays_[1].data(), run_rays_[2].data()};
 }
 
 // Records lie all over the memory: asked for together, they come while the first is worked on.
@@ -176,70 +244,137 @@ void TileTracer::take(const TopScene& scene, const StoredHits& stored, int tile,
 void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile, bool points) {
   const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
   const auto count = static_cast<std::size_t>(hits_.count);
-  textured_count_ = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Instance& instance = scene.instances()[hits_.instance[i]];
-    const MeshGeometry::Part& part = instance.geometry->parts[hits_.part[i]];
-    const TriangleData& tri = *hits_.triangle[i];
-    const std::size_t ray = base + hits_.sample[i];
-    const float u = hits_.u[i], v = hits_.v[i], w = 1 - u - v;
-    const Vec4 d{rays.dx[ray], rays.dy[ray], rays.dz[ray], 0};
-    const Vec4 g = to_world(instance, load4(tri.g));
-    const float side = dot3(g, d) > 0 ? -1.0f : 1.0f;
-    const Vec4 n = to_world(
-        instance, splat(w) * load4(tri.n0) + splat(u) * load4(tri.n1) + splat(v) * load4(tri.n2));
-    side_[i] = side;
-    input_.nx[i] = n[0];
-    input_.ny[i] = n[1];
-    input_.nz[i] = n[2];
-    input_.vx[i] = -d[0];
-    input_.vy[i] = -d[1];
-    input_.vz[i] = -d[2];
-
-    const scene::Material& material = part.material;
-    input_.albedo_r[i] = material.base_color[0];
-    input_.albedo_g[i] = material.base_color[1];
-    input_.albedo_b[i] = material.base_color[2];
-    scene::LinearRgb emission{material.emission[0], material.emission[1], material.emission[2]};
-    if (part.base_color != nullptr || part.emission != nullptr) {
-      const float tu = w * tri.uv0[0] + u * tri.uv1[0] + v * tri.uv2[0];
-      const float tv = w * tri.uv0[1] + u * tri.uv1[1] + v * tri.uv2[1];
-      if (part.base_color != nullptr) {
-        const scene::Footprint at = scene::footprint_at(*part.base_color, tu, tv);
-        __builtin_prefetch(at.upper + at.left);
-        __builtin_prefetch(at.lower + at.left);
-        footprints_[textured_count_] = at;
-        textured_[textured_count_++] = static_cast<std::uint8_t>(i);
-      }
-      if (part.emission != nullptr) emission = scene::sample_texture(*part.emission, tu, tv);
+  textured_.count = 0;
+  for (std::size_t first = 0, n = 0; first < count; first += n) {
+    n = hits_.run(first);
+    const Instance& instance = scene.instances()[hits_.instance[first]];
+    const MeshGeometry::Part& part = instance.geometry->parts[hits_.part[first]];
+    if (n >= kLongRun && part.emission == nullptr) {
+      gather_run(instance, part, run_rays(rays, base, first, n), first, n);
+    } else {
+      for (std::size_t i = first; i < first + n; ++i) gather_hit(instance, part, rays, base, i);
     }
-    input_.emission_r[i] = emission.r;
-    input_.emission_g[i] = emission.g;
-    input_.emission_b[i] = emission.b;
-    input_.roughness[i] = instance.robot ? kRobotRoughness : material.roughness;
-    input_.f0[i] = instance.robot ? kRobotF0 : material.f0;
-    input_.metallic[i] = instance.robot ? 0.0f : material.metallic;
-
-    if (points) {
-      const Vec4 p =
-          to_world(instance, load4(tri.p0) + splat(u) * load4(tri.e1) + splat(v) * load4(tri.e2));
-      points_.px[i] = p[0] + instance.translation[0];
-      points_.py[i] = p[1] + instance.translation[1];
-      points_.pz[i] = p[2] + instance.translation[2];
-      points_.gx[i] = g[0] * side;
-      points_.gy[i] = g[1] * side;
-      points_.gz[i] = g[2] * side;
-    }
+    if (!points) continue;
+    for (std::size_t i = first; i < first + n; ++i) gather_point(instance, i);
   }
   read_textures();
   normalise(input_.nx.data(), input_.ny.data(), input_.nz.data(), side_.data(), hits_.count);
   pad(input_, hits_.count);
 }
 
+void TileTracer::gather_run(const Instance& instance, const MeshGeometry::Part& part,
+                            const RunRays& d, std::size_t first, std::size_t count) {
+  const TriangleData& triangle = *hits_.triangle[first];
+  const float *u = &hits_.u[first], *v = &hits_.v[first];
+  turn_run(triangle, instance, d, count, u, v,
+           {&input_.nx[first], &input_.ny[first], &input_.nz[first], &side_[first],
+            &input_.vx[first], &input_.vy[first], &input_.vz[first]});
+  const scene::Material& material = part.material;
+  const auto fill = [first, count](ShadeInput::Array& array, float value) {
+    std::fill_n(array.data() + first, count, value);
+  };
+  if (part.base_color != nullptr) {
+    const std::size_t k = textured_.count;
+    place_run(triangle, *part.base_color, count, u, v,
+              {&textured_.upper_left[k], &textured_.upper_right[k], &textured_.lower_left[k],
+               &textured_.lower_right[k], &textured_.across[k], &textured_.down[k]});
+    const std::uint8_t* texels = part.base_color->rgba.data();
+    for (std::size_t i = 0; i < count; ++i) {
+      textured_.hit[k + i] = static_cast<std::uint8_t>(first + i);
+      textured_.texels[k + i] = texels;
+      __builtin_prefetch(texels + 4 * std::size_t{textured_.upper_left[k + i]});
+      __builtin_prefetch(texels + 4 * std::size_t{textured_.lower_left[k + i]});
+    }
+    textured_.count += count;
+  } else {
+    fill(input_.albedo_r, material.base_color[0]);
+    fill(input_.albedo_g, material.base_color[1]);
+    fill(input_.albedo_b, material.base_color[2]);
+  }
+  fill(input_.emission_r, material.emission[0]);
+  fill(input_.emission_g, material.emission[1]);
+  fill(input_.emission_b, material.emission[2]);
+  fill(input_.roughness, instance.robot ? kRobotRoughness : material.roughness);
+  fill(input_.f0, instance.robot ? kRobotF0 : material.f0);
+  fill(input_.metallic, instance.robot ? 0.0f : material.metallic);
+}
+
+void TileTracer::gather_hit(const Instance& instance, const MeshGeometry::Part& part,
+                            const CameraRays& rays, std::size_t base, std::size_t i) {
+  const TriangleData& tri = *hits_.triangle[i];
+  const std::size_t ray = base + hits_.sample[i];
+  const float u = hits_.u[i], v = hits_.v[i], w = 1 - u - v;
+  const Vec4 d{rays.dx[ray], rays.dy[ray], rays.dz[ray], 0};
+  const Vec4 g = to_world(instance, load4(tri.g));
+  const Vec4 n = to_world(
+      instance, splat(w) * load4(tri.n0) + splat(u) * load4(tri.n1) + splat(v) * load4(tri.n2));
+  side_[i] = dot3(g, d) > 0 ? -1.0f : 1.0f;
+  input_.nx[i] = n[0];
+  input_.ny[i] = n[1];
+  input_.nz[i] = n[2];
+  input_.vx[i] = -d[0];
+  input_.vy[i] = -d[1];
+  input_.vz[i] = -d[2];
+
+  const scene::Material& material = part.material;
+  input_.albedo_r[i] = material.base_color[0];
+  input_.albedo_g[i] = material.base_color[1];
+  input_.albedo_b[i] = material.base_color[2];
+  scene::LinearRgb emission{material.emission[0], material.emission[1], material.emission[2]};
+  if (part.base_color != nullptr || part.emission != nullptr) {
+    const float tu = w * tri.uv0[0] + u * tri.uv1[0] + v * tri.uv2[0];
+    const float tv = w * tri.uv0[1] + u * tri.uv1[1] + v * tri.uv2[1];
+    if (part.base_color != nullptr) {
+      const scene::Texture& texture = *part.base_color;
+      const scene::Texels at = scene::texels_at(texture.width, texture.height, tu, tv);
+      const auto width = static_cast<std::uint32_t>(texture.width);
+      const std::uint32_t upper = width * static_cast<std::uint32_t>(at.y0);
+      const std::uint32_t lower = width * static_cast<std::uint32_t>(at.y1);
+      const std::size_t k = textured_.count++;
+      textured_.hit[k] = static_cast<std::uint8_t>(i);
+      textured_.texels[k] = texture.rgba.data();
+      textured_.upper_left[k] = upper + static_cast<std::uint32_t>(at.x0);
+      textured_.upper_right[k] = upper + static_cast<std::uint32_t>(at.x1);
+      textured_.lower_left[k] = lower + static_cast<std::uint32_t>(at.x0);
+      textured_.lower_right[k] = lower + static_cast<std::uint32_t>(at.x1);
+      textured_.across[k] = at.across;
+      textured_.down[k] = at.down;
+      __builtin_prefetch(texture.rgba.data() + 4 * std::size_t{textured_.upper_left[k]});
+      __builtin_prefetch(texture.rgba.data() + 4 * std::size_t{textured_.lower_left[k]});
+    }
+    if (part.emission != nullptr) emission = scene::sample_texture(*part.emission, tu, tv);
+  }
+  input_.emission_r[i] = emission.r;
+  input_.emission_g[i] = emission.g;
+  input_.emission_b[i] = emission.b;
+  input_.roughness[i] = instance.robot ? kRobotRoughness : material.roughness;
+  input_.f0[i] = instance.robot ? kRobotF0 : material.f0;
+  input_.metallic[i] = instance.robot ? 0.0f : material.metallic;
+}
+
+// Where light is traced from; `side_` is known.
+void TileTracer::gather_point(const Instance& instance, std::size_t i) {
+  const TriangleData& tri = *hits_.triangle[i];
+  const Vec4 g = to_world(instance, load4(tri.g));
+  const Vec4 p = to_world(instance, load4(tri.p0) + splat(hits_.u[i]) * load4(tri.e1) +
+                                        splat(hits_.v[i]) * load4(tri.e2));
+  points_.px[i] = p[0] + instance.translation[0];
+  points_.py[i] = p[1] + instance.translation[1];
+  points_.pz[i] = p[2] + instance.translation[2];
+  points_.gx[i] = g[0] * side_[i];
+  points_.gy[i] = g[1] * side_[i];
+  points_.gz[i] = g[2] * side_[i];
+}
+
 void TileTracer::read_textures() {
-  for (std::size_t k = 0; k < textured_count_; ++k) {
-    const std::size_t i = textured_[k];
-    const scene::LinearRgb albedo = scene::sample_at(footprints_[k]);
+  for (std::size_t k = 0; k < textured_.count; ++k) {
+    const std::size_t i = textured_.hit[k];
+    const std::uint8_t* texels = textured_.texels[k];
+    const scene::LinearRgb albedo = scene::mix_texels(
+        texels + 4 * std::size_t{textured_.upper_left[k]},
+        texels + 4 * std::size_t{textured_.upper_right[k]},
+        texels + 4 * std::size_t{textured_.lower_left[k]},
+        texels + 4 * std::size_t{textured_.lower_right[k]}, textured_.across[k], textured_.down[k]);
     input_.albedo_r[i] = albedo.r;
     input_.albedo_g[i] = albedo.g;
     input_.albedo_b[i] = albedo.b;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/hit_runs.h"
 #include "runtime/render/occlusion.h"
 #include "runtime/render/shading.h"
 #include "runtime/render/top_scene.h"
@@ -25,6 +26,13 @@ struct TileHits {
   std::array<std::uint32_t, kRoom> instance, part, primitive;
   std::array<const TriangleData*, kRoom> triangle;  // that of the three
   alignas(64) std::array<float, kRoom> t, u, v;
+
+  // How many follow each other on one triangle, from hit `first` on.
+  std::size_t run(std::size_t first) const {
+    std::size_t end = first + 1;
+    while (end < static_cast<std::size_t>(count) && triangle[end] == triangle[first]) ++end;
+    return end - first;
+  }
 };
 
 // Hits kept for later, tile after tile.
@@ -67,18 +75,34 @@ class TileTracer {
  private:
   void find_triangles(const TopScene& scene);
   void read_textures();
+  template <class Packet>
   void trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
                      const BlockSets& blocks, const float* farthest);
+  void refine_hits(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
+                   std::size_t base);
+  RunRays run_rays(const CameraRays& rays, std::size_t base, std::size_t first, std::size_t count);
   void gather(const TopScene& scene, const CameraRays& rays, int tile, bool points);
+  void gather_run(const Instance& instance, const MeshGeometry::Part& part, const RunRays& d,
+                  std::size_t first, std::size_t count);
+  void gather_hit(const Instance& instance, const MeshGeometry::Part& part, const CameraRays& rays,
+                  std::size_t base, std::size_t i);
+  void gather_point(const Instance& instance, std::size_t i);
   void test_suns(const LightTable& lights, const Casters& casters);
 
   TileHits hits_{};
   ShadeInput input_{};
   std::array<float, kTileSamples> side_{};  // of the normals, see normalise()
+  std::array<std::array<float, kTileSamples>, 3> run_rays_{};
   // Hits whose colour is a texture's, and where in it.
-  std::size_t textured_count_ = 0;
-  std::array<std::uint8_t, kTileSamples> textured_{};
-  std::array<scene::Footprint, kTileSamples> footprints_{};
+  struct TexturedHits {
+    std::size_t count = 0;
+    std::array<std::uint8_t, kTileSamples> hit;
+    std::array<const std::uint8_t*, kTileSamples> texels;  // RGBA bytes, row by row
+    alignas(64) std::array<std::uint32_t, kTileSamples> upper_left, upper_right, lower_left,
+        lower_right;
+    alignas(64) std::array<float, kTileSamples> across, down;
+  };
+  TexturedHits textured_{};
   ShadeOutput output_{};
   SurfacePoints points_{};  // of the hits, only where light is traced
   LightFactors factors_;

@@ -41,53 +41,51 @@ struct LinearRgb {
   float r, g, b;
 };
 
-// Four texels and their weights: where a bilinear sample reads. Apart from the reading, so that a
-// loop over many samples can wait for all texels at once.
-struct Footprint {
-  const std::uint8_t* upper = nullptr;  // rows of RGBA bytes
-  const std::uint8_t* lower = nullptr;
-  int left = 0, right = 0;  // bytes into a row
-  float across = 0, down = 0;
+// Four texels by column and row, and their weights: where a bilinear sample reads.
+struct Texels {
+  int x0, y0, x1, y1;
+  float across, down;
 };
 
-// Wrapping on both axes; row 0 lies at v = 0. u and v must be finite.
-inline Footprint footprint_at(const Texture& texture, float u, float v) {
-  const int width = texture.width, height = texture.height;
+// Wrapping on both axes; row 0 lies at v = 0. u and v must be finite. Without branches, so that
+// loops over many samples become vector code.
+inline Texels texels_at(int width, int height, float u, float v) {
   const float x = (u - std::floor(u)) * static_cast<float>(width) - 0.5f;
   const float y = (v - std::floor(v)) * static_cast<float>(height) - 0.5f;
   const float floor_x = std::floor(x), floor_y = std::floor(y);
-  int x0 = static_cast<int>(floor_x), y0 = static_cast<int>(floor_y);
-  int x1 = x0 + 1, y1 = y0 + 1;
-  if (x0 < 0) x0 += width;
-  if (y0 < 0) y0 += height;
-  if (x1 >= width) x1 -= width;
-  if (y1 >= height) y1 -= height;
-  const std::size_t stride = 4 * static_cast<std::size_t>(width);
-  const std::uint8_t* texels = texture.rgba.data();
-  return {texels + stride * static_cast<std::size_t>(y0),
-          texels + stride * static_cast<std::size_t>(y1),
-          4 * x0,
-          4 * x1,
+  const int x0 = static_cast<int>(floor_x), y0 = static_cast<int>(floor_y);
+  const int x1 = x0 + 1, y1 = y0 + 1;
+  return {x0 < 0 ? x0 + width : x0,
+          y0 < 0 ? y0 + height : y0,
+          x1 >= width ? x1 - width : x1,
+          y1 >= height ? y1 - height : y1,
           x - floor_x,
           y - floor_y};
 }
 
-// Between decoded texels.
-inline LinearRgb sample_at(const Footprint& at) {
+// Between decoded texels of four RGBA bytes.
+inline LinearRgb mix_texels(const std::uint8_t* upper_left, const std::uint8_t* upper_right,
+                            const std::uint8_t* lower_left, const std::uint8_t* lower_right,
+                            float across, float down) {
   using Rgbx = float __attribute__((vector_size(16)));  // three channels in one register
   const auto texel = [](const std::uint8_t* rgba) {
     return Rgbx{kSrgbToLinear[rgba[0]], kSrgbToLinear[rgba[1]], kSrgbToLinear[rgba[2]], 0};
   };
-  const Rgbx top = texel(at.upper + at.left) * (1 - at.across) +
-                   texel(at.upper + at.right) * at.across;
-  const Rgbx bottom = texel(at.lower + at.left) * (1 - at.across) +
-                      texel(at.lower + at.right) * at.across;
-  const Rgbx mixed = top * (1 - at.down) + bottom * at.down;
+  const Rgbx top = texel(upper_left) * (1 - across) + texel(upper_right) * across;
+  const Rgbx bottom = texel(lower_left) * (1 - across) + texel(lower_right) * across;
+  const Rgbx mixed = top * (1 - down) + bottom * down;
   return {mixed[0], mixed[1], mixed[2]};
 }
 
 inline LinearRgb sample_texture(const Texture& texture, float u, float v) {
-  return sample_at(footprint_at(texture, u, v));
+  const Texels at = texels_at(texture.width, texture.height, u, v);
+  const auto texel = [&](int x, int y) {
+    return texture.rgba.data() +
+           4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width) +
+                static_cast<std::size_t>(x));
+  };
+  return mix_texels(texel(at.x0, at.y0), texel(at.x1, at.y0), texel(at.x0, at.y1),
+                    texel(at.x1, at.y1), at.across, at.down);
 }
 
 }  // namespace probe::scene
