@@ -64,7 +64,7 @@ struct RobotModel {
 
 // Fails (kUrdf, where = path) on a missing file, text that is not URDF, a link named by a
 // joint that is not there, a loop, non-finite numbers, non-positive mass of a moving link, inertia
-// no body can have.
+// no body can have, more than 1024 links or 100,000 elements.
 Result<RobotModel> load_urdf(const std::string& path);
 
 }  // namespace probe::robot

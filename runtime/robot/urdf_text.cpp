@@ -19,6 +19,9 @@ namespace {
 // TinyXML recurses once a level; a text nested deeper than this is no robot and could exhaust the
 // stack.
 constexpr int kDeepest = 500;
+// A humanoid with hands has a hundred links of ten elements; reading takes the square of the links.
+constexpr int kMostElements = 100'000;
+constexpr std::size_t kMostLinks = 1024;
 
 class Scanner {
  public:
@@ -42,6 +45,10 @@ class Scanner {
     for (const TiXmlElement* e = robot->FirstChildElement(); e; e = e->NextSiblingElement()) {
       if (e->ValueStr() == "link") PROBE_TRY(add_link(*e));
       if (e->ValueStr() == "joint") PROBE_TRY(add_joint(*e));
+      if (result_.links.size() > kMostLinks || result_.joints.size() > kMostLinks) {
+        return Failure{Fault::kUrdf, fmt::format("more than {} links or joints", kMostLinks),
+                       path_};
+      }
     }
     PROBE_TRY(check_tree());
     return std::move(result_);
@@ -51,10 +58,15 @@ class Scanner {
   std::string at(int line) const { return fmt::format("{}:{}", path_, line); }
 
   Status check_depth() const {
-    int depth = 0;
+    int depth = 0, elements = 0;
     for (std::size_t i = 0; i + 1 < text_.size(); ++i) {
       const char next = text_[i + 1];
-      if (text_[i] == '<' && std::isalpha(static_cast<unsigned char>(next))) ++depth;
+      if (text_[i] == '<' && std::isalpha(static_cast<unsigned char>(next))) {
+        ++depth;
+        if (++elements > kMostElements) {
+          return Failure{Fault::kUrdf, fmt::format("more than {} elements", kMostElements), path_};
+        }
+      }
       if ((text_[i] == '<' && next == '/') || (text_[i] == '/' && next == '>')) --depth;
       if (depth > kDeepest) {
         return Failure{Fault::kUrdf, fmt::format("elements nested deeper than {}", kDeepest),

@@ -237,6 +237,19 @@ TEST_CASE("numbers that are none fail and urdfdom's own words are kept") {
   }
 }
 
+TEST_CASE("a description of thousands of links or elements is refused before it is built") {
+  std::string links;
+  for (int i = 0; i < 20'000; ++i) links += "<link name='l" + std::to_string(i) + "'/>";
+  for (int i = 1; i < 20'000; ++i) {
+    links += "<joint name='j" + std::to_string(i) + "' type='fixed'><parent link='l" +
+             std::to_string(i - 1) + "'/><child link='l" + std::to_string(i) + "'/></joint>";
+  }
+  CHECK(load_message("<robot name='r'>" + links + "</robot>") == "more than 1024 links or joints");
+  std::string elements;
+  for (int i = 0; i < 100'001; ++i) elements += "<a/>";
+  CHECK(load_message("<robot name='r'>" + elements + "</robot>") == "more than 100000 elements");
+}
+
 TEST_CASE("masses and inertias that no body has are refused by name") {
   const auto with = [](const std::string& mass, const std::string& moments) {
     return load_message(
