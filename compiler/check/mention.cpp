@@ -116,15 +116,23 @@ struct Mentions {
   }
 };
 
-// An object of the scene may be meant: it has these words at the end of its own.
+// An object or the fixture of the scene may be meant: it has these words at the end of its own.
 bool is_there(const Model& model, const Task& task, const std::vector<std::string>& name) {
-  const std::vector<ObjectId> objects = task.objects();
-  return std::any_of(objects.begin(), objects.end(), [&](ObjectId id) {
-    const std::vector<std::string> own = split(fold_case(model.objects[id].text.text));
+  const auto ends_so = [&](std::string_view called) {
+    const std::vector<std::string> own = split(fold_case(called));
     return own.size() >= name.size() &&
            std::equal(name.begin(), name.end(),
                       own.end() - static_cast<std::ptrdiff_t>(name.size()));
-  });
+  };
+  if (const auto& fixture = model.scenes[task.scene].fixture) {
+    // A folder of assets is all the name that a fixture has.
+    std::string folder = fixture->text;
+    std::replace(folder.begin(), folder.end(), '_', ' ');
+    if (ends_so(folder)) return true;
+  }
+  const std::vector<ObjectId> objects = task.objects();
+  return std::any_of(objects.begin(), objects.end(),
+                     [&](ObjectId id) { return ends_so(model.objects[id].text.text); });
 }
 
 }  // namespace

@@ -39,6 +39,18 @@ TEST_CASE("a name that is an adjective, a verb or part of another name is no men
   CHECK(codes("put the block on {target}", "object block like pale { name \"block\" }\n") == "");
 }
 
+TEST_CASE("the fixture of the scene is there, although it is no object") {
+  const std::string sink = "object sink like pale { name \"sink\" }\n";
+  const auto codes_in = [&](const std::string& scene) {
+    return analyze_with_suite(
+               sink + scene +
+               "task t like red_on_tray { scene s; say \"put {source} in the sink\" }")
+        ->codes();
+  };
+  CHECK(codes_in("scene s like bench { fixture \"steel_sink\" at (0cm, 0cm, 0cm) }\n") == "");
+  CHECK(codes_in("scene s like bench { fixture \"crate\" at (0cm, 0cm, 0cm) }\n") == "P0404");
+}
+
 TEST_CASE("a published sentence that tells of what is not there is kept under an allow") {
   const auto a = analyze_with_suite(
       kTowel +
