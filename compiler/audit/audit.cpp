@@ -14,9 +14,6 @@
 namespace probe::audit {
 namespace {
 
-// `what` of SpanRecord.
-constexpr std::uint32_t kTaskSpan = 2, kMetricSpan = 4;
-
 struct KindName {
   Kind kind;
   std::string_view name, title;
@@ -94,7 +91,9 @@ class Auditor {
     const LineColumn at = file.line_column(span.begin);
     return {file.name(), at.line, at.column};
   }
-  Place task_place(std::uint32_t task) const { return place(plan_.span_of(kTaskSpan, task)); }
+  Place task_place(std::uint32_t task) const {
+    return place(plan_.span_of(plan::SpanKind::kTasks, task));
+  }
 
   void add(Finding finding) { audit_.findings.push_back(std::move(finding)); }
 
@@ -137,7 +136,8 @@ class Auditor {
   const plan::SpanRecord* rule(const plan::TaskRecord& task, std::string_view metric) const {
     const auto index = plan_.find_metric(task, metric);
     if (!index) return nullptr;
-    return plan_.span_of(kMetricSpan, plan_.programs()[task.program].metrics.first + *index);
+    return plan_.span_of(plan::SpanKind::kMetrics,
+                         plan_.programs()[task.program].metrics.first + *index);
   }
 
   void compare(std::uint32_t index) {
@@ -338,7 +338,7 @@ class Auditor {
     std::optional<std::uint32_t> best;
     std::uint32_t begin = declaration.begin;
     for (std::uint32_t task = 0; task < plan_.tasks().size(); ++task) {
-      const plan::SpanRecord* span = plan_.span_of(kTaskSpan, task);
+      const plan::SpanRecord* span = plan_.span_of(plan::SpanKind::kTasks, task);
       if (span == nullptr || span->begin < begin || span->begin > at.begin) continue;
       if (task_place(task).file != file) continue;
       begin = span->begin;

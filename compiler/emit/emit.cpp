@@ -54,10 +54,11 @@ void Emitter::add_sources(const std::vector<FileId>& files) {
   }
 }
 
-void Emitter::add_span(std::uint32_t what, std::uint32_t index, const Span& span) {
+void Emitter::add_span(plan::SpanKind what, std::uint32_t index, const Span& span) {
   const auto text = texts_.find(span.file.value);
   if (text != texts_.end())
-    records().spans.push_back({what, index, text->second, span.begin, span.end});
+    records().spans.push_back(
+        {static_cast<std::uint32_t>(what), index, text->second, span.begin, span.end});
 }
 
 Result<std::vector<std::byte>> emit(const Model& model, const SourceSet& sources,

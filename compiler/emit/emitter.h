@@ -23,9 +23,6 @@ using sema::Model;
 using sema::ObjectId;
 using sema::TaskId;
 
-// What a span of the plan is of.
-constexpr std::uint32_t kCodeSpan = 1, kTaskSpan = 2, kObjectSpan = 3, kMetricSpan = 4;
-
 // Gives each used row of a table its index in the plan, in the order of first use.
 template <typename Id>
 class Used {
@@ -75,7 +72,7 @@ class Emitter {
   // declared.
   std::vector<TaskId> choose_tasks() const;
   void add_sources(const std::vector<FileId>& files);
-  void add_span(std::uint32_t what, std::uint32_t index, const Span& span);
+  void add_span(plan::SpanKind what, std::uint32_t index, const Span& span);
 
   // A folder's picture mesh and what is felt: `collision`, or the picture mesh where there is none.
   struct MeshPair {

@@ -23,15 +23,15 @@ std::uint32_t Emitter::add_program(lower::Program program, std::uint64_t horizon
     const std::uint32_t index = size32(records().code) + static_cast<std::uint32_t>(i);
     const auto places = program.places.find(static_cast<std::uint32_t>(i));
     if (places == program.places.end()) {
-      add_span(kCodeSpan, index, program.spans[i]);
+      add_span(plan::SpanKind::kCode, index, program.spans[i]);
       continue;
     }
-    for (const Span& place : places->second) add_span(kCodeSpan, index, place);
+    for (const Span& place : places->second) add_span(plan::SpanKind::kCode, index, place);
   }
   record.code = plan::append(records().code, std::span<const plan::Instruction>(program.code));
   record.metrics = {size32(records().metrics), size32(program.metrics)};
   for (const lower::ProgramMetric& metric : program.metrics) {
-    add_span(kMetricSpan, size32(records().metrics), metric.span);
+    add_span(plan::SpanKind::kMetrics, size32(records().metrics), metric.span);
     records().metrics.push_back({writer_.text(metric.name), static_cast<std::uint32_t>(metric.type),
                                  static_cast<std::uint32_t>(metric.readout)});
   }

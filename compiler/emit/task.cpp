@@ -85,7 +85,7 @@ void Emitter::add_task(const sema::Task& task) {
     episode.placements = add_placements(task.starts[e], scene.surface_z + layout.drop);
     records().episodes.push_back(episode);
   }
-  add_span(kTaskSpan, index, task.span);
+  add_span(plan::SpanKind::kTasks, index, task.span);
   records().tasks.push_back(record);
 }
 

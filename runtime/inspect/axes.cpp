@@ -91,8 +91,10 @@ bool same_goal(const plan::Plan& plan, const plan::TaskRecord& a, const plan::Ta
     if (plan.text(ours[m].name) != plan.text(theirs[m].name) || ours[m].type != theirs[m].type ||
         ours[m].readout != theirs[m].readout)
       return false;
-    const plan::SpanRecord* here = plan.span_of(4, static_cast<std::uint32_t>(&ours[m] - table));
-    const plan::SpanRecord* there = plan.span_of(4, static_cast<std::uint32_t>(&theirs[m] - table));
+    const plan::SpanRecord* here =
+        plan.span_of(plan::SpanKind::kMetrics, static_cast<std::uint32_t>(&ours[m] - table));
+    const plan::SpanRecord* there =
+        plan.span_of(plan::SpanKind::kMetrics, static_cast<std::uint32_t>(&theirs[m] - table));
     if (here != nullptr && there != nullptr &&
         (here->text != there->text || here->begin != there->begin))
       return false;

@@ -32,7 +32,7 @@ class Lister {
  private:
   // The source line once, above the first of the instructions that came from it.
   void source(std::string& out, std::uint32_t instruction) {
-    const SpanRecord* span = plan_.span_of(1, instruction);
+    const SpanRecord* span = plan_.span_of(SpanKind::kCode, instruction);
     if (span == nullptr) return;
     const TextRecord& text = plan_.texts()[span->text];
     const SourceLine line = line_at(plan_.tables().source(text), span->begin);

@@ -303,11 +303,13 @@ struct SuiteRecord {
 };
 static_assert(sizeof(SuiteRecord) == 64);
 
-// Where an instruction or a record came from, ascending by (what, index). `what` 1: kCode
-// instruction, 2: kTasks, 3: kObjects, 4: kMetrics. A truth that several metrics share may have one
-// for each metric that depends on it, in their order.
+// What a span tells the place of: an element of the section of that name.
+enum class SpanKind : std::uint32_t { kCode = 1, kTasks = 2, kObjects = 3, kMetrics = 4 };
+
+// Where an instruction or a record came from, ascending by (what, index). A truth that several
+// metrics share may have one for each metric that depends on it, in their order.
 struct SpanRecord {
-  std::uint32_t what = 0;
+  std::uint32_t what = 0;  // SpanKind
   std::uint32_t index = 0;
   std::uint32_t text = 0;            // kTexts
   std::uint32_t begin = 0, end = 0;  // bytes

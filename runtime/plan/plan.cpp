@@ -178,12 +178,13 @@ std::optional<std::uint32_t> Plan::find_metric(const TaskRecord& task,
   return find_name(tables_, metrics(task), name);
 }
 
-std::span<const SpanRecord> Plan::spans_of(std::uint32_t what, std::uint32_t index) const {
+std::span<const SpanRecord> Plan::spans_of(SpanKind what, std::uint32_t index) const {
   const auto key = [](const SpanRecord& s) { return std::pair(s.what, s.index); };
-  const auto found = std::ranges::equal_range(spans(), std::pair(what, index), {}, key);
+  const std::pair wanted(static_cast<std::uint32_t>(what), index);
+  const auto found = std::ranges::equal_range(spans(), wanted, {}, key);
   return {found.begin(), found.end()};
 }
-const SpanRecord* Plan::span_of(std::uint32_t what, std::uint32_t index) const {
+const SpanRecord* Plan::span_of(SpanKind what, std::uint32_t index) const {
   const auto found = spans_of(what, index);
   return found.empty() ? nullptr : found.data();
 }

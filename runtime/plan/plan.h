@@ -71,10 +71,10 @@ class Plan {
   // Index among metrics(task).
   std::optional<std::uint32_t> find_metric(const TaskRecord& task, std::string_view name) const;
 
-  // Where something was written; none when unknown or stripped. `what` as in SpanRecord.
-  std::span<const SpanRecord> spans_of(std::uint32_t what, std::uint32_t index) const;
+  // Where something was written; none when unknown or stripped.
+  std::span<const SpanRecord> spans_of(SpanKind what, std::uint32_t index) const;
   // The first of these, or null.
-  const SpanRecord* span_of(std::uint32_t what, std::uint32_t index) const;
+  const SpanRecord* span_of(SpanKind what, std::uint32_t index) const;
 
  private:
   class Storage;  // a mapping or a vector

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <optional>
 
 #include "runtime/plan/axes.h"
 #include "runtime/plan/isa.h"
@@ -131,10 +132,22 @@ Status RecordCheck::check(const SuiteRecord& s) const {
 }
 
 Status RecordCheck::check(const SpanRecord& s) const {
-  const std::size_t sizes[] = {t.code.size(), t.tasks.size(), t.objects.size(), t.metrics.size()};
-  if (s.what < 1 || s.what > std::size(sizes))
+  const auto size = [&]() -> std::optional<std::size_t> {
+    switch (static_cast<SpanKind>(s.what)) {
+      case SpanKind::kCode:
+        return t.code.size();
+      case SpanKind::kTasks:
+        return t.tasks.size();
+      case SpanKind::kObjects:
+        return t.objects.size();
+      case SpanKind::kMetrics:
+        return t.metrics.size();
+    }
+    return std::nullopt;
+  }();
+  if (!size)
     return fail(Rule::kSpanKind, &s.what, fmt::format("span kind {} is not known", s.what));
-  PROBE_TRY(check_index(s.index, sizes[s.what - 1], "what the span describes"));
+  PROBE_TRY(check_index(s.index, *size, "what the span describes"));
   PROBE_TRY(check_index(s.text, t.texts.size(), "TEXT"));
   if (s.begin > s.end || s.end > t.texts[s.text].bytes.count) {
     return fail(Rule::kSpanRange, &s.begin,

@@ -162,7 +162,8 @@ class Explainer {
                             : quantity(h.value, metric_dimensions(plan_, program_)[metric]);
     why.readout = plan::find_readout(record.readout)->words;
     std::tie(why.step, why.when) = decision(h, steps);
-    if (const auto* span = plan_.span_of(4, program_.metrics.first + metric)) {
+    if (const auto* span =
+            plan_.span_of(plan::SpanKind::kMetrics, program_.metrics.first + metric)) {
       const plan::TextRecord& text = plan_.texts()[span->text];
       const auto line = plan::line_at(plan_.tables().source(text), span->begin);
       why.file = plan_.tables().path(text);

@@ -67,7 +67,7 @@ std::uint16_t ProgramView::hold(std::uint16_t reg) const {
 
 void ProgramView::locate(std::uint16_t reg, std::uint32_t metric, Condition& condition) const {
   condition.text = plan::find_op(at(reg).op)->name;
-  const auto places = plan_.spans_of(1, program_.code.first + index_[reg]);
+  const auto places = plan_.spans_of(plan::SpanKind::kCode, program_.code.first + index_[reg]);
   if (places.empty()) return;
   // One place for all, or one for each metric that depends on it.
   std::size_t before = 0, users = 0;

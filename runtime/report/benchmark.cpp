@@ -298,7 +298,7 @@ class Loader {
 
   static void quote_rule(const plan::Plan& plan, const plan::MetricRecord& metric, Task& task) {
     const auto index = static_cast<std::uint32_t>(&metric - plan.metrics().data());
-    const plan::SpanRecord* span = plan.span_of(4, index);
+    const plan::SpanRecord* span = plan.span_of(plan::SpanKind::kMetrics, index);
     if (span == nullptr) return;
     const plan::TextRecord& text = plan.texts()[span->text];
     const plan::SourceLine line = plan::line_at(plan.tables().source(text), span->begin);

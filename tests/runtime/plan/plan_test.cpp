@@ -30,9 +30,9 @@ TEST_CASE("what is written is read back") {
   CHECK(plan.members(plan.suites()[0]).size() == 2);
   CHECK(plan.suns(plan.lights()[0])[0].power == 2.2);
   CHECK(plan.has_sources());
-  REQUIRE(plan.span_of(1, 0) != nullptr);
-  CHECK(plan.span_of(1, 0)->begin == 25);
-  CHECK(plan.span_of(1, 1) == nullptr);
+  REQUIRE(plan.span_of(SpanKind::kCode, 0) != nullptr);
+  CHECK(plan.span_of(SpanKind::kCode, 0)->begin == 25);
+  CHECK(plan.span_of(SpanKind::kCode, 1) == nullptr);
 }
 
 TEST_CASE("the places of one thing keep the order in which they were added") {
@@ -43,12 +43,12 @@ TEST_CASE("the places of one thing keep the order in which they were added") {
   REQUIRE(bytes.ok());
   const auto plan = Plan::from_bytes(std::move(*bytes));
   REQUIRE(plan.ok());
-  const auto places = plan->spans_of(1, 3);
+  const auto places = plan->spans_of(SpanKind::kCode, 3);
   REQUIRE(places.size() == 2);
   CHECK(places[0].begin == 9);
   CHECK(places[1].begin == 2);
-  CHECK(plan->span_of(1, 3) == places.data());
-  CHECK(plan->spans_of(1, 2).empty());
+  CHECK(plan->span_of(SpanKind::kCode, 3) == places.data());
+  CHECK(plan->spans_of(SpanKind::kCode, 2).empty());
 }
 
 TEST_CASE("the same calls give the same bytes") { CHECK(small_plan() == small_plan()); }
