@@ -1,6 +1,9 @@
 #include "runtime/stats/mixed_logistic.h"
 
+#include <nlopt.h>
+
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "runtime/stats/laplace.h"
@@ -37,82 +40,62 @@ Status check(const MixedData& data) {
   return {};
 }
 
-// Quasi-Newton (BFGS) minimisation with backtracking; the inverse Hessian is kept.
-class Search {
- public:
-  Search(LaplaceDeviance& deviance, VectorXd start, MatrixXd inverse_hessian)
-      : deviance_(deviance), at_(std::move(start)), inverse_(std::move(inverse_hessian)) {}
+constexpr int kEvaluations = 1000;  // at most; two dozen are usual
+constexpr double kGain = 1e-13;     // of the deviance; a step that gains less is the last
+constexpr double kFlat = 1e-3;      // deviance per unit of log-odds: what its rounding hides
+constexpr double kBound = 30;       // log-odds searched to either side
+constexpr double kSeparated = 15;   // log-odds that no sample of less than a million supports
 
-  Result<int> run() {
-    if (!deviance_.evaluate(at_, &value_, &gradient_)) return failed("the start overflows");
-    for (int iteration = 1; iteration <= kIterations; ++iteration) {
-      if (gradient_.cwiseAbs().maxCoeff() < kGradient) return iteration;
-      VectorXd step = -(inverse_ * gradient_);
-      if (gradient_.dot(step) >= 0) {
-        inverse_.setIdentity();
-        step = -gradient_;
-      }
-      const double longest = step.cwiseAbs().maxCoeff();
-      if (longest > kLongestStep) step *= kLongestStep / longest;
-      if (!move_along(step)) {
-        // No way down: at the bottom as far as the numbers tell, or stuck on a wrong curvature.
-        if (gradient_.cwiseAbs().maxCoeff() < kFlat) return iteration;
-        if (inverse_.isIdentity()) return failed("the search does not settle");
-        inverse_.setIdentity();
-      }
-      if (at_.cwiseAbs().maxCoeff() > kSeparated) {
-        return failed(
-            "an effect grows without end: the fixed effects separate successes from failures; use "
-            "a prior");
-      }
-    }
-    return failed("the search does not settle in " + std::to_string(kIterations) + " steps");
-  }
-
-  const VectorXd& at() const { return at_; }
-
- private:
-  static constexpr int kIterations = 500;
-  static constexpr double kGradient = 1e-6;  // deviance per unit of log-odds
-  static constexpr double kFlat = 1e-3;      // what rounding of the deviance hides
-  static constexpr double kLongestStep = 2;  // log-odds
-  static constexpr double kSeparated = 25;   // log-odds no finite sample supports
-
-  bool move_along(const VectorXd& step) {
-    const double slope = gradient_.dot(step);
-    for (double length = 1; length > 1e-10; length /= 2) {
-      const VectorXd tried = at_ + length * step;
-      double value = 0;
-      VectorXd gradient;
-      if (!deviance_.evaluate(tried, &value, &gradient)) continue;
-      if (value > value_ + 1e-4 * length * slope) continue;
-      update(tried - at_, gradient - gradient_);
-      at_ = tried;
-      value_ = value;
-      gradient_ = gradient;
-      return true;
-    }
-    return false;
-  }
-
-  void update(const VectorXd& s, const VectorXd& y) {
-    const double curvature = s.dot(y);
-    if (curvature <= 1e-12 * s.norm() * y.norm()) return;
-    const double rho = 1 / curvature;
-    const MatrixXd left = MatrixXd::Identity(s.size(), s.size()) - rho * s * y.transpose();
-    inverse_ = left * inverse_ * left.transpose() + rho * s * s.transpose();
-  }
-
-  LaplaceDeviance& deviance_;
-  VectorXd at_;
-  MatrixXd inverse_;
-  double value_ = 0;
-  VectorXd gradient_;
+struct Question {
+  LaplaceDeviance& deviance;
+  int evaluations = 0;
 };
+
+// As nlopt_func: `question` is a Question.
+double deviance_at(unsigned size, const double* at, double* gradient, void* question) {
+  Question& asked = *static_cast<Question*>(question);
+  ++asked.evaluations;
+  const VectorXd parameters = Eigen::Map<const VectorXd>(at, size);
+  double value = 0;
+  VectorXd slope;
+  if (!asked.deviance.evaluate(parameters, &value, &slope)) {
+    value = HUGE_VAL;
+    slope.setZero(parameters.size());
+  }
+  if (gradient != nullptr) Eigen::Map<VectorXd>(gradient, size) = slope;
+  return value;
+}
+
+// NLopt's limited-memory BFGS (Nocedal 1980; Luksan's code) from `at` to the least deviance, into
+// `at`. One thread and no BLAS: the same bits in every run. Returns the evaluations it took.
+Result<int> minimise(LaplaceDeviance& deviance, VectorXd* at) {
+  Question question{deviance};
+  const auto size = static_cast<unsigned>(at->size());
+  const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> search(
+      nlopt_create(NLOPT_LD_LBFGS, size), &nlopt_destroy);
+  if (!search) return failed("no memory for the search");
+  nlopt_set_min_objective(search.get(), deviance_at, &question);
+  nlopt_set_lower_bounds1(search.get(), -kBound);
+  nlopt_set_upper_bounds1(search.get(), kBound);
+  nlopt_set_ftol_rel(search.get(), kGain);
+  nlopt_set_maxeval(search.get(), kEvaluations);
+  double value = 0;
+  nlopt_optimize(search.get(), at->data(), &value);
+  // How it ended says less than where: rounding stops a search at its very end, too.
+  if (at->cwiseAbs().maxCoeff() > kSeparated) {
+    return failed(
+        "an effect grows without end: the fixed effects separate successes from failures; use a "
+        "prior");
+  }
+  VectorXd gradient;
+  if (!deviance.evaluate(*at, &value, &gradient)) return failed("the optimum overflows");
+  if (gradient.cwiseAbs().maxCoeff() < kFlat) return question.evaluations;
+  return failed("the search does not settle in " + std::to_string(kEvaluations) + " steps");
+}
 
 // Effects of the model without random intercepts, by a few lightly damped Newton steps: only a
 // start.
-VectorXd plain_logistic(const MixedData& data, MatrixXd* inverse_information) {
+VectorXd plain_logistic(const MixedData& data) {
   const Index p = data.fixed.cols();
   VectorXd beta = VectorXd::Zero(p);
   for (int iteration = 0; iteration < 6; ++iteration) {
@@ -122,10 +105,9 @@ VectorXd plain_logistic(const MixedData& data, MatrixXd* inverse_information) {
         data.trials.cwiseProduct(mu).cwiseProduct(VectorXd::Ones(mu.size()) - mu);
     MatrixXd information = data.fixed.transpose() * weights.asDiagonal() * data.fixed;
     information.diagonal().array() += 0.1;
-    *inverse_information = information.inverse();
     const VectorXd score =
         data.fixed.transpose() * (data.successes - data.trials.cwiseProduct(mu)) - 0.1 * beta;
-    beta += *inverse_information * score;
+    beta += information.ldlt().solve(score);
   }
   return beta;
 }
@@ -161,24 +143,18 @@ Result<MixedFit> fit_mixed_logistic(const MixedData& data, const MixedOptions& o
   LaplaceDeviance deviance(data, options.fixed_prior_sd);
   const Index p = deviance.fixed_count();
   const Index factors = deviance.factor_count();
-  MatrixXd information_inverse;
-  VectorXd start(p + factors);
-  start.head(p) = plain_logistic(data, &information_inverse);
-  start.tail(factors).setConstant(0.7);
-  MatrixXd inverse_hessian = MatrixXd::Identity(p + factors, p + factors) * 0.05;
-  inverse_hessian.topLeftCorner(p, p) = information_inverse / 2;
-
-  Search search(deviance, start, inverse_hessian);
-  PROBE_ASSIGN(const int iterations, search.run());
+  VectorXd at(p + factors);
+  at.head(p) = plain_logistic(data);
+  at.tail(factors).setConstant(0.7);
   MixedFit fit;
-  fit.iterations = iterations;
-  PROBE_ASSIGN(const MatrixXd full, covariance(deviance, search.at()));
+  PROBE_ASSIGN(fit.evaluations, minimise(deviance, &at));
+  PROBE_ASSIGN(const MatrixXd full, covariance(deviance, at));
   fit.covariance = full.topLeftCorner(p, p);
   double value = 0;
   VectorXd gradient;
-  if (!deviance.evaluate(search.at(), &value, &gradient)) return failed("the optimum overflows");
-  fit.fixed = search.at().head(p);
-  fit.random_sd = search.at().tail(factors).cwiseAbs();
+  if (!deviance.evaluate(at, &value, &gradient)) return failed("the optimum overflows");
+  fit.fixed = at.head(p);
+  fit.random_sd = at.tail(factors).cwiseAbs();
   fit.modes = deviance.modes();
   fit.log_likelihood = deviance.log_likelihood();
   return fit;

@@ -32,13 +32,13 @@ struct MixedFit {
   Eigen::VectorXd random_sd;           // one per factor, log-odds; 0 where the data show none
   std::vector<Eigen::VectorXd> modes;  // the random intercepts, a vector a factor
   double log_likelihood = 0;           // Laplace, without the binomial coefficients
-  int iterations = 0;
+  int evaluations = 0;                 // of the deviance
 };
 
 // Maximum likelihood with the Laplace approximation, as lme4's glmer (Bates et al. 2015, J.
 // Statist. Software 67:1): penalised iteratively reweighted least squares for the modes of the
-// random effects by sparse Cholesky factors (CHOLMOD) inside a quasi-Newton search over effects and
-// standard deviations, with exact gradients. Fails (kStats) on sizes that do not agree,
+// random effects by sparse Cholesky factors (CHOLMOD) inside NLopt's quasi-Newton search over
+// effects and standard deviations, with exact gradients. Fails (kStats) on sizes that do not agree,
 // columns that depend on each other, outcomes that fixed effects separate without a prior, or a
 // search that does not settle.
 Result<MixedFit> fit_mixed_logistic(const MixedData& data, const MixedOptions& options = {});

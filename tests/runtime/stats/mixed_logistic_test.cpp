@@ -90,7 +90,12 @@ void check_fit(const MixedData& data, const std::vector<double>& fixed,
                     std::lgamma(data.trials(i) - data.successes(i) + 1);
   }
   CHECK(std::abs(fit->log_likelihood + coefficients - log_likelihood) < 1e-3);
-  MESSAGE("iterations: " << fit->iterations);
+  MESSAGE("evaluations: " << fit->evaluations);
+  const auto again = fit_mixed_logistic(data);
+  REQUIRE(again.ok());
+  CHECK(again->fixed == fit->fixed);
+  CHECK(again->covariance == fit->covariance);
+  CHECK(again->random_sd == fit->random_sd);
 }
 
 MixedData benchmark() {
