@@ -1,5 +1,7 @@
 #include "runtime/render/scene_store.h"
 
+#include <utility>
+
 #include "runtime/render/mesh_geometry.h"
 #include "runtime/render/static_picture.h"
 #include "runtime/render/static_scene.h"
@@ -30,12 +32,15 @@ Result<std::vector<std::shared_ptr<const MeshGeometry>>> SceneStore::geometries(
 Result<std::shared_ptr<const StaticScene>> SceneStore::static_scene(
     const std::vector<Visual>& statics) {
   PROBE_ASSIGN(auto meshes, geometries(statics));
+  const Sha256 key = StaticScene::key_of(statics);
   const std::scoped_lock lock(mutex_);
-  std::shared_ptr<const StaticScene>& known = scenes_[StaticScene::key_of(statics)];
-  if (!known) {
-    PROBE_ASSIGN(known, StaticScene::make(statics, std::move(meshes)));
+  if (const auto known = scenes_.find(key); known != scenes_.end()) return known->second;
+  PROBE_ASSIGN(auto made, StaticScene::make(statics, std::move(meshes)));
+  if (scenes_.size() >= kKeptScenes) {
+    std::erase_if(scenes_, [](const auto& entry) { return entry.second.use_count() == 1; });
   }
-  return known;
+  scenes_[key] = made;
+  return made;
 }
 
 Result<std::shared_ptr<const StaticPicture>> SceneStore::static_picture(const SceneSpec& spec) {
@@ -45,12 +50,29 @@ Result<std::shared_ptr<const StaticPicture>> SceneStore::static_picture(const Sc
   std::erase_if(pictures_, [](const auto& entry) { return entry.second.expired(); });
   // A live picture holds its photo, so that no other can have its address.
   if (const auto found = pictures_.find(key); found != pictures_.end()) {
-    if (auto known = found->second.lock()) return known;
+    if (auto known = found->second.lock()) {
+      keep(known);
+      return known;
+    }
   }
   auto made = std::make_shared<StaticPicture>();
   PROBE_TRY(made->trace(spec, spec.camera, std::move(scene)));
   pictures_[key] = made;
+  keep(made);
   return std::shared_ptr<const StaticPicture>(std::move(made));
+}
+
+// With the lock held.
+void SceneStore::keep(std::shared_ptr<const StaticPicture> picture) {
+  latest_.remove(picture);
+  latest_.push_front(std::move(picture));
+  std::size_t rays = 0;
+  std::erase_if(latest_, [&](const auto& kept) {
+    const std::size_t more = kept->rays.dx.size();
+    if (rays + more > kKeptRays) return true;
+    rays += more;
+    return false;
+  });
 }
 
 }  // namespace probe::render

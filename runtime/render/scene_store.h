@@ -3,6 +3,8 @@
 // assets of a process), so that no change of task or world builds anything twice.
 #pragma once
 
+#include <cstddef>
+#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -23,6 +25,12 @@ struct StaticPicture;
 // store, so it must not be changed after it was given.
 class SceneStore {
  public:
+  // Six pictures of 640 x 480 with one sample a pixel; a ray takes 30 bytes.
+  static constexpr std::size_t kKeptRays = std::size_t{1} << 21;
+
+  // From here on, those that nobody holds go before another is made.
+  static constexpr std::size_t kKeptScenes = 64;
+
   SceneStore();
   ~SceneStore();
 
@@ -31,15 +39,19 @@ class SceneStore {
   Result<std::vector<std::shared_ptr<const MeshGeometry>>> geometries(
       std::span<const Visual> visuals);
   Result<std::shared_ptr<const StaticScene>> static_scene(const std::vector<Visual>& statics);
-  // What `spec`'s camera sees of its statics. Kept only while somebody holds it: a sweep over
-  // cameras would fill the memory, 9 MB at 640 x 480 each.
+  // What `spec`'s camera sees of its statics. Beyond those that somebody holds the latest are kept,
+  // up to kKeptRays in all, so that tasks that take turns trace nothing twice and a sweep over
+  // cameras does not fill the memory.
   Result<std::shared_ptr<const StaticPicture>> static_picture(const SceneSpec& spec);
 
  private:
   std::mutex mutex_;
   std::map<const scene::Mesh*, std::shared_ptr<const MeshGeometry>> geometries_;
+  void keep(std::shared_ptr<const StaticPicture> picture);
+
   std::map<Sha256, std::shared_ptr<const StaticScene>> scenes_;
   std::map<Sha256, std::weak_ptr<const StaticPicture>> pictures_;
+  std::list<std::shared_ptr<const StaticPicture>> latest_;  // the last one asked for in front
 };
 
 }  // namespace probe::render
