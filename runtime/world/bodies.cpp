@@ -1,3 +1,6 @@
+// Free flight of a body over a substep. The turn is taken at the middle of the substep: the spin
+// there is the present one and half a substep of Euler's equations in body axes; afterwards the
+// spin is what the angular momentum, which nothing changed, gives in the new axes.
 #include "runtime/world/bodies.h"
 
 #include <algorithm>
@@ -26,16 +29,16 @@ void predict(Body* body, const Ambient& ambient, double dt) {
 void integrate(Body* body, const Ambient& ambient, double dt) {
   body->position += dt * body->velocity;
   const Mat3 axes = body->axes;
-  Vec3 middle = body->spin;
-  Vec3 momentum = Vec3::Zero();
+  Vec3 middle = body->spin;      // rad/s, world, at half the substep
+  Vec3 momentum = Vec3::Zero();  // N m s, world
   if (!ambient.tilt_locked) {
-    const Vec3 w = axes.transpose() * body->spin;
-    const Vec3 iw = body->inertia * w;
+    const Vec3 w = axes.transpose() * body->spin;  // rad/s, body axes
+    const Vec3 iw = body->inertia * w;             // N m s, body axes
     momentum = axes * iw;
     middle -= axes * (body->inertia_inverse * (0.5 * dt * w.cross(iw)));
   }
   const double speed = middle.norm();
-  const double half_angle = 0.5 * dt * speed;
+  const double half_angle = 0.5 * dt * speed;  // rad, as quaternions take it
   Quat turn;
   if (half_angle < 1e-8) {
     turn.w() = 1;

@@ -58,9 +58,10 @@ void guess_saturation(const Drives& drives, const Joints& joints, JointRange ran
   for (size_t k = 0; k < static_cast<size_t>(range.count); ++k) {
     const size_t i = static_cast<size_t>(range.first) + k;
     arm->flung[i] = false;
-    const double e = drives.stiffness[i] * (joints.target[i] - joints.q[i]);
-    const double resistance = drives.damping[i] + dt * drives.stiffness[i];
-    const double inertia = mass[k][k] + drives.armature[i];
+    const double e = drives.stiffness[i] * (joints.target[i] - joints.q[i]);  // N, N m
+    const double resistance = drives.damping[i] + dt * drives.stiffness[i];   // N s/m, N m s
+    const double inertia = mass[k][k] + drives.armature[i];                   // kg, kg m2
+    // After the substep, were the joint alone: m/s, rad/s.
     const double speed = (inertia * joints.u[i] + dt * e) / (inertia + dt * resistance);
     const double torque = e - resistance * speed;
     const bool beyond = std::fabs(torque) > drives.limit[i];
@@ -74,8 +75,8 @@ void guess_saturation(const Drives& drives, const Joints& joints, JointRange ran
 bool respond(const Drives& drives, const Joints& joints, JointRange range, const JointMatrix& mass,
              const JointArray* forces, double dt, ArmResponse* arm) {
   const size_t n = static_cast<size_t>(range.count), first = static_cast<size_t>(range.first);
-  JointMatrix m;
-  JointArray momentum{};
+  JointMatrix m;          // kg, kg m, kg m2: what is inverted
+  JointArray momentum{};  // N s, N m s: the right side
   for (size_t i = 0; i < n; ++i) {
     const size_t at = first + i;
     for (size_t j = 0; j < n; ++j) {
@@ -113,10 +114,12 @@ void hold_still(JointRange range, ArmResponse* arm) {
 
 bool find_overload(const Drives& drives, const Joints& joints, JointRange range,
                    const JointArray& u, double dt, bool release, ArmResponse* arm) {
+  // Rounding beyond the limit is none: a drive just at it would change sides in every solution.
   constexpr double kOver = 1.001;
   bool any = false;
   const size_t first = static_cast<size_t>(range.first);
   for (size_t i = first; i < first + static_cast<size_t>(range.count); ++i) {
+    // Of the implicit drive at the new speed, N, N m.
     const double torque = drives.stiffness[i] * (joints.target[i] - joints.q[i] - dt * u[i]) -
                           drives.damping[i] * u[i];
     if (arm->saturated[i] != 0) {

@@ -12,11 +12,13 @@ namespace {
 using scene::ConvexPart;
 
 constexpr double kEdgeBand = 0.004;  // m from the supporting plane within which edges are tried
-constexpr double kParallelEdges = 1e-3;
-constexpr double kFaceBias = 1e-5, kFaceShare = 0.02;  // B's face must win by this
-constexpr double kEdgeBias = 3e-4, kEdgeShare = 0.05;  // an edge axis must win by this
-constexpr double kAligned = 0.985;                     // cosine of 10 degrees
-constexpr double kShallower = 5e-4;                    // m
+// Margins by which a choice must win, so that rounding never decides: see the README's pitfalls.
+constexpr double kParallelEdges = 1e-3;  // sine of the angle below which two edges give no axis
+constexpr double kFaceBias = 1e-5, kFaceShare = 0.02;  // m, of the gap: B's face must win by this
+constexpr double kEdgeBias = 3e-4,
+                 kEdgeShare = 0.05;  // m, of the gap: an edge axis must win by this
+constexpr double kAligned = 0.985;   // cosine of 10 degrees
+constexpr double kShallower = 5e-4;  // m
 
 struct FaceBest {
   int face = -1;

@@ -7,6 +7,7 @@ namespace probe::world {
 namespace {
 
 // A later candidate must beat an earlier one by this, so that rounding never changes the choice.
+// m where gaps are compared, m2 where areas are.
 constexpr double kBeat = 1e-7;
 constexpr double kDepthScale = 3e-4;  // m of extra gap that halves a point's weight
 

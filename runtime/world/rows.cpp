@@ -14,7 +14,8 @@ using std::size_t;
 // Added to each effective mass (1/kg): a row that nothing can move divides by it and gets no
 // impulse of note.
 constexpr double kRegular = 1e-9;
-constexpr double kRevoluteLever = 0.2;  // m, makes rad/s of a joint comparable to m/s
+// m, makes rad/s of a joint comparable to m/s of a contact: only when the sweeps end depends on it.
+constexpr double kRevoluteLever = 0.2;
 
 struct BodyPair {
   const Body* a;

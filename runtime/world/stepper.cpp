@@ -1,3 +1,6 @@
+// The stages of a substep in their order. In: positions, velocities, targets and what the pairs
+// remember. Out: the same, dt later. Positions follow from the new velocities (symplectic Euler),
+// so every stage before the last reads poses of one moment.
 #include "runtime/world/stepper.h"
 
 #include <algorithm>
@@ -11,6 +14,7 @@ namespace {
 
 using std::size_t;
 
+// Solutions with other drives at their limits; after the last the substep takes what it has.
 constexpr int kMaxResolves = 5;
 
 Failure stiff_failure() {
@@ -21,7 +25,7 @@ Failure stiff_failure() {
 
 void Stepper::note_load() {
   for (size_t i = 0; i < static_cast<size_t>(drives.count); ++i) {
-    const double torque = response.saturated[i] != 0
+    const double torque = response.saturated[i] != 0  // N, N m, at the end of the substep
                               ? drives.limit[i]
                               : drives.stiffness[i] * (joints.target[i] - joints.q[i] -
                                                        parameters.dt * problem.u[i]) -
@@ -102,6 +106,7 @@ void Stepper::integrate_all() {
 }
 
 Status Stepper::advance() {
+  // Where everything is, and who wakes.
   place_awake();
   Sleepers rest = sleepers();
   if (sleeping) wake_touched(parameters, substep, &rest);
@@ -110,11 +115,13 @@ Status Stepper::advance() {
     a.tree->update(joints.q);  // of those that just woke
     guess_saturation(drives, joints, a.range, a.tree->mass(), parameters.dt, &response);
   }
+  // Velocities without contacts.
   if (!respond_all()) return stiff_failure();
   for (Body& body : bodies) {
     if (!body.asleep) predict(&body, ambient, parameters.dt);
   }
 
+  // Contacts as rows, and the impulses that satisfy them.
   problem.bodies = &bodies;
   problem.joints = drives.count;
   problem.lanes = padded_lanes(drives.count);
@@ -133,6 +140,7 @@ Status Stepper::advance() {
     ++resolves;
     if (!respond_all()) return stiff_failure();
   }
+  // What the next substep starts from.
   note_load();
   store_impulses(problem, &table);
   store_joint_impulses();

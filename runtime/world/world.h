@@ -59,15 +59,9 @@ class World {
   double drive_load() const;
   // One target a joint of each driven articulation, in their order.
   void set_targets(std::span<const double> targets);
-  std::size_t target_count() const { return targets_.size(); }
   BodyState body(std::size_t index) const;
-  // World, at the present q: of a link as Party counts them, and of any URDF link, fixed ones too.
-  Pose link_pose(std::size_t link) const;
-  Pose frame_pose(std::string_view link_name, std::size_t articulation = 0) const;
-
   // Puts a body anywhere, at rest.
   void set_body(std::size_t index, const Pose& model_pose);
-  void set_joints(std::span<const double> q);  // all joints, at rest, targets equal
   // While locked, rotation about world x and y is blocked for all free bodies (the drop at reset).
   void lock_tilt(bool locked);
   void stop_bodies();  // zero velocities
@@ -93,7 +87,12 @@ class World {
   // Of q, u, targets and every body's pose and velocities: equal states, equal hashes.
   Sha256 state_hash() const;
 
-  // For tests and benchmarks.
+  // For tests and benchmarks; what a task reads is measured in stage/measure.
+  // World, at the present q: of a link as Party counts them, and of any URDF link, fixed ones too.
+  Pose link_pose(std::size_t link) const;
+  Pose frame_pose(std::string_view link_name, std::size_t articulation = 0) const;
+  void set_joints(std::span<const double> q);  // all joints, at rest, targets equal
+  std::size_t target_count() const { return targets_.size(); }
   const Stepper& stepper() const { return *stepper_; }
 
  private:
