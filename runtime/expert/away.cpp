@@ -52,7 +52,7 @@ std::optional<Vec2> find_spot(const Scene& scene, const Reach& reach) {
   std::stable_sort(spots.begin(), spots.end(),
                    [](const Spot& a, const Spot& b) { return a.cost < b.cost; });
   const double yaw = yaw_of(scene.tcp.rotation);
-  const double low = scene.surface + GripperShape{}.tip_below;
+  const double low = scene.surface + scene.hand.tip_below;
   for (const Spot& spot : spots) {
     const Pose above = top_down({spot.at.x(), spot.at.y(), low + kAbove}, yaw);
     const Pose there = top_down({spot.at.x(), spot.at.y(), low}, yaw);

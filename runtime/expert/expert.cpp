@@ -53,12 +53,12 @@ class Expert final : public policy::Policy {
   explicit Expert(const ExpertOptions& options) : options_(options) {}
 
   Status begin(const policy::EpisodeStart& start) override {
-    if (!reach_ || robot_ != start.robot_urdf || tcp_link_ != start.tcp_link) {
-      PROBE_ASSIGN(Reach reach, Reach::create(std::string(start.robot_urdf), start.tcp_link));
-      reach_ = std::move(reach);
-      robot_ = start.robot_urdf;
-      tcp_link_ = start.tcp_link;
+    reach_.reset();
+    if (start.robot == nullptr) {
+      return Failure{Fault::kPolicy, "the expert was told of no robot", ""};
     }
+    PROBE_ASSIGN(Reach reach, Reach::create(*start.robot));
+    reach_ = std::move(reach);
     horizon_ = start.horizon;
     started_ = false;
     tries_ = 0;
@@ -73,7 +73,8 @@ class Expert final : public policy::Policy {
 
   Result<policy::Action> act(const policy::Observation& observation) override {
     PROBE_TRY(check(observation));
-    Scene scene = look(observation, {options_.source, options_.close ? options_.target : -1});
+    Scene scene =
+        look(observation, {options_.source, options_.close ? options_.target : -1}, reach_->hand());
     if (!started_) look_for_spot(observation, scene);
     if (spot_) scene = with_spot(std::move(scene), *spot_);
     if (observation.horizon > 0) horizon_ = observation.horizon;
@@ -89,7 +90,8 @@ class Expert final : public policy::Policy {
     recent_.erase(recent_.begin());
     recent_.push_back(joints_of(scene));
     // A source in the air hinders the arm no more than an empty hand.
-    const bool touched = scene.fingers_on_source[0] || scene.fingers_on_source[1];
+    const bool touched =
+        std::ranges::any_of(scene.fingers_on_source, [](bool touches) { return touches; });
     servo_.observe(arm, !touched || (phase_ == Phase::kTransport && steps_ > 1));
     // Phases that are done take no time; each leads on, so this ends.
     for (int i = 0; i < 12; ++i) {
@@ -155,8 +157,9 @@ class Expert final : public policy::Policy {
 
   static Arm arm_of(const Scene& s) { return {s.tcp, s.joints}; }
 
-  bool both_fingers(const Scene& s) const {
-    return s.fingers_on_source[0] && s.fingers_on_source[1];
+  bool all_fingers(const Scene& s) const {
+    const auto on = [](bool touches) { return touches; };
+    return !s.fingers_on_source.empty() && std::ranges::all_of(s.fingers_on_source, on);
   }
 
   // The source still where it was taken, seen from the tool.
@@ -205,8 +208,7 @@ class Expert final : public policy::Policy {
   }
 
   void advance_raise(const Scene& s) {
-    const GripperShape gripper;
-    const bool clear = s.tcp.position.z() > travel_height(s, gripper.tip_below) - 0.01;
+    const bool clear = s.tcp.position.z() > travel_height(s, s.hand.tip_below) - 0.01;
     const bool open = s.openness > 0.8 || steps_ >= 3;
     const bool still = (s.source_pose.position - last_.source_pose.position).norm() < 0.002;
     if (!(clear && open && still) && steps_ < 8) return;
@@ -264,7 +266,7 @@ class Expert final : public policy::Policy {
   void advance_close(const Scene& s) {
     if (!options_.close) return;  // the one that only reaches stays here
     if (steps_ < 2) return;
-    if (both_fingers(s)) {
+    if (all_fingers(s)) {
       in_hand_ = s.tcp.inverse().apply(s.source_pose.position);
       taken_ = s.tcp;
       taken_bottom_ = s.source.bottom;
@@ -345,7 +347,7 @@ class Expert final : public policy::Policy {
   policy::Action command_raise(const Scene& s) {
     if (s.openness < 0.5 && steps_ < 2) return servo_.hold(kOpenGripper);
     Pose goal = s.tcp;
-    goal.position.z() = std::max(goal.position.z(), travel_height(s, GripperShape{}.tip_below));
+    goal.position.z() = std::max(goal.position.z(), travel_height(s, s.hand.tip_below));
     return servo_.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
   }
 
@@ -369,7 +371,6 @@ class Expert final : public policy::Policy {
 
   ExpertOptions options_;
   std::optional<Reach> reach_;
-  std::string robot_, tcp_link_;
   int horizon_ = 0, steps_left_ = 0;
 
   bool started_ = false;

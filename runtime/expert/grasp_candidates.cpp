@@ -23,8 +23,7 @@ constexpr double kEasySide = 0.006;     // m, wider earns nothing more
 constexpr double kNearest = 0.002;      // m, to another object
 constexpr double kComfortable = 0.02;   // m, farther away earns nothing more
 constexpr std::array kRimHeights{0.0030, 0.0036, 0.006, 0.010, 0.020, 0.030};  // m, of fingertips
-constexpr double kRimDepth = 0.002;   // m, of a wall between the fingers at least
-constexpr double kThinnest = 0.0125;  // m; closed fingertips are 12 mm apart
+constexpr double kRimDepth = 0.002;  // m, of a wall between the fingers at least
 
 double wrapped(double angle) {
   while (angle > kPi) angle -= 2 * kPi;
@@ -64,7 +63,7 @@ std::vector<double> yaws_for(const Footprint& source) {
 // How far the open gripper, lowered to `z`, stays from everything else. Low things meet only the
 // fingers, those higher than the palm's underside also the palm.
 double clearance_of(const GraspProblem& problem, const Directions& d, const Vec3& at) {
-  const GripperShape& g = problem.gripper;
+  const robot::HandShape& g = problem.gripper;
   const Vec2 center = at.head<2>();
   const Outline left =
       box(center, d, g.opening_half, g.outside_half, -g.finger_half, g.finger_half);
@@ -111,7 +110,7 @@ std::vector<Extent> covered(std::span<const Outline> outlines, const Slab& slab,
 // as low as what is below it allows.
 void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
   const Footprint& source = *problem.source;
-  const GripperShape& g = problem.gripper;
+  const robot::HandShape& g = problem.gripper;
   for (const double height : kRimHeights) {
     const double tips = problem.surface + height;
     if (tips > source.top - kRimDepth) return;
@@ -122,7 +121,8 @@ void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
       const Directions d = directions_of(half_turn);
       const Slab slab{d.across, d.across.dot(source.center), g.finger_half};
       for (const Extent& wall : covered(walls, slab, d.close)) {
-        if (wall.width() < kThinnest || wall.width() > 2 * (g.opening_half - kSideMargin)) continue;
+        if (wall.width() < g.thinnest || wall.width() > 2 * (g.opening_half - kSideMargin))
+          continue;
         const Vec2 xy = 0.5 * (wall.lower + wall.upper) * d.close + slab.at * d.across;
         const Outline left =
             box(xy, d, g.opening_half, g.outside_half, -g.finger_half, g.finger_half);
@@ -165,13 +165,13 @@ double yaw_of(const Quat& rotation) {
   return portable_atan2(z.y() - y.x(), z.x() + y.y());
 }
 
-double side_room(const GripperShape& gripper, double width) {
+double side_room(const robot::HandShape& gripper, double width) {
   return gripper.opening_half - 0.5 * width;
 }
 
 std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
   const Footprint& source = *problem.source;
-  const GripperShape& g = problem.gripper;
+  const robot::HandShape& g = problem.gripper;
   // As low as the surface allows, unless the palm would meet the top of the object. Flat objects
   // need the tips lower.
   const double margin =

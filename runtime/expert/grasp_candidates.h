@@ -8,20 +8,9 @@
 
 #include "runtime/base/geometry.h"
 #include "runtime/expert/footprint.h"
+#include "runtime/robot/robot.h"
 
 namespace probe::expert {
-
-// Metres, in the frame of the tool centre point: x points down in a top-down grasp, the fingers
-// close along y.
-struct GripperShape {
-  double tip_below = 0.0156;     // fingertips past the tool centre point
-  double palm_above = 0.022;     // underside of what holds the fingers
-  double finger_half = 0.0145;   // half the width of a finger, along z
-  double opening_half = 0.026;   // inner faces from the middle, fingers open, mid-height
-  double outside_half = 0.0425;  // outer faces
-  double palm_half = 0.0525;     // along y
-  double palm_back = 0.0145, palm_front = 0.036;  // along -z and +z
-};
 
 struct Grasp {
   Pose tcp;               // base frame, fingers around the object
@@ -40,7 +29,7 @@ struct GraspProblem {
   double surface = 0;         // height the fingertips must stay above
   double tip_margin = 0.004;  // m above it, less for flat objects
   double yaw_now = 0;         // of the tool, to prefer short turns
-  GripperShape gripper;
+  robot::HandShape gripper;
 };
 
 // The tool pose at a position with x down, turned by `yaw` about the vertical from
@@ -51,7 +40,7 @@ Pose top_down(const Vec3& position, double yaw);
 double yaw_of(const Quat& rotation);
 
 // Between each open finger and an object of this width, m.
-double side_room(const GripperShape& gripper, double width);
+double side_room(const robot::HandShape& gripper, double width);
 
 // Sorted by cost; empty if nothing fits between the fingers. Several yaws (both ways round) and
 // positions.

@@ -157,7 +157,9 @@ Ball ball(double x, double y, double z, double radius) { return {{x, y, z}, radi
 
 }  // namespace
 
-std::vector<Ball> gripper_balls(const GripperShape& g, double parted) {
+constexpr int kFingerBalls = 8;  // the first of gripper_balls: two fingers, two edges, two heights
+
+std::vector<Ball> gripper_balls(const robot::HandShape& g, double parted) {
   std::vector<Ball> out;
   const double thick = 0.5 * (g.outside_half - g.opening_half) - 0.001;
   const double middle = parted + thick + 0.001;
@@ -238,7 +240,7 @@ std::optional<PlannedPath> plan_approach(const Scene& scene, const Reach& reach,
                                          const Recent& recent) {
   const auto guides = reach.follow(span_of(recent.back()), std::array{pick.above, pick.grasp.tcp});
   if (!guides) return std::nullopt;
-  const GripperShape gripper;
+  const robot::HandShape& gripper = scene.hand;
   Move move;
   move.reach = &reach;
   move.recent = &recent;
@@ -249,7 +251,7 @@ std::optional<PlannedPath> plan_approach(const Scene& scene, const Reach& reach,
   if (scene.source.whole.size() >= 3 && !pick.grasp.rim) {
     move.narrow.floor = scene.surface - 1;
     move.narrow.prisms = {make_prism(scene.source.whole, scene.surface - 1, scene.source.top)};
-    move.fingers = std::vector<Ball>(move.balls.begin(), move.balls.begin() + 8);
+    move.fingers = std::vector<Ball>(move.balls.begin(), move.balls.begin() + kFingerBalls);
     move.narrow_margin = std::clamp(0.7 * side_room(gripper, pick.grasp.width), 0.0, 0.005);
   }
   return shaped(move);
@@ -257,7 +259,7 @@ std::optional<PlannedPath> plan_approach(const Scene& scene, const Reach& reach,
 
 std::optional<PlannedPath> plan_transport(const Scene& scene, const Reach& reach, const Pose& place,
                                           const Recent& recent, double pace) {
-  const GripperShape gripper;
+  const robot::HandShape& gripper = scene.hand;
   const Pose tool = reach.chain().pose(span_of(recent.back()));
   const double hang = std::max(gripper.tip_below, tool.position.z() - scene.source.bottom);
   Pose lifted = tool, over = place;

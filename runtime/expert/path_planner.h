@@ -20,7 +20,7 @@ struct PlannedPath {
 
 // The open gripper as balls in the tool's frame; `parted` m is how far the fingers' inner faces are
 // from the middle.
-std::vector<Ball> gripper_balls(const GripperShape& gripper, double parted);
+std::vector<Ball> gripper_balls(const robot::HandShape& gripper, double parted);
 
 // Extreme points of the source, in the frame of a tool that holds it.
 std::vector<Ball> held_balls(const Scene& scene, const Pose& tool);

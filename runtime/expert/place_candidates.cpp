@@ -53,7 +53,7 @@ double share_outside(std::span<const Vec2> points, const Scene& scene,
 }  // namespace
 
 std::vector<Place> place_candidates(const Scene& scene, const Pose& tool) {
-  const GripperShape gripper;
+  const robot::HandShape& gripper = scene.hand;
   std::vector<Ball> balls = gripper_balls(gripper, gripper.opening_half);
   const std::vector<Ball> held = held_balls(scene, tool);
   balls.insert(balls.end(), held.begin(), held.end());
@@ -89,7 +89,7 @@ std::optional<Place> plan_place(const Scene& scene, const Reach& reach,
                                 std::span<const double> joints) {
   const Pose tool = reach.chain().pose(joints.first(reach.chain().joint_count()));
   const std::vector<Place> places = place_candidates(scene, tool);
-  const double hang = std::max(GripperShape{}.tip_below, tool.position.z() - scene.source.bottom);
+  const double hang = std::max(scene.hand.tip_below, tool.position.z() - scene.source.bottom);
   Pose lifted = tool;
   lifted.position.z() = std::max(tool.position.z() + 0.03, travel_height(scene, hang));
   for (std::size_t i = 0; i < std::min(places.size(), kMostPlaces); ++i) {

@@ -9,15 +9,22 @@
 #include "runtime/expert/servo.h"
 #include "runtime/robot/ik.h"
 #include "runtime/robot/rotation.h"
-#include "runtime/robot/urdf.h"
 
 namespace probe::expert {
 
-Result<Reach> Reach::create(const std::string& urdf_path, std::string_view tcp_link) {
-  PROBE_ASSIGN(const robot::RobotModel model, robot::load_urdf(urdf_path));
-  const int tcp = model.find_link(tcp_link);
-  if (tcp < 0)
-    return Failure{Fault::kUrdf, fmt::format("no link is named `{}`", tcp_link), urdf_path};
+Result<Reach> Reach::create(const robot::Robot& robot) {
+  if (!robot.hand) {
+    return Failure{Fault::kPolicy,
+                   fmt::format("the expert grasps with two fingers that close on each other; the "
+                               "robot `{}` has {}",
+                               robot.name, robot.fingers.empty() ? "no fingers" : "others"),
+                   ""};
+  }
+  const robot::RobotModel& model = *robot.model;
+  const int tcp = model.find_link(robot.tcp_link);
+  if (tcp < 0) {
+    return Failure{Fault::kUrdf, fmt::format("no link is named `{}`", robot.tcp_link), model.path};
+  }
   std::vector<std::string> joints;
   for (int l = tcp; model.links[std::size_t(l)].parent_joint >= 0;) {
     const robot::Joint& joint = model.joints[std::size_t(model.links[std::size_t(l)].parent_joint)];
@@ -25,11 +32,13 @@ Result<Reach> Reach::create(const std::string& urdf_path, std::string_view tcp_l
     l = joint.parent_link;
   }
   std::reverse(joints.begin(), joints.end());
-  PROBE_ASSIGN(robot::Chain chain, robot::Chain::create(model, tcp_link, joints));
+  PROBE_ASSIGN(robot::Chain chain,
+               robot::Chain::create(model, robot.tcp_link, joints, robot.hand->approach));
   if (chain.joint_count() == 0) {
-    return Failure{Fault::kUrdf, fmt::format("no joint moves the link `{}`", tcp_link), urdf_path};
+    return Failure{Fault::kUrdf, fmt::format("no joint moves the link `{}`", robot.tcp_link),
+                   model.path};
   }
-  return Reach(std::move(chain));
+  return Reach(std::move(chain), *robot.hand);
 }
 
 std::optional<std::vector<JointVector>> Reach::follow(std::span<const double> q,
@@ -40,7 +49,7 @@ std::optional<std::vector<JointVector>> Reach::follow(std::span<const double> q,
   const std::span<double> now = std::span(joints).first(chain_.joint_count());
   std::copy_n(q.begin(), now.size(), now.begin());
   Pose at = chain_.pose(now);
-  constexpr int kMostSolves = 200;
+  constexpr int kMostSolves = 200;  // 10 m of way, or 60 rad
   for (const Pose& goal : way) {
     for (int i = 0; i < kMostSolves; ++i) {
       at = stepped(at, goal, 0.05, 0.3);

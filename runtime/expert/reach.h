@@ -3,24 +3,25 @@
 
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "runtime/base/geometry.h"
 #include "runtime/base/result.h"
 #include "runtime/expert/path.h"
 #include "runtime/robot/kinematics.h"
+#include "runtime/robot/robot.h"
 
 namespace probe::expert {
 
 class Reach {
  public:
-  // Reads the robot; the arm's joints are all that move between the root and the link, in that
-  // order.
-  static Result<Reach> create(const std::string& urdf_path, std::string_view tcp_link);
+  // The arm's joints are all that move between the root and the tool centre point's link, in that
+  // order; the chain ends in the hand's grasp frame. Copies what it needs. Fails (code "policy") on
+  // a robot without a hand that could grasp, and with the failures of Chain.
+  static Result<Reach> create(const robot::Robot& robot);
 
   const robot::Chain& chain() const { return chain_; }
+  const robot::Hand& hand() const { return hand_; }
 
   // Follows straight lines from the tool's pose at `q` through the poses, a solution every 5 cm or
   // 0.3 rad, each from the one before. The joint positions at each pose; nothing as soon as one
@@ -29,8 +30,9 @@ class Reach {
                                                  std::span<const Pose> way) const;
 
  private:
-  explicit Reach(robot::Chain chain) : chain_(std::move(chain)) {}
+  Reach(robot::Chain chain, const robot::Hand& hand) : chain_(std::move(chain)), hand_(hand) {}
   robot::Chain chain_;
+  robot::Hand hand_;
 };
 
 }  // namespace probe::expert

@@ -39,7 +39,7 @@ double room_on_way(const Scene& scene, const Vec2& way) {
 }
 
 std::vector<Candidate> candidates(const Scene& scene) {
-  const GripperShape gripper;
+  const robot::HandShape& gripper = scene.hand;
   std::vector<Grasp> walls = grasps_of(scene);
   std::erase_if(walls, [](const Grasp& grasp) { return !grasp.rim; });
   walls.resize(std::min(walls.size(), kMostWalls));

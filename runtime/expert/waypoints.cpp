@@ -57,6 +57,7 @@ GraspProblem problem_of(const Scene& scene, bool place) {
     }
   }
   problem.yaw_now = yaw_of(scene.tcp.rotation);
+  problem.gripper = scene.hand;
   return problem;
 }
 
@@ -76,7 +77,7 @@ bool reachable(const Scene& scene, const Reach& reach, const Pick& pick, bool pl
 
 }  // namespace
 
-Scene look(const policy::Observation& observation, const Roles& roles) {
+Scene look(const policy::Observation& observation, const Roles& roles, const robot::Hand& hand) {
   PROBE_CHECK(observation.privileged != nullptr, "the expert looks at the privileged view");
   const policy::Privileged& seen = *observation.privileged;
   const Pose to_base = seen.base.inverse();
@@ -95,7 +96,7 @@ Scene look(const policy::Observation& observation, const Roles& roles) {
       for (std::vector<Vec3>& part : scene.source_parts) {
         for (Vec3& vertex : part) vertex = pose.apply(vertex);
       }
-      std::copy_n(object.finger_contact, 2, scene.fingers_on_source);
+      scene.fingers_on_source = object.finger_contact;
     } else if (int(i) == roles.target) {
       scene.target = std::move(footprint);
       scene.target_pose = pose;
@@ -106,7 +107,9 @@ Scene look(const policy::Observation& observation, const Roles& roles) {
   for (const std::vector<Vec3>& part : seen.fixtures) {
     scene.fixtures.push_back(footprint_of(std::span(&part, 1), to_base));
   }
+  scene.hand = hand.shape;
   scene.tcp = observation.proprioception.tcp_in_base;
+  scene.tcp.rotation = scene.tcp.rotation * hand.approach;
   scene.joints = observation.proprioception.joints;
   scene.openness = observation.proprioception.openness;
   // The base stands upright, so one point of the surface tells its height.
@@ -136,14 +139,13 @@ std::vector<Grasp> grasps_of(const Scene& scene) {
 }
 
 Pick pick_of(const Scene& scene, const Grasp& grasp) {
-  const GripperShape gripper;
   Pick pick;
   pick.grasp = grasp;
   pick.source_pose = scene.source_pose;
   const double z = grasp.tcp.position.z();
   // Going there the fingers must also clear the object itself.
-  const double over = std::max({z + kAbove, travel_height(scene, gripper.tip_below),
-                                scene.source.top + gripper.tip_below + 0.01});
+  const double over = std::max({z + kAbove, travel_height(scene, scene.hand.tip_below),
+                                scene.source.top + scene.hand.tip_below + 0.01});
   pick.above = at_height(grasp.tcp, over);
   return pick;
 }

@@ -20,8 +20,9 @@ struct Scene {
   std::vector<Footprint> fixtures;              // a convex part each
   std::vector<std::vector<Vec3>> source_parts;  // vertices, base frame
   Pose source_pose, target_pose;                // model frames
-  bool fingers_on_source[2] = {false, false};
-  Pose tcp;
+  std::vector<bool> fingers_on_source;          // a finger
+  robot::HandShape hand;
+  Pose tcp;  // the grasp frame
   std::vector<double> joints;
   double openness = 1;
   double surface = 0;
@@ -31,7 +32,7 @@ struct Scene {
 struct Roles {
   int source = 0, target = 1;
 };
-Scene look(const policy::Observation& observation, const Roles& roles);
+Scene look(const policy::Observation& observation, const Roles& roles, const robot::Hand& hand);
 
 struct Pick {
   Grasp grasp;

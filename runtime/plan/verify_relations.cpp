@@ -111,10 +111,11 @@ class RelationCheck : FieldCheck {
     const bool has_fixture = scene.fixture_collision != kNone;
     const std::uint64_t objects = 2 + std::uint64_t{k.distractors};
     const std::uint64_t first_link = objects + 1 + (has_fixture ? 1 : 0);
-    if (k.bodies.count > kMaxBodies || k.bodies.count < first_link + 2) {
+    const std::uint64_t least = first_link + t.robots[scene.robot].fingers.size();
+    if (k.bodies.count > kMaxBodies || k.bodies.count < least) {
       return fail(Rule::kBodyCount, &k.bodies,
                   fmt::format("task `{}` has {} bodies; with its {} objects it needs {} to {}",
-                              t.text(k.name), k.bodies.count, objects, first_link + 2, kMaxBodies));
+                              t.text(k.name), k.bodies.count, objects, least, kMaxBodies));
     }
     const auto bodies = slice_of(t.bodies, k.bodies);
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {

@@ -3,7 +3,6 @@
 // privileged view; a wire client never does.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -14,13 +13,15 @@
 
 #include "runtime/base/geometry.h"
 #include "runtime/base/result.h"
+#include "runtime/robot/action.h"
+
+namespace probe::robot {
+struct Robot;
+}
 
 namespace probe::policy {
 
-// [dx dy dz, rotation vector (3), gripper]: end-effector delta in the robot base frame, m and rad;
-// gripper -1 closed
-// .. +1 open, absolute.
-using Action = std::array<double, 7>;
+using robot::Action;
 
 struct Image {
   int width = 0, height = 0;
@@ -39,8 +40,8 @@ struct PrivilegedObject {
   std::vector<std::vector<Vec3>> parts;  // convex parts' vertices, model frame
   std::optional<Vec3> center_of_mass;    // model frame
   Vec3 box_min = Vec3::Zero(), box_max = Vec3::Zero();
-  Pose pose;                                // model frame in world, now
-  bool finger_contact[2] = {false, false};  // over the last substep
+  Pose pose;                         // model frame in world, now
+  std::vector<bool> finger_contact;  // a finger of the robot, over the last substep
 };
 
 // What success asks for.
@@ -82,8 +83,7 @@ struct EpisodeStart {
   std::uint64_t draw_seed =
       0;  // first 8 bytes of H(seed, episode): feed everything that draws from this
   int horizon = 0;
-  std::string_view robot_urdf;  // path of the robot's URDF file
-  std::string_view tcp_link;
+  const robot::Robot* robot = nullptr;  // lives as long as the episode
 };
 
 // How an episode ended, for policies that tell their server.

@@ -23,9 +23,11 @@ class RandomPolicy final : public Policy {
   }
   Result<Action> act(const Observation&) override {
     Action action{};
-    for (std::size_t i = 0; i < 3; ++i) action[i] = 0.02 * (2 * draws_.uniform() - 1);
-    for (std::size_t i = 3; i < 6; ++i) action[i] = 0.1 * (2 * draws_.uniform() - 1);
-    action[6] = draws_.uniform() < 0.5 ? -1 : 1;
+    for (std::size_t i = 0; i < robot::kActionGripper; ++i) {
+      const double most = i < robot::kActionTurn ? 0.02 : 0.1;  // m, rad
+      action[i] = most * (2 * draws_.uniform() - 1);
+    }
+    action[robot::kActionGripper] = draws_.uniform() < 0.5 ? -1 : 1;
     return action;
   }
 
@@ -90,7 +92,9 @@ class NoisyPolicy final : public Policy {
   }
   Result<Action> act(const Observation& observation) override {
     PROBE_ASSIGN(Action action, inner_->act(observation));
-    for (std::size_t i = 0; i < 6; ++i) action[i] += (i < 3 ? sigma_ : 2 * sigma_) * normal();
+    for (std::size_t i = 0; i < robot::kActionGripper; ++i) {
+      action[i] += (i < robot::kActionTurn ? sigma_ : 2 * sigma_) * normal();  // m, rad
+    }
     return action;
   }
 

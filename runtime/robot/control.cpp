@@ -3,6 +3,7 @@
 #include "runtime/robot/control.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -93,20 +94,20 @@ double EeDeltaPoseController::openness(std::span<const double> q) const {
   return std::clamp((mean - finger_lower_) / (finger_upper_ - finger_lower_), 0.0, 1.0);
 }
 
-Result<std::span<const double>> EeDeltaPoseController::targets(const std::array<double, 7>& action,
+Result<std::span<const double>> EeDeltaPoseController::targets(const Action& action,
                                                                std::span<const double> measured_q) {
   PROBE_CHECK(measured_q.size() == joint_targets_.size(), "one measured position a drive");
   for (std::size_t i = 0; i < action.size(); ++i) {
     if (std::isfinite(action[i]) && std::abs(action[i]) <= kAbsurd) continue;
     return Failure{Fault::kPolicy,
                    fmt::format("action[{}] is {}, wanted {}", i, action[i],
-                               i < 3   ? "a shift in metres"
-                               : i < 6 ? "a rotation vector in radians"
-                                       : "the gripper from -1 to 1"),
+                               i < kActionTurn      ? "a shift in metres"
+                               : i < kActionGripper ? "a rotation vector in radians"
+                                                    : "the gripper from -1 to 1"),
                    ""};
   }
-  const Vec3 shift(action[0], action[1], action[2]);
-  const Vec3 turn(action[3], action[4], action[5]);
+  const Vec3 shift = Eigen::Map<const Vec3>(action.data() + kActionShift);
+  const Vec3 turn = Eigen::Map<const Vec3>(action.data() + kActionTurn);
   target_ = moved_target(target_, tcp_pose(measured_q).position, shift, turn);
 
   const std::size_t arm = chain_.joint_count();
@@ -115,7 +116,7 @@ Result<std::span<const double>> EeDeltaPoseController::targets(const std::array<
   reached_ = solve_ik(chain_, target_, std::span(q).first(arm)).converged;
   if (reached_) std::copy_n(q.begin(), arm, joint_targets_.begin());
 
-  const double open = 0.5 * (std::clamp(action[6], -1.0, 1.0) + 1.0);
+  const double open = 0.5 * (std::clamp(action[kActionGripper], -1.0, 1.0) + 1.0);
   const double grip = grip_closed_ + open * (grip_open_ - grip_closed_);
   std::fill(joint_targets_.begin() + std::ptrdiff_t(arm), joint_targets_.end(), grip);
   return std::span<const double>(joint_targets_);

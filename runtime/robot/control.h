@@ -3,13 +3,13 @@
 // into joint targets. Knows no world and no time.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "runtime/base/geometry.h"
 #include "runtime/base/result.h"
+#include "runtime/robot/action.h"
 #include "runtime/robot/ik.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/robot/urdf.h"
@@ -41,12 +41,11 @@ class EeDeltaPoseController {
   // the tcp is.
   void reset(std::span<const double> q);
 
-  // The joint targets for an action [dx dy dz, rotation vector (3), gripper], given the measured
-  // joint positions. The span lives until the next call. The target pose moves even if no joint
-  // positions reach it; the arm's targets then stay. Fails (kPolicy) on a number that is not
-  // finite or is beyond 1000 in size; nothing has changed then.
-  Result<std::span<const double>> targets(const std::array<double, 7>& action,
-                                          std::span<const double> measured_q);
+  // The joint targets for an action, given the measured joint positions. The span lives until the
+  // next call. The target pose moves even if no joint positions reach it; the arm's targets then
+  // stay. Fails (kPolicy) on a number that is not finite or is beyond 1000 in size; nothing has
+  // changed then.
+  Result<std::span<const double>> targets(const Action& action, std::span<const double> measured_q);
 
   ControlState save() const { return {target_, joint_targets_, reached_}; }
   // Goes on from there. Fails (kPolicy) on the state of a robot with other joints.

@@ -120,7 +120,7 @@ void Tree::jacobian(std::span<const Pose> poses, int link, Eigen::Ref<Eigen::Mat
 }
 
 Result<Chain> Chain::create(const RobotModel& model, std::string_view link,
-                            std::span<const std::string> joints) {
+                            std::span<const std::string> joints, const Quat& tip) {
   PROBE_TRY(check_names(model, joints));
   const int end = model.find_link(link);
   if (end < 0) return Failure{Fault::kUrdf, fmt::format("no link is named `{}`", link), model.path};
@@ -172,7 +172,7 @@ Result<Chain> Chain::create(const RobotModel& model, std::string_view link,
                                chain.segments_.size(), link, kMaxChainSegments),
                    model.path};
   }
-  chain.last_turn_ = fixed.rotation.toRotationMatrix();
+  chain.last_turn_ = (fixed.rotation * tip).toRotationMatrix();
   chain.last_shift_ = fixed.position;
   const auto stray = std::find(used.begin(), used.end(), false);
   if (stray != used.end()) {

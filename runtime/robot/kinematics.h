@@ -58,9 +58,10 @@ class Chain {
  public:
   // Fails (kUrdf) if the link is not there, a joint on the way moves and is not named (a
   // mimic of a named one is fine), a name is not on the way, or there are more than
-  // kMaxChainJoints.
+  // kMaxChainJoints. The chain ends in a frame turned by `tip` against the link's.
   static Result<Chain> create(const RobotModel& model, std::string_view link,
-                              std::span<const std::string> joints);
+                              std::span<const std::string> joints,
+                              const Quat& tip = Quat::Identity());
 
   std::size_t joint_count() const { return lower_.size(); }
   std::span<const double> lower() const { return lower_; }  // -1e9 for continuous joints

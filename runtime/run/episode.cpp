@@ -5,6 +5,8 @@
 #include <cmath>
 #include <exception>
 
+#include "runtime/stage/robot_of.h"
+
 namespace probe::run {
 namespace {
 

@@ -1,20 +1,20 @@
 // The physics of one episode, in the plan's terms: drop and settle, control steps, and what the
-// judge, the policy and the trace want to know after each. Task-local bodies are mapped to the
-// world's parties here and nowhere else.
+// judge, the policy and the trace want to know after each.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/policy/policy.h"
 #include "runtime/robot/control.h"
-#include "runtime/robot/kinematics.h"
+#include "runtime/robot/robot.h"
 #include "runtime/stage/assets.h"
+#include "runtime/stage/measure.h"
+#include "runtime/stage/task_bodies.h"
 #include "runtime/vm/sample.h"
 #include "runtime/world/world.h"
 
@@ -54,52 +54,36 @@ class EpisodeWorld {
   policy::Proprioception proprioception() const;
   std::span<const double> q() const { return world_->joints(); }
   std::span<const double> u() const { return world_->joint_speeds(); }
-  std::span<const Pose> objects() const {
-    return objects_;
-  }  // model poses: source, target, distractors
+  // Model poses: source, target, distractors.
+  std::span<const Pose> objects() const { return objects_; }
   Sha256 state_hash() const { return world_->state_hash(); }
 
-  const std::vector<std::string>& joint_names() const { return joints_; }
-  const std::string& urdf_path() const { return parts_->model.path; }
-  const std::string& tcp_link() const { return tcp_link_; }
+  const robot::Robot& robot() const { return robot_; }
 
  private:
-  EpisodeWorld(const plan::Plan& plan, std::shared_ptr<const SharedAssets> assets, robot::Tree tree,
-               robot::EeDeltaPoseController controller)
-      : plan_(plan),
-        assets_(std::move(assets)),
-        tree_(std::move(tree)),
-        controller_(std::move(controller)) {}
+  EpisodeWorld(const plan::Plan& plan, const plan::TaskRecord& task,
+               std::shared_ptr<const SharedAssets> assets, robot::Robot robot,
+               robot::EeDeltaPoseController controller, TaskBodies bodies, robot::Tree tree);
 
-  Status read_bodies();
   world::WorldSpec spec_at(std::span<const Pose> poses, bool with_links) const;
   Result<std::vector<Pose>> settle(std::span<const Pose> placed);
-  void take_starts();
+  std::span<const double> robot_q() const { return q().first(controller_.joint_count()); }
   void measure();
-  std::uint16_t local_index(const world::Party& party) const;
 
   const plan::Plan& plan_;
+  const plan::TaskRecord& task_;
+  const plan::SceneRecord& scene_;
+  const plan::RobotRecord& record_;
   std::shared_ptr<const SharedAssets> assets_;
-  const plan::TaskRecord* task_ = nullptr;
-  const plan::SceneRecord* scene_ = nullptr;
-  const plan::RobotRecord* robot_ = nullptr;
-  const RobotParts* parts_ = nullptr;
-  robot::Tree tree_;
+  robot::Robot robot_;
   robot::EeDeltaPoseController controller_;
-  std::vector<std::string> joints_;
-  std::string tcp_link_;
-  int tcp_ = 0;       // link index
+  TaskBodies bodies_;
+  Instruments instruments_;
   int substeps_ = 1;  // a control step
-  Pose base_;
-  std::size_t object_count_ = 0;  // bodies 0 .. object_count_ - 1
-  static constexpr std::uint16_t kNoFixture = 0xffff;
-  std::uint16_t surface_ = 0, first_link_ = 0, fixture_ = kNoFixture;  // task-local
-  std::vector<int> links_;  // URDF link of each link body
 
   std::unique_ptr<world::World> world_;
   int steps_ = 0;
-  std::vector<Pose> objects_, link_poses_;
-  Eigen::MatrixXd jacobian_;
+  std::vector<Pose> objects_;
   std::vector<vm::BodyStart> starts_;
   vm::StepSample sample_;
   policy::Privileged privileged_;

@@ -9,6 +9,7 @@
 
 #include "runtime/base/check.h"
 #include "runtime/stage/backdrop.h"
+#include "runtime/stage/robot_of.h"
 
 namespace probe::stage {
 namespace {
@@ -117,18 +118,6 @@ Result<double> lift_backdrop(const plan::Plan& plan, const plan::TaskRecord& tas
 }
 
 }  // namespace
-
-std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot) {
-  std::vector<std::string> names;
-  for (const plan::DriveRecord& drive : plan.drives(robot))
-    names.emplace_back(plan.text(drive.joint));
-  return names;
-}
-
-Pose base_pose(const plan::SceneRecord& scene) {
-  const auto& q = scene.base_rotation;
-  return {to_vec(scene.base_position), Quat(q[0], q[1], q[2], q[3])};
-}
 
 Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
                                                      std::uint32_t task_index,
@@ -241,9 +230,9 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
 
 // Fills links_ and poses_.
 void SceneView::place(std::span<const double> q, std::span<const Pose> objects) {
-  PROBE_CHECK(objects.size() == objects_ && q.size() == tree_.joint_count(),
+  PROBE_CHECK(objects.size() == objects_ && q.size() >= tree_.joint_count(),
               "one pose an object and one position a driven joint");
-  tree_.link_poses(q, links_);
+  tree_.link_poses(q.first(tree_.joint_count()), links_);
   poses_.assign(objects.begin(), objects.end());
   for (const int link : visual_links_) {
     poses_.push_back(base_ * links_[static_cast<std::size_t>(link)]);

@@ -39,8 +39,8 @@ class SceneView {
   std::size_t camera_count() const { return eyes_.size(); }
   const std::string& camera_name(std::size_t camera) const { return eyes_[camera].name; }
 
-  // `q` in drive order; `objects` are model poses in world, in the order source, target,
-  // distractors. A picture is valid until the same camera's next.
+  // `q` in drive order (those of other things may follow); `objects` are model poses in world, in
+  // the order source, target, distractors. A picture is valid until the same camera's next.
   Result<render::FrameView> render(std::span<const double> q, std::span<const Pose> objects,
                                    std::size_t camera = 0);
   // Every camera's picture, valid until the next call.
@@ -75,9 +75,5 @@ class SceneView {
   std::vector<Eye> eyes_;
   std::vector<CameraFrame> frames_;
 };
-
-// Shared with the physics side: names of the driven joints in order, and the robot's base in world.
-std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot);
-Pose base_pose(const plan::SceneRecord& scene);
 
 }  // namespace probe::stage

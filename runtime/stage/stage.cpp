@@ -64,8 +64,7 @@ policy::EpisodeStart Stage::introduction() const {
   start.prompt = plan_.text(task.prompt);
   start.index = static_cast<int>(start_);
   start.horizon = static_cast<int>(task.horizon);
-  start.robot_urdf = world_->urdf_path();
-  start.tcp_link = world_->tcp_link();
+  start.robot = &world_->robot();
   return start;
 }
 

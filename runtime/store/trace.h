@@ -3,7 +3,6 @@
 // worlds and policies.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
+#include "runtime/robot/action.h"
 #include "runtime/store/results.h"
 #include "runtime/vm/sample.h"
 
@@ -48,7 +48,7 @@ struct TraceStart {
 struct TraceStep {
   // What the policy saw and answered.
   Sha256 prompt_hash, image_hash;
-  std::array<double, 7> action{};
+  robot::Action action{};
   // After the control step.
   std::vector<double> q, u;
   vm::StepSample sample;

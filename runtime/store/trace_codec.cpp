@@ -39,6 +39,13 @@ void put_sample(ByteWriter& to, const vm::StepSample& sample) {
   }
 }
 
+// The sample's joints stand in the trace as q and u; at the start nothing moves.
+std::vector<vm::JointSample> joints_of(std::span<const double> q, std::span<const double> u) {
+  std::vector<vm::JointSample> joints;
+  for (std::size_t i = 0; i < q.size(); ++i) joints.push_back({q[i], i < u.size() ? u[i] : 0});
+  return joints;
+}
+
 vm::StepSample get_sample(ByteReader& from) {
   vm::StepSample sample;
   sample.step = from.f64();
@@ -137,6 +144,7 @@ std::optional<TraceStart> get_start(std::span<const std::byte> bytes) {
     body.opening = from.vec();
   }
   start.sample = get_sample(from);
+  start.sample.joints = joints_of(start.q, {});
   return whole(from, std::move(start));
 }
 
@@ -162,6 +170,7 @@ std::optional<TraceStep> get_step(std::span<const std::byte> bytes) {
   step.u = from.reals();
   step.metrics = from.reals();
   step.sample = get_sample(from);
+  step.sample.joints = joints_of(step.q, step.u);
   return whole(from, std::move(step));
 }
 

@@ -193,6 +193,14 @@ Status Judge::check(const StepSample& sample) const {
     }
     previous = &c;
   }
+  for (std::size_t i = 0; i < sample.joints.size(); ++i) {
+    FiniteCheck joint;
+    joint.see(sample.joints[i].position);
+    joint.see(sample.joints[i].rate);
+    if (joint.ok()) continue;
+    return Failure{Fault::kJudge, "a measurement of joint " + std::to_string(i) + " is not finite",
+                   task_name_};
+  }
   FiniteCheck rest;
   rest.see(sample.tcp);
   rest.see(sample.grip);

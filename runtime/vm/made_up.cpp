@@ -30,6 +30,8 @@ Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>&
 MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const double table = plan.scenes()[record.scene].surface_z;
+  const plan::RobotRecord& robot = plan.robots()[plan.scenes()[record.scene].robot];
+  const std::size_t fingers = robot.fingers.size();  // the first of the links
   const auto bodies = plan.bodies(record);
   const auto episodes = plan.episodes(record);
   MadeUpWorld world;
@@ -49,7 +51,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
       at = {kFar * static_cast<double>(i), 0, table + world.starts[i].half.z()};
     } else if (kind == plan::BodyKind::kLink) {
       world.starts[i].opening = {0, 1, 0};
-      if (bodies[i].index < 2) world.fingers.push_back(static_cast<std::uint16_t>(i));
+      if (bodies[i].index < fingers) world.fingers.push_back(static_cast<std::uint16_t>(i));
     } else if (kind == plan::BodyKind::kFixture) {
       world.fixture = static_cast<std::uint16_t>(i);
     }

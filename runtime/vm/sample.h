@@ -19,6 +19,12 @@ struct BodySample {
   Quat rotation = Quat::Identity();
 };
 
+// A joint of the robot or of a fixture: rad and rad/s where it turns, m and m/s where it slides.
+struct JointSample {
+  double position = 0;
+  double rate = 0;
+};
+
 // Fixed during an episode: taken once after settling.
 struct BodyStart {
   Vec3 position = Vec3::Zero();  // centre of mass after settling
@@ -38,6 +44,7 @@ struct ContactSample {
 struct StepSample {
   std::vector<BodySample> bodies;
   std::vector<ContactSample> contacts;  // ascending by (a, b)
+  std::vector<JointSample> joints;      // the robot's in drive order, then those of fixtures
   Vec3 tcp = Vec3::Zero();
   double grip = 0;  // closedness 0..1
   double step = 0;  // control steps done

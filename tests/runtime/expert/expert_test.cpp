@@ -13,6 +13,13 @@ std::unique_ptr<policy::Policy> expert(const ExpertOptions& options = {}) {
   return std::move(made).value();
 }
 
+template <typename T>
+std::string refusal(const T& result, Fault code = Fault::kPolicy) {
+  REQUIRE(!result.ok());
+  CHECK(result.failure().code == code);
+  return result.failure().message;
+}
+
 // The whole episode; returns the step after which the source first lay on the target, -1 never.
 int play(test::FakeTable& table, policy::Policy& policy) {
   REQUIRE(policy.begin(table.start()).ok());
@@ -161,32 +168,47 @@ TEST_CASE("an action costs little") {
 }
 
 TEST_CASE("without what it needs the expert says so") {
-  const auto message = [](const Result<policy::Action>& action) {
-    REQUIRE(!action.ok());
-    CHECK(action.failure().code == Fault::kPolicy);
-    return action.failure().message;
-  };
   test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
   auto policy = expert();
-  CHECK(message(policy->act(table.observe(0))) ==
+  CHECK(refusal(policy->act(table.observe(0))) ==
         "the expert was asked to act before an episode began");
   REQUIRE(policy->begin(table.start()).ok());
   policy::Observation blind = table.observe(0);
   blind.privileged = nullptr;
-  CHECK(message(policy->act(blind)) == "the expert needs the privileged view and got none");
+  CHECK(refusal(policy->act(blind)) == "the expert needs the privileged view and got none");
   policy::Observation stiff = table.observe(0);
   stiff.proprioception.joints.resize(3);
-  CHECK(message(policy->act(stiff)) == "the expert needs 6 joint positions and got 3");
+  CHECK(refusal(policy->act(stiff)) == "the expert needs 6 joint positions and got 3");
   policy = expert({.source = 0, .target = 5});
   REQUIRE(policy->begin(table.start()).ok());
-  CHECK(message(policy->act(table.observe(0))) ==
+  CHECK(refusal(policy->act(table.observe(0))) ==
         "the expert works on roles 0 and 5, the episode has 2 objects");
   CHECK(!make_expert({.source = 1, .target = 1}).ok());
   policy::EpisodeStart start = table.start();
-  start.tcp_link = "tool";
-  CHECK(!policy->begin(start).ok());
-  start.robot_urdf = "/nowhere.urdf";
-  CHECK(!policy->begin(start).ok());
+  robot::Robot robot = test::widowx();
+  start.robot = &robot;
+  robot.tcp_link = "tool";
+  CHECK(refusal(policy->begin(start), Fault::kUrdf) == "no link is named `tool`");
+  CHECK(refusal(policy->act(table.observe(0))) ==
+        "the expert was asked to act before an episode began");
+  start.robot = nullptr;
+  CHECK(refusal(policy->begin(start)) == "the expert was told of no robot");
+}
+
+TEST_CASE("a robot without two fingers that close on each other is refused by name") {
+  const test::FakeTable table(test::carrot(-0.235, -0.075, 20), test::plate(-0.085, 0.075));
+  auto policy = expert({});
+  policy::EpisodeStart start = table.start();
+  robot::Robot robot = test::widowx();
+  start.robot = &robot;
+  robot.hand.reset();
+  CHECK(refusal(policy->begin(start)) ==
+        "the expert grasps with two fingers that close on each other; the robot `wx250s` has "
+        "others");
+  robot.fingers.clear();
+  CHECK(refusal(policy->begin(start)) ==
+        "the expert grasps with two fingers that close on each other; the robot `wx250s` has no "
+        "fingers");
 }
 
 }  // namespace

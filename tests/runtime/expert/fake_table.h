@@ -15,6 +15,7 @@
 #include "runtime/policy/policy.h"
 #include "runtime/robot/control.h"
 #include "runtime/robot/rotation.h"
+#include "tests/runtime/expert/expert_robot.h"
 
 namespace probe::expert::test {
 
@@ -37,6 +38,7 @@ inline policy::PrivilegedObject object(const std::string& name,
                                        double yaw_deg) {
   policy::PrivilegedObject out;
   out.name = name;
+  out.finger_contact.assign(2, false);
   out.parts = std::move(parts);
   out.pose = {position, robot::from_rotation_vector({0, 0, yaw_deg * 3.14159265358979 / 180})};
   return out;
@@ -71,8 +73,7 @@ class FakeTable {
     policy::EpisodeStart out;
     out.task = "fake";
     out.horizon = 60;
-    out.robot_urdf = kUrdf;
-    out.tcp_link = "ee_gripper_link";
+    out.robot = &widowx();
     return out;
   }
 
@@ -117,12 +118,7 @@ class FakeTable {
 
  private:
   static robot::EeDeltaPoseController make_controller() {
-    const auto model = robot::load_urdf(kUrdf);
-    REQUIRE(model.ok());
-    auto made = robot::EeDeltaPoseController::create(
-        *model, {.tcp_link = "ee_gripper_link",
-                 .arm_joints = kArm,
-                 .finger_joints = {"left_finger", "right_finger"}});
+    auto made = robot::EeDeltaPoseController::create(*widowx().model, widowx().control);
     REQUIRE(made.ok());
     return std::move(made).value();
   }
@@ -158,12 +154,12 @@ class FakeTable {
     const bool touch = stop > 0 && stop < 0.027 && next <= stop + inner;
     if (touch) next = stop + inner;
     q_[6] = q_[7] = next;
-    source().finger_contact[0] = source().finger_contact[1] = touch;
+    source().finger_contact.assign(2, touch);
     held_ = touch;
     was_held_ = was_held_ || touch;
     if (held_ && slips_ && bottom(source()) > kSurface + 0.02) {
       slips_ = held_ = false;
-      source().finger_contact[0] = source().finger_contact[1] = false;
+      source().finger_contact.assign(2, false);
     }
   }
 

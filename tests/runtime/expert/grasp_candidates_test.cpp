@@ -11,6 +11,12 @@ Footprint footprint(const policy::PrivilegedObject& object) {
   return footprint_of(object.parts, object.pose);
 }
 
+GraspProblem bare_problem() {
+  GraspProblem problem;
+  problem.gripper = test::widowx().hand->shape;
+  return problem;
+}
+
 TEST_CASE("the top-down pose at yaw 0 is the benchmark's and yaw is read back") {
   Mat3 expected;
   expected << 0, 0, 1, 0, 1, 0, -1, 0, 0;
@@ -24,7 +30,7 @@ TEST_CASE("a long object is taken across, near its middle, with the tips above t
   for (const double turn : {0.0, 30.0, 90.0, 117.0}) {
     CAPTURE(turn);
     const Footprint source = footprint(test::carrot(-0.2, 0.1, turn));
-    GraspProblem problem;
+    GraspProblem problem = bare_problem();
     problem.source = &source;
     problem.surface = test::kSurface;
     const auto grasps = grasp_candidates(problem);
@@ -43,7 +49,7 @@ TEST_CASE("a long object is taken across, near its middle, with the tips above t
 
 TEST_CASE("of the two ways round the shorter turn comes first") {
   const Footprint source = footprint(test::carrot(0, 0, 0));
-  GraspProblem problem;
+  GraspProblem problem = bare_problem();
   problem.source = &source;
   problem.surface = test::kSurface;
   problem.yaw_now = 3.0;
@@ -56,7 +62,7 @@ TEST_CASE("what is wider than the opening is not gripped") {
   const auto big = test::object("block", {test::block({-0.03, -0.03, 0}, {0.03, 0.03, 0.04})},
                                 {0, 0, test::kSurface}, 0);
   const Footprint source = footprint(big);
-  GraspProblem problem;
+  GraspProblem problem = bare_problem();
   problem.source = &source;
   problem.surface = test::kSurface;
   CHECK(grasp_candidates(problem).empty());
@@ -67,7 +73,7 @@ TEST_CASE("a neighbour on the fingers' way makes the grasp move or turn") {
       "cube", {test::block({-0.015, -0.015, 0}, {0.015, 0.015, 0.03})}, {0, 0, test::kSurface}, 0));
   const Footprint wall = footprint(test::object(
       "wall", {test::block({-0.05, 0.02, 0}, {0.05, 0.04, 0.03})}, {0, 0, test::kSurface}, 0));
-  GraspProblem problem;
+  GraspProblem problem = bare_problem();
   problem.source = &source;
   problem.others = {&wall};
   problem.surface = test::kSurface;
@@ -88,7 +94,7 @@ TEST_CASE("a wide bowl is taken by its wall, one finger inside") {
                                   test::block({-0.045, 0.045, 0.005}, {0.045, 0.06, 0.03})},
                                  {0, 0, test::kSurface}, 0);
   const Footprint source = footprint(bowl);
-  GraspProblem problem;
+  GraspProblem problem = bare_problem();
   problem.source = &source;
   problem.surface = test::kSurface;
   CHECK(grasp_candidates(problem).empty());

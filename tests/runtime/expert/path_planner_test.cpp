@@ -7,12 +7,14 @@ namespace probe::expert {
 namespace {
 
 Reach widowx() {
-  auto reach = Reach::create(test::kUrdf, "ee_gripper_link");
+  auto reach = Reach::create(test::widowx());
   REQUIRE(reach.ok());
   return *std::move(reach);
 }
 
-Scene scene_of(const test::FakeTable& table) { return look(table.observe(0), {}); }
+Scene scene_of(const test::FakeTable& table) {
+  return look(table.observe(0), {}, *test::widowx().hand);
+}
 
 JointVector joints_of(const Scene& scene) {
   return Eigen::Map<const JointVector>(scene.joints.data(), 6);
@@ -103,8 +105,7 @@ TEST_CASE("a source that leans on the target is taken above it") {
   const auto pick = plan_pick(scene, reach, true);
   REQUIRE(pick.has_value());
   CHECK(!pick->grasp.rim);
-  const GripperShape gripper;
-  CHECK(pick->grasp.tcp.position.z() - gripper.tip_below > scene.target.top);
+  CHECK(pick->grasp.tcp.position.z() - scene.hand.tip_below > scene.target.top);
 }
 
 }  // namespace

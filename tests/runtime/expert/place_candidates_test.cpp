@@ -25,7 +25,7 @@ Held held(policy::PrivilegedObject source, policy::PrivilegedObject target,
   view.fixtures = std::move(fixtures);
   seen.privileged = &view;
   Held out;
-  out.scene = look(seen, {});
+  out.scene = look(seen, {}, *test::widowx().hand);
   const Vec2& at = out.scene.source.center;
   out.tool = top_down({at.x(), at.y(), out.scene.source.bottom + 0.02}, 0);
   return out;

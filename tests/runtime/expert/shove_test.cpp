@@ -54,8 +54,8 @@ TEST_CASE("a shove goes where there is room") {
       board(), {"left", 400, half, block}, {"right", 400, half, block}};
   test::WorldTable table(robot, things,
                          {dropped(-0.16, 0), dropped(-0.16, 0.1), dropped(-0.16, -0.1)});
-  const Reach reach = need(Reach::create(robot.model.path, "ee_gripper_link"));
-  const auto shove = plan_shove(look(table.observe(0), {}), reach);
+  const Reach reach = need(Reach::create(test::widowx()));
+  const auto shove = plan_shove(look(table.observe(0), {}, reach.hand()), reach);
   REQUIRE(shove.has_value());
   const Vec3 way = shove->end.position - shove->start.grasp.tcp.position;
   CHECK(std::abs(way.x()) > 2 * std::abs(way.y()));

@@ -16,6 +16,7 @@
 #include "runtime/robot/rotation.h"
 #include "runtime/scene/hull.h"
 #include "runtime/world/world.h"
+#include "tests/runtime/expert/expert_robot.h"
 
 namespace probe::expert::test {
 
@@ -76,7 +77,10 @@ inline constexpr int kHorizon = 60;
 class WorldTable {
  public:
   WorldTable(const Robot& robot, const std::vector<Thing>& things, const std::vector<Pose>& placed)
-      : robot_(robot), things_(things), controller_(make_controller(robot.model)) {
+      : robot_(robot),
+        things_(things),
+        described_(widowx(robot.model)),
+        controller_(make_controller(robot.model)) {
     std::vector<Pose> settled = settle(placed);
     world_ = need(world::World::create(spec(settled, true)));
     controller_.reset(world_->joints());
@@ -85,6 +89,7 @@ class WorldTable {
     for (std::size_t i = 0; i < things.size(); ++i) {
       policy::PrivilegedObject object;
       object.name = things[i].name;
+      object.finger_contact.assign(2, false);
       for (const auto& part : things[i].shape->parts) {
         object.parts.emplace_back();
         for (const Vec3& v : part.vertices) {
@@ -99,8 +104,7 @@ class WorldTable {
   policy::EpisodeStart start() const {
     policy::EpisodeStart out;
     out.horizon = kHorizon;
-    out.robot_urdf = robot_.model.path;
-    out.tcp_link = "ee_gripper_link";
+    out.robot = &described_;
     return out;
   }
 
@@ -150,11 +154,7 @@ class WorldTable {
   static Pose base() { return {Vec3(0.147, 0.028, 0.870), Quat(0, 0, 0, 1)}; }
 
   static robot::EeDeltaPoseController make_controller(const robot::RobotModel& model) {
-    return need(robot::EeDeltaPoseController::create(
-        model, {.tcp_link = "ee_gripper_link",
-                .arm_joints = {"waist", "shoulder", "elbow", "forearm_roll", "wrist_angle",
-                               "wrist_rotate"},
-                .finger_joints = {"left_finger", "right_finger"}}));
+    return need(robot::EeDeltaPoseController::create(model, widowx(model).control));
   }
 
   world::WorldSpec spec(const std::vector<Pose>& poses, bool with_links) const {
@@ -194,7 +194,7 @@ class WorldTable {
   void measure() {
     for (std::size_t i = 0; i < things_.size(); ++i) {
       view_.objects[i].pose = world_->body(i).pose;
-      view_.objects[i].finger_contact[0] = view_.objects[i].finger_contact[1] = false;
+      view_.objects[i].finger_contact.assign(2, false);
     }
     bool pressed[2] = {false, false};
     for (const world::ContactImpulse& c : world_->contacts()) {
@@ -221,6 +221,7 @@ class WorldTable {
 
   const Robot& robot_;
   const std::vector<Thing>& things_;
+  robot::Robot described_;
   robot::EeDeltaPoseController controller_;
   std::unique_ptr<world::World> world_;
   policy::Privileged view_;

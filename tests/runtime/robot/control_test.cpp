@@ -9,8 +9,6 @@
 namespace probe::robot {
 namespace {
 
-using Action = std::array<double, 7>;
-
 EeDeltaPoseController widowx_controller() {
   auto made = EeDeltaPoseController::create(
       test::widowx(),

@@ -86,6 +86,20 @@ TEST_CASE("tree and chain agree, and the fingers slide apart") {
   }
 }
 
+TEST_CASE("a chain may end in a frame turned against its link, with the same Jacobian") {
+  const RobotModel robot = test::widowx();
+  const Quat turn = from_rotation_vector({0.3, -1.2, 0.7});
+  const auto plain = Chain::create(robot, "ee_gripper_link", test::kArm);
+  const auto turned = Chain::create(robot, "ee_gripper_link", test::kArm, turn);
+  REQUIRE(plain.ok());
+  REQUIRE(turned.ok());
+  const std::span<const double> q = std::span(test::kTableStart).first(6);
+  Jacobian a, b;
+  const Pose there = plain->pose(q, a), seen = turned->pose(q, b);
+  CHECK(mixed_difference({there.position, there.rotation * turn}, seen) < 1e-13);
+  CHECK((a - b).norm() == 0);
+}
+
 TEST_CASE("Jacobians of tree and chain are the derivatives of the pose") {
   const RobotModel robot = test::widowx();
   const auto names = all_joints();

@@ -13,6 +13,7 @@
 #include "runtime/base/trig.h"
 #include "runtime/scene/image.h"
 #include "runtime/stage/episode_world.h"
+#include "runtime/stage/robot_of.h"
 
 namespace probe::stage {
 namespace {

@@ -41,6 +41,17 @@ TEST_CASE("a trace comes back as it was written") {
   CHECK(trace->steps[2].sample.contacts[0].push.z() == -1e-3 * 3);
   CHECK(std::signbit(trace->steps[2].sample.tcp.y()));
   CHECK(trace->steps[2].render_s == 0.006);
+  // What the judge reads of joints is the trace's q and u.
+  const TraceStep& third = trace->steps[2];
+  REQUIRE(third.sample.joints.size() == third.q.size());
+  REQUIRE(!third.q.empty());
+  for (std::size_t i = 0; i < third.q.size(); ++i) {
+    CHECK(third.sample.joints[i].position == third.q[i]);
+    CHECK(third.sample.joints[i].rate == third.u[i]);
+  }
+  REQUIRE(trace->start->sample.joints.size() == trace->start->q.size());
+  CHECK(trace->start->sample.joints[0].position == trace->start->q[0]);
+  CHECK(trace->start->sample.joints[0].rate == 0);
   CHECK(trace->end->metrics[1].value == 0.5);
   TraceComparer comparer(*trace);
   CHECK(comparer.start(sample_start()).ok());

@@ -195,12 +195,15 @@ TEST_CASE("a measurement that is not finite makes the episode invalid and change
   CHECK(broken([&](StepSample& s) { s.contacts[0].push.y() = nan; }));
   CHECK(broken([&](StepSample& s) { s.tcp.y() = nan; }));
   CHECK(broken([&](StepSample& s) { s.grip = nan; }));
+  CHECK(broken([&](StepSample& s) { s.joints = {{0.5, 0}, {nan, 0}}; }));
+  CHECK(broken([&](StepSample& s) { s.joints = {{0.5, INFINITY}}; }));
   CHECK(broken([&](StepSample& s) { s.time = INFINITY; }));
   CHECK(broken([&](StepSample& s) { s.bodies.pop_back(); }));
   CHECK(broken([&](StepSample& s) { s.contacts.push_back(s.contacts[0]); }));
   CHECK(broken([&](StepSample& s) { s.contacts[0].b = 6; }));
   CHECK(broken([&](StepSample& s) { s.contacts[0].a = 3; }));
   CHECK(!broken([](StepSample&) {}));
+  CHECK(!broken([](StepSample& s) { s.joints = {{0.5, 0}}; }));
 
   starts[1].half.x() = nan;
   CHECK(!judge.begin(starts).ok());

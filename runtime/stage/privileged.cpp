@@ -1,0 +1,80 @@
+#include "runtime/stage/privileged.h"
+
+#include <string>
+
+#include "runtime/stage/goal.h"
+#include "runtime/stage/robot_of.h"
+
+namespace probe::stage {
+namespace {
+
+// Contact of a finger, as the reference's metrics count it: N s over the last substep, 5e-4 N at
+// 500 Hz.
+constexpr double kContactImpulse = 1e-6;
+
+std::vector<std::vector<Vec3>> vertices_of(const scene::CollisionShape& shape, const Vec3& at) {
+  std::vector<std::vector<Vec3>> parts;
+  for (const scene::ConvexPart& part : shape.parts) {
+    parts.emplace_back();
+    for (const Vec3& vertex : part.vertices) {
+      parts.back().push_back(vertex + shape.center_of_mass + at);
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t task_index,
+                                           const SharedAssets& assets, const TaskBodies& bodies) {
+  const plan::TaskRecord& task = plan.tasks()[task_index];
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  const auto records = plan.bodies(task);
+  const auto lacks_mesh = [&](const char* kind, const plan::BodyRecord& body) {
+    return Failure{Fault::kAsset,
+                   kind + (" `" + std::string(plan.text(body.name))) + "` has no collision mesh",
+                   "task `" + std::string(plan.text(task.name)) + "`"};
+  };
+  policy::Privileged view;
+  view.base = base_pose(scene);
+  view.surface_z = scene.surface_z;
+  for (std::size_t i = 0; i < bodies.objects; ++i) {
+    const plan::ObjectRecord& object = plan.objects()[records[i].index];
+    const auto shape = assets.shape(object.collision);
+    if (!shape) return lacks_mesh("object", records[i]);
+    policy::PrivilegedObject seen;
+    seen.name = std::string(plan.text(records[i].name));
+    seen.parts = vertices_of(*shape, Vec3::Zero());
+    seen.center_of_mass = shape->center_of_mass;
+    seen.box_min = to_vec(object.box_min);
+    seen.box_max = to_vec(object.box_max);
+    view.objects.push_back(std::move(seen));
+  }
+  if (bodies.fixture != TaskBodies::kNone) {
+    const auto shape = assets.shape(scene.fixture_collision);
+    if (!shape) return lacks_mesh("fixture", records[bodies.fixture]);
+    view.fixtures = vertices_of(*shape, to_vec(scene.fixture_position));
+  }
+  PROBE_ASSIGN(view.goal, goal_of(plan, task_index));
+  return view;
+}
+
+void update_privileged(const vm::StepSample& sample, const TaskBodies& bodies, std::size_t fingers,
+                       policy::Privileged* view) {
+  for (std::size_t i = 0; i < view->objects.size(); ++i) {
+    policy::PrivilegedObject& object = view->objects[i];
+    object.pose = {sample.bodies[i].origin, sample.bodies[i].rotation};
+    object.finger_contact.assign(fingers, false);
+  }
+  for (const vm::ContactSample& contact : sample.contacts) {
+    // Objects come before links among a task's bodies.
+    const bool is_finger =
+        contact.b >= bodies.first_link && contact.b < bodies.first_link + fingers;
+    if (!is_finger || contact.a >= bodies.objects) continue;
+    if (contact.push.norm() >= kContactImpulse) {
+      view->objects[contact.a].finger_contact[contact.b - bodies.first_link] = true;
+    }
+  }
+}
+
+}  // namespace probe::stage

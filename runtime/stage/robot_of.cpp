@@ -1,0 +1,94 @@
+#include "runtime/stage/robot_of.h"
+
+#include <algorithm>
+#include <string>
+
+#include "runtime/robot/hands.h"
+#include "runtime/stage/hand_of_shapes.h"
+
+namespace probe::stage {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+Result<robot::Finger> finger_of(const plan::Plan& plan, const plan::FingerRecord& record,
+                                const robot::RobotModel& model) {
+  robot::Finger finger;
+  finger.link = std::string(plan.text(record.link));
+  finger.opens = to_vec(record.opens).normalized();
+  const int link = model.find_link(finger.link);
+  if (link < 0) return Failure{Fault::kUrdf, "no link `" + finger.link + "`", model.path};
+  const int joint = model.links[static_cast<std::size_t>(link)].parent_joint;
+  if (joint < 0) {
+    return Failure{Fault::kUrdf, "finger `" + finger.link + "` hangs on no joint", model.path};
+  }
+  finger.joint = model.joints[static_cast<std::size_t>(joint)].name;
+  return finger;
+}
+
+// The drive that moves the finger: that of its joint or, where it has none, of the joint it mimics.
+std::string driven_joint(const robot::Finger& finger, const robot::Robot& robot) {
+  const auto& joints = robot.model->joints;
+  const auto& joint = joints[static_cast<std::size_t>(robot.model->find_joint(finger.joint))];
+  if (contains(robot.joints, joint.name) || joint.mimic < 0) return joint.name;
+  return joints[static_cast<std::size_t>(joint.mimic)].name;
+}
+
+}  // namespace
+
+std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot) {
+  std::vector<std::string> names;
+  for (const plan::DriveRecord& drive : plan.drives(robot))
+    names.emplace_back(plan.text(drive.joint));
+  return names;
+}
+
+Pose base_pose(const plan::SceneRecord& scene) {
+  const auto& q = scene.base_rotation;
+  return {to_vec(scene.base_position), Quat(q[0], q[1], q[2], q[3])};
+}
+
+Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& record,
+                              const RobotParts& parts) {
+  const std::string where = "robot `" + std::string(plan.text(record.name)) + "`";
+  if (record.control != static_cast<std::uint32_t>(plan::Control::kEeDeltaPose)) {
+    return Failure{Fault::kPlan, "control " + std::to_string(record.control) + " is not known here",
+                   where};
+  }
+  const robot::RobotModel& model = parts.model;
+  robot::Robot robot;
+  robot.name = model.name;
+  robot.model = &model;
+  robot.tcp_link = std::string(plan.text(record.tcp));
+  robot.joints = drive_joints(plan, record);
+  for (const plan::FingerRecord& finger : record.fingers) {
+    if (plan.text(finger.link).empty()) continue;
+    PROBE_ASSIGN(robot::Finger made, finger_of(plan, finger, model));
+    robot.fingers.push_back(std::move(made));
+  }
+
+  robot::EeControlSpec& control = robot.control;
+  control.tcp_link = robot.tcp_link;
+  control.grip_closed = record.grip_closed;
+  control.grip_open = record.grip_open;
+  for (const robot::Finger& finger : robot.fingers) {
+    std::string joint = driven_joint(finger, robot);
+    if (!contains(control.finger_joints, joint)) control.finger_joints.push_back(std::move(joint));
+  }
+  for (const std::string& joint : robot.joints) {
+    if (!contains(control.finger_joints, joint)) control.arm_joints.push_back(joint);
+  }
+  std::vector<std::string> order = control.arm_joints;
+  order.insert(order.end(), control.finger_joints.begin(), control.finger_joints.end());
+  if (order != robot.joints) {
+    return Failure{Fault::kPlan, "drives stand in another order than arm joints, then the fingers'",
+                   where};
+  }
+  if (robot.fingers.size() == 2) robot.hand = robot::known_hand(robot.name);
+  if (!robot.hand) robot.hand = hand_of_shapes(robot, parts);
+  return robot;
+}
+
+}  // namespace probe::stage
