@@ -14,6 +14,8 @@ using Theirs = nlohmann::ordered_json;
 
 // Trees are freed and written by recursion: what is nested deeper is refused as no JSON of ours.
 constexpr std::size_t kMaxDepth = 500;
+// Of a text that is parsed: a value takes a hundred times the two bytes it may have there.
+constexpr std::size_t kMostValues = 4'000'000;
 
 // Of keys that are repeated the last value counts, at the place of the first.
 void drop_repeats(Json::Object& object) {
@@ -81,18 +83,20 @@ class Builder {
     return inside.back();
   }
   bool add(Json value) {
+    if (++values_ > kMostValues) return false;
     place(std::move(value));
     return true;
   }
   // A container's address holds while it is open: what is around it does not grow meanwhile.
   bool open(Json value) {
-    if (open_.size() == kMaxDepth) return false;
+    if (open_.size() == kMaxDepth || ++values_ > kMostValues) return false;
     open_.push_back(&place(std::move(value)));
     return true;
   }
 
   Json& root_;
   std::vector<Json*> open_;
+  std::size_t values_ = 0;
 };
 
 }  // namespace

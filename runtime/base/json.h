@@ -63,7 +63,7 @@ class Json {
   static Json array(std::initializer_list<JsonItem> items);
   static Json object();
 
-  // A text that is not JSON gives a value that is_discarded() and nothing else.
+  // No JSON, more than 500 levels or 4 million values give one that is_discarded(), nothing else.
   static Json parse(std::string_view text);
 
   // `indent` spaces a level, or one line when it is negative. Bytes that are not UTF-8 are written

@@ -17,6 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMostReferences = 1024;
+
 Result<std::string> read_text(const std::string& path) {
   return read_file(path, {.most = kMaxMeshBytes, .code = Fault::kAsset});
 }
@@ -113,6 +115,10 @@ class Scan {
     for (const MeshReference& known : found) {
       if (known.written == written) return known.path;
     }
+    if (found.size() == kMostReferences) {
+      too_many = true;
+      return "";
+    }
     auto resolved = resolve_inside(folder_, written, root_);
     if (resolved) {
       found.push_back({written, *resolved, ""});
@@ -125,7 +131,9 @@ class Scan {
   Status obj(std::string_view text) {
     std::vector<std::string> libraries;
     each_line(text, [&](std::string_view keyword, std::string_view rest) {
-      if (keyword == "mtllib") libraries.emplace_back(rest);
+      if (keyword != "mtllib" || libraries.size() > kMostReferences) return;
+      if (std::find(libraries.begin(), libraries.end(), rest) == libraries.end())
+        libraries.emplace_back(rest);
     });
     for (const std::string& library : libraries) {
       const std::string file = add(library);
@@ -143,6 +151,7 @@ class Scan {
   }
 
   std::vector<MeshReference> found;
+  bool too_many = false;
 
  private:
   fs::path folder_;
@@ -187,6 +196,10 @@ Result<std::vector<MeshReference>> mesh_references(const std::string& path,
   if (extension == ".glb") names = named_by_gltf(json_chunk(text));
   if (extension == ".dae") names = named_by_collada(text);
   for (const std::string& name : names) scan.add(name);
+  if (scan.too_many) {
+    return Failure{Fault::kAsset,
+                   "names more than " + std::to_string(kMostReferences) + " other files", path};
+  }
   return std::move(scan.found);
 }
 

@@ -18,8 +18,8 @@ struct MeshReference {
 
 // In the order of the text, each file once; those that a material library names included. A
 // reference that cannot be used is no failure: Collada files often name pictures that nothing
-// shows. Fails (kAsset, where = path) when the mesh file itself cannot be read or is larger
-// than kMaxMeshBytes. `root` as MeshLimits::asset_root.
+// shows. Fails (kAsset, where = path) when the mesh file itself cannot be read, is larger
+// than kMaxMeshBytes or names more than 1024 files. `root` as MeshLimits::asset_root.
 Result<std::vector<MeshReference>> mesh_references(const std::string& path,
                                                    const std::string& root);
 

@@ -16,7 +16,8 @@ TEST_CASE("braces of pairs that begin with a text are an object, all others an a
   CHECK(Json{"one"}.dump() == R"(["one"])");
   CHECK(Json::array({{"a", 1}}).dump() == R"([["a",1]])");
   CHECK(Json(std::vector<std::string>{"x"}).dump() == R"(["x"])");
-  CHECK(Json(std::vector<std::pair<std::string, std::string>>{{"a", "b"}}).dump() == R"([["a","b"]])");
+  CHECK(Json(std::vector<std::pair<std::string, std::string>>{{"a", "b"}}).dump() ==
+        R"([["a","b"]])");
 }
 
 TEST_CASE("an object keeps the order in which keys were added, until it is sorted") {
@@ -53,7 +54,7 @@ TEST_CASE(
   CHECK(Json(std::nan("")).dump() == "null");
 }
 
-TEST_CASE("what is no JSON is discarded, also where only its depth is the matter") {
+TEST_CASE("what is no JSON is discarded, also where only its depth or size is the matter") {
   for (const char* text : {"", "[1,", "{\"a\"}", "nul", "[1] 2", "\"\xff\""}) {
     CAPTURE(text);
     CHECK(Json::parse(text).is_discarded());
@@ -63,6 +64,10 @@ TEST_CASE("what is no JSON is discarded, also where only its depth is the matter
   };
   CHECK(Json::parse(nested(400)).is_array());
   CHECK(Json::parse(nested(100000)).is_discarded());
+  std::string many = "[0";
+  for (int i = 0; i < 4'000'000; ++i) many += ",0";
+  CHECK(Json::parse(many + "]").is_discarded());
+  CHECK(Json::parse(many.substr(0, 2'000'002) + "]").size() == 1'000'001);
 }
 
 TEST_CASE("of a key that is repeated the last value counts, at the place of the first") {
