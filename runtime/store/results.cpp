@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
+#include <string_view>
 
 #include "runtime/base/json.h"
 
@@ -46,6 +48,32 @@ std::string cell(const ResultRow& row, const std::string& metric) {
   return "";
 }
 
+// The fields of every row, before and after its metrics.
+constexpr std::string_view kBefore[] = {"task", "episode", "seed", "policy"};
+constexpr std::string_view kBehind[] = {"steps",
+                                        "invalid",
+                                        "prompt_sha256",
+                                        "image_sha256",
+                                        "frames_sha256",
+                                        "sent_prompt_sha256",
+                                        "sent_image_sha256",
+                                        "trace_sha256",
+                                        "episode_id",
+                                        "start_id",
+                                        "trace"};
+
+// A metric is called as in the text, and `metric.NAME` where a row has a field NAME: names in texts
+// have no dots, and those of a foreign plan that do are prefixed too.
+std::string column_of(const std::string& metric) {
+  constexpr std::string_view kPrefix = "metric.";
+  const auto has = [&](const auto& fields) {
+    return std::find(std::begin(fields), std::end(fields), metric) != std::end(fields);
+  };
+  return has(kBefore) || has(kBehind) || metric.starts_with(kPrefix)
+             ? std::string(kPrefix) + metric
+             : metric;
+}
+
 Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : nullptr; }
 
 // Every metric that some row has, in order of first use.
@@ -72,13 +100,13 @@ std::string results_to_json(std::span<const ResultRow> rows) {
     json["episode"] = row.episode;
     json["seed"] = row.seed;
     json["policy"] = row.policy;
-    for (const std::string& name : names) json[name] = nullptr;
+    for (const std::string& name : names) json[column_of(name)] = nullptr;
     for (const MetricValue& metric : row.metrics) {
       if (row.invalid) continue;
       if (metric.is_bool) {
-        json[metric.name] = metric.value != 0;
+        json[column_of(metric.name)] = metric.value != 0;
       } else {
-        json[metric.name] = metric.value;
+        json[column_of(metric.name)] = metric.value;
       }
     }
     json["steps"] = row.steps;
@@ -100,13 +128,9 @@ std::string results_to_json(std::span<const ResultRow> rows) {
 
 std::string results_to_csv(std::span<const ResultRow> rows) {
   const std::vector<std::string> names = metric_names(rows);
-  std::vector<std::string> header = {"task", "episode", "seed", "policy"};
-  header.insert(header.end(), names.begin(), names.end());
-  for (const char* name :
-       {"steps", "invalid", "prompt_sha256", "image_sha256", "frames_sha256", "sent_prompt_sha256",
-        "sent_image_sha256", "trace_sha256", "episode_id", "start_id", "trace"}) {
-    header.emplace_back(name);
-  }
+  std::vector<std::string> header(std::begin(kBefore), std::end(kBefore));
+  for (const std::string& name : names) header.push_back(column_of(name));
+  header.insert(header.end(), std::begin(kBehind), std::end(kBehind));
   std::string text = line_of(header);
   for (const ResultRow& row : rows) {
     std::vector<std::string> cells = {row.task, std::to_string(row.episode),

@@ -9,8 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "runtime/plan/plan.h"
 #include "tests/runtime/run/temporary_folder.h"
@@ -382,6 +384,35 @@ TEST_CASE("rows print as JSON with the promised keys") {
   CHECK(csv.starts_with("task,episode,seed,policy,success,height,steps,invalid,"));
   CHECK(csv.find("carrot_on_plate,0,42,null,true,0.10000000000000001,60,,") != std::string::npos);
   CHECK(csv.find("\"a, \"\"b\"\"\"") != std::string::npos);
+}
+
+TEST_CASE("a metric that is called as a field of its row takes no other's place") {
+  const ResultRow plain = row_of(0);
+  const Json fields = Json::parse(results_to_json(std::span(&plain, 1)))[0];
+  ResultRow row = plain;
+  for (const auto& [name, value] : fields.items()) {
+    if (name != "success" && name != "height") row.metrics.push_back({name, false, 0.25});
+  }
+  row.metrics.push_back({"metric.task", false, 0.5});
+  const Json json = Json::parse(results_to_json(std::span(&row, 1)))[0];
+  for (const auto& [name, value] : fields.items()) {
+    CAPTURE(name);
+    CHECK(json[name] == value);
+    if (name != "success" && name != "height") CHECK(json["metric." + name] == 0.25);
+  }
+  CHECK(json["metric.metric.task"] == 0.5);
+  const std::string csv = results_to_csv(std::span(&row, 1));
+  const std::string header = csv.substr(0, csv.find('\n'));
+  std::set<std::string> columns;
+  std::size_t count = 0;
+  for (std::size_t at = 0; at <= header.size(); ++count) {
+    const std::size_t end = std::min(header.find(',', at), header.size());
+    columns.insert(header.substr(at, end - at));
+    at = end + 1;
+  }
+  CHECK(columns.size() == count);
+  CHECK(columns.contains("task"));
+  CHECK(columns.contains("metric.task"));
 }
 
 }  // namespace
