@@ -172,7 +172,7 @@ variant other of t { source blue }
 TEST_CASE("cells of a grid ascend even where no decimal holds them") {
   const auto a = analyze_with_suite(
       "layout l like pairs { cells far = grid 7 x 1 at (499.9999999999999m, 0cm) spread "
-      "(499.9999999999998999m, 0.000000000000000001mm) }");
+      "(499.999999999999899m, 0.000000000000000001mm) }");
   for (const sema::Layout& layout : a->model.layouts) {
     if (layout.name != "l") continue;
     const auto& grid = layout.cells.back().grids.front();
