@@ -6,6 +6,8 @@
 #include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
+#include "runtime/plan/limits.h"
+#include "runtime/plan/text_rule.h"
 
 namespace probe::emit {
 
@@ -33,6 +35,11 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
     misses_.push_back({path, std::move(why), span, owner});
     return plan::kNone;
   };
+  // What the verifier would refuse without a place.
+  if (!plan::is_asset_path(path))
+    return miss("is not written straight, without `.`, `..`, `\\` and empty parts");
+  if (path.size() > plan::kMaxStringBytes) return miss("is longer than a plan keeps");
+  if (const char* defect = plan::find_text_defect(path)) return miss(defect);
   // A path leads below the root, so that a plan means the same files wherever the root lies.
   const auto file = resolve_inside(root_, path, root_);
   if (!file) {

@@ -1,6 +1,7 @@
 #include "compiler/lower/lower.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "compiler/lower/builder.h"
@@ -237,11 +238,17 @@ class Lowering {
       const Op op = node.op == ExprOp::kAdd        ? Op::kADD
                     : node.op == ExprOp::kSubtract ? Op::kSUB
                                                    : Op::kMUL;
-      return builder_.arithmetic(op, a, b);
+      return finite(builder_.arithmetic(op, a, b), node.span);
     }
     if (a.kind == Value::kNumber && b.kind == Value::kNumber && b.number != 0)
-      return Value::of_number(a.number / b.number);
+      return finite(Value::of_number(a.number / b.number), node.span);
     return fail(node.span, "the judge has no division: write `a < k * b` for `a / b < k`");
+  }
+
+  // What is known while lowering becomes a constant of the plan, which holds no infinity.
+  Value finite(const Value& value, const Span& span) {
+    if (value.kind != Value::kNumber || std::isfinite(value.number)) return value;
+    return fail(span, "this is larger than any number that is kept");
   }
 
   Value negate(const ExprNode& node) {

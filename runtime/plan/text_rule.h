@@ -9,4 +9,8 @@ namespace probe::plan {
 // "holds a control character".
 const char* find_text_defect(std::string_view text);
 
+// Whether a path of an asset leads straight to a file below the root: without `.`, `..`, `\` and
+// empty parts, so that one file has one path in every plan.
+bool is_asset_path(std::string_view path);
+
 }  // namespace probe::plan

@@ -10,10 +10,8 @@
 #include "runtime/plan/verify_records.h"
 
 namespace probe::plan {
-namespace {
 
-// Assets are looked up under one root; a path must not lead out of it.
-bool is_inside(std::string_view path) {
+bool is_asset_path(std::string_view path) {
   if (path.starts_with('/') || path.find('\\') != std::string_view::npos) return false;
   while (!path.empty()) {
     const std::size_t slash = std::min(path.find('/'), path.size());
@@ -24,11 +22,9 @@ bool is_inside(std::string_view path) {
   return true;
 }
 
-}  // namespace
-
 Status RecordCheck::check(const AssetRecord& a) const {
   PROBE_TRY(check_name(a.path, "the path of an asset"));
-  if (!is_inside(t.text(a.path))) {
+  if (!is_asset_path(t.text(a.path))) {
     return fail(Rule::kAssetPath, &a.path,
                 fmt::format("asset path `{}` leads out of the asset folder", t.text(a.path)));
   }

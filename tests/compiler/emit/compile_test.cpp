@@ -275,11 +275,40 @@ TEST_CASE("what the verifier would refuse is said of its place in the text, by c
   CHECK(refused("metrics many like plain { " + metrics +
                 " }\ntask t like red_on_tray { metrics many }") == "P0304 ");
   CHECK(refused("task t like red_on_tray { horizon 100001 steps }") == "P0304 ");
+  std::string product = "90000000000000";
+  for (int i = 0; i < 24; ++i) product += " * 90000000000000";
+  CHECK(refused("metrics m like plain { a = final step * (" + product +
+                ") }\ntask t like red_on_tray { metrics m }") == "P0601 ");
   CHECK(refused("robot other { urdf \"arm/arm.urdf\"; tcp tool; control ee_delta_pose 5Hz\n"
                 "fingers left opens +y, right opens -y\n"
                 "drive waist stiffness 100Nm/rad damping 10Nms/rad limit 20Nm\n"
                 "drive l, r stiffness 1000N/m damping 200Ns/m limit 60N\n"
                 "grip 1cm .. 4cm friction 2 patch -1cm }") == "P0304 ");
+}
+
+TEST_CASE("a path that the verifier would refuse is missed at its place, by check as by build") {
+  const auto refused = [&](const std::string& mesh) {
+    const Folder folder("paths");
+    const std::string file = folder.write(
+        "x.probe", test::kSmallSuite + ("object o like red { mesh \"" + mesh +
+                                        "\" }\nvariant v of red_on_tray { source o }"));
+    const auto checked = check(std::span<const std::string>(&file, 1), {test::asset_root(), ""});
+    REQUIRE(checked.ok());
+    std::string said;
+    for (const Diagnostic& item : checked->diagnostics.items()) {
+      CHECK_FALSE(item.primary.is_none());
+      said += item.message + "\n";
+    }
+    const auto built = build(std::span<const std::string>(&file, 1), {test::asset_root(), ""});
+    REQUIRE(built.ok());
+    CHECK_FALSE(built->ok);
+    return said;
+  };
+  for (const std::string mesh : {"../objects/block", "./block", "block/"}) {
+    CAPTURE(mesh);
+    const std::string said = refused(mesh);
+    CHECK_MESSAGE(said.find("is not written straight") != std::string::npos, said);
+  }
 }
 
 TEST_CASE("a number that world and renderer cannot compute with is refused at its place") {
