@@ -28,7 +28,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestText = 1000;  // of a name or reason that a run folder holds, bytes
 constexpr std::size_t kNamed = 3;           // before the rest is only counted
-constexpr std::size_t kMostTruths = 52;     // a page's numbers hold so many bits
 
 std::string hex(const std::array<std::uint8_t, 32>& bytes) {
   return to_hex(plan::to_sha256(bytes));
@@ -130,10 +129,10 @@ class Loader {
     PROBE_ASSIGN(store::ProvenResults proven, store::read_proven_results(dir));
     const auto& refused = proven.refused;
     for (std::size_t i = 0; i < refused.size() && i < kTold; ++i) {
-      note("warn", printable(refused[i], kLongestText));
+      note("bad", printable(refused[i], kLongestText));
     }
     if (refused.size() > kTold) {
-      note("warn",
+      note("bad",
            fmt::format("{} more rows of `{}` are left out, because their traces do not bear "
                        "them",
                        refused.size() - kTold, dir));
@@ -333,8 +332,7 @@ class Loader {
       } else {
         for (const store::MetricValue& value : row.metrics) {
           const int m = metric(value.name, value.is_bool);
-          if (value.is_bool && value.value != 0 && static_cast<std::size_t>(m) < 64)
-            episode.bits |= std::uint64_t{1} << m;
+          if (value.is_bool && value.value != 0) set_true(episode.truths, m);
         }
       }
       episode.prompt = prompt_of(row.sent_prompt_sha256.value_or(row.prompt_sha256));
@@ -503,6 +501,12 @@ class Loader {
     note_runs();
   }
 
+  static void set_true(std::vector<bool>& truths, int metric) {
+    const auto at = static_cast<std::size_t>(metric);
+    if (at >= truths.size()) truths.resize(at + 1);
+    truths[at] = true;
+  }
+
   // Truths first, so that they are bits; numbers stay in the rows.
   void order_metrics() {
     std::vector<int> order(benchmark_.metrics.size());
@@ -522,12 +526,11 @@ class Loader {
       for (int& m : task.metrics) m = now[static_cast<std::size_t>(m)];
     }
     for (Episode& e : benchmark_.episodes) {
-      std::uint64_t bits = 0;
-      for (std::size_t i = 0; i < now.size() && i < 64; ++i) {
-        if ((e.bits >> i & 1U) != 0 && static_cast<std::size_t>(now[i]) < kMostTruths)
-          bits |= std::uint64_t{1} << now[i];
+      std::vector<bool> truths;
+      for (std::size_t i = 0; i < e.truths.size(); ++i) {
+        if (e.truths[i]) set_true(truths, now[i]);
       }
-      e.bits = bits;
+      e.truths = std::move(truths);
     }
   }
 

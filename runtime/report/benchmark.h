@@ -92,15 +92,18 @@ struct Policy {
 
 struct Episode {
   int policy = 0, task = 0, start = 0;
-  std::uint64_t bits = 0;  // metric i of the benchmark was true
-  int reason = kAbsent;    // of invalidity
-  int prompt = kAbsent;    // what the policy was sent, if its hash fits a known instruction
-  int plan = 0;            // under which it was run
-  std::string video;       // path, or empty
-  store::ResultRow row;    // as stored
+  std::vector<bool> truths = {};  // metric i of the benchmark was true; those behind are false
+  int reason = kAbsent;           // of invalidity
+  int prompt = kAbsent;  // what the policy was sent, if its hash fits a known instruction
+  int plan = 0;          // under which it was run
+  std::string video;     // path, or empty
+  store::ResultRow row;  // as stored
 
   bool valid() const { return reason == kAbsent; }
-  bool is(int metric) const { return ((bits >> metric) & 1U) != 0; }
+  bool is(int metric) const {
+    const auto at = static_cast<std::size_t>(metric);
+    return metric >= 0 && at < truths.size() && truths[at];
+  }
 };
 
 struct Note {

@@ -89,6 +89,16 @@ Json tasks_json(const Benchmark& benchmark) {
   return tasks;
 }
 
+constexpr int kTruthsANumber = 52;  // bits that a number of a page holds exactly
+
+// Metrics `first` and the next ones, metric i as bit i - first.
+std::uint64_t truth_bits(const Episode& episode, int first) {
+  std::uint64_t bits = 0;
+  for (int i = 0; i < kTruthsANumber; ++i)
+    bits |= static_cast<std::uint64_t>(episode.is(first + i)) << i;
+  return bits;
+}
+
 Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json& strings) {
   Json columns = {{"count", benchmark.episodes.size()}};
   for (const char* name :
@@ -98,12 +108,19 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
   for (const Metric& metric : benchmark.metrics) {
     if (!metric.truth) numbers[metric.name] = Json::array();
   }
+  Json more_bits = Json::array();
+  const auto truths = std::count_if(benchmark.metrics.begin(), benchmark.metrics.end(),
+                                    [](const Metric& metric) { return metric.truth; });
+  for (std::ptrdiff_t first = kTruthsANumber; first < truths; first += kTruthsANumber)
+    more_bits.push_back(Json::array());
   for (const Episode& e : benchmark.episodes) {
     columns["policy"].push_back(e.policy);
     columns["task"].push_back(e.task);
     columns["start"].push_back(e.start);
     columns["seed"].push_back(e.row.seed);
-    columns["bits"].push_back(e.bits);
+    columns["bits"].push_back(truth_bits(e, 0));
+    for (std::size_t i = 0; i < more_bits.size(); ++i)
+      more_bits[i].push_back(truth_bits(e, static_cast<int>(i + 1) * kTruthsANumber));
     columns["steps"].push_back(e.row.steps);
     columns["reason"].push_back(e.reason);
     columns["prompt"].push_back(e.prompt);
@@ -121,6 +138,7 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
       values.push_back(known ? Json(rounded(at->value)) : Json());
     }
   }
+  if (!more_bits.empty()) columns["more_bits"] = std::move(more_bits);
   if (!numbers.empty()) columns["numbers"] = std::move(numbers);
   return columns;
 }

@@ -207,6 +207,43 @@ TEST_CASE("a server's profile, and whether it reads, stand with what reached the
                   "instructions with one picture bit for bit the same") != std::string::npos);
 }
 
+TEST_CASE("seventy-five truths stay apart, also where another run has other ones") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  const auto script = [](const std::string& prefix) {
+    return [prefix](const std::string&, int, int) {
+      Outcome outcome{.success = true};
+      for (int i = 0; i < 71; ++i) {
+        outcome.more.push_back({prefix + std::to_string(i), i % 2 == 0, 1});
+        outcome.more.push_back({prefix + "odd_" + std::to_string(i), true, i % 2 == 1 ? 1.0 : 0.0});
+      }
+      return outcome;
+    };
+  };
+  fake_run(folder / "a", plan, "pi0", {.tasks = {kFour[0]}, .last = 0}, script("a_"));
+  fake_run(folder / "b", plan, "null", {.tasks = {kFour[0]}, .last = 0}, script("b_"));
+  const Benchmark benchmark = loaded({folder / "a", folder / "b"});
+  REQUIRE(benchmark.episodes.size() == 2);
+  const Json data = page_data(benchmark, {.title = "many truths"});
+  for (std::size_t e = 0; e < 2; ++e) {
+    const store::ResultRow& row = benchmark.episodes[e].row;
+    for (std::size_t m = 0; m < benchmark.metrics.size(); ++m) {
+      const Metric& metric = benchmark.metrics[m];
+      const auto stored =
+          std::find_if(row.metrics.begin(), row.metrics.end(),
+                       [&](const store::MetricValue& value) { return value.name == metric.name; });
+      const bool truth =
+          metric.truth && stored != row.metrics.end() && stored->is_bool && stored->value != 0;
+      CAPTURE(metric.name);
+      CHECK(benchmark.episodes[e].is(static_cast<int>(m)) == truth);
+      if (!metric.truth) continue;
+      const Json& column =
+          m < 52 ? data["episodes"]["bits"] : data["episodes"]["more_bits"][m / 52 - 1];
+      CHECK((column[e].get<std::uint64_t>() >> m % 52 & 1U) == (truth ? 1U : 0U));
+    }
+  }
+}
+
 TEST_CASE("the document has every key that the page is promised") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;

@@ -46,6 +46,7 @@ struct RunsFolder : run::TemporaryFolder {
 struct Outcome {
   bool success = false, intention = true, grasp = false, wrong = false;
   std::optional<std::string> invalid = {};
+  std::vector<store::MetricValue> more = {};  // behind them
 };
 using Script = std::function<Outcome(const std::string& task, int episode, int seed)>;
 
@@ -84,6 +85,7 @@ inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::
                        {"intention", true, outcome.intention ? 1.0 : 0.0},
                        {"grasp", true, outcome.grasp ? 1.0 : 0.0},
                        {"wrong", true, outcome.wrong ? 1.0 : 0.0}};
+        row.metrics.insert(row.metrics.end(), outcome.more.begin(), outcome.more.end());
         row.steps = 60;
         row.invalid = outcome.invalid;
         row.prompt_sha256 = to_hex(sha256(plan.text(of_plan.prompt)));

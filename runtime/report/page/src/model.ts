@@ -19,8 +19,13 @@ export interface Task {
   starts?: number[][][]; rule?: { file: string; line: number; text: string };
 }
 export interface Episodes {
-  count: number; policy: number[]; task: number[]; start: number[]; seed: number[]; bits: number[]; steps: number[];
+  count: number; policy: number[]; task: number[]; start: number[]; seed: number[]; bits: number[]; more_bits?: number[][]; steps: number[];
   reason: number[]; prompt: number[]; video?: number[]; numbers?: Record<string, (number | null)[]>;
+}
+// A number holds 52 of an episode's truths exactly.
+export function isTrue(e: Episodes, row: number, m: number): boolean {
+  const column = m < 52 ? e.bits : e.more_bits?.[Math.floor(m / 52) - 1];
+  return Math.floor((column?.[row] ?? 0) / 2 ** (m % 52)) % 2 === 1;
 }
 export interface MainRow { policy: number; metric: number; all: Estimate; cells: Estimate[] }
 export interface ExternalRow {

@@ -228,6 +228,21 @@ const kCases = {
     expect(/5\.3\s+63\/1,200/.test(text), `63 of 1200 is not 5.3 in: ${text.slice(0, 400)}`);
     expect(text.includes("99.7\u2013100.0"), `an interval with width looks as if it had none in: ${text.slice(0, 400)}`);
   },
+  // More truths than one number holds.
+  async truths() {
+    const edit = (data) => {
+      const first = data.metrics.length;
+      for (let i = first; i < 75; ++i) data.metrics.push({ name: `own_${i}`, label: `Own ${i}`, truth: true, good: 0 });
+      for (const task of data.tasks) task.metrics = data.metrics.map((_, i) => i);
+      const e = data.episodes;
+      e.reason[0] = -1;
+      e.bits[0] = 2 ** 52 - 1 - 2 ** 51;
+      e.more_bits = [e.bits.map((_, i) => (i === 0 ? 2 ** 23 - 1 : 0))];
+    };
+    const { page } = await open(written("truths.html", { policies: 1 }, edit), { hash: "#episode-0" });
+    const no = await page.$$eval("ul.verdicts li", (all) => [all.length, ...all.filter((e) => e.className !== "yes").map((e) => e.innerText)]);
+    expect(no[0] === 75 && no.length === 2 && no[1].includes("Own 51"), `of 75 truths without the 51st there is said: ${no}`);
+  },
   // What is certain on these starts and not elsewhere is said so, in words and in numbers.
   async questions() {
     const edit = (data) => {

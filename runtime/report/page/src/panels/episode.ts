@@ -1,7 +1,7 @@
 // One episode: where things stood, what was said, what happened when, and why it was judged so.
 import { type Child, h, s } from "../dom";
 import { safeLink, shellWord } from "../format";
-import { type Data, objectName, readTimelines, readWhys, taskName, type WhyMetric } from "../model";
+import { type Data, isTrue, objectName, readTimelines, readWhys, taskName, type WhyMetric } from "../model";
 import { policyLabel } from "../parts";
 import type { State } from "../state";
 
@@ -103,7 +103,7 @@ export function episodeView(state: State, row: number): Child {
   const run = data.policies[p]!.runs.find((r) => r.seeds.includes(seed) && r.plan === task.plan) ?? data.policies[p]!.runs[0];
   const bad = e.reason[row]! >= 0;
   const truths = task.metrics.filter((m) => data.metrics[m]?.truth);
-  const holds = (m: number) => Math.floor(e.bits[row]! / 2 ** m) % 2 === 1;
+  const holds = (m: number) => isTrue(e, row, m);
 
   const timelines = readTimelines(), encoded = timelines.e?.[row];
   const timeline = encoded ? drawing(data, decode(encoded), timelines.bodies?.[t] ?? [], steps, timelines.every ?? 1) : null;

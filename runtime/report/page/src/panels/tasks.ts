@@ -1,7 +1,7 @@
 // From all tasks to one task's starts: who did what at which start. One episode more is panels/episode.ts.
 import { breakable, type Child, h, replace, scroller, select } from "../dom";
 import { percent, points, probability, rate, spoken } from "../format";
-import { type Data, metricIndex, objectName, taskName } from "../model";
+import { type Data, isTrue, metricIndex, objectName, taskName } from "../model";
 import { kConfounded, nothing, novel, type Panel, panel, policyLabel } from "../parts";
 import type { State } from "../state";
 import { episodeView } from "./episode";
@@ -12,7 +12,7 @@ interface Outcome { sign: string; word: string; kind: string }
 function outcomes(data: Data): (row: number) => Outcome {
   const bit = (name: string) => metricIndex(data, name);
   const [success, grasp, intention, wrong] = ["success", "grasp", "intention", "wrong"].map(bit) as [number, number, number, number];
-  const has = (row: number, m: number) => m >= 0 && Math.floor(data.episodes.bits[row]! / 2 ** m) % 2 === 1;
+  const has = (row: number, m: number) => m >= 0 && isTrue(data.episodes, row, m);
   return (row) => {
     if (data.episodes.reason[row]! >= 0) return { sign: "!", word: "invalid", kind: "invalid" };
     if (has(row, success)) return { sign: "\u25cf", word: "success", kind: "success" };
