@@ -21,9 +21,10 @@ void keep_message(void*, RTCError, const char* text) {
 
 Result<std::shared_ptr<EmbreeDevice>> EmbreeDevice::shared() {
   static std::mutex mutex;
-  static std::weak_ptr<EmbreeDevice> current;
+  // Never released: Embree starts a thread for that, and ends the program where the system has none.
+  static auto* const current = new std::shared_ptr<EmbreeDevice>();
   const std::scoped_lock lock(mutex);
-  if (auto device = current.lock()) return device;
+  if (*current) return *current;
   RTCDevice handle = rtcNewDevice("threads=1");
   if (handle == nullptr) {
     return Failure{.code = Fault::kRender,
@@ -33,7 +34,7 @@ Result<std::shared_ptr<EmbreeDevice>> EmbreeDevice::shared() {
   }
   rtcSetDeviceErrorFunction(handle, keep_message, nullptr);
   std::shared_ptr<EmbreeDevice> device(new EmbreeDevice(handle));
-  current = device;
+  *current = device;
   return device;
 }
 
