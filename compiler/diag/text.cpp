@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/printable.h"
 #include "runtime/base/utf8.h"
 
 namespace probe {
@@ -28,9 +29,6 @@ constexpr Range kWide[] = {{0x1100, 0x115f},   {0x2e80, 0x303e},   {0x3041, 0x33
                            {0x1f680, 0x1f6ff}, {0x1f900, 0x1f9ff}, {0x20000, 0x3fffd}};
 constexpr Range kZeroWidth[] = {
     {0x0300, 0x036f}, {0x200b, 0x200d}, {0x20d0, 0x20ff}, {0xfe00, 0xfe0f}};
-// Characters that move the cursor or reorder text; a terminal must not get them from a source file.
-constexpr Range kUnsafe[] = {{0x00, 0x1f},     {0x7f, 0x9f},     {0x200e, 0x200f},
-                             {0x2028, 0x202e}, {0x2060, 0x206f}, {0xfeff, 0xfeff}};
 
 template <std::size_t kCount>
 bool is_in(const Range (&ranges)[kCount], std::uint32_t code) {
@@ -71,7 +69,7 @@ class PrintedLine {
 
   static std::size_t width(std::uint32_t code, std::size_t column) {
     if (code == '\t') return kTabStop - column % kTabStop;
-    if (is_in(kUnsafe, code)) return 1;
+    if (is_unsafe(code)) return 1;
     if (code < 0x300) return 1;
     return is_in(kZeroWidth, code) ? 0 : is_in(kWide, code) ? 2 : 1;
   }
@@ -111,7 +109,7 @@ class PrintedLine {
       if (column >= from_) {
         if (character.code == '\t') {
           text_.append(columns, ' ');
-        } else if (character.code == 0xfffd || is_in(kUnsafe, character.code)) {
+        } else if (character.code == 0xfffd || is_unsafe(character.code)) {
           text_ += "\xef\xbf\xbd";
         } else {
           text_ += line_.substr(at, character.bytes);
@@ -184,7 +182,7 @@ class Painter {
     for (std::size_t at = 0; at < text.size();) {
       const Utf8Char character = character_at(text, at);
       const bool bad =
-          character.code == 0xfffd || (character.code != '\n' && is_in(kUnsafe, character.code));
+          character.code == 0xfffd || (character.code != '\n' && is_unsafe(character.code));
       if (bad) {
         out += character.code == '\t' ? " " : "\xef\xbf\xbd";
       } else {

@@ -14,8 +14,10 @@ struct CatalogueObject {
   double density = 0;  // kg/m3
 };
 
-// A .probe text with one object declaration a model. Names that are no identifiers get `model_`
-// before them and underscores in them.
+// A .probe text with one object declaration a model, which checks whatever the models are called.
+// Names that are no identifiers get `model_` before them and underscores in them, equal ones a
+// number behind them. Of a folder that no text can name, or a box or density that no plan can hold,
+// a comment says that it is left out.
 std::string catalogue_text(const std::vector<CatalogueObject>& objects);
 
 }  // namespace probe::assets

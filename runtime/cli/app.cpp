@@ -82,7 +82,7 @@ int run_program(int argc, char** argv, AddVerbs add_verbs, bool is_whole) {
     return report({Fault::kIo, "cannot be written", "standard output"});
   }
   if (!parsed.has_verb) {
-    fmt::print("{}", line.help());
+    put("{}", line.help());
     return kUser;
   }
   return exit;

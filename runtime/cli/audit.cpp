@@ -52,7 +52,7 @@ int audit_verb(const AuditArguments& arguments) {
         audit::check_table(*audited, *compiled, *plan, suite, *text, arguments.table);
     if (!checked) return report(checked.failure());
   }
-  fmt::print("{}", arguments.json ? audit::to_json(*audited) : audit::to_text(*audited));
+  put("{}", arguments.json ? audit::to_json(*audited) : audit::to_text(*audited));
   return kFine;
 }
 

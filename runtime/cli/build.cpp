@@ -63,10 +63,10 @@ void add_build(Verb app, int& exit) {
                          {"only_baselines", only_baselines(*plan, arguments->suite)},
                          {"episodes", plan->episodes().size()},
                          {"bytes", plan->bytes().size()}};
-      fmt::print("{}\n", json.dump(2));
+      put("{}\n", json.dump(2));
       return;
     }
-    fmt::print("{}\n", to_hex(plan->root()));
+    put("{}\n", to_hex(plan->root()));
     const std::size_t more = only_baselines(*plan, arguments->suite);
     say("{}: {} tasks{}, {} episodes, {} bytes\n", arguments->out, plan->tasks().size(),
         more == 0 ? "" : fmt::format(", {} of them only baselines of the others", more),

@@ -78,8 +78,8 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
 }
 
 void print_diagnostics(const CompiledText& text, bool json) {
-  if (!json) return say("{}", text.said);
-  fmt::print("{}", text.said);
+  if (!json) return say_drawn(text.said);
+  put("{}", text.said);
   std::fflush(stdout);
 }
 

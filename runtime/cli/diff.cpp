@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/load.h"
 #include "runtime/inspect/plan_diff.h"
 #include "runtime/inspect/task_diff.h"
@@ -24,7 +25,7 @@ int diff_two_tasks(const DiffArguments& arguments) {
   const auto b = find_task(*loaded.plan, arguments.b, loaded.exit);
   if (!b) return loaded.exit;
   const auto diff = inspect::diff_tasks(*loaded.plan, *a, *b);
-  fmt::print("{}", arguments.json ? diff.dump(2) + "\n" : inspect::diff_text(diff));
+  put("{}", arguments.json ? diff.dump(2) + "\n" : inspect::diff_text(diff));
   return kFine;
 }
 
@@ -39,7 +40,7 @@ int diff_two_plans(const DiffArguments& arguments) {
   LoadedPlan b = load_plan(arguments.a, arguments.assets);
   if (!b.plan) return b.exit;
   const auto diff = inspect::diff_plans(*a.plan, *b.plan);
-  fmt::print("{}", arguments.json ? diff.dump(2) + "\n" : inspect::plan_diff_text(diff));
+  put("{}", arguments.json ? diff.dump(2) + "\n" : inspect::plan_diff_text(diff));
   return kFine;
 }
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/load.h"
 
 namespace probe::cli {
@@ -24,11 +25,11 @@ void add_dis(Verb app, int& exit) {
     exit = loaded.exit;
     if (!loaded.plan) return;
     if (arguments->task.empty()) {
-      fmt::print("{}", plan::disassemble(*loaded.plan));
+      put("{}", plan::disassemble(*loaded.plan));
       return;
     }
     if (const auto task = find_task(*loaded.plan, arguments->task, exit)) {
-      fmt::print("{}", plan::disassemble(*loaded.plan, *task));
+      put("{}", plan::disassemble(*loaded.plan, *task));
     }
   });
 }

@@ -7,6 +7,7 @@
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/output.h"
 #include "runtime/inspect/svg.h"
 #include "runtime/inspect/top_view.h"
@@ -31,12 +32,12 @@ int draw_verb(const DrawArguments& arguments, PhraseDrawing draw_phrases) {
   if (!view) return report(view.failure());
   const std::string svg = inspect::to_svg(*view);
   if (arguments.out.empty()) {
-    fmt::print("{}", svg);
+    put("{}", svg);
     return kFine;
   }
   const auto written = write_file(arguments.out, std::as_bytes(std::span(svg)));
   if (!written) return report(written.failure());
-  fmt::print("{}\n", arguments.out);
+  put("{}\n", arguments.out);
   return kFine;
 }
 

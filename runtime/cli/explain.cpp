@@ -6,6 +6,7 @@
 
 #include "compiler/diag/essays.h"
 #include "runtime/base/json.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/verbs.h"
 
 namespace probe::cli {
@@ -23,14 +24,14 @@ int list_codes(bool json) {
   Json all = Json::array();
   for (const Code code : all_codes()) all.push_back(row(code));
   if (json) {
-    fmt::print("{}\n", all.dump(2));
+    put("{}\n", all.dump(2));
     return kFine;
   }
   for (const Code code : all_codes()) {
     const CodeInfo& entry = info(code);
     const std::string allow =
         entry.slug.empty() ? "" : fmt::format("  @allow({}, \"...\")", entry.slug);
-    fmt::print("{}  {:<8} {}{}\n", entry.text, to_text(entry.severity), entry.title, allow);
+    put("{}  {:<8} {}{}\n", entry.text, to_text(entry.severity), entry.title, allow);
   }
   return kFine;
 }
@@ -59,9 +60,9 @@ int explain(const std::string& word, bool json) {
   if (json) {
     Json entry = row(*code);
     entry["essay"] = essay(*code);
-    fmt::print("{}\n", entry.dump(2));
+    put("{}\n", entry.dump(2));
   } else {
-    fmt::print("{}", essay(*code));
+    put("{}", essay(*code));
   }
   return kFine;
 }

@@ -43,7 +43,7 @@ int format_one(const std::string& path, bool check, Tally& tally) {
   if (!text) return report(text.failure());
   if (!text->has_value()) {
     const bool colour = isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
-    say("{}", render_text(diagnostics, sources, {.colour = colour}));
+    say_drawn(render_text(diagnostics, sources, {.colour = colour}));
     return kUser;
   }
   if (**text == sources.file(*id).text()) return kFine;
@@ -74,10 +74,10 @@ void add_fmt(Verb app, int& exit) {
       exit = std::max(exit, format_one(file, arguments->check, tally));
     }
     if (arguments->json) {
-      fmt::print("{}\n", Json(tally.changed).dump());
+      put("{}\n", Json(tally.changed).dump());
       return;
     }
-    for (const std::string& file : tally.changed) fmt::print("{}\n", file);
+    for (const std::string& file : tally.changed) put("{}\n", file);
     if (!tally.changed.empty()) {
       say("{} of {} files {}\n", tally.changed.size(), arguments->files.size(),
           arguments->check ? "not in canonical layout" : "laid out anew");

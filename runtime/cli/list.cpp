@@ -32,9 +32,9 @@ int count_text(const ListArguments& arguments) {
   say("{}", render_text(compilation.diagnostics, compilation.sources));
   if (!compilation.ok) return kUser;
   const Json numbers = {{"tasks", counted->counts.tasks}, {"episodes", counted->counts.episodes}};
-  fmt::print("{}", arguments.json ? numbers.dump() + "\n"
-                                  : fmt::format("{} tasks, {} episodes\n", counted->counts.tasks,
-                                                counted->counts.episodes));
+  put("{}", arguments.json ? numbers.dump() + "\n"
+                           : fmt::format("{} tasks, {} episodes\n", counted->counts.tasks,
+                                         counted->counts.episodes));
   return kFine;
 }
 
@@ -49,11 +49,11 @@ int list_verb(const ListArguments& arguments) {
       fmt::format("{} tasks, {} episodes\n", count["tasks"].get<std::size_t>(),
                   count["episodes"].get<std::size_t>());
   if (arguments.count) {
-    fmt::print("{}", arguments.json ? count.dump() + "\n" : summary);
+    put("{}", arguments.json ? count.dump() + "\n" : summary);
     return kFine;
   }
   const Json list = inspect::list(*loaded.plan, *tasks);
-  fmt::print("{}", arguments.json ? list.dump(2) + "\n" : inspect::list_text(list));
+  put("{}", arguments.json ? list.dump(2) + "\n" : inspect::list_text(list));
   if (!arguments.json) say("{}", summary);
   return kFine;
 }
@@ -64,7 +64,7 @@ int show_verb(const ListArguments& arguments) {
   const auto index = find_task(*loaded.plan, arguments.task, loaded.exit);
   if (!index) return loaded.exit;
   const Json task = inspect::describe(*loaded.plan, *index);
-  fmt::print("{}", arguments.json ? task.dump(2) + "\n" : inspect::describe_text(task));
+  put("{}", arguments.json ? task.dump(2) + "\n" : inspect::describe_text(task));
   return kFine;
 }
 

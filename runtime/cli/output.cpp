@@ -2,14 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <iterator>
+#include <string_view>
 
+#include "runtime/assets/manifest.h"
+#include "runtime/base/asset_path.h"
 #include "runtime/base/paths.h"
 
 namespace probe::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Kinds of files that people make and no verb writes.
+bool is_only_read(const fs::path& path) {
+  constexpr std::string_view kKinds[] = {".urdf", ".profile"};
+  std::string kind = path.extension().string();
+  for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::ranges::find(kKinds, kind) != std::end(kKinds) ||
+         std::ranges::find(kMeshExtensions, kind) != kMeshExtensions.end();
+}
 
 bool is_part_of_a_run(std::string_view name) {
   return name.starts_with("results.sqlite") || name == "suite.plan" || name == "lock" ||
@@ -32,9 +47,22 @@ Status check_output(const std::string& out, std::span<const std::string> inputs)
   if (path.extension() == ".probe" && is_there(path.string())) {
     return refuse("is Probe text and is not written over; give -o another name");
   }
+  if (is_only_read(path) && is_there(path.string())) {
+    return refuse("is no file that a verb writes and is not written over; give -o another name");
+  }
   for (fs::path dir = path.parent_path(); dir.has_relative_path(); dir = dir.parent_path()) {
+    const std::string below = path.lexically_relative(dir).generic_string();
+    if (is_there((dir / "manifest.json").string()) && is_there(path.string())) {
+      const auto manifest = assets::read_manifest(dir.string());
+      if (manifest && (below == "manifest.json" || manifest->find(below) != nullptr)) {
+        return refuse(
+            fmt::format("belongs to the assets in `{}` and is not written over; give -o another "
+                        "name",
+                        dir.string()));
+      }
+    }
     if (!is_there((dir / "results.sqlite").string())) continue;
-    if (is_part_of_a_run(path.lexically_relative(dir).begin()->string())) {
+    if (is_part_of_a_run(below.substr(0, below.find('/')))) {
       return refuse(
           fmt::format("belongs to the run in `{}` and is not written over; give -o another name",
                       dir.string()));

@@ -9,9 +9,10 @@
 
 namespace probe::cli {
 
-// Fails (kUsage, where = out) when `out` is one of the files that the verb reads, Probe text that
-// is there, or part of a run's folder (its database, plan, lock, traces and videos), also through
-// links. An empty `out` is none.
+// Fails (kUsage, where = out) when `out` is one of the files that the verb reads, Probe text, a
+// mesh, URDF or profile that is there, a file that an asset folder's manifest lists, or part of a
+// run's folder (its database, plan, lock, traces and videos), also through links. An empty `out` is
+// none.
 Status check_output(const std::string& out, std::span<const std::string> inputs = {});
 
 }  // namespace probe::cli

@@ -1,6 +1,7 @@
 #include "runtime/cli/plan_table.h"
 
 #include <fmt/format.h>
+#include "runtime/base/say.h"
 
 namespace probe::cli {
 
@@ -24,7 +25,7 @@ void add_plan_table(Verb app, int& exit, PlanTable table) {
     const auto tasks = select_tasks(*loaded.plan, arguments->suite, exit);
     if (!tasks) return;
     const auto made = table.make(loaded, *tasks);
-    fmt::print("{}", arguments->json ? made.dump(2) + "\n" : table.text(made));
+    put("{}", arguments->json ? made.dump(2) + "\n" : table.text(made));
   });
 }
 

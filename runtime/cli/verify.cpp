@@ -66,7 +66,7 @@ void print_json(const plan::Plan& plan, const Counts& counts, bool fast) {
                                 {"ignorable", (entry.flags & plan::kIgnorable) != 0},
                                 {"sha256", to_hex(Sha256{entry.sha256})}});
   }
-  fmt::print("{}\n", json.dump(1));
+  put("{}\n", json.dump(1));
 }
 
 int verify_verb(const VerifyArguments& arguments) {
@@ -76,7 +76,7 @@ int verify_verb(const VerifyArguments& arguments) {
   if (arguments.json) {
     print_json(*plan, counts, arguments.fast);
   } else {
-    fmt::print("{}\n", to_hex(plan->root()));
+    put("{}\n", to_hex(plan->root()));
   }
   say("{}: good, {} tasks, {} episodes, {} bytes\n", arguments.file, plan->tasks().size(),
       plan->episodes().size(), plan->bytes().size());

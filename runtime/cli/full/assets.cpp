@@ -26,7 +26,7 @@ int import_verb(AssetsArguments& arguments) {
   std::size_t counts[4] = {};
   for (const assets::ImportLine& line : imported->lines) {
     ++counts[static_cast<std::size_t>(line.verdict)];
-    fmt::print("{:<8} {}  {}\n", assets::to_word(line.verdict), line.name, line.text);
+    put("{:<8} {}  {}\n", assets::to_word(line.verdict), line.name, line.text);
   }
   say("{}: {} taken, {} odd, {} missing, {} filled in; {} files, {:.1f} MB\n", arguments.options.to,
       counts[0], counts[1], counts[2], counts[3], imported->files,
@@ -53,7 +53,7 @@ void add_pack(Verb assets, int& exit) {
       exit = report(packed.failure());
       return;
     }
-    fmt::print("{}: {}\n", options->to, *packed);
+    put("{}: {}\n", options->to, *packed);
     exit = kFine;
   });
 }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/say.h"
+#include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
@@ -24,10 +26,14 @@ int compare_verb(const CompareArguments& arguments) {
   }
   const auto compared = report::compare(*benchmark, 0, 1, {.metrics = arguments.metrics});
   if (!compared) return report(compared.failure());
+  // Rows that their traces do not bear are in no number, in JSON neither.
+  for (const report::Note& note : benchmark->notes) {
+    if (note.level == "bad") say_notes({&note, 1});
+  }
   if (arguments.json) {
-    fmt::print("{}\n", report::to_json(*benchmark, *compared).dump(1));
+    put("{}\n", report::to_json(*benchmark, *compared).dump(1));
   } else {
-    fmt::print("{}", report::to_text(*benchmark, *compared));
+    put("{}", report::to_text(*benchmark, *compared));
   }
   return kFine;
 }

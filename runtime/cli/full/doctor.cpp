@@ -1,6 +1,7 @@
 // vlaprobe doctor
 #include <fmt/format.h>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/compile.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/doctor/doctor.h"
@@ -29,9 +30,9 @@ int examine(const DoctorArguments& arguments) {
   const auto report = doctor::examine(arguments.assets.root, compile_suite);
   if (!report) return cli::report(report.failure());
   if (arguments.json) {
-    fmt::print("{}\n", doctor::to_json(*report, version()));
+    put("{}\n", doctor::to_json(*report, version()));
   } else {
-    fmt::print("{}", doctor::to_text(*report, version()));
+    put("{}", doctor::to_text(*report, version()));
   }
   return report->fine() ? kFine : kOutside;
 }

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "runtime/base/glob.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/show/phrase_sheet.h"
 
@@ -48,7 +49,7 @@ int draw_phrases(const LoadedPlan& loaded, const DrawArguments& arguments) {
   const auto written =
       show::write_phrases(*loaded.plan, *rows, arguments.out, arguments.assets.root);
   if (!written) return report(written.failure());
-  fmt::print("{}\n", arguments.out);
+  put("{}\n", arguments.out);
   return kFine;
 }
 

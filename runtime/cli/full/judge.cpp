@@ -50,7 +50,7 @@ void print_json(const rejudge::RejudgeReport& report, const plan::Plan& plan) {
                      {"left_out", report.left_out},
                      {"metrics", changes_json(report.metrics)},
                      {"episodes", Json::parse(store::results_to_json(report.rows))}};
-  fmt::print("{}\n", json.dump(1));
+  put("{}\n", json.dump(1));
 }
 
 void print_json(const std::vector<rejudge::Reading>& readings, const plan::Plan& plan) {
@@ -66,24 +66,23 @@ void print_json(const std::vector<rejudge::Reading>& readings, const plan::Plan&
                               {"metrics", changes_json(reading.metrics)},
                               {"tasks", std::move(tasks)}});
   }
-  fmt::print("{}\n", json.dump(1));
+  put("{}\n", json.dump(1));
 }
 
 void print_table(const rejudge::RejudgeReport& report) {
   std::size_t width = 6;
   for (const rejudge::MetricChange& m : report.metrics) width = std::max(width, m.name.size());
-  fmt::print("{:<{}}  {:>9}  {:>9}  {:>6}  {:>6}\n", "metric", width, "before", "after", "lost",
-             "gained");
+  put("{:<{}}  {:>9}  {:>9}  {:>6}  {:>6}\n", "metric", width, "before", "after", "lost", "gained");
   for (const rejudge::MetricChange& m : report.metrics) {
     if (m.episodes == 0) {
-      fmt::print("{:<{}}  {:>9}  {:>9}\n", m.name, width, m.only_before > 0 ? "judged" : "-",
-                 m.only_after > 0 ? "judged" : "-");
+      put("{:<{}}  {:>9}  {:>9}\n", m.name, width, m.only_before > 0 ? "judged" : "-",
+          m.only_after > 0 ? "judged" : "-");
     } else if (m.is_bool) {
-      fmt::print("{:<{}}  {:>4} / {:<2}  {:>4} / {:<2}  {:>6}  {:>6}\n", m.name, width, m.before,
-                 m.episodes, m.after, m.episodes, m.lost, m.gained);
+      put("{:<{}}  {:>4} / {:<2}  {:>4} / {:<2}  {:>6}  {:>6}\n", m.name, width, m.before,
+          m.episodes, m.after, m.episodes, m.lost, m.gained);
     } else {
-      fmt::print("{:<{}}  {:>9.4g}  {:>9.4g}  {:>6} of {} changed\n", m.name, width, m.mean_before,
-                 m.mean_after, m.changed, m.episodes);
+      put("{:<{}}  {:>9.4g}  {:>9.4g}  {:>6} of {} changed\n", m.name, width, m.mean_before,
+          m.mean_after, m.changed, m.episodes);
     }
   }
 }
@@ -98,7 +97,7 @@ void print_cells(const std::vector<std::vector<std::string>>& rows) {
   for (const auto& row : rows) {
     std::string line = fmt::format("{:<{}}", row[0], widths[0]);
     for (std::size_t i = 1; i < row.size(); ++i) line += fmt::format("  {:>{}}", row[i], widths[i]);
-    fmt::print("{}\n", line);
+    put("{}\n", line);
   }
 }
 

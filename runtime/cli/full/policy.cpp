@@ -1,6 +1,7 @@
 // vlaprobe policy: servers tested, ready profiles shown.
 #include <fmt/format.h>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/conformance.h"
@@ -20,9 +21,9 @@ int test_verb(const PolicyArguments& arguments) {
   const auto tested = servers::test_server(*choice);
   if (!tested) return report(tested.failure());
   if (arguments.json) {
-    fmt::print("{}\n", servers::to_json(*tested));
+    put("{}\n", servers::to_json(*tested));
   } else {
-    fmt::print("{}", servers::to_text(*tested));
+    put("{}", servers::to_text(*tested));
   }
   return tested->is_wrong() ? kOutside : kFine;
 }
@@ -32,20 +33,19 @@ int profiles_verb(const PolicyArguments& arguments) {
     for (const servers::ProfileText& ready : servers::ready_profiles()) {
       const auto profile = servers::find_profile(ready.name);
       if (!profile) return report(profile.failure());
-      fmt::print("{:<20}{:<11}{}\n", ready.name, servers::to_word(profile->protocol),
-                 profile->about);
+      put("{:<20}{:<11}{}\n", ready.name, servers::to_word(profile->protocol), profile->about);
     }
     return kFine;
   }
   for (const servers::ProfileText& ready : servers::ready_profiles()) {
     if (ready.name != arguments.profile) continue;
-    fmt::print("{}", ready.text);
+    put("{}", ready.text);
     return kFine;
   }
   // A file: read, checked and written out as it is understood.
   const auto profile = servers::find_profile(arguments.profile);
   if (!profile) return report(profile.failure());
-  fmt::print("{}", servers::to_text(*profile));
+  put("{}", servers::to_text(*profile));
   return kFine;
 }
 

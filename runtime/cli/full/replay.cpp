@@ -38,8 +38,8 @@ int replay_verb(const ReplayArguments& arguments) {
     say("vlaprobe: {} differs from its trace: {}\n", name, report_or->difference);
     return kOutside;
   }
-  fmt::print("{}: {} steps {}\n", name, report_or->steps,
-             options.verify ? "identical, bit for bit" : "repeated");
+  put("{}: {} steps {}\n", name, report_or->steps,
+      options.verify ? "identical, bit for bit" : "repeated");
   return kFine;
 }
 

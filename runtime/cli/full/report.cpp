@@ -7,6 +7,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
+#include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/output.h"
 #include "runtime/report/episode_documents.h"
@@ -46,7 +47,9 @@ report::EpisodeDocuments read_traces(const report::Benchmark& benchmark,
 }
 
 Status write_report(const ReportArguments& arguments) {
-  PROBE_TRY(check_output(arguments.out));
+  std::vector<std::string> inputs = arguments.published;
+  inputs.push_back(arguments.floors);
+  PROBE_TRY(check_output(arguments.out, inputs));
   PROBE_ASSIGN(report::Benchmark benchmark,
                report::load(arguments.dirs, {.sets = arguments.sets, .prove = true}));
   report::PageOptions options{.title = arguments.title,
@@ -67,14 +70,13 @@ Status write_report(const ReportArguments& arguments) {
   if (!arguments.format.empty()) {
     const std::string text = report::table_text(benchmark, tables, options.published,
                                                 *report::table_format(arguments.format));
-    for (const report::Note& note : benchmark.notes)
-      say("{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
+    say_notes(benchmark.notes);
     if (!arguments.out.empty()) return write_file(arguments.out, std::as_bytes(std::span(text)));
-    fmt::print("{}", text);
+    put("{}", text);
     return {};
   }
   if (arguments.json) {
-    fmt::print("{}\n", dump(report::page_data(benchmark, tables, options), 1));
+    put("{}\n", dump(report::page_data(benchmark, tables, options), 1));
     if (arguments.out.empty()) return {};
   }
   report::EpisodeDocuments episodes = read_traces(benchmark, arguments);
@@ -85,8 +87,7 @@ Status write_report(const ReportArguments& arguments) {
                           .timelines = std::move(episodes.timelines),
                           .whys = std::move(episodes.whys)});
   PROBE_TRY(write_file(arguments.out, std::as_bytes(std::span(page))));
-  for (const report::Note& note : benchmark.notes)
-    say("{}: {}\n", note.level == "note" ? "note" : "warning", note.text);
+  say_notes(benchmark.notes);
   say("{}: {} {}, {} episodes, {:.1f} MB\n", arguments.out, benchmark.policies.size(),
       benchmark.policies.size() == 1 ? "policy" : "policies", benchmark.episodes.size(),
       static_cast<double>(page.size()) / 1e6);

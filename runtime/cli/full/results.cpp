@@ -26,8 +26,8 @@ void print_readings(const std::string& dir) {
   const auto calls = store::read_run_calls(dir);
   if (!calls) return;
   const store::ReadingSummary summary = store::summarize_readings(*calls);
-  for (const std::string& finding : summary.findings) fmt::print("{}\n", finding);
-  if (!summary.good.empty()) fmt::print("{}\n", summary.good);
+  for (const std::string& finding : summary.findings) put("{}\n", finding);
+  if (!summary.good.empty()) put("{}\n", summary.good);
 }
 
 // Whether what makes tasks different reached the policy.
@@ -36,13 +36,13 @@ int delivery_verb(const ResultsArguments& arguments, std::span<const store::Resu
   if (!plan) return report({Fault::kStore, "its plan cannot be read", arguments.dir});
   const auto findings = run::check_delivery(*plan, rows);
   if (arguments.json) {
-    fmt::print("{}\n", run::to_json(findings));
+    put("{}\n", run::to_json(findings));
     return kFine;
   }
-  for (const run::DeliveryFinding& finding : findings) fmt::print("{}\n", finding.sentence);
+  for (const run::DeliveryFinding& finding : findings) put("{}\n", finding.sentence);
   print_readings(arguments.dir);
   if (findings.empty()) {
-    fmt::print("every instruction and picture that should differ reached the policy different\n");
+    put("every instruction and picture that should differ reached the policy different\n");
   }
   return kFine;
 }
@@ -55,12 +55,12 @@ int results_verb(const ResultsArguments& arguments) {
   const std::vector<store::ResultRow>& rows = proven->rows;
   if (arguments.delivery) return std::max(exit, delivery_verb(arguments, rows));
   if (arguments.json) {
-    fmt::print("{}\n", store::results_to_json(rows));
+    put("{}\n", store::results_to_json(rows));
   } else if (arguments.csv) {
-    fmt::print("{}", store::results_to_csv(rows));
+    put("{}", store::results_to_csv(rows));
   } else {
     const auto plan = rejudge::stored_plan(arguments.dir);
-    fmt::print("{}", rejudge::tally_text(rows, plan ? &*plan : nullptr));
+    put("{}", rejudge::tally_text(rows, plan ? &*plan : nullptr));
     print_readings(arguments.dir);
   }
   return exit;

@@ -65,12 +65,12 @@ class ProgressPrinter {
     if (now - drawn_ < kRedrawEvery && progress.done + progress.skipped < progress.total) return;
     drawn_ = now;
     // The last column stays free: a full line would wrap.
-    say("\r\033[K{}", progress_.terminal_line(now, *columns - 1, color_));
+    say_drawn("\r\033[K" + progress_.terminal_line(now, *columns - 1, color_));
     std::fflush(stderr);
     dirty_ = true;
   }
   void clear() {
-    if (dirty_) say("\r\033[K");
+    if (dirty_) say_drawn("\r\033[K");
     dirty_ = false;
   }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
 #include "runtime/cli/output.h"
@@ -34,7 +35,7 @@ bool may_write(const SheetArguments& arguments, int& exit) {
 
 int written(const Status& status, const std::string& path) {
   if (!status) return report(status.failure());
-  fmt::print("{}\n", path);
+  put("{}\n", path);
   return kFine;
 }
 

@@ -30,7 +30,7 @@ int sweep_verb(const SweepArguments& arguments) {
   const auto swept = run::sweep(*loaded.plan, sweeping);
   if (!swept) return report(swept.failure());
   print_summary(swept->whole);
-  fmt::print("{}\n", swept->scores[swept->best].checkpoint);
+  put("{}\n", swept->scores[swept->best].checkpoint);
   return swept->whole.invalid ? kOutside : kFine;
 }
 

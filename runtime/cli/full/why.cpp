@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/json.h"
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/explain.h"
 
@@ -38,11 +39,11 @@ void print_json(const rejudge::EpisodeWhy& why) {
     }
     json["metrics"].push_back(std::move(entry));
   }
-  fmt::print("{}\n", json.dump(1));
+  put("{}\n", json.dump(1));
 }
 
 void print_metric(const rejudge::MetricWhy& metric) {
-  fmt::print("{} = {} {} ({})\n", metric.name, metric.shown, metric.when, metric.readout);
+  put("{} = {} {} ({})\n", metric.name, metric.shown, metric.when, metric.readout);
   const auto left = [](const rejudge::Condition& c) {
     return c.bodies.empty() ? c.text : c.text + "  [" + c.bodies + "]";
   };
@@ -53,13 +54,13 @@ void print_metric(const rejudge::MetricWhy& metric) {
   }
   const std::string* file = nullptr;
   for (const rejudge::Condition& c : metric.conditions) {
-    if (!c.file.empty() && (file == nullptr || *file != c.file)) fmt::print("  {}\n", c.file);
+    if (!c.file.empty() && (file == nullptr || *file != c.file)) put("  {}\n", c.file);
     file = &c.file;
     // What did not decide stands without the mark.
-    fmt::print("{:>6} {} {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "",
-               c.decides ? '>' : '|', left(c), text_width, c.measured, measured_width,
-               c.is_number ? "" : (c.truth ? "true" : "false"),
-               c.alike > 0 ? fmt::format("  and {} alike", c.alike) : "");
+    put("{:>6} {} {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "",
+        c.decides ? '>' : '|', left(c), text_width, c.measured, measured_width,
+        c.is_number ? "" : (c.truth ? "true" : "false"),
+        c.alike > 0 ? fmt::format("  and {} alike", c.alike) : "");
   }
 }
 
@@ -71,10 +72,10 @@ int why_verb(const WhyArguments& arguments) {
     print_json(*why);
     return kFine;
   }
-  fmt::print("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
-  if (why->invalid) fmt::print("invalid: {}\n", *why->invalid);
+  put("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
+  if (why->invalid) put("invalid: {}\n", *why->invalid);
   for (const rejudge::MetricWhy& metric : why->metrics) {
-    fmt::print("\n");
+    put("\n");
     print_metric(metric);
   }
   return kFine;

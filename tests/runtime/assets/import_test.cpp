@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/emit/compile.h"
 #include "runtime/assets/asset_check.h"
 #include "runtime/assets/catalogue_text.h"
 #include "runtime/assets/import.h"
@@ -228,6 +229,39 @@ TEST_CASE("names that the language cannot have are made so") {
   CHECK(says(text, "object model_7up_can {"));
   CHECK(says(text, "box (-100cm, -100cm, 0cm) .. (100cm, 100cm, 200cm); density 50kg/m3"));
   CHECK(says(text, "name \"7up can\""));
+}
+
+TEST_CASE("the catalogue's text checks, whatever the models are called") {
+  const Vec3 low(-1, -1, 0), high(1, 1, 2);
+  std::vector<CatalogueObject> objects;
+  for (const std::string folder :
+       {"-dash", "a-b", "a_b", "A B", "_", "--", "", "quo\"te", "back\\slash", "new\nline",
+        "esc\x1b[2J", "caf\xc3\xa9", "object", "task", "001", ".hidden", "(x)", "sp  ace "}) {
+    objects.push_back({folder, low, high, 700});
+  }
+  objects.push_back({std::string(255, 'x'), low, high, 700});
+  objects.push_back({"flat", low, {1, 1, 0}, 700});
+  objects.push_back({"endless", low, {1, 1, 1e300}, 700});
+  objects.push_back({"nothing", low, high, 0});
+  objects.push_back({"heavy", low, high, 1e300});
+  const std::string text = catalogue_text(objects);
+  CHECK(says(text, "object model_dash {"));
+  CHECK(says(text, "object a_b {"));
+  CHECK(says(text, "object a_b_2 {"));
+  CHECK(says(text, "object a_b_3 {"));
+  CHECK(says(text, "# left out, for its name: esc [2J"));
+  CHECK(says(text, "# left out, for its box or density: flat"));
+  TemporaryFolder folder;
+  for (const CatalogueObject& object : objects) {
+    if (object.folder.empty()) continue;
+    write_text(folder / "assets/objects/" + object.folder + "/visual.glb", "x");
+    write_text(folder / "assets/objects/" + object.folder + "/collision.obj", obj_box());
+  }
+  const std::string path = write_text(folder / "t/objects.probe", text);
+  const auto checked = check(std::span(&path, 1), {.asset_root = folder / "assets"});
+  REQUIRE_MESSAGE(checked.ok(), (checked ? "" : to_text(checked.failure())));
+  for (const Diagnostic* found : checked->diagnostics.in_source_order())
+    CHECK_MESSAGE(found->severity != Severity::kError, found->message);
 }
 
 }  // namespace

@@ -17,6 +17,20 @@ TEST_CASE("a long text is cut between characters and says so") {
   CHECK(printable("abcde\xc3\xa4", 6) == "abcde...");
 }
 
+TEST_CASE("a terminal gets no escape, no control and nothing that turns text around") {
+  CHECK(shown("one\n\ttwo \xc3\xa4 \xd7\x90\xd7\x91") == "one\n\ttwo \xc3\xa4 \xd7\x90\xd7\x91");
+  const std::string mark = "\xef\xbf\xbd";
+  CHECK(shown("a\x1b[2Jb\rc\xc2\x9b"
+              "d\xff") == "a" + mark + "[2Jb" + mark + "c" + mark + "d" + mark);
+  // Overrides, isolates, marks of direction, separators, tags, a byte order mark.
+  for (const char* turned : {"\xe2\x80\xae", "\xe2\x81\xa6", "\xe2\x80\x8f", "\xd8\x9c",
+                             "\xe2\x80\xa8", "\xf3\xa0\x81\xa1", "\xef\xbb\xbf"}) {
+    CHECK(shown(std::string("x") + turned + "y") == "x" + mark + "y");
+    CHECK(printable(std::string("x") + turned + "y", 9) == "x y");
+    CHECK_FALSE(is_printable(turned));
+  }
+}
+
 TEST_CASE("a text is printable or it is not") {
   CHECK(is_printable(""));
   CHECK(is_printable("pi0 \xc3\xa4?"));

@@ -144,6 +144,22 @@ TEST_CASE(
   CHECK_FALSE(fs::exists(box / "out"));
 }
 
+TEST_CASE("a name that would repaint the terminal is shown without its escapes") {
+  const Sandbox box;
+  const std::string name =
+      "a\x1b[2J\xe2\x80\xae"
+      "b\r";
+  for (const std::string& verb : {"check '" + name + ".probe'", "results '" + name + "'",
+                                  "export '" + name + "' -o x.jsonl", "'" + name + "'"}) {
+    const Outcome refused = box.vlaprobe(verb);
+    CHECK(refused.exit != 0);
+    CHECK(!refused.err.empty());
+    CHECK(refused.err.find('\x1b') == std::string::npos);
+    CHECK(refused.err.find('\r') == std::string::npos);
+    CHECK(refused.err.find("\xe2\x80\xae") == std::string::npos);
+  }
+}
+
 TEST_CASE("results of a folder without a run say so") {
   Sandbox box;
   const Outcome outcome = box.vlaprobe("results nowhere");

@@ -1,6 +1,8 @@
 // Two runs side by side and the tables of a report, as a user asks for them.
 #include <doctest/doctest.h>
 
+#include <filesystem>
+
 #include "runtime/base/json.h"
 #include "tests/runtime/cli/program.h"
 
@@ -33,6 +35,16 @@ TEST_CASE("compare says in words what differs, report gives the tables, both ref
   const Outcome json = box.vlaprobe("compare reach null --json --metrics intention");
   REQUIRE(json.exit == 0);
   CHECK(probe::Json::parse(json.out)["rows"][0]["a"]["k"] == 4);
+
+  // A row that its trace does not bear is in no number, and is named whatever is written.
+  std::filesystem::copy(box / "null", box / "edited", std::filesystem::copy_options::recursive);
+  std::filesystem::remove(box / "edited/traces/carrot_on_plate/1-42.trace");
+  for (const char* form : {"", "--json"}) {
+    const Outcome edited = box.vlaprobe(std::string("compare reach edited ") + form);
+    REQUIRE_MESSAGE(edited.exit == 0, edited.err);
+    CHECK(edited.err.find("carrot_on_plate episode 1 seed 42 is left out") != std::string::npos);
+  }
+  CHECK(words.err.find("left out") == std::string::npos);
 
   const Outcome csv = box.vlaprobe("report reach null --format csv");
   REQUIRE_MESSAGE(csv.exit == 0, csv.err);

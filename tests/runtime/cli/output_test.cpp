@@ -60,6 +60,28 @@ TEST_CASE("what a run is made of is not written over, also through links") {
   }
 }
 
+TEST_CASE("what assets are made of is not written over, also through links") {
+  const test::Sandbox box;
+  test::write_file(box / "own/cup.GLB", "x");
+  test::write_file(box / "own/my.profile", "x");
+  test::write_file(box / "assets/photo.png", "x");
+  test::write_file(box / "assets/manifest.json",
+                   R"({"files": [{"path": "photo.png", "bytes": 1, "sha256": "00"}]})");
+  fs::create_symlink("assets/photo.png", box / "link.png");
+  for (const char* out : {"own/cup.GLB", "own/my.profile"}) {
+    CAPTURE(out);
+    CHECK(refusal(box / out).starts_with("is no file that a verb writes"));
+  }
+  for (const char* out : {"assets/photo.png", "link.png", "assets/manifest.json"}) {
+    CAPTURE(out);
+    CHECK(refusal(box / out).starts_with("belongs to the assets in `"));
+  }
+  for (const char* out : {"assets/page.html", "own/new.glb", "own/picture.png"}) {
+    CAPTURE(out);
+    CHECK(refusal(box / out).empty());
+  }
+}
+
 // The verbs themselves, with files that would be lost.
 TEST_CASE("build and draw leave the text and the plan that they were given") {
   const test::Sandbox box;

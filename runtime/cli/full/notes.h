@@ -1,0 +1,13 @@
+// What a report and a comparison have to say about the runs beside their numbers, for people.
+#pragma once
+
+#include <span>
+
+#include "runtime/report/benchmark.h"
+
+namespace probe::cli {
+
+// One line each on standard error: "note: ..." or "warning: ...".
+void say_notes(std::span<const report::Note> notes);
+
+}  // namespace probe::cli
