@@ -10,10 +10,10 @@
 namespace probe::expert {
 namespace {
 
-constexpr int kDirections = 16;
+constexpr int kDirections = 16;                     // around the source
 constexpr std::array kDistances{0.10, 0.13, 0.16};  // m from where the source is
 constexpr double kRoomy = 0.04;                     // m between outlines; more earns nothing
-constexpr double kNarrow = 0.015;
+constexpr double kNarrow = 0.015;                   // m between outlines; no spot has less
 constexpr double kOffTarget = 0.03;  // m beyond the target's half diagonal, from centre to centre
 constexpr double kAbove = 0.08;      // m over the surface
 constexpr double kHalf = 0.01;       // m, of the square that stands for the spot

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kYaws = 36;  // over half a turn; the other half is the same grasp turned round
-constexpr double kAlongStep = 0.005;  // m, positions along the object
-constexpr double kAlongMost = 0.030;
+constexpr double kAlongStep = 0.005;    // m, positions along the object
+constexpr double kAlongMost = 0.030;    // m to either side of its centre
 constexpr double kSideMargin = 0.0008;  // m, between each open finger and the object
 constexpr double kEasySide = 0.006;     // m, wider earns nothing more
 constexpr double kNearest = 0.002;      // m, to another object

@@ -10,7 +10,7 @@ namespace probe::expert {
 namespace {
 
 constexpr int kFarthest = 3;  // blocks that a residual couples: third differences
-constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6;
+constexpr double kFirstDamping = 1e-4, kMostDamping = 1e6;  // times the diagonal of J^T J
 
 // Cost at the path; fills the equations.
 double linearise(const Path& path, const Residuals& residuals, NormalEquations& equations) {

@@ -161,7 +161,9 @@ constexpr int kFingerBalls = 8;  // the first of gripper_balls: two fingers, two
 
 std::vector<Ball> gripper_balls(const robot::HandShape& g, double parted) {
   std::vector<Ball> out;
-  const double thick = 0.5 * (g.outside_half - g.opening_half) - 0.001;
+  // Half a finger's thickness less 1 mm, m; not beyond half its width.
+  const double thick =
+      std::clamp(0.5 * (g.outside_half - g.opening_half) - 0.001, 0.0, g.finger_half);
   const double middle = parted + thick + 0.001;
   const double side = g.finger_half - thick;
   for (const double y : {-middle, middle}) {
@@ -170,10 +172,11 @@ std::vector<Ball> gripper_balls(const robot::HandShape& g, double parted) {
       out.push_back(ball(-0.4 * g.palm_above, y, z, thick));
     }
   }
-  constexpr double kPalm = 0.014;
+  constexpr double kPalm = 0.014;  // m: six balls of it leave no gap in the WidowX's palm
+  const double palm = std::min({kPalm, g.palm_half, 0.5 * (g.palm_back + g.palm_front)});
   for (const double y : {-1.0, 0.0, 1.0}) {
-    for (const double z : {-g.palm_back + kPalm, g.palm_front - kPalm}) {
-      out.push_back(ball(-g.palm_above - kPalm, y * (g.palm_half - kPalm), z, kPalm));
+    for (const double z : {-g.palm_back + palm, g.palm_front - palm}) {
+      out.push_back(ball(-g.palm_above - palm, y * (g.palm_half - palm), z, palm));
     }
   }
   return out;

@@ -16,9 +16,9 @@ namespace {
 constexpr int kTurns = 12;             // over a full turn
 constexpr double kTouch = 0.004;       // m, where the smooth path ends and feeling begins
 constexpr double kComfortable = 0.01;  // m of clearance; more earns nothing
-constexpr double kFeet = 0.004;        // m
-constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};
-constexpr std::size_t kMostPlaces = 10;
+constexpr double kFeet = 0.004;        // m: how low of the source is its feet
+constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};  // m, let go that much higher
+constexpr std::size_t kMostPlaces = 10;              // put to inverse kinematics
 
 Eigen::Matrix2d turn_by(double angle) {
   const SinCos t = portable_sincos(angle);

@@ -18,7 +18,7 @@ constexpr double kLargestTurn = 0.60;   // rad
 
 constexpr int kBeforeTrust =
     3;  // control steps until the drives are known well enough to doubt the target
-constexpr double kBelieved = 0.5;
+constexpr double kBelieved = 0.5;  // of what the target seems to be off
 
 double share(double length, double most) { return length > most ? most / length : 1.0; }
 

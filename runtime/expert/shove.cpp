@@ -13,11 +13,11 @@ namespace probe::expert {
 namespace {
 
 constexpr int kDirections = 16;
-constexpr double kFar = 0.065;   // m the source shall move
-constexpr double kGap = 0.010;   // m between closed fingers and the source at first
-constexpr double kTips = 0.003;  // m above what the source stands on
-constexpr double kRoomy = 0.03;  // m; more earns nothing
-constexpr double kNearest = 0.002;
+constexpr double kFar = 0.065;      // m the source shall move
+constexpr double kGap = 0.010;      // m between closed fingers and the source at first
+constexpr double kTips = 0.003;     // m above what the source stands on
+constexpr double kRoomy = 0.03;     // m; more earns nothing
+constexpr double kNearest = 0.002;  // m
 constexpr std::size_t kMostWalls = 8, kMostShoves = 20;
 
 struct Candidate {

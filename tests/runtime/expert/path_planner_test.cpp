@@ -108,5 +108,24 @@ TEST_CASE("a source that leans on the target is taken above it") {
   CHECK(pick->grasp.tcp.position.z() - scene.hand.tip_below > scene.target.top);
 }
 
+TEST_CASE("a slim hand's balls lie within it") {
+  robot::HandShape slim;
+  slim.tip_below = 0.01;
+  slim.palm_above = 0.03;
+  slim.finger_half = 0.003;
+  slim.opening_half = 0.04;
+  slim.outside_half = 0.0415;  // fingers of 1.5 mm
+  slim.palm_half = 0.05;
+  slim.palm_back = slim.palm_front = 0.005;
+  for (const Ball& ball : gripper_balls(slim, slim.opening_half)) {
+    CHECK(ball.radius >= 0);
+    const bool is_palm = ball.center.x() < -slim.palm_above;
+    CHECK(std::abs(ball.center.y()) + ball.radius <=
+          (is_palm ? slim.palm_half : slim.outside_half) + 1e-12);
+    CHECK(std::abs(ball.center.z()) + ball.radius <=
+          (is_palm ? slim.palm_back : slim.finger_half) + 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace probe::expert
