@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -20,6 +21,14 @@ class TablePlan {
   explicit TablePlan(std::string asset_root) : root_(std::move(asset_root)) {}
 
   plan::Plan make(std::uint32_t episodes, std::uint32_t horizon) {
+    auto bytes = write(episodes, horizon, [](plan::Records&) {});
+    PROBE_CHECK(bytes.ok(), to_text(bytes.failure()).c_str());
+    return plan::Plan::from_bytes(std::move(*bytes)).value();
+  }
+
+  // `change` gets the records before they are hashed and laid out; the plan may be refused then.
+  Result<std::vector<std::byte>> write(std::uint32_t episodes, std::uint32_t horizon,
+                                       const std::function<void(plan::Records&)>& change) {
     using namespace plan;
     add_objects();
     add_robot();
@@ -33,9 +42,8 @@ class TablePlan {
     suite.members = w_.list(std::vector<std::uint32_t>{0});
     suite.seeds = w_.list(std::vector<std::uint32_t>{42, 7});
     w_.records.suites.push_back(suite);
-    auto bytes = w_.finish();
-    PROBE_CHECK(bytes.ok(), to_text(bytes.failure()).c_str());
-    return plan::Plan::from_bytes(std::move(*bytes)).value();
+    change(w_.records);
+    return w_.finish();
   }
 
  private:
