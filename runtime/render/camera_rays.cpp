@@ -12,23 +12,35 @@ Failure camera_failure(const std::string& message) {
   return {.code = Fault::kRender, .message = message, .where = "camera"};
 }
 
-// Of one tile, not yet of unit length.
+// Directions not yet of unit length, in the order of a tile's samples.
 struct Directions {
   alignas(64) std::array<double, kTileSamples> x, y, z;
+
+  void set(std::size_t s, const Vec3& d) {
+    x[s] = d.x();
+    y[s] = d.y();
+    z[s] = d.z();
+  }
 };
 
-PROBE_CLONES void normalise(const Directions& __restrict d, const double* __restrict axis,
-                            float* __restrict dx, float* __restrict dy, float* __restrict dz,
-                            float* __restrict cosine) {
+// A tile's directions are the sum of its column's part and its row's. `least`: the least cosine of
+// each place in a tile so far.
+PROBE_CLONES void normalise(const Directions& __restrict across, const Directions& __restrict down,
+                            const double* __restrict axis, float* __restrict dx,
+                            float* __restrict dy, float* __restrict dz, float* __restrict cosine,
+                            float* __restrict least) {
   const double ax = axis[0], ay = axis[1], az = axis[2];
   for (std::size_t s = 0; s < kTileSamples; ++s) {
-    const double x = d.x[s], y = d.y[s], z = d.z[s];
+    const double x = across.x[s] + down.x[s], y = across.y[s] + down.y[s],
+                 z = across.z[s] + down.z[s];
     const double length = std::sqrt(x * x + y * y + z * z);
     const double ux = x / length, uy = y / length, uz = z / length;
     dx[s] = static_cast<float>(ux);
     dy[s] = static_cast<float>(uy);
     dz[s] = static_cast<float>(uz);
-    cosine[s] = static_cast<float>(ux * ax + uy * ay + uz * az);
+    const auto c = static_cast<float>(ux * ax + uy * ay + uz * az);
+    cosine[s] = c;
+    least[s] = c < least[s] ? c : least[s];
   }
 }
 
@@ -98,32 +110,33 @@ Status make_camera_rays(const Camera& camera, CameraRays& rays) {
   // forward + (x - cx) / fx right is the same for a whole column, (y - cy) / fy down for a row.
   const Mat3& axes = camera.forward_left_up;
   const Vec3 forward = axes.col(0), right = -axes.col(1), down = -axes.col(2);
-  std::vector<Vec3> columns(static_cast<std::size_t>(rays.tiles_x) * kTileSide);
-  std::vector<Vec3> rows(static_cast<std::size_t>(rays.tiles_y) * kTileSide);
-  for (std::size_t x = 0; x < columns.size(); ++x) {
-    columns[x] = forward + (static_cast<double>(x) + 0.5 - camera.cx) / camera.fx * right;
-  }
-  for (std::size_t y = 0; y < rows.size(); ++y) {
-    rows[y] = (static_cast<double>(y) + 0.5 - camera.cy) / camera.fy * down;
+  std::vector<Directions> columns(static_cast<std::size_t>(rays.tiles_x));
+  for (std::size_t tile = 0; tile < columns.size(); ++tile) {
+    std::array<Vec3, kTileSide> steps;
+    for (std::size_t k = 0; k < kTileSide; ++k) {
+      const auto x = static_cast<double>(tile * kTileSide + k);
+      steps[k] = forward + (x + 0.5 - camera.cx) / camera.fx * right;
+    }
+    for (std::size_t s = 0; s < kTileSamples; ++s) columns[tile].set(s, steps[kTileOffsets[s].x]);
   }
   const double axis[3] = {forward.x(), forward.y(), forward.z()};
-  Directions d;
-  for (std::size_t tile = 0; tile < static_cast<std::size_t>(rays.tiles()); ++tile) {
-    const Vec3* left = columns.data() + tile % static_cast<std::size_t>(rays.tiles_x) * kTileSide;
-    const Vec3* top = rows.data() + tile / static_cast<std::size_t>(rays.tiles_x) * kTileSide;
-    for (std::size_t s = 0; s < kTileSamples; ++s) {
-      const Vec3& column = left[kTileOffsets[s].x];
-      const Vec3& row = top[kTileOffsets[s].y];
-      d.x[s] = column.x() + row.x();
-      d.y[s] = column.y() + row.y();
-      d.z[s] = column.z() + row.z();
+  std::array<float, kTileSamples> least;
+  least.fill(1.0f);
+  Directions row;
+  for (std::size_t ty = 0; ty < static_cast<std::size_t>(rays.tiles_y); ++ty) {
+    std::array<Vec3, kTileSide> steps;
+    for (std::size_t k = 0; k < kTileSide; ++k) {
+      const auto y = static_cast<double>(ty * kTileSide + k);
+      steps[k] = (y + 0.5 - camera.cy) / camera.fy * down;
     }
-    const std::size_t base = tile * kTileSamples;
-    normalise(d, axis, rays.dx.data() + base, rays.dy.data() + base, rays.dz.data() + base,
-              rays.cosine.data() + base);
+    for (std::size_t s = 0; s < kTileSamples; ++s) row.set(s, steps[kTileOffsets[s].y]);
+    for (std::size_t tx = 0; tx < columns.size(); ++tx) {
+      const std::size_t base = (ty * columns.size() + tx) * kTileSamples;
+      normalise(columns[tx], row, axis, rays.dx.data() + base, rays.dy.data() + base,
+                rays.dz.data() + base, rays.cosine.data() + base, least.data());
+    }
   }
-  rays.nearest_depth =
-      kNearest * std::min(1.0f, *std::min_element(rays.cosine.begin(), rays.cosine.end()));
+  rays.nearest_depth = kNearest * *std::min_element(least.begin(), least.end());
   return {};
 }
 

@@ -40,7 +40,7 @@ PROBE_CLONES void refine_all(const RunPlane& plane, const float* __restrict dx,
     const Vec3f p = cross(d, k.e2);
     const float inverse = 1.0f / dot(k.e1, p);
     const float exact_t = k.height * inverse;
-    const bool trusted = std::abs(exact_t - t[i]) < 1e-3f;
+    const bool trusted = (std::abs(exact_t - t[i]) < 1e-3f) | (t[i] == kUnknownDistance);
     float a = dot(k.s, p) * inverse, b = dot(d, k.q) * inverse;
     a = a < 0 ? 0 : a;
     a = 1 < a ? 1 : a;

@@ -19,6 +19,9 @@ struct RunRays {
   const float *x, *y, *z;
 };
 
+// The distance of a hit that no ray found and that refine_run() is to take as it computes it.
+inline constexpr float kUnknownDistance = -1;
+
 // t, u and v of `count` hits, recomputed; `origin` is the rays' in the mesh frame.
 void refine_run(const TriangleData& triangle, const Instance& instance, const float* origin,
                 const RunRays& d, std::size_t count, float* t, float* u, float* v);

@@ -128,6 +128,7 @@ class EmbreeRenderer final : public Renderer {
     shown_ = nullptr;
     BlockMarks marks(camera, rays);
     marks.mark(dynamics_.instances());
+    fills_.look(scene_->top, camera);
     for (int tile = 0; tile < rays.tiles(); ++tile) {
       glance_at(tile, marks.tile_blocks(tile % rays.tiles_x, tile / rays.tiles_x));
     }
@@ -138,7 +139,8 @@ class EmbreeRenderer final : public Renderer {
     const CameraRays& rays = moving_.rays;
     std::array<float, kTileSamples> farthest;
     farthest.fill(kFarthest);
-    still_tracer_->trace(scene_->top, moving_.origins, rays, tile, kAllBlocks, farthest.data());
+    still_tracer_->trace(scene_->top, moving_.origins, rays, tile, kAllBlocks, farthest.data(),
+                         fills_.of_tile(tile % rays.tiles_x, tile / rays.tiles_x));
     const TileHits& still = still_tracer_->hits();
     if (!is_empty(blocks)) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(still.count); ++i) {
@@ -201,6 +203,7 @@ class EmbreeRenderer final : public Renderer {
       last_marks_;    // of this frame and of the one in `frame_`, where still_ is shown
   BlockMarks stale_;  // what of this frame has to be traced
   ShadowMarks shadow_marks_;
+  BlockFills fills_;
   std::unique_ptr<TileTracer> tracer_ = std::make_unique<TileTracer>();
   std::unique_ptr<TileTracer> still_tracer_ = std::make_unique<TileTracer>();
   std::unique_ptr<TileBlender> blender_ = std::make_unique<TileBlender>();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "runtime/render/clones.h"
 #include "runtime/render/vec4.h"
@@ -41,15 +40,6 @@ inline Vec4 to_world(const Instance& instance, Vec4 d) {
          load4(instance.columns[2]) * splat(d[2]);
 }
 
-inline void intersect(const int* valid, RTCScene scene, RTCIntersectContext& context,
-                      RTCRayHit8& packet) {
-  rtcIntersect8(valid, scene, &context, &packet);
-}
-inline void intersect(const int* valid, RTCScene scene, RTCIntersectContext& context,
-                      RTCRayHit16& packet) {
-  rtcIntersect16(valid, scene, &context, &packet);
-}
-
 // Normals, not yet of unit length, are divided by their length; `side` is -1 where they turn away
 // from the viewer.
 PROBE_CLONES void normalise(float* __restrict nx, float* __restrict ny, float* __restrict nz,
@@ -64,13 +54,12 @@ PROBE_CLONES void normalise(float* __restrict nx, float* __restrict ny, float* _
   }
 }
 
-template <class Packet>
-__attribute__((always_inline)) inline void load_rays(const float* __restrict dx,
-                                                     const float* __restrict dy,
-                                                     const float* __restrict dz,
-                                                     const float* __restrict farthest,
-                                                     InstanceSet set, Packet& __restrict packet) {
-  for (std::size_t k = 0; k < std::size(packet.ray.tfar); ++k) {
+// Cloned, so that rays are written in registers as wide as those in which Embree reads: what was
+// written in halves is slow to read as a whole.
+PROBE_CLONES void load_rays(const float* __restrict dx, const float* __restrict dy,
+                            const float* __restrict dz, const float* __restrict farthest,
+                            InstanceSet set, RTCRayHit8& __restrict packet) {
+  for (std::size_t k = 0; k < 8; ++k) {
     packet.ray.dir_x[k] = dx[k];
     packet.ray.dir_y[k] = dy[k];
     packet.ray.dir_z[k] = dz[k];
@@ -80,30 +69,19 @@ __attribute__((always_inline)) inline void load_rays(const float* __restrict dx,
     packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
   }
 }
-// Cloned, so that rays are written in registers as wide as those in which Embree reads: what was
-// written in halves is slow to read as a whole.
-PROBE_CLONES void load(const float* dx, const float* dy, const float* dz, const float* farthest,
-                       InstanceSet set, RTCRayHit8& packet) {
-  load_rays(dx, dy, dz, farthest, set, packet);
-}
-PROBE_CLONES void load(const float* dx, const float* dy, const float* dz, const float* farthest,
-                       InstanceSet set, RTCRayHit16& packet) {
-  load_rays(dx, dy, dz, farthest, set, packet);
-}
 
 }  // namespace
 
 // Every lane's numbers are written, and the place moves on only behind a hit: no branch to guess.
-template <class Packet>
 void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
-                               const BlockSets& blocks, const float* farthest) {
-  constexpr std::size_t n = std::size(decltype(Packet::ray.tfar){});
-  alignas(64) static constexpr int kAll[16] = {-1, -1, -1, -1, -1, -1, -1, -1,
-                                               -1, -1, -1, -1, -1, -1, -1, -1};
+                               const BlockSets& blocks, const float* farthest,
+                               const FilledBlocks& filled) {
+  constexpr std::size_t n = 8;
+  alignas(32) static constexpr int kAll[n] = {-1, -1, -1, -1, -1, -1, -1, -1};
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  Packet packet;
+  alignas(32) RTCRayHit8 packet;
   for (std::size_t k = 0; k < n; ++k) {
     packet.ray.org_x[k] = rays.origin[0];
     packet.ray.org_y[k] = rays.origin[1];
@@ -116,11 +94,16 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
   std::size_t count = 0;
   for (std::size_t block = 0; block < 4; ++block) {
     if (blocks[block] == 0) continue;
+    if (filled[block].filled) {
+      fill_block(block, filled[block], count);
+      count += 64;
+      continue;
+    }
     for (std::size_t first = 64 * block; first < 64 * (block + 1); first += n) {
       const std::size_t from = base + first;
-      load(rays.dx.data() + from, rays.dy.data() + from, rays.dz.data() + from, farthest + first,
-           blocks[block], packet);
-      intersect(kAll, scene, context, packet);
+      load_rays(rays.dx.data() + from, rays.dy.data() + from, rays.dz.data() + from,
+                farthest + first, blocks[block], packet);
+      rtcIntersect8(kAll, scene, &context, &packet);
       for (std::size_t k = 0; k < n; ++k) {
         hits_.sample[count] = static_cast<std::uint8_t>(first + k);
         hits_.instance[count] = packet.hit.instID[0][k];
@@ -136,14 +119,23 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
   hits_.count = static_cast<int>(count);
 }
 
-void TileTracer::trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
-                       int tile, const BlockSets& blocks, const float* farthest) {
-  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
-  if (scene.wide_packets()) {
-    trace_packets<RTCRayHit16>(scene.scene(), rays, base, blocks, farthest);
-  } else {
-    trace_packets<RTCRayHit8>(scene.scene(), rays, base, blocks, farthest);
+void TileTracer::fill_block(std::size_t block, const FilledBlock& with, std::size_t count) {
+  for (std::size_t k = 0; k < 64; ++k) {
+    hits_.sample[count + k] = static_cast<std::uint8_t>(64 * block + k);
   }
+  std::fill_n(&hits_.instance[count], 64, with.instance);
+  std::fill_n(&hits_.part[count], 64, with.part);
+  std::fill_n(&hits_.primitive[count], 64, with.primitive);
+  std::fill_n(&hits_.t[count], 64, kUnknownDistance);
+  std::fill_n(&hits_.u[count], 64, 0.0f);
+  std::fill_n(&hits_.v[count], 64, 0.0f);
+}
+
+void TileTracer::trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
+                       int tile, const BlockSets& blocks, const float* farthest,
+                       const FilledBlocks& filled) {
+  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
+  trace_packets(scene.scene(), rays, base, blocks, farthest, filled);
   find_triangles(scene);
   refine_hits(scene, origins, rays, base);
 }
@@ -367,14 +359,22 @@ void TileTracer::gather_point(const Instance& instance, std::size_t i) {
 }
 
 void TileTracer::read_textures() {
+  const std::uint8_t* last = nullptr;
+  scene::DecodedTexels decoded{};
   for (std::size_t k = 0; k < textured_.count; ++k) {
     const std::size_t i = textured_.hit[k];
-    const std::uint8_t* texels = textured_.texels[k];
-    const scene::LinearRgb albedo = scene::mix_texels(
-        texels + 4 * std::size_t{textured_.upper_left[k]},
-        texels + 4 * std::size_t{textured_.upper_right[k]},
-        texels + 4 * std::size_t{textured_.lower_left[k]},
-        texels + 4 * std::size_t{textured_.lower_right[k]}, textured_.across[k], textured_.down[k]);
+    const auto texel = [&](std::uint32_t index) {
+      return scene::decode(textured_.texels[k] + 4 * std::size_t{index});
+    };
+    // From near, neighbours lie between the same four texels.
+    const std::uint8_t* here = textured_.texels[k] + 4 * std::size_t{textured_.upper_left[k]};
+    if (here != last) {
+      decoded = {texel(textured_.upper_left[k]), texel(textured_.upper_right[k]),
+                 texel(textured_.lower_left[k]), texel(textured_.lower_right[k])};
+      last = here;
+    }
+    const scene::LinearRgb albedo =
+        scene::mix_texels(decoded, textured_.across[k], textured_.down[k]);
     input_.albedo_r[i] = albedo.r;
     input_.albedo_g[i] = albedo.g;
     input_.albedo_b[i] = albedo.b;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/filled_blocks.h"
 #include "runtime/render/hit_runs.h"
 #include "runtime/render/occlusion.h"
 #include "runtime/render/shading.h"
@@ -52,9 +53,9 @@ class TileTracer {
  public:
   // Traces the blocks (b: samples 64 b .. 64 b + 63) against their instances, up to
   // `farthest[sample]`, then recomputes t, u and v of every hit in our own code, so that only the
-  // choice of the triangle is Embree's.
+  // choice of the triangle is Embree's. Blocks in `filled` are known and not traced.
   void trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays, int tile,
-             const BlockSets& blocks, const float* farthest);
+             const BlockSets& blocks, const float* farthest, const FilledBlocks& filled = {});
   // Leaves out the samples in `hidden`.
   void drop(const std::array<bool, kTileSamples>& hidden);
   // Takes hits of that tile and blocks which were traced before, leaving out samples in `hidden`.
@@ -75,9 +76,9 @@ class TileTracer {
  private:
   void find_triangles(const TopScene& scene);
   void read_textures();
-  template <class Packet>
   void trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
-                     const BlockSets& blocks, const float* farthest);
+                     const BlockSets& blocks, const float* farthest, const FilledBlocks& filled);
+  void fill_block(std::size_t block, const FilledBlock& with, std::size_t count);
   void refine_hits(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
                    std::size_t base);
   RunRays run_rays(const CameraRays& rays, std::size_t base, std::size_t first, std::size_t count);

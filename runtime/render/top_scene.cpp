@@ -12,8 +12,6 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
   RTCDevice device = top.device_->get();
   top.scene_.reset(rtcNewScene(device));
   const bool dynamic = kind == Kind::kDynamic;
-  top.wide_packets_ =
-      !dynamic && rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
   rtcSetSceneFlags(top.scene_.get(), dynamic ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST |
                                                                           RTC_SCENE_FLAG_DYNAMIC)
                                              : RTC_SCENE_FLAG_ROBUST);

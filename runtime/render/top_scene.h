@@ -51,17 +51,12 @@ class TopScene {
   RTCScene scene() const { return scene_.get(); }
   const std::vector<Instance>& instances() const { return instances_; }
   bool empty() const { return instances_.empty(); }
-  // Rays are best traced sixteen at a time rather than eight: where the CPU can, and of statics
-  // only. Of surfaces at the same distance, as where parts of a link overlap, Embree shows the one
-  // that it met last, and in another packet it may meet them in another order.
-  bool wide_packets() const { return wide_packets_; }
 
  private:
   std::shared_ptr<EmbreeDevice> device_;
   std::vector<Instance> instances_;
   InstanceSet moved_ = kAllInstances;
   bool placed_ = false;
-  bool wide_packets_ = false;
   std::vector<GeometryPtr> handles_;
   ScenePtr scene_;
 };

@@ -63,29 +63,31 @@ inline Texels texels_at(int width, int height, float u, float v) {
           y - floor_y};
 }
 
-// Between decoded texels of four RGBA bytes.
-inline LinearRgb mix_texels(const std::uint8_t* upper_left, const std::uint8_t* upper_right,
-                            const std::uint8_t* lower_left, const std::uint8_t* lower_right,
-                            float across, float down) {
-  using Rgbx = float __attribute__((vector_size(16)));  // three channels in one register
-  const auto texel = [](const std::uint8_t* rgba) {
-    return Rgbx{kSrgbToLinear[rgba[0]], kSrgbToLinear[rgba[1]], kSrgbToLinear[rgba[2]], 0};
-  };
-  const Rgbx top = texel(upper_left) * (1 - across) + texel(upper_right) * across;
-  const Rgbx bottom = texel(lower_left) * (1 - across) + texel(lower_right) * across;
-  const Rgbx mixed = top * (1 - down) + bottom * down;
+// Four texels of RGBA bytes, decoded: three channels in one register.
+using DecodedRgb = float __attribute__((vector_size(16)));
+struct DecodedTexels {
+  DecodedRgb upper_left, upper_right, lower_left, lower_right;
+};
+inline DecodedRgb decode(const std::uint8_t* rgba) {
+  return DecodedRgb{kSrgbToLinear[rgba[0]], kSrgbToLinear[rgba[1]], kSrgbToLinear[rgba[2]], 0};
+}
+
+inline LinearRgb mix_texels(const DecodedTexels& at, float across, float down) {
+  const DecodedRgb top = at.upper_left * (1 - across) + at.upper_right * across;
+  const DecodedRgb bottom = at.lower_left * (1 - across) + at.lower_right * across;
+  const DecodedRgb mixed = top * (1 - down) + bottom * down;
   return {mixed[0], mixed[1], mixed[2]};
 }
 
 inline LinearRgb sample_texture(const Texture& texture, float u, float v) {
   const Texels at = texels_at(texture.width, texture.height, u, v);
   const auto texel = [&](int x, int y) {
-    return texture.rgba.data() +
-           4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width) +
-                static_cast<std::size_t>(x));
+    const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width);
+    return decode(texture.rgba.data() + 4 * (row + static_cast<std::size_t>(x)));
   };
-  return mix_texels(texel(at.x0, at.y0), texel(at.x1, at.y0), texel(at.x0, at.y1),
-                    texel(at.x1, at.y1), at.across, at.down);
+  return mix_texels(
+      {texel(at.x0, at.y0), texel(at.x1, at.y0), texel(at.x0, at.y1), texel(at.x1, at.y1)},
+      at.across, at.down);
 }
 
 }  // namespace probe::scene
