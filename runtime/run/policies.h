@@ -36,6 +36,8 @@ struct PolicyContext {
   policy::RecordedActions recorded_actions;
   policy::QueryMeter* queries = nullptr;  // of the run; told of each query to a server; may be null
   std::shared_ptr<servers::SharedModel> model = nullptr;  // of the run's connections; may be null
+  // Of a server: what its profile leaves open and its answers have shown, see policy::Reading.
+  std::vector<std::pair<std::string, std::string>> measured = {};
 };
 
 // Fail (kUsage) on an unknown policy, with the known ones and the nearest spelling, and on a

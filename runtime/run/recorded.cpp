@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "runtime/store/proof.h"
 #include "runtime/store/stored_trace.h"
 
 namespace probe::run {
@@ -18,6 +19,20 @@ PolicyContext policy_context() {
     return actions;
   };
   return context;
+}
+
+Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const std::string& dir) {
+  PROBE_ASSIGN(const auto proven, store::read_proven_results(dir));
+  auto episodes = std::make_shared<servers::RecordedEpisodes>();
+  for (const store::ResultRow& row : proven.rows) {
+    if (row.invalid) continue;
+    const std::string key = servers::episode_key(row.image_sha256, row.prompt_sha256);
+    if (episodes->contains(key)) continue;
+    PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
+    for (const store::TraceStep& step : trace.steps) (*episodes)[key].push_back(step.action);
+  }
+  if (episodes->empty()) return Failure{Fault::kUsage, "has no valid episode to serve", dir};
+  return std::shared_ptr<const servers::RecordedEpisodes>(std::move(episodes));
 }
 
 }  // namespace probe::run

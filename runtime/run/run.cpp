@@ -37,6 +37,7 @@ struct Shared {
   RunSummary& summary;
   policy::QueryMeter& queries;
   std::shared_ptr<servers::SharedModel> model;  // of all connections to a server
+  std::vector<std::pair<std::string, std::string>> measured;
   bool asks_server = false;
   std::mutex mutex = {};  // summary, progress and the counts below
   int lost_in_a_row = 0;  // episodes that a policy server's failures spoiled for good
@@ -51,10 +52,11 @@ run::PolicyContext context_with(policy::QueryMeter* queries,
   return context;
 }
 
-Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
-                                                    policy::QueryMeter* queries,
-                                                    std::shared_ptr<servers::SharedModel> model) {
-  const run::PolicyContext context = context_with(queries, std::move(model));
+Result<std::unique_ptr<policy::Policy>> make_policy(
+    const RunOptions& options, policy::QueryMeter* queries,
+    std::shared_ptr<servers::SharedModel> model, decltype(PolicyContext::measured) measured = {}) {
+  run::PolicyContext context = context_with(queries, std::move(model));
+  context.measured = std::move(measured);
   return options.own_policy ? options.own_policy->make(context)
                             : run::make_policy(options.policy, context);
 }
@@ -76,7 +78,8 @@ class EpisodeWorker {
   explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
 
   Status begin() {
-    PROBE_ASSIGN(policy_, make_policy(shared_.options, &shared_.queries, shared_.model));
+    PROBE_ASSIGN(policy_,
+                 make_policy(shared_.options, &shared_.queries, shared_.model, shared_.measured));
     return {};
   }
 
@@ -301,11 +304,37 @@ Result<std::string> choose_folder(const RunOptions& options, store::RunRecord& r
   }
 }
 
+// Two worlds at a server that keeps one episode's words would be done with each other's.
+Status check_worlds(const RunOptions& options) {
+  if (options.own_policy || options.jobs <= 1) return {};
+  const auto choice = run::server_choice(options.policy);
+  if (!choice || choice->profile.worlds == servers::WorldsAtOnce::kMany) return {};
+  return Failure{Fault::kUsage,
+                 "profile `" + choice->profile.name +
+                     "` has `worlds = one`: the server keeps something of an episode for all who "
+                     "ask it, and worlds would be done with each other's instructions; run with "
+                     "--jobs 1, or say worlds=many of a policy that keeps nothing",
+                 "--jobs"};
+}
+
 // Before the first episode: the server is there, has its model, and reads.
 Result<policy::Reading> prove(const std::string& policy,
                               std::shared_ptr<servers::SharedModel> model) {
   PROBE_ASSIGN(const servers::ServerChoice choice, run::server_choice(policy));
   return servers::prove_reading(choice, std::move(model));
+}
+
+// What the profile leaves open and the answers show must be what it was when the folder was begun.
+Status check_as_measured_before(const policy::Reading& reading, const std::string& out) {
+  PROBE_ASSIGN(const auto calls, store::read_run_calls(out));
+  for (const store::RunCall& call : calls) {
+    if (!call.reading || call.reading->measured == reading.measured) continue;
+    return Failure{Fault::kStore,
+                   "was begun with a server whose answers showed other units, forms or rotations; "
+                   "say them in the profile, and take another folder",
+                   out};
+  }
+  return {};
 }
 
 // Whether what makes tasks different reached the policy, over all that the folder holds.
@@ -346,6 +375,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   } else {
     PROBE_ASSIGN(traits, run::policy_traits(options.policy));
   }
+  PROBE_TRY(check_worlds(options));
   // Made once before anything else, so that a policy that cannot be had is told before the folder
   // exists.
   if (auto made = make_policy(options, nullptr, nullptr); !made) return made.failure();
@@ -391,6 +421,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const auto model = std::make_shared<servers::SharedModel>();
   if (!options.own_policy && !traits.content.empty()) {
     PROBE_ASSIGN(summary.call.reading, prove(options.policy, model));
+    PROBE_TRY(check_as_measured_before(*summary.call.reading, options.out));
     for (std::string& finding : policy::findings_of(*summary.call.reading))
       summary.notes.push_back(std::move(finding));
   }
@@ -405,6 +436,8 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
                 .summary = summary,
                 .queries = queries,
                 .model = model,
+                .measured = summary.call.reading ? summary.call.reading->measured
+                                                 : decltype(Shared::measured)(),
                 .asks_server = !traits.content.empty()};
   const auto make_worker = [&shared]() -> Result<Worker> {
     auto worker = std::make_shared<EpisodeWorker>(shared);

@@ -9,6 +9,7 @@
 
 #include "runtime/base/json.h"
 #include "runtime/servers/api_key.h"
+#include "runtime/servers/meaning.h"
 #include "runtime/servers/questions.h"
 
 namespace probe::servers {
@@ -74,6 +75,7 @@ class Session {
                               {}});
     for (Check& check : judge_answers(profile(), chunks))
       result_.checks.push_back(std::move(check));
+    judge_meaning(chunks);
     double changes = 0;
     for (const Chunk& chunk : chunks) changes = std::max(changes, difference(chunk, chunks[0]));
     check_sameness(chunks[0], changes);
@@ -143,6 +145,9 @@ class Session {
     }
     const auto other = ask("instruction", {.words = 1});
     if (!other) return;
+    const auto mirrored = ask("state", {.is_mirrored = true});
+    if (!mirrored) return;
+    judge_state(difference(first, *mirrored) > noise);
     if (difference(first, *other) <= noise) {
       result_.checks.push_back(
           {"instruction",
@@ -153,6 +158,35 @@ class Session {
       result_.checks.push_back(
           {"instruction", Verdict::kFine, "another instruction has another answer", {}});
     }
+  }
+
+  // What no shape shows: changes or poses, in which units, which rotations.
+  void judge_meaning(const std::vector<Chunk>& answers) {
+    for (const OpenField& open : open_fields(profile())) {
+      const auto value = measured_value(open, profile(), answers);
+      Check check{open.field, Verdict::kWarning, "the profile does not say it; ", {}};
+      if (value) {
+        check.found += "the answers show it";
+        check.fix = {open.field + " = " + *value};
+      } else {
+        check.verdict = Verdict::kWrong;
+        check.found += "no answer shows it, so `run` would refuse";
+        for (const std::string& word : open.values) check.fix.push_back(open.field + " = " + word);
+      }
+      result_.checks.push_back(std::move(check));
+    }
+  }
+
+  // Many policies do not look at the arm's state, so this decides nothing.
+  void judge_state(bool changes) {
+    const bool is_sent = profile().state_layout != StateLayout::kNone;
+    result_.checks.push_back(
+        {"state",
+         changes || !is_sent ? Verdict::kFine : Verdict::kUnclear,
+         changes ? "an arm on the robot's other side has another answer"
+                 : std::string("the answers do not depend on the arm's state") +
+                       (is_sent ? ", which is sent: does it reach the policy?" : ""),
+         {}});
   }
 
   void judge_times() {

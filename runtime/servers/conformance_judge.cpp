@@ -8,6 +8,7 @@
 #include "runtime/robot/rotation.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/conversion.h"
+#include "runtime/servers/questions.h"
 
 namespace probe::servers {
 namespace {
@@ -81,10 +82,10 @@ Check judge_chunks(const Profile& profile, const std::vector<std::vector<RawActi
 // Translations after denormalising.
 Check judge_translation(const Profile& profile, const std::vector<RawAction>& actions,
                         const std::vector<RawAction>& raw) {
+  const bool is_pose = profile.action_form == ActionForm::kAbsolute;
+  const Vec3 from = is_pose ? known_state(false).tcp_in_base.position : Vec3::Zero();
   std::vector<double> lengths;
-  for (const RawAction& a : actions) {
-    lengths.push_back(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]));
-  }
+  for (const RawAction& a : actions) lengths.push_back((Vec3(a[0], a[1], a[2]) - from).norm());
   const double usual = median(lengths);
   const double longest = *std::max_element(lengths.begin(), lengths.end());
   Check check{"translation",
@@ -99,6 +100,11 @@ Check judge_translation(const Profile& profile, const std::vector<RawAction>& ac
   } else if (usual > kUsualShift || longest > profile.action_limit_m) {
     const bool bounded = range.low >= -1.05 && range.high <= 1.05;
     check.verdict = Verdict::kWrong;
+    if (is_pose) {
+      check.found += "; they are no poses near the tool";
+      check.fix = {"action.form = delta"};
+      return check;
+    }
     check.found += bounded ? "; they look normalised to -1 .. 1" : "; they are no metres a step";
     check.fix = {"action.normalised = bound    # or gaussian", "action.low = ...",
                  "action.high = ..."};
@@ -151,14 +157,17 @@ Check judge_rotation(const Profile& profile, const std::vector<RawAction>& actio
       check.verdict = Verdict::kWrong;
       check.fix = {"action.rotation = vector"};
     }
-  } else if (longest > kUsualTurn && profile.action_statistics.kind == Normalisation::kNone) {
+  } else if (longest > kUsualTurn && profile.action_form != ActionForm::kAbsolute &&
+             profile.action_statistics.kind == Normalisation::kNone) {
     check.verdict = Verdict::kWarning;
     check.found += "; more than a policy turns in a step: normalised, or degrees?";
     check.fix = {"action.normalised = bound    # or gaussian"};
   } else if (degrees > 1) {
     check.verdict = Verdict::kUnclear;
     check.found += std::string(", and nothing in them tells which they are; the profile says ") +
-                   (is_euler ? "euler" : "vector");
+                   (profile.action_rotation == RotationForm::kUnsaid ? "neither"
+                    : is_euler                                       ? "euler"
+                                                                     : "vector");
     check.fix = {is_euler ? "action.rotation = vector    # if the server converts already"
                           : "action.rotation = euler    # if the server answers its data set's"};
   } else {

@@ -73,6 +73,36 @@ Status check_limit(double value, double limit, const char* what, const char* uni
                         " (profile fields `action.normalised`, `" + field + "`)");
 }
 
+// Three numbers that are a share of what the robot does in a step, held to it.
+void scale(ActionUnits units, double unit, double* numbers) {
+  const double size = length(numbers);
+  const double shorter = units == ActionUnits::kBall && size > 1 ? 1 / size : 1;
+  for (int i = 0; i < 3; ++i) {
+    const double share =
+        units == ActionUnits::kBox ? std::clamp(numbers[i], -1.0, 1.0) : numbers[i] * shorter;
+    numbers[i] = share * unit;
+  }
+}
+
+// The pose to be at as the change that brings the controller's target there. Its law is T' =
+// Trans(p) [R, d] Trans(-p) T with p the measured position, so R = R' R_T^-1 and d = t' - p - R (t
+// - p).
+void set_change(const Profile& profile, const ArmNow& arm, policy::Action* action) {
+  policy::Action& a = *action;
+  const Vec3 at(a[0], a[1], a[2]), angles(a[3], a[4], a[5]);
+  const Quat wanted = profile.action_rotation == RotationForm::kEuler
+                          ? robot::from_rpy(angles)
+                          : robot::from_rotation_vector(angles);
+  const Quat turn = wanted * arm.target.rotation.conjugate();
+  const Vec3& from = arm.tool_measured;
+  const Vec3 shift = at - from - turn * (arm.target.position - from);
+  const Vec3 vector = robot::to_rotation_vector(turn);
+  for (int i = 0; i < 3; ++i) {
+    a[static_cast<std::size_t>(i)] = shift[i];
+    a[static_cast<std::size_t>(i + 3)] = vector[i];
+  }
+}
+
 double denormalised(const Statistics& statistics, std::size_t i, double value) {
   if (is_masked(statistics, i)) return value;
   switch (statistics.kind) {
@@ -107,20 +137,19 @@ void append(std::vector<double>& numbers, const Vec3& v) {
 
 constexpr std::size_t kFingers = 2;
 
-Result<std::vector<double>> laid_out(const Profile& profile,
+Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
                                      const policy::Proprioception& measured) {
   Quat rotation = measured.tcp_in_base.rotation;
   if (profile.state_frame == StateFrame::kTopDown) rotation = rotation * top_down().conjugate();
   // One sign of the two, so that equal rotations are equal numbers.
   if (rotation.w() < 0) rotation.coeffs() = -rotation.coeffs();
   std::vector<double> state;
-  const bool has_pose = profile.state_layout != StateLayout::kNone &&
-                        profile.state_layout != StateLayout::kJoints &&
-                        profile.state_layout != StateLayout::kJointsOpenness;
+  const bool has_pose =
+      layout >= StateLayout::kXyzWxyzOpenness && layout <= StateLayout::kXyzRotvecFingers;
   if (has_pose) append(state, measured.tcp_in_base.position);
   const std::vector<double>& joints = measured.joints;
   const bool has_fingers = joints.size() >= kFingers;
-  switch (profile.state_layout) {
+  switch (layout) {
     case StateLayout::kNone:
       break;
     case StateLayout::kXyzWxyzOpenness:
@@ -130,7 +159,7 @@ Result<std::vector<double>> laid_out(const Profile& profile,
     case StateLayout::kXyzRpyOpenness:
     case StateLayout::kXyzRpyPadOpenness:
       append(state, robot::to_rpy(rotation));
-      if (profile.state_layout == StateLayout::kXyzRpyPadOpenness) state.push_back(0);
+      if (layout == StateLayout::kXyzRpyPadOpenness) state.push_back(0);
       state.push_back(measured.openness);
       break;
     case StateLayout::kXyzRotvecOpenness:
@@ -147,10 +176,22 @@ Result<std::vector<double>> laid_out(const Profile& profile,
       state = joints;
       break;
     case StateLayout::kJointsOpenness:
+    case StateLayout::kArmJoints:
       if (!has_fingers)
         return bad_conversion("`state.layout` leaves out two fingers, the robot has none");
       state.assign(joints.begin(), joints.end() - kFingers);
-      state.push_back(measured.openness);
+      if (layout == StateLayout::kJointsOpenness) state.push_back(measured.openness);
+      break;
+    case StateLayout::kFingers:
+      if (!has_fingers)
+        return bad_conversion("`state.more` asks for two fingers, the robot has none");
+      state.assign(joints.end() - kFingers, joints.end());
+      break;
+    case StateLayout::kOpenness:
+      state = {measured.openness};
+      break;
+    case StateLayout::kClosedness:
+      state = {1 - measured.openness};
       break;
   }
   return state;
@@ -173,7 +214,7 @@ std::string to_prompt(const Profile& profile, std::string_view prompt) {
 
 Result<std::vector<double>> to_state(const Profile& profile,
                                      const policy::Proprioception& measured) {
-  PROBE_ASSIGN(std::vector<double> state, laid_out(profile, measured));
+  PROBE_ASSIGN(std::vector<double> state, laid_out(profile, profile.state_layout, measured));
   const Statistics& statistics = profile.state_statistics;
   if (statistics.kind == Normalisation::kNone) return state;
   const std::size_t known =
@@ -186,21 +227,33 @@ Result<std::vector<double>> to_state(const Profile& profile,
   return state;
 }
 
+Result<std::vector<double>> to_state(const Profile& profile, StateLayout layout,
+                                     const policy::Proprioception& measured) {
+  return laid_out(profile, layout, measured);
+}
+
 RawAction denormalised(const Profile& profile, const RawAction& raw) {
   RawAction action = raw;
+  if (profile.action_units == ActionUnits::kBox || profile.action_units == ActionUnits::kBall) {
+    scale(profile.action_units, profile.action_scale_m, action.data());
+    scale(profile.action_units, profile.action_scale_rad, action.data() + 3);
+    return action;
+  }
   for (std::size_t i = 0; i < action.size(); ++i) {
     action[i] = denormalised(profile.action_statistics, i, action[i]);
   }
   return action;
 }
 
-Result<policy::Action> to_action(const Profile& profile, const RawAction& raw) {
+Result<policy::Action> to_action(const Profile& profile, const RawAction& raw, const ArmNow& arm) {
   policy::Action action = denormalised(profile, raw);
+  const bool is_absolute = profile.action_form == ActionForm::kAbsolute;
+  if (is_absolute) set_change(profile, arm, &action);
   PROBE_TRY(check_limit(length(action.data()), profile.action_limit_m, "shifts by", "m",
                         "action.limit_m"));
   PROBE_TRY(check_limit(length(action.data() + 3), profile.action_limit_rad, "turns by", "rad",
                         "action.limit_rad"));
-  if (profile.action_rotation == RotationForm::kEuler) {
+  if (profile.action_rotation == RotationForm::kEuler && !is_absolute) {
     const Vec3 turn = robot::to_rotation_vector(robot::from_rpy({action[3], action[4], action[5]}));
     for (int i = 0; i < 3; ++i) action[static_cast<std::size_t>(i + 3)] = turn[i];
   }

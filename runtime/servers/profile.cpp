@@ -28,9 +28,10 @@ struct Number {
   double most;  // and more than 0
 };
 using Slot = std::variant<std::string*, Count, Number, std::optional<double>*, std::vector<double>*,
-                          std::vector<ImageRule>*, Protocol*, StateLayout*, StateFrame*,
-                          NumberType*, Normalisation*, RotationForm*, GripperRange*, PromptCase*,
-                          FullStop*, Ensemble*, ConnectionUse*, CheckpointUse*>;
+                          std::vector<ImageRule>*, std::vector<StateRule>*, ActionForm*,
+                          ActionUnits*, Protocol*, StateLayout*, StateFrame*, NumberType*,
+                          Normalisation*, RotationForm*, GripperRange*, PromptCase*, FullStop*,
+                          Ensemble*, ConnectionUse*, CheckpointUse*, WorldsAtOnce*>;
 
 struct Field {
   std::string_view name;
@@ -70,6 +71,22 @@ constexpr Field kFields[] = {
     {"state.std", [](Profile& p) -> Slot { return &p.state_statistics.std; }, "gaussian"},
     {"state.mask", [](Profile& p) -> Slot { return &p.state_statistics.mask; },
      "1 for a number that is normalised, 0 for one that is not"},
+    {"state.more", [](Profile& p) -> Slot { return &p.more_states; },
+     "KEY LAYOUT: a state under a key of its own, not normalised; openpi; one line each"},
+    {"action.form", [](Profile& p) -> Slot { return &p.action_form; },
+     "a change of the pose each step, or the pose to be at, in the base frame"},
+    {"action.units", [](Profile& p) -> Slot { return &p.action_units; },
+     "of numbers 1 to 6: m and rad; -1 to 1 each, or of length 1 at most, times the scales"},
+    {"action.scale_m",
+     [](Profile& p) -> Slot {
+       return Number{&p.action_scale_m, 100};
+     },
+     "box and ball: m that 1 stands for"},
+    {"action.scale_rad",
+     [](Profile& p) -> Slot {
+       return Number{&p.action_scale_rad, 100};
+     },
+     "box and ball: rad that 1 stands for"},
     {"action.rotation", [](Profile& p) -> Slot { return &p.action_rotation; },
      "numbers 4 to 6 of an action, rad: axis times angle, or roll pitch yaw"},
     {"action.gripper", [](Profile& p) -> Slot { return &p.action_gripper; },
@@ -117,6 +134,8 @@ constexpr Field kFields[] = {
      "whether a new one is made for each episode"},
     {"checkpoint", [](Profile& p) -> Slot { return &p.checkpoint; },
      "intact: whether the server loads the one that the address names"},
+    {"worlds", [](Profile& p) -> Slot { return &p.worlds; },
+     "one: the server keeps something of an episode for all who ask it, so --jobs is 1"},
     {"timeout.wait_s",
      [](Profile& p) -> Slot {
        return Number{&p.wait_s, kLongest};
@@ -251,6 +270,15 @@ struct Reader {
     slot->push_back(std::move(rule));
     return {};
   }
+  Status operator()(std::vector<StateRule>* slot) const {
+    const std::vector<std::string_view> words = split(value);
+    if (words.size() != 2) return bad("a state is written `KEY LAYOUT`" + found(value));
+    StateRule rule{std::string(words[0]), StateLayout::kNone};
+    PROBE_TRY(read_word(words[1], field, &rule.layout));
+    if (rule.layout == StateLayout::kNone) return bad("a state of layout none is not sent");
+    slot->push_back(std::move(rule));
+    return {};
+  }
   template <typename E>
   Status operator()(E* slot) const {
     return read_word(value, field, slot);
@@ -342,6 +370,12 @@ struct Writer {
     }
     return lines;
   }
+  std::vector<std::string> operator()(const std::vector<StateRule>* rules) const {
+    std::vector<std::string> lines;
+    for (const StateRule& rule : *rules)
+      lines.push_back(rule.key + " " + std::string(word_of(rule.layout)));
+    return lines;
+  }
   template <typename E>
   std::vector<std::string> operator()(const E* word) const {
     return {std::string(word_of(*word))};
@@ -359,6 +393,7 @@ struct Takes {
   std::string operator()(std::optional<double>*) const { return "number | none"; }
   std::string operator()(std::vector<double>*) const { return "numbers"; }
   std::string operator()(std::vector<ImageRule>*) const { return "rule"; }
+  std::string operator()(std::vector<StateRule>*) const { return "KEY LAYOUT"; }
   template <typename E>
   std::string operator()(E*) const {
     std::string text;
@@ -402,7 +437,9 @@ struct Place {
 bool has_default(std::string_view field) {
   const Field* known = find_field(field);
   Profile plain;
-  return known != nullptr && !std::visit(Writer{}, known->slot(plain)).front().empty();
+  if (known == nullptr) return false;
+  const auto lines = std::visit(Writer{}, known->slot(plain));
+  return !lines.empty() && !lines.front().empty();
 }
 
 // At the last of the fields at fault, with those that are not written.
@@ -452,7 +489,7 @@ Result<Profile> parse_profile(std::string_view text, std::string_view where) {
                 first);
     }
     const std::string_view field = trimmed(line.substr(0, equals));
-    if (field != "image" && !seen.insert(field).second) {
+    if (field != "image" && field != "state.more" && !seen.insert(field).second) {
       return at(bad("`" + std::string(field) + "` is set twice"), where, number, first);
     }
     const std::string_view value = value_of(line.substr(equals + 1));
@@ -462,8 +499,9 @@ Result<Profile> parse_profile(std::string_view text, std::string_view where) {
           names_value ? static_cast<std::size_t>(value.data() - line.data()) : first;
       return at(set.failure(), where, number, column);
     }
-    const std::string ordinal =
-        field == "image" ? " " + std::to_string(profile.images.size()) : std::string();
+    std::string ordinal;
+    if (field == "image") ordinal = " " + std::to_string(profile.images.size());
+    if (field == "state.more") ordinal = " " + std::to_string(profile.more_states.size());
     places[std::string(field) + ordinal] = {number,
                                             static_cast<std::size_t>(value.data() - line.data())};
   }

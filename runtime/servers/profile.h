@@ -19,9 +19,12 @@ enum class Protocol {
 };
 enum class Resize {
   kNone,
-  kStretch,  // to the size, whatever the shape
-  kPad,      // the whole picture, black bars around it: openpi's resize_with_pad
-  kCrop,     // the middle of the picture in the size's shape, then resized
+  kStretch,    // to the size, whatever the shape
+  kPad,        // the whole picture, black bars around it: openpi's resize_with_pad
+  kCrop,       // the middle of the picture in the size's shape, then resized
+  kLanczos,    // to the size, by Pillow's LANCZOS: RoboArena's evaluator
+  kCv2Linear,  // to the size, as cv2.resize does: GR00T's client
+  kCv2Area,    // to the size, as cv2.resize with INTER_AREA does
 };
 enum class PixelLayout {
   kHwcU8,   // [height, width, 3], 0..255
@@ -39,6 +42,10 @@ enum class StateLayout {
   kXyzRotvecFingers,   // 8
   kJoints,
   kJointsOpenness,  // without the fingers
+  kArmJoints,       // without the fingers
+  kFingers,         // 2
+  kOpenness,        // 1
+  kClosedness,      // 1, 0 open .. 1 closed, as DROID counts
 };
 enum class StateFrame {
   kBase,
@@ -49,7 +56,20 @@ enum class NumberType { kF32, kF64 };
 // How numbers were made about 1 in size: bound maps [low, high] to [-1, 1], gaussian is
 // (x - mean) / std.
 enum class Normalisation { kNone, kBound, kGaussian };
-enum class RotationForm { kVector, kEuler };  // three numbers, rad; euler is rpy as above
+// What of an action's meaning cannot be seen in its shape is kUnsaid until the profile, or the
+// server, says it; `run` refuses what neither says and no answer shows.
+enum class RotationForm { kUnsaid, kVector, kEuler };  // three numbers, rad; euler is rpy as above
+enum class ActionForm {
+  kUnsaid,
+  kDelta,     // what the pose changes by in a control step
+  kAbsolute,  // the pose to be at, in the base frame
+};
+enum class ActionUnits {
+  kUnsaid,
+  kMetric,  // m and rad
+  kBox,     // each number within -1 .. 1, times action.scale_m and action.scale_rad: LIBERO
+  kBall,    // shift and turn of length 1 at most, times them: DROID's velocities
+};
 enum class GripperRange {
   kSigned,          // -1 closed .. +1 open, as the simulator's
   kUnit,            // 0 closed .. 1 open
@@ -70,6 +90,12 @@ enum class CheckpointUse {
   kIgnored,  // the server loads what its own configuration says
 };
 
+// How many worlds may ask a server at once.
+enum class WorldsAtOnce {
+  kMany,
+  kOne,  // it keeps something of an episode for all its connections, or resets them all
+};
+
 struct ImageRule {
   std::string camera;  // empty: the scene's first
   std::string key;
@@ -77,6 +103,13 @@ struct ImageRule {
   Resize resize = Resize::kNone;
   PixelLayout layout = PixelLayout::kHwcU8;
   bool operator==(const ImageRule&) const = default;
+};
+
+// A state beside the first, under a key of its own.
+struct StateRule {
+  std::string key;
+  StateLayout layout = StateLayout::kNone;
+  bool operator==(const StateRule&) const = default;
 };
 
 struct Statistics {
@@ -103,8 +136,12 @@ struct Profile {
   StateFrame state_frame = StateFrame::kBase;
   NumberType state_type = NumberType::kF32;
   Statistics state_statistics;
+  std::vector<StateRule> more_states;
 
-  RotationForm action_rotation = RotationForm::kVector;
+  ActionForm action_form = ActionForm::kUnsaid;
+  ActionUnits action_units = ActionUnits::kUnsaid;
+  double action_scale_m = 1, action_scale_rad = 1;  // of kBox and kBall
+  RotationForm action_rotation = RotationForm::kUnsaid;
   GripperRange action_gripper = GripperRange::kSigned;
   // Of the gripper's number as it came: above is open (closed, where inverted). None: kept, mapped
   // to -1 .. +1.
@@ -124,6 +161,7 @@ struct Profile {
 
   ConnectionUse connection = ConnectionUse::kKept;
   CheckpointUse checkpoint = CheckpointUse::kNamed;
+  WorldsAtOnce worlds = WorldsAtOnce::kMany;
 
   // Seconds.
   double wait_s = 30;       // for a server that is not there, trying again

@@ -76,12 +76,37 @@ std::size_t size_of(StateLayout layout) {
     case StateLayout::kXyzRpyOpenness:
     case StateLayout::kXyzRotvecOpenness:
       return 7;
+    case StateLayout::kFingers:
+      return 2;
+    case StateLayout::kOpenness:
+    case StateLayout::kClosedness:
+      return 1;
     case StateLayout::kNone:
     case StateLayout::kJoints:
     case StateLayout::kJointsOpenness:
+    case StateLayout::kArmJoints:
       break;
   }
   return 0;  // depends on the robot
+}
+
+// What numbers 1 to 6 of an action mean.
+MaybeMistake check_meaning(const Profile& profile) {
+  const bool is_scaled =
+      profile.action_units == ActionUnits::kBox || profile.action_units == ActionUnits::kBall;
+  if (is_scaled && profile.action_statistics.kind != Normalisation::kNone) {
+    return Mistake{"`action.units` says what 1 stands for, and so does `action.normalised`",
+                   {"action.units", "action.normalised"}};
+  }
+  if (is_scaled && profile.action_form == ActionForm::kAbsolute) {
+    return Mistake{"`action.form = absolute` is a pose in m and rad, which has no scale",
+                   {"action.form", "action.units"}};
+  }
+  if (!is_scaled && (profile.action_scale_m != 1 || profile.action_scale_rad != 1)) {
+    return Mistake{"`action.scale_m` and `action.scale_rad` go with `action.units` box or ball",
+                   {"action.scale_m", "action.scale_rad"}};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -100,6 +125,10 @@ std::optional<Mistake> find_mistake(const Profile& profile) {
   if (auto mistake = check_statistics(profile.state_statistics, "state.normalise", "state.",
                                       size_of(profile.state_layout))) {
     return mistake;
+  }
+  if (auto mistake = check_meaning(profile)) return mistake;
+  if (!profile.more_states.empty() && profile.protocol != Protocol::kOpenpi) {
+    return Mistake{"`state.more` is for openpi's servers alone", {"state.more 1"}};
   }
   if (profile.ensemble == Ensemble::kTemporal && profile.chunk_use > 1) {
     return Mistake{"`ensemble = temporal` asks at every step; `chunk.use` is then 1 or absent",

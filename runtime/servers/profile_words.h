@@ -17,10 +17,10 @@ struct Word {
 };
 
 inline constexpr std::array kResizes = {
-    Word<Resize>{"none", Resize::kNone},
-    Word<Resize>{"stretch", Resize::kStretch},
-    Word<Resize>{"pad", Resize::kPad},
-    Word<Resize>{"crop", Resize::kCrop},
+    Word<Resize>{"none", Resize::kNone},        Word<Resize>{"stretch", Resize::kStretch},
+    Word<Resize>{"pad", Resize::kPad},          Word<Resize>{"crop", Resize::kCrop},
+    Word<Resize>{"lanczos", Resize::kLanczos},  Word<Resize>{"cv2_linear", Resize::kCv2Linear},
+    Word<Resize>{"cv2_area", Resize::kCv2Area},
 };
 inline constexpr std::array kPixelLayouts = {
     Word<PixelLayout>{"hwc_u8", PixelLayout::kHwcU8},
@@ -35,6 +35,10 @@ inline constexpr std::array kStateLayouts = {
     Word<StateLayout>{"xyz_rotvec_fingers", StateLayout::kXyzRotvecFingers},
     Word<StateLayout>{"joints", StateLayout::kJoints},
     Word<StateLayout>{"joints_openness", StateLayout::kJointsOpenness},
+    Word<StateLayout>{"arm_joints", StateLayout::kArmJoints},
+    Word<StateLayout>{"fingers", StateLayout::kFingers},
+    Word<StateLayout>{"openness", StateLayout::kOpenness},
+    Word<StateLayout>{"closedness", StateLayout::kClosedness},
 };
 inline constexpr std::array kStateFrames = {
     Word<StateFrame>{"base", StateFrame::kBase},
@@ -50,8 +54,20 @@ inline constexpr std::array kNormalisations = {
     Word<Normalisation>{"gaussian", Normalisation::kGaussian},
 };
 inline constexpr std::array kRotations = {
+    Word<RotationForm>{"unsaid", RotationForm::kUnsaid},
     Word<RotationForm>{"vector", RotationForm::kVector},
     Word<RotationForm>{"euler", RotationForm::kEuler},
+};
+inline constexpr std::array kActionForms = {
+    Word<ActionForm>{"unsaid", ActionForm::kUnsaid},
+    Word<ActionForm>{"delta", ActionForm::kDelta},
+    Word<ActionForm>{"absolute", ActionForm::kAbsolute},
+};
+inline constexpr std::array kActionUnits = {
+    Word<ActionUnits>{"unsaid", ActionUnits::kUnsaid},
+    Word<ActionUnits>{"m_rad", ActionUnits::kMetric},
+    Word<ActionUnits>{"box", ActionUnits::kBox},
+    Word<ActionUnits>{"ball", ActionUnits::kBall},
 };
 inline constexpr std::array kGrippers = {
     Word<GripperRange>{"signed", GripperRange::kSigned},
@@ -81,6 +97,10 @@ inline constexpr std::array kCheckpoints = {
     Word<CheckpointUse>{"named", CheckpointUse::kNamed},
     Word<CheckpointUse>{"ignored", CheckpointUse::kIgnored},
 };
+inline constexpr std::array kWorlds = {
+    Word<WorldsAtOnce>{"many", WorldsAtOnce::kMany},
+    Word<WorldsAtOnce>{"one", WorldsAtOnce::kOne},
+};
 
 constexpr std::span<const Word<Resize>> words_of(Resize) { return kResizes; }
 constexpr std::span<const Word<PixelLayout>> words_of(PixelLayout) { return kPixelLayouts; }
@@ -89,6 +109,8 @@ constexpr std::span<const Word<StateFrame>> words_of(StateFrame) { return kState
 constexpr std::span<const Word<NumberType>> words_of(NumberType) { return kNumberTypes; }
 constexpr std::span<const Word<Normalisation>> words_of(Normalisation) { return kNormalisations; }
 constexpr std::span<const Word<RotationForm>> words_of(RotationForm) { return kRotations; }
+constexpr std::span<const Word<ActionForm>> words_of(ActionForm) { return kActionForms; }
+constexpr std::span<const Word<ActionUnits>> words_of(ActionUnits) { return kActionUnits; }
 constexpr std::span<const Word<GripperRange>> words_of(GripperRange) { return kGrippers; }
 constexpr std::span<const Word<PromptCase>> words_of(PromptCase) { return kCases; }
 constexpr std::span<const Word<FullStop>> words_of(FullStop) { return kFullStops; }
@@ -96,6 +118,8 @@ constexpr std::span<const Word<Ensemble>> words_of(Ensemble) { return kEnsembles
 constexpr std::span<const Word<ConnectionUse>> words_of(ConnectionUse) { return kConnections; }
 
 constexpr std::span<const Word<CheckpointUse>> words_of(CheckpointUse) { return kCheckpoints; }
+
+constexpr std::span<const Word<WorldsAtOnce>> words_of(WorldsAtOnce) { return kWorlds; }
 
 // Protocols have theirs in their rows.
 inline std::vector<Word<Protocol>> words_of(Protocol) {

@@ -47,6 +47,10 @@ KeyUse prompt_key_use(const Profile& profile) {
 std::vector<KeyUse> plain_key_uses(const Profile& profile) {
   std::vector<KeyUse> uses = image_key_uses(profile);
   if (profile.state_layout != StateLayout::kNone) uses.push_back(state_key_use(profile.state_key));
+  for (std::size_t i = 0; i < profile.more_states.size(); ++i) {
+    const std::string& key = profile.more_states[i].key;
+    uses.push_back({"", key, "state.more " + std::to_string(i + 1), "`state.more` (" + key + ")"});
+  }
   uses.push_back(prompt_key_use(profile));
   return uses;
 }

@@ -13,7 +13,13 @@
 #include "runtime/servers/transport.h"
 #include "runtime/wire/endpoint.h"
 
+namespace probe::wire {
+class Listener;
+}
+
 namespace probe::servers {
+
+struct ServeOptions;
 
 // A key in one map of a request, and what of the profile stands under it.
 struct KeyUse {
@@ -37,6 +43,8 @@ struct ProtocolRow {
   std::vector<KeyUse> (*key_uses)(const Profile& profile);
   // Fails (kUsage) on an option's or a field's value that the protocol does not know.
   Result<std::unique_ptr<Transport>> (*make)(const Profile& profile, const wire::Endpoint& server);
+  // Its server's side, see served.h.
+  Result<std::unique_ptr<wire::Listener>> (*serve)(const ServeOptions& options);
 };
 
 const ProtocolRow& row_of(Protocol protocol);

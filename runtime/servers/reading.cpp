@@ -2,6 +2,7 @@
 
 #include "runtime/base/sha256.h"
 #include "runtime/servers/connecting.h"
+#include "runtime/servers/meaning.h"
 #include "runtime/servers/questions.h"
 
 namespace probe::servers {
@@ -37,6 +38,11 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   }
   transport->close();
   reading.answers = static_cast<int>(answers.size());
+  for (const OpenField& open : open_fields(adapted)) {
+    if (auto value = measured_value(open, adapted, answers))
+      reading.measured.emplace_back(open.field, std::move(*value));
+  }
+  PROBE_TRY(check_said(adapted, reading.measured, reading.server));
   if (answers.size() < 3) return reading;
   reading.is_deaf = answers[0] == answers[1];
   reading.is_blind = answers[0] == answers[2];

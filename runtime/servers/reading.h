@@ -11,8 +11,9 @@ namespace probe::servers {
 
 // One picture with two instructions, one instruction with two pictures, over one connection that is
 // closed again. Waits for a server that is not there, and has it load its model, before any other
-// connection of the run. Fails as a connection does (kPolicy, kUsage); what goes wrong with the
-// answers is told in the reading.
+// connection of the run. What profile and server leave open of the actions' meaning is measured;
+// fails (kUsage) on what the answers do not show, see meaning.h, and as a connection does (kPolicy,
+// kUsage). What goes wrong with the answers is told in the reading.
 Result<policy::Reading> prove_reading(const ServerChoice& choice,
                                       std::shared_ptr<SharedModel> model = nullptr);
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
+
+#include "runtime/base/trig.h"
 
 namespace probe::servers {
 namespace {
@@ -17,11 +20,26 @@ struct Weights {
   std::vector<int> first, count, values;
 };
 
-// Resample.c, precompute_coeffs and normalize_coeffs_8bpc with the triangle of support 1.
-Weights weights_of(int in, int out) {
+// A filter's weight at a distance in input pixels where the picture does not get smaller.
+struct Filter {
+  double support;
+  double (*weight)(double distance);
+};
+double triangle(double x) { return std::abs(x) < 1.0 ? 1.0 - std::abs(x) : 0.0; }
+double sinc(double x) {
+  const double angle = x * std::numbers::pi;
+  return x == 0.0 ? 1.0 : portable_sin(angle) / angle;
+}
+constexpr Filter kTriangle{1, triangle};
+constexpr Filter kLanczos3{
+    3, [](double x) { return x >= -3.0 && x < 3.0 ? sinc(x) * sinc(x / 3) : 0.0; }};
+
+// Resample.c, precompute_coeffs and normalize_coeffs_8bpc.
+Weights weights_of(int in, int out, const Filter& filter) {
   const double scale = static_cast<double>(in) / out;
-  const double support = std::max(scale, 1.0);
-  const double inverse = 1.0 / support;
+  const double stretch = std::max(scale, 1.0);
+  const double support = filter.support * stretch;
+  const double inverse = 1.0 / stretch;
   Weights weights;
   weights.width = static_cast<std::size_t>(std::ceil(support)) * 2 + 1;
   std::vector<double> row(weights.width);
@@ -32,14 +50,14 @@ Weights weights_of(int in, int out) {
     const int count = last - first;
     double sum = 0;
     for (int x = 0; x < count; ++x) {
-      const double distance = std::abs((x + first - center + 0.5) * inverse);
-      row[static_cast<std::size_t>(x)] = distance < 1.0 ? 1.0 - distance : 0.0;
+      row[static_cast<std::size_t>(x)] = filter.weight((x + first - center + 0.5) * inverse);
       sum += row[static_cast<std::size_t>(x)];
     }
     for (std::size_t x = 0; x < weights.width; ++x) {
       double value = x < static_cast<std::size_t>(count) ? row[x] : 0.0;
       if (sum != 0) value /= sum;
-      weights.values.push_back(static_cast<int>(0.5 + value * (1 << kPrecision)));
+      const double half = value < 0 ? -0.5 : 0.5;
+      weights.values.push_back(static_cast<int>(half + value * (1 << kPrecision)));
     }
     weights.first.push_back(first);
     weights.count.push_back(count);
@@ -132,13 +150,11 @@ wire::Array to_chw_f32(const wire::Bytes& rgb, int width, int height) {
   return array;
 }
 
-}  // namespace
-
-wire::Bytes resize_bilinear(const policy::Image& image, int width, int height) {
+wire::Bytes resampled(const policy::Image& image, int width, int height, const Filter& filter) {
   wire::Bytes across(image.rgb.begin(), image.rgb.end());
   if (width != image.width) {
     wire::Bytes out(bytes_of(width, image.height));
-    resample(across.data(), weights_of(image.width, width),
+    resample(across.data(), weights_of(image.width, width, filter),
              {static_cast<std::size_t>(image.height), 3, bytes_of(image.width, 1), 3,
               bytes_of(width, 1)},
              out.data());
@@ -146,10 +162,20 @@ wire::Bytes resize_bilinear(const policy::Image& image, int width, int height) {
   }
   if (height == image.height) return across;
   wire::Bytes out(bytes_of(width, height));
-  resample(across.data(), weights_of(image.height, height),
+  resample(across.data(), weights_of(image.height, height, filter),
            {static_cast<std::size_t>(width), bytes_of(width, 1), 3, bytes_of(width, 1), 3},
            out.data());
   return out;
+}
+
+}  // namespace
+
+wire::Bytes resize_bilinear(const policy::Image& image, int width, int height) {
+  return resampled(image, width, height, kTriangle);
+}
+
+wire::Bytes resize_lanczos(const policy::Image& image, int width, int height) {
+  return resampled(image, width, height, kLanczos3);
 }
 
 wire::Array to_pixels(const policy::Image& image, const ImageRule& rule) {
@@ -164,6 +190,12 @@ wire::Array to_pixels(const policy::Image& image, const ImageRule& rule) {
     rgb = pad(image, width, height);
   } else if (rule.resize == Resize::kCrop) {
     rgb = crop(image, width, height);
+  } else if (rule.resize == Resize::kLanczos) {
+    rgb = resize_lanczos(image, width, height);
+  } else if (rule.resize == Resize::kCv2Linear) {
+    rgb = resize_cv2_linear(image, width, height);
+  } else if (rule.resize == Resize::kCv2Area) {
+    rgb = resize_cv2_area(image, width, height);
   } else {
     rgb = resize_bilinear(image, width, height);
   }

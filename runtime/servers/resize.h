@@ -1,6 +1,6 @@
-// Pictures in the size and form that a server expects. Resizing is Pillow's bilinear filter to the
-// bit (libImaging/Resample.c: a triangle as wide as the reduction, weights in 22-bit fixed point),
-// because that is what the policies' own clients use.
+// Pictures in the size and form that a server expects, as the policies' own clients make them, to
+// the bit: Pillow's filters (libImaging/Resample.c: as wide as the reduction, weights in 22-bit
+// fixed point) and OpenCV's.
 #pragma once
 
 #include "runtime/policy/policy.h"
@@ -14,5 +14,11 @@ wire::Array to_pixels(const policy::Image& image, const ImageRule& rule);
 
 // width x height x 3 bytes, both sides resampled.
 wire::Bytes resize_bilinear(const policy::Image& image, int width, int height);
+wire::Bytes resize_lanczos(const policy::Image& image, int width, int height);
+
+// cv2.resize of OpenCV 4: INTER_LINEAR looks at four pixels however much smaller the picture gets;
+// INTER_AREA takes the mean of what an output pixel covers.
+wire::Bytes resize_cv2_linear(const policy::Image& image, int width, int height);
+wire::Bytes resize_cv2_area(const policy::Image& image, int width, int height);
 
 }  // namespace probe::servers

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/base/sha256.h"
+#include "runtime/robot/control.h"
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/conversion.h"
@@ -40,6 +41,11 @@ Result<Request> to_request(const Profile& profile, const policy::Observation& ob
     request.images.push_back({rule.key, to_pixels(image, rule)});
   }
   PROBE_ASSIGN(request.state, to_state(profile, observation.proprioception));
+  for (const StateRule& rule : profile.more_states) {
+    PROBE_ASSIGN(std::vector<double> state,
+                 to_state(profile, rule.layout, observation.proprioception));
+    request.more_states.emplace_back(rule.key, std::move(state));
+  }
   request.proprioception = observation.proprioception;
   request.step = observation.step;
   return request;
@@ -66,6 +72,7 @@ ServerPolicy::~ServerPolicy() { drop(); }
 Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   delivery_.reset();
   queue_.clear();
+  target_.reset();
   in_episode_ = false;
   if (!is_open_) PROBE_TRY(connect());
   if (auto begun = transport_->begin_episode(start, deadlines()); !begun) {
@@ -83,8 +90,13 @@ Result<policy::Action> ServerPolicy::act(const policy::Observation& observation)
       return named(asked.failure(), server_);
     }
   }
-  auto action = to_action(profile_, queue_.take());
+  // The controller's own law: its target starts where the tool is and moves by each action.
+  const Pose& tool = observation.proprioception.tcp_in_base;
+  if (!target_) target_ = tool;
+  auto action = to_action(profile_, queue_.take(), {*target_, tool.position});
   if (!action) return named(action.failure(), server_);
+  const policy::Action& a = *action;
+  target_ = robot::moved_target(*target_, tool.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});
   return action;
 }
 

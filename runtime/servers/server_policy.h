@@ -54,6 +54,7 @@ class ServerPolicy : public policy::Policy {
   policy::QueryMeter* queries_;
   ChunkQueue queue_;
   std::optional<policy::Delivery> delivery_;
+  std::optional<Pose> target_;  // of the arm's controller; none before an episode's first action
   std::vector<std::string> notes_;  // of the transport, once there was a connection
   bool is_open_ = false;
   bool has_answered_ = false;  // this connection, once

@@ -60,10 +60,12 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
   return transport;
 }
 
-Result<std::unique_ptr<policy::Policy>> make_server(Protocol protocol, std::string_view argument,
-                                                    policy::QueryMeter* queries,
-                                                    std::shared_ptr<SharedModel> model) {
+Result<std::unique_ptr<policy::Policy>> make_server(
+    Protocol protocol, std::string_view argument, policy::QueryMeter* queries,
+    std::shared_ptr<SharedModel> model,
+    const std::vector<std::pair<std::string, std::string>>& measured) {
   PROBE_ASSIGN(ServerChoice choice, choose_server(protocol, argument));
+  for (const auto& [field, value] : measured) PROBE_TRY(set_field(choice.profile, field, value));
   PROBE_ASSIGN(std::unique_ptr<Transport> transport, make_transport(choice, std::move(model)));
   return std::unique_ptr<policy::Policy>(std::make_unique<ServerPolicy>(
       std::move(choice.profile), choice.server.name(), std::move(transport), queries));

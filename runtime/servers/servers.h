@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -35,8 +36,10 @@ std::string describe(const ServerChoice& choice);
 Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
                                                   std::shared_ptr<SharedModel> model = nullptr);
 
-Result<std::unique_ptr<policy::Policy>> make_server(Protocol protocol, std::string_view argument,
-                                                    policy::QueryMeter* queries,
-                                                    std::shared_ptr<SharedModel> model = nullptr);
+// `measured` are fields with values that profile and server leave open, see policy::Reading.
+Result<std::unique_ptr<policy::Policy>> make_server(
+    Protocol protocol, std::string_view argument, policy::QueryMeter* queries,
+    std::shared_ptr<SharedModel> model = nullptr,
+    const std::vector<std::pair<std::string, std::string>>& measured = {});
 
 }  // namespace probe::servers

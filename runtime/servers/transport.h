@@ -34,6 +34,8 @@ struct Request {
   std::string prompt;                // in the profile's form
   std::vector<RequestImage> images;  // in the profile's order, at least one
   std::vector<double> state;         // in the profile's layout, normalised if it asks; may be empty
+  // Those of `state.more`, in the profile's order.
+  std::vector<std::pair<std::string, std::vector<double>>> more_states = {};
   // As measured, for protocols with a state of their own form.
   policy::Proprioception proprioception;
   int step = 0;  // control steps done in the episode

@@ -2,12 +2,12 @@
 strict as they are.
 
 openpi_server.py openpi|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] [seen=HABIT]
-                 [key=KEY] [lacks=MODEL] [port=N]
+                 [key=KEY] [lacks=MODEL] [port=N] [meta=JSON]
 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or
-those of recorded_actions, or with `seen` small ones that depend on picture and instruction alone,
-where HABIT is `fine` or what is to be wrong: unit, inverted, euler, vector, normalised, noise, deaf,
-blind, nan, six, or keeps: the instruction of the first question since the last reset, of whichever
+those of recorded_actions, or with `seen` small ones that depend on what was asked alone, where HABIT
+is `fine` or what is to be wrong: unit, inverted, euler, vector, normalised, noise, deaf,
+blind, numb (to the state), nan, six, poses, or keeps: the instruction of the first question since the last reset, of whichever
 connection, as INT-ACT's wrapper of Octo does. `record` gets every message that comes, a line of hexadecimal digits each. With
 `key` a client without this Api-Key is refused; INT-ACT's server, which has one model for all its
 connections, fails to load the model `lacks` and then can load no other.
@@ -16,6 +16,7 @@ import asyncio
 import functools
 import hashlib
 import http
+import json
 import os
 import sys
 import traceback
@@ -61,11 +62,14 @@ METADATA = {
                   "n_external_cameras": 1, "needs_stereo_camera": False, "needs_session_id": True,
                   "action_space": "cartesian_velocity"},
 }
+METADATA[dialect] = json.loads(options["meta"]) if "meta" in options else METADATA[dialect]
 
 
-def seen_actions(image, prompt, habit):
+def seen_actions(image, prompt, state, habit):
     seen = (b"" if habit == "blind" else image.tobytes()) + (b"" if habit == "deaf" else
                                                              prompt.encode())
+    if habit != "numb":
+        seen += state.tobytes()
     seed = None if habit == "noise" else int.from_bytes(hashlib.sha256(seen).digest()[:4], "big")
     draws = numpy.random.default_rng(seed)
     actions = draws.uniform(-0.02, 0.02, (chunk, 7))
@@ -80,6 +84,8 @@ def seen_actions(image, prompt, habit):
         actions[:, 3:6] = [0.1, 2.5, 0.1] + draws.uniform(0, 0.1, (chunk, 3))
     elif habit == "normalised":
         actions[:, :6] = draws.uniform(-1, 1, (chunk, 6))
+    elif habit == "poses":
+        actions[:, :3] += state[:3]
     elif habit == "nan":
         actions[:, 2] = numpy.nan
     return actions[:, :6] if habit == "six" else actions
@@ -94,7 +100,7 @@ class Policy:
         self.recorded = recorded_actions.RecordedPolicy(episodes) if episodes else None
         self.count = 0
 
-    def infer(self, image, prompt=""):
+    def infer(self, image, prompt="", state=numpy.zeros(8)):
         global kept
         assert image.dtype == numpy.uint8 and image.ndim == 3 and image.shape[2] == 3, image.shape
         if self.recorded:
@@ -103,7 +109,7 @@ class Policy:
             if options["seen"] == "keeps":
                 kept = prompt if kept is None else kept
                 prompt = kept
-            return seen_actions(image, prompt, options["seen"])
+            return seen_actions(image, prompt, state, options["seen"])
         actions = numpy.zeros((chunk, 7))
         actions[:, 0] = (self.count + numpy.arange(chunk)) / 1000
         actions[:, 6] = 1
@@ -122,7 +128,8 @@ def answer_openpi(policy, request):
     assert set(request) == {"observation/image", "observation/state", "prompt"}, set(request)
     assert isinstance(request["prompt"], str)
     assert request["observation/state"].shape == (8,)
-    return pack({"actions": policy.infer(request["observation/image"], request["prompt"]),
+    return pack({"actions": policy.infer(request["observation/image"], request["prompt"],
+                                         request["observation/state"]),
                  "server_timing": {"infer_ms": 1.5}})
 
 
@@ -145,21 +152,26 @@ def answer_intact(policy, request):
         return pack({"status": "reset"})
     assert request["observation.state"]["agent"]["eef_pos"].shape == (8,)
     assert isinstance(request["task"], str)
-    actions = policy.infer(request["observation.images.top"], request["task"])
+    actions = policy.infer(request["observation.images.top"], request["task"],
+                           request["observation.state"]["agent"]["eef_pos"])
     return pack(actions if chunk > 1 else [actions[0]])
 
 
 def answer_roboarena(policy, request):
     endpoint = request.pop("endpoint")
     if endpoint == "reset":
+        assert set(request) == {"session_id"}, set(request)
         policy.reset()
         return "reset successful"
-    assert set(request) == {"observation/exterior_image_0_left", "observation/joint_position",
+    assert set(request) == {"observation/exterior_image_1_left", "observation/joint_position",
                             "observation/cartesian_position", "observation/gripper_position",
                             "session_id", "prompt"}, set(request)
-    assert request["observation/exterior_image_0_left"].shape == (224, 224, 3)
+    assert request["observation/exterior_image_1_left"].shape == (224, 224, 3)
     assert request["observation/joint_position"].shape == (7,)
-    return pack(policy.infer(request["observation/exterior_image_0_left"]))
+    assert request["observation/cartesian_position"].dtype == numpy.float64
+    actions = policy.infer(request["observation/exterior_image_1_left"], request["prompt"],
+                           request["observation/cartesian_position"])
+    return pack({"actions": actions})
 
 
 ANSWER = {"openpi": answer_openpi, "intact": answer_intact, "roboarena": answer_roboarena}

@@ -1,9 +1,11 @@
 """A server that speaks vla-eval's protocol 1 as its serve.py does, and is as strict.
 
-vlaeval_server.py [actions=FILE] [bridge=1] [params=JSON] [version=N] [record=FILE]
+vlaeval_server.py [actions=FILE] [bridge=1] [params=JSON] [spec=JSON] [pose=JSON] [version=N]
+                  [record=FILE]
 
 Answers the actions of recorded_actions, or one whose first number is the step / 1000; with `bridge`
-the gripper as 0 to 1. `params` are the observation_params of its hello. `record` gets a JSON line
+the gripper as 0 to 1. `params` and `spec` are the observation_params and
+the action_spec of its hello, and `pose` is what it answers always. `record` gets a JSON line
 for every message: its type, its keys and what was in an observation.
 """
 import asyncio
@@ -84,6 +86,8 @@ class Policy:
         if "bridge" in options:
             action = action.copy()
             action[6] = (action[6] + 1) / 2
+        if "pose" in options:
+            action = numpy.array(json.loads(options["pose"]))
         self.step += 1
         return {"actions": action}
 
@@ -99,6 +103,8 @@ async def handle(socket):
                      "model_server": "Recorded", "capabilities": {}}
             if "params" in options:
                 reply["observation_params"] = json.loads(options["params"])
+            if "spec" in options:
+                reply["action_spec"] = json.loads(options["spec"])
             await socket.send(pack("hello", reply, seq))
         elif kind == "episode_start":
             try:

@@ -13,6 +13,7 @@ void add_all_verbs(Verb program, int& exit) {
   add_merge(program, exit);
   add_slurm(program, exit);
   add_policy(program, exit);
+  add_serve(program, exit);
   add_results(program, exit);
   add_replay(program, exit);
   add_judge(program, exit);

@@ -1,18 +1,23 @@
 // vlaprobe policy: servers tested, ready profiles shown.
 #include <fmt/format.h>
 
+#include "runtime/base/file.h"
 #include "runtime/base/say.h"
+#include "runtime/cli/full/until_ended.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/cli/output.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/profile_library.h"
+#include "runtime/servers/transcript.h"
 
 namespace probe::cli {
 namespace {
 
 struct PolicyArguments {
-  std::string policy, profile;
-  bool json = false;
+  std::string policy, profile, transcript;
+  std::string address = "127.0.0.1", port = "0";
+  bool json = false, with_questions = false;
 };
 
 int test_verb(const PolicyArguments& arguments) {
@@ -26,6 +31,43 @@ int test_verb(const PolicyArguments& arguments) {
     put("{}", servers::to_text(*tested));
   }
   return tested->is_wrong() ? kOutside : kFine;
+}
+
+int record_verb(const PolicyArguments& arguments) {
+  const auto choice = run::server_choice(arguments.policy);
+  if (!choice) return report(choice.failure());
+  if (auto spared = check_output(arguments.transcript); !spared) return report(spared.failure());
+  const auto recorded = servers::record(*choice);
+  if (!recorded) return report(recorded.failure());
+  std::size_t lines = 0;
+  for (const auto& connection : recorded->connections) lines += connection.size();
+  if (lines == 0) {
+    return report({Fault::kPolicy, "nothing was said: is a server there? `policy test` says more",
+                   choice->server.name()});
+  }
+  const std::string text = servers::to_text(*recorded, arguments.with_questions);
+  if (auto written = write_file(arguments.transcript, std::as_bytes(std::span(text))); !written)
+    return report(written.failure());
+  say("{} messages of {} connections in {}\n", lines, recorded->connections.size(),
+      arguments.transcript);
+  return kFine;
+}
+
+int replay_transcript_verb(const PolicyArguments& arguments) {
+  const auto text = read_file(arguments.transcript);
+  if (!text) return report(text.failure());
+  const auto transcript = servers::parse_transcript(*text, arguments.transcript);
+  if (!transcript) return report(transcript.failure());
+  const EndSignals ends;
+  const auto player =
+      servers::play(*transcript, arguments.address, arguments.port,
+                    [](const std::string& sentence) { say("note: {}\n", sentence); });
+  if (!player) return report(player.failure());
+  fmt::print("{}://{}:{}\n", servers::to_word(transcript->protocol), arguments.address,
+             (*player)->port());
+  std::fflush(stdout);
+  ends.wait();
+  return kFine;
 }
 
 int profiles_verb(const PolicyArguments& arguments) {
@@ -60,7 +102,7 @@ void add_policy(Verb app, int& exit) {
   Verb test = verb.add_subcommand(
       "test", "does a server agree with its profile: shapes, rotation, gripper, chunks, sameness");
   test.footer(
-      "Asks about ten known observations, runs no simulator. Exit code 2 where something is "
+      "Asks about a dozen known observations, runs no simulator. Exit code 2 where something is "
       "wrong.\n"
       "example: vlaprobe policy test "
       "\"intact://gpu:8000?model=/checkpoints/pi0&profile=pi0_bridge\"");
@@ -68,6 +110,31 @@ void add_policy(Verb app, int& exit) {
   test.add_flag("--json", arguments->json, "an object with a check each");
   test.refuse_empty_values();
   test.callback([arguments, &exit] { exit = test_verb(*arguments); });
+
+  Verb record = verb.add_subcommand(
+      "record", "write down a server's conversation over the questions of `policy test`");
+  record.footer(
+      "For bug reports: questions, with their pictures and instructions, are left out but for "
+      "size\n"
+      "and hash, unless --questions.\n"
+      "example: vlaprobe policy record \"gr00t://gpu:5555?profile=gr00t_bridge\" -o "
+      "gr00t.transcript");
+  record.add_option("P", arguments->policy, "a policy server, as for `run --policy`").required();
+  record.add_option("-o,--out", arguments->transcript, "file to write").required();
+  record.add_flag("--questions", arguments->with_questions, "write what was asked, too");
+  record.refuse_empty_values();
+  record.callback([arguments, &exit] { exit = record_verb(*arguments); });
+
+  Verb replay = verb.add_subcommand("replay", "play the server's side of a recorded conversation");
+  replay.footer(
+      "Prints where it listens; the same questions then get the same answers. Ends with SIGINT or\n"
+      "SIGTERM.\n"
+      "example: vlaprobe policy replay gr00t.transcript --port 5555");
+  replay.add_option("FILE", arguments->transcript, "of `policy record`").required();
+  replay.add_option("--address", arguments->address, "numeric, to listen at");
+  replay.add_option("--port", arguments->port, "to listen at; 0: any free one");
+  replay.refuse_empty_values();
+  replay.callback([arguments, &exit] { exit = replay_transcript_verb(*arguments); });
 
   Verb profiles = verb.add_subcommand(
       "profiles", "ready profiles; with a name or a file, that one, read and checked");

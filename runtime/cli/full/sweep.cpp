@@ -44,7 +44,8 @@ void add_sweep(Verb app, int& exit) {
       "Each checkpoint runs the suite's original tasks in its own folder below -o. The best has "
       "the\n"
       "highest mean success over these tasks, then intention, then comes first. Prints its name.\n"
-      "example: vlaprobe sweep suite/intact.probe --policy 'intact://127.0.0.1:8000?model={}' \\\n"
+      "example: vlaprobe sweep suite/intact.probe --policy "
+      "'intact://127.0.0.1:8000?profile=pi0_bridge&model={}' \\\n"
       "           --checkpoints /ckpt/10000,/ckpt/20000 --jobs 8 -o runs/pi0");
   add_run_options(verb, arguments->run);
   verb.add_option("--checkpoints", arguments->checkpoints, "A,B,...: each stands for {} in P")

@@ -13,6 +13,7 @@ void add_sweep(Verb app, int& exit);
 void add_merge(Verb app, int& exit);
 void add_slurm(Verb app, int& exit);
 void add_policy(Verb app, int& exit);
+void add_serve(Verb app, int& exit);
 void add_results(Verb app, int& exit);
 void add_replay(Verb app, int& exit);
 void add_judge(Verb app, int& exit);

@@ -2,10 +2,10 @@
 # give its path: openpi://HOST:PORT?profile=./mine.profile
 # `vlaprobe policy test openpi://HOST:PORT?profile=./mine.profile` says what does not fit.
 
-protocol = openpi                    # openpi, intact, roboarena, vlaeval, gr00t, openvla
+protocol = openpi                    # openpi, intact, roboarena, vlaeval, gr00t, openvla, starvla
 about = what it is, for people
 
-# CAMERA -> KEY [WIDTHxHEIGHT stretch|pad|crop] [hwc_u8|chw_f32]. CAMERA is `first` or a camera's
+# CAMERA -> KEY [WIDTHxHEIGHT stretch|pad|crop|lanczos|cv2_linear|cv2_area] [hwc_u8|chw_f32]. CAMERA is `first` or a camera's
 # name in the scene. One line a picture. Without a size the picture is sent as rendered.
 image = first -> observation/image 224x224 pad
 
@@ -20,6 +20,12 @@ state.type = f32                     # or f64
 state.normalise = none               # bound with state.low and state.high, gaussian with state.mean
                                      # and state.std: only where the server does not do it
 
+# state.more = observation/gripper_position closedness    # another state, under its own key
+
+action.form = delta                  # absolute: the pose to be at, in the base frame
+action.units = m_rad                 # box: -1..1 each, ball: of length 1 at most, times these two:
+# action.scale_m = 0.05
+# action.scale_rad = 0.5
 action.rotation = euler              # or vector
 action.gripper = unit                # 0 closed .. 1 open; signed: -1 closed .. +1 open; ..._inverted
 action.threshold = 0.5               # above it the gripper opens; none: it goes part of the way
@@ -35,6 +41,7 @@ chunk.use = 4                        # of an answer, before the next question; o
 ensemble = none                      # temporal: a question every step (then without chunk.use)
 ensemble.ratio = 1
 connection = kept                    # per_episode: for servers that keep something and hear no reset
+worlds = many                        # one: the server keeps something for all who ask it: --jobs 1
 checkpoint = named                   # ignored: an INT-ACT server that loads what it is configured to
 
 timeout.wait_s = 60                  # a server that is not there

@@ -1,14 +1,17 @@
 # GR00T N1.6 or later fine-tuned on BridgeData V2:
 #   gr00t://HOST:PORT?profile=gr00t_bridge
+# The same as gr00t_bridge_as_meant; gr00t_bridge_as_published is how published numbers were made.
 # SimplerEnv does one action of an answer; write ?chunk.use=4 for more.
 protocol = gr00t
 about = GR00T N1.6 or later on BridgeData V2, one action of each answer
 dialect = n1.6                       # or n1.6_nested, n1.5
-image = first -> video.image_0 256x256 stretch
+image = first -> video.image_0 256x256 cv2_linear
 prompt.key = annotation.human.action.task_description
 state.key = state
 state.layout = xyz_rpy_pad_openness
 state.frame = top_down
+action.form = delta
+action.units = m_rad
 action.rotation = euler
 action.gripper = unit
 action.threshold = 0.5

@@ -1,9 +1,12 @@
-# What roboarena:// does without profile=. The server says which of these pictures it wants and how
-# large. DROID's gripper is 1 when closed, its rotations are roll pitch yaw.
+# What roboarena:// does without profile=. The server says which of these pictures it wants, how
+# large, and what its actions are: its action_space cartesian_velocity is lengths of at most 1 that
+# stand for 0.075 m and 0.15 rad a step, cartesian_position is poses. DROID's gripper is 1 when
+# closed, its rotations are roll pitch yaw.
 protocol = roboarena
-about = RoboArena's server, changes of the end effector
-image = first -> observation/exterior_image_0_left
+about = RoboArena's server, changes of the end effector or poses
+image = first -> observation/exterior_image_1_left
 prompt.key = prompt
+state.type = f64
 action.rotation = euler
 action.gripper = unit_inverted
 action.threshold = 0.5

@@ -6,6 +6,7 @@
 
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/protocol.h"
+#include "runtime/servers/protocols/served_sides.h"
 #include "runtime/wire/msgpack.h"
 #include "runtime/wire/zmq.h"
 
@@ -233,6 +234,7 @@ constinit const ProtocolRow gr00t_row{
     .fixed_keys = {},
     .key_uses = gr00t_key_uses,
     .make = make_gr00t,
+    .serve = serve_gr00t,
 };
 
 }  // namespace probe::servers

@@ -4,6 +4,7 @@
 
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/openpi_connection.h"
+#include "runtime/servers/protocols/served_sides.h"
 #include "runtime/servers/shared_model.h"
 
 namespace probe::servers {
@@ -123,6 +124,7 @@ constinit const ProtocolRow intact_row{
     .fixed_keys = kIntactKeys,
     .key_uses = plain_key_uses,
     .make = make_intact,
+    .serve = serve_intact,
 };
 
 }  // namespace probe::servers

@@ -3,6 +3,7 @@
 // so episodes are not announced.
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/openpi_connection.h"
+#include "runtime/servers/protocols/served_sides.h"
 
 namespace probe::servers {
 namespace {
@@ -24,6 +25,8 @@ class Openpi : public Transport {
     if (!request.state.empty()) {
       map.emplace_back(profile_.state_key, state_array(profile_, request.state));
     }
+    for (const auto& [key, state] : request.more_states)
+      map.emplace_back(key, state_array(profile_, state));
     map.emplace_back(profile_.prompt_key, request.prompt);
     PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
     const wire::Value* actions = answer.find("actions");
@@ -57,6 +60,7 @@ constinit const ProtocolRow openpi_row{
     .fixed_keys = {},
     .key_uses = plain_key_uses,
     .make = make_openpi,
+    .serve = serve_openpi,
 };
 
 }  // namespace probe::servers

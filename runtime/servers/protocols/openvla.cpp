@@ -5,6 +5,7 @@
 #include <array>
 
 #include "runtime/servers/protocol.h"
+#include "runtime/servers/protocols/served_sides.h"
 #include "runtime/wire/http.h"
 #include "runtime/wire/json.h"
 
@@ -109,6 +110,7 @@ constinit const ProtocolRow openvla_row{
     .fixed_keys = kOpenVlaKeys,
     .key_uses = plain_key_uses,
     .make = make_openvla,
+    .serve = serve_openvla,
 };
 
 }  // namespace probe::servers

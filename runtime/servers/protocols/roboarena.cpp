@@ -1,11 +1,17 @@
 // RoboArena's dialect of openpi's protocol (roboarena/policy_server.py): {"endpoint": "infer" |
-// "reset"}, and a server that says which pictures it wants and what its actions are.
+// "reset"}, and a server that says which pictures it wants and what its actions are. What a server
+// leaves out is what RoboArena's evaluator takes it for (roboarena_evaluator 5992b26).
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <chrono>
 
 #include "runtime/robot/rotation.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/openpi_connection.h"
+#include "runtime/servers/protocols/served_sides.h"
 
 namespace probe::servers {
 namespace {
@@ -13,6 +19,18 @@ namespace {
 // Of the DROID robot, whose arm has seven joints.
 constexpr std::size_t kArmJoints = 7;
 constexpr std::size_t kFingers = 2;
+// What a "velocity" of length 1 moves in a step (droid/robot_ik/robot_ik_solver.py).
+constexpr double kSpeedM = 0.075, kSpeedRad = 0.15;
+
+// Of an attempt at an episode: a server that keeps histories by it must never meet one again, not
+// in another run either.
+std::string new_session() {
+  static std::atomic<std::uint64_t> made{0};
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(now).count();
+  return "vlaprobe-" + std::to_string(us) + "-" + std::to_string(getpid()) + "-" +
+         std::to_string(++made);
+}
 
 class RoboArena : public Transport {
  public:
@@ -26,7 +44,7 @@ class RoboArena : public Transport {
   void close() override { connection_.close(); }
 
   Status adapt(Profile& profile) const override {
-    PROBE_TRY(check_action_space());
+    PROBE_TRY(choose_meaning(profile));
     PROBE_TRY(choose_images(profile));
     const wire::Value* size = config_.find("image_resolution");
     if (size == nullptr || *size == wire::Value()) return {};
@@ -40,21 +58,21 @@ class RoboArena : public Transport {
       if (image.width > 0) continue;
       image.height = static_cast<int>((*sides)[0]);
       image.width = static_cast<int>((*sides)[1]);
-      image.resize = Resize::kPad;
+      image.resize = Resize::kLanczos;
     }
     return {};
   }
 
-  Status begin_episode(const policy::EpisodeStart& start, const Deadlines& deadlines) override {
-    session_ = std::string(start.task) + "/" + std::to_string(start.index) + "/" +
-               std::to_string(start.seed);
+  Status begin_episode(const policy::EpisodeStart&, const Deadlines& deadlines) override {
+    session_ = new_session();
     return reset(deadlines);
   }
   Status end_episode(const policy::EpisodeEnd&, const Deadlines& deadlines) override {
     return reset(deadlines);
   }
   Status reset(const Deadlines& deadlines) {
-    PROBE_TRY(connection_.send(wire::Map{{"endpoint", "reset"}}, deadlines.answer));
+    PROBE_TRY(connection_.send(wire::Map{{"session_id", session_}, {"endpoint", "reset"}},
+                               deadlines.answer));
     PROBE_ASSIGN(const wire::Message answer, connection_.receive_message(deadlines.answer));
     if (answer.is_text && answer.text() == "reset successful") return {};
     return bad("reset: expected the text `reset successful`, got " +
@@ -75,7 +93,7 @@ class RoboArena : public Transport {
                      state_array(profile_, {at.x(), at.y(), at.z(), rpy.x(), rpy.y(), rpy.z()}));
     map.emplace_back("observation/gripper_position",
                      state_array(profile_, {1 - measured.openness}));  // DROID: 1 is closed
-    if (wants("needs_session_id")) map.emplace_back("session_id", session_);
+    if (wants("needs_session_id", false)) map.emplace_back("session_id", session_);
     map.emplace_back(profile_.prompt_key, request.prompt);
     map.emplace_back("endpoint", "infer");
     PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
@@ -86,35 +104,54 @@ class RoboArena : public Transport {
   std::vector<std::string> remarks() const override { return metadata_remarks(config_); }
 
  private:
-  bool wants(std::string_view what) const {
+  bool wants(std::string_view what, bool otherwise) const {
     const wire::Value* value = config_.find(what);
-    return value != nullptr && *value == wire::Value(true);
+    return value == nullptr ? otherwise : *value == wire::Value(true);
   }
 
-  Status check_action_space() const {
-    const wire::Value* space = config_.find("action_space");
-    if (space == nullptr || *space == wire::Value("cartesian_velocity")) return {};
+  // Its own word decides what the profile leaves open.
+  Status choose_meaning(Profile& profile) const {
+    const wire::Value* said = config_.find("action_space");
+    const std::string space = said == nullptr                      ? "joint_position"
+                              : said->as<std::string>() == nullptr ? ""
+                                                                   : *said->as<std::string>();
+    if (space == "cartesian_velocity") {
+      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kDelta;
+      if (profile.action_units == ActionUnits::kUnsaid) {
+        profile.action_units = ActionUnits::kBall;
+        profile.action_scale_m = kSpeedM;
+        profile.action_scale_rad = kSpeedRad;
+      }
+      return {};
+    }
+    if (space == "cartesian_position") {
+      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kAbsolute;
+      if (profile.action_units == ActionUnits::kUnsaid) profile.action_units = ActionUnits::kMetric;
+      return {};
+    }
     return Failure{Fault::kUsage,
-                   "the server's `action_space` is " + wire::describe(*space) +
-                       "; only \"cartesian_velocity\", changes of the end effector, can be "
-                       "done here",
+                   (said == nullptr ? "the server says no `action_space`, which is joint_position"
+                                    : "the server's `action_space` is " + wire::describe(*said)) +
+                       "; \"cartesian_velocity\" and \"cartesian_position\" can be done here",
                    ""};
   }
 
-  // The profile's pictures that the server wants, and an error where it wants one more.
+  // The profile's pictures that the server wants, and an error where it wants one more. The
+  // evaluator counts outside cameras from 1.
   Status choose_images(Profile& profile) const {
     std::vector<std::string> wanted;
     const wire::Value* count = config_.find("n_external_cameras");
     const auto* cameras = count == nullptr ? nullptr : count->as<std::int64_t>();
-    if (cameras == nullptr) return {};
-    for (std::int64_t i = 0; i < std::clamp<std::int64_t>(*cameras, 0, 16); ++i) {
+    const bool is_stereo = wants("needs_stereo_camera", false);
+    const std::int64_t outside = cameras == nullptr ? 1 : std::clamp<std::int64_t>(*cameras, 0, 16);
+    for (std::int64_t i = 1; i <= outside; ++i) {
       const std::string key = "observation/exterior_image_" + std::to_string(i);
       wanted.push_back(key + "_left");
-      if (wants("needs_stereo_camera")) wanted.push_back(key + "_right");
+      if (is_stereo) wanted.push_back(key + "_right");
     }
-    if (wants("needs_wrist_camera")) {
+    if (wants("needs_wrist_camera", true)) {
       wanted.emplace_back("observation/wrist_image_left");
-      if (wants("needs_stereo_camera")) wanted.emplace_back("observation/wrist_image_right");
+      if (is_stereo) wanted.emplace_back("observation/wrist_image_right");
     }
     std::vector<ImageRule> images;
     for (const std::string& key : wanted) {
@@ -127,6 +164,9 @@ class RoboArena : public Transport {
             ""};
       }
       images.push_back(*rule);
+    }
+    if (images.empty()) {
+      return Failure{Fault::kUsage, "the server wants no picture: it could not see anything", ""};
     }
     profile.images = std::move(images);
     return {};
@@ -165,6 +205,7 @@ constinit const ProtocolRow roboarena_row{
     .fixed_keys = kRoboArenaKeys,
     .key_uses = roboarena_key_uses,
     .make = make_roboarena,
+    .serve = serve_roboarena,
 };
 
 }  // namespace probe::servers

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "runtime/servers/protocol.h"
+#include "runtime/servers/protocols/served_sides.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
 #include "runtime/wire/websocket.h"
 
@@ -79,17 +80,10 @@ constexpr Wish kWishes[] = {
     {"env_seed",
      [](const wire::Value&) -> std::string { return "the plan fixes where things start"; }},
     {"seed", [](const wire::Value&) -> std::string { return "the plan fixes where things start"; }},
-    {"control_mode",
-     [](const wire::Value& asked) -> std::string {
-       if (asked == wire::Value("arm_pd_ee_target_delta_pose_align2_gripper_pd_joint_pos")) {
-         return "";
-       }
-       return "the arm follows changes of the end effector's target pose";
-     }},
-    {"gripper_mode",
-     [](const wire::Value& asked) -> std::string {
-       return asked == wire::Value("binary") ? "" : "the gripper is set anew at every step";
-     }},
+    // What cannot be done of these is refused in adapt().
+    {"control_mode", [](const wire::Value&) -> std::string { return ""; }},
+    {"absolute_action", [](const wire::Value&) -> std::string { return ""; }},
+    {"gripper_mode", [](const wire::Value&) -> std::string { return ""; }},
     // States are sent with w >= 0, which is what it asks for.
     {"quat_no_antipodal",
      [](const wire::Value& asked) { return is_true(asked, "w is never < 0"); }},
@@ -127,6 +121,7 @@ class VlaEval : public Transport {
   }
 
   Status adapt(Profile& profile) const override {
+    PROBE_TRY(choose_meaning(profile));
     if (!sends_state()) profile.state_layout = StateLayout::kNone;
     if (!asks_for("send_wrist_image", true)) {
       // Explicitly not wanted; a server that says nothing gets what the profile has.
@@ -181,6 +176,14 @@ class VlaEval : public Transport {
 
   std::vector<std::string> notes() const override {
     std::vector<std::string> lines;
+    if (rotation_format() == "euler_xyz" && profile_.action_rotation != RotationForm::kEuler &&
+        !is_base_pose()) {
+      lines.emplace_back(
+          "the server's action_spec says its rotations are euler_xyz; they are handed on as "
+          "rotation vectors, as vla-eval's own benchmark does (`action.rotation = euler` reads "
+          "them "
+          "as they are meant)");
+    }
     const auto* wishes = params() == nullptr ? nullptr : params()->as<wire::Map>();
     if (wishes == nullptr) return lines;
     for (const auto& [name, asked] : *wishes) {
@@ -210,6 +213,65 @@ class VlaEval : public Transport {
   }
 
  private:
+  static constexpr std::string_view kDeltaMode =
+      "arm_pd_ee_target_delta_pose_align2_gripper_pd_joint_pos";
+  // The harness's patch for X-VLA (docker/xvla_absolute_ee.patch): poses in the robot's base frame
+  // whose rotation is roll pitch yaw, whatever the server's action_spec says.
+  static constexpr std::string_view kBasePoseMode =
+      "arm_pd_ee_target_base_pose_gripper_pd_joint_pos";
+
+  static std::string text_of(const wire::Value* value) {
+    const auto* text = value == nullptr ? nullptr : value->as<std::string>();
+    return text == nullptr ? "" : *text;
+  }
+  // action_spec's word for the format of a part: "delta_xyz", "euler_xyz", "raw"; empty: none.
+  std::string format_of(std::string_view part) const {
+    const wire::Value* spec = hello_.find("action_spec");
+    const wire::Value* found = spec == nullptr ? nullptr : spec->find(part);
+    return text_of(found == nullptr ? nullptr : found->find("format"));
+  }
+  std::string rotation_format() const { return format_of("rotation"); }
+  bool is_base_pose() const { return text_of(asked("control_mode")) == kBasePoseMode; }
+
+  Failure not_done(const std::string& what, const std::string& is) const {
+    return {Fault::kUsage,
+            "the server asks for " + what + " = " + last_lines(is) + ", which is not done here",
+            ""};
+  }
+
+  // Changes of the pose or poses, and what their rotation is: by the control mode where the server
+  // names one, since that is what its numbers were tried with, else by its action_spec. Where
+  // neither says, vla-eval's benchmark does changes. The profile's word stands above all.
+  Status choose_meaning(Profile& profile) const {
+    const std::string mode = text_of(asked("control_mode")), position = format_of("position");
+    const std::string rotation = rotation_format(), gripper = text_of(asked("gripper_mode"));
+    if (!gripper.empty() && gripper != "binary") return not_done("gripper_mode", gripper);
+    if (profile.action_form == ActionForm::kUnsaid) {
+      if (!mode.empty() && mode != kDeltaMode && mode != kBasePoseMode)
+        return not_done("control_mode", mode);
+      if (!position.empty() && position != "delta_xyz" && position != "absolute_xyz" &&
+          position != "raw") {
+        return not_done("a position in the form", position);
+      }
+      const bool wants_poses = mode.empty()
+                                   ? asks_for("absolute_action", true) || position == "absolute_xyz"
+                                   : mode == kBasePoseMode;
+      if (mode == kDeltaMode && position == "absolute_xyz")
+        return not_done("positions that are absolute_xyz, and for control_mode", mode);
+      profile.action_form = wants_poses ? ActionForm::kAbsolute : ActionForm::kDelta;
+    }
+    if (profile.action_units == ActionUnits::kUnsaid) profile.action_units = ActionUnits::kMetric;
+    if (profile.action_rotation != RotationForm::kUnsaid) return {};
+    if (!rotation.empty() && rotation != "euler_xyz" && rotation != "axis_angle" &&
+        rotation != "raw") {
+      return not_done("a rotation in the form", rotation);
+    }
+    const bool is_euler =
+        is_base_pose() || (profile.action_form == ActionForm::kAbsolute && rotation == "euler_xyz");
+    profile.action_rotation = is_euler ? RotationForm::kEuler : RotationForm::kVector;
+    return {};
+  }
+
   const wire::Value* params() const { return hello_.find("observation_params"); }
   const wire::Value* asked(std::string_view name) const {
     return params() == nullptr ? nullptr : params()->find(name);
@@ -320,6 +382,7 @@ constinit const ProtocolRow vlaeval_row{
     .fixed_keys = kVlaEvalKeys,
     .key_uses = vlaeval_key_uses,
     .make = make_vlaeval,
+    .serve = serve_vlaeval,
 };
 
 }  // namespace probe::servers

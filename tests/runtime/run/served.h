@@ -35,6 +35,8 @@ class ServedRun {
     write_actions();
   }
 
+  std::string in_process_folder() const { return folder_ / "in_process"; }
+
   // What recorded_actions.load of tests/servers reads: a line an episode.
   std::string actions_file() const { return folder_ / "actions"; }
 

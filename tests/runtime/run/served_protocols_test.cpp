@@ -42,8 +42,10 @@ TEST_CASE("24 episodes over vla-eval, GR00T and OpenVLA are those in process, bi
   // In BridgeData's convention, roll pitch yaw and the gripper from 0 to 1, numbers round.
   {
     const PythonServer server("gr00t_server.py", {"n1.5", actions, "chunk=16", "bridge=1"});
-    run.check_alike(
-        at(server, "gr00t", "chunk.use=all&action.threshold=none&dialect=n1.5" + whole_picture), 1);
+    run.check_alike(at(server, "gr00t",
+                       "action.rotation=euler&chunk.use=all&action.threshold=none&dialect=n1.5" +
+                           whole_picture),
+                    1);
   }
 }
 

@@ -101,7 +101,7 @@ TEST_CASE("INT-ACT checkpoints are switched on their server, each into its own f
   const test::PythonServer server("openpi_digest_server.py");
   REQUIRE_FALSE(server.port().empty());
   SweepOptions options = options_for(folder / "sweep");
-  options.run.policy = "intact://127.0.0.1:" + server.port() + "?model={}";
+  options.run.policy = "intact://127.0.0.1:" + server.port() + "?worlds=many&model={}";
   options.checkpoints = {"/ckpt/a", "/ckpt/b"};
   const auto swept = sweep(plan, options);
   REQUIRE_MESSAGE(swept.ok(), to_text(swept.failure()));
@@ -109,11 +109,27 @@ TEST_CASE("INT-ACT checkpoints are switched on their server, each into its own f
   REQUIRE_MESSAGE(a.ok(), to_text(a.failure()));
   REQUIRE_MESSAGE(b.ok(), to_text(b.failure()));
   REQUIRE(a->size() == b->size());
-  CHECK(a->at(0).policy.ends_with("?model=/ckpt/a"));
+  CHECK(a->at(0).policy.ends_with("&model=/ckpt/a"));
   CHECK(a->at(0).sent_image_sha256 == b->at(0).sent_image_sha256);
   CHECK(a->at(0).trace_sha256 != b->at(0).trace_sha256);
   CHECK(swept->best == 0);
   CHECK(swept->whole.call.queries.queries == 0);  // all was there
+}
+
+TEST_CASE("several worlds at a server that keeps one episode's words are refused") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  RunOptions options = options_for(folder / "run").run;
+  options.policy = "intact://127.0.0.1:1?profile=octo_bridge&model=/m&timeout.wait_s=0.05";
+  const auto refused = run(plan, options);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().code == Fault::kUsage);
+  CHECK(refused.failure().message.find("`worlds = one`") != std::string::npos);
+  CHECK_FALSE(fs::exists(folder / "run"));
+  options.jobs = 1;
+  const auto absent = run(plan, options);  // nobody listens there
+  REQUIRE_FALSE(absent.ok());
+  CHECK(absent.failure().code == Fault::kPolicy);
 }
 
 TEST_CASE("checkpoints that answer bit for bit the same are told, and each run has its proof") {
@@ -123,7 +139,7 @@ TEST_CASE("checkpoints that answer bit for bit the same are told, and each run h
   const test::PythonServer server("openpi_server.py", {"intact", "seen=deaf"});
   REQUIRE_FALSE(server.port().empty());
   SweepOptions options = options_for(folder / "sweep");
-  options.run.policy = "intact://127.0.0.1:" + server.port() + "?model={}";
+  options.run.policy = "intact://127.0.0.1:" + server.port() + "?worlds=many&model={}";
   options.run.jobs = 1;
   options.checkpoints = {"/ckpt/a", "/ckpt/b"};
   const auto swept = sweep(plan, options);

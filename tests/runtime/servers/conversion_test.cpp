@@ -6,7 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/robot/control.h"
 #include "runtime/robot/rotation.h"
+#include "runtime/servers/profile_check.h"
+#include "runtime/servers/profile_library.h"
+#include "runtime/servers/server_policy.h"
 
 namespace probe::servers {
 using namespace probe::policy;
@@ -194,6 +198,70 @@ TEST_CASE("a server's text is shown by its last lines, on one and without contro
   CHECK(last_lines("").empty());
   CHECK(last_lines("a\x1b[2Jb\n") == "a [2Jb");
   CHECK(last_lines(std::string(10000, 'x')).size() == 303);  // with "..."
+}
+
+TEST_CASE("shares of a step are held to their range and scaled, in a box or in a ball") {
+  Profile profile;
+  profile.action_scale_m = 0.075;
+  profile.action_scale_rad = 0.15;
+  const RawAction raw{3, 0, 4, 0.5, -2, 0, 1};
+  profile.action_units = ActionUnits::kBox;
+  CHECK(denormalised(profile, raw) == RawAction{0.075, 0, 0.075, 0.5 * 0.15, -0.15, 0, 1});
+  profile.action_units = ActionUnits::kBall;
+  const RawAction ball = denormalised(profile, raw);
+  CHECK(ball[0] == doctest::Approx(0.6 * 0.075));
+  CHECK(ball[2] == doctest::Approx(0.8 * 0.075));
+  CHECK(std::hypot(ball[3], ball[4]) == doctest::Approx(0.15));
+  CHECK(ball[6] == 1);
+}
+
+TEST_CASE("a pose to be at becomes the change that brings the controller's target there") {
+  Draws draws(7);
+  const auto small = [&] { return 0.4 * draws.uniform() - 0.2; };
+  for (const RotationForm form : {RotationForm::kEuler, RotationForm::kVector}) {
+    Profile profile;
+    profile.action_form = ActionForm::kAbsolute;
+    profile.action_rotation = form;
+    for (int i = 0; i < 100; ++i) {
+      const Pose target{{0.3 + small(), small(), 0.2 + small()},
+                        robot::from_rpy({7 * small(), 5 * small(), 7 * small()})};
+      const Vec3 measured = target.position + Vec3(small(), small(), small()) / 10;
+      const RawAction raw{0.3 + small(), small(), 0.2 + small(), 7 * small(), 5 * small(),
+                          7 * small(),   1};
+      const auto action = to_action(profile, raw, {target, measured});
+      REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+      const Pose there =
+          robot::moved_target(target, measured, {(*action)[0], (*action)[1], (*action)[2]},
+                              {(*action)[3], (*action)[4], (*action)[5]});
+      const Vec3 angles{raw[3], raw[4], raw[5]};
+      const Pose wanted{{raw[0], raw[1], raw[2]},
+                        form == RotationForm::kEuler ? robot::from_rpy(angles)
+                                                     : robot::from_rotation_vector(angles)};
+      CHECK(robot::pose_error(there, wanted).position < 1e-12);
+      CHECK(robot::pose_error(there, wanted).rotation < 1e-7);
+    }
+  }
+}
+
+TEST_CASE("states beside the first go under their own keys") {
+  const auto droid = find_profile("openpi_droid");
+  REQUIRE_MESSAGE(droid.ok(), to_text(droid.failure()));
+  Profile profile = *droid;
+  profile.images.resize(1);
+  const std::vector<std::uint8_t> bytes(4 * 4 * 3, 9);
+  Observation seen;
+  seen.image = {4, 4, bytes};
+  seen.proprioception.openness = 0.25;
+  seen.proprioception.joints = {1, 2, 3, 4, 5, 6, 7, 0.02, 0.02};
+  const auto request = to_request(profile, seen);
+  REQUIRE_MESSAGE(request.ok(), to_text(request.failure()));
+  CHECK(request->state == std::vector<double>{1, 2, 3, 4, 5, 6, 7});
+  REQUIRE(request->more_states.size() == 1);
+  CHECK(request->more_states[0].first == "observation/gripper_position");
+  CHECK(request->more_states[0].second == std::vector<double>{0.75});
+  profile.more_states[0].key = profile.state_key;
+  CHECK(find_key_conflict(profile).has_value());
+  CHECK(parse_profile(to_text(*droid), "again").value().more_states == droid->more_states);
 }
 
 }  // namespace probe::servers

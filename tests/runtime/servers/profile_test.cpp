@@ -29,7 +29,8 @@ TEST_CASE("an unknown field names the nearest and its place") {
 
 TEST_CASE("a value that is none names those that are, with its own column") {
   CHECK(failure_of("action.rotation = eulr # sxyz\n") ==
-        "mine.profile:3:19: `action.rotation` is one of vector, euler, found `eulr`, did you mean "
+        "mine.profile:3:19: `action.rotation` is one of unsaid, vector, euler, found `eulr`, did "
+        "you mean "
         "`euler`?");
   CHECK(failure_of("chunk.use = 0\n") ==
         "mine.profile:3:13: `chunk.use` is a whole number from 1 to 1000, or `all`, found `0`");

@@ -21,11 +21,12 @@ TEST_CASE("every protocol has a row with a word of its own, and a ready profile 
     CHECK_FALSE(row.meaning.empty());
     CHECK(std::stoi(std::string(row.port)) > 0);
     REQUIRE((row.make != nullptr));
+    REQUIRE((row.serve != nullptr));
     const auto profile = find_profile(row.word);
     REQUIRE_MESSAGE(profile.ok(), to_text(profile.failure()));
     CHECK(profile->protocol == protocol);
   }
-  CHECK(words.size() == 6);
+  CHECK(words.size() == 7);
 }
 
 TEST_CASE("every protocol says under which keys it sends what a profile has") {

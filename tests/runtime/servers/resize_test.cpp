@@ -1,5 +1,5 @@
-// Resizing against Pillow 9.4's own bytes (Image.resize with BILINEAR), made once with Debian's
-// python3-pil.
+// Resizing against Pillow 9.4's and OpenCV 4.6's own bytes, made once with Debian's python3-pil and
+// python3-opencv.
 #include "runtime/servers/resize.h"
 
 #include <doctest/doctest.h>
@@ -50,6 +50,66 @@ TEST_CASE("smaller, larger and one-sided sizes are Pillow's to the bit") {
   CHECK(hash_of(resize_bilinear(image, 7, 3)) ==
         "5a9b38b8f957a840cf14bb97f721de06f7ab86a14db915149cff3a758c1500bb");
   CHECK(resize_bilinear(image, 7, 5) == bytes);
+}
+
+TEST_CASE("LANCZOS is Pillow's, linear and area are OpenCV's, to the bit, smaller and larger") {
+  // Of Pillow 9.4 and OpenCV 4.6, by Debian's python3-pil and python3-opencv.
+  struct Made {
+    bool is_small;
+    int width, height;
+    const char *lanczos, *linear, *area;
+  };
+  constexpr Made kMade[] = {
+      {true, 3, 2, "dcd73a503e81f5cc7219b596f17240b701704b94f25843b2f3b1fb13f8c76227",
+       "6156e9a5c5be63573ba0d82fe2e94710cb968d7d4fcab2660f7c8e2ccce6cfc6",
+       "ea9e88e2ae69187acdc7212b2ece469e7f16d5a106c9417d458ec9e42be0ebf4"},
+      {true, 4, 5, "2309db5f870a61571d3c0720e41996d194db3956cc0dc867759b61d4923df510",
+       "18283a7d9e45ea8e8b4f5ba2f1df74fd66de8bb267179a10f96d43780d6dad3f",
+       "748a4912462413c64d01bdd02b29429158faee13da5279e92215189609add656"},
+      {true, 10, 8, "cb50498815cfdc727f4e8d2685cfd86f36f1bf9f177f862896ff6b4f4f54dc59",
+       "e6768cb566fc5b2af75599360815d0b0636997a668a037a4e4db569a93d2a2c8",
+       "acf48b960cab858302ae426b8d81ab32efc2179a5deeec34879fa0636845a976"},
+      {true, 7, 3, "90199096e9a26f2f85fcf19e55b5696d47ec912fd97afaef9231c1d3300b23f8",
+       "03b2e30e0055374b21618a71f554eae3a9558ec6096885b8a41e24191dc63959",
+       "f1e76975d941e2076e7168037c6e6ae6b5495b5e5555dff3bb361e513a893b33"},
+      {true, 14, 10, "fbf3dfc2b686bbc6e30628b7977133b11046b564055c90c3613aad1a0fe6c22c",
+       "a215d2358507c893c90275974e87152a67744bb25c33bd3a0b6bdd1aa5b1dcda",
+       "8008981cd86056273840ede618f4dcb5a0f5b66c2c823fdcd22792dbd8a44e33"},
+      {false, 256, 256, "a00c2dbbb5b13bebee064ca1bb1f945430d244a4e29f0cd6c4ba0982c5581467",
+       "c578abed3791afda16a34b037d43eb5c3d6994e4a4b52ff82ec813c19b43025b",
+       "df7ac5f8bfcc77e2417c6fd4d634a6324b92b8905c789058e709c8e40e4b151f"},
+      {false, 224, 224, "7c8bcf14f4ebe4f490fbf079b573317a674e7e9b5552defc908e8d51a7006dd7",
+       "7204c62f8e45ae87c7a0b769b38a28860de4adc6a78441d76105001409166ee6",
+       "25adf73d8ae00f4a00e0236f7690b69bf8307da5ac80799680f0db3e1636006e"},
+      {false, 320, 240, "18e1a2de2a163a8488b3b374efccef4be5ab5a629954c5dfae9640aa864f3f01",
+       "c1823ae1c6a886e4b9acfe966ce932eed2fa213a027ce26ec242b990809cc4d9",
+       "c1823ae1c6a886e4b9acfe966ce932eed2fa213a027ce26ec242b990809cc4d9"},
+      {false, 160, 120, "1c921d2e97c90f9dca63296c377ea7522b20782dc58ebf9cff226144c7d8e07f",
+       "cd2ac0fe042caee2b125521ee582207c4b6f8fcdcb443fc69c8b25270ceebf02",
+       "621a9da9f7d0f436b9901aecde2d634685e5669caa74b696f8b874d1b7afd03f"},
+      {false, 800, 600, "dd7b72772e4a26009f274e31fa66992bc935a41cd20142f40ece03bb40e84ca4",
+       "0ffa430fd9d645397fcf943c091270d471a01d4890fefc37c212c5ef622e7eaf",
+       "f6917015ed47a63d789fe6ff36f4c531d509325af68d3d524c97264fb45a6a6b"},
+      {false, 500, 480, "437fee0f4637746d2809cbc149d60bb5f96e6a9c7ad0658a2771c8494769ff32",
+       "baa9ed9b0a00d0b2e57a50df15a8ff5b744f6af2e1d13c5a768638a86bf965be",
+       "c55a69072e2ba9ecd9abe892dc53b9b210326931e071469b833359db26834265"},
+  };
+  const wire::Bytes small = small_picture(), large = camera_picture();
+  for (const Made& made : kMade) {
+    CAPTURE(made.width);
+    CAPTURE(made.height);
+    const Image image = made.is_small ? Image{7, 5, small} : Image{640, 480, large};
+    CHECK(hash_of(resize_lanczos(image, made.width, made.height)) == made.lanczos);
+    CHECK(hash_of(resize_cv2_linear(image, made.width, made.height)) == made.linear);
+    CHECK(hash_of(resize_cv2_area(image, made.width, made.height)) == made.area);
+  }
+  const Image image{640, 480, large};
+  CHECK(to_pixels(image, {"", "k", 224, 224, Resize::kCv2Linear}).bytes ==
+        resize_cv2_linear(image, 224, 224));
+  CHECK(to_pixels(image, {"", "k", 224, 224, Resize::kCv2Area}).bytes ==
+        resize_cv2_area(image, 224, 224));
+  CHECK(to_pixels(image, {"", "k", 224, 224, Resize::kLanczos}).bytes ==
+        resize_lanczos(image, 224, 224));
 }
 
 TEST_CASE("a camera's picture is padded, stretched and cropped as the clients in Python do") {

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "runtime/base/sha256.h"
 #include "runtime/run/policies.h"
@@ -192,15 +194,61 @@ TEST_CASE(
   for (int episode = 0; episode < 2; ++episode) {
     require_begin(*policy);
     CHECK(first_number(*policy, picture.observation()) == 0);
-    CHECK(first_number(*policy, picture.observation(1)) == 1 / 1000.0);
+    // A share of 0.075 m.
+    CHECK(first_number(*policy, picture.observation(1)) == 1 / 1000.0 * 0.075);
     policy->end({true, false, 2});
   }
   std::string said;
+  std::set<std::string> sessions;
   for (const std::string& line : record.lines()) {
     const bool is_reset = line.find(hex("endpoint") + "a5" + hex("reset")) != std::string::npos;
     said += is_reset ? "reset " : "infer ";
+    const std::size_t key = line.find("aa" + hex("session_id"));
+    REQUIRE(key != std::string::npos);
+    sessions.insert(line.substr(key + 22, 60));
   }
   CHECK(said == "reset infer infer reset reset infer infer reset ");
+  CHECK(sessions.size() == 2);
+}
+
+TEST_CASE("what RoboArena's server calls its actions is what is done with them") {
+  const auto with_space = [](const std::string& space) {
+    return "meta={\"image_resolution\": [224, 224], \"needs_wrist_camera\": false, "
+           "\"needs_session_id\": true" +
+           space + "}";
+  };
+  Picture picture;
+  Observation seen = picture.observation();
+  seen.proprioception.tcp_in_base.position = {0.3, 0.05, 0.14};
+  {
+    const PythonServer server(
+        "openpi_server.py",
+        {"roboarena", "seen=poses", with_space(", \"action_space\": \"cartesian_position\"")});
+    const auto policy = made("roboarena", server);
+    require_begin(*policy);
+    const auto action = policy->act(seen);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    // 2 cm around where the tool is, not 33 cm away.
+    for (std::size_t i = 0; i < 3; ++i) CHECK(std::abs((*action)[i]) <= 0.021);
+  }
+  {
+    const PythonServer server(
+        "openpi_server.py",
+        {"roboarena", "seen=normalised", with_space(", \"action_space\": \"cartesian_velocity\"")});
+    const auto policy = made("roboarena", server);
+    require_begin(*policy);
+    const auto action = policy->act(seen);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    const double* a = action->data();
+    CHECK(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) <= 0.075 + 1e-9);
+  }
+  for (const char* space : {"", ", \"action_space\": \"joint_position\""}) {
+    const PythonServer server("openpi_server.py", {"roboarena", with_space(space)});
+    const auto begun = made("roboarena", server)->begin(start());
+    REQUIRE_FALSE(begun.ok());
+    CHECK(begun.failure().code == Fault::kUsage);
+    CHECK(begun.failure().message.find("joint_position") != std::string::npos);
+  }
 }
 
 TEST_CASE("a traceback is shown by its last lines, and the next episode connects again") {

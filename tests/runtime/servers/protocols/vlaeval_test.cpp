@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "runtime/robot/control.h"
+#include "runtime/robot/rotation.h"
 #include "runtime/scene/image.h"
 #include "runtime/servers/servers.h"
 #include "tests/hex.h"
@@ -165,6 +167,70 @@ TEST_CASE("what a vla-eval server wishes is done or said") {
         "the server asks for send_state = true: it is not sent, because `send_state` says so");
   const PythonServer plain("vlaeval_server.py");
   CHECK(opened(plain)->notes().empty());
+}
+
+TEST_CASE("a vla-eval server that answers poses has the arm go to them") {
+  // X-VLA's hello: its control mode is of poses though its action_spec says otherwise.
+  const PythonServer server(
+      "vlaeval_server.py",
+      {R"(params={"control_mode": "arm_pd_ee_target_base_pose_gripper_pd_joint_pos"})",
+       R"(spec={"position": {"format": "delta_xyz"}, "rotation": {"format": "axis_angle"}})",
+       "pose=[0.31, 0.02, 0.15, 0.2, -0.1, 0.3, 1]"});
+  const auto policy = policy_at("vlaeval", server);
+  AskingPicture picture;
+  Observation seen = picture.observation();
+  seen.proprioception.tcp_in_base.position = {0.3, 0.0, 0.14};
+  must_begin(*policy);
+  const Quat wanted = robot::from_rpy({0.2, -0.1, 0.3});
+  Pose target = seen.proprioception.tcp_in_base;
+  for (int step = 0; step < 3; ++step) {
+    const Action a = must_act(*policy, seen);
+    target = robot::moved_target(target, seen.proprioception.tcp_in_base.position,
+                                 {a[0], a[1], a[2]}, {a[3], a[4], a[5]});
+    CHECK((target.position - Vec3(0.31, 0.02, 0.15)).norm() < 1e-12);
+    CHECK(robot::pose_error(target, {target.position, wanted}).rotation < 1e-7);
+    CHECK(a[6] == 1);
+    // The arm lags behind its target.
+    seen.proprioception.tcp_in_base.position += Vec3(0.002, 0.001, 0.001);
+  }
+}
+
+TEST_CASE(
+    "what a vla-eval server wants of its actions is done or refused, and its words are said") {
+  const auto refusal = [](const std::string& hello) {
+    const PythonServer server("vlaeval_server.py", {hello});
+    const auto policy = policy_at("vlaeval", server);
+    const auto begun = policy->begin(asking_start());
+    REQUIRE_FALSE(begun.ok());
+    CHECK(begun.failure().code == Fault::kUsage);
+    return begun.failure().message;
+  };
+  CHECK(refusal(R"(params={"control_mode": "pd_joint_delta_pos"})") ==
+        "the server asks for control_mode = pd_joint_delta_pos, which is not done here");
+  CHECK(refusal(R"(params={"gripper_mode": "sticky"})") ==
+        "the server asks for gripper_mode = sticky, which is not done here");
+  CHECK(refusal(R"(spec={"position": {"format": "joint_positions"}})") ==
+        "the server asks for a position in the form = joint_positions, which is not done here");
+  CHECK(refusal(R"(spec={"rotation": {"format": "rot6d_interleaved"}})") ==
+        "the server asks for a rotation in the form = rot6d_interleaved, which is not done here");
+  const PythonServer server("vlaeval_server.py",
+                            {R"(spec={"position": {"format": "absolute_xyz"}, )"
+                             R"("rotation": {"format": "euler_xyz"}})"});
+  Profile adapted;
+  adapted.images = {{"", "primary"}};
+  REQUIRE(opened(server)->adapt(adapted).ok());
+  CHECK(adapted.action_form == ActionForm::kAbsolute);
+  CHECK(adapted.action_rotation == RotationForm::kEuler);
+  const PythonServer euler("vlaeval_server.py", {R"(spec={"position": {"format": "delta_xyz"}, )"
+                                                 R"("rotation": {"format": "euler_xyz"}})"});
+  Profile as_published;
+  as_published.images = {{"", "primary"}};
+  const auto transport = opened(euler);
+  REQUIRE(transport->adapt(as_published).ok());
+  CHECK(as_published.action_form == ActionForm::kDelta);
+  CHECK(as_published.action_rotation == RotationForm::kVector);
+  REQUIRE(transport->notes().size() == 1);
+  CHECK(transport->notes()[0].find("as vla-eval's own benchmark does") != std::string::npos);
 }
 
 TEST_CASE("another version of vla-eval's protocol is refused at once") {

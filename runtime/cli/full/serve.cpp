@@ -1,0 +1,116 @@
+// vlaprobe serve
+#include <fmt/format.h>
+#include "runtime/base/say.h"
+#include "runtime/cli/full/run_options.h"
+#include "runtime/cli/full/until_ended.h"
+#include "runtime/cli/full/verbs.h"
+#include "runtime/run/recorded.h"
+#include "runtime/run/run.h"
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/served.h"
+
+namespace probe::cli {
+namespace {
+
+struct ServeArguments {
+  RunArguments run;
+  std::string protocol = "openpi";
+  servers::ServeOptions options;
+};
+
+Result<servers::Protocol> protocol_of(const std::string& word) {
+  std::string known;
+  for (const servers::Protocol protocol : servers::all_protocols()) {
+    if (servers::to_word(protocol) == word) return protocol;
+    known += (known.empty() ? "" : ", ") + std::string(servers::to_word(protocol));
+  }
+  return Failure{Fault::kUsage, "`" + word + "` is none of " + known, "--protocol"};
+}
+
+// A policy of this process is run first; its server then knows the episodes by their first
+// pictures.
+Result<std::string> folder_of(const ServeArguments& arguments, int* exit) {
+  constexpr std::string_view kReplay = "replay:";
+  if (arguments.run.policy.starts_with(kReplay)) return arguments.run.policy.substr(kReplay.size());
+  if (arguments.run.file.empty() || arguments.run.out.empty()) {
+    return Failure{Fault::kUsage,
+                   "policy `" + arguments.run.policy +
+                       "` sees the world: name a .probe text or .plan file, whose episodes are run "
+                       "into -o DIR first, or serve `null` or `digest`",
+                   "--policy"};
+  }
+  PROBE_ASSIGN(auto options, to_options(arguments.run));
+  const LoadedPlan loaded = load_runnable(arguments.run);
+  if (!loaded.plan) {
+    *exit = loaded.exit;
+    return std::string();
+  }
+  PROBE_ASSIGN(const run::RunSummary summary, run::run(*loaded.plan, options));
+  print_summary(summary);
+  return summary.out;
+}
+
+int serve_verb(const ServeArguments& arguments) {
+  const auto protocol = protocol_of(arguments.protocol);
+  if (!protocol) return report(protocol.failure());
+  servers::ServeOptions options = arguments.options;
+  if (arguments.run.policy == "null") {
+    options.policy = servers::serve_null();
+  } else if (arguments.run.policy == "digest") {
+    options.policy = servers::serve_digest();
+  } else {
+    int exit = kFine;
+    const auto dir = folder_of(arguments, &exit);
+    if (!dir) return report(dir.failure());
+    if (dir->empty()) return exit;
+    const auto episodes = run::recorded_episodes(*dir);
+    if (!episodes) return report(episodes.failure());
+    say("{} episodes of {} are served, each known by its first picture as rendered\n",
+        (*episodes)->size(), *dir);
+    options.policy =
+        servers::serve_recorded(*episodes, !servers::has_reset(*protocol, options.dialect));
+  }
+  const EndSignals ends;
+  const auto listener = servers::serve(*protocol, options);
+  if (!listener) return report(listener.failure());
+  fmt::print("{}://{}:{}?{}\n", arguments.protocol, options.address, (*listener)->port(),
+             servers::options_for_served(*protocol, options));
+  std::fflush(stdout);
+  ends.wait();
+  return kFine;
+}
+
+}  // namespace
+
+void add_serve(Verb app, int& exit) {
+  auto arguments = std::make_shared<ServeArguments>();
+  Verb verb = app.add_subcommand("serve", "a policy behind a server, to try a client or a harness");
+  verb.footer(
+      "Policies: null; digest (small moves that follow from picture and words); replay:DIR, a "
+      "run's\n"
+      "episodes, each known by its first picture; expert, noisy:SIGMA and the others of `run`, "
+      "which\n"
+      "are run over F into -o first. Prints the address to ask at; ends with SIGINT or SIGTERM.\n"
+      "example: vlaprobe serve suite/intact.probe --policy expert --tasks carrot_on_plate \\\n"
+      "           -o runs/expert --protocol gr00t --port 5555");
+  verb.add_option("F", arguments->run.file, ".probe text or .plan file");
+  verb.add_option("--policy", arguments->run.policy, "who acts").required();
+  std::string protocols;
+  for (const servers::Protocol protocol : servers::all_protocols())
+    protocols += (protocols.empty() ? "" : ", ") + std::string(servers::to_word(protocol));
+  verb.add_option("--protocol", arguments->protocol, protocols);
+  verb.add_option("--address", arguments->options.address, "numeric, to listen at");
+  verb.add_option("--port", arguments->options.port, "to listen at; 0: any free one");
+  verb.add_option("--chunk", arguments->options.chunk, "actions of an answer, at most");
+  verb.add_option("--dialect", arguments->options.dialect, "of gr00t and openvla");
+  verb.add_option("-o,--out", arguments->run.out, "results folder of the run before");
+  verb.add_option("--suite", arguments->run.suite, "as for `run`");
+  verb.add_option("--tasks", arguments->run.tasks, "as for `run`");
+  verb.add_option("--episodes", arguments->run.episodes, "as for `run`");
+  verb.add_option("--jobs", arguments->run.jobs, "as for `run`");
+  verb.add_option("--assets", arguments->run.assets.root, "asset root");
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = serve_verb(*arguments); });
+}
+
+}  // namespace probe::cli

@@ -1,0 +1,21 @@
+# openpi's LIBERO policies (pi0_libero, pi05_libero), with LiberoInputs' keys:
+#   openpi://HOST:PORT?profile=openpi_libero
+# The scene needs a second camera called `wrist`. Actions are LIBERO's own: -1 to 1, 5 cm and 0.5 rad
+# a step, the gripper +1 when closed.
+protocol = openpi
+about = pi0 on LIBERO behind openpi's server, pictures of two cameras
+image = first -> observation/image 224x224 pad
+image = wrist -> observation/wrist_image 224x224 pad
+prompt.key = prompt
+state.key = observation/state
+state.layout = xyz_rotvec_fingers
+state.type = f64
+action.form = delta
+action.units = box
+action.scale_m = 0.05
+action.scale_rad = 0.5
+action.rotation = vector
+action.gripper = signed_inverted
+chunk.use = 5
+timeout.connect_s = 60
+timeout.wait_s = 60

@@ -1,0 +1,151 @@
+// openpi's protocol and its dialects from the server's side, see the clients' files.
+#include "runtime/servers/protocols/served_sides.h"
+#include "runtime/wire/msgpack.h"
+
+namespace probe::servers {
+namespace {
+
+wire::Frame packed(const wire::Value& value) {
+  return {false, wire::to_msgpack(value, wire::ArrayStyle::kBinKeys)};
+}
+
+// Greets with metadata, and ends the connection with a text where something fails, as these servers
+// end it with a traceback.
+class OpenpiSpeaker : public wire::Speaker {
+ public:
+  explicit OpenpiSpeaker(const ServeOptions& options)
+      : chunk_(options.chunk), policy_(options.policy()) {}
+
+  std::vector<wire::Frame> greet() override { return {packed(metadata())}; }
+
+  Reply answer(const wire::Frame& asked) override {
+    auto frame = [&]() -> Result<wire::Frame> {
+      PROBE_ASSIGN(const wire::Value request, wire::from_msgpack(asked.bytes));
+      return said(request);
+    }();
+    if (frame) return {{std::move(*frame)}};
+    return {{wire::text_frame("vlaprobe: " + frame.failure().message)},
+            "Internal server error. Traceback included in previous frame."};
+  }
+
+ protected:
+  virtual wire::Value metadata() const { return wire::Map{}; }
+  virtual Result<wire::Frame> said(const wire::Value& request) {
+    PROBE_ASSIGN(const auto actions, act(request, "prompt"));
+    return packed(wire::Map{{"actions", actions_array(actions)}});
+  }
+
+  Result<std::vector<RawAction>> act(const wire::Value& request, std::string_view words) {
+    PROBE_ASSIGN(wire::Array picture, first_picture(request));
+    PROBE_ASSIGN(std::string text, text_at(request, words));
+    return policy_->answer({std::move(picture), std::move(text)}, chunk_);
+  }
+  ServedPolicy& policy() { return *policy_; }
+
+ private:
+  int chunk_;
+  std::unique_ptr<ServedPolicy> policy_;
+};
+
+class IntactSpeaker final : public OpenpiSpeaker {
+ public:
+  using OpenpiSpeaker::OpenpiSpeaker;
+
+ private:
+  Result<wire::Frame> said(const wire::Value& request) override {
+    if (request.find("new_model_path") != nullptr)
+      return packed(wire::Map{{"status", "model switched"}});
+    if (request.find("reset") != nullptr) {
+      policy().reset();
+      return packed(wire::Map{{"status", "reset"}});
+    }
+    PROBE_ASSIGN(const auto actions, act(request, "task"));
+    return packed(actions_array(actions));
+  }
+};
+
+class RoboArenaSpeaker final : public OpenpiSpeaker {
+ public:
+  using OpenpiSpeaker::OpenpiSpeaker;
+
+ private:
+  wire::Value metadata() const override {
+    return wire::Map{{"image_resolution", wire::Value()}, {"needs_wrist_camera", false},
+                     {"n_external_cameras", 1},           {"needs_stereo_camera", false},
+                     {"needs_session_id", true},          {"action_space", "cartesian_velocity"}};
+  }
+  Result<wire::Frame> said(const wire::Value& request) override {
+    PROBE_ASSIGN(const std::string endpoint, text_at(request, "endpoint"));
+    if (endpoint == "reset") {
+      policy().reset();
+      return wire::text_frame("reset successful");
+    }
+    return OpenpiSpeaker::said(request);
+  }
+};
+
+class StarVlaSpeaker final : public OpenpiSpeaker {
+ public:
+  using OpenpiSpeaker::OpenpiSpeaker;
+
+ private:
+  wire::Value metadata() const override {
+    return wire::Map{{"env", "starvla_policy_server"},
+                     {"available_unnorm_keys", wire::List{"oxe_bridge"}}};
+  }
+  Result<wire::Frame> said(const wire::Value& request) override {
+    const wire::Value* examples = request.find("examples");
+    const auto* list = examples == nullptr ? nullptr : examples->as<wire::List>();
+    if (list == nullptr || list->size() != 1)
+      return failed("expected `examples`, a list of one; got " + wire::describe(request));
+    const wire::Value* images = list->front().find("image");
+    const auto* pictures = images == nullptr ? nullptr : images->as<wire::List>();
+    if (pictures == nullptr || pictures->empty())
+      return failed("expected `image`, a list; got " + wire::describe(list->front()));
+    const auto actions = act(
+        wire::Map{{"image", pictures->front()},
+                  {"lang", list->front().find("lang") == nullptr ? wire::Value()
+                                                                 : *list->front().find("lang")}},
+        "lang");
+    if (!actions) return failed(actions.failure().message);
+    wire::Array array = actions_array(*actions);
+    array.shape.insert(array.shape.begin(), 1);  // of a batch
+    return packed(wire::Map{{"status", "ok"},
+                            {"ok", true},
+                            {"type", "inference_result"},
+                            {"request_id", "default"},
+                            {"data", wire::Map{{"actions", std::move(array)}}}});
+  }
+  // Its connections outlive an error.
+  static wire::Frame failed(std::string message) {
+    return packed(wire::Map{{"status", "error"},
+                            {"ok", false},
+                            {"type", "inference_result"},
+                            {"request_id", "default"},
+                            {"error", wire::Map{{"message", std::move(message)}}}});
+  }
+};
+
+template <typename Side>
+Result<std::unique_ptr<wire::Listener>> listen_as(const ServeOptions& options) {
+  return wire::listen_websocket(options.address, options.port,
+                                [options] { return std::make_unique<Side>(options); });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<wire::Listener>> serve_openpi(const ServeOptions& options) {
+  return listen_as<OpenpiSpeaker>(options);
+}
+Result<std::unique_ptr<wire::Listener>> serve_intact(const ServeOptions& options) {
+  return listen_as<IntactSpeaker>(options);
+}
+Result<std::unique_ptr<wire::Listener>> serve_roboarena(const ServeOptions& options) {
+  return listen_as<RoboArenaSpeaker>(options);
+}
+
+Result<std::unique_ptr<wire::Listener>> serve_starvla(const ServeOptions& options) {
+  return listen_as<StarVlaSpeaker>(options);
+}
+
+}  // namespace probe::servers

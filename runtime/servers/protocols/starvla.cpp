@@ -1,0 +1,116 @@
+// starVLA's WebSocket server (deployment/model_server/tools/websocket_policy_server.py): openpi's
+// framing, whose maps are the arguments of predict_action: {"examples": [{"image": [...],
+// "lang"}]}, answered under "data". An error is a map like any other. Servers keep nothing between
+// questions.
+#include <array>
+
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/protocols/openpi_connection.h"
+#include "runtime/servers/protocols/served_sides.h"
+
+namespace probe::servers {
+namespace {
+
+class StarVla : public Transport {
+ public:
+  StarVla(const Profile& profile, const wire::Endpoint& server)
+      : profile_(profile), connection_(server) {}
+
+  Status open(const Deadlines& deadlines) override {
+    PROBE_ASSIGN(metadata_, connection_.open(profile_, deadlines));
+    return check_key();
+  }
+  void close() override { connection_.close(); }
+
+  Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
+    wire::List images;
+    for (const RequestImage& image : request.images) images.emplace_back(image.pixels);
+    wire::Map example{{"image", std::move(images)}, {profile_.prompt_key, request.prompt}};
+    if (!request.state.empty()) {
+      // A history of one.
+      wire::Array state = state_array(profile_, request.state);
+      state.shape.insert(state.shape.begin(), 1);
+      example.emplace_back(profile_.state_key, std::move(state));
+    }
+    // As starVLA's own evaluation in SimplerEnv asks (model2simpler_interface.py).
+    wire::Map map{{"examples", wire::List{std::move(example)}},
+                  {"do_sample", false},
+                  {"use_ddim", true},
+                  {"num_ddim_steps", 10}};
+    if (!profile_.unnorm_key.empty()) map.emplace_back("unnorm_key", profile_.unnorm_key);
+    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
+    if (const wire::Value* error = answer.find("error")) {
+      const wire::Value* message = error->find("message");
+      const auto* text = message == nullptr ? nullptr : message->as<std::string>();
+      return answered("the server failed: " +
+                      (text == nullptr ? wire::describe(*error) : last_lines(*text)));
+    }
+    const wire::Value* data = answer.find("data");
+    const wire::Value* actions = data == nullptr ? nullptr : data->find("actions");
+    if (actions == nullptr) {
+      return bad("expected a map with `data`, a map with `actions`; got " +
+                 wire::describe(data == nullptr ? answer : *data));
+    }
+    return to_actions(*actions);
+  }
+
+  std::vector<std::string> remarks() const override { return metadata_remarks(metadata_); }
+
+ private:
+  // Its statistics by name, which it lists; one of another data set would be metres of another
+  // size.
+  Status check_key() const {
+    const wire::Value* keys = metadata_.find("available_unnorm_keys");
+    const auto* known = keys == nullptr ? nullptr : keys->as<wire::List>();
+    if (known == nullptr) return {};
+    std::string names;
+    for (const wire::Value& name : *known) {
+      const auto* text = name.as<std::string>();
+      if (text == nullptr) continue;
+      if (*text == profile_.unnorm_key) return {};
+      names += (names.empty() ? "`" : ", `") + last_lines(*text) + "`";
+    }
+    if (profile_.unnorm_key.empty() && known->size() <= 1) return {};
+    return Failure{Fault::kUsage,
+                   "the server has statistics of " + names +
+                       ", and the profile's `unnorm_key` is " +
+                       (profile_.unnorm_key.empty() ? "none" : "`" + profile_.unnorm_key + "`"),
+                   ""};
+  }
+
+  Profile profile_;
+  OpenpiConnection connection_;
+  wire::Value metadata_;
+};
+
+Result<std::unique_ptr<Transport>> make_starvla(const Profile& profile,
+                                                const wire::Endpoint& server) {
+  return std::unique_ptr<Transport>(std::make_unique<StarVla>(profile, server));
+}
+
+// Pictures go in a list, in the profile's order, whatever their keys.
+std::vector<KeyUse> starvla_key_uses(const Profile& profile) {
+  std::vector<KeyUse> uses = image_key_uses(profile);
+  for (KeyUse& use : uses) use.map = "image";
+  if (profile.state_layout != StateLayout::kNone) uses.push_back(state_key_use(profile.state_key));
+  uses.push_back(prompt_key_use(profile));
+  return uses;
+}
+
+constexpr std::array<std::string_view, 1> kStarVlaKeys = {"image"};
+
+}  // namespace
+
+constinit const ProtocolRow starvla_row{
+    .word = "starvla",
+    .argument = "//HOST:PORT",
+    .meaning = "a starVLA server",
+    .port = "10093",
+    .options = {},
+    .fixed_keys = kStarVlaKeys,
+    .key_uses = starvla_key_uses,
+    .make = make_starvla,
+    .serve = serve_starvla,
+};
+
+}  // namespace probe::servers

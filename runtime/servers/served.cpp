@@ -1,0 +1,150 @@
+#include "runtime/servers/served.h"
+
+#include <algorithm>
+
+#include "runtime/base/sha256.h"
+#include "runtime/servers/protocol.h"
+
+namespace probe::servers {
+namespace {
+
+constexpr RawAction kServedStill{0, 0, 0, 0, 0, 0, 1};
+
+class ServedNull final : public ServedPolicy {
+ public:
+  void reset() override {}
+  Result<std::vector<RawAction>> answer(const Asked&, int count) override {
+    return std::vector<RawAction>(static_cast<std::size_t>(count), kServedStill);
+  }
+};
+
+class ServedDigest final : public ServedPolicy {
+ public:
+  void reset() override {}
+  Result<std::vector<RawAction>> answer(const Asked& asked, int count) override {
+    const Sha256 seen = Hasher()
+                            .bytes(std::as_bytes(std::span(asked.picture.bytes)))
+                            .hash(sha256(asked.words))
+                            .finish();
+    std::uint64_t key = 0;
+    for (std::size_t i = 8; i-- > 0;) key = key << 8 | seen.bytes[i];
+    policy::Draws draws(key);
+    std::vector<RawAction> actions(static_cast<std::size_t>(count));
+    for (RawAction& action : actions) {
+      for (std::size_t i = 0; i < 6; ++i)
+        action[i] = (i < 3 ? 0.008 : 0.02) * (2 * draws.uniform() - 1);
+      action[6] = draws.uniform() < 0.5 ? -1 : 1;
+    }
+    return actions;
+  }
+};
+
+class ServedRecorded final : public ServedPolicy {
+ public:
+  ServedRecorded(std::shared_ptr<const RecordedEpisodes> episodes, bool begins_anew)
+      : episodes_(std::move(episodes)), begins_anew_(begins_anew) {}
+
+  void reset() override { actions_ = nullptr; }
+  Result<std::vector<RawAction>> answer(const Asked& asked, int count) override {
+    if (actions_ == nullptr || begins_anew_) {
+      const auto found =
+          episodes_->find(episode_key(to_hex(sha256(std::as_bytes(std::span(asked.picture.bytes)))),
+                                      to_hex(sha256(asked.words))));
+      if (found != episodes_->end()) {
+        actions_ = &found->second;
+        next_ = 0;
+      }
+    }
+    if (actions_ == nullptr)
+      return bad("picture and instruction begin none of the episodes that are served");
+    if (next_ >= actions_->size()) return bad("the episode has no more actions");
+    const std::size_t end = std::min(next_ + static_cast<std::size_t>(count), actions_->size());
+    std::vector<RawAction> actions(actions_->begin() + static_cast<std::ptrdiff_t>(next_),
+                                   actions_->begin() + static_cast<std::ptrdiff_t>(end));
+    next_ = end;
+    return actions;
+  }
+
+ private:
+  std::shared_ptr<const RecordedEpisodes> episodes_;
+  bool begins_anew_;
+  const std::vector<policy::Action>* actions_ = nullptr;
+  std::size_t next_ = 0;
+};
+
+}  // namespace
+
+MakeServedPolicy serve_null() {
+  return [] { return std::make_unique<ServedNull>(); };
+}
+
+MakeServedPolicy serve_digest() {
+  return [] { return std::make_unique<ServedDigest>(); };
+}
+
+MakeServedPolicy serve_recorded(std::shared_ptr<const RecordedEpisodes> episodes,
+                                bool begins_anew) {
+  return
+      [episodes, begins_anew] { return std::make_unique<ServedRecorded>(episodes, begins_anew); };
+}
+
+Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOptions& options) {
+  return row_of(protocol).serve(options);
+}
+
+bool has_reset(Protocol protocol, const std::string& dialect) {
+  return protocol == Protocol::kIntact || protocol == Protocol::kRoboArena ||
+         protocol == Protocol::kVlaEval || (protocol == Protocol::kGr00t && dialect != "n1.5");
+}
+
+std::string options_for_served(Protocol protocol, const ServeOptions& options) {
+  std::string text =
+      "action.form=delta&action.units=m_rad&action.rotation=vector&action.gripper=signed&"
+      "action.threshold=none";
+  if (protocol != Protocol::kVlaEval) text += "&chunk.length=any&chunk.use=all";
+  if (protocol == Protocol::kIntact) text += "&worlds=many&model=/served";
+  // As rendered: an episode is known by its first picture.
+  if (protocol == Protocol::kStarVla) text += "&image=first%20-%3E%20image";
+  if (protocol == Protocol::kGr00t) text += "&image=first%20-%3E%20video.image_0";
+  if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
+  return text;
+}
+
+Result<wire::Array> first_picture(const wire::Value& map) {
+  if (const auto* entries = map.as<wire::Map>()) {
+    for (const auto& [key, value] : *entries) {
+      const auto* array = value.as<wire::Array>();
+      if (array == nullptr || array->dtype != "|u1" || array->shape.size() < 3 ||
+          array->shape.back() != 3) {
+        continue;
+      }
+      wire::Array picture = *array;  // without leading dimensions of 1
+      picture.shape.erase(picture.shape.begin(), picture.shape.end() - 3);
+      PROBE_TRY(wire::check_fit(picture));
+      return picture;
+    }
+  }
+  return bad("expected a picture, u8 [height, width, 3], among others; got " + wire::describe(map));
+}
+
+Result<std::string> text_at(const wire::Value& map, std::string_view key) {
+  const wire::Value* value = map.find(key);
+  if (value != nullptr) {
+    // GR00T's texts are in lists.
+    while (const auto* list = value->as<wire::List>()) {
+      if (list->size() != 1) break;
+      value = &list->front();
+    }
+    if (const auto* text = value->as<std::string>()) return *text;
+  }
+  return bad("expected a text `" + std::string(key) + "` among others; got " + wire::describe(map));
+}
+
+wire::Array actions_array(const std::vector<RawAction>& actions) {
+  std::vector<double> numbers;
+  for (const RawAction& action : actions)
+    numbers.insert(numbers.end(), action.begin(), action.end());
+  return wire::array_f64({static_cast<std::int64_t>(actions.size()), 7}, numbers);
+}
+
+}  // namespace probe::servers

@@ -1,0 +1,75 @@
+// Our own reference servers: a policy served in each protocol, for whoever wants to try a client or
+// a harness without a GPU. Each protocol's side stands in its file of protocols/, beside the
+// client.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/policy/policy.h"
+#include "runtime/servers/profile.h"
+#include "runtime/servers/transport.h"
+#include "runtime/wire/listener.h"
+#include "runtime/wire/value.h"
+
+namespace probe::servers {
+
+// What a question carries, in every protocol.
+struct Asked {
+  wire::Array picture;  // the first, u8 [h, w, 3]
+  std::string words;
+};
+
+// One world's. Answers are actions in the simulator's own convention: m, rotation vector, gripper
+// -1 closed .. +1 open.
+class ServedPolicy {
+ public:
+  virtual ~ServedPolicy() = default;
+  // A protocol's word that an episode begins; of some there is none.
+  virtual void reset() = 0;
+  virtual Result<std::vector<RawAction>> answer(const Asked& asked, int count) = 0;
+};
+using MakeServedPolicy = std::function<std::unique_ptr<ServedPolicy>()>;
+
+// Stays where it is, gripper open.
+MakeServedPolicy serve_null();
+// Moves of at most 8 mm and 0.02 rad that follow from picture and words alone.
+MakeServedPolicy serve_digest();
+// Episodes' actions by episode_key of their first picture and their instruction. Such a picture
+// begins its episode anew where `begins_anew` (protocols without a reset), else only after a reset.
+using RecordedEpisodes = std::map<std::string, std::vector<policy::Action>>;
+// Of the SHA-256, in hex, of a picture's bytes and of an instruction's.
+inline std::string episode_key(const std::string& picture_sha256, const std::string& words_sha256) {
+  return picture_sha256 + "/" + words_sha256;
+}
+MakeServedPolicy serve_recorded(std::shared_ptr<const RecordedEpisodes> episodes, bool begins_anew);
+
+struct ServeOptions {
+  std::string address = "127.0.0.1";
+  std::string port = "0";
+  int chunk = 1;        // actions of an answer, at most; vla-eval's have one
+  std::string dialect;  // of GR00T and OpenVLA, as in a profile
+  MakeServedPolicy policy;
+};
+
+// Listens until it goes. Fails (kUsage) where it cannot.
+Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOptions& options);
+
+// Whether the protocol has a word for an episode's beginning.
+bool has_reset(Protocol protocol, const std::string& dialect);
+
+// The options of an address that read such a server as it is meant: "action.rotation=vector&...".
+std::string options_for_served(Protocol protocol, const ServeOptions& options);
+
+// For the protocols' files.
+// The first picture among a map's entries. Fails naming what there is.
+Result<wire::Array> first_picture(const wire::Value& map);
+Result<std::string> text_at(const wire::Value& map, std::string_view key);
+// f64 [n, 7].
+wire::Array actions_array(const std::vector<RawAction>& actions);
+
+}  // namespace probe::servers

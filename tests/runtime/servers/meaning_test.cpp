@@ -1,0 +1,131 @@
+// What a profile leaves open: measured where the answers leave one value, refused else.
+#include "runtime/servers/meaning.h"
+
+#include <doctest/doctest.h>
+
+#include "runtime/servers/conformance.h"
+#include "runtime/servers/profile_library.h"
+#include "runtime/servers/reading.h"
+#include "tests/runtime/servers/asking.h"
+
+namespace probe::servers {
+namespace {
+
+std::vector<std::string> names_of(const Profile& profile) {
+  std::vector<std::string> names;
+  for (const OpenField& open : open_fields(profile)) names.push_back(open.field);
+  return names;
+}
+
+std::optional<std::string> measured(const std::string& field, const std::vector<RawAction>& chunk) {
+  const Profile profile;
+  for (const OpenField& open : open_fields(profile)) {
+    if (open.field == field) return measured_value(open, profile, {chunk});
+  }
+  FAIL("the field is not open: " << field);
+  return std::nullopt;
+}
+
+Result<policy::Reading> read_by(const std::string& habit, const std::string& options) {
+  const test::PythonServer server("openpi_server.py", {"openpi", "seen=" + habit});
+  REQUIRE_MESSAGE(!server.port().empty(), "Debian's python3-websockets is installed");
+  const auto choice = choose_server(
+      Protocol::kOpenpi, "//127.0.0.1:" + server.port() + "?timeout.wait_s=0.05" + options);
+  REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+  return prove_reading(*choice);
+}
+
+}  // namespace
+
+TEST_CASE("form, units and rotation are open until they are said; some say others") {
+  Profile profile;
+  CHECK(names_of(profile) ==
+        std::vector<std::string>{"action.form", "action.units", "action.rotation"});
+  profile.action_statistics.kind = Normalisation::kBound;
+  CHECK(names_of(profile) == std::vector<std::string>{"action.form", "action.rotation"});
+  profile = {};
+  profile.action_form = ActionForm::kAbsolute;
+  CHECK(names_of(profile) == std::vector<std::string>{"action.rotation"});
+}
+
+TEST_CASE("answers show poses from changes, and a rotation where the other could not be") {
+  CHECK(measured("action.form", {{0.01, 0, 0, 0, 0, 0, 1}}) == "delta");
+  CHECK(measured("action.form", {{0.31, 0.04, 0.15, 0, 0, 0, 1}}) == "absolute");
+  // Shares of a step are neither.
+  CHECK(measured("action.form", {{0.01, 0, 0, 0, 0, 0, 1}, {0.9, -0.8, 0.3, 0, 0, 0, 1}}) ==
+        std::nullopt);
+  CHECK(measured("action.rotation", {{0, 0, 0, 2.5, 0.1, 2.5, 1}}) == "euler");
+  CHECK(measured("action.rotation", {{0, 0, 0, 0.1, 2.5, 0.1, 1}}) == "vector");
+  CHECK(measured("action.rotation", {{0, 0, 0, 0.1, 0.1, 0.1, 1}}) == std::nullopt);
+  CHECK(measured("action.units", {{0.01, 0, 0, 0, 0, 0, 1}}) == std::nullopt);
+}
+
+TEST_CASE("a run is refused what is neither said nor shown, with the lines that say it") {
+  const std::string open = "&action.form=unsaid&action.rotation=unsaid";
+  const auto refused = read_by("fine", open);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().code == Fault::kUsage);
+  CHECK(refused.failure().message.find("`action.rotation` (action.rotation = vector | "
+                                       "action.rotation = euler)") != std::string::npos);
+  const auto shown = read_by("euler", open);
+  REQUIRE_MESSAGE(shown.ok(), to_text(shown.failure()));
+  const std::vector<std::pair<std::string, std::string>> expected{{"action.form", "delta"},
+                                                                  {"action.rotation", "euler"}};
+  CHECK(shown->measured == expected);
+  const auto units = read_by("fine", "&action.units=unsaid");
+  REQUIRE_FALSE(units.ok());
+  CHECK(units.failure().message.find("action.units = m_rad | action.units = box") !=
+        std::string::npos);
+  const auto poses = read_by("poses", "&action.form=unsaid&action.units=unsaid");
+  REQUIRE_MESSAGE(poses.ok(), to_text(poses.failure()));
+  CHECK(poses->measured.front().second == "absolute");
+}
+
+TEST_CASE("a policy test names what is left open, and what its answers show of it") {
+  const test::PythonServer server("openpi_server.py", {"openpi", "seen=euler", "chunk=4"});
+  REQUIRE_FALSE(server.port().empty());
+  const auto choice =
+      choose_server(Protocol::kOpenpi,
+                    "//127.0.0.1:" + server.port() + "?action.rotation=unsaid&action.units=unsaid");
+  REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+  const auto tested = test_server(*choice);
+  REQUIRE_MESSAGE(tested.ok(), to_text(tested.failure()));
+  std::string said;
+  for (const Check& check : tested->checks) {
+    if (!check.name.starts_with("action.")) continue;
+    said += check.name + " " + std::string(to_word(check.verdict)) + " " + check.fix.front() + "; ";
+  }
+  CHECK(
+      said ==
+      "action.units wrong action.units = m_rad; action.rotation warning action.rotation = euler; ");
+  CHECK(tested->queries <= 20);
+}
+
+TEST_CASE("every ready profile says what its actions mean, but where the server or the user must") {
+  for (const ProfileText& ready : ready_profiles()) {
+    CAPTURE(std::string(ready.name));
+    const auto profile = find_profile(ready.name);
+    REQUIRE_MESSAGE(profile.ok(), to_text(profile.failure()));
+    const auto open = names_of(*profile);
+    if (ready.name == "gr00t") {
+      CHECK(open == std::vector<std::string>{"action.rotation"});
+    } else if (profile->protocol == Protocol::kRoboArena) {
+      CHECK(open == std::vector<std::string>{"action.form", "action.units"});
+    } else if (profile->protocol == Protocol::kVlaEval) {
+      CHECK(open.size() == 3);
+    } else {
+      CHECK(open.empty());
+    }
+  }
+}
+
+TEST_CASE("GR00T's two profiles differ in how roll, pitch and yaw are done") {
+  auto meant = find_profile("gr00t_bridge_as_meant").value();
+  const auto published = find_profile("gr00t_bridge_as_published").value();
+  CHECK(meant.action_rotation == RotationForm::kEuler);
+  CHECK(published.action_rotation == RotationForm::kVector);
+  meant.action_rotation = RotationForm::kVector;
+  CHECK(profile_sha256(meant) == profile_sha256(published));
+}
+
+}  // namespace probe::servers

@@ -1,0 +1,51 @@
+// Our own reference servers, over each protocol's wire.
+#include "runtime/servers/served.h"
+
+#include <doctest/doctest.h>
+
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/reading.h"
+#include "runtime/servers/servers.h"
+
+namespace probe::servers {
+
+TEST_CASE("a served digest is proved to read, and a served null not to, on every protocol") {
+  for (const Protocol protocol : all_protocols()) {
+    CAPTURE(std::string(to_word(protocol)));
+    for (const bool reads : {true, false}) {
+      ServeOptions options;
+      options.policy = reads ? serve_digest() : serve_null();
+      const auto listener = serve(protocol, options);
+      REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+      const auto choice = choose_server(protocol, "//127.0.0.1:" + (*listener)->port() + "?" +
+                                                      options_for_served(protocol, options));
+      REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+      const auto reading = prove_reading(*choice);
+      REQUIRE_MESSAGE(reading.ok(), to_text(reading.failure()));
+      CHECK(reading->failure.empty());
+      CHECK(reading->answers == 3);
+      CHECK(reading->is_deaf == !reads);
+      CHECK(reading->is_blind == !reads);
+    }
+  }
+}
+
+TEST_CASE("a port that is taken, and one that is none, are refused") {
+  ServeOptions options;
+  options.policy = serve_null();
+  for (const Protocol protocol : all_protocols()) {
+    CAPTURE(std::string(to_word(protocol)));
+    options.port = "0";
+    const auto first = serve(protocol, options);
+    REQUIRE_MESSAGE(first.ok(), to_text(first.failure()));
+    options.port = (*first)->port();
+    const auto second = serve(protocol, options);
+    REQUIRE_FALSE(second.ok());
+    CHECK(second.failure().code == Fault::kUsage);
+    CHECK(second.failure().message.starts_with("listening: "));
+    options.port = "70000";
+    CHECK_FALSE(serve(protocol, options).ok());
+  }
+}
+
+}  // namespace probe::servers
