@@ -16,7 +16,7 @@ struct PackOptions {
 };
 
 // A sentence on what was made: size, triangles, convex parts. Fails (kAsset, kUrdf, kIo,
-// "usage") as the readers do, and when `to` is there already.
+// kUsage) as the readers do, and when `to` is there already.
 Result<std::string> pack_asset(const PackOptions& options);
 
 }  // namespace probe::assets

@@ -16,7 +16,7 @@ namespace probe::expert {
 class Reach {
  public:
   // The arm's joints are all that move between the root and the tool centre point's link, in that
-  // order; the chain ends in the hand's grasp frame. Copies what it needs. Fails (code "policy") on
+  // order; the chain ends in the hand's grasp frame. Copies what it needs. Fails (kPolicy) on
   // a robot without a hand that could grasp, and with the failures of Chain.
   static Result<Reach> create(const robot::Robot& robot);
 

@@ -34,7 +34,7 @@ class ServerPolicy : public policy::Policy {
 
   // Connects if there is no connection, trying again with growing pauses until the profile's
   // `timeout.wait_s` have passed. Fails (kPolicy, at once where a server answers with an
-  // error; or "usage", at once, where the profile and the server do not go together).
+  // error; or kUsage, at once, where the profile and the server do not go together).
   Status begin(const policy::EpisodeStart& start) override;
   Result<policy::Action> act(const policy::Observation& observation) override;
   void end(const policy::EpisodeEnd& end) override;

@@ -41,7 +41,7 @@ class EpisodeWorld {
   // One control step. The world must not be used after a failure, until the next reset.
   Status act(const policy::Action& action);
 
-  // restore() works without a reset() before it. It fails (codes "world", "policy") on the state of
+  // restore() works without a reset() before it. It fails (kWorld, kPolicy) on the state of
   // another task; only reset() and restore() may be called then.
   WorldState save() const;
   Status restore(const WorldState& state);

@@ -11,7 +11,7 @@
 
 namespace probe::stage {
 
-// What does not change in an episode. Fails (code "asset") on an object or fixture without a
+// What does not change in an episode. Fails (kAsset) on an object or fixture without a
 // collision mesh, and with the failures of goal_of().
 Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t task,
                                            const SharedAssets& assets, const TaskBodies& bodies);

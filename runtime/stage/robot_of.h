@@ -8,8 +8,8 @@
 
 namespace probe::stage {
 
-// `parts` are the assets of the record's URDF and outlive the robot. Fails (code "urdf") on fingers
-// that are not there or hang on no joint, (code "plan") on drives in an order that the controller
+// `parts` are the assets of the record's URDF and outlive the robot. Fails (kUrdf) on fingers
+// that are not there or hang on no joint, (kPlan) on drives in an order that the controller
 // does not have or a control that this program does not know.
 Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& record,
                               const RobotParts& parts);

@@ -36,7 +36,7 @@ struct StageState {
 class Stage {
  public:
   // `assets` were loaded for this task; the plan must live as long as the stage. Fails with the
-  // codes of what it is made of ("plan", "asset", "urdf", "world", "render").
+  // faults of what it is made of (kPlan, kAsset, kUrdf, kWorld, kRender).
   static Result<std::unique_ptr<Stage>> create(const plan::Plan& plan, std::uint32_t task,
                                                std::shared_ptr<const SharedAssets> assets,
                                                const StageOptions& options = {});
@@ -50,12 +50,12 @@ class Stage {
   Result<policy::Observation> observe();
 
   // One control step: action to joint targets, substeps, measurement, verdicts. After a failure
-  // (kPolicy for an action that is none, "judge", "world") only reset() and restore() may be
+  // (kPolicy for an action that is none, kJudge, kWorld) only reset() and restore() may be
   // called.
   Status step(const policy::Action& action);
 
   // The episode as it is now, and back to it: what follows is the same bit for bit, in this stage
-  // or in another of the same plan and task. restore() fails (kWorld or "judge") on a state
+  // or in another of the same plan and task. restore() fails (kWorld or kJudge) on a state
   // of another task.
   StageState save() const;
   Status restore(const StageState& state);

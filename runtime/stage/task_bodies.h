@@ -23,7 +23,7 @@ struct TaskBodies {
   std::uint16_t local(const world::Party& party) const;
 };
 
-// Fails (code "plan", "urdf") when the task's bodies do not add up or a link is not the robot's.
+// Fails (kPlan, kUrdf) when the task's bodies do not add up or a link is not the robot's.
 Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& task,
                                const robot::RobotModel& model);
 

@@ -30,7 +30,7 @@ class JointTree {
  public:
   // `joints`: indices into model.joints, in the order wanted for q. A joint that is not among them
   // must be fixed or mimic one that is. Fixed links are merged into the link they hang on.
-  // `first`: the place of the first joint among the world's positions. Fails (code "world") on
+  // `first`: the place of the first joint among the world's positions. Fails (kWorld) on
   // missing or surplus joints and impossible inertia.
   static Result<std::unique_ptr<JointTree>> create(const robot::RobotModel& model, const Pose& base,
                                                    const std::vector<int>& joints, int first = 0);

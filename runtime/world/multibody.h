@@ -38,12 +38,12 @@ struct MultibodyBuild {
   bool library_asserts = true, adapter_asserts = true;
 };
 MultibodyBuild multibody_build();
-// Fails (code "world") if they differ; each tree that is made checks it.
+// Fails (kWorld) if they differ; each tree that is made checks it.
 Status check_layout(const MultibodyBuild& build);
 
 class Multibody {
  public:
-  // `outward`: the links in an order in which parents come first. Fails (code "world") with the
+  // `outward`: the links in an order in which parents come first. Fails (kWorld) with the
   // library's words on what it refuses.
   static Result<std::unique_ptr<Multibody>> create(const std::string& name,
                                                    const std::vector<TreeLink>& links,

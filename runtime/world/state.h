@@ -18,7 +18,7 @@ namespace probe::world {
 // with zeros to the next one, so that sums over joints have fixed lanes.
 constexpr int kMaxJoints = 32;
 
-// Numbers of the solver; where they come from is told in the README.
+// Numbers of the solver; the README's table of what was measured is what they give.
 struct Parameters {
   double dt = 0.002;  // s
   int max_sweeps = 50;

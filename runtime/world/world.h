@@ -45,7 +45,7 @@ struct ContactImpulse {
 
 class World {
  public:
-  // Fails (code "world") on mass or inertia that no body can have, unknown joints or links,
+  // Fails (kWorld) on mass or inertia that no body can have, unknown joints or links,
   // non-finite numbers.
   static Result<std::unique_ptr<World>> create(WorldSpec spec);
   ~World();
@@ -66,7 +66,7 @@ class World {
   void lock_tilt(bool locked);
   void stop_bodies();  // zero velocities
 
-  // Advances n substeps. Fails (code "world") when a number is not finite, or a body is faster than
+  // Advances n substeps. Fails (kWorld) when a number is not finite, or a body is faster than
   // 50 m/s, far below the floor or 100 m away; the message names the body. The world must not be
   // used after that.
   Status step(int substeps);
@@ -82,7 +82,7 @@ class World {
 
   // The whole state including solver caches; restoring it continues bit for bit.
   std::vector<std::byte> save() const;
-  // Fails (code "world") on bytes of another world or of no world; nothing has changed then.
+  // Fails (kWorld) on bytes of another world or of no world; nothing has changed then.
   Status restore(std::span<const std::byte> state);
   // Of q, u, targets and every body's pose and velocities: equal states, equal hashes.
   Sha256 state_hash() const;

@@ -16,7 +16,7 @@ struct BuiltWorld {
   std::vector<ExcludedLinks> excluded;
 };
 
-// Bodies have no pose yet. Failures (code "world") name the thing.
+// Bodies have no pose yet. Failures (kWorld) name the thing.
 Result<BuiltWorld> build_world(const WorldSpec& spec);
 
 }  // namespace probe::world
