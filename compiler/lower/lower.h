@@ -22,7 +22,9 @@ struct Body {
 // The robot of the task's scene must have its model.
 std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task);
 
-// Nothing when a metric cannot be measured; then it has been reported.
+// In: a task whose metrics are typed, and its bodies. Out: its program, metric after metric in
+// their order, equal parts computed once; nothing when one cannot be measured, which has been
+// reported.
 std::optional<Program> lower_task(const sema::Model& model, const sema::Task& task,
                                   const std::vector<Body>& bodies, Diagnostics& diagnostics);
 

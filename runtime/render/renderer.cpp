@@ -1,3 +1,5 @@
+// A frame in its order: what stands still (kept, or traced anew for a camera that moves), what
+// moves put in its places, the blocks that it can touch, and rays in those blocks alone.
 #include "runtime/render/renderer.h"
 
 #include <algorithm>

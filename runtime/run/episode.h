@@ -35,9 +35,12 @@ struct Played {
   std::optional<Fault> policy_fault;  // where the policy's failure made the row invalid
 };
 
-// `stage` is of the job's task. Runs the full horizon (`steps` of them if not negative). What goes
-// wrong with the world, the picture or the policy, exceptions included, makes the row invalid; a
-// Failure is only what the trace or the sink could not write.
+// In: a stage of the job's task and a policy. Out: the row, and the trace, closed. The order: the
+// stage is reset and the trace begun; the policy hears of the episode; then, step by step, look,
+// ask, act, judge, record; a last frame for the video; the policy hears of the end.
+// Runs the full horizon (`steps` of them if not negative). What goes wrong with the world, the
+// picture or the policy, exceptions included, makes the row invalid; a Failure is only what the
+// trace or the sink could not write.
 Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job,
                            const std::string& policy_name, policy::Policy& policy,
                            store::TraceWriter& trace, show::FrameSink* frames = nullptr,

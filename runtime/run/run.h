@@ -76,7 +76,12 @@ struct RunSummary {
   store::RunCall call;             // speed, and how busy server and simulators were
 };
 
-// Fails with kPolicy when it gave up on a policy server; what was done until then is stored.
+// In: a verified plan and what to do with it. Out: the folder, and what to tell of it. The order:
+// all that can be refused before there is a folder (policy, selection, assets); the folder and its
+// record; which of its episodes are done; the questions of a policy server (servers/reading.h); the
+// other episodes, by workers, each committed when it ends; whether what makes tasks different
+// reached the policy. Fails with kPolicy when it gave up on a policy server; what was done until
+// then is stored.
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& options);
 
 }  // namespace probe::run

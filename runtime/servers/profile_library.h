@@ -1,4 +1,4 @@
-// Profiles by name: those of runtime/policy/profiles are part of the program; a path names a file.
+// Profiles by name: those of runtime/servers/profiles are part of the program; a path names a file.
 #pragma once
 
 #include <span>

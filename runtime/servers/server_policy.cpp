@@ -1,3 +1,5 @@
+// An episode in its order: a connection if there is none, the transport's beginning of an episode,
+// then at each act() an answer if the chunk at hand is used up, and one action of it.
 #include "runtime/servers/server_policy.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// One switch over straight-line code. The verifier has shown that every operand exists, so nothing
+// is checked here but what comes from outside: measurements, and whether values are finite.
 #include "runtime/vm/judge.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// What is told of a world and to it, in the terms of its spec; the substep itself is stepper.cpp's.
 #include "runtime/world/world.h"
 
 #include <algorithm>

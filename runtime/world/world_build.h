@@ -16,7 +16,9 @@ struct BuiltWorld {
   std::vector<ExcludedLinks> excluded;
 };
 
-// Bodies have no pose yet. Failures (kWorld) name the thing.
+// In: a spec. Out: what World::create() completes; bodies have no pose yet. The order: numbers,
+// articulations with their links, bodies, fixtures (so that colliders stand in the order that
+// Stepper::colliders has), and at last the pairs that may touch. Failures (kWorld) name the thing.
 Result<BuiltWorld> build_world(const WorldSpec& spec);
 
 }  // namespace probe::world
