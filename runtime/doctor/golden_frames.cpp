@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kDepthUnit = 1e-6;  // m
-constexpr double kDepthTolerance = 1e-5;
+constexpr double kDepthTolerance = 1e-5;   // m
 constexpr double kSettleTolerance = 1e-4;  // m
 
 std::size_t pixels_of(const GoldenFrame& frame) {

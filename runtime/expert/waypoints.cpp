@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kAbove = 0.055;      // m, from the grasp up to where the descent starts
 constexpr double kTravelGap = 0.020;  // m, between what moves and what it passes over
-constexpr double kReleaseGap = 0.001;
+constexpr double kReleaseGap = 0.001;    // m, under the source where it is let go
 constexpr std::size_t kMostGrasps = 40;  // candidates put to inverse kinematics
 
 // Over the target the held source has its own height; the fingers' tips may be lower or higher than

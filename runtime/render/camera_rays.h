@@ -15,7 +15,7 @@ namespace probe::render {
 inline constexpr int kTileSide = 16;
 inline constexpr int kBlockSide = 8;
 inline constexpr float kNearest = 0.01f;  // m along the ray
-inline constexpr float kFarthest = 10.0f;
+inline constexpr float kFarthest = 10.0f;  // m along the ray
 
 // Pixel of a sample within its tile.
 struct TileOffset {

@@ -12,7 +12,7 @@
 namespace probe::robot {
 namespace {
 
-constexpr double kNoLimit = 1e9;
+constexpr double kNoLimit = 1e9;  // rad, in place of the limits that a continuous joint has not
 constexpr std::size_t kMaxChainSegments = 2 * kMaxChainJoints;
 
 bool turns(JointKind kind) {

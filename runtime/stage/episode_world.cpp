@@ -12,7 +12,7 @@ namespace probe::stage {
 namespace {
 
 // The longer third phase of settling, if something still moves faster than this (m/s, rad/s, summed
-// over objects). From the reference's reset.
+// over objects), and how long it is (s). From the reference's reset.
 constexpr double kStillSpeed = 1e-3, kStillSpin = 1e-2, kExtraSettle = 1.5;
 
 }  // namespace
