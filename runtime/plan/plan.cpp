@@ -181,8 +181,10 @@ std::optional<std::uint32_t> Plan::find_metric(const TaskRecord& task,
 std::span<const SpanRecord> Plan::spans_of(SpanKind what, std::uint32_t index) const {
   const auto key = [](const SpanRecord& s) { return std::pair(s.what, s.index); };
   const std::pair wanted(static_cast<std::uint32_t>(what), index);
-  const auto found = std::ranges::equal_range(spans(), wanted, {}, key);
-  return {found.begin(), found.end()};
+  // The two ends apart: clang 14 does not compile the subrange that equal_range gives.
+  const auto all = spans();
+  return {std::ranges::lower_bound(all, wanted, {}, key),
+          std::ranges::upper_bound(all, wanted, {}, key)};
 }
 const SpanRecord* Plan::span_of(SpanKind what, std::uint32_t index) const {
   const auto found = spans_of(what, index);

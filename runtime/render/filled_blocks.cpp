@@ -28,6 +28,8 @@ inline Range range(float a, float b, float c, float x0, float x1, float y0, floa
           c + (ax0 < ax1 ? ax1 : ax0) + (by0 < by1 ? by1 : by0)};
 }
 
+inline int is(bool truth) { return truth ? 1 : 0; }
+
 // `columns`: a, b, c of the first edge, of the second, of the third; then bounds x0, x1, y0, y1.
 PROBE_CLONES void find_outside(const float* const* columns, std::size_t count, float x0, float x1,
                                float y0, float y1, std::uint8_t* __restrict outside) {
@@ -45,11 +47,12 @@ PROBE_CLONES void find_outside(const float* const* columns, std::size_t count, f
   const float* __restrict top = columns[11];
   const float* __restrict bottom = columns[12];
   for (std::size_t i = 0; i < count; ++i) {
-    const bool beyond = (range(a0[i], b0[i], c0[i], x0, x1, y0, y1).high < -kDoubt) |
-                        (range(a1[i], b1[i], c1[i], x0, x1, y0, y1).high < -kDoubt) |
-                        (range(a2[i], b2[i], c2[i], x0, x1, y0, y1).high < -kDoubt);
-    const bool apart = (left[i] > x1) | (right[i] < x0) | (top[i] > y1) | (bottom[i] < y0);
-    outside[i] = beyond | apart ? 1 : 0;
+    // Numbers and not truths: no branch, and clang asks for && of truths.
+    const int beyond = is(range(a0[i], b0[i], c0[i], x0, x1, y0, y1).high < -kDoubt) |
+                       is(range(a1[i], b1[i], c1[i], x0, x1, y0, y1).high < -kDoubt) |
+                       is(range(a2[i], b2[i], c2[i], x0, x1, y0, y1).high < -kDoubt);
+    const int apart = is(left[i] > x1) | is(right[i] < x0) | is(top[i] > y1) | is(bottom[i] < y0);
+    outside[i] = static_cast<std::uint8_t>(beyond | apart);
   }
 }
 
