@@ -44,7 +44,7 @@ void add_build(Verb app, int& exit) {
     CompiledText text = compile_text(arguments->files, arguments->assets, arguments->suite, true);
     exit = text.exit;
     if (exit != kFine) return;
-    if (auto spared = check_output(arguments->out, text.files); !spared) {
+    if (auto spared = check_output(arguments->out, text.files, Writes::kPlan); !spared) {
       exit = report(spared.failure());
       return;
     }

@@ -10,6 +10,9 @@
 
 namespace probe::cli {
 
+// In the environment of what the small program becomes, so that it does not become itself again.
+inline constexpr const char* kHandedOver = "VLAPROBE_HANDED_OVER";
+
 // Empty when the system does not say.
 std::filesystem::path folder_of_program();
 

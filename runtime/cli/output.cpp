@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <string_view>
 
 #include "runtime/assets/manifest.h"
 #include "runtime/base/asset_path.h"
+#include "runtime/base/file.h"
 #include "runtime/base/paths.h"
+#include "runtime/plan/format.h"
 
 namespace probe::cli {
 namespace {
@@ -26,6 +29,13 @@ bool is_only_read(const fs::path& path) {
          std::ranges::find(kMeshExtensions, kind) != kMeshExtensions.end();
 }
 
+bool is_plan(const std::string& path) {
+  const auto head = read_file(path, {.most = plan::kMagic.size(), .only_begin = true});
+  return head && std::ranges::equal(*head, plan::kMagic, [](char a, std::uint8_t b) {
+           return static_cast<std::uint8_t>(a) == b;
+         });
+}
+
 bool is_part_of_a_run(std::string_view name) {
   return name.starts_with("results.sqlite") || name == "suite.plan" || name == "lock" ||
          name == "traces" || name == "videos";
@@ -33,7 +43,7 @@ bool is_part_of_a_run(std::string_view name) {
 
 }  // namespace
 
-Status check_output(const std::string& out, std::span<const std::string> inputs) {
+Status check_output(const std::string& out, std::span<const std::string> inputs, Writes writes) {
   if (out.empty()) return {};
   const auto refuse = [&](std::string why) { return Failure{Fault::kUsage, std::move(why), out}; };
   for (const std::string& input : inputs) {
@@ -67,6 +77,9 @@ Status check_output(const std::string& out, std::span<const std::string> inputs)
           fmt::format("belongs to the run in `{}` and is not written over; give -o another name",
                       dir.string()));
     }
+  }
+  if (writes != Writes::kPlan && is_plan(path.string())) {
+    return refuse("is a plan and is not written over by anything else; give -o another name");
   }
   return {};
 }

@@ -73,7 +73,10 @@ int serve_verb(const ServeArguments& arguments) {
   const EndSignals ends;
   const auto listener = servers::serve(*protocol, options);
   if (!listener) return report(listener.failure());
-  fmt::print("{}://{}:{}?{}\n", arguments.protocol, options.address, (*listener)->port(),
+  // The numbers of an address of version 6 have colons of their own.
+  const bool six = options.address.find(':') != std::string::npos;
+  const std::string address = six ? "[" + options.address + "]" : options.address;
+  fmt::print("{}://{}:{}?{}\n", arguments.protocol, address, (*listener)->port(),
              servers::options_for_served(*protocol, options));
   std::fflush(stdout);
   ends.wait();
@@ -101,7 +104,8 @@ void add_serve(Verb app, int& exit) {
   verb.add_option("--protocol", arguments->protocol, protocols);
   verb.add_option("--address", arguments->options.address, "numeric, to listen at");
   verb.add_option("--port", arguments->options.port, "to listen at; 0: any free one");
-  verb.add_option("--chunk", arguments->options.chunk, "actions of an answer, at most");
+  verb.add_option("--chunk", arguments->options.chunk, "actions of an answer, at most")
+      .between(1, 1024);
   verb.add_option("--dialect", arguments->options.dialect, "of gr00t and openvla");
   verb.add_option("-o,--out", arguments->run.out, "results folder of the run before");
   verb.add_option("--suite", arguments->run.suite, "as for `run`");

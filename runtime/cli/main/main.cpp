@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 
@@ -18,6 +19,11 @@ int main(int argc, char** argv) {
       [](cli::Verb program, int& status) { cli::add_text_verbs(program, status, nullptr); }, false);
   if (exit != cli::kHandOver) return exit;
   const std::string full = (cli::folder_of_program() / "vlaprobe-full").string();
+  // A copy of this program under that name would go on starting itself.
+  if (std::getenv(cli::kHandedOver) != nullptr) {
+    return cli::report({Fault::kIo, "is the program without the other verbs", full});
+  }
+  setenv(cli::kHandedOver, "1", 1);
   execv(full.c_str(), argv);
   return cli::report({Fault::kIo, std::string("cannot be started: ") + std::strerror(errno), full});
 }

@@ -95,6 +95,31 @@ TEST_CASE("build and draw leave the text and the plan that they were given") {
   CHECK(box.vlaprobe("draw g.plan carrot_on_plate -o g.plan").exit == 1);
   CHECK(box.vlaprobe("preview g.plan carrot_on_plate -o g.plan").exit == 1);
   CHECK(test::read_file(box / "g.plan") == plan);
+  fs::copy_file(box / "g.plan", box / "cited");
+  CHECK(refusal(box / "cited") ==
+        "is a plan and is not written over by anything else; give -o another name");
+  CHECK(box.vlaprobe("draw g.probe carrot_on_plate -o cited").exit == 1);
+  CHECK(test::read_file(box / "cited") == plan);
+  CHECK(box.vlaprobe("build g.probe -o cited").exit == 0);
+}
+
+TEST_CASE("the program without the other verbs says so in the place of the one that has them") {
+  const test::Sandbox box;
+  fs::copy_file(VLAPROBE_BINARY_DIR "/vlaprobe", box / "vlaprobe");
+  fs::copy_file(VLAPROBE_BINARY_DIR "/vlaprobe", box / "vlaprobe-full");
+  const test::Outcome outcome = box.run("./vlaprobe doctor");
+  CHECK(outcome.exit == 2);
+  CHECK(test::contains(outcome.err, "is the program without the other verbs"));
+}
+
+TEST_CASE("a server's answers have a number of actions that a client takes") {
+  const test::Sandbox box;
+  for (const char* chunk : {"-1", "0", "100000000"}) {
+    const test::Outcome outcome = box.vlaprobe(
+        std::string("serve --policy digest --protocol openpi --port 0 --chunk ") + chunk);
+    CHECK(outcome.exit == 1);
+    CHECK(test::contains(outcome.err, "--chunk"));
+  }
 }
 
 }  // namespace

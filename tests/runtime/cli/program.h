@@ -48,11 +48,14 @@ class Sandbox {
 
   // `arguments` as typed in a shell; $SUITE and $ASSETS are set, and `more` as in "A=1 B=2".
   Outcome vlaprobe(const std::string& arguments, const std::string& more = "") const {
+    return run(more + " '" VLAPROBE_BINARY_DIR "/vlaprobe' " + arguments);
+  }
+  // Another line of a shell.
+  Outcome run(const std::string& line) const {
     const std::string command = "cd '" + dir_.string() +
                                 "' && SUITE='" VLAPROBE_SOURCE_DIR
                                 "/suite/intact.probe' ASSETS='" VLAPROBE_SOURCE_DIR "/assets' && " +
-                                more + " '" VLAPROBE_BINARY_DIR "/vlaprobe' " + arguments +
-                                " >.out 2>.err </dev/null";
+                                line + " >.out 2>.err </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, read_file(dir_ / ".out"),
             read_file(dir_ / ".err")};
