@@ -1,6 +1,7 @@
 #include "runtime/render/occlusion.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "runtime/base/trig.h"
 
@@ -82,7 +83,7 @@ class OcclusionPacket {
 const std::array<std::array<float, 2>, kTurns>& turns() {
   static const auto kTable = [] {
     std::array<std::array<float, 2>, kTurns> table;
-    constexpr double kPi = 3.14159265358979323846;
+    constexpr double kPi = std::numbers::pi;
     for (std::size_t i = 0; i < kTurns; ++i) {
       const SinCos turn = portable_sincos(2 * kPi * static_cast<double>(i) / kTurns);
       table[i] = {static_cast<float>(turn.cos), static_cast<float>(turn.sin)};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "runtime/render/clones.h"
 
@@ -11,7 +12,7 @@ namespace {
 // __restrict: without it the compiler would have to compare nineteen arrays for overlap, and does
 // not vectorise.
 
-constexpr float kPi = 3.14159265358979323846f;
+constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kTiny = 1e-6f;
 
 inline float clamp(float x, float low, float high) {

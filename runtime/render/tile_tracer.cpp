@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "runtime/render/clones.h"
 #include "runtime/render/vec4.h"
@@ -417,7 +418,7 @@ void TileTracer::shade(const TopScene& scene, const CameraRays& rays, int tile,
 
 void TileTracer::catch_shadow(const TopScene& scene, const CameraRays& rays, int tile,
                               const LightTable& lights, const TopScene& dynamics) {
-  constexpr float kPiHere = 3.14159265358979323846f;
+  constexpr float kPiHere = std::numbers::pi_v<float>;
   gather(scene, rays, tile, true);
   test_suns(lights, {&dynamics, nullptr});
   for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "runtime/base/trig.h"
@@ -417,7 +418,7 @@ CollisionShape make_box_shape(const Vec3& half) {
 
 CollisionShape make_cylinder_shape(double radius, double half_length) {
   constexpr int kSides = 32;
-  constexpr double kPi = 3.14159265358979323846;
+  constexpr double kPi = std::numbers::pi;
   HullPart prism;
   ConvexPart::Face bottom{-Vec3::UnitZ(), 0, {}}, top{Vec3::UnitZ(), 0, {}};
   for (int i = 0; i < kSides; ++i) {  // bottom corners are even, top ones odd
@@ -440,7 +441,7 @@ CollisionShape make_cylinder_shape(double radius, double half_length) {
 }
 
 CollisionShape make_capsule_shape(double radius, double half_length) {
-  constexpr double kPi = 3.14159265358979323846;
+  constexpr double kPi = std::numbers::pi;
   const double r = radius, h = half_length;
   HullPart capsule;
   capsule.part.round = r;

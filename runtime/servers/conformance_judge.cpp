@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <set>
 
 #include "runtime/robot/rotation.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr double kUsualShift = 0.15;  // m a step; three times the largest that policies do
 constexpr double kUsualTurn = 1.0;    // rad a step
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = std::numbers::pi;
 constexpr int kLongChunk = 16;  // 3 s at 5 Hz
 
 std::string short_number(double value) {

@@ -2,6 +2,7 @@
 // file of protocols/. protocols/protocols.def lists them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -29,6 +30,9 @@ struct KeyUse {
   std::string shown;  // what messages call it
 };
 
+// What carries a protocol's messages.
+enum class Carrier : std::uint8_t { kWebSocket, kHttp, kZmq };
+
 struct ProtocolRow {
   std::string_view word;      // before "://", and `protocol` of a profile
   std::string_view argument;  // what follows the colon of --policy, for people
@@ -45,7 +49,23 @@ struct ProtocolRow {
   Result<std::unique_ptr<Transport>> (*make)(const Profile& profile, const wire::Endpoint& server);
   // Its server's side, see served.h.
   Result<std::unique_ptr<wire::Listener>> (*serve)(const ServeOptions& options);
+  // What of a profile reads our own server as it is meant, beside what all of them need.
+  std::string_view served_options;
+  Carrier carrier = Carrier::kWebSocket;
+  // Of questions over HTTP where the address has none.
+  std::string_view path = "/";
+  // Whether the protocol has a word for an episode's beginning; null: it has none.
+  bool (*has_reset)(std::string_view dialect) = nullptr;
+  // Two questions of the same content differ, as they carry the time.
+  bool is_timed = false;
 };
+
+inline bool always_has_reset(std::string_view) { return true; }
+
+// The address's path, or the protocol's where it says none.
+inline std::string path_of(const ProtocolRow& row, const wire::Endpoint& server) {
+  return server.path == "/" ? std::string(row.path) : server.path;
+}
 
 const ProtocolRow& row_of(Protocol protocol);
 

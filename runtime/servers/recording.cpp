@@ -5,6 +5,7 @@
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/connecting.h"
+#include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
 #include "runtime/servers/transcript.h"
 #include "runtime/wire/http.h"
@@ -100,7 +101,7 @@ class Between final : public wire::Speaker {
 
   Reply answer(const wire::Frame& asked) override {
     record_->add(connection_, true, asked);
-    auto bytes = protocol_ == Protocol::kGr00t ? by_zmq(asked) : by_http(asked);
+    auto bytes = row_of(protocol_).carrier == Carrier::kZmq ? by_zmq(asked) : by_http(asked);
     if (!bytes) return {{}, bytes.failure().message};
     wire::Frame frame{false, std::move(*bytes)};
     record_->add(connection_, false, frame);
@@ -120,7 +121,7 @@ class Between final : public wire::Speaker {
   Result<wire::Bytes> by_http(const wire::Frame& asked) {
     wire::HttpRequest post;
     post.method = "POST";
-    post.path = upstream_.server.path == "/" ? "/act" : upstream_.server.path;
+    post.path = path_of(row_of(protocol_), upstream_.server);
     post.body.assign(asked.bytes.begin(), asked.bytes.end());
     PROBE_ASSIGN(const wire::HttpResponse answer,
                  wire::http_exchange(
@@ -147,14 +148,14 @@ Result<Transcript> record(const ServerChoice& choice) {
                           static_cast<std::size_t>(profile.largest_answer) << 20};
   const Protocol protocol = profile.protocol;
   const auto between = [protocol, upstream, kept]() -> std::unique_ptr<wire::Speaker> {
-    if (protocol == Protocol::kGr00t || protocol == Protocol::kOpenVla)
+    if (row_of(protocol).carrier != Carrier::kWebSocket)
       return std::make_unique<Between>(protocol, upstream, kept);
     return std::make_unique<WebSocketBetween>(protocol, upstream, kept);
   };
-  auto listener = protocol == Protocol::kGr00t ? wire::listen_zmq("127.0.0.1", "0", between)
-                  : protocol == Protocol::kOpenVla
-                      ? wire::listen_http("127.0.0.1", "0", between)
-                      : wire::listen_websocket("127.0.0.1", "0", between);
+  const Carrier carrier = row_of(protocol).carrier;
+  auto listener = carrier == Carrier::kZmq    ? wire::listen_zmq("127.0.0.1", "0", between)
+                  : carrier == Carrier::kHttp ? wire::listen_http("127.0.0.1", "0", between)
+                                              : wire::listen_websocket("127.0.0.1", "0", between);
   if (!listener) return listener.failure();
   ServerChoice here = choice;
   here.server.host = "127.0.0.1";

@@ -93,19 +93,15 @@ Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOpti
 }
 
 bool has_reset(Protocol protocol, const std::string& dialect) {
-  return protocol == Protocol::kIntact || protocol == Protocol::kRoboArena ||
-         protocol == Protocol::kVlaEval || (protocol == Protocol::kGr00t && dialect != "n1.5");
+  const auto has = row_of(protocol).has_reset;
+  return has != nullptr && has(dialect);
 }
 
 std::string options_for_served(Protocol protocol, const ServeOptions& options) {
   std::string text =
       "action.form=delta&action.units=m_rad&action.rotation=vector&action.gripper=signed&"
       "action.threshold=none";
-  if (protocol != Protocol::kVlaEval) text += "&chunk.length=any&chunk.use=all";
-  if (protocol == Protocol::kIntact) text += "&worlds=many&model=/served";
-  // As rendered: an episode is known by its first picture.
-  if (protocol == Protocol::kStarVla) text += "&image=first%20-%3E%20image";
-  if (protocol == Protocol::kGr00t) text += "&image=first%20-%3E%20video.image_0";
+  text += row_of(protocol).served_options;
   if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
   return text;
 }

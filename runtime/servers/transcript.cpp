@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "runtime/base/sha256.h"
+#include "runtime/servers/protocol.h"
 
 namespace probe::servers {
 namespace {
@@ -180,18 +181,17 @@ Result<Transcript> parse_transcript(std::string_view text, std::string_view wher
 Result<std::unique_ptr<wire::Listener>> play(const Transcript& transcript,
                                              const std::string& address, const std::string& port,
                                              std::function<void(const std::string&)> tell) {
-  const bool is_zmq = transcript.protocol == Protocol::kGr00t;
-  const bool is_http = transcript.protocol == Protocol::kOpenVla;
-  // Its questions carry the time.
-  const bool compares = transcript.protocol != Protocol::kVlaEval;
-  if (is_zmq || is_http) {
+  const ProtocolRow& row = row_of(transcript.protocol);
+  const bool compares = !row.is_timed;
+  if (row.carrier != Carrier::kWebSocket) {
     std::vector<Line> all;
     for (const std::vector<Line>& lines : transcript.connections)
       all.insert(all.end(), lines.begin(), lines.end());
     const auto make = [all, compares, tell] {
       return std::make_unique<Player>(all, true, compares, tell);
     };
-    return is_zmq ? wire::listen_zmq(address, port, make) : wire::listen_http(address, port, make);
+    return row.carrier == Carrier::kZmq ? wire::listen_zmq(address, port, make)
+                                        : wire::listen_http(address, port, make);
   }
   const auto opened = std::make_shared<std::atomic<std::size_t>>(0);
   return wire::listen_websocket(address, port, [transcript, opened, compares, tell] {

@@ -223,6 +223,8 @@ std::vector<KeyUse> gr00t_key_uses(const Profile& profile) {
   return uses;
 }
 
+bool gr00t_has_reset(std::string_view dialect) { return dialect != "n1.5"; }
+
 }  // namespace
 
 constinit const ProtocolRow gr00t_row{
@@ -235,6 +237,10 @@ constinit const ProtocolRow gr00t_row{
     .key_uses = gr00t_key_uses,
     .make = make_gr00t,
     .serve = serve_gr00t,
+    // As rendered: an episode is known by its first picture.
+    .served_options = "&chunk.length=any&chunk.use=all&image=first%20-%3E%20video.image_0",
+    .carrier = Carrier::kZmq,
+    .has_reset = gr00t_has_reset,
 };
 
 }  // namespace probe::servers

@@ -125,6 +125,8 @@ constinit const ProtocolRow intact_row{
     .key_uses = plain_key_uses,
     .make = make_intact,
     .serve = serve_intact,
+    .served_options = "&chunk.length=any&chunk.use=all&worlds=many&model=/served",
+    .has_reset = always_has_reset,
 };
 
 }  // namespace probe::servers

@@ -61,6 +61,7 @@ constinit const ProtocolRow openpi_row{
     .key_uses = plain_key_uses,
     .make = make_openpi,
     .serve = serve_openpi,
+    .served_options = "&chunk.length=any&chunk.use=all",
 };
 
 }  // namespace probe::servers

@@ -17,7 +17,7 @@ constexpr std::string_view kEncoded = "encoded";
 class OpenVla : public Transport {
  public:
   OpenVla(const Profile& profile, const wire::Endpoint& server)
-      : profile_(profile), server_(server), path_(server.path == "/" ? "/act" : server.path) {}
+      : profile_(profile), server_(server), path_(path_of(openvla_row, server)) {}
 
   // There is nothing to be asked but actions: any answer at all is a server.
   Status open(const Deadlines& deadlines) override {
@@ -111,6 +111,9 @@ constinit const ProtocolRow openvla_row{
     .key_uses = plain_key_uses,
     .make = make_openvla,
     .serve = serve_openvla,
+    .served_options = "&chunk.length=any&chunk.use=all",
+    .carrier = Carrier::kHttp,
+    .path = "/act",
 };
 
 }  // namespace probe::servers

@@ -206,6 +206,8 @@ constinit const ProtocolRow roboarena_row{
     .key_uses = roboarena_key_uses,
     .make = make_roboarena,
     .serve = serve_roboarena,
+    .served_options = "&chunk.length=any&chunk.use=all",
+    .has_reset = always_has_reset,
 };
 
 }  // namespace probe::servers

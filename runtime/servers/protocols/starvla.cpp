@@ -111,6 +111,8 @@ constinit const ProtocolRow starvla_row{
     .key_uses = starvla_key_uses,
     .make = make_starvla,
     .serve = serve_starvla,
+    // As rendered: an episode is known by its first picture.
+    .served_options = "&chunk.length=any&chunk.use=all&image=first%20-%3E%20image",
 };
 
 }  // namespace probe::servers

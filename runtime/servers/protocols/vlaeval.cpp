@@ -383,6 +383,9 @@ constinit const ProtocolRow vlaeval_row{
     .key_uses = vlaeval_key_uses,
     .make = make_vlaeval,
     .serve = serve_vlaeval,
+    .served_options = {},
+    .has_reset = always_has_reset,
+    .is_timed = true,
 };
 
 }  // namespace probe::servers
