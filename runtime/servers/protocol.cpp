@@ -1,6 +1,7 @@
 // The table of protocols.
 #include "runtime/servers/protocol.h"
 
+#include <algorithm>
 #include <array>
 
 namespace probe::servers {
@@ -26,6 +27,23 @@ const ProtocolRow& row_of(Protocol protocol) {
 std::span<const Protocol> all_protocols() { return kAll; }
 
 std::string_view to_word(Protocol protocol) { return row_of(protocol).word; }
+
+Status check_dialect(Protocol protocol, std::string_view dialect, std::string_view where) {
+  const ProtocolRow& row = row_of(protocol);
+  const auto& known = row.dialects;
+  if (dialect.empty() || std::find(known.begin(), known.end(), dialect) != known.end()) return {};
+  std::string words;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (i > 0) words += i + 1 < known.size() ? ", " : " or ";
+    words += known[i];
+  }
+  const std::string whose = "`dialect` of " + std::string(row.meaning);
+  return Failure{Fault::kUsage,
+                 (known.empty() ? "there is no " + whose + ", so it cannot be `"
+                                : "the " + whose + " is " + words + ", not `") +
+                     std::string(dialect) + "`",
+                 std::string(where)};
+}
 
 std::vector<KeyUse> image_key_uses(const Profile& profile) {
   std::vector<KeyUse> uses;

@@ -49,6 +49,8 @@ struct ProtocolRow {
   Result<std::unique_ptr<Transport>> (*make)(const Profile& profile, const wire::Endpoint& server);
   // Its server's side, see served.h.
   Result<std::unique_ptr<wire::Listener>> (*serve)(const ServeOptions& options);
+  // Values of a profile's `dialect`; the first is that of a profile that says none.
+  std::span<const std::string_view> dialects = {};
   // What of a profile reads our own server as it is meant, beside what all of them need.
   std::string_view served_options;
   Carrier carrier = Carrier::kWebSocket;
@@ -68,6 +70,10 @@ inline std::string path_of(const ProtocolRow& row, const wire::Endpoint& server)
 }
 
 const ProtocolRow& row_of(Protocol protocol);
+
+// Fails (kUsage, where = `where`) on a word that is none of the protocol's dialects; an empty one
+// is fine.
+Status check_dialect(Protocol protocol, std::string_view dialect, std::string_view where);
 
 // The uses of most protocols, for key_uses: a key for each picture, for the state where there is
 // one, and for the instruction, all in the outermost map.

@@ -89,6 +89,7 @@ MakeServedPolicy serve_recorded(std::shared_ptr<const RecordedEpisodes> episodes
 }
 
 Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOptions& options) {
+  PROBE_TRY(check_dialect(protocol, options.dialect, "--dialect"));
   return row_of(protocol).serve(options);
 }
 

@@ -55,6 +55,7 @@ std::string describe(const ServerChoice& choice) {
 Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
                                                   std::shared_ptr<SharedModel> model) {
   PROBE_TRY(check_api_key());
+  PROBE_TRY(check_dialect(choice.profile.protocol, choice.profile.dialect, "--policy"));
   auto transport = row_of(choice.profile.protocol).make(choice.profile, choice.server);
   if (transport && model) (*transport)->share(std::move(model));
   return transport;

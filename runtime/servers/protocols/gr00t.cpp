@@ -13,7 +13,7 @@
 namespace probe::servers {
 namespace {
 
-constexpr std::string_view kNested = "n1.6_nested";
+constexpr std::string_view kNested = "n1.6_nested", kN15 = "n1.5";
 constexpr std::array<std::string_view, 7> kActionNames = {"x",     "y",   "z",      "roll",
                                                           "pitch", "yaw", "gripper"};
 constexpr std::array<std::string_view, 7> kStateNames = kActionNames;
@@ -184,15 +184,10 @@ namespace {
 Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile,
                                               const wire::Endpoint& server) {
   Gr00tForm form = Gr00tForm::kN16;
-  if (profile.dialect == "n1.5") {
+  if (profile.dialect == kN15) {
     form = Gr00tForm::kN15;
   } else if (profile.dialect == kNested) {
     form = Gr00tForm::kN16Nested;
-  } else if (!profile.dialect.empty() && profile.dialect != "n1.6") {
-    return Failure{Fault::kUsage,
-                   "the `dialect` of a GR00T server is n1.6, n1.6_nested or n1.5, not `" +
-                       profile.dialect + "`",
-                   "--policy"};
   }
   if (profile.state_layout != StateLayout::kNone &&
       gr00t_state_names(profile.state_layout).empty()) {
@@ -223,7 +218,9 @@ std::vector<KeyUse> gr00t_key_uses(const Profile& profile) {
   return uses;
 }
 
-bool gr00t_has_reset(std::string_view dialect) { return dialect != "n1.5"; }
+bool gr00t_has_reset(std::string_view dialect) { return dialect != kN15; }
+
+constexpr std::array<std::string_view, 3> kGr00tDialects = {"n1.6", kNested, kN15};
 
 }  // namespace
 
@@ -237,6 +234,7 @@ constinit const ProtocolRow gr00t_row{
     .key_uses = gr00t_key_uses,
     .make = make_gr00t,
     .serve = serve_gr00t,
+    .dialects = kGr00tDialects,
     // As rendered: an episode is known by its first picture.
     .served_options = "&chunk.length=any&chunk.use=all&image=first%20-%3E%20video.image_0",
     .carrier = Carrier::kZmq,

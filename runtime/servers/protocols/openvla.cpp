@@ -88,15 +88,10 @@ namespace {
 // The path is the server's, or /act.
 Result<std::unique_ptr<Transport>> make_openvla(const Profile& profile,
                                                 const wire::Endpoint& server) {
-  if (!profile.dialect.empty() && profile.dialect != kEncoded && profile.dialect != "plain") {
-    return Failure{
-        Fault::kUsage,
-        "the `dialect` of an OpenVLA server is plain or encoded, not `" + profile.dialect + "`",
-        "--policy"};
-  }
   return std::unique_ptr<Transport>(std::make_unique<OpenVla>(profile, server));
 }
 
+constexpr std::array<std::string_view, 2> kOpenVlaDialects = {"plain", kEncoded};
 constexpr std::array<std::string_view, 2> kOpenVlaKeys = {"unnorm_key", "encoded"};
 
 }  // namespace
@@ -111,6 +106,7 @@ constinit const ProtocolRow openvla_row{
     .key_uses = plain_key_uses,
     .make = make_openvla,
     .serve = serve_openvla,
+    .dialects = kOpenVlaDialects,
     .served_options = "&chunk.length=any&chunk.use=all",
     .carrier = Carrier::kHttp,
     .path = "/act",

@@ -30,6 +30,32 @@ TEST_CASE("a served digest is proved to read, and a served null not to, on every
   }
 }
 
+TEST_CASE("a dialect is one of the protocol's own, asking and serving") {
+  for (const Protocol protocol : all_protocols()) {
+    CAPTURE(std::string(to_word(protocol)));
+    ServeOptions options;
+    options.policy = serve_null();
+    options.dialect = "yaml";
+    const auto served = serve(protocol, options);
+    REQUIRE_FALSE(served.ok());
+    CHECK(served.failure().code == Fault::kUsage);
+    CHECK(served.failure().where == "--dialect");
+    auto choice = choose_server(protocol, "//127.0.0.1:9?" + options_for_served(protocol, options));
+    REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+    const auto asking = make_transport(*choice);
+    REQUIRE_FALSE(asking.ok());
+    CHECK(asking.failure().message == served.failure().message);
+    for (const std::string_view known : row_of(protocol).dialects) {
+      options.dialect = known;
+      CHECK(serve(protocol, options).ok());
+      choice->profile.dialect = known;
+      CHECK(make_transport(*choice).ok());
+    }
+  }
+  CHECK(check_dialect(Protocol::kOpenpi, "yaml", "").failure().message ==
+        "there is no `dialect` of an openpi server, so it cannot be `yaml`");
+}
+
 TEST_CASE("a port that is taken, and one that is none, are refused") {
   ServeOptions options;
   options.policy = serve_null();
