@@ -98,9 +98,14 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
         std::string("was begun with another ") + (is_server ? "profile" : "policy") +
         " (recorded " + said(there.policy_content) + ", now " + said(here.policy_content) + ")";
   }
-  for (const std::string& line : differences(stored.fingerprint, asked.fingerprint)) {
-    changes.build +=
-        (changes.build.empty() ? "was begun by another build or machine (" : "; ") + line;
+  std::vector<std::string> lines = differences(stored.fingerprint, asked.fingerprint);
+  const bool is_of_assets = lines.size() == 1 && lines.front().starts_with("assets: ");
+  // Another plan names other assets: that is no news.
+  if (is_of_assets && there.plan_root != here.plan_root) lines.clear();
+  for (const std::string& line : lines) {
+    const char* lead =
+        is_of_assets ? "was begun with other assets (" : "was begun by another build or machine (";
+    changes.build += (changes.build.empty() ? lead : "; ") + line;
   }
   if (!changes.build.empty()) changes.build += ")";
   return changes;

@@ -1,0 +1,35 @@
+// What has changed between a folder's record and a run that would go on in it.
+#include "runtime/store/run_record.h"
+
+#include <doctest/doctest.h>
+
+namespace probe::store {
+namespace {
+
+RunRecord run_of(const std::string& plan, const std::string& program, const std::string& assets) {
+  return {{plan, "expert", "policy expert"},
+          "smoke",
+          {42},
+          {{{"assets", assets}, {"program", program}}}};
+}
+
+}  // namespace
+
+TEST_CASE("a change is said of what changed: the plan, the assets or the build") {
+  const RunRecord begun = run_of("aa", "1f", "c0");
+  CHECK_FALSE(changes_between(begun, begun).any());
+  const RunChanges assets = changes_between(begun, run_of("aa", "1f", "c1"));
+  CHECK(assets.build == "was begun with other assets (assets: recorded c0, here c1)");
+  CHECK(assets.identity.empty());
+  const RunChanges program = changes_between(begun, run_of("aa", "20", "c0"));
+  CHECK(program.build == "was begun by another build or machine (program: recorded 1f, here 20)");
+  const RunChanges plan = changes_between(begun, run_of("bb", "1f", "c1"));
+  CHECK(plan.identity == "holds a run of another plan (root aa, this one is bb)");
+  CHECK(plan.build.empty());
+  const RunChanges both = changes_between(begun, run_of("bb", "20", "c1"));
+  CHECK(both.build ==
+        "was begun by another build or machine (assets: recorded c0, here c1; program: recorded "
+        "1f, here 20)");
+}
+
+}  // namespace probe::store
