@@ -1,6 +1,8 @@
 // vlaprobe policy: servers tested, ready profiles shown.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/until_ended.h"
@@ -72,10 +74,14 @@ int replay_transcript_verb(const PolicyArguments& arguments) {
 
 int profiles_verb(const PolicyArguments& arguments) {
   if (arguments.profile.empty()) {
+    std::size_t width = 0;
+    for (const servers::ProfileText& ready : servers::ready_profiles())
+      width = std::max(width, ready.name.size());
     for (const servers::ProfileText& ready : servers::ready_profiles()) {
       const auto profile = servers::find_profile(ready.name);
       if (!profile) return report(profile.failure());
-      put("{:<20}{:<11}{}\n", ready.name, servers::to_word(profile->protocol), profile->about);
+      put("{:<{}}  {:<11}{}\n", ready.name, width, servers::to_word(profile->protocol),
+          profile->about);
     }
     return kFine;
   }
