@@ -143,7 +143,7 @@ void check_metrics(const Model& model, Reporter& reporter) {
   for (const Task& task : model.tasks) {
     for (const Metric& metric : task.overrides) lint(metric);
   }
-  std::set<std::pair<ExprRef, std::uint64_t>> reported;
+  std::set<std::pair<ExprRef, std::uint64_t>> searched, reported;  // with the horizon
   std::set<std::pair<std::uint32_t, std::uint32_t>> without_success;
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
@@ -151,6 +151,7 @@ void check_metrics(const Model& model, Reporter& reporter) {
     check_success(model, reporter, task, without_success);
     check_count(model, reporter, task, without_success);
     for (const Metric& metric : task.judged) {
+      if (!searched.insert({metric.expr, task.horizon}).second) continue;
       HoldFinder finder{model, task.horizon, {}};
       finder.visit(metric.expr);
       for (const ExprRef hold : finder.too_long) {

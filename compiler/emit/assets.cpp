@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/plan/limits.h"
@@ -41,7 +40,7 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
   if (path.size() > plan::kMaxStringBytes) return miss("is longer than a plan keeps");
   if (const char* defect = plan::find_text_defect(path)) return miss(defect);
   // A path leads below the root, so that a plan means the same files wherever the root lies.
-  const auto file = resolve_inside(root_, path, root_);
+  const auto file = folder_.resolve(path);
   if (!file) {
     const std::string& why = file.failure().message;
     return miss(why == "there is no such file" ? "is not there" : why);

@@ -10,6 +10,7 @@
 #include "compiler/diag/diagnostic.h"
 #include "compiler/emit/compile.h"
 #include "compiler/source/source.h"
+#include "runtime/base/asset_path.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/format.h"
 
@@ -39,7 +40,7 @@ class AssetTable {
  public:
   // `hashes` off: bytes are not read here, which is enough to check a text.
   AssetTable(std::string root, bool hashes, AssetInspector inspect)
-      : root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)) {}
+      : folder_(root), root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)) {}
 
   // The index of the file; kNone, and a miss, when it is not there, not readable or not good. A
   // file is missed once.
@@ -54,6 +55,7 @@ class AssetTable {
   const std::vector<Asset>& assets() const { return assets_; }
 
  private:
+  AssetFolder folder_;
   std::string root_;
   bool hashes_;
   AssetInspector inspect_;

@@ -89,8 +89,10 @@ class Emitter {
   std::uint32_t add_photo(const std::optional<sema::Spelled>& overlay, AssetOwner owner);
   void add_scene(sema::SceneId id);
 
-  // Tasks of one shape share one program.
-  std::uint32_t add_program(lower::Program program, std::uint64_t horizon, double control_hz);
+  // Tasks of one shape share one program, which is made once. Nothing when something was reported.
+  std::optional<std::uint32_t> add_program(const sema::Task& task,
+                                           const std::vector<lower::Body>& bodies);
+  std::uint32_t keep_program(lower::Program program);
 
   // P0603 at once; P0602 when a metric is constant in every program and for every horizon that has
   // it: over the distractors of a task without any it may be.
@@ -104,6 +106,8 @@ class Emitter {
 
   // Equal starts share their placements: a variant that only changes words adds none.
   plan::Slice add_placements(const sema::Start& start, double z);
+  // One for each start, in their order; tasks with one list of starts share the answer.
+  const std::vector<plan::Slice>& placements_of(std::span<const sema::Start> starts, double z);
 
   // Tasks of one scene share them.
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
@@ -130,6 +134,7 @@ class Emitter {
   Used<sema::SceneId> scenes_;
   Used<TaskId> tasks_;
   std::vector<lower::Program> programs_;
+  std::map<std::vector<std::uint32_t>, std::uint32_t> programs_by_shape_;  // lower::shape_of
   std::set<std::tuple<std::uint32_t, std::uint64_t, double>> noted_;  // program, horizon, control
   struct Constant {
     lower::ProgramMetric metric;
@@ -139,6 +144,7 @@ class Emitter {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
   std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
   std::map<std::vector<double>, plan::Slice> placements_;
+  std::map<std::pair<const sema::Start*, double>, std::vector<plan::Slice>> placement_lists_;
   std::map<std::vector<std::uint32_t>, plan::Slice> views_;
 };
 

@@ -7,13 +7,25 @@
 
 namespace probe::emit {
 
-std::uint32_t Emitter::add_program(lower::Program program, std::uint64_t horizon,
-                                   double control_hz) {
+std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
+                                                  const std::vector<lower::Body>& bodies) {
+  std::vector<std::uint32_t> shape = lower::shape_of(task, bodies);
+  auto known = programs_by_shape_.find(shape);
+  if (known == programs_by_shape_.end()) {
+    auto program = lower::lower_task(model_, task, bodies, diagnostics_);
+    if (!program) return std::nullopt;
+    known = programs_by_shape_.emplace(std::move(shape), keep_program(std::move(*program))).first;
+  }
+  // What is constant depends on how long an episode is.
+  note_constants(known->second, task.horizon,
+                 model_.robots[model_.scenes[task.scene].robot].control_hz);
+  return known->second;
+}
+
+// Shapes that differ may still say the same.
+std::uint32_t Emitter::keep_program(lower::Program program) {
   for (std::size_t i = 0; i < programs_.size(); ++i) {
-    if (!programs_[i].same_as(program)) continue;
-    // What is constant depends on how long an episode is.
-    note_constants(static_cast<std::uint32_t>(i), horizon, control_hz);
-    return static_cast<std::uint32_t>(i);
+    if (programs_[i].same_as(program)) return static_cast<std::uint32_t>(i);
   }
   plan::ProgramRecord record;
   record.constants = plan::append(records().constants, std::span<const double>(program.constants));
@@ -37,7 +49,6 @@ std::uint32_t Emitter::add_program(lower::Program program, std::uint64_t horizon
   }
   records().programs.push_back(record);
   programs_.push_back(std::move(program));
-  note_constants(size32(programs_) - 1, horizon, control_hz);
   return size32(programs_) - 1;
 }
 

@@ -18,7 +18,9 @@ plan::Slice Emitter::add_bodies(const std::vector<lower::Body>& bodies) {
 
 plan::Slice Emitter::add_placements(const sema::Start& start, double z) {
   std::vector<plan::PlacementRecord> rows;
+  rows.reserve(start.placed.size());
   std::vector<double> key;
+  key.reserve(8 * start.placed.size());  // object, position, rotation
   for (const sema::Start::Placed& placed : start.placed) {
     plan::PlacementRecord row;
     row.object = objects_[placed.object];
@@ -32,6 +34,16 @@ plan::Slice Emitter::add_placements(const sema::Start& start, double z) {
   const auto [at, is_new] = placements_.try_emplace(std::move(key), plan::Slice{});
   if (is_new)
     at->second = plan::append(records().placements, std::span<const plan::PlacementRecord>(rows));
+  return at->second;
+}
+
+const std::vector<plan::Slice>& Emitter::placements_of(std::span<const sema::Start> starts,
+                                                       double z) {
+  const auto [at, is_new] = placement_lists_.try_emplace({starts.data(), z});
+  if (is_new) {
+    at->second.reserve(starts.size());
+    for (const sema::Start& start : starts) at->second.push_back(add_placements(start, z));
+  }
   return at->second;
 }
 
@@ -52,8 +64,6 @@ void Emitter::add_task(const sema::Task& task) {
                             std::to_string(plan::kMaxBodies) + " can be judged");
     return;
   }
-  auto program = lower::lower_task(model_, task, bodies, diagnostics_);
-  if (!program) return;
 
   const sema::Layout& layout = model_.layouts[task.layout];
   plan::TaskRecord record;
@@ -63,8 +73,9 @@ void Emitter::add_task(const sema::Task& task) {
   record.camera = cameras_[views.front().camera];
   if (has_names(views)) record.views = add_views(views, task.scene);
   record.light = lights_[light_of(model_, task)];
-  record.program =
-      add_program(std::move(*program), task.horizon, model_.robots[scene.robot].control_hz);
+  const auto program = add_program(task, bodies);
+  if (!program) return;
+  record.program = *program;
   record.source = objects_[task.source];
   record.target = objects_[task.target];
   record.bodies = add_bodies(bodies);
@@ -78,11 +89,13 @@ void Emitter::add_task(const sema::Task& task) {
   record.settle = layout.settle;
   const std::uint32_t index = size32(records().tasks);
   record.episodes = {size32(records().episodes), size32(task.starts)};
+  const std::vector<plan::Slice>& placements =
+      placements_of(task.starts, scene.surface_z + layout.drop);
   for (std::size_t e = 0; e < task.starts.size(); ++e) {
     plan::EpisodeRecord episode;
     episode.task = index;
     episode.index = static_cast<std::uint32_t>(e);
-    episode.placements = add_placements(task.starts[e], scene.surface_z + layout.drop);
+    episode.placements = placements[e];
     records().episodes.push_back(episode);
   }
   add_span(plan::SpanKind::kTasks, index, task.span);

@@ -41,26 +41,31 @@ std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const
   Frustum view;
   view.camera_ = &camera;
   view.surface_z_ = scene.surface_z;
-  view.from_world_ =
+  const Pose from_world =
       (pose_of(scene.base_position, scene.base_turn.rotation) * mount * aim).inverse();
+  view.turn_from_world_ = from_world.rotation.toRotationMatrix();
+  view.world_in_view_ = from_world.position;
   return view;
 }
 
 std::optional<double> Frustum::outside(const Object& object, const Start::Placed& placed) const {
-  const Quat turn = pose_of({}, placed.turn.rotation).rotation;
-  std::array<Vec3, 8> corners;
-  double lowest = 1e9;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto part = [&](std::size_t axis) {
-      return (i >> axis & 1) != 0 ? object.box_max[axis] : object.box_min[axis];
-    };
-    corners[i] = turn * Vec3(part(0), part(1), part(2));
-    lowest = std::min(lowest, corners[i].z());
-  }
+  const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+  const Vec3 low(object.box_min.data()), high(object.box_max.data());
+  // Along each of the world's axes every side of the box adds its own least: no corner is needed.
+  const Vec3 below = turn.row(2).transpose().cwiseProduct(low);
+  const Vec3 above = turn.row(2).transpose().cwiseProduct(high);
+  const double lowest = below.cwiseMin(above).sum();
+  // A corner is the sum of a part of each axis, of which there are two.
+  const Mat3 axes = turn_from_world_ * turn;
+  const Vec3 origin =
+      world_in_view_ + turn_from_world_ * Vec3(placed.x, placed.y, surface_z_ - lowest);
+  const std::array<Vec3, 2> x{origin + axes.col(0) * low.x(), origin + axes.col(0) * high.x()};
+  const std::array<Vec3, 2> y{axes.col(1) * low.y(), axes.col(1) * high.y()};
+  const std::array<Vec3, 2> z{axes.col(2) * low.z(), axes.col(2) * high.z()};
   double most = 0;
   std::size_t corners_out = 0;
-  for (const Vec3& corner : corners) {
-    const Vec3 seen = from_world_.apply(corner + Vec3(placed.x, placed.y, surface_z_ - lowest));
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Vec3 seen = x[i & 1u] + y[i >> 1u & 1u] + z[i >> 2u];
     if (seen.x() < 1e-3) return std::nullopt;
     const double u = camera_->cx - camera_->fx * seen.y() / seen.x();
     const double v = camera_->cy - camera_->fy * seen.z() / seen.x();
@@ -68,7 +73,7 @@ std::optional<double> Frustum::outside(const Object& object, const Start::Placed
     corners_out += out > 0 ? 1 : 0;
     most = std::max(most, out);
   }
-  return corners_out * 2 > corners.size() ? most : 0;
+  return corners_out * 2 > 8 ? most : 0;
 }
 
 }  // namespace probe::sema

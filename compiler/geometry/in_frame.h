@@ -23,7 +23,8 @@ class Frustum {
  private:
   const Camera* camera_ = nullptr;
   double surface_z_ = 0;
-  Pose from_world_;  // into forward, left, up
+  Mat3 turn_from_world_;  // into forward, left, up
+  Vec3 world_in_view_;    // where the world's origin lies there (m)
 };
 
 }  // namespace probe::sema

@@ -424,6 +424,25 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
   return bodies;
 }
 
+std::vector<std::uint32_t> shape_of(const sema::Task& task, const std::vector<Body>& bodies) {
+  std::vector<std::uint32_t> shape;
+  shape.reserve(2 * bodies.size() + 9 * task.judged.size());
+  for (const Body& body : bodies) {
+    // Which object it is counts for nothing: instructions name bodies by their place in the list.
+    shape.push_back(static_cast<std::uint32_t>(body.kind));
+    shape.push_back(body.kind == plan::BodyKind::kObject ? 0 : body.index);
+  }
+  for (const sema::Metric& metric : task.judged) {
+    // A metric's name stands at its span.
+    shape.insert(shape.end(),
+                 {metric.expr, metric.variables, static_cast<std::uint32_t>(metric.readout),
+                  metric.span.file.value, metric.span.begin, metric.span.end});
+    shape.insert(shape.end(), {metric.readout_span.file.value, metric.readout_span.begin,
+                               metric.readout_span.end});
+  }
+  return shape;
+}
+
 std::optional<Program> lower_task(const sema::Model& model, const sema::Task& task,
                                   const std::vector<Body>& bodies, Diagnostics& diagnostics) {
   Lowering lowering(model, bodies, diagnostics);

@@ -2,6 +2,7 @@
 // bodies, units gone.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ struct Body {
 
 // The robot of the task's scene must have its model.
 std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task);
+
+// All that lower_task looks at: tasks of one shape have one program, whatever their objects are.
+std::vector<std::uint32_t> shape_of(const sema::Task& task, const std::vector<Body>& bodies);
 
 // In: a task whose metrics are typed, and its bodies. Out: its program, metric after metric in
 // their order, equal parts computed once; nothing when one cannot be measured, which has been

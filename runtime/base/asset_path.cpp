@@ -22,8 +22,13 @@ std::string lower_extension(const fs::path& path) {
   return text;
 }
 
-Result<std::string> resolve_inside(const fs::path& folder, const std::string& written,
-                                   const fs::path& root) {
+AssetFolder::AssetFolder(const fs::path& root) : root_(fs::absolute(root).lexically_normal()) {
+  std::error_code error;
+  real_ = fs::canonical(root_, error);
+  if (error) real_.clear();
+}
+
+Result<std::string> AssetFolder::resolve(const fs::path& folder, const std::string& written) const {
   const auto refuse = [&](std::string message) {
     return Failure{Fault::kAsset, std::move(message), written};
   };
@@ -34,20 +39,23 @@ Result<std::string> resolve_inside(const fs::path& folder, const std::string& wr
   if (fs::path(relative).is_absolute() || has_drive || relative.find("://") != std::string::npos) {
     return refuse("paths must be relative to the file that names them");
   }
-  const fs::path absolute_root = fs::absolute(root).lexically_normal();
   const fs::path file = (fs::absolute(folder) / relative).lexically_normal();
-  if (!is_inside(file, absolute_root)) {
-    return refuse("lies outside the asset folder " + absolute_root.string());
+  if (!is_inside(file, root_)) {
+    return refuse("lies outside the asset folder " + root_.string());
   }
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return refuse("there is no such file");
   // The asset folder itself may be a link; a file in it may not lead elsewhere.
   const fs::path real = fs::canonical(file, error);
-  const fs::path real_root = error ? fs::path() : fs::canonical(absolute_root, error);
-  if (error || !is_inside(real, real_root)) {
-    return refuse("is a link that leads out of the asset folder " + absolute_root.string());
+  if (error || real_.empty() || !is_inside(real, real_)) {
+    return refuse("is a link that leads out of the asset folder " + root_.string());
   }
   return file.string();
+}
+
+Result<std::string> resolve_inside(const fs::path& folder, const std::string& written,
+                                   const fs::path& root) {
+  return AssetFolder(root).resolve(folder, written);
 }
 
 }  // namespace probe

@@ -11,9 +11,25 @@
 
 namespace probe {
 
-// The absolute path of `written`, read from a file in `folder`, backslashes taken as slashes. Fails
-// (kAsset, where = written) on an absolute path, a drive or a URL, on one that leads out of
-// `root` as written or through a symbolic link, and where no file is.
+// A folder out of which no path may lead; where it really lies is asked of the system once.
+class AssetFolder {
+ public:
+  explicit AssetFolder(const std::filesystem::path& root);
+
+  // The absolute path of `written`, read from a file in `folder`, backslashes taken as slashes.
+  // Fails (kAsset, where = written) on an absolute path, a drive or a URL, on one that leads out
+  // of the root as written or through a symbolic link, and where no file is.
+  Result<std::string> resolve(const std::filesystem::path& folder,
+                              const std::string& written) const;
+  // The same, of a path from the root.
+  Result<std::string> resolve(const std::string& written) const { return resolve(root_, written); }
+
+ private:
+  std::filesystem::path root_;  // absolute, as written
+  std::filesystem::path real_;  // behind its links; empty where it is not there
+};
+
+// AssetFolder(root).resolve(folder, written)
 Result<std::string> resolve_inside(const std::filesystem::path& folder, const std::string& written,
                                    const std::filesystem::path& root);
 

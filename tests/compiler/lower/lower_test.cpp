@@ -202,3 +202,28 @@ TEST_CASE("the builder tells zero from minus zero and shares vectors") {
   CHECK(builder.vector(0, 0, 1) == builder.vector(0, 0, 1));
   CHECK(builder.finish().constants.size() == 5);
 }
+
+TEST_CASE(
+    "tasks of one shape have one program, and another metric or another body is another shape") {
+  const auto a = test::analyze_with_suite(R"(
+metrics other like plain { success = at end (height(source) > 2 * height(target)) }
+variant turned of red_on_tray { source tray; target red }
+variant crowded of red_on_tray { distractors blue }
+variant judged of red_on_tray { metrics other }
+variant longer of red_on_tray { horizon 70 steps })");
+  const auto shape = [&](const char* name) {
+    const sema::Task& task = a->task(name);
+    return lower::shape_of(task, lower::bodies_of(a->model, task));
+  };
+  const auto code = [&](const char* name) {
+    const sema::Task& task = a->task(name);
+    return *lower::lower_task(a->model, task, lower::bodies_of(a->model, task), a->diagnostics);
+  };
+  for (const char* same : {"turned", "longer"}) {
+    CAPTURE(same);
+    CHECK(shape(same) == shape("red_on_tray"));
+    CHECK(code(same).same_as(code("red_on_tray")));
+  }
+  CHECK(shape("crowded") != shape("red_on_tray"));
+  CHECK(shape("judged") != shape("red_on_tray"));
+}
