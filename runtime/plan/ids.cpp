@@ -198,9 +198,14 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
   return parts;
 }
 
+Sha256 IdHasher::prompt(StringRef text) {
+  if (!prompt_ || prompt_->first.offset != text.offset || prompt_->first.length != text.length)
+    prompt_ = {text, prompt_id(tables_.text(text))};
+  return prompt_->second;
+}
+
 Sha256 IdHasher::episode(const TaskRecord& task, const EpisodeRecord& episode) {
-  return episode_id(to_sha256(episode.start_id), prompt_id(tables_.text(task.prompt)),
-                    to_sha256(task.judge_id));
+  return episode_id(to_sha256(episode.start_id), prompt(task.prompt), to_sha256(task.judge_id));
 }
 
 }  // namespace probe::plan

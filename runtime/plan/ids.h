@@ -59,9 +59,12 @@ class IdHasher {
   Sha256 cameras(const TaskRecord& task);  // all of them
   Sha256 light(std::uint32_t index);
   Sha256 asset(std::uint32_t index) const;
+  Sha256 prompt(StringRef text);
 
   Tables tables_;
   std::vector<std::optional<Sha256>> programs_, objects_, scenes_, cameras_, lights_;
+  std::optional<std::pair<StringRef, Sha256>>
+      prompt_;  // the last one: that of all of a task's episodes
 };
 
 }  // namespace probe::plan

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 TEST_CASE("the digest of abc is the one of FIPS 180-4") {
   CHECK(probe::to_hex(probe::sha256("abc")) ==
         "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
@@ -30,4 +32,18 @@ TEST_CASE("numbers are hashed as their little endian bytes") {
   const std::string bytes("\x01\x02\x03\x04\x05\x06\x07\x08", 8);
   CHECK(probe::Hasher().u64(0x0807060504030201u).finish() == probe::sha256(bytes));
   CHECK(probe::Hasher().u32(0x04030201u).u32(0x08070605u).finish() == probe::sha256(bytes));
+}
+
+TEST_CASE("how a message is cut into pieces does not show in its digest") {
+  std::string message;
+  for (int i = 0; i < 3000; ++i) message.push_back(static_cast<char>(i * 7));
+  const probe::Sha256 whole = probe::sha256(message);
+  const auto all = std::as_bytes(std::span(message));
+  for (const std::size_t piece : {1, 7, 8, 511, 512, 513, 1024, 2999}) {
+    CAPTURE(piece);
+    probe::Hasher hasher;
+    for (std::size_t at = 0; at < all.size(); at += piece)
+      hasher.bytes(all.subspan(at, std::min(piece, all.size() - at)));
+    CHECK(hasher.finish() == whole);
+  }
 }
