@@ -8,6 +8,10 @@
 action's world_vector (3, m), rot_axangle (3, rad) and gripper (1, +1 open). Or it is a function that
 makes such an object: then every connection has its own, and `--jobs` may be more than 1; one object
 serves one connection after the other. A step that takes eef_pos gets the end effector's too.
+
+A policy that keeps nothing between steps may have step_batch(images, tasks), which returns a list of
+what step returns: `--jobs 8 --policy "openpi://...?profile=simpler_shim&connection=kept&batch=8"`
+then asks for all worlds that wait in one message.
 """
 import argparse
 import base64
@@ -61,6 +65,12 @@ def pack_action(action):
             b"\xc4\x05dtype\xa3<f8\xc4\x05shape\x92\x01\x07")
 
 
+def pack_step(answer):
+    action = answer[1]
+    parts = (action["world_vector"], action["rot_axangle"], action["gripper"])
+    return pack_action(numpy.concatenate([numpy.ravel(part) for part in parts]))
+
+
 class Connection(socketserver.StreamRequestHandler):
     """One WebSocket: the upgrade, then messages until it is closed."""
 
@@ -89,15 +99,19 @@ class Connection(socketserver.StreamRequestHandler):
                     return self.send(8, struct.pack(">H", 1011) + b"Internal server error.")
 
     def answer(self, policy, request):
+        if "batch" in request:
+            items = request["batch"]
+            answers = policy.step_batch([item["observation/image"] for item in items],
+                                        [item["prompt"] for item in items])
+            return (b"\x81\xa5batch\xdc" + struct.pack(">H", len(answers)) +
+                    b"".join(pack_step(answer) for answer in answers))
         image, task = request["observation/image"], request["prompt"]
         if task != self.task:  # the first of this connection, or another task on it
             policy.reset(task)
             self.task = task
         takes_pose = "eef_pos" in inspect.signature(policy.step).parameters
         pose = {"eef_pos": request["observation/state"]} if takes_pose else {}
-        action = policy.step(image, task, **pose)[1]
-        parts = (action["world_vector"], action["rot_axangle"], action["gripper"])
-        return pack_action(numpy.concatenate([numpy.ravel(part) for part in parts]))
+        return pack_step(policy.step(image, task, **pose))
 
     def receive(self):
         """The next whole message, or None at the end."""

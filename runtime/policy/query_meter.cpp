@@ -34,6 +34,13 @@ void QueryMeter::end(Clock::time_point now) {
   ++figures_.queries;
 }
 
+void QueryMeter::add_batch(int queries, double gathering_s) {
+  const std::lock_guard lock(mutex_);
+  ++figures_.batches;
+  figures_.most_in_batch = std::max(figures_.most_in_batch, queries);
+  figures_.gathering_s += gathering_s;
+}
+
 QueryFigures QueryMeter::figures(Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
   QueryFigures figures = figures_;

@@ -15,6 +15,11 @@ struct QueryFigures {
   double busy_s = 0;     // at least one query was at the server
   double waiting_s = 0;  // worlds that waited for an answer, summed over worlds
   int most_at_once = 0;
+  // Of servers that are asked in batches: messages, and how long worlds waited for the others of
+  // theirs before it went, summed over worlds; that time is not part of waiting_s.
+  std::int64_t batches = 0;
+  int most_in_batch = 0;
+  double gathering_s = 0;
 };
 
 // Any thread may call any method at any time.
@@ -27,25 +32,28 @@ class QueryMeter {
   // Each begin() is followed by one end(); InFlight sees to that.
   void begin(Clock::time_point now = Clock::now());
   void end(Clock::time_point now = Clock::now());
+  // One message with that many queries, each of which has its own begin() and end().
+  void add_batch(int queries, double gathering_s);
 
   // Queries that have not ended count as far as they got.
   QueryFigures figures(Clock::time_point now = Clock::now()) const;
 
-  // From the first byte sent to the last one received of one query. Without a meter it does
-  // nothing.
+  // From the first byte sent to the last one received of one message with some queries. Without a
+  // meter it does nothing.
   class InFlight {
    public:
-    explicit InFlight(QueryMeter* meter) : meter_(meter) {
-      if (meter_ != nullptr) meter_->begin();
+    explicit InFlight(QueryMeter* meter, int queries = 1) : meter_(meter), queries_(queries) {
+      for (int i = 0; meter_ != nullptr && i < queries_; ++i) meter_->begin();
     }
     ~InFlight() {
-      if (meter_ != nullptr) meter_->end();
+      for (int i = 0; meter_ != nullptr && i < queries_; ++i) meter_->end();
     }
     InFlight(const InFlight&) = delete;
     InFlight& operator=(const InFlight&) = delete;
 
    private:
     QueryMeter* meter_;
+    int queries_;
   };
 
  private:

@@ -1,6 +1,19 @@
 #include "runtime/policy/reading.h"
 
+#include <cstdio>
+
 namespace probe::policy {
+
+std::string batch_remark(const Reading& reading) {
+  if (reading.batch == 0) return "";
+  const std::string of = "in a batch of " + std::to_string(reading.batch);
+  if (reading.batch_difference == 0)
+    return of + ", questions had the answers that they have alone, bit for bit";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3g", reading.batch_difference);
+  return of + ", numbers of the answers were up to " + text +
+         " away from those of the same questions alone";
+}
 
 std::vector<std::string> findings_of(const Reading& reading) {
   std::vector<std::string> findings;

@@ -17,10 +17,17 @@ struct Reading {
   bool is_deaf = false, is_blind = false;
   // Over all answers, hex: two servers with equal ones can be one model. Empty where not all came.
   std::string answers_sha256;
+  // Questions that were asked once more in one message; 0: the run asks no batches. How far the
+  // numbers of its answers were from those of the questions alone.
+  int batch = 0;
+  double batch_difference = 0;
   // Fields that the profile leaves open, with the value that the answers show.
   std::vector<std::pair<std::string, std::string>> measured;
   bool operator==(const Reading&) const = default;
 };
+
+// What a batch showed; empty where none was asked.
+std::string batch_remark(const Reading& reading);
 
 // Sentences on what is not as it should be; none where the policy reads.
 std::vector<std::string> findings_of(const Reading& reading);

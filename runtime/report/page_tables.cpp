@@ -136,6 +136,11 @@ Json delivery_json(const Benchmark& benchmark) {
                         {"policy", p},
                         {"text", fmt::format("{}: asked by {}", policy.label, run.content)}});
       }
+      for (const std::string& text : run.reading.batches) {
+        rows.push_back({{"level", "good"},
+                        {"policy", p},
+                        {"text", fmt::format("{}: {}", policy.label, text)}});
+      }
       const bool is_good = run.reading.findings.empty();
       if (is_good && run.reading.good.empty()) continue;
       for (const std::string& text :

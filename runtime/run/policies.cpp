@@ -169,7 +169,7 @@ Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
       break;
   }
   return servers::make_server(*choice.entry->protocol, choice.argument, context.queries,
-                              context.model, context.measured);
+                              context.model, context.measured, context.line);
 }
 
 Result<servers::ServerChoice> server_choice(std::string_view text) {

@@ -2,6 +2,7 @@
 #include "runtime/run/recorded.h"
 
 #include <algorithm>
+#include <set>
 
 #include "runtime/store/proof.h"
 #include "runtime/store/stored_trace.h"
@@ -33,6 +34,38 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const
   }
   if (episodes->empty()) return Failure{Fault::kUsage, "has no valid episode to serve", dir};
   return std::shared_ptr<const servers::RecordedEpisodes>(std::move(episodes));
+}
+
+Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const std::string& dir,
+                                                                        int most) {
+  PROBE_ASSIGN(const auto proven, store::read_proven_results(dir));
+  auto steps = std::make_shared<servers::RecordedEpisodes>();
+  std::set<std::string> ambiguous;
+  for (const store::ResultRow& row : proven.rows) {
+    if (row.invalid) continue;
+    PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
+    for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+      const std::size_t end = std::min(trace.steps.size(), i + static_cast<std::size_t>(most));
+      std::vector<policy::Action> actions;
+      for (std::size_t k = i; k < end; ++k) actions.push_back(trace.steps[k].action);
+      const std::string key =
+          servers::episode_key(to_hex(trace.steps[i].image_hash), row.prompt_sha256);
+      const auto [there, is_new] = steps->try_emplace(key, actions);
+      if (is_new) continue;
+      // A robot at rest looks the same in several steps, of which the last have less before them.
+      std::vector<policy::Action>& known = there->second;
+      const std::size_t common = std::min(known.size(), actions.size());
+      if (!std::equal(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(common),
+                      actions.begin())) {
+        ambiguous.insert(key);
+      } else if (actions.size() > known.size()) {
+        known = std::move(actions);
+      }
+    }
+  }
+  for (const std::string& key : ambiguous) steps->erase(key);
+  if (steps->empty()) return Failure{Fault::kUsage, "has no valid episode to serve", dir};
+  return std::shared_ptr<const servers::RecordedEpisodes>(std::move(steps));
 }
 
 }  // namespace probe::run

@@ -16,4 +16,10 @@ PolicyContext policy_context();
 // there is none.
 Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const std::string& dir);
 
+// Of each step of these the actions from it on, at most `most`, by the step's picture and
+// instruction, for servers that keep nothing between questions. A picture that two different
+// sequences follow is left out.
+Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const std::string& dir,
+                                                                        int most);
+
 }  // namespace probe::run

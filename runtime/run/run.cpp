@@ -37,6 +37,7 @@ struct Shared {
   RunSummary& summary;
   policy::QueryMeter& queries;
   std::shared_ptr<servers::SharedModel> model;  // of all connections to a server
+  std::shared_ptr<servers::SharedLine> line;    // of all worlds, where they ask in batches
   std::vector<std::pair<std::string, std::string>> measured;
   bool asks_server = false;
   std::mutex mutex = {};  // summary, progress and the counts below
@@ -44,19 +45,16 @@ struct Shared {
   std::atomic<bool> given_up = false;
 };
 
-run::PolicyContext context_with(policy::QueryMeter* queries,
-                                std::shared_ptr<servers::SharedModel> model) {
+// Of a worker, or none's: then the policy is only made to see whether it can be.
+Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
+                                                    const Shared* shared) {
   run::PolicyContext context = policy_context();
-  context.queries = queries;
-  context.model = std::move(model);
-  return context;
-}
-
-Result<std::unique_ptr<policy::Policy>> make_policy(
-    const RunOptions& options, policy::QueryMeter* queries,
-    std::shared_ptr<servers::SharedModel> model, decltype(PolicyContext::measured) measured = {}) {
-  run::PolicyContext context = context_with(queries, std::move(model));
-  context.measured = std::move(measured);
+  if (shared != nullptr) {
+    context.queries = &shared->queries;
+    context.model = shared->model;
+    context.line = shared->line;
+    context.measured = shared->measured;
+  }
   return options.own_policy ? options.own_policy->make(context)
                             : run::make_policy(options.policy, context);
 }
@@ -78,8 +76,7 @@ class EpisodeWorker {
   explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
 
   Status begin() {
-    PROBE_ASSIGN(policy_,
-                 make_policy(shared_.options, &shared_.queries, shared_.model, shared_.measured));
+    PROBE_ASSIGN(policy_, make_policy(shared_.options, &shared_));
     return {};
   }
 
@@ -317,6 +314,16 @@ Status check_worlds(const RunOptions& options) {
                  "--jobs"};
 }
 
+// A batch holds no more than one question a world.
+void note_batch(const RunOptions& options, RunSummary& summary) {
+  if (options.own_policy) return;
+  const auto choice = run::server_choice(options.policy);
+  if (!choice || choice->batch.most <= options.jobs) return;
+  summary.notes.push_back("batches of " + std::to_string(choice->batch.most) +
+                          " never fill with --jobs " + std::to_string(options.jobs) +
+                          ": each world asks one question at a time");
+}
+
 // Before the first episode: the server is there, has its model, and reads.
 Result<policy::Reading> prove(const std::string& policy,
                               std::shared_ptr<servers::SharedModel> model) {
@@ -378,7 +385,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   PROBE_TRY(check_worlds(options));
   // Made once before anything else, so that a policy that cannot be had is told before the folder
   // exists.
-  if (auto made = make_policy(options, nullptr, nullptr); !made) return made.failure();
+  if (auto made = make_policy(options, nullptr); !made) return made.failure();
   std::vector<store::ResultRow> recorded;
   if (traits.recorded) {
     PROBE_ASSIGN(recorded, recorded_rows(run::policy_argument(options.policy)));
@@ -426,6 +433,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
       summary.notes.push_back(std::move(finding));
   }
   PROBE_TRY(store->write_call(summary.call));
+  note_batch(options, summary);
   policy::QueryMeter queries;
   Shared shared{.plan = plan,
                 .options = options,
@@ -436,6 +444,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
                 .summary = summary,
                 .queries = queries,
                 .model = model,
+                .line = std::make_shared<servers::SharedLine>(),
                 .measured = summary.call.reading ? summary.call.reading->measured
                                                  : decltype(Shared::measured)(),
                 .asks_server = !traits.content.empty()};

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "runtime/base/json.h"
+#include "runtime/policy/reading.h"
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/meaning.h"
 #include "runtime/servers/questions.h"
@@ -59,7 +60,10 @@ double difference(const Chunk& a, const Chunk& b) {
 class Session {
  public:
   Session(const ServerChoice& choice, Transport& transport, Conformance& result)
-      : questions_(choice.profile, transport), transport_(transport), result_(result) {}
+      : questions_(choice.profile, transport),
+        transport_(transport),
+        result_(result),
+        most_in_batch_(asks_together(choice) ? choice.batch.most : 1) {}
 
   void run() {
     if (!connect()) return;
@@ -79,6 +83,7 @@ class Session {
     double changes = 0;
     for (const Chunk& chunk : chunks) changes = std::max(changes, difference(chunk, chunks[0]));
     check_sameness(chunks[0], changes);
+    check_together(chunks);
     judge_times();
   }
 
@@ -160,6 +165,29 @@ class Session {
     }
   }
 
+  // The same pictures once more, in one message.
+  void check_together(const std::vector<Chunk>& alone) {
+    if (most_in_batch_ <= 1) return;
+    std::vector<Question> questions;
+    for (int i = 0; i < std::min(kObservations, most_in_batch_); ++i)
+      questions.push_back({.picture = i});
+    const auto together = questions_.ask_together(questions);
+    ++result_.queries;
+    if (!together) {
+      result_.checks.push_back(failed_check("batch", together.failure()));
+      return;
+    }
+    const TogetherFinding finding = compare_together(alone, *together);
+    if (!finding.mixed.empty()) {
+      result_.checks.push_back({"batch", Verdict::kWrong, finding.mixed, {}});
+      return;
+    }
+    policy::Reading reading;
+    reading.batch = static_cast<int>(questions.size());
+    reading.batch_difference = finding.difference;
+    result_.checks.push_back({"batch", Verdict::kFine, policy::batch_remark(reading), {}});
+  }
+
   // What no shape shows: changes or poses, in which units, which rotations.
   void judge_meaning(const std::vector<Chunk>& answers) {
     for (const OpenField& open : open_fields(profile())) {
@@ -213,6 +241,7 @@ class Session {
   Questions questions_;
   Transport& transport_;
   Conformance& result_;
+  int most_in_batch_;
 };
 
 }  // namespace

@@ -33,6 +33,13 @@ struct KeyUse {
 // What carries a protocol's messages.
 enum class Carrier : std::uint8_t { kWebSocket, kHttp, kZmq };
 
+// How a protocol's servers take the questions of several worlds at once.
+enum class Batches : std::uint8_t {
+  kNone,
+  kOneMessage,  // in one message, by Transport::ask_all; they keep nothing between questions
+  kGathered,    // each by its own connection; the server is told how many to wait for
+};
+
 struct ProtocolRow {
   std::string_view word;      // before "://", and `protocol` of a profile
   std::string_view argument;  // what follows the colon of --policy, for people
@@ -60,6 +67,8 @@ struct ProtocolRow {
   bool (*has_reset)(std::string_view dialect) = nullptr;
   // Two questions of the same content differ, as they carry the time.
   bool is_timed = false;
+  // Where they gather, `make` finds `batch` and `batch_wait_ms` among the address's options.
+  Batches batches = Batches::kNone;
 };
 
 inline bool always_has_reset(std::string_view) { return true; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 
 #include "runtime/servers/connecting.h"
@@ -56,13 +57,32 @@ Status Questions::open() {
   return transport_.adapt(profile_);
 }
 
-Result<Chunk> Questions::ask(const Question& question) {
+TogetherFinding compare_together(const std::vector<Chunk>& alone,
+                                 const std::vector<Chunk>& together) {
+  TogetherFinding finding;
+  for (std::size_t i = 0; i < std::min(alone.size(), together.size()); ++i) {
+    for (std::size_t k = 0; k < alone.size(); ++k) {
+      if (together[i] == alone[i] || together[i] != alone[k]) continue;
+      finding.mixed = "in a batch, question " + std::to_string(i + 1) +
+                      " has the answer that question " + std::to_string(k + 1) + " has alone";
+    }
+    const Chunk &here = together[i], &there = alone[i];
+    if (here.size() != there.size()) {
+      finding.mixed = "in a batch, question " + std::to_string(i + 1) + " has " +
+                      std::to_string(here.size()) + " actions, alone " +
+                      std::to_string(there.size());
+      continue;
+    }
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      for (std::size_t n = 0; n < here[k].size(); ++n)
+        finding.difference = std::max(finding.difference, std::abs(here[k][n] - there[k][n]));
+    }
+  }
+  return finding;
+}
+
+Result<Request> Questions::request_of(const Question& question) const {
   const char* words = kWords[question.words];
-  policy::EpisodeStart start;
-  start.task = "policy_test";
-  start.prompt = words;
-  start.index = question.picture;
-  start.horizon = kHorizon;
   const wire::Bytes rgb = known_picture(question.picture);
   const policy::Image image{kWidth, kHeight, rgb};
   // One picture stands for every camera that the profile names.
@@ -74,12 +94,34 @@ Result<Chunk> Questions::ask(const Question& question) {
   seen.prompt = words;
   seen.proprioception = known_state(question.is_mirrored);
   seen.horizon = kHorizon;
+  return to_request(profile_, seen);
+}
+
+Result<std::vector<Chunk>> Questions::ask_together(const std::vector<Question>& questions) {
+  std::vector<Request> requests;
+  for (const Question& question : questions) {
+    PROBE_ASSIGN(Request request, request_of(question));
+    requests.push_back(std::move(request));
+  }
+  std::vector<const Request*> all;
+  for (const Request& request : requests) all.push_back(&request);
+  ++asked_;
+  return transport_.ask_all(all, deadlines());
+}
+
+Result<Chunk> Questions::ask(const Question& question) {
+  const char* words = kWords[question.words];
+  policy::EpisodeStart start;
+  start.task = "policy_test";
+  start.prompt = words;
+  start.index = question.picture;
+  start.horizon = kHorizon;
   if (profile_.connection == ConnectionUse::kPerEpisode && asked_ > 0) {
     transport_.close();
     PROBE_TRY(transport_.open(deadlines()));
   }
   PROBE_TRY(transport_.begin_episode(start, deadlines()));
-  PROBE_ASSIGN(const Request request, to_request(profile_, seen));
+  PROBE_ASSIGN(const Request request, request_of(question));
   const auto begun = QuestionClock::now();
   ++asked_;
   PROBE_ASSIGN(Chunk chunk, transport_.ask(request, deadlines()));

@@ -24,6 +24,17 @@ struct Question {
 };
 inline constexpr int kInstructions = 2;
 
+// What a batch of questions that were also asked alone shows of a server.
+struct TogetherFinding {
+  // It took one observation for another, so none of its answers is believed: why. Empty: it did
+  // not.
+  std::string mixed;
+  double difference = 0;  // the largest of an answer's number from that of the question alone
+};
+// An answer of the batch that is bit for bit another question's, and not its own, is that one's.
+TogetherFinding compare_together(const std::vector<Chunk>& alone,
+                                 const std::vector<Chunk>& together);
+
 // Where a question's arm is: the WidowX at the start of its table tasks, gripper open, 5 cm to one
 // side so that mirroring it moves it.
 policy::Proprioception known_state(bool is_mirrored);
@@ -42,12 +53,16 @@ class Questions {
   // The first answer of an episode that is begun and ended.
   Result<Chunk> ask(const Question& question);
 
+  // The answers to several in one message, each as if it were alone in an episode.
+  Result<std::vector<Chunk>> ask_together(const std::vector<Question>& questions);
+
   const Profile& profile() const { return profile_; }
   int asked() const { return asked_; }
   const std::vector<double>& times() const { return times_; }  // of answers, s
 
  private:
   Deadlines deadlines() const;
+  Result<Request> request_of(const Question& question) const;
 
   Profile profile_;
   Transport& transport_;

@@ -17,6 +17,26 @@ std::string hash_of(const std::vector<Chunk>& answers) {
   return to_hex(hasher.finish());
 }
 
+// The questions once more in one message. Whatever does not answer it as it answers them alone, but
+// for rounding and draws, cannot be asked in batches.
+Status prove_batch(Questions& questions, const std::vector<Question>& asked,
+                   const std::vector<Chunk>& alone, const ServerChoice& choice,
+                   policy::Reading* reading) {
+  const auto refused = [&](const std::string& why) {
+    return Failure{Fault::kUsage, "it cannot be asked in batches: " + why + "; ask without `batch`",
+                   choice.server.name()};
+  };
+  const auto size = static_cast<std::ptrdiff_t>(
+      std::min(asked.size(), static_cast<std::size_t>(choice.batch.most)));
+  const auto together = questions.ask_together({asked.begin(), asked.begin() + size});
+  if (!together) return refused(named(together.failure(), "").message);
+  const TogetherFinding finding = compare_together(alone, *together);
+  if (!finding.mixed.empty()) return refused(finding.mixed);
+  reading->batch = static_cast<int>(size);
+  reading->batch_difference = finding.difference;
+  return {};
+}
+
 }  // namespace
 
 Result<policy::Reading> prove_reading(const ServerChoice& choice,
@@ -28,7 +48,8 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   PROBE_TRY(open_patiently(*transport, choice.profile, reading.server, &adapted));
   Questions questions(adapted, *transport);
   std::vector<Chunk> answers;
-  for (const Question& question : {Question{}, Question{.words = 1}, Question{.picture = 1}}) {
+  const std::vector<Question> asked = {Question{}, Question{.words = 1}, Question{.picture = 1}};
+  for (const Question& question : asked) {
     auto answer = questions.ask(question);
     if (!answer) {
       reading.failure = to_text(named(answer.failure(), reading.server));
@@ -36,6 +57,8 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
     }
     answers.push_back(std::move(*answer));
   }
+  if (asks_together(choice) && answers.size() == asked.size())
+    PROBE_TRY(prove_batch(questions, asked, answers, choice, &reading));
   transport->close();
   reading.answers = static_cast<int>(answers.size());
   for (const OpenField& open : open_fields(adapted)) {

@@ -72,7 +72,39 @@ class ServedRecorded final : public ServedPolicy {
   std::size_t next_ = 0;
 };
 
+class ServedSteps final : public ServedPolicy {
+ public:
+  explicit ServedSteps(std::shared_ptr<const RecordedEpisodes> steps) : steps_(std::move(steps)) {}
+
+  void reset() override {}
+  Result<std::vector<RawAction>> answer(const Asked& asked, int count) override {
+    const auto found =
+        steps_->find(episode_key(to_hex(sha256(std::as_bytes(std::span(asked.picture.bytes)))),
+                                 to_hex(sha256(asked.words))));
+    if (found == steps_->end())
+      return bad("picture and instruction are of no step that is served, or of several");
+    const auto& actions = found->second;
+    const std::size_t end = std::min(static_cast<std::size_t>(count), actions.size());
+    return std::vector<RawAction>(actions.begin(),
+                                  actions.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+
+ private:
+  std::shared_ptr<const RecordedEpisodes> steps_;
+};
+
 }  // namespace
+
+Result<std::vector<std::vector<RawAction>>> ServedPolicy::answer_all(std::span<const Asked> asked,
+                                                                     int count) {
+  std::vector<std::vector<RawAction>> all;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    auto actions = answer(asked[i], count);
+    if (!actions) return of_item(actions.failure(), i, asked.size());
+    all.push_back(std::move(*actions));
+  }
+  return all;
+}
 
 MakeServedPolicy serve_null() {
   return [] { return std::make_unique<ServedNull>(); };
@@ -88,9 +120,26 @@ MakeServedPolicy serve_recorded(std::shared_ptr<const RecordedEpisodes> episodes
       [episodes, begins_anew] { return std::make_unique<ServedRecorded>(episodes, begins_anew); };
 }
 
+MakeServedPolicy serve_steps(std::shared_ptr<const RecordedEpisodes> steps) {
+  return [steps] { return std::make_unique<ServedSteps>(steps); };
+}
+
+Status check_batch_asked(const ServeOptions& options, std::size_t questions) {
+  const auto most = static_cast<std::size_t>(options.batch);
+  if (questions >= 1 && questions <= most) return {};
+  return bad("a batch of " + std::to_string(questions) + " questions, and this server takes " +
+             (most > 1 ? "1 to " + std::to_string(most) : "no batches"));
+}
+
 Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOptions& options) {
   PROBE_TRY(check_dialect(protocol, options.dialect, "--dialect"));
-  return row_of(protocol).serve(options);
+  const ProtocolRow& row = row_of(protocol);
+  if (options.batch > 1 && row.batches != Batches::kOneMessage) {
+    return Failure{Fault::kUsage,
+                   "protocol " + std::string(row.word) + " has no messages of several questions",
+                   "--batch"};
+  }
+  return row.serve(options);
 }
 
 bool has_reset(Protocol protocol, const std::string& dialect) {
@@ -104,6 +153,7 @@ std::string options_for_served(Protocol protocol, const ServeOptions& options) {
       "action.threshold=none";
   text += row_of(protocol).served_options;
   if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
+  if (options.batch > 1) text += "&batch=" + std::to_string(options.batch);
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ class ServedPolicy {
   // A protocol's word that an episode begins; of some there is none.
   virtual void reset() = 0;
   virtual Result<std::vector<RawAction>> answer(const Asked& asked, int count) = 0;
+  // Of several worlds at once, each in its order; only of policies that keep nothing between
+  // questions. One after the other, unless overridden.
+  virtual Result<std::vector<std::vector<RawAction>>> answer_all(std::span<const Asked> asked,
+                                                                 int count);
 };
 using MakeServedPolicy = std::function<std::unique_ptr<ServedPolicy>()>;
 
@@ -47,11 +52,15 @@ inline std::string episode_key(const std::string& picture_sha256, const std::str
   return picture_sha256 + "/" + words_sha256;
 }
 MakeServedPolicy serve_recorded(std::shared_ptr<const RecordedEpisodes> episodes, bool begins_anew);
+// What follows each step by the step's own picture: keeps nothing, so that worlds may share a
+// connection.
+MakeServedPolicy serve_steps(std::shared_ptr<const RecordedEpisodes> steps);
 
 struct ServeOptions {
   std::string address = "127.0.0.1";
   std::string port = "0";
   int chunk = 1;        // actions of an answer, at most; vla-eval's have one
+  int batch = 1;        // questions of a message, at most; 1: there are no batches
   std::string dialect;  // of GR00T and OpenVLA, as in a profile
   MakeServedPolicy policy;
 };
@@ -66,6 +75,8 @@ bool has_reset(Protocol protocol, const std::string& dialect);
 std::string options_for_served(Protocol protocol, const ServeOptions& options);
 
 // For the protocols' files.
+// Fails unless there may be that many questions in one message.
+Status check_batch_asked(const ServeOptions& options, std::size_t questions);
 // The first picture among a map's entries. Fails naming what there is.
 Result<wire::Array> first_picture(const wire::Value& map);
 Result<std::string> text_at(const wire::Value& map, std::string_view key);

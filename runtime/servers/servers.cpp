@@ -1,5 +1,7 @@
 #include "runtime/servers/servers.h"
 
+#include <charconv>
+
 #include "runtime/base/spelling.h"
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/profile_library.h"
@@ -9,7 +11,59 @@
 namespace probe::servers {
 namespace {
 
+constexpr const char* kWaitMs = "batch_wait_ms";
+constexpr int kMostInBatch = 256, kLongestWaitMs = 60'000;
+
 Failure usage(std::string message) { return {Fault::kUsage, std::move(message), "--policy"}; }
+
+// Takes the option out; nothing: it is not there.
+Result<std::optional<int>> take_number(std::map<std::string, std::string>& options,
+                                       const std::string& name, int least, int most) {
+  const auto node = options.extract(name);
+  if (node.empty()) return std::optional<int>();
+  const std::string& text = node.mapped();
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < least || value > most) {
+    return usage("`" + name + "` is a whole number from " + std::to_string(least) + " to " +
+                 std::to_string(most) + ", not `" + text + "`");
+  }
+  return std::optional(value);
+}
+
+Result<BatchLimits> take_limits(std::map<std::string, std::string>& options,
+                                const ProtocolRow& row) {
+  BatchLimits limits{.most = 1};
+  if (row.batches == Batches::kNone && (options.contains("batch") || options.contains(kWaitMs))) {
+    std::string takers;
+    for (const Protocol protocol : all_protocols()) {
+      if (row_of(protocol).batches == Batches::kNone) continue;
+      takers += (takers.empty() ? "" : ", ") + std::string(to_word(protocol));
+    }
+    return usage("servers that speak " + std::string(row.word) +
+                 " take no batches; those do that speak " + takers);
+  }
+  PROBE_ASSIGN(const auto most, take_number(options, "batch", 1, kMostInBatch));
+  PROBE_ASSIGN(const auto wait, take_number(options, kWaitMs, 0, kLongestWaitMs));
+  limits.most = most.value_or(limits.most);
+  if (wait) limits.wait = wire::Duration(*wait);
+  return limits;
+}
+
+Status check_fit_for_batches(const Profile& profile, const ProtocolRow& row) {
+  // One connection would carry the questions of all worlds.
+  if (row.batches == Batches::kOneMessage && profile.connection == ConnectionUse::kPerEpisode) {
+    return usage("profile `" + profile.name +
+                 "` has `connection = per_episode`: its server knows an episode by its "
+                 "connection, and a batch has one for all worlds");
+  }
+  if (profile.worlds == WorldsAtOnce::kOne) {
+    return usage("profile `" + profile.name +
+                 "` has `worlds = one`: its server keeps something of an episode for all who ask "
+                 "it, so worlds cannot share a batch");
+  }
+  return {};
+}
 
 }  // namespace
 
@@ -32,6 +86,7 @@ Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument)
   for (const std::string& option : own) {
     if (auto node = options.extract(option); !node.empty()) server.options.insert(std::move(node));
   }
+  PROBE_ASSIGN(const BatchLimits limits, take_limits(options, row));
   // An image option stands for all of the file's: it could not name the one it replaces.
   if (options.contains("image")) profile.images.clear();
   for (const auto& [field, value] : options) {
@@ -42,7 +97,12 @@ Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument)
     }
   }
   if (auto whole = check_profile(profile); !whole) return usage(whole.failure().message);
-  return ServerChoice{std::move(profile), std::move(server)};
+  if (limits.most > 1) PROBE_TRY(check_fit_for_batches(profile, row));
+  return ServerChoice{std::move(profile), std::move(server), limits};
+}
+
+bool asks_together(const ServerChoice& choice) {
+  return choice.batch.most > 1 && row_of(choice.profile.protocol).batches == Batches::kOneMessage;
 }
 
 std::string describe(const ServerChoice& choice) {
@@ -56,7 +116,13 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
                                                   std::shared_ptr<SharedModel> model) {
   PROBE_TRY(check_api_key());
   PROBE_TRY(check_dialect(choice.profile.protocol, choice.profile.dialect, "--policy"));
-  auto transport = row_of(choice.profile.protocol).make(choice.profile, choice.server);
+  const ProtocolRow& row = row_of(choice.profile.protocol);
+  wire::Endpoint server = choice.server;
+  if (row.batches == Batches::kGathered && choice.batch.most > 1) {
+    server.options["batch"] = std::to_string(choice.batch.most);
+    server.options[kWaitMs] = std::to_string(choice.batch.wait.count());
+  }
+  auto transport = row.make(choice.profile, server);
   if (transport && model) (*transport)->share(std::move(model));
   return transport;
 }
@@ -64,10 +130,23 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
 Result<std::unique_ptr<policy::Policy>> make_server(
     Protocol protocol, std::string_view argument, policy::QueryMeter* queries,
     std::shared_ptr<SharedModel> model,
-    const std::vector<std::pair<std::string, std::string>>& measured) {
+    const std::vector<std::pair<std::string, std::string>>& measured,
+    std::shared_ptr<SharedLine> line) {
   PROBE_ASSIGN(ServerChoice choice, choose_server(protocol, argument));
   for (const auto& [field, value] : measured) PROBE_TRY(set_field(choice.profile, field, value));
-  PROBE_ASSIGN(std::unique_ptr<Transport> transport, make_transport(choice, std::move(model)));
+  std::unique_ptr<Transport> transport;
+  if (asks_together(choice)) {
+    if (!line) line = std::make_shared<SharedLine>();
+    const auto make = [&]() -> Result<std::shared_ptr<BatchLine>> {
+      PROBE_ASSIGN(auto own, make_transport(choice, std::move(model)));
+      return std::make_shared<BatchLine>(std::move(own), choice.batch, queries);
+    };
+    PROBE_ASSIGN(auto shared, line->get(make));
+    transport = make_batched(std::move(shared));
+    queries = nullptr;  // the line counts them as they go over the wire
+  } else {
+    PROBE_ASSIGN(transport, make_transport(choice, std::move(model)));
+  }
   return std::unique_ptr<policy::Policy>(std::make_unique<ServerPolicy>(
       std::move(choice.profile), choice.server.name(), std::move(transport), queries));
 }

@@ -10,6 +10,7 @@
 #include "runtime/base/result.h"
 #include "runtime/policy/policy.h"
 #include "runtime/policy/query_meter.h"
+#include "runtime/servers/batch.h"
 #include "runtime/servers/profile.h"
 #include "runtime/servers/shared_model.h"
 #include "runtime/servers/transport.h"
@@ -22,24 +23,33 @@ namespace probe::servers {
 struct ServerChoice {
   Profile profile;
   wire::Endpoint server;
+  // Questions that go in one message at most, and how long the first of them waits for others. No
+  // answer depends on it: runs with other batches are one run.
+  BatchLimits batch{.most = 1};
 };
 
 // `argument` is what stands after "openpi:". Options are `profile` (default: the protocol's own),
-// any field of a profile, which then stands for the file's, and those of the protocol. Fails
-// (kUsage) on others, with the nearest, and on a profile of another protocol.
+// any field of a profile, which then stands for the file's, `batch` and `batch_wait_ms` of
+// protocols that have batches, and those of the protocol. Fails (kUsage) on others, with the
+// nearest, and on a profile of another protocol.
 Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument);
+
+// Whether its worlds' questions go in one message.
+bool asks_together(const ServerChoice& choice);
 
 // Without the address: what does the same at another address has the same.
 std::string describe(const ServerChoice& choice);
 
-// `model` is what all connections of a run have in common, or nothing.
+// `model` is what all connections of a run have in common, or nothing. Asks one question a message.
 Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
                                                   std::shared_ptr<SharedModel> model = nullptr);
 
+// `line` is where the worlds of a run meet for batches, or nothing: then this one is alone.
 // `measured` are fields with values that profile and server leave open, see policy::Reading.
 Result<std::unique_ptr<policy::Policy>> make_server(
     Protocol protocol, std::string_view argument, policy::QueryMeter* queries,
     std::shared_ptr<SharedModel> model = nullptr,
-    const std::vector<std::pair<std::string, std::string>>& measured = {});
+    const std::vector<std::pair<std::string, std::string>>& measured = {},
+    std::shared_ptr<SharedLine> line = nullptr);
 
 }  // namespace probe::servers

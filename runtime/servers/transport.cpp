@@ -14,6 +14,23 @@ constexpr std::size_t kMostActions = 1000;
 
 }  // namespace
 
+Result<std::vector<std::vector<RawAction>>> Transport::ask_all(
+    std::span<const Request* const> /*requests*/, const Deadlines& /*deadlines*/) {
+  return bad("this protocol has no batches");
+}
+
+Failure of_item(Failure failure, std::size_t index, std::size_t count) {
+  failure.message = "item " + std::to_string(index + 1) + " of " + std::to_string(count) +
+                    " of a batch: " + failure.message;
+  return failure;
+}
+
+Status check_batch(std::size_t answers, std::size_t questions) {
+  if (answers == questions) return {};
+  return bad("a batch of " + std::to_string(questions) + " observations was answered with " +
+             std::to_string(answers) + " items: which is whose cannot be said");
+}
+
 Result<std::vector<RawAction>> to_actions(const wire::Value& answer) {
   constexpr std::size_t kSize = std::tuple_size_v<RawAction>;
   const std::string wanted =

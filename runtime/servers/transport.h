@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -78,6 +79,11 @@ class Transport {
   // At least one action, each of finite numbers; see to_actions.
   virtual Result<std::vector<RawAction>> ask(const Request& request,
                                              const Deadlines& deadlines) = 0;
+  // An answer to each of several requests that go in one message, in their order. Of protocols
+  // whose row has batches; there, what a question is answered does not depend on those beside it.
+  // Fails (kPolicy) as a whole, naming the item where one is at fault.
+  virtual Result<std::vector<std::vector<RawAction>>> ask_all(
+      std::span<const Request* const> requests, const Deadlines& deadlines);
   // After an episode whose begin_episode was fine and whose connection still stands.
   virtual Status end_episode(const policy::EpisodeEnd& /*end*/, const Deadlines& /*deadlines*/) {
     return {};
@@ -88,6 +94,11 @@ class Transport {
   // What the server said of itself, a line each, for `policy test`; after open().
   virtual std::vector<std::string> remarks() const { return {}; }
 };
+
+// Which of a batch's answers a failure is of: "item 3 of 8 of a batch: ...".
+Failure of_item(Failure failure, std::size_t index, std::size_t count);
+// Fails (kPolicy) unless a batch has an answer a question.
+Status check_batch(std::size_t answers, std::size_t questions);
 
 // An answer's numbers as actions: shapes [7], [n, 7], and those with leading dimensions of 1. Fails
 // (kPolicy) on other shapes, on nothing, on more than 1000 actions, on numbers that are not

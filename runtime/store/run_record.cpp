@@ -117,16 +117,26 @@ std::string to_text(const RunCall& call) {
   };
   std::string text = rate(static_cast<double>(call.observations)) + " observations/s";
   if (call.queries.queries == 0) return text;
-  return text + ", " + rate(static_cast<double>(call.queries.queries)) +
-         " queries/s; server busy " + percent(call.queries.busy_s, call.elapsed_s) +
-         " of the time, simulators waiting for it " +
-         percent(call.queries.waiting_s, call.elapsed_s * call.worlds) + " of theirs";
+  text += ", " + rate(static_cast<double>(call.queries.queries)) + " queries/s; server busy " +
+          percent(call.queries.busy_s, call.elapsed_s) +
+          " of the time, simulators waiting for it " +
+          percent(call.queries.waiting_s, call.elapsed_s * call.worlds) + " of theirs";
+  if (call.queries.batches == 0) return text;
+  const auto queries = static_cast<double>(call.queries.queries);
+  return text + "; " + std::to_string(call.queries.batches) + " batches of " +
+         decimal_text(queries / static_cast<double>(call.queries.batches), 1) +
+         " questions on average, at most " + std::to_string(call.queries.most_in_batch) +
+         "; simulators waiting for one another " +
+         percent(call.queries.gathering_s, call.elapsed_s * call.worlds) + " of theirs";
 }
 
 ReadingSummary summarize_readings(const std::vector<RunCall>& calls) {
   ReadingSummary summary;
   for (const RunCall& call : calls) {
     if (!call.reading) continue;
+    const std::string batch = policy::batch_remark(*call.reading);
+    if (!batch.empty() && std::ranges::find(summary.batches, batch) == summary.batches.end())
+      summary.batches.push_back(batch);
     const auto findings = policy::findings_of(*call.reading);
     if (findings.empty()) ++summary.proven;
     for (const std::string& finding : findings) {
@@ -145,10 +155,15 @@ namespace {
 Json reading_to_json(const policy::Reading& reading) {
   auto measured = Json::object();
   for (const auto& [field, value] : reading.measured) measured[field] = value;
-  return {{"server", reading.server},     {"answers", reading.answers},
-          {"failure", reading.failure},   {"is_deaf", reading.is_deaf},
-          {"is_blind", reading.is_blind}, {"answers_sha256", reading.answers_sha256},
-          {"measured", measured}};
+  Json json = {{"server", reading.server},     {"answers", reading.answers},
+               {"failure", reading.failure},   {"is_deaf", reading.is_deaf},
+               {"is_blind", reading.is_blind}, {"answers_sha256", reading.answers_sha256},
+               {"measured", measured}};
+  if (reading.batch > 0) {
+    json["batch"] = reading.batch;
+    json["batch_difference"] = reading.batch_difference;
+  }
+  return json;
 }
 
 // Nothing where a part is missing or of another type.
@@ -169,7 +184,13 @@ std::optional<policy::Reading> reading_from_json(const Json& json) {
     return std::nullopt;
   }
   policy::Reading reading{
-      *server, answers->get<int>(), *failure, flag("is_deaf"), flag("is_blind"), *hash, {}};
+      *server, answers->get<int>(), *failure, flag("is_deaf"), flag("is_blind"), *hash, 0, 0, {}};
+  const Json *batch = json.find("batch"), *difference = json.find("batch_difference");
+  if (batch != nullptr && difference != nullptr) {
+    if (!batch->is_number_integer() || !difference->is_number()) return std::nullopt;
+    reading.batch = batch->get<int>();
+    reading.batch_difference = difference->get<double>();
+  }
   for (const auto& [field, value] : measured->items()) {
     if (!value.is_string()) return std::nullopt;
     reading.measured.emplace_back(field, value.text());
@@ -191,6 +212,11 @@ std::string call_to_json(const RunCall& call) {
                {"server_busy_s", call.queries.busy_s},
                {"worlds_waiting_s", call.queries.waiting_s},
                {"queries_at_once", call.queries.most_at_once}};
+  if (call.queries.batches > 0) {
+    json["batches"] = call.queries.batches;
+    json["queries_of_a_batch"] = call.queries.most_in_batch;
+    json["worlds_gathering_s"] = call.queries.gathering_s;
+  }
   if (call.reading) json["reading"] = reading_to_json(*call.reading);
   return json.sorted().dump();
 }
@@ -219,6 +245,11 @@ Result<RunCall> call_from_json(const std::string& text, const std::string& where
   call.queries.busy_s = number("server_busy_s").get<double>();
   call.queries.waiting_s = number("worlds_waiting_s").get<double>();
   call.queries.most_at_once = number("queries_at_once").get<int>();
+  if (json.find("batches") != nullptr) {
+    call.queries.batches = number("batches").get<std::int64_t>();
+    call.queries.most_in_batch = number("queries_of_a_batch").get<int>();
+    call.queries.gathering_s = number("worlds_gathering_s").get<double>();
+  }
   if (const Json* reading = json.find("reading")) {
     call.reading = reading_from_json(*reading);
     if (!call.reading) missing = "reading";

@@ -73,6 +73,7 @@ struct ReadingSummary {
   int proven = 0;                     // calls whose policy read pictures and instructions
   // "other words and other pictures had other answers", where that was asked and nothing is wrong.
   std::string good;
+  std::vector<std::string> batches;  // what was shown of batches, each sentence once
 };
 ReadingSummary summarize_readings(const std::vector<RunCall>& calls);
 

@@ -2,6 +2,7 @@
 
 shim_server.py actions=FILE [object]     a policy a connection, or one object for all
 shim_server.py fails
+shim_server.py batches                   a policy that keeps nothing and takes several pictures
 """
 import os
 import sys
@@ -34,6 +35,18 @@ class SimplerPolicy:
         return raw, action
 
 
+class BatchPolicy:
+    def reset(self, task_description):
+        pass
+
+    def step(self, image, task_description):
+        x = (int(image[0, 0, 0]) + len(task_description)) / 1000
+        return {}, {"world_vector": [x, 0, 0], "rot_axangle": [0, 0, 0], "gripper": [1]}
+
+    def step_batch(self, images, tasks):
+        return [self.step(image, task) for image, task in zip(images, tasks)]
+
+
 class FailingPolicy:
     def reset(self, task_description):
         pass
@@ -44,5 +57,7 @@ class FailingPolicy:
 
 if sys.argv[1] == "fails":
     serve_simpler.serve(FailingPolicy(), 0)
+if sys.argv[1] == "batches":
+    serve_simpler.serve(BatchPolicy(), 0)
 EPISODES = recorded_actions.load(sys.argv[1].partition("=")[2])
 serve_simpler.serve(SimplerPolicy() if "object" in sys.argv else SimplerPolicy, 0)

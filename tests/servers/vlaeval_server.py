@@ -1,18 +1,21 @@
 """A server that speaks vla-eval's protocol 1 as its serve.py does, and is as strict.
 
 vlaeval_server.py [actions=FILE] [bridge=1] [params=JSON] [spec=JSON] [pose=JSON] [version=N]
-                  [record=FILE]
+                  [record=FILE] [gathers=MOST]
 
 Answers the actions of recorded_actions, or one whose first number is the step / 1000; with `bridge`
 the gripper as 0 to 1. `params` and `spec` are the observation_params and
 the action_spec of its hello, and `pose` is what it answers always. `record` gets a JSON line
-for every message: its type, its keys and what was in an observation.
+for every message: its type, its keys and what was in an observation. With `gathers` GET /config
+says and changes how batches are gathered, up to MOST, as serve.py's does.
 """
 import asyncio
+import http
 import json
 import os
 import sys
 import time
+import urllib.parse
 
 import msgpack
 import numpy
@@ -122,9 +125,24 @@ async def handle(socket):
             raise ValueError("Unknown message type: " + kind)
 
 
+config = {"max_batch_size": 1, "max_wait_time": 0.01}
+
+
+async def page(path, headers):
+    url = urllib.parse.urlparse(path)
+    if url.path != "/config" or "gathers" not in options:
+        return None
+    applied = {key: type(config[key])(values[-1])
+               for key, values in urllib.parse.parse_qs(url.query).items() if key in config}
+    applied["max_batch_size"] = min(applied["max_batch_size"], int(options["gathers"]))
+    config.update(applied)
+    note({"type": "config", "payload": dict(config)})
+    return http.HTTPStatus.OK, [], json.dumps({"applied": applied, "config": config}).encode()
+
+
 async def main():
     async with websockets.serve(handle, "127.0.0.1", 0, compression=None, max_size=None,
-                                ping_interval=None) as server:
+                                ping_interval=None, process_request=page) as server:
         print("port", server.sockets[0].getsockname()[1], flush=True)
         os.close(1)
         await asyncio.Future()

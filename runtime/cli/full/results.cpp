@@ -28,6 +28,16 @@ void print_readings(const std::string& dir) {
   const store::ReadingSummary summary = store::summarize_readings(*calls);
   for (const std::string& finding : summary.findings) put("{}\n", finding);
   if (!summary.good.empty()) put("{}\n", summary.good);
+  for (const std::string& sentence : summary.batches) put("{}\n", sentence);
+}
+
+// How the questions of the folder's calls went, where they went together.
+void print_batches(const std::string& dir) {
+  const auto calls = store::read_run_calls(dir);
+  if (!calls) return;
+  for (const store::RunCall& call : *calls) {
+    if (call.queries.batches > 0) put("{}\n", store::to_text(call));
+  }
 }
 
 // Whether what makes tasks different reached the policy.
@@ -41,6 +51,7 @@ int delivery_verb(const ResultsArguments& arguments, std::span<const store::Resu
   }
   for (const run::DeliveryFinding& finding : findings) put("{}\n", finding.sentence);
   print_readings(arguments.dir);
+  print_batches(arguments.dir);
   if (findings.empty()) {
     put("every instruction and picture that should differ reached the policy different\n");
   }

@@ -63,12 +63,20 @@ int serve_verb(const ServeArguments& arguments) {
     const auto dir = folder_of(arguments, &exit);
     if (!dir) return report(dir.failure());
     if (dir->empty()) return exit;
-    const auto episodes = run::recorded_episodes(*dir);
+    const bool together = options.batch > 1;
+    const auto episodes =
+        together ? run::recorded_steps(*dir, options.chunk) : run::recorded_episodes(*dir);
     if (!episodes) return report(episodes.failure());
-    say("{} episodes of {} are served, each known by its first picture as rendered\n",
-        (*episodes)->size(), *dir);
-    options.policy =
-        servers::serve_recorded(*episodes, !servers::has_reset(*protocol, options.dialect));
+    if (together) {
+      say("{} steps of {} are served, each known by its picture as rendered\n", (*episodes)->size(),
+          *dir);
+      options.policy = servers::serve_steps(*episodes);
+    } else {
+      say("{} episodes of {} are served, each known by its first picture as rendered\n",
+          (*episodes)->size(), *dir);
+      options.policy =
+          servers::serve_recorded(*episodes, !servers::has_reset(*protocol, options.dialect));
+    }
   }
   const EndSignals ends;
   const auto listener = servers::serve(*protocol, options);
@@ -106,6 +114,9 @@ void add_serve(Verb app, int& exit) {
   verb.add_option("--port", arguments->options.port, "to listen at; 0: any free one");
   verb.add_option("--chunk", arguments->options.chunk, "actions of an answer, at most")
       .between(1, 1024);
+  verb.add_option("--batch", arguments->options.batch,
+                  "questions of one message, at most (openpi, starvla); 1: no batches")
+      .between(1, 256);
   verb.add_option("--dialect", arguments->options.dialect, "of gr00t and openvla");
   verb.add_option("-o,--out", arguments->run.out, "results folder of the run before");
   verb.add_option("--suite", arguments->run.suite, "as for `run`");

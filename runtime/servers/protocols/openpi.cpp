@@ -1,6 +1,7 @@
 // openpi's protocol (src/openpi/serving/websocket_policy_server.py): {image keys, state key, prompt
 // key} -> {"actions"}. Sends the API key, if there is one. Servers keep nothing between requests,
-// so episodes are not announced.
+// so episodes are not announced. Forks that take batches (openpi's pull request 941) are asked
+// {"batch": [observation, ...]} and answer {"batch": [{"actions"}, ...]}, or the list alone.
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/openpi_connection.h"
 #include "runtime/servers/protocols/served_sides.h"
@@ -20,6 +21,39 @@ class Openpi : public Transport {
   void close() override { connection_.close(); }
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
+    PROBE_ASSIGN(const wire::Value answer, connection_.ask(observation(request), deadlines.answer));
+    return actions_of(answer);
+  }
+
+  Result<std::vector<std::vector<RawAction>>> ask_all(std::span<const Request* const> requests,
+                                                      const Deadlines& deadlines) override {
+    wire::List items;
+    for (const Request* request : requests) {
+      items.emplace_back(observation(*request));
+      PROBE_TRY(check_distinct_keys(items.back()));
+    }
+    PROBE_ASSIGN(const wire::Value answer,
+                 connection_.ask(wire::Map{{"batch", std::move(items)}}, deadlines.answer));
+    const wire::Value* batch = answer.find("batch");
+    const auto* answers = (batch == nullptr ? answer : *batch).as<wire::List>();
+    if (answers == nullptr) {
+      return bad("expected a map with `batch`, a list of " + std::to_string(requests.size()) +
+                 " answers; got " + wire::describe(batch == nullptr ? answer : *batch));
+    }
+    PROBE_TRY(check_batch(answers->size(), requests.size()));
+    std::vector<std::vector<RawAction>> all;
+    for (std::size_t i = 0; i < answers->size(); ++i) {
+      auto actions = actions_of((*answers)[i]);
+      if (!actions) return of_item(actions.failure(), i, answers->size());
+      all.push_back(std::move(*actions));
+    }
+    return all;
+  }
+
+  std::vector<std::string> remarks() const override { return metadata_remarks(metadata_); }
+
+ private:
+  wire::Map observation(const Request& request) const {
     wire::Map map;
     append_images(request, &map);
     if (!request.state.empty()) {
@@ -28,7 +62,15 @@ class Openpi : public Transport {
     for (const auto& [key, state] : request.more_states)
       map.emplace_back(key, state_array(profile_, state));
     map.emplace_back(profile_.prompt_key, request.prompt);
-    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
+    return map;
+  }
+
+  static Result<std::vector<RawAction>> actions_of(const wire::Value& answer) {
+    if (const wire::Value* error = answer.find("error")) {
+      const auto* text = error->as<std::string>();
+      return bad("the server failed: " +
+                 (text == nullptr ? wire::describe(*error) : last_lines(*text)));
+    }
     const wire::Value* actions = answer.find("actions");
     if (actions == nullptr) {
       return bad("expected a map with `actions`, got " + wire::describe(answer));
@@ -36,9 +78,6 @@ class Openpi : public Transport {
     return to_actions(*actions);
   }
 
-  std::vector<std::string> remarks() const override { return metadata_remarks(metadata_); }
-
- private:
   Profile profile_;
   OpenpiConnection connection_;
   wire::Value metadata_;
@@ -62,6 +101,7 @@ constinit const ProtocolRow openpi_row{
     .make = make_openpi,
     .serve = serve_openpi,
     .served_options = "&chunk.length=any&chunk.use=all",
+    .batches = Batches::kOneMessage,
 };
 
 }  // namespace probe::servers

@@ -14,7 +14,7 @@ wire::Frame packed(const wire::Value& value) {
 class OpenpiSpeaker : public wire::Speaker {
  public:
   explicit OpenpiSpeaker(const ServeOptions& options)
-      : chunk_(options.chunk), policy_(options.policy()) {}
+      : options_(options), policy_(options.policy()) {}
 
   std::vector<wire::Frame> greet() override { return {packed(metadata())}; }
 
@@ -31,19 +31,43 @@ class OpenpiSpeaker : public wire::Speaker {
  protected:
   virtual wire::Value metadata() const { return wire::Map{}; }
   virtual Result<wire::Frame> said(const wire::Value& request) {
+    const wire::Value* batch = request.find("batch");
+    if (const auto* items = batch == nullptr ? nullptr : batch->as<wire::List>()) {
+      PROBE_ASSIGN(const auto all, act_all(*items, "prompt"));
+      wire::List answers;
+      for (const auto& actions : all)
+        answers.emplace_back(wire::Map{{"actions", actions_array(actions)}});
+      return packed(wire::Map{{"batch", std::move(answers)}});
+    }
     PROBE_ASSIGN(const auto actions, act(request, "prompt"));
     return packed(wire::Map{{"actions", actions_array(actions)}});
   }
 
   Result<std::vector<RawAction>> act(const wire::Value& request, std::string_view words) {
-    PROBE_ASSIGN(wire::Array picture, first_picture(request));
-    PROBE_ASSIGN(std::string text, text_at(request, words));
-    return policy_->answer({std::move(picture), std::move(text)}, chunk_);
+    PROBE_ASSIGN(const Asked asked, asked_of(request, words));
+    return policy_->answer(asked, options_.chunk);
+  }
+  Result<std::vector<std::vector<RawAction>>> act_all(const wire::List& requests,
+                                                      std::string_view words) {
+    PROBE_TRY(check_batch_asked(options_, requests.size()));
+    std::vector<Asked> all;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      auto asked = asked_of(requests[i], words);
+      if (!asked) return of_item(asked.failure(), i, requests.size());
+      all.push_back(std::move(*asked));
+    }
+    return policy_->answer_all(all, options_.chunk);
   }
   ServedPolicy& policy() { return *policy_; }
 
  private:
-  int chunk_;
+  static Result<Asked> asked_of(const wire::Value& request, std::string_view words) {
+    PROBE_ASSIGN(wire::Array picture, first_picture(request));
+    PROBE_ASSIGN(std::string text, text_at(request, words));
+    return Asked{std::move(picture), std::move(text)};
+  }
+
+  ServeOptions options_;
   std::unique_ptr<ServedPolicy> policy_;
 };
 
@@ -96,20 +120,25 @@ class StarVlaSpeaker final : public OpenpiSpeaker {
   Result<wire::Frame> said(const wire::Value& request) override {
     const wire::Value* examples = request.find("examples");
     const auto* list = examples == nullptr ? nullptr : examples->as<wire::List>();
-    if (list == nullptr || list->size() != 1)
-      return failed("expected `examples`, a list of one; got " + wire::describe(request));
-    const wire::Value* images = list->front().find("image");
-    const auto* pictures = images == nullptr ? nullptr : images->as<wire::List>();
-    if (pictures == nullptr || pictures->empty())
-      return failed("expected `image`, a list; got " + wire::describe(list->front()));
-    const auto actions = act(
-        wire::Map{{"image", pictures->front()},
-                  {"lang", list->front().find("lang") == nullptr ? wire::Value()
-                                                                 : *list->front().find("lang")}},
-        "lang");
-    if (!actions) return failed(actions.failure().message);
-    wire::Array array = actions_array(*actions);
-    array.shape.insert(array.shape.begin(), 1);  // of a batch
+    if (list == nullptr || list->empty())
+      return failed("expected `examples`, a list; got " + wire::describe(request));
+    wire::List flat;
+    for (const wire::Value& example : *list) {
+      const wire::Value *images = example.find("image"), *words = example.find("lang");
+      const auto* pictures = images == nullptr ? nullptr : images->as<wire::List>();
+      if (pictures == nullptr || pictures->empty())
+        return failed("expected `image`, a list; got " + wire::describe(example));
+      flat.emplace_back(wire::Map{{"image", pictures->front()},
+                                  {"lang", words == nullptr ? wire::Value() : *words}});
+    }
+    const auto all = act_all(flat, "lang");
+    if (!all) return failed(all.failure().message);
+    std::vector<RawAction> actions;
+    for (const auto& item : *all) actions.insert(actions.end(), item.begin(), item.end());
+    wire::Array array = actions_array(actions);
+    const auto items = static_cast<std::int64_t>(all->size());
+    if (array.shape[0] % items != 0) return failed("answers of different lengths");
+    array.shape = {items, array.shape[0] / items, 7};
     return packed(wire::Map{{"status", "ok"},
                             {"ok", true},
                             {"type", "inference_result"},

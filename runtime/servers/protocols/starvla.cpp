@@ -23,17 +23,60 @@ class StarVla : public Transport {
   void close() override { connection_.close(); }
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
+    const Request* one[] = {&request};
+    PROBE_ASSIGN(const wire::Value actions, predict(one, deadlines));
+    return to_actions(actions);
+  }
+
+  // predict_action answers as many examples as it is given: [examples, actions, 7].
+  Result<std::vector<std::vector<RawAction>>> ask_all(std::span<const Request* const> requests,
+                                                      const Deadlines& deadlines) override {
+    PROBE_ASSIGN(const wire::Value actions, predict(requests, deadlines));
+    const auto* array = actions.as<wire::Array>();
+    if (array == nullptr || array->shape.size() != 3 || array->shape[0] < 0) {
+      return bad("expected an array " + std::to_string(requests.size()) + " x N x 7; got " +
+                 wire::describe(actions));
+    }
+    PROBE_TRY(wire::check_fit(*array));
+    PROBE_TRY(check_batch(static_cast<std::size_t>(array->shape[0]), requests.size()));
+    const std::size_t size = array->bytes.size() / requests.size();
+    std::vector<std::vector<RawAction>> all;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      wire::Array item{array->dtype, {array->shape[1], array->shape[2]}, {}};
+      const auto* begin = array->bytes.data() + i * size;
+      item.bytes.assign(begin, begin + size);
+      auto read = to_actions(std::move(item));
+      if (!read) return of_item(read.failure(), i, requests.size());
+      all.push_back(std::move(*read));
+    }
+    return all;
+  }
+
+  std::vector<std::string> remarks() const override { return metadata_remarks(metadata_); }
+
+ private:
+  wire::Map example(const Request& request) const {
     wire::List images;
     for (const RequestImage& image : request.images) images.emplace_back(image.pixels);
-    wire::Map example{{"image", std::move(images)}, {profile_.prompt_key, request.prompt}};
+    wire::Map map{{"image", std::move(images)}, {profile_.prompt_key, request.prompt}};
     if (!request.state.empty()) {
       // A history of one.
       wire::Array state = state_array(profile_, request.state);
       state.shape.insert(state.shape.begin(), 1);
-      example.emplace_back(profile_.state_key, std::move(state));
+      map.emplace_back(profile_.state_key, std::move(state));
+    }
+    return map;
+  }
+
+  Result<wire::Value> predict(std::span<const Request* const> requests,
+                              const Deadlines& deadlines) {
+    wire::List examples;
+    for (const Request* request : requests) {
+      examples.emplace_back(example(*request));
+      PROBE_TRY(check_distinct_keys(examples.back()));
     }
     // As starVLA's own evaluation in SimplerEnv asks (model2simpler_interface.py).
-    wire::Map map{{"examples", wire::List{std::move(example)}},
+    wire::Map map{{"examples", std::move(examples)},
                   {"do_sample", false},
                   {"use_ddim", true},
                   {"num_ddim_steps", 10}};
@@ -51,12 +94,9 @@ class StarVla : public Transport {
       return bad("expected a map with `data`, a map with `actions`; got " +
                  wire::describe(data == nullptr ? answer : *data));
     }
-    return to_actions(*actions);
+    return *actions;
   }
 
-  std::vector<std::string> remarks() const override { return metadata_remarks(metadata_); }
-
- private:
   // Its statistics by name, which it lists; one of another data set would be metres of another
   // size.
   Status check_key() const {
@@ -113,6 +153,7 @@ constinit const ProtocolRow starvla_row{
     .serve = serve_starvla,
     // As rendered: an episode is known by its first picture.
     .served_options = "&chunk.length=any&chunk.use=all&image=first%20-%3E%20image",
+    .batches = Batches::kOneMessage,
 };
 
 }  // namespace probe::servers

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <optional>
 
+#include "runtime/base/json.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/served_sides.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
+#include "runtime/wire/http.h"
 #include "runtime/wire/websocket.h"
 
 namespace probe::servers {
@@ -28,7 +31,15 @@ double unix_seconds() {
   return std::chrono::duration<double>(now).count();
 }
 
+// What its servers are told of batches, which they gather from all connections
+// (model_servers/predict.py).
+struct Gathering {
+  int most = 1;
+  wire::Duration wait{0};
+};
+
 struct Choices {
+  Gathering gathering;
   PictureCoding coding = PictureCoding::kPng;
   std::optional<bool> send_state;  // nothing: as the server asks
 };
@@ -36,6 +47,10 @@ struct Choices {
 Result<Choices> read_choices(const wire::Endpoint& server) {
   Choices choices;
   if (is_this_machine(server.host)) choices.coding = PictureCoding::kRaw;
+  if (const auto it = server.options.find("batch"); it != server.options.end())
+    choices.gathering.most = std::atoi(it->second.c_str());
+  if (const auto it = server.options.find("batch_wait_ms"); it != server.options.end())
+    choices.gathering.wait = wire::Duration(std::atoi(it->second.c_str()));
   if (const auto it = server.options.find("pictures"); it != server.options.end()) {
     if (it->second == "raw") {
       choices.coding = PictureCoding::kRaw;
@@ -95,6 +110,7 @@ class VlaEval : public Transport {
       : profile_(profile), server_(server), choices_(choices) {}
 
   Status open(const Deadlines& deadlines) override {
+    PROBE_TRY(tell_batches(deadlines));
     wire::WebSocketOptions options;
     options.connect_timeout = deadlines.connect;
     options.largest_message = static_cast<std::size_t>(profile_.largest_answer) << 20;
@@ -309,6 +325,32 @@ class VlaEval : public Transport {
     return "vlaprobe does not know it";
   }
 
+  // model_servers/serve.py: GET /config changes how the running server gathers, and says what
+  // holds.
+  Status tell_batches(const Deadlines& deadlines) const {
+    const Gathering& wanted = choices_.gathering;
+    if (wanted.most <= 1) return {};
+    wire::HttpRequest page;
+    page.path = "/config?max_batch_size=" + std::to_string(wanted.most) +
+                "&max_wait_time=" + std::to_string(static_cast<double>(wanted.wait.count()) / 1000);
+    PROBE_ASSIGN(const wire::HttpResponse said,
+                 wire::http_exchange(server_, page,
+                                     {deadlines.connect, deadlines.connect, std::size_t{1} << 16}));
+    const Json json = Json::parse(said.body);
+    const Json* config = json.is_object() ? json.find("config") : nullptr;
+    const Json* most =
+        config != nullptr && config->is_object() ? config->find("max_batch_size") : nullptr;
+    if (said.status == 200 && most != nullptr && most->is_number_integer() &&
+        most->get<int>() == wanted.most) {
+      return {};
+    }
+    return Failure{Fault::kUsage,
+                   "the server does not gather batches of " + std::to_string(wanted.most) +
+                       ": /config is answered with HTTP " + std::to_string(said.status) + ", `" +
+                       last_lines(said.body) + "`; ask without `batch`",
+                   ""};
+  }
+
   Status send(std::string type, wire::Value payload, wire::Duration timeout) {
     if (!socket_) return bad("there is no connection");
     const Message message{std::move(type), std::move(payload), ++seq_};
@@ -386,6 +428,7 @@ constinit const ProtocolRow vlaeval_row{
     .served_options = {},
     .has_reset = always_has_reset,
     .is_timed = true,
+    .batches = Batches::kGathered,
 };
 
 }  // namespace probe::servers

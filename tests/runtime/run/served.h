@@ -36,6 +36,8 @@ class ServedRun {
   }
 
   std::string in_process_folder() const { return folder_ / "in_process"; }
+  // Of the last check.
+  std::string served_folder() const { return folder_ / ("served" + std::to_string(runs_)); }
 
   // What recorded_actions.load of tests/servers reads: a line an episode.
   std::string actions_file() const { return folder_ / "actions"; }

@@ -244,4 +244,27 @@ TEST_CASE("another version of vla-eval's protocol is refused at once") {
             ": the server's `protocol_version` is the number 2, vlaprobe speaks 1");
 }
 
+TEST_CASE("a server that gathers batches is told how many, and one that does not is refused") {
+  AskingPicture picture;
+  {
+    const ServerRecord record;
+    const PythonServer server("vlaeval_server.py", {"gathers=8", record.option()});
+    const auto policy = policy_at("vlaeval", server, "&batch=8&batch_wait_ms=20");
+    must_begin(*policy);
+    must_act(*policy, picture.observation());
+    const auto lines = record.lines();
+    REQUIRE(!lines.empty());
+    CHECK(lines[0].find("\"max_batch_size\": 8, \"max_wait_time\": 0.02") != std::string::npos);
+  }
+  for (const char* gathers : {"gathers=4", "version=1"}) {
+    const PythonServer server("vlaeval_server.py", {gathers});
+    const auto policy = policy_at("vlaeval", server, "&batch=8");
+    const auto begun = policy->begin(asking_start());
+    REQUIRE_FALSE(begun.ok());
+    CHECK(begun.failure().code == Fault::kUsage);
+    CHECK(begun.failure().message.find("the server does not gather batches of 8: /config is "
+                                       "answered with HTTP ") == 0);
+  }
+}
+
 }  // namespace probe::servers

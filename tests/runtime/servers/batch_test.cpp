@@ -1,0 +1,386 @@
+// Questions of many worlds in one message: who waits for whom, whose answer is whose, and what is
+// refused.
+#include "runtime/servers/batch.h"
+
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "runtime/policy/reading.h"
+#include "runtime/servers/conformance.h"
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/questions.h"
+#include "runtime/servers/reading.h"
+#include "runtime/servers/served.h"
+#include "runtime/servers/servers.h"
+#include "runtime/servers/transcript.h"
+#include "runtime/wire/msgpack.h"
+#include "tests/servers/python_server.h"
+
+namespace probe::servers {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point from) {
+  return std::chrono::duration<double>(Clock::now() - from).count();
+}
+
+// A server's side without a wire: answers `step` of each request, after a time.
+struct Told {
+  std::mutex mutex;
+  std::vector<std::size_t> sizes;  // of batches, in order
+  std::atomic<int> opened = 0;
+};
+class Counting final : public Transport {
+ public:
+  Counting(std::shared_ptr<Told> told, std::chrono::milliseconds time, std::string fails)
+      : told_(std::move(told)), time_(time), fails_(std::move(fails)) {}
+
+  Status open(const Deadlines&) override {
+    ++told_->opened;
+    return {};
+  }
+  void close() override {}
+  Result<std::vector<RawAction>> ask(const Request&, const Deadlines&) override {
+    return bad("asked alone");
+  }
+  Result<std::vector<std::vector<RawAction>>> ask_all(std::span<const Request* const> requests,
+                                                      const Deadlines& deadlines) override {
+    {
+      const std::lock_guard lock(told_->mutex);
+      told_->sizes.push_back(requests.size());
+    }
+    if (time_ > deadlines.answer) {
+      std::this_thread::sleep_for(deadlines.answer);
+      return bad("no answer in time");
+    }
+    std::this_thread::sleep_for(time_);
+    if (!fails_.empty()) return bad(fails_);
+    std::vector<std::vector<RawAction>> all;
+    for (const Request* request : requests)
+      all.push_back({RawAction{static_cast<double>(request->step), 0, 0, 0, 0, 0, 1}});
+    return all;
+  }
+
+ private:
+  std::shared_ptr<Told> told_;
+  std::chrono::milliseconds time_;
+  std::string fails_;
+};
+
+struct TestLine {
+  std::shared_ptr<Told> told = std::make_shared<Told>();
+  policy::QueryMeter meter;
+  std::shared_ptr<BatchLine> line;
+
+  TestLine(BatchLimits limits, std::chrono::milliseconds time, const std::string& fails = "") {
+    line =
+        std::make_shared<BatchLine>(std::make_unique<Counting>(told, time, fails), limits, &meter);
+  }
+  // A world in an episode.
+  std::unique_ptr<Transport> world() const {
+    auto transport = make_batched(line);
+    REQUIRE(transport->open({}).ok());
+    REQUIRE(transport->begin_episode({}, {}).ok());
+    return transport;
+  }
+};
+
+Request numbered(int step) {
+  Request request;
+  request.step = step;
+  return request;
+}
+
+constexpr wire::Duration kLong{20'000};
+
+// An openpi server that answers batches as it likes.
+class Answering final : public wire::Speaker {
+ public:
+  using Form = std::function<wire::Value(const wire::List&)>;
+  explicit Answering(Form form) : form_(std::move(form)) {}
+  std::vector<wire::Frame> greet() override { return {packed(wire::Map{})}; }
+  Reply answer(const wire::Frame& asked) override {
+    const auto request = wire::from_msgpack(asked.bytes);
+    const wire::Value* batch = request.ok() ? request->find("batch") : nullptr;
+    const auto* items = batch == nullptr ? nullptr : batch->as<wire::List>();
+    return {
+        {packed(items == nullptr ? wire::Value(wire::Map{{"actions", still()}}) : form_(*items))}};
+  }
+  static wire::Array still() { return wire::array_f64({1, 7}, {0, 0, 0, 0, 0, 0, 1}); }
+
+ private:
+  static wire::Frame packed(const wire::Value& value) {
+    return {false, wire::to_msgpack(value, wire::ArrayStyle::kBinKeys)};
+  }
+  Form form_;
+};
+
+Request pictured(int number) {
+  Request request = numbered(number);
+  request.prompt = "put carrot on plate";
+  request.images.push_back(
+      {"observation/image",
+       wire::array_u8({2, 2, 3}, wire::Bytes(12, static_cast<std::uint8_t>(number)))});
+  return request;
+}
+
+// What three questions in one message fail with, or "".
+std::string failure_of(const Answering::Form& form) {
+  const auto listener = wire::listen_websocket(
+      "127.0.0.1", "0", [form] { return std::make_unique<Answering>(form); });
+  REQUIRE(listener.ok());
+  const auto choice =
+      choose_server(Protocol::kOpenpi, "//127.0.0.1:" + (*listener)->port() + "?batch=8");
+  REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+  const auto transport = make_transport(*choice);
+  REQUIRE(transport.ok());
+  REQUIRE((*transport)->open({}).ok());
+  const Request requests[] = {pictured(1), pictured(2), pictured(3)};
+  const Request* all[] = {&requests[0], &requests[1], &requests[2]};
+  const auto answers = (*transport)->ask_all(all, {});
+  return answers.ok() ? "" : answers.failure().message;
+}
+
+std::string refusal(Protocol protocol, const std::string& options) {
+  const auto choice = choose_server(protocol, "//localhost:1?" + options);
+  return choice.ok() ? "" : choice.failure().message;
+}
+
+}  // namespace
+
+TEST_CASE("eight worlds that wait are asked in one message, and each has its own answer") {
+  TestLine made({.most = 8, .wait = kLong}, std::chrono::milliseconds(20));
+  std::vector<std::unique_ptr<Transport>> worlds;
+  for (int i = 0; i < 8; ++i) worlds.push_back(made.world());
+  std::vector<std::thread> threads;
+  std::vector<double> answers(8, -1);
+  for (std::size_t i = 0; i < 8; ++i) {
+    threads.emplace_back([&, i] {
+      const auto answer = worlds[i]->ask(numbered(static_cast<int>(i)), {.answer = kLong});
+      if (answer.ok()) answers[i] = answer->front()[0];
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t i = 0; i < 8; ++i) CHECK(answers[i] == static_cast<double>(i));
+  CHECK(made.told->sizes == std::vector<std::size_t>{8});
+  CHECK(made.told->opened == 1);
+  const auto figures = made.meter.figures();
+  CHECK(figures.queries == 8);
+  CHECK(figures.batches == 1);
+  CHECK(figures.most_in_batch == 8);
+  CHECK(figures.busy_s < 0.5 * 8 * 0.1);
+}
+
+TEST_CASE("a batch waits for a world that simulates, as long as it is told and no longer") {
+  TestLine made({.most = 8, .wait = wire::Duration(150)}, std::chrono::milliseconds(0));
+  const auto asks = made.world(), simulates = made.world();
+  const auto begun = Clock::now();
+  REQUIRE(asks->ask(numbered(1), {.answer = kLong}).ok());
+  CHECK(seconds_since(begun) >= 0.149);
+  CHECK(made.told->sizes == std::vector<std::size_t>{1});
+  CHECK(made.meter.figures().gathering_s >= 0.149);
+}
+
+TEST_CASE("a batch does not wait for worlds that will not come") {
+  TestLine made({.most = 8, .wait = kLong}, std::chrono::milliseconds(0));
+  const auto asks = made.world();
+  auto ends = made.world(), fails = made.world();
+  std::thread leaving([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    CHECK(ends->end_episode({}, {}).ok());
+    fails->close();  // as after a failure of its own
+  });
+  const auto begun = Clock::now();
+  CHECK(asks->ask(numbered(1), {.answer = kLong}).ok());
+  CHECK(seconds_since(begun) < 10);
+  leaving.join();
+  // The last one runs alone, at once.
+  CHECK(asks->ask(numbered(2), {.answer = kLong}).ok());
+  CHECK(seconds_since(begun) < 10);
+}
+
+TEST_CASE("a question's time is its own, whatever else is in its batch") {
+  TestLine made({.most = 2, .wait = kLong}, std::chrono::milliseconds(400));
+  const auto patient = made.world(), hasty = made.world();
+  std::string failure;
+  std::thread waits([&] {
+    const auto answer = hasty->ask(numbered(1), {.answer = wire::Duration(100)});
+    if (!answer.ok()) failure = answer.failure().message;
+  });
+  const auto answer = patient->ask(numbered(2), {.answer = kLong});
+  waits.join();
+  CHECK(failure == "no answer in 0.1 s");
+  REQUIRE_MESSAGE(answer.ok(), to_text(answer.failure()));
+  CHECK(answer->front()[0] == 2);
+}
+
+TEST_CASE("what fails a batch fails each of its questions, and the next one connects again") {
+  TestLine made({.most = 2, .wait = kLong}, std::chrono::milliseconds(0), "no GPU");
+  const auto a = made.world(), b = made.world();
+  std::string of_b;
+  std::thread other([&] {
+    const auto answer = b->ask(numbered(1), {.answer = kLong});
+    if (!answer.ok()) of_b = answer.failure().message;
+  });
+  const auto of_a = a->ask(numbered(2), {.answer = kLong});
+  other.join();
+  REQUIRE_FALSE(of_a.ok());
+  CHECK(of_a.failure().message == "no GPU");
+  CHECK(of_b == "no GPU");
+  a->close();
+  b->close();
+  CHECK_FALSE(made.world()->ask(numbered(3), {.answer = kLong}).ok());
+  CHECK(made.told->opened == 2);
+}
+
+TEST_CASE("a batch's answer of another length, or with a failed item, is refused by name") {
+  const auto answered = [](std::size_t count) {
+    return [count](const wire::List&) -> wire::Value {
+      wire::List items(count, wire::Map{{"actions", Answering::still()}});
+      return wire::Map{{"batch", std::move(items)}};
+    };
+  };
+  CHECK(failure_of(answered(3)) == "");
+  CHECK(failure_of(answered(2)) ==
+        "a batch of 3 observations was answered with 2 items: which is whose cannot be said");
+  CHECK(failure_of(answered(4)) ==
+        "a batch of 3 observations was answered with 4 items: which is whose cannot be said");
+  // The list alone.
+  CHECK(failure_of([](const wire::List& asked) -> wire::Value {
+          return wire::List(asked.size(), wire::Map{{"actions", Answering::still()}});
+        }) == "");
+  const auto second = [](wire::Value item) {
+    return [item](const wire::List& asked) -> wire::Value {
+      wire::List items(asked.size(), wire::Map{{"actions", Answering::still()}});
+      items[1] = item;
+      return wire::Map{{"batch", std::move(items)}};
+    };
+  };
+  CHECK(failure_of(second(wire::Map{{"error", "CUDA out of memory"}})) ==
+        "item 2 of 3 of a batch: the server failed: CUDA out of memory");
+  CHECK(failure_of(second(wire::Map{{"actions", wire::array_f64({6}, {0, 0, 0, 0, 0, 0})}})) ==
+        "item 2 of 3 of a batch: expected actions of 7 numbers, an array 7 or N x 7; got an array "
+        "6 of <f8");
+  // A server that does not know batches answers as if it were one observation.
+  CHECK(failure_of([](const wire::List&) -> wire::Value {
+          return wire::Map{{"actions", Answering::still()}};
+        }) == "expected a map with `batch`, a list of 3 answers; got a map with keys actions");
+}
+
+TEST_CASE("batches are refused where a protocol or a profile has none") {
+  CHECK(refusal(Protocol::kOpenpi, "batch=8") == "");
+  CHECK(refusal(Protocol::kStarVla, "batch=8&batch_wait_ms=5") == "");
+  CHECK(refusal(Protocol::kGr00t, "batch=8") ==
+        "servers that speak gr00t take no batches; those do that speak openpi, vlaeval, starvla");
+  CHECK(refusal(Protocol::kOpenpi, "batch=0") ==
+        "`batch` is a whole number from 1 to 256, not `0`");
+  CHECK(refusal(Protocol::kOpenpi, "batch=8&profile=simpler_shim")
+            .find("`connection = per_episode`") != std::string::npos);
+  CHECK(refusal(Protocol::kOpenpi, "batch=8&worlds=one").find("`worlds = one`") !=
+        std::string::npos);
+  ServeOptions options;
+  options.policy = serve_digest();
+  options.batch = 8;
+  const auto listener = serve(Protocol::kIntact, options);
+  REQUIRE_FALSE(listener.ok());
+  CHECK(listener.failure().message == "protocol intact has no messages of several questions");
+}
+
+TEST_CASE("a run with batches is the run without") {
+  const auto with = choose_server(Protocol::kOpenpi, "//localhost:1?batch=8");
+  const auto without = choose_server(Protocol::kOpenpi, "//localhost:1");
+  REQUIRE((with.ok() && without.ok()));
+  CHECK(describe(*with) == describe(*without));
+}
+
+TEST_CASE("a served digest answers batches as it answers alone; one that mixes them is refused") {
+  for (const Protocol protocol : {Protocol::kOpenpi, Protocol::kStarVla}) {
+    CAPTURE(std::string(to_word(protocol)));
+    ServeOptions options;
+    options.policy = serve_digest();
+    options.batch = 8;
+    options.chunk = 4;
+    const auto listener = serve(protocol, options);
+    REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+    const auto choice = choose_server(protocol, "//127.0.0.1:" + (*listener)->port() + "?" +
+                                                    options_for_served(protocol, options));
+    REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+    CHECK(choice->batch.most == 8);
+    const auto reading = prove_reading(*choice);
+    REQUIRE_MESSAGE(reading.ok(), to_text(reading.failure()));
+    CHECK(policy::batch_remark(*reading) ==
+          "in a batch of 3, questions had the answers that they have alone, bit for bit");
+    const auto tested = test_server(*choice);
+    REQUIRE(tested.ok());
+    CHECK(tested->queries <= 20);
+    CHECK(
+        to_text(*tested).find("in a batch of 6, questions had the answers that they have alone") !=
+        std::string::npos);
+    // Recorded, such a conversation plays like any other.
+    const auto transcript = record(*choice);
+    REQUIRE(transcript.ok());
+    const auto player = play(*transcript, "127.0.0.1", "0", nullptr);
+    REQUIRE(player.ok());
+    auto played = *choice;
+    played.server.port = (*player)->port();
+    const auto again = test_server(played);
+    REQUIRE(again.ok());
+    CHECK(to_text(*again).find("in a batch of 6, questions had the answers that they have alone") !=
+          std::string::npos);
+  }
+  // Stock openpi: a server that takes no batches is told before the first episode.
+  ServeOptions alone;
+  alone.policy = serve_digest();
+  const auto stock = serve(Protocol::kOpenpi, alone);
+  REQUIRE(stock.ok());
+  const auto choice =
+      choose_server(Protocol::kOpenpi, "//127.0.0.1:" + (*stock)->port() + "?batch=8&" +
+                                           options_for_served(Protocol::kOpenpi, alone));
+  REQUIRE(choice.ok());
+  const auto reading = prove_reading(*choice);
+  REQUIRE_FALSE(reading.ok());
+  CHECK(reading.failure().code == Fault::kUsage);
+  CHECK(reading.failure().message.find("it cannot be asked in batches: the server failed: "
+                                       "vlaprobe: a batch of 3 questions, and this server takes no "
+                                       "batches") == 0);
+}
+
+TEST_CASE("answers that stand in another order in a batch, or are one for all, are found") {
+  const auto chunk = [](double x) { return Chunk{RawAction{x, 0, 0, 0, 0, 0, 1}}; };
+  const std::vector<Chunk> alone = {chunk(1), chunk(2), chunk(3)};
+  CHECK(compare_together(alone, alone).mixed.empty());
+  CHECK(compare_together(alone, alone).difference == 0);
+  CHECK(compare_together(alone, {chunk(1.25), chunk(2), chunk(3)}).difference == 0.25);
+  CHECK(compare_together(alone, {chunk(2), chunk(1), chunk(3)}).mixed ==
+        "in a batch, question 2 has the answer that question 1 has alone");
+  CHECK(compare_together(alone, {chunk(1), chunk(1), chunk(1)}).mixed ==
+        "in a batch, question 3 has the answer that question 1 has alone");
+  // A policy that answers everything alike is told of elsewhere.
+  CHECK(compare_together({chunk(1), chunk(1)}, {chunk(1), chunk(1)}).mixed.empty());
+}
+
+TEST_CASE("the shim answers batches with a policy that takes several pictures") {
+  const test::PythonServer server("shim_server.py", {"batches"});
+  REQUIRE_FALSE(server.port().empty());
+  const auto choice =
+      choose_server(Protocol::kOpenpi, "//127.0.0.1:" + server.port() +
+                                           "?profile=simpler_shim&connection=kept&batch=8");
+  REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+  const auto transport = make_transport(*choice);
+  REQUIRE(transport.ok());
+  REQUIRE((*transport)->open({}).ok());
+  Request requests[] = {pictured(5), pictured(6), pictured(7)};
+  requests[1].prompt = "put spoon on towel";
+  const Request* all[] = {&requests[0], &requests[1], &requests[2]};
+  const auto answers = (*transport)->ask_all(all, {});
+  REQUIRE_MESSAGE(answers.ok(), to_text(answers.failure()));
+  REQUIRE(answers->size() == 3);
+  CHECK((*answers)[0][0][0] == (5 + 19) / 1000.0);
+  CHECK((*answers)[1][0][0] == (6 + 18) / 1000.0);
+  CHECK((*answers)[2][0][0] == (7 + 19) / 1000.0);
+}
+
+}  // namespace probe::servers
