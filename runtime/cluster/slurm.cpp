@@ -55,6 +55,7 @@ std::vector<std::string> run_words(const run::RunOptions& options) {
   add("--retries", std::to_string(options.retries));
   add("--give-up-after", std::to_string(options.give_up_after));
   if (options.if_changed == run::IfChanged::kContinue) add("--if-changed", "continue");
+  if (options.accepts_any_certificate) words.push_back("--insecure");
   return words;
 }
 
@@ -65,6 +66,11 @@ Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
   std::string policy = options.policy;  // its port does not matter for what it draws
   if (const auto at = policy.find("{port}"); at != std::string::npos) policy.replace(at, 6, "1");
   PROBE_ASSIGN(const auto traits, run::policy_traits(policy));
+  if (options.accepts_any_certificate) {
+    run::PolicyContext context;
+    context.accepts_any_certificate = true;
+    if (const auto made = run::make_policy(policy, context); !made) return made.failure();
+  }
   if (traits.recorded) {
     return Failure{Fault::kUsage, "a replay needs no cluster; `vlaprobe run` does it", "--policy"};
   }

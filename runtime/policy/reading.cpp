@@ -22,6 +22,11 @@ std::vector<std::string> findings_of(const Reading& reading) {
     findings.push_back(who +
                        " could not be shown to read pictures and instructions: " + reading.failure);
   }
+  if (reading.is_unchecked) {
+    findings.push_back(who +
+                       " was asked with --insecure: its certificate was not checked, so that "
+                       "another than it can have answered");
+  }
   if (reading.is_deaf) {
     findings.push_back(who +
                        " answers two instructions with one picture bit for bit the same: it does "

@@ -23,6 +23,7 @@ struct Reading {
   double batch_difference = 0;
   // Fields that the profile leaves open, with the value that the answers show.
   std::vector<std::pair<std::string, std::string>> measured;
+  bool is_unchecked = false;  // TLS without a look at the certificate: it may be anybody's server
   bool operator==(const Reading&) const = default;
 };
 

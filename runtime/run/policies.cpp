@@ -27,6 +27,7 @@ struct Entry {
   PolicyTraits traits;
   std::string_view meaning;
   std::optional<servers::Protocol> protocol = {};  // of a server
+  const servers::Scheme* scheme = nullptr;         // of a server without a protocol's word
 };
 
 const std::array kOwnPolicies = {
@@ -48,7 +49,7 @@ const std::array kOwnPolicies = {
         "replay", "DIR", Kind::kReplay, {true, true, false}, "the recorded actions of another run"},
 };
 
-// Those of this process, then a server of each protocol.
+// Those of this process, then a server of each protocol, then any by its URL.
 const std::vector<Entry>& all_policies() {
   static const std::vector<Entry> entries = [] {
     std::vector<Entry> all(kOwnPolicies.begin(), kOwnPolicies.end());
@@ -56,6 +57,15 @@ const std::vector<Entry>& all_policies() {
       const servers::ProtocolRow& row = servers::row_of(protocol);
       all.push_back(
           {row.word, row.argument, Kind::kServer, {.draws = true}, row.meaning, protocol});
+    }
+    for (const servers::Scheme& scheme : servers::url_schemes()) {
+      all.push_back({scheme.word,
+                     "//HOST/PATH?profile=NAME",
+                     Kind::kServer,
+                     {.draws = true},
+                     scheme.meaning,
+                     {},
+                     &scheme});
     }
     return all;
   }();
@@ -104,6 +114,19 @@ Result<Choice> choose(std::string_view text) {
   return unknown(name);
 }
 
+Result<servers::ServerChoice> server_of(const Choice& choice) {
+  if (choice.entry->scheme != nullptr)
+    return servers::choose_server(*choice.entry->scheme, choice.argument);
+  return servers::choose_server(*choice.entry->protocol, choice.argument);
+}
+
+Failure nothing_to_accept(std::string_view policy) {
+  return {Fault::kUsage,
+          "`" + std::string(policy) +
+              "` shows no certificate that could be left unchecked: it is no wss:// or https://",
+          "--insecure"};
+}
+
 Result<double> read_sigma(const std::string& text) {
   double sigma = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sigma);
@@ -137,8 +160,7 @@ Result<PolicyTraits> policy_traits(std::string_view text) {
     return PolicyTraits{sigma > 0, false, false};
   }
   if (choice.entry->kind == Kind::kServer) {
-    PROBE_ASSIGN(const servers::ServerChoice server,
-                 servers::choose_server(*choice.entry->protocol, choice.argument));
+    PROBE_ASSIGN(const servers::ServerChoice server, server_of(choice));
     PolicyTraits traits = choice.entry->traits;
     traits.content = servers::describe(server);
     return traits;
@@ -149,6 +171,8 @@ Result<PolicyTraits> policy_traits(std::string_view text) {
 Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
                                                     const PolicyContext& context) {
   PROBE_ASSIGN(const Choice choice, choose(text));
+  if (choice.entry->kind != Kind::kServer && context.accepts_any_certificate)
+    return nothing_to_accept(text);
   switch (choice.entry->kind) {
     case Kind::kNull:
       return policy::make_null();
@@ -168,16 +192,20 @@ Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
     case Kind::kServer:
       break;
   }
-  return servers::make_server(*choice.entry->protocol, choice.argument, context.queries,
-                              context.model, context.measured, context.line);
+  PROBE_ASSIGN(servers::ServerChoice server, server_choice(text, context.accepts_any_certificate));
+  return servers::make_server(std::move(server), context.queries, context.model, context.measured,
+                              context.line);
 }
 
-Result<servers::ServerChoice> server_choice(std::string_view text) {
+Result<servers::ServerChoice> server_choice(std::string_view text, bool accepts_any_certificate) {
   PROBE_ASSIGN(const Choice choice, choose(text));
   if (choice.entry->kind != Kind::kServer) {
     return Failure{Fault::kUsage, "policy `" + std::string(text) + "` is no server", "--policy"};
   }
-  return servers::choose_server(*choice.entry->protocol, choice.argument);
+  PROBE_ASSIGN(servers::ServerChoice server, server_of(choice));
+  if (accepts_any_certificate && !server.server.tls.is_on) return nothing_to_accept(text);
+  server.server.tls.accepts_any = accepts_any_certificate;
+  return server;
 }
 
 std::string policy_argument(std::string_view text) {

@@ -1,5 +1,5 @@
 // From what stands after --policy to a Policy: the table of policies in this process, and a server
-// of each of servers/protocols.
+// of each of servers/protocols, by protocol or by URL.
 #pragma once
 
 #include <functional>
@@ -40,6 +40,7 @@ struct PolicyContext {
   std::shared_ptr<servers::SharedLine> line = nullptr;    // of its worlds' batches; may be null
   // Of a server: what its profile leaves open and its answers have shown, see policy::Reading.
   std::vector<std::pair<std::string, std::string>> measured = {};
+  bool accepts_any_certificate = false;  // of a server over TLS; of others it is refused
 };
 
 // Fail (kUsage) on an unknown policy, with the known ones and the nearest spelling, and on a
@@ -48,8 +49,10 @@ Result<PolicyTraits> policy_traits(std::string_view text);
 Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
                                                     const PolicyContext& context = {});
 
-// Of a policy that is a server; fails (kUsage) on any other.
-Result<servers::ServerChoice> server_choice(std::string_view text);
+// Of a policy that is a server; fails (kUsage) on any other, and where a certificate that is not
+// there is to be accepted unchecked.
+Result<servers::ServerChoice> server_choice(std::string_view text,
+                                            bool accepts_any_certificate = false);
 
 // What stands after the first ':', or nothing.
 std::string policy_argument(std::string_view text);

@@ -55,6 +55,7 @@ Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
     context.line = shared->line;
     context.measured = shared->measured;
   }
+  context.accepts_any_certificate = options.accepts_any_certificate;
   return options.own_policy ? options.own_policy->make(context)
                             : run::make_policy(options.policy, context);
 }
@@ -325,9 +326,10 @@ void note_batch(const RunOptions& options, RunSummary& summary) {
 }
 
 // Before the first episode: the server is there, has its model, and reads.
-Result<policy::Reading> prove(const std::string& policy,
+Result<policy::Reading> prove(const RunOptions& options,
                               std::shared_ptr<servers::SharedModel> model) {
-  PROBE_ASSIGN(const servers::ServerChoice choice, run::server_choice(policy));
+  PROBE_ASSIGN(const servers::ServerChoice choice,
+               run::server_choice(options.policy, options.accepts_any_certificate));
   return servers::prove_reading(choice, std::move(model));
 }
 
@@ -427,7 +429,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
       static_cast<int>(std::min(selection.jobs.size(), static_cast<std::size_t>(options.jobs)));
   const auto model = std::make_shared<servers::SharedModel>();
   if (!options.own_policy && !traits.content.empty()) {
-    PROBE_ASSIGN(summary.call.reading, prove(options.policy, model));
+    PROBE_ASSIGN(summary.call.reading, prove(options, model));
     PROBE_TRY(check_as_measured_before(*summary.call.reading, options.out));
     for (std::string& finding : policy::findings_of(*summary.call.reading))
       summary.notes.push_back(std::move(finding));

@@ -61,6 +61,7 @@ struct RunOptions {
   // the call stops when that many episodes in a row were lost all the same (0: never).
   int retries = 2;
   int give_up_after = 5;
+  bool accepts_any_certificate = false;  // of a server over TLS; stored and reported
   IfChanged if_changed = IfChanged::kRefuse;
   VideoChoice video = VideoChoice::kNone;  // DIR/videos/TASK/EPISODE-SEED.mp4
   std::string assets;                      // asset root, see find_asset_root

@@ -13,7 +13,16 @@ constexpr Protocol kAll[] = {
 #undef PROBE_PROTOCOL
 };
 
+constexpr Scheme kSchemes[] = {
+    {"wss", Carrier::kWebSocket, true, "443", "a server over WebSocket and TLS"},
+    {"ws", Carrier::kWebSocket, false, "80", "a server over WebSocket"},
+    {"https", Carrier::kHttp, true, "443", "a server over HTTP and TLS"},
+    {"http", Carrier::kHttp, false, "80", "a server over HTTP"},
+};
+
 }  // namespace
+
+std::span<const Scheme> url_schemes() { return kSchemes; }
 
 const ProtocolRow& row_of(Protocol protocol) {
   static constexpr const ProtocolRow* kRows[] = {

@@ -40,6 +40,16 @@ enum class Batches : std::uint8_t {
   kGathered,    // each by its own connection; the server is told how many to wait for
 };
 
+// What a URL begins with where it names no protocol, as one that was copied: `wss://HOST/PATH`.
+struct Scheme {
+  std::string_view word;
+  Carrier carrier;
+  bool is_tls;
+  std::string_view port;  // where the address has none
+  std::string_view meaning;
+};
+std::span<const Scheme> url_schemes();
+
 struct ProtocolRow {
   std::string_view word;      // before "://", and `protocol` of a profile
   std::string_view argument;  // what follows the colon of --policy, for people

@@ -44,6 +44,7 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   PROBE_ASSIGN(const auto transport, make_transport(choice, std::move(model)));
   policy::Reading reading;
   reading.server = choice.server.name();
+  reading.is_unchecked = choice.server.tls.accepts_any;
   Profile adapted;
   PROBE_TRY(open_patiently(*transport, choice.profile, reading.server, &adapted));
   Questions questions(adapted, *transport);

@@ -160,6 +160,7 @@ Result<Transcript> record(const ServerChoice& choice) {
   ServerChoice here = choice;
   here.server.host = "127.0.0.1";
   here.server.port = (*listener)->port();
+  here.server.tls = {};
   PROBE_TRY(test_server(here));
   listener->reset();  // no connection writes any more
   return std::move(kept->transcript);

@@ -16,9 +16,11 @@ constexpr int kMostInBatch = 256, kLongestWaitMs = 60'000;
 
 Failure usage(std::string message) { return {Fault::kUsage, std::move(message), "--policy"}; }
 
+using Options = std::map<std::string, std::string>;
+
 // Takes the option out; nothing: it is not there.
-Result<std::optional<int>> take_number(std::map<std::string, std::string>& options,
-                                       const std::string& name, int least, int most) {
+Result<std::optional<int>> take_number(Options& options, const std::string& name, int least,
+                                       int most) {
   const auto node = options.extract(name);
   if (node.empty()) return std::optional<int>();
   const std::string& text = node.mapped();
@@ -31,8 +33,7 @@ Result<std::optional<int>> take_number(std::map<std::string, std::string>& optio
   return std::optional(value);
 }
 
-Result<BatchLimits> take_limits(std::map<std::string, std::string>& options,
-                                const ProtocolRow& row) {
+Result<BatchLimits> take_limits(Options& options, const ProtocolRow& row) {
   BatchLimits limits{.most = 1};
   if (row.batches == Batches::kNone && (options.contains("batch") || options.contains(kWaitMs))) {
     std::string takers;
@@ -65,13 +66,11 @@ Status check_fit_for_batches(const Profile& profile, const ProtocolRow& row) {
   return {};
 }
 
-}  // namespace
-
-Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument) {
+// Of a server where it is: the profile that the options name and what they change of it.
+Result<ServerChoice> chosen(Protocol protocol, wire::Endpoint server) {
   const ProtocolRow& row = row_of(protocol);
   const std::string name(row.word);
-  PROBE_ASSIGN(wire::Endpoint server, wire::parse_endpoint(argument, row.port));
-  std::map<std::string, std::string> options = std::move(server.options);
+  Options options = std::move(server.options);
   server.options.clear();
 
   const auto chosen = options.find("profile");
@@ -91,6 +90,7 @@ Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument)
   if (options.contains("image")) profile.images.clear();
   for (const auto& [field, value] : options) {
     if (field == "protocol") return usage("`protocol` is what stands before `://`");
+    if (field == "ca") return usage("`ca` is of servers over TLS: wss://... or https://...");
     if (auto set = set_field(profile, field, value); !set) {
       own.emplace_back("profile");
       return usage(set.failure().message + did_you_mean(field, own));
@@ -99,6 +99,54 @@ Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument)
   if (auto whole = check_profile(profile); !whole) return usage(whole.failure().message);
   if (limits.most > 1) PROBE_TRY(check_fit_for_batches(profile, row));
   return ServerChoice{std::move(profile), std::move(server), limits};
+}
+
+// The protocols that go over what a URL begins with: "openpi, intact".
+std::string words_over(Carrier carrier) {
+  std::string words;
+  for (const Protocol protocol : all_protocols()) {
+    if (row_of(protocol).carrier != carrier) continue;
+    words += (words.empty() ? "" : ", ") + std::string(to_word(protocol));
+  }
+  return words;
+}
+
+// What is spoken at a URL, by its options; takes `protocol` from them.
+Result<Protocol> spoken(const Scheme& scheme, Options& options) {
+  const std::string url = std::string(scheme.word) + "://";
+  std::string word;
+  if (auto node = options.extract("protocol"); !node.empty()) {
+    word = node.mapped();
+  } else if (const auto profile = options.find("profile"); profile != options.end()) {
+    PROBE_ASSIGN(const Profile found, find_profile(profile->second));
+    word = to_word(found.protocol);
+  } else {
+    return usage("`" + url + "` does not say what is spoken there: add ?profile=NAME, or " +
+                 "?protocol=NAME of " + words_over(scheme.carrier));
+  }
+  for (const Protocol protocol : all_protocols()) {
+    if (to_word(protocol) == word && row_of(protocol).carrier == scheme.carrier) return protocol;
+  }
+  return usage("`" + word + "` is not spoken over `" + url + "`; " + words_over(scheme.carrier) +
+               (words_over(scheme.carrier).find(',') == std::string::npos ? " is" : " are"));
+}
+
+}  // namespace
+
+Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument) {
+  PROBE_ASSIGN(wire::Endpoint server, wire::parse_endpoint(argument, row_of(protocol).port));
+  return chosen(protocol, std::move(server));
+}
+
+Result<ServerChoice> choose_server(const Scheme& scheme, std::string_view argument) {
+  PROBE_ASSIGN(wire::Endpoint server, wire::parse_endpoint(argument, scheme.port));
+  PROBE_ASSIGN(const Protocol protocol, spoken(scheme, server.options));
+  if (scheme.is_tls) {
+    server.tls.is_on = true;
+    if (auto node = server.options.extract("ca"); !node.empty())
+      server.tls.authorities = node.mapped();
+  }
+  return chosen(protocol, std::move(server));
 }
 
 bool asks_together(const ServerChoice& choice) {
@@ -128,11 +176,9 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
 }
 
 Result<std::unique_ptr<policy::Policy>> make_server(
-    Protocol protocol, std::string_view argument, policy::QueryMeter* queries,
-    std::shared_ptr<SharedModel> model,
+    ServerChoice choice, policy::QueryMeter* queries, std::shared_ptr<SharedModel> model,
     const std::vector<std::pair<std::string, std::string>>& measured,
     std::shared_ptr<SharedLine> line) {
-  PROBE_ASSIGN(ServerChoice choice, choose_server(protocol, argument));
   for (const auto& [field, value] : measured) PROBE_TRY(set_field(choice.profile, field, value));
   std::unique_ptr<Transport> transport;
   if (asks_together(choice)) {

@@ -12,6 +12,7 @@
 #include "runtime/policy/query_meter.h"
 #include "runtime/servers/batch.h"
 #include "runtime/servers/profile.h"
+#include "runtime/servers/protocol.h"
 #include "runtime/servers/shared_model.h"
 #include "runtime/servers/transport.h"
 #include "runtime/wire/endpoint.h"
@@ -34,6 +35,11 @@ struct ServerChoice {
 // nearest, and on a profile of another protocol.
 Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument);
 
+// The same of a URL as it was copied, "wss://HOST/PATH?profile=NAME": what is spoken there the
+// option `protocol` says, or the profile. Over TLS the option `ca` names the file of the
+// authorities that are trusted in place of the system's.
+Result<ServerChoice> choose_server(const Scheme& scheme, std::string_view argument);
+
 // Whether its worlds' questions go in one message.
 bool asks_together(const ServerChoice& choice);
 
@@ -47,8 +53,7 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
 // `line` is where the worlds of a run meet for batches, or nothing: then this one is alone.
 // `measured` are fields with values that profile and server leave open, see policy::Reading.
 Result<std::unique_ptr<policy::Policy>> make_server(
-    Protocol protocol, std::string_view argument, policy::QueryMeter* queries,
-    std::shared_ptr<SharedModel> model = nullptr,
+    ServerChoice choice, policy::QueryMeter* queries, std::shared_ptr<SharedModel> model = nullptr,
     const std::vector<std::pair<std::string, std::string>>& measured = {},
     std::shared_ptr<SharedLine> line = nullptr);
 

@@ -163,6 +163,7 @@ Json reading_to_json(const policy::Reading& reading) {
     json["batch"] = reading.batch;
     json["batch_difference"] = reading.batch_difference;
   }
+  if (reading.is_unchecked) json["is_unchecked"] = true;
   return json;
 }
 
@@ -184,7 +185,8 @@ std::optional<policy::Reading> reading_from_json(const Json& json) {
     return std::nullopt;
   }
   policy::Reading reading{
-      *server, answers->get<int>(), *failure, flag("is_deaf"), flag("is_blind"), *hash, 0, 0, {}};
+      *server, answers->get<int>(), *failure, flag("is_deaf"), flag("is_blind"), *hash, 0, 0,
+      {},      flag("is_unchecked")};
   const Json *batch = json.find("batch"), *difference = json.find("batch_difference");
   if (batch != nullptr && difference != nullptr) {
     if (!batch->is_number_integer() || !difference->is_number()) return std::nullopt;

@@ -1,5 +1,5 @@
 // What WebSocket and HTTP connections share of Boost.Beast: operations that end in time, and the
-// TCP connection. Private to websocket.cpp and http.cpp, the only files that include Boost.Beast.
+// TCP connection. Private to websocket.cpp, http.cpp and what is between them and TCP.
 #pragma once
 
 #include <boost/asio.hpp>

@@ -121,6 +121,11 @@ Status read_options(std::string_view text, std::map<std::string, std::string>* o
 
 }  // namespace
 
+std::string Endpoint::authority() const {
+  const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
+  return port == (tls.is_on ? "443" : "80") ? name : name + ":" + port;
+}
+
 Result<Endpoint> parse_endpoint(std::string_view text, std::string_view default_port) {
   const std::size_t query = text.find('?');
   const std::string_view options =

@@ -2,7 +2,7 @@
 
 #include <boost/beast/http.hpp>
 
-#include "runtime/wire/beast_io.h"
+#include "runtime/wire/link.h"
 
 namespace probe::wire {
 namespace {
@@ -20,7 +20,7 @@ constexpr std::uint32_t kLargestHeader = 64 << 10;
 
 http::request<http::string_body> made(const Endpoint& server, const HttpRequest& request) {
   http::request<http::string_body> message(http::string_to_verb(request.method), request.path, 11);
-  message.set(http::field::host, server.name());
+  message.set(http::field::host, server.authority());
   message.set(http::field::user_agent, "vlaprobe");
   message.set(http::field::connection, "close");
   for (const auto& [field, value] : request.headers) message.set(field, value);
@@ -38,7 +38,7 @@ std::string reason(const error_code& error, const HttpOptions& options) {
     return "the answer is no HTTP (a line of more than " + std::to_string(kLargestBuffer >> 10) +
            " KiB)";
   }
-  if (error == http::error::partial_message) {
+  if (error == http::error::partial_message || beast_io::is_cut_off(error)) {
     return "the server closed the connection in the middle of its answer";
   }
   if (error == http::error::end_of_stream || error == asio::error::connection_reset ||
@@ -55,13 +55,14 @@ Result<HttpResponse> exchange(const Endpoint& server, const HttpRequest& request
                               const HttpOptions& options) {
   // The stream refers to the context and must go first.
   asio::io_context io;
-  beast::tcp_stream stream(io);
-  PROBE_TRY(beast_io::connect_tcp(
-      io, stream, server, beast_io::Deadline::in(options.connect_timeout), options.resolver));
+  beast_io::Link link(io);
+  auto& stream = link.next_layer();
+  PROBE_TRY(
+      link.open(io, server, beast_io::Deadline::in(options.connect_timeout), options.resolver));
   const auto deadline = beast_io::Deadline::in(options.timeout);
   const auto message = made(server, request);
   const auto written = beast_io::run_until(io, stream, deadline.at, [&](auto done) {
-    http::async_write(stream, message, [done](error_code error, std::size_t) { done(error); });
+    http::async_write(link, message, [done](error_code error, std::size_t) { done(error); });
   });
   if (!written) {
     return Failure{Fault::kPolicy, "took no message for " + seconds_text(options.timeout),
@@ -78,20 +79,24 @@ Result<HttpResponse> exchange(const Endpoint& server, const HttpRequest& request
   };
   // In two steps, because Beast 1.74 forgets that a stated length is above the limit.
   auto read = beast_io::run_until(io, stream, deadline.at, [&](auto done) {
-    http::async_read_header(stream, buffer, parser,
+    http::async_read_header(link, buffer, parser,
                             [done](error_code error, std::size_t) { done(error); });
   });
   if (read && !*read && too_large()) read = error_code(http::error::body_limit);
   if (read && !*read) {
     read = beast_io::run_until(io, stream, deadline.at, [&](auto done) {
-      http::async_read(stream, buffer, parser,
+      http::async_read(link, buffer, parser,
                        [done](error_code error, std::size_t) { done(error); });
     });
   }
   if (!read) {
     return Failure{Fault::kPolicy, "no answer in " + seconds_text(options.timeout), server.name()};
   }
-  if (*read) return Failure{Fault::kPolicy, reason(*read, options), server.name()};
+  if (*read) {
+    const Failure failure{Fault::kPolicy, reason(*read, options), server.name()};
+    if (parser.is_header_done()) return failure;
+    return unless_tls(failure, server, deadline, options.resolver, "https://");
+  }
   return HttpResponse{
       parser.get().result_int() > 999 ? 0 : static_cast<int>(parser.get().result_int()),
       std::move(parser.get().body())};

@@ -1,5 +1,5 @@
-// One HTTP/1.1 exchange (plain http://) on a connection of its own, so that a server that was
-// restarted between two exchanges is not noticed.
+// One HTTP/1.1 exchange, over TLS where the address asks for it, on a connection of its own, so
+// that a server that was restarted between two exchanges is not noticed.
 #pragma once
 
 #include <cstddef>

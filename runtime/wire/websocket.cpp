@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "runtime/base/printable.h"
-#include "runtime/wire/beast_io.h"
+#include "runtime/wire/link.h"
 
 namespace probe::wire {
 namespace {
@@ -51,7 +51,7 @@ class WebSocket::Connection {
   Status open(const Endpoint& server) {
     const auto deadline = beast_io::Deadline::in(options_.connect_timeout);
     auto& stream = beast::get_lowest_layer(socket_);
-    PROBE_TRY(beast_io::connect_tcp(io_, stream, server, deadline, options_.resolver));
+    PROBE_TRY(socket_.next_layer().open(io_, server, deadline, options_.resolver));
     socket_.set_option(websocket::stream_base::timeout{options_.connect_timeout,
                                                        websocket::stream_base::none(), false});
     socket_.set_option(websocket::stream_base::decorator([this](websocket::request_type& request) {
@@ -61,7 +61,8 @@ class WebSocket::Connection {
     socket_.auto_fragment(false);
     socket_.write_buffer_bytes(std::size_t{1} << 16);
     socket_.binary(true);
-    PROBE_TRY(shake_hands(stream, server, deadline));
+    if (auto agreed = shake_hands(stream, server, deadline); !agreed)
+      return unless_tls(agreed.failure(), server, deadline, options_.resolver, "wss://");
     io_.restart();
     read_next();
     thread_ = std::thread([this] { io_.run(); });
@@ -121,7 +122,7 @@ class WebSocket::Connection {
     bool is_declined = false;
     PROBE_TRY(beast_io::finish(
         io_, stream, deadline, name_, "opening a WebSocket", [&, response](auto done) {
-          socket_.async_handshake(*response, name_, server.path,
+          socket_.async_handshake(*response, server.authority(), server.path,
                                   [&is_declined, response, done](error_code error) {
                                     is_declined = error == websocket::error::upgrade_declined;
                                     done(is_declined ? error_code() : error);
@@ -175,6 +176,7 @@ class WebSocket::Connection {
         error != websocket::error::closed) {
       return "what came is no WebSocket message (" + error.message() + ")";
     }
+    if (beast_io::is_cut_off(error)) return "the server went away without ending TLS";
     if (error == asio::error::eof || error == asio::error::connection_reset ||
         error == asio::error::not_connected || error == asio::error::broken_pipe ||
         error == websocket::error::closed) {
@@ -191,7 +193,7 @@ class WebSocket::Connection {
   std::string name_;
   WebSocketOptions options_;
   asio::io_context io_;
-  websocket::stream<beast::tcp_stream> socket_;
+  websocket::stream<beast_io::Link> socket_;
   beast::flat_buffer buffer_;
   std::thread thread_;
 

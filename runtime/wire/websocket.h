@@ -1,6 +1,6 @@
-// One WebSocket connection (RFC 6455, plain ws://). An own thread reads, so that a server's pings
-// are answered while the simulator works; the client itself never pings, because policy servers
-// cannot answer during inference.
+// One WebSocket connection (RFC 6455), over TLS where the address asks for it. An own thread reads,
+// so that a server's pings are answered while the simulator works; the client itself never pings,
+// because policy servers cannot answer during inference.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +35,8 @@ struct Message {
 class WebSocket {
  public:
   // Fails (kPolicy) naming the server and what happened: unknown host, refused, no answer in
-  // time, no WebSocket.
+  // time, no WebSocket; kAnswered where the server is there and says no, or its certificate is
+  // not trusted.
   static Result<std::unique_ptr<WebSocket>> connect(const Endpoint& server,
                                                     const WebSocketOptions& options = {});
   ~WebSocket();

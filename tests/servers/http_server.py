@@ -11,6 +11,7 @@
 /header   an endless header
 /chunk    a chunk whose extension does not end
 /trailer  fields behind the last chunk that do not end
+/endless  a body whose end only the connection's is
 /error    status 500 with a traceback
 """
 import asyncio
@@ -58,6 +59,8 @@ async def handle(reader, writer):
                 await writer.drain()
         except ConnectionError:
             pass
+    elif path == "/endless":
+        writer.write(b"HTTP/1.1 200 OK\r\n\r\nas long as it goes")
     elif path == "/error":
         writer.write(answer(b"Traceback: ValueError", "500 Internal Server Error"))
     try:

@@ -5,6 +5,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
+#include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/until_ended.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/output.h"
@@ -19,12 +20,13 @@ namespace {
 struct PolicyArguments {
   std::string policy, profile, transcript;
   std::string address = "127.0.0.1", port = "0";
-  bool json = false, with_questions = false;
+  bool json = false, with_questions = false, insecure = false;
 };
 
 int test_verb(const PolicyArguments& arguments) {
-  const auto choice = run::server_choice(arguments.policy);
+  const auto choice = run::server_choice(arguments.policy, arguments.insecure);
   if (!choice) return report(choice.failure());
+  if (arguments.insecure) warn_of_insecure(arguments.policy);
   const auto tested = servers::test_server(*choice);
   if (!tested) return report(tested.failure());
   if (arguments.json) {
@@ -36,8 +38,9 @@ int test_verb(const PolicyArguments& arguments) {
 }
 
 int record_verb(const PolicyArguments& arguments) {
-  const auto choice = run::server_choice(arguments.policy);
+  const auto choice = run::server_choice(arguments.policy, arguments.insecure);
   if (!choice) return report(choice.failure());
+  if (arguments.insecure) warn_of_insecure(arguments.policy);
   if (auto spared = check_output(arguments.transcript); !spared) return report(spared.failure());
   const auto recorded = servers::record(*choice);
   if (!recorded) return report(recorded.failure());
@@ -114,6 +117,7 @@ void add_policy(Verb app, int& exit) {
       "\"intact://gpu:8000?model=/checkpoints/pi0&profile=pi0_bridge\"");
   test.add_option("P", arguments->policy, "a policy server, as for `run --policy`").required();
   test.add_flag("--json", arguments->json, "an object with a check each");
+  test.add_flag("--insecure", arguments->insecure, "accept any certificate of a wss:// server");
   test.refuse_empty_values();
   test.callback([arguments, &exit] { exit = test_verb(*arguments); });
 
@@ -128,6 +132,7 @@ void add_policy(Verb app, int& exit) {
   record.add_option("P", arguments->policy, "a policy server, as for `run --policy`").required();
   record.add_option("-o,--out", arguments->transcript, "file to write").required();
   record.add_flag("--questions", arguments->with_questions, "write what was asked, too");
+  record.add_flag("--insecure", arguments->insecure, "accept any certificate of a wss:// server");
   record.refuse_empty_values();
   record.callback([arguments, &exit] { exit = record_verb(*arguments); });
 

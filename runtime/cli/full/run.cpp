@@ -92,6 +92,7 @@ int run_verb(const CallArguments& arguments) {
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
 
+  if (options->accepts_any_certificate) warn_of_insecure(options->policy);
   ProgressPrinter printer;
   options->progress = [&](const run::RunProgress& progress) { printer(progress); };
   auto summary = run::run(*loaded.plan, *options);

@@ -9,6 +9,7 @@
 #include "runtime/base/printable.h"
 #include "runtime/base/say.h"
 #include "runtime/run/policies.h"
+#include "runtime/servers/api_key.h"
 
 namespace probe::cli {
 namespace {
@@ -94,6 +95,7 @@ Result<run::RunOptions> to_options(const RunArguments& arguments) {
   options.video = kVideo.at(arguments.video);
   options.retries = arguments.retries;
   options.give_up_after = arguments.give_up_after;
+  options.accepts_any_certificate = arguments.insecure;
   static const std::map<std::string, run::IfChanged> kIfChanged = {
       {"refuse", run::IfChanged::kRefuse},
       {"fork", run::IfChanged::kFork},
@@ -111,6 +113,12 @@ LoadedPlan load_runnable(const RunArguments& arguments) {
     loaded.plan.reset();
   }
   return loaded;
+}
+
+void warn_of_insecure(const std::string& policy) {
+  say("WARNING: --insecure: the certificate of `{}` is not checked. Whoever stands between can "
+      "answer in its place, and reads pictures and instructions{}.\n",
+      policy, servers::api_key().empty() ? "" : " and VLAPROBE_API_KEY");
 }
 
 void print_invalid(const store::ResultRow& row) {
@@ -148,6 +156,8 @@ void add_run_options(Verb verb, RunArguments& arguments) {
   verb.add_option("--give-up-after", arguments.give_up_after,
                   "stop when the server failed that many episodes in a row; 0: never (5)")
       .between(0, 1000000);
+  verb.add_flag("--insecure", arguments.insecure,
+                "accept any certificate of a wss:// or https:// server; stored and reported");
   verb.add_option("--if-changed", arguments.if_changed,
                   "refuse, fork (into DIR-2) or continue over another build or profile")
       .one_of({"refuse", "fork", "continue"});

@@ -15,6 +15,7 @@ struct RunArguments {
   std::string policy, name, out, suite, tasks = "*", episodes, seeds;
   std::string video = "none", if_changed = "refuse";
   int jobs = 1, retries = 2, give_up_after = 5;
+  bool insecure = false;
   AssetOptions assets;
 };
 
@@ -25,6 +26,9 @@ Result<run::RunOptions> to_options(const RunArguments& arguments);
 
 // The plan to run, or the exit code to leave with after the reason was printed.
 LoadedPlan load_runnable(const RunArguments& arguments);
+
+// Of a server whose certificate is not looked at, before it is asked.
+void warn_of_insecure(const std::string& policy);
 
 // "invalid: TASK episode E seed S: why" on its own line.
 void print_invalid(const store::ResultRow& row);

@@ -20,6 +20,7 @@ int sweep_verb(const SweepArguments& arguments) {
   if (!options) return report(options.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
+  if (options->accepts_any_certificate) warn_of_insecure(options->policy);
   options->progress = [](const run::RunProgress& progress) {
     if (progress.row != nullptr && progress.row->invalid) print_invalid(*progress.row);
   };

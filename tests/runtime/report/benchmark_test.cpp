@@ -205,6 +205,10 @@ TEST_CASE("a server's profile, and whether it reads, stand with what reached the
   CHECK(lines_of("deaf", reading)
             .find("bad: gr00t://h:1: the policy at h:1 answers two "
                   "instructions with one picture bit for bit the same") != std::string::npos);
+  reading = {"h:1", 3, "", false, false, "ab", {}, true};
+  CHECK(lines_of("unchecked", reading)
+            .find("bad: gr00t://h:1: the policy at h:1 was asked with --insecure: its certificate "
+                  "was not checked") != std::string::npos);
 }
 
 TEST_CASE("seventy-five truths stay apart, also where another run has other ones") {

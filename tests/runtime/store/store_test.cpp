@@ -205,6 +205,7 @@ TEST_CASE("each call leaves its figures, the last state of each") {
     call.observations = 100 + i;
     call.elapsed_s = 10;
     call.queries = {25, 10, 9, 60, 8};
+    call.reading = {"gpu:443", 3, "", false, false, "ab", {{"action.form", "delta"}}, i == 1};
     REQUIRE((*store)->write_call(call).ok());
   }
   const auto calls = read_run_calls(dir);
@@ -213,6 +214,8 @@ TEST_CASE("each call leaves its figures, the last state of each") {
   CHECK(calls->at(0).observations == 100);
   CHECK(calls->at(1).ended);
   CHECK(calls->at(1).queries.most_at_once == 8);
+  CHECK_FALSE(calls->at(0).reading->is_unchecked);
+  CHECK(calls->at(1).reading == call.reading);
   CHECK(to_text(calls->at(0)) ==
         "10.0 observations/s, 2.5 queries/s; server busy 90.0 % of the time, simulators waiting "
         "for it 75.0 % of theirs");
