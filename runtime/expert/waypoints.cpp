@@ -104,8 +104,10 @@ Scene look(const policy::Observation& observation, const Roles& roles, const rob
       scene.others.push_back(std::move(footprint));
     }
   }
-  for (const std::vector<Vec3>& part : seen.fixtures) {
-    scene.fixtures.push_back(footprint_of(std::span(&part, 1), to_base));
+  for (const policy::PrivilegedFixture& fixture : seen.fixtures) {
+    for (const std::vector<Vec3>& part : fixture.parts) {
+      scene.fixtures.push_back(footprint_of(std::span(&part, 1), to_base * fixture.pose));
+    }
   }
   scene.hand = hand.shape;
   scene.tcp = observation.proprioception.tcp_in_base;

@@ -44,6 +44,13 @@ struct PrivilegedObject {
   std::vector<bool> finger_contact;  // a finger of the robot, over the last substep
 };
 
+// What stands in the scene and is no object: a fixture, or a link of one that has joints.
+struct PrivilegedFixture {
+  std::string name;
+  std::vector<std::vector<Vec3>> parts;  // convex parts' vertices, its own frame
+  Pose pose;  // of that frame in world, now; what never moves has the world's frame
+};
+
 // What success asks for.
 enum class Goal : std::uint8_t {
   kOnTarget,
@@ -53,8 +60,8 @@ enum class Goal : std::uint8_t {
 // The privileged view: task roles by index into `objects` (0 source, 1 target, 2.. distractors).
 struct Privileged {
   std::vector<PrivilegedObject> objects;
-  std::vector<std::vector<Vec3>> fixtures;  // convex parts of what stands fixed, world frame
-  Pose base;                                // robot base in world
+  std::vector<PrivilegedFixture> fixtures;
+  Pose base;  // robot base in world
   double surface_z = 0;
   Goal goal = Goal::kOnTarget;
 };

@@ -19,9 +19,8 @@ Result<Sha256> write_judged(const std::string& path, const plan::Plan& plan, con
   header.task = std::string(plan.text(task.name));
   header.episode_id = Sha256{plan.episodes(task)[job.match.episode].episode_id};
   header.horizon = task.horizon;
-  header.bodies.clear();
-  for (const plan::BodyRecord& body : plan.bodies(task))
-    header.bodies.emplace_back(plan.text(body.name));
+  const auto bodies = plan.bodies(task);  // what follows them in the trace keeps its name
+  for (std::size_t i = 0; i < bodies.size(); ++i) header.bodies[i] = plan.text(bodies[i].name);
   header.metrics.clear();
   for (const store::MetricValue& metric : score.metrics)
     header.metrics.push_back({metric.name, metric.is_bool});

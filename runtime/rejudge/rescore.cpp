@@ -16,7 +16,7 @@ Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::T
     return Failure{Fault::kUsage, std::move(message), where};
   };
   const auto bodies = plan.bodies(record);
-  if (bodies.size() != header.bodies.size()) {
+  if (bodies.size() > header.bodies.size()) {
     return refuse(fmt::format("{} bodies were measured, task `{}` judges {}", header.bodies.size(),
                               plan.text(record.name), bodies.size()));
   }

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <exception>
 
-#include "runtime/stage/robot_of.h"
-
 namespace probe::run {
 namespace {
 
@@ -206,7 +204,8 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
 }
 
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
-                                     const std::string& policy, const std::string& fingerprint) {
+                                     const stage::Stage& stage, const std::string& policy,
+                                     const std::string& fingerprint) {
   const plan::TaskRecord& task = plan.tasks()[job.task];
   const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
   const plan::RobotRecord& robot = plan.robots()[plan.scenes()[task.scene].robot];
@@ -221,9 +220,8 @@ store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& j
   header.prompt = std::string(plan.text(task.prompt));
   header.horizon = task.horizon;
   header.control_hz = robot.control_hz;
-  for (const plan::BodyRecord& body : plan.bodies(task))
-    header.bodies.emplace_back(plan.text(body.name));
-  header.joints = stage::drive_joints(plan, robot);
+  header.bodies = stage.body_names();
+  header.joints = stage.joint_names();
   for (const plan::MetricRecord& metric : plan.metrics(task)) {
     header.metrics.push_back({std::string(plan.text(metric.name)),
                               metric.type == static_cast<std::uint32_t>(plan::MetricType::kBool)});

@@ -27,8 +27,10 @@ store::EpisodeKey key_of(const plan::Plan& plan, const EpisodeJob& job);
 // from.
 std::uint64_t draw_seed(int seed, const Sha256& episode_id);
 
+// `stage` is of the job's task: it knows the bodies and joints that are measured.
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
-                                     const std::string& policy, const std::string& fingerprint);
+                                     const stage::Stage& stage, const std::string& policy,
+                                     const std::string& fingerprint);
 
 struct Played {
   store::ResultRow row;               // its `trace` is left empty

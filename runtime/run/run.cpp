@@ -88,7 +88,7 @@ class EpisodeWorker {
       PROBE_ASSIGN(stage_, stage::Stage::create(shared_.plan, job.task, shared_.assets));
     }
     const store::TraceHeader header =
-        make_trace_header(shared_.plan, job, shared_.options.name, shared_.fingerprint);
+        make_trace_header(shared_.plan, job, *stage_, shared_.options.name, shared_.fingerprint);
     PROBE_ASSIGN(const std::string path, shared_.store.temporary_trace(store::key_of(header)));
     for (int attempt = 0;; ++attempt) {
       auto played = write(job, header, path);

@@ -82,6 +82,25 @@ class SharedAssets::Loader {
     return robot(plan_.robots()[scene.robot]);
   }
 
+  Status fixture(const Fixture& fixture) {
+    for (const LoadedFixture& other : assets_.fixtures_) {
+      if (other.fixture.name != fixture.name) continue;
+      return Failure{Fault::kAsset, "two fixtures are called `" + fixture.name + "`", fixture.urdf};
+    }
+    if (fixture.positions.size() != fixture.joints.size()) {
+      return Failure{Fault::kAsset,
+                     "fixture `" + fixture.name + "`: " + std::to_string(fixture.joints.size()) +
+                         " joints, initial positions of " +
+                         std::to_string(fixture.positions.size()),
+                     fixture.urdf};
+    }
+    PROBE_ASSIGN(robot::RobotModel model,
+                 robot::load_urdf((fs::path(assets_.root_) / fixture.urdf).string()));
+    PROBE_ASSIGN(UrdfParts parts, parts_of(std::move(model), fixture.urdf));
+    assets_.fixtures_.push_back({fixture, std::move(parts)});
+    return {};
+  }
+
  private:
   std::string path_of(std::uint32_t asset) const {
     return (fs::path(assets_.root_) / plan_.text(plan_.assets()[asset].path)).string();
@@ -136,41 +155,52 @@ class SharedAssets::Loader {
   Status robot(const plan::RobotRecord& record) {
     if (assets_.robots_.contains(record.urdf)) return {};
     PROBE_TRY(verify(record.urdf));
+    const std::string name(plan_.text(plan_.assets()[record.urdf].path));
     std::set<std::string> known;
     for (const std::uint32_t asset : plan_.meshes(record)) {
       PROBE_TRY(verify(asset));
       known.insert(fs::path(plan_.text(plan_.assets()[asset].path)).lexically_normal().string());
     }
-    auto parts = std::make_unique<RobotParts>();
-    PROBE_ASSIGN(parts->model, robot::load_urdf(path_of(record.urdf)));
-    const fs::path folder = fs::path(plan_.text(plan_.assets()[record.urdf].path)).parent_path();
-    const std::string prefix = (fs::path(assets_.root_) / folder).string() + "/";
-    for (std::size_t i = 0; i < parts->model.links.size(); ++i) {
-      const robot::Link& link = parts->model.links[i];
+    PROBE_ASSIGN(robot::RobotModel model, robot::load_urdf(path_of(record.urdf)));
+    for (const robot::Link& link : model.links) {
       for (const auto* refs : {&link.visuals, &link.collisions}) {
         for (const robot::MeshRef& ref : *refs) {
-          const std::string name = (folder / ref.path).lexically_normal().string();
-          if (known.contains(name)) continue;
+          const std::string mesh =
+              (fs::path(name).parent_path() / ref.path).lexically_normal().string();
+          if (known.contains(mesh)) continue;
           return Failure{
               Fault::kAsset,
-              "link `" + link.name + "` has the mesh `" + name + "`, which the plan does not name",
-              std::string(plan_.text(plan_.assets()[record.urdf].path))};
+              "link `" + link.name + "` has the mesh `" + mesh + "`, which the plan does not name",
+              name};
         }
       }
+    }
+    PROBE_ASSIGN(UrdfParts parts, parts_of(std::move(model), name));
+    assets_.robots_[record.urdf] = std::make_unique<UrdfParts>(std::move(parts));
+    return {};
+  }
+
+  // What the links of a URDF (a path under the root) look like and collide with.
+  Result<UrdfParts> parts_of(robot::RobotModel model, const std::string& urdf) const {
+    const std::string folder =
+        (fs::path(assets_.root_) / fs::path(urdf).parent_path()).string() + "/";
+    UrdfParts parts;
+    parts.model = std::move(model);
+    for (std::size_t i = 0; i < parts.model.links.size(); ++i) {
+      const robot::Link& link = parts.model.links[i];
       for (const robot::MeshRef& ref : link.visuals) {
-        RobotParts::LinkVisual visual;
+        UrdfParts::LinkVisual visual;
         visual.link = static_cast<int>(i);
         visual.origin = ref.origin;
-        PROBE_ASSIGN(visual.mesh, scene::shared_mesh(prefix + ref.path, ref.scale, limits()));
-        parts->visuals.push_back(std::move(visual));
+        PROBE_ASSIGN(visual.mesh, scene::shared_mesh(folder + ref.path, ref.scale, limits()));
+        parts.visuals.push_back(std::move(visual));
       }
-      parts->shapes.emplace_back();
+      parts.shapes.emplace_back();
       if (link.can_collide()) {
-        PROBE_ASSIGN(parts->shapes.back(), load_link_shape(link, prefix, limits()));
+        PROBE_ASSIGN(parts.shapes.back(), load_link_shape(link, folder, limits()));
       }
     }
-    assets_.robots_[record.urdf] = std::move(parts);
-    return {};
+    return parts;
   }
 
   scene::MeshLimits limits() const {
@@ -185,8 +215,10 @@ class SharedAssets::Loader {
   std::set<std::uint32_t> verified_;
 };
 
-Result<std::shared_ptr<const SharedAssets>> SharedAssets::load(
-    const plan::Plan& plan, const std::string& root, std::span<const std::uint32_t> tasks) {
+Result<std::shared_ptr<const SharedAssets>> SharedAssets::load(const plan::Plan& plan,
+                                                               const std::string& root,
+                                                               std::span<const std::uint32_t> tasks,
+                                                               std::span<const Fixture> fixtures) {
   // Here, because every simulation begins here. It is a thing of the process: once is enough.
   static constexpr std::string_view kMultibody[] = {"libSimTK"};
   static const Result<TrigBinding> bound = bind_trigonometry(kMultibody);
@@ -196,6 +228,7 @@ Result<std::shared_ptr<const SharedAssets>> SharedAssets::load(
   assets->pictures_ = std::make_shared<render::SceneStore>();
   Loader loader(plan, *assets);
   for (const std::uint32_t task : tasks) PROBE_TRY(loader.task(plan.tasks()[task]));
+  for (const Fixture& fixture : fixtures) PROBE_TRY(loader.fixture(fixture));
   return std::shared_ptr<const SharedAssets>(std::move(assets));
 }
 
@@ -222,7 +255,7 @@ std::shared_ptr<const scene::Texture> SharedAssets::photo(std::uint32_t asset) c
   return find(photos_, asset);
 }
 
-const RobotParts* SharedAssets::robot(std::uint32_t urdf_asset) const {
+const UrdfParts* SharedAssets::robot(std::uint32_t urdf_asset) const {
   const auto found = robots_.find(urdf_asset);
   return found == robots_.end() ? nullptr : found->second.get();
 }

@@ -15,6 +15,7 @@
 #include "runtime/robot/urdf.h"
 #include "runtime/scene/collision_shape.h"
 #include "runtime/scene/mesh.h"
+#include "runtime/stage/fixture.h"
 
 namespace probe::plan {
 class Plan;
@@ -27,7 +28,7 @@ namespace probe::stage {
 
 // What a URDF's links look like and collide with. A link's collision meshes are merged into one
 // shape in link frame.
-struct RobotParts {
+struct UrdfParts {
   struct LinkVisual {
     int link = 0;  // RobotModel::links
     Pose origin;   // mesh frame in the link frame
@@ -39,20 +40,30 @@ struct RobotParts {
       shapes;  // one per link, null without collision
 };
 
+// A fixture with joints and what its URDF names.
+struct LoadedFixture {
+  Fixture fixture;
+  UrdfParts parts;
+};
+
 class SharedAssets {
  public:
   // Loads what `tasks` (indices of the plan's tasks) need. Fails (kAsset) naming a file that
   // is absent or has other bytes, and with the loaders' failures.
+  // `fixtures` stand in the scene of every task beside what the plan puts there; no plan knows
+  // fixtures with joints, so their files are taken as they are.
   static Result<std::shared_ptr<const SharedAssets>> load(const plan::Plan& plan,
                                                           const std::string& root,
-                                                          std::span<const std::uint32_t> tasks);
+                                                          std::span<const std::uint32_t> tasks,
+                                                          std::span<const Fixture> fixtures = {});
 
   const std::string& root() const { return root_; }
   // By index into the plan's assets; null for an index that was not loaded.
   std::shared_ptr<const scene::Mesh> mesh(std::uint32_t asset) const;
   std::shared_ptr<const scene::CollisionShape> shape(std::uint32_t asset) const;
   std::shared_ptr<const scene::Texture> photo(std::uint32_t asset) const;
-  const RobotParts* robot(std::uint32_t urdf_asset) const;
+  const UrdfParts* robot(std::uint32_t urdf_asset) const;
+  std::span<const LoadedFixture> fixtures() const { return fixtures_; }
   // The meshes' ray structures and what stands still, for every world and task; made as they are
   // first drawn.
   const std::shared_ptr<render::SceneStore>& pictures() const { return pictures_; }
@@ -64,7 +75,8 @@ class SharedAssets {
   std::map<std::uint32_t, std::shared_ptr<const scene::Mesh>> meshes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> shapes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::Texture>> photos_;
-  std::map<std::uint32_t, std::unique_ptr<const RobotParts>> robots_;
+  std::map<std::uint32_t, std::unique_ptr<const UrdfParts>> robots_;
+  std::vector<LoadedFixture> fixtures_;
 };
 
 // Of every file the plan names, by path and content: equal digests, equal inputs.

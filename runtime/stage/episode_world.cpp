@@ -1,6 +1,7 @@
 // From plan records to a world, and the order of an episode in it.
 #include "runtime/stage/episode_world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -12,15 +13,37 @@ namespace probe::stage {
 namespace {
 
 // The longer third phase of settling, if something still moves faster than this (m/s, rad/s, summed
-// over objects), and how long it is (s). From the reference's reset.
+// over objects and joints of fixtures), and how long it is (s). From the reference's reset.
 constexpr double kStillSpeed = 1e-3, kStillSpin = 1e-2, kExtraSettle = 1.5;
+
+// An articulation that nobody drives, its joints at `positions`. Its springs rest where the fixture
+// says, wherever settling has left the joints.
+world::ArticulationSpec passive(const LoadedFixture& loaded, std::span<const double> positions) {
+  const Fixture& fixture = loaded.fixture;
+  world::ArticulationSpec spec;
+  spec.name = fixture.name;
+  spec.model = &loaded.parts.model;
+  spec.base = fixture.base;
+  spec.driven = false;
+  spec.joints = fixture.joints;
+  for (std::size_t i = 0; i < spec.joints.size(); ++i) {
+    if (!spec.joints[i].rest) spec.joints[i].rest = fixture.positions[i];
+  }
+  spec.positions.assign(positions.begin(), positions.end());
+  for (std::size_t link = 0; link < loaded.parts.shapes.size(); ++link) {
+    if (loaded.parts.shapes[link] == nullptr) continue;
+    spec.links.push_back(
+        {loaded.parts.model.links[link].name, loaded.parts.shapes[link], fixture.friction, 0});
+  }
+  return spec;
+}
 
 }  // namespace
 
 EpisodeWorld::EpisodeWorld(const plan::Plan& plan, const plan::TaskRecord& task,
                            std::shared_ptr<const SharedAssets> assets, robot::Robot robot,
                            robot::EeDeltaPoseController controller, TaskBodies bodies,
-                           robot::Tree tree)
+                           std::vector<PlacedTree> trees)
     : plan_(plan),
       task_(task),
       scene_(plan.scenes()[task.scene]),
@@ -29,30 +52,39 @@ EpisodeWorld::EpisodeWorld(const plan::Plan& plan, const plan::TaskRecord& task,
       robot_(std::move(robot)),
       controller_(std::move(controller)),
       bodies_(std::move(bodies)),
-      instruments_(plan, task, bodies_, std::move(tree), robot_.model->find_link(robot_.tcp_link)),
+      instruments_(plan, task, bodies_, std::move(trees), robot_.model->find_link(robot_.tcp_link)),
       substeps_(static_cast<int>(std::lround(scene_.physics_hz / record_.control_hz))) {}
 
 Result<std::unique_ptr<EpisodeWorld>> EpisodeWorld::create(
     const plan::Plan& plan, std::uint32_t task_index, std::shared_ptr<const SharedAssets> assets) {
   const plan::TaskRecord& task = plan.tasks()[task_index];
   const plan::RobotRecord& record = plan.robots()[plan.scenes()[task.scene].robot];
-  const RobotParts* parts = assets->robot(record.urdf);
+  const UrdfParts* parts = assets->robot(record.urdf);
   PROBE_CHECK(parts != nullptr, "assets are loaded for the tasks that run");
 
   PROBE_ASSIGN(robot::Robot robot, robot_of(plan, record, *parts));
-  PROBE_ASSIGN(robot::Tree tree, robot::Tree::create(parts->model, robot.joints));
+  PROBE_ASSIGN(std::vector<PlacedTree> trees, placed_trees(plan, task, *assets));
   PROBE_ASSIGN(auto controller, robot::EeDeltaPoseController::create(parts->model, robot.control));
-  PROBE_ASSIGN(TaskBodies bodies, task_bodies(plan, task, parts->model));
+  PROBE_ASSIGN(TaskBodies bodies, task_bodies(plan, task, *assets));
   PROBE_ASSIGN(policy::Privileged view, make_privileged(plan, task_index, *assets, bodies));
   auto made = std::unique_ptr<EpisodeWorld>(
       new EpisodeWorld(plan, task, std::move(assets), std::move(robot), std::move(controller),
-                       std::move(bodies), std::move(tree)));
+                       std::move(bodies), std::move(trees)));
   made->privileged_ = std::move(view);
   return made;
 }
 
-world::WorldSpec EpisodeWorld::spec_at(std::span<const Pose> poses, bool with_links) const {
-  const RobotParts& parts = *assets_->robot(record_.urdf);
+EpisodeWorld::Arrangement EpisodeWorld::arrangement(std::vector<Pose> objects) const {
+  Arrangement at{std::move(objects), {}};
+  for (const LoadedFixture& loaded : assets_->fixtures()) {
+    const std::vector<double>& positions = loaded.fixture.positions;
+    at.fixture_joints.insert(at.fixture_joints.end(), positions.begin(), positions.end());
+  }
+  return at;
+}
+
+world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_links) const {
+  const UrdfParts& parts = *assets_->robot(record_.urdf);
   world::WorldSpec spec;
   world::ArticulationSpec& arm = spec.articulations.emplace_back();
   arm.model = &parts.model;
@@ -63,19 +95,24 @@ world::WorldSpec EpisodeWorld::spec_at(std::span<const Pose> poses, bool with_li
   }
   const auto joints = plan_.joints(scene_);
   arm.positions.assign(joints.begin(), joints.end());
-  for (std::size_t k = 0; with_links && k < bodies_.links.size(); ++k) {
-    const auto link = static_cast<std::size_t>(bodies_.links[k]);
+  for (std::size_t k = 0; with_robot_links && k < bodies_.robot_links; ++k) {
+    const auto link = static_cast<std::size_t>(bodies_.links[k].link);
     const bool finger = k < robot_.fingers.size();
     arm.links.push_back({parts.model.links[link].name, parts.shapes[link],
                          finger ? record_.finger_friction : record_.link_friction,
                          finger ? record_.finger_patch : 0});
+  }
+  std::span<const double> left = at.fixture_joints;
+  for (const LoadedFixture& loaded : assets_->fixtures()) {
+    spec.articulations.push_back(passive(loaded, left.first(loaded.fixture.positions.size())));
+    left = left.subspan(loaded.fixture.positions.size());
   }
   const auto records = plan_.bodies(task_);
   for (std::size_t i = 0; i < bodies_.objects; ++i) {
     const plan::ObjectRecord& object = plan_.objects()[records[i].index];
     spec.bodies.push_back({std::string(plan_.text(records[i].name)),
                            assets_->shape(object.collision), object.density, object.friction,
-                           poses[i]});
+                           at.objects[i]});
   }
   if (bodies_.fixture != TaskBodies::kNone) {
     spec.fixtures.push_back({std::string(plan_.text(records[bodies_.fixture].name)),
@@ -90,7 +127,7 @@ world::WorldSpec EpisodeWorld::spec_at(std::span<const Pose> poses, bool with_li
 }
 
 // The arm has no collision shapes while objects fall: that is how it is out of the way.
-Result<std::vector<Pose>> EpisodeWorld::settle(std::span<const Pose> placed) {
+Result<EpisodeWorld::Arrangement> EpisodeWorld::settle(const Arrangement& placed) {
   PROBE_ASSIGN(auto world, world::World::create(spec_at(placed, false)));
   const int phase = static_cast<int>(std::lround(task_.settle * scene_.physics_hz));
   world->lock_tilt(true);
@@ -98,17 +135,33 @@ Result<std::vector<Pose>> EpisodeWorld::settle(std::span<const Pose> placed) {
   world->lock_tilt(false);
   world->stop_bodies();
   PROBE_TRY(world->step(phase));
-  double speed = 0, spin = 0;
-  for (std::size_t i = 0; i < bodies_.objects; ++i) {
-    speed += world->body(i).velocity.norm();
-    spin += world->body(i).spin.norm();
-  }
-  if (speed > kStillSpeed || spin > kStillSpin) {
+  if (still_moves(*world)) {
     PROBE_TRY(world->step(static_cast<int>(std::lround(kExtraSettle * scene_.physics_hz))));
   }
-  std::vector<Pose> settled;
-  for (std::size_t i = 0; i < bodies_.objects; ++i) settled.push_back(world->body(i).pose);
+  Arrangement settled;
+  for (std::size_t i = 0; i < bodies_.objects; ++i) settled.objects.push_back(world->body(i).pose);
+  const auto joints = world->joints().subspan(controller_.joint_count());
+  settled.fixture_joints.assign(joints.begin(), joints.end());
   return settled;
+}
+
+bool EpisodeWorld::still_moves(const world::World& world) const {
+  double speed = 0, spin = 0;
+  for (std::size_t i = 0; i < bodies_.objects; ++i) {
+    speed += world.body(i).velocity.norm();
+    spin += world.body(i).spin.norm();
+  }
+  auto rates = world.joint_speeds().subspan(controller_.joint_count());
+  for (const LoadedFixture& loaded : assets_->fixtures()) {
+    const robot::RobotModel& model = loaded.parts.model;
+    for (const world::JointSpec& joint : loaded.fixture.joints) {
+      const auto index = static_cast<std::size_t>(model.find_joint(joint.joint));
+      const bool slides = model.joints[index].kind == robot::JointKind::kPrismatic;
+      (slides ? speed : spin) += std::abs(rates.front());
+      rates = rates.subspan(1);
+    }
+  }
+  return speed > kStillSpeed || spin > kStillSpin;
 }
 
 Status EpisodeWorld::reset(std::uint32_t index) {
@@ -123,7 +176,7 @@ Status EpisodeWorld::reset(std::uint32_t index) {
                    "episode " + std::to_string(index) + " places another number of objects",
                    "task `" + std::string(plan_.text(task_.name)) + "`"};
   }
-  PROBE_ASSIGN(const std::vector<Pose> settled, settle(placed));
+  PROBE_ASSIGN(const Arrangement settled, settle(arrangement(std::move(placed))));
   PROBE_ASSIGN(world_, world::World::create(spec_at(settled, true)));
   controller_.reset(robot_q());
   steps_ = 0;
@@ -146,13 +199,13 @@ WorldState EpisodeWorld::save() const {
 }
 
 Status EpisodeWorld::restore(const WorldState& state) {
-  if (state.starts.size() != bodies_.count) {
+  if (state.starts.size() != bodies_.count()) {
     return Failure{Fault::kWorld, "the saved state is of a task with other bodies",
                    "task `" + std::string(plan_.text(task_.name)) + "`"};
   }
   if (!world_) {
-    const std::vector<Pose> anywhere(bodies_.objects);
-    PROBE_ASSIGN(world_, world::World::create(spec_at(anywhere, true)));
+    std::vector<Pose> anywhere(bodies_.objects);
+    PROBE_ASSIGN(world_, world::World::create(spec_at(arrangement(std::move(anywhere)), true)));
   }
   PROBE_TRY(world_->restore(state.physics));
   PROBE_TRY(controller_.restore(state.control));
@@ -165,6 +218,16 @@ Status EpisodeWorld::restore(const WorldState& state) {
 policy::Proprioception EpisodeWorld::proprioception() const {
   const auto q = robot_q();
   return {controller_.tcp_pose(q), controller_.openness(q), {q.begin(), q.end()}};
+}
+
+std::vector<std::string> EpisodeWorld::joint_names() const {
+  std::vector<std::string> names = robot_.joints;
+  for (const LoadedFixture& loaded : assets_->fixtures()) {
+    for (const world::JointSpec& joint : loaded.fixture.joints) {
+      names.push_back(name_in(loaded.fixture, joint.joint));
+    }
+  }
+  return names;
 }
 
 void EpisodeWorld::measure() {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -52,6 +53,7 @@ class EpisodeWorld {
   std::span<const vm::BodyStart> starts() const { return starts_; }
   const policy::Privileged& privileged() const { return privileged_; }
   policy::Proprioception proprioception() const;
+  // The robot's joints in drive order, then those of fixtures: rad and m, rad/s and m/s.
   std::span<const double> q() const { return world_->joints(); }
   std::span<const double> u() const { return world_->joint_speeds(); }
   // Model poses: source, target, distractors.
@@ -59,14 +61,24 @@ class EpisodeWorld {
   Sha256 state_hash() const { return world_->state_hash(); }
 
   const robot::Robot& robot() const { return robot_; }
+  const TaskBodies& bodies() const { return bodies_; }
+  std::vector<std::string> joint_names() const;  // of q
 
  private:
   EpisodeWorld(const plan::Plan& plan, const plan::TaskRecord& task,
                std::shared_ptr<const SharedAssets> assets, robot::Robot robot,
-               robot::EeDeltaPoseController controller, TaskBodies bodies, robot::Tree tree);
+               robot::EeDeltaPoseController controller, TaskBodies bodies,
+               std::vector<PlacedTree> trees);
 
-  world::WorldSpec spec_at(std::span<const Pose> poses, bool with_links) const;
-  Result<std::vector<Pose>> settle(std::span<const Pose> placed);
+  // What an episode starts from besides the robot.
+  struct Arrangement {
+    std::vector<Pose> objects;           // model poses
+    std::vector<double> fixture_joints;  // m and rad, of all fixtures in their order
+  };
+  Arrangement arrangement(std::vector<Pose> objects) const;  // fixtures' joints as they begin
+  world::WorldSpec spec_at(const Arrangement& at, bool with_robot_links) const;
+  Result<Arrangement> settle(const Arrangement& placed);
+  bool still_moves(const world::World& world) const;
   std::span<const double> robot_q() const { return q().first(controller_.joint_count()); }
   void measure();
 

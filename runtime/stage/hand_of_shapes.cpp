@@ -33,7 +33,7 @@ struct Interval {
 // The hand's links with the fingers at one position, in the frame of the tool centre point's link.
 class Posed {
  public:
-  Posed(const robot::Robot& robot, const RobotParts& parts, const robot::Tree& tree, double grip)
+  Posed(const robot::Robot& robot, const UrdfParts& parts, const robot::Tree& tree, double grip)
       : parts_(parts), poses_(tree.link_count()) {
     std::vector<double> q;
     for (const std::string& name : robot.joints) {
@@ -74,7 +74,7 @@ class Posed {
     return std::find(names.begin(), names.end(), joint) != names.end();
   }
 
-  const RobotParts& parts_;
+  const UrdfParts& parts_;
   std::vector<Pose> poses_;
   Pose to_tcp_;
 };
@@ -149,7 +149,7 @@ std::optional<Mat3> grasp_frame(const Vec3& closes, const std::vector<Points>& f
 
 }  // namespace
 
-std::optional<robot::Hand> hand_of_shapes(const robot::Robot& robot, const RobotParts& parts) {
+std::optional<robot::Hand> hand_of_shapes(const robot::Robot& robot, const UrdfParts& parts) {
   if (robot.fingers.size() != 2 || parts.model.find_link(robot.tcp_link) < 0) return std::nullopt;
   const auto tree = robot::Tree::create(parts.model, robot.joints);
   if (!tree.ok()) return std::nullopt;

@@ -24,24 +24,25 @@ Vec3 upright_half(const Vec3& half, const Quat& rotation) {
 }  // namespace
 
 Instruments::Instruments(const plan::Plan& plan, const plan::TaskRecord& task,
-                         const TaskBodies& bodies, robot::Tree tree, int tcp_link)
+                         const TaskBodies& bodies, std::vector<PlacedTree> trees, int tcp_link)
     : plan_(plan),
       task_(task),
       scene_(plan.scenes()[task.scene]),
       robot_(plan.robots()[scene_.robot]),
       bodies_(bodies),
-      tree_(std::move(tree)),
-      tcp_(tcp_link),
-      base_(base_pose(scene_)),
-      links_(tree_.link_count()),
-      jacobian_(6, static_cast<Eigen::Index>(tree_.joint_count())) {}
+      trees_(std::move(trees)),
+      tcp_(tcp_link) {
+  for (const PlacedTree& placed : trees_) {
+    jacobians_.emplace_back(6, static_cast<Eigen::Index>(placed.tree.joint_count()));
+  }
+}
 
 void Instruments::read(const world::World& world, int steps, int substeps, double openness,
                        vm::StepSample* sample) {
   sample->step = steps;
   sample->time = steps * substeps / scene_.physics_hz;
   sample->grip = 1 - openness;
-  sample->bodies.assign(bodies_.count, {});
+  sample->bodies.assign(bodies_.count(), {});
   for (std::size_t i = 0; i < bodies_.objects; ++i) {
     const world::BodyState state = world.body(i);
     sample->bodies[i] = {state.center, state.pose.position, state.velocity, state.spin,
@@ -63,19 +64,19 @@ void Instruments::read(const world::World& world, int steps, int substeps, doubl
 
 // Poses by quaternions along the tree, as pictures have them; the world's own agree to 1e-12 m.
 void Instruments::read_links(const world::World& world, vm::StepSample* sample) {
-  const auto q = world.joints().first(tree_.joint_count());
-  const auto u = world.joint_speeds().first(tree_.joint_count());
-  tree_.link_poses(q, links_);
-  const Eigen::Map<const Eigen::VectorXd> speeds(u.data(), static_cast<Eigen::Index>(u.size()));
-  sample->tcp = base_.apply(links_[static_cast<std::size_t>(tcp_)].position);
+  for (PlacedTree& placed : trees_) placed.place(world.joints());
+  sample->tcp = trees_.front().link(tcp_).position;
   for (std::size_t k = 0; k < bodies_.links.size(); ++k) {
-    const int link = bodies_.links[k];
-    const Pose pose = base_ * links_[static_cast<std::size_t>(link)];
-    tree_.jacobian(links_, link, jacobian_);
-    const Eigen::Matrix<double, 6, 1> twist = jacobian_ * speeds;
+    const auto [of, link] = bodies_.links[k];
+    const PlacedTree& placed = trees_[of];
+    const auto u = placed.own(world.joint_speeds());
+    const Eigen::Map<const Eigen::VectorXd> speeds(u.data(), static_cast<Eigen::Index>(u.size()));
+    placed.tree.jacobian(placed.links, link, jacobians_[of]);
+    const Eigen::Matrix<double, 6, 1> twist = jacobians_[of] * speeds;
+    const Pose pose = placed.link(link);
     sample->bodies[bodies_.first_link + k] = {
-        pose.position, pose.position, base_.rotation * Vec3(twist.head<3>()),
-        base_.rotation * Vec3(twist.tail<3>()), pose.rotation};
+        pose.position, pose.position, placed.base.rotation * Vec3(twist.head<3>()),
+        placed.base.rotation * Vec3(twist.tail<3>()), pose.rotation};
   }
 }
 
@@ -95,8 +96,8 @@ void Instruments::read_contacts(const world::World& world, vm::StepSample* sampl
 
 std::vector<vm::BodyStart> Instruments::starts(const vm::StepSample& settled) const {
   const auto bodies = plan_.bodies(task_);
-  std::vector<vm::BodyStart> starts(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
+  std::vector<vm::BodyStart> starts(bodies_.count());
+  for (std::size_t i = 0; i < starts.size(); ++i) {
     starts[i].position = settled.bodies[i].position;
     if (i >= bodies_.objects) continue;
     const plan::ObjectRecord& object = plan_.objects()[bodies[i].index];

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "runtime/plan/plan.h"
-#include "runtime/robot/kinematics.h"
+#include "runtime/stage/placed_tree.h"
 #include "runtime/stage/task_bodies.h"
 #include "runtime/vm/sample.h"
 #include "runtime/world/world.h"
@@ -16,7 +16,7 @@ class Instruments {
  public:
   // The plan and `bodies` must live as long.
   Instruments(const plan::Plan& plan, const plan::TaskRecord& task, const TaskBodies& bodies,
-              robot::Tree tree, int tcp_link);
+              std::vector<PlacedTree> trees, int tcp_link);
 
   // After `steps` control steps of `substeps` substeps; `openness` 0 closed .. 1 open.
   void read(const world::World& world, int steps, int substeps, double openness,
@@ -34,11 +34,9 @@ class Instruments {
   const plan::SceneRecord& scene_;
   const plan::RobotRecord& robot_;
   const TaskBodies& bodies_;
-  robot::Tree tree_;
+  std::vector<PlacedTree> trees_;
   int tcp_;
-  Pose base_;
-  std::vector<Pose> links_;
-  Eigen::MatrixXd jacobian_;
+  std::vector<Eigen::MatrixXd> jacobians_;  // by tree, room for one link's
 };
 
 }  // namespace probe::stage

@@ -53,7 +53,15 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
   if (bodies.fixture != TaskBodies::kNone) {
     const auto shape = assets.shape(scene.fixture_collision);
     if (!shape) return lacks_mesh("fixture", records[bodies.fixture]);
-    view.fixtures = vertices_of(*shape, to_vec(scene.fixture_position));
+    view.fixtures.push_back(
+        {bodies.names[bodies.fixture], vertices_of(*shape, to_vec(scene.fixture_position)), {}});
+  }
+  for (std::size_t k = bodies.robot_links; k < bodies.links.size(); ++k) {
+    const auto [tree, link] = bodies.links[k];
+    const auto& shapes = assets.fixtures()[tree - 1].parts.shapes;
+    view.fixtures.push_back({bodies.names[bodies.first_link + k],
+                             vertices_of(*shapes[static_cast<std::size_t>(link)], Vec3::Zero()),
+                             {}});
   }
   PROBE_ASSIGN(view.goal, goal_of(plan, task_index));
   return view;
@@ -65,6 +73,12 @@ void update_privileged(const vm::StepSample& sample, const TaskBodies& bodies, s
     policy::PrivilegedObject& object = view->objects[i];
     object.pose = {sample.bodies[i].origin, sample.bodies[i].rotation};
     object.finger_contact.assign(fingers, false);
+  }
+  // The last fixtures are the last bodies, link by link.
+  const std::size_t moving = bodies.links.size() - bodies.robot_links;
+  for (std::size_t k = 0; k < moving; ++k) {
+    const vm::BodySample& link = sample.bodies[bodies.count() - moving + k];
+    view->fixtures[view->fixtures.size() - moving + k].pose = {link.origin, link.rotation};
   }
   for (const vm::ContactSample& contact : sample.contacts) {
     // Objects come before links among a task's bodies.

@@ -16,7 +16,7 @@ namespace probe::stage {
 Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t task,
                                            const SharedAssets& assets, const TaskBodies& bodies);
 
-// Where objects are, and which of `fingers` touch them.
+// Where objects and links of fixtures are, and which of `fingers` touch objects.
 void update_privileged(const vm::StepSample& sample, const TaskBodies& bodies, std::size_t fingers,
                        policy::Privileged* view);
 

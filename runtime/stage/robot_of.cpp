@@ -51,7 +51,7 @@ Pose base_pose(const plan::SceneRecord& scene) {
 }
 
 Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& record,
-                              const RobotParts& parts) {
+                              const UrdfParts& parts) {
   const std::string where = "robot `" + std::string(plan.text(record.name)) + "`";
   if (record.control != static_cast<std::uint32_t>(plan::Control::kEeDeltaPose)) {
     return Failure{Fault::kPlan, "control " + std::to_string(record.control) + " is not known here",

@@ -12,7 +12,7 @@ namespace probe::stage {
 // that are not there or hang on no joint, (kPlan) on drives in an order that the controller
 // does not have or a control that this program does not know.
 Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& record,
-                              const RobotParts& parts);
+                              const UrdfParts& parts);
 
 // Names of the driven joints in order, and the robot's base in world.
 std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot);

@@ -10,6 +10,7 @@
 #include "runtime/base/check.h"
 #include "runtime/stage/backdrop.h"
 #include "runtime/stage/robot_of.h"
+#include "runtime/stage/task_bodies.h"
 
 namespace probe::stage {
 namespace {
@@ -79,19 +80,6 @@ render::Lights make_lights(const plan::Plan& plan, const plan::LightRecord& reco
   return lights;
 }
 
-// Task-local index of the body that shows link `name`, or none.
-std::uint16_t body_of_link(const plan::Plan& plan, const plan::TaskRecord& task,
-                           std::string_view name) {
-  const auto bodies = plan.bodies(task);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i].kind == static_cast<std::uint32_t>(plan::BodyKind::kLink) &&
-        plan.text(bodies[i].name) == name) {
-      return static_cast<std::uint16_t>(i);
-    }
-  }
-  return render::kBackdrop;
-}
-
 // What has to be added to the backdrop's height. A photo shows the table where it stood: a scene
 // whose surface is elsewhere cannot have it.
 Result<double> lift_backdrop(const plan::Plan& plan, const plan::TaskRecord& task,
@@ -125,14 +113,9 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
                                                      ImageSize size) {
   const plan::TaskRecord& task = plan.tasks()[task_index];
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
-  const plan::RobotRecord& robot = plan.robots()[scene.robot];
-  const RobotParts* parts = assets->robot(robot.urdf);
-  PROBE_CHECK(parts != nullptr, "assets are loaded for the tasks that run");
-
-  PROBE_ASSIGN(robot::Tree tree, robot::Tree::create(parts->model, drive_joints(plan, robot)));
-  auto view = std::unique_ptr<SceneView>(new SceneView(assets, std::move(tree)));
-  view->base_ = base_pose(scene);
-  view->links_.resize(view->tree_.link_count());
+  PROBE_ASSIGN(std::vector<PlacedTree> trees, placed_trees(plan, task, *assets));
+  PROBE_ASSIGN(const TaskBodies local, task_bodies(plan, task, *assets));
+  auto view = std::unique_ptr<SceneView>(new SceneView(assets, std::move(trees)));
 
   render::SceneSpec spec;
   if (scene.backdrop != plan::kNone) {
@@ -164,11 +147,15 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
                               false});
     }
   }
-  for (const RobotParts::LinkVisual& visual : parts->visuals) {
-    const std::string& name = parts->model.links[static_cast<std::size_t>(visual.link)].name;
-    spec.dynamics.push_back(
-        {visual.mesh, visual.origin, body_of_link(plan, task, name), name, true});
-    view->visual_links_.push_back(visual.link);
+  for (std::size_t tree = 0; tree < view->trees_.size(); ++tree) {
+    const UrdfParts& parts = *view->trees_[tree].parts;
+    for (const UrdfParts::LinkVisual& visual : parts.visuals) {
+      const std::string& name = parts.model.links[static_cast<std::size_t>(visual.link)].name;
+      const bool is_robot = tree == 0;
+      spec.dynamics.push_back({visual.mesh, visual.origin,
+                               local.of_link(tree, visual.link).value_or(render::kBackdrop), name,
+                               is_robot});
+    }
   }
 
   const plan::LightRecord& light = plan.lights()[task.light];
@@ -202,7 +189,7 @@ Status check_shape(const scene::Texture& photo, const plan::CameraRecord& camera
 Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
                                            const plan::ViewRecord& record,
                                            const render::SceneSpec& seen, ImageSize size) {
-  const robot::RobotModel& model = assets_->robot(plan.robots()[scene.robot].urdf)->model;
+  const robot::RobotModel& model = robot().parts->model;
   const plan::CameraRecord& camera = plan.cameras()[record.camera];
   Eye eye;
   eye.name = std::string(plan.text(record.name));
@@ -212,8 +199,8 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   if (mount < 0)
     return Failure{Fault::kRender, "the robot has no link `" + mount_name + "`", where};
   if (!is_fixed(model, mount)) eye.moving_mount = mount;
-  tree_.link_poses(plan.joints(scene), links_);
-  const Pose mount_pose = base_ * links_[static_cast<std::size_t>(mount)];
+  trees_.front().place(plan.joints(scene));
+  const Pose mount_pose = robot().link(mount);
   PROBE_ASSIGN(eye.on_mount, make_camera(plan, camera));
   resize(eye.on_mount, size);
   render::SceneSpec spec = seen;
@@ -228,21 +215,23 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   return eye;
 }
 
-// Fills links_ and poses_.
+// Fills poses_.
 void SceneView::place(std::span<const double> q, std::span<const Pose> objects) {
-  PROBE_CHECK(objects.size() == objects_ && q.size() >= tree_.joint_count(),
-              "one pose an object and one position a driven joint");
-  tree_.link_poses(q.first(tree_.joint_count()), links_);
+  const PlacedTree& last = trees_.back();
+  PROBE_CHECK(objects.size() == objects_ && q.size() == last.first_joint + last.tree.joint_count(),
+              "one pose an object and one position a joint");
   poses_.assign(objects.begin(), objects.end());
-  for (const int link : visual_links_) {
-    poses_.push_back(base_ * links_[static_cast<std::size_t>(link)]);
+  for (PlacedTree& placed : trees_) {
+    placed.place(q);
+    for (const UrdfParts::LinkVisual& visual : placed.parts->visuals) {
+      poses_.push_back(placed.link(visual.link));
+    }
   }
 }
 
 Result<render::FrameView> SceneView::look(Eye& eye, bool full) {
   if (eye.moving_mount >= 0) {
-    const Pose mount = base_ * links_[static_cast<std::size_t>(eye.moving_mount)];
-    return eye.renderer->render_from(carried(eye.on_mount, mount), poses_);
+    return eye.renderer->render_from(carried(eye.on_mount, robot().link(eye.moving_mount)), poses_);
   }
   return full ? eye.renderer->render_full(poses_) : eye.renderer->render(poses_);
 }

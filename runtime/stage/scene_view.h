@@ -12,8 +12,8 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/render/renderer.h"
-#include "runtime/robot/kinematics.h"
 #include "runtime/stage/assets.h"
+#include "runtime/stage/placed_tree.h"
 
 namespace probe::stage {
 
@@ -39,8 +39,9 @@ class SceneView {
   std::size_t camera_count() const { return eyes_.size(); }
   const std::string& camera_name(std::size_t camera) const { return eyes_[camera].name; }
 
-  // `q` in drive order (those of other things may follow); `objects` are model poses in world, in
-  // the order source, target, distractors. A picture is valid until the same camera's next.
+  // `q`: the robot's joints in drive order, then those of fixtures. `objects` are model poses in
+  // world, in the order source, target, distractors. A picture is valid until the same camera's
+  // next.
   Result<render::FrameView> render(std::span<const double> q, std::span<const Pose> objects,
                                    std::size_t camera = 0);
   // Every camera's picture, valid until the next call.
@@ -53,7 +54,7 @@ class SceneView {
  private:
   struct Eye {
     std::string name;
-    int moving_mount = -1;    // the link that carries it, where that moves
+    int moving_mount = -1;    // the robot's link that carries it, where that moves
     render::Camera on_mount;  // its place in the link, its picture's size and lens
     std::unique_ptr<render::Renderer> renderer;
   };
@@ -63,15 +64,14 @@ class SceneView {
                        ImageSize size);
   void place(std::span<const double> q, std::span<const Pose> objects);
   Result<render::FrameView> look(Eye& eye, bool full);
-  SceneView(std::shared_ptr<const SharedAssets> assets, robot::Tree tree)
-      : assets_(std::move(assets)), tree_(std::move(tree)) {}
+  SceneView(std::shared_ptr<const SharedAssets> assets, std::vector<PlacedTree> trees)
+      : assets_(std::move(assets)), trees_(std::move(trees)) {}
+  const PlacedTree& robot() const { return trees_.front(); }
 
   std::shared_ptr<const SharedAssets> assets_;
-  robot::Tree tree_;
-  Pose base_;
+  std::vector<PlacedTree> trees_;
   std::size_t objects_ = 0;
-  std::vector<int> visual_links_;  // of the dynamic visuals after the objects
-  std::vector<Pose> links_, poses_;
+  std::vector<Pose> poses_;  // of the dynamic visuals: objects, then links tree by tree
   std::vector<Eye> eyes_;
   std::vector<CameraFrame> frames_;
 };

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -73,8 +74,12 @@ class Stage {
   std::span<const vm::BodyStart> body_starts() const { return world_->starts(); }
   const vm::Judge& judge() const { return judge_; }
   const policy::Privileged& privileged() const { return world_->privileged(); }
-  std::span<const double> q() const { return world_->q(); }  // rad and m, in drive order
-  std::span<const double> u() const { return world_->u(); }  // rad/s and m/s
+  // The robot's joints in drive order, then those of fixtures: rad and m, rad/s and m/s.
+  std::span<const double> q() const { return world_->q(); }
+  std::span<const double> u() const { return world_->u(); }
+  // What traces call the joints of q() and the bodies of sample(); a fixture's are "cabinet.top".
+  std::vector<std::string> joint_names() const { return world_->joint_names(); }
+  const std::vector<std::string>& body_names() const { return world_->bodies().names; }
   // Model poses in world: source, target, distractors.
   std::span<const Pose> objects() const { return world_->objects(); }
   Sha256 state_hash() const { return world_->state_hash(); }

@@ -1,21 +1,20 @@
 #include "runtime/stage/task_bodies.h"
 
-#include <string>
-
 #include "runtime/base/check.h"
 
 namespace probe::stage {
 
 Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& task,
-                               const robot::RobotModel& model) {
-  const auto bodies = plan.bodies(task);
+                               const SharedAssets& assets) {
+  const UrdfParts* robot = assets.robot(plan.robots()[plan.scenes()[task.scene].robot].urdf);
+  PROBE_CHECK(robot != nullptr, "assets are loaded for the tasks that run");
   TaskBodies out;
-  out.count = bodies.size();
   out.objects = 2 + task.distractors;
   std::size_t objects = 0;
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const auto local = static_cast<std::uint16_t>(i);
-    switch (static_cast<plan::BodyKind>(bodies[i].kind)) {
+  for (const plan::BodyRecord& body : plan.bodies(task)) {
+    const auto local = static_cast<std::uint16_t>(out.count());
+    out.names.emplace_back(plan.text(body.name));
+    switch (static_cast<plan::BodyKind>(body.kind)) {
       case plan::BodyKind::kObject:
         ++objects;
         break;
@@ -26,18 +25,31 @@ Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& t
         out.fixture = local;
         break;
       case plan::BodyKind::kLink: {
-        if (out.links.empty()) out.first_link = local;
-        const std::string name(plan.text(bodies[i].name));
-        const int link = model.find_link(name);
-        if (link < 0) return Failure{Fault::kUrdf, "no link `" + name + "`", model.path};
-        out.links.push_back(link);
+        const int link = robot->model.find_link(out.names.back());
+        if (link < 0) {
+          return Failure{Fault::kUrdf, "no link `" + out.names.back() + "`", robot->model.path};
+        }
+        out.links.push_back({0, link});
         break;
       }
     }
   }
-  if (objects == out.objects) return out;
-  return Failure{Fault::kPlan, "bodies and distractors do not add up",
-                 "task `" + std::string(plan.text(task.name)) + "`"};
+  if (objects != out.objects) {
+    return Failure{Fault::kPlan, "bodies and distractors do not add up",
+                   "task `" + std::string(plan.text(task.name)) + "`"};
+  }
+  out.first_link = static_cast<std::uint16_t>(out.count() - out.links.size());
+  out.robot_links = out.links.size();
+  std::size_t tree = 0;
+  for (const LoadedFixture& loaded : assets.fixtures()) {
+    ++tree;
+    for (std::size_t link = 0; link < loaded.parts.shapes.size(); ++link) {
+      if (loaded.parts.shapes[link] == nullptr) continue;
+      out.names.push_back(name_in(loaded.fixture, loaded.parts.model.links[link].name));
+      out.links.push_back({tree, static_cast<int>(link)});
+    }
+  }
+  return out;
 }
 
 std::uint16_t TaskBodies::local(const world::Party& party) const {
@@ -45,7 +57,7 @@ std::uint16_t TaskBodies::local(const world::Party& party) const {
     case world::PartyKind::kSurface:
       return surface;
     case world::PartyKind::kLink:
-      PROBE_CHECK(party.index < links.size(), "only the robot's links are bodies of a task");
+      PROBE_CHECK(party.index < links.size(), "every link of the world is a body of the task");
       return static_cast<std::uint16_t>(first_link + party.index);
     case world::PartyKind::kFixture:
       return fixture;
@@ -53,6 +65,15 @@ std::uint16_t TaskBodies::local(const world::Party& party) const {
       break;
   }
   return party.index;
+}
+
+std::optional<std::uint16_t> TaskBodies::of_link(std::size_t tree, int link) const {
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    if (links[k].tree == tree && links[k].link == link) {
+      return static_cast<std::uint16_t>(first_link + k);
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace probe::stage

@@ -26,8 +26,8 @@ struct TraceHeader {
   std::string prompt;
   std::uint32_t horizon = 0;
   double control_hz = 0;
-  std::vector<std::string> bodies;  // task-local, in the plan's order
-  std::vector<std::string> joints;  // in drive order
+  std::vector<std::string> bodies;  // task-local, in the plan's order, then links of fixtures
+  std::vector<std::string> joints;  // the robot's in drive order, then those of fixtures
   struct Metric {
     std::string name;
     bool is_bool = true;

@@ -128,7 +128,7 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
 
 Status Judge::begin(std::span<const BodyStart> starts) {
   begun_ = false;
-  if (starts.size() != bodies_) {
+  if (starts.size() < bodies_) {
     return Failure{Fault::kJudge,
                    "the start has " + std::to_string(starts.size()) + " bodies, the task has " +
                        std::to_string(bodies_),
@@ -144,7 +144,7 @@ Status Judge::begin(std::span<const BodyStart> starts) {
                      task_name_};
     }
   }
-  std::ranges::copy(starts, starts_.begin());
+  std::ranges::copy(starts.first(bodies_), starts_.begin());
   std::ranges::fill(states_, JudgeState::Monitor{});
   std::ranges::fill(values_, 0.0);
   std::ranges::fill(emitted_, 0.0);
@@ -166,7 +166,7 @@ Status Judge::restore(std::span<const BodyStart> starts, const JudgeState& state
 
 Status Judge::check(const StepSample& sample) const {
   if (!begun_) return Failure{Fault::kJudge, "a step before the episode began", task_name_};
-  if (sample.bodies.size() != bodies_) {
+  if (sample.bodies.size() < bodies_) {
     return Failure{Fault::kJudge,
                    "a step measures " + std::to_string(sample.bodies.size()) +
                        " bodies, the task has " + std::to_string(bodies_),
@@ -190,7 +190,7 @@ Status Judge::check(const StepSample& sample) const {
     }
     const bool ascends =
         previous == nullptr || std::pair(previous->a, previous->b) < std::pair(c.a, c.b);
-    if (c.a >= c.b || c.b >= bodies_ || !ascends) {
+    if (c.a >= c.b || c.b >= sample.bodies.size() || !ascends) {
       return Failure{Fault::kJudge, "contacts ascend by pair, the smaller body first", task_name_};
     }
     previous = &c;

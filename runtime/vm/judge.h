@@ -33,7 +33,8 @@ class Judge {
   Judge(const plan::Plan& plan, std::uint32_t task);
 
   // Starts an episode: clears all monitors; `starts` holds one entry a body of the task, in the
-  // plan's order. Fails (kJudge) when the number of bodies differs or a number is not finite.
+  // plan's order. Bodies that follow are measured and not judged: fixtures that the plan does not
+  // know. Fails (kJudge) when bodies are missing or a number is not finite.
   Status begin(std::span<const BodyStart> starts);
 
   // One control step, after physics. Fails (kJudge) when the sample does not fit the task or

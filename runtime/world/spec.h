@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct JointSpec {
   double limit = std::numeric_limits<double>::infinity();
   double friction = 0;  // N, N m: what it takes to set the joint moving, and what brakes it then
   double armature = 0;  // kg, kg m2: inertia of rotors and gears, seen at the joint
+  std::optional<double> rest = {};  // m, rad: the target to begin with; where it starts if absent
 };
 
 // What moves on joints: a robot, whose drives have targets, or a cabinet, whose joints are pulled.
@@ -31,7 +33,7 @@ struct ArticulationSpec {
   // One per joint that moves; their order is the order of q everywhere. A joint that is left out
   // must be fixed or mimic one that is not: it then follows exactly, as if geared.
   std::vector<JointSpec> joints;
-  std::vector<double> positions;  // initial q, rad and m; targets, too
+  std::vector<double> positions;  // initial q, rad and m
   // True: a controller sets its targets and cancels gravity and Coriolis forces, as the reference's
   // robots do; it never sleeps. False: it is passive, feels its weight, and sleeps at rest.
   bool driven = true;

@@ -138,7 +138,10 @@ Status Builder::add_joint(const ArticulationSpec& articulation, size_t index, si
     return fail(name + " starts at " + std::to_string(position) + ", beyond its limits of " +
                 std::to_string(drives.lower[at]) + " and " + std::to_string(drives.upper[at]));
   }
-  stepper_.joints.q[at] = stepper_.joints.target[at] = position;
+  const double rest = wanted.rest.value_or(position);
+  if (!std::isfinite(rest)) return fail("the place where " + name + " rests is not finite");
+  stepper_.joints.q[at] = position;
+  stepper_.joints.target[at] = rest;
   if (articulation.driven) made_.targets.push_back(at);
   return {};
 }

@@ -22,7 +22,7 @@ Held held(policy::PrivilegedObject source, policy::PrivilegedObject target,
   test::FakeTable table(std::move(source), std::move(target), std::move(others));
   policy::Observation seen = table.observe(0);
   policy::Privileged view = *seen.privileged;
-  view.fixtures = std::move(fixtures);
+  view.fixtures = {{"shelf", std::move(fixtures), {}}};
   seen.privileged = &view;
   Held out;
   out.scene = look(seen, {}, *test::widowx().hand);

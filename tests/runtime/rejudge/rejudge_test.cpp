@@ -55,6 +55,16 @@ TEST_CASE("measurements that are not the task's are refused with the reason") {
   store::Trace renamed = made_trace(plan, 0);
   renamed.header.bodies[0] = "vegetable";
   CHECK(rescore(plan, 0, renamed).ok());
+  // Links of fixtures that the plan does not know follow its bodies.
+  store::Trace furnished = made_trace(plan, 0);
+  furnished.header.bodies.push_back("cabinet.tray");
+  furnished.start->starts.resize(furnished.header.bodies.size());
+  for (store::TraceStep& step : furnished.steps) {
+    step.sample.bodies.resize(furnished.header.bodies.size());
+  }
+  const auto judged = rescore(plan, 0, furnished);
+  REQUIRE(judged.ok());
+  CHECK(judged->metrics == rescore(plan, 0, made_trace(plan, 0))->metrics);
 }
 
 TEST_CASE("an invalid episode stays invalid with its reason, judged as far as it went") {

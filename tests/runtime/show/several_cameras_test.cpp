@@ -66,7 +66,7 @@ Episode watch(const plan::Plan& plan, const std::string& task, const std::string
   auto stage = stage::Stage::create(plan, index, *assets);
   REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
   const EpisodeJob job{index, 0, 42};
-  const TraceHeader header = make_trace_header(plan, job, "watcher", "{}");
+  const TraceHeader header = make_trace_header(plan, job, **stage, "watcher", "{}");
   auto trace = TraceWriter::create(folder + "/" + task + ".trace", header);
   REQUIRE(trace.ok());
   EpisodeVideo video(header, folder + "/" + task + ".mp4");

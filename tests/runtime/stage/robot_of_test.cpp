@@ -27,7 +27,7 @@ struct Set {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const plan::RobotRecord& record = plan.robots()[scene.robot];
   std::shared_ptr<const SharedAssets> assets;
-  const RobotParts* parts = nullptr;
+  const UrdfParts* parts = nullptr;
 
   Set() {
     const std::uint32_t tasks[] = {plan.find_task(kTask).value()};
@@ -146,7 +146,7 @@ TEST_CASE("a hand that points along its z is measured in a frame whose x points 
       joint +
       "<joint name='fix' type='fixed'><parent link='palm'/><child link='tool'/><origin xyz='0 0 "
       "0.09'/></joint></robot>");
-  RobotParts parts;
+  UrdfParts parts;
   parts.model = model;
   parts.shapes.resize(model.links.size());
   const auto put = [&](const char* link, const Vec3& half, const Vec3& at) {
@@ -188,11 +188,12 @@ TEST_CASE("a hand that points along its z is measured in a frame whose x points 
 
 TEST_CASE("of three fingers each is seen to touch by itself, and what presses nothing does not") {
   TaskBodies bodies;
-  bodies.count = 7;
+  bodies.names.resize(7);
   bodies.objects = 2;
   bodies.surface = 2;
   bodies.first_link = 3;
-  bodies.links = {4, 5, 6, 7};  // three fingers and the palm
+  bodies.robot_links = 4;
+  bodies.links = {{0, 4}, {0, 5}, {0, 6}, {0, 7}};  // three fingers and the palm
   vm::StepSample sample;
   sample.bodies.resize(7);
   const Vec3 push(0, 0.01, 0);
@@ -220,10 +221,10 @@ TEST_CASE("the sample has the joints of fixtures after those of the robot") {
   const Set set;
   const auto robot = robot_of(set.plan, set.record, *set.parts);
   REQUIRE(robot.ok());
-  const auto bodies = task_bodies(set.plan, set.task, set.parts->model);
+  const auto bodies = task_bodies(set.plan, set.task, *set.assets);
   REQUIRE(bodies.ok());
-  auto tree = robot::Tree::create(set.parts->model, robot->joints);
-  REQUIRE(tree.ok());
+  auto trees = placed_trees(set.plan, set.task, *set.assets);
+  REQUIRE(trees.ok());
 
   world::WorldSpec spec;
   world::ArticulationSpec arm;
@@ -255,7 +256,7 @@ TEST_CASE("the sample has the joints of fixtures after those of the robot") {
   REQUIRE_MESSAGE(world.ok(), (world.ok() ? "" : to_text(world.failure())));
   REQUIRE(world->get()->step(20).ok());
 
-  Instruments instruments(set.plan, set.task, *bodies, std::move(*tree),
+  Instruments instruments(set.plan, set.task, *bodies, std::move(*trees),
                           set.parts->model.find_link(robot->tcp_link));
   vm::StepSample sample;
   instruments.read(**world, 1, 20, 1, &sample);

@@ -211,6 +211,28 @@ TEST_CASE("a measurement that is not finite makes the episode invalid and change
   CHECK(!judge.begin(std::vector<BodyStart>(3)).ok());
 }
 
+TEST_CASE("bodies after the plan's are measured and not judged") {
+  const Plan plan = RandomProgram(3).make(40);
+  Judge judge(plan, 0), other(plan, 0);
+  std::vector<BodyStart> starts(kBodies);
+  REQUIRE(judge.begin(starts).ok());
+  starts.resize(kBodies + 2);
+  REQUIRE(other.begin(starts).ok());
+  StepSample sample = resting(1);
+  sample.contacts.clear();
+  REQUIRE(judge.step(sample).ok());
+  sample.bodies.resize(kBodies + 2);
+  sample.bodies.back().position = {1, 2, 3};
+  sample.contacts = {{0, kBodies + 1, {0, 0, 1}}};
+  REQUIRE(other.step(sample).ok());
+  CHECK(std::ranges::equal(judge.values(), other.values()));
+  sample.contacts[0].b = kBodies + 2;
+  CHECK(!other.step(sample).ok());
+  sample.contacts.clear();
+  sample.bodies.back().position.x() = std::nan("");
+  CHECK(!other.step(sample).ok());
+}
+
 TEST_CASE("a step of a hundred instructions costs microseconds at most") {
   const Plan plan = RandomProgram(5).make(100);
   Judge judge(plan, 0);

@@ -1,0 +1,27 @@
+// A fixture with joints, as data: a drawer, a door, a knob. It is an articulation that nobody
+// drives.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+#include "runtime/world/spec.h"
+
+namespace probe::stage {
+
+struct Fixture {
+  std::string name;                      // "cabinet"; its joints and links are "cabinet.top"
+  std::string urdf;                      // under the asset root
+  Pose base;                             // of its root link, world
+  std::vector<world::JointSpec> joints;  // one for each that moves: friction, damping, a spring
+  std::vector<double> positions;         // m and rad, of the joints before objects fall
+  double friction = 1;                   // of its links' material
+};
+
+// What a trace calls a joint or a link of a fixture.
+inline std::string name_in(const Fixture& fixture, const std::string& part) {
+  return fixture.name + "." + part;
+}
+
+}  // namespace probe::stage
