@@ -3,6 +3,7 @@
 // privileged view; a wire client never does.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -29,9 +30,10 @@ struct Image {
 };
 
 struct Proprioception {
-  Pose tcp_in_base;            // the tool centre point link in the robot's base frame
-  double openness = 1;         // 0 closed .. 1 open
-  std::vector<double> joints;  // rad and m, in the plan's drive order
+  Pose tcp_in_base;               // the tool centre point link in the robot's base frame
+  double openness = 1;            // 0 closed .. 1 open
+  std::vector<double> joints;     // rad and m, in the plan's drive order
+  std::size_t finger_joints = 0;  // how many of them, the last, move fingers
 };
 
 // An object's collision hulls and where it is; all but the last two are fixed in an episode.

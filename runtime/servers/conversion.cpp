@@ -135,8 +135,6 @@ void append(std::vector<double>& numbers, const Vec3& v) {
   numbers.insert(numbers.end(), {v.x(), v.y(), v.z()});
 }
 
-constexpr std::size_t kFingers = 2;
-
 Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
                                      const policy::Proprioception& measured) {
   Quat rotation = measured.tcp_in_base.rotation;
@@ -148,7 +146,8 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
       layout >= StateLayout::kXyzWxyzOpenness && layout <= StateLayout::kXyzRotvecFingers;
   if (has_pose) append(state, measured.tcp_in_base.position);
   const std::vector<double>& joints = measured.joints;
-  const bool has_fingers = joints.size() >= kFingers;
+  const std::size_t fingers = std::min(measured.finger_joints, joints.size());
+  const auto first_finger = joints.end() - static_cast<std::ptrdiff_t>(fingers);
   switch (layout) {
     case StateLayout::kNone:
       break;
@@ -168,24 +167,23 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
       break;
     case StateLayout::kXyzRotvecFingers:
       append(state, robot::to_rotation_vector(rotation));
-      if (!has_fingers)
-        return bad_conversion("`state.layout` asks for two fingers, the robot has none");
-      state.insert(state.end(), joints.end() - kFingers, joints.end());
+      if (fingers == 0)
+        return bad_conversion("`state.layout` asks for fingers, the robot has none");
+      state.insert(state.end(), first_finger, joints.end());
       break;
     case StateLayout::kJoints:
       state = joints;
       break;
     case StateLayout::kJointsOpenness:
     case StateLayout::kArmJoints:
-      if (!has_fingers)
-        return bad_conversion("`state.layout` leaves out two fingers, the robot has none");
-      state.assign(joints.begin(), joints.end() - kFingers);
+      if (fingers == 0)
+        return bad_conversion("`state.layout` leaves out the fingers, the robot has none");
+      state.assign(joints.begin(), first_finger);
       if (layout == StateLayout::kJointsOpenness) state.push_back(measured.openness);
       break;
     case StateLayout::kFingers:
-      if (!has_fingers)
-        return bad_conversion("`state.more` asks for two fingers, the robot has none");
-      state.assign(joints.end() - kFingers, joints.end());
+      if (fingers == 0) return bad_conversion("`state.more` asks for fingers, the robot has none");
+      state.assign(first_finger, joints.end());
       break;
     case StateLayout::kOpenness:
       state = {measured.openness};

@@ -32,7 +32,8 @@ enum class PixelLayout {
 };
 // Numbers of the end effector in the robot's base frame, in this order. Quaternions are w x y z;
 // rpy is R = Rz(yaw) Ry(pitch) Rx(roll), "sxyz"; openness is 0 closed .. 1 open; fingers are the
-// last two joints, m; joints are all driven ones in the plan's order.
+// last joints, m, as many as move fingers; joints are all driven ones in the plan's order. A number
+// of numbers with fingers in it is that of two, which the robots of all known servers have.
 enum class StateLayout {
   kNone,
   kXyzWxyzOpenness,    // 8

@@ -49,6 +49,7 @@ policy::Proprioception known_state(bool is_mirrored) {
   measured.openness = 1;
   // The waist turns by as much as the tool stands aside, to within a degree.
   measured.joints = {side * 0.165, 0.040, 0.222, -0.005, 1.365, 0.002, 0.037, 0.037};
+  measured.finger_joints = 2;
   return measured;
 }
 

@@ -217,7 +217,10 @@ Status EpisodeWorld::restore(const WorldState& state) {
 
 policy::Proprioception EpisodeWorld::proprioception() const {
   const auto q = robot_q();
-  return {controller_.tcp_pose(q), controller_.openness(q), {q.begin(), q.end()}};
+  return {controller_.tcp_pose(q),
+          controller_.openness(q),
+          {q.begin(), q.end()},
+          robot_.control.finger_joints.size()};
 }
 
 std::vector<std::string> EpisodeWorld::joint_names() const {

@@ -18,7 +18,6 @@ namespace {
 
 // Of the DROID robot, whose arm has seven joints.
 constexpr std::size_t kArmJoints = 7;
-constexpr std::size_t kFingers = 2;
 // What a "velocity" of length 1 moves in a step (droid/robot_ik/robot_ik_solver.py).
 constexpr double kSpeedM = 0.075, kSpeedRad = 0.15;
 
@@ -84,7 +83,7 @@ class RoboArena : public Transport {
     append_images(request, &map);
     const policy::Proprioception& measured = request.proprioception;
     std::vector<double> joints = measured.joints;
-    if (joints.size() >= kFingers) joints.resize(joints.size() - kFingers);
+    joints.resize(joints.size() - std::min(measured.finger_joints, joints.size()));
     joints.resize(kArmJoints, 0.0);
     const Vec3& at = measured.tcp_in_base.position;
     const Vec3 rpy = robot::to_rpy(measured.tcp_in_base.rotation);

@@ -99,6 +99,7 @@ TEST_CASE("states come in every layout") {
   measured.tcp_in_base = {{0.1, 0.2, 0.3}, robot::from_rpy({0.1, 0.2, 0.3})};
   measured.openness = 0.75;
   measured.joints = {1, 2, 3, 4, 5, 6, 0.02, 0.03};
+  measured.finger_joints = 2;
   Profile profile;
   const auto state = [&](StateLayout layout) {
     profile.state_layout = layout;
@@ -122,6 +123,29 @@ TEST_CASE("states come in every layout") {
   measured.joints.clear();
   profile.state_layout = StateLayout::kJointsOpenness;
   CHECK_FALSE(to_state(profile, measured).ok());
+}
+
+TEST_CASE("the joints that move fingers are as many as the robot has") {
+  Proprioception measured;
+  measured.joints = {1, 2, 3, 0.01, 0.02, 0.03};
+  const auto state = [&](StateLayout layout, std::size_t fingers) {
+    measured.finger_joints = fingers;
+    Profile profile;
+    profile.state_layout = layout;
+    return to_state(profile, measured);
+  };
+  using Numbers = std::vector<double>;
+  CHECK(state(StateLayout::kFingers, 1).value() == Numbers{0.03});
+  CHECK(state(StateLayout::kFingers, 3).value() == Numbers{0.01, 0.02, 0.03});
+  CHECK(state(StateLayout::kArmJoints, 1).value() == Numbers{1, 2, 3, 0.01, 0.02});
+  CHECK(state(StateLayout::kArmJoints, 3).value() == Numbers{1, 2, 3});
+  CHECK(state(StateLayout::kXyzRotvecFingers, 3).value().size() == 9);
+  for (const StateLayout layout : {StateLayout::kFingers, StateLayout::kArmJoints,
+                                   StateLayout::kJointsOpenness, StateLayout::kXyzRotvecFingers}) {
+    const auto refused = state(layout, 0);
+    REQUIRE(!refused.ok());
+    CHECK(refused.failure().message.find("the robot has none") != std::string::npos);
+  }
 }
 
 TEST_CASE("Bridge counts rotations from the tool pointing down") {
@@ -253,6 +277,7 @@ TEST_CASE("states beside the first go under their own keys") {
   seen.image = {4, 4, bytes};
   seen.proprioception.openness = 0.25;
   seen.proprioception.joints = {1, 2, 3, 4, 5, 6, 7, 0.02, 0.02};
+  seen.proprioception.finger_joints = 2;
   const auto request = to_request(profile, seen);
   REQUIRE_MESSAGE(request.ok(), to_text(request.failure()));
   CHECK(request->state == std::vector<double>{1, 2, 3, 4, 5, 6, 7});
