@@ -54,10 +54,10 @@ bool invert(const JointMatrix& m, Count count, size_t first, JointMatrix* out) {
 }  // namespace
 
 void guess_saturation(const Drives& drives, const Joints& joints, JointRange range,
-                      const JointMatrix& mass, double dt, ArmResponse* arm) {
+                      const JointMatrix& mass, double dt, JointResponse* response) {
   for (size_t k = 0; k < static_cast<size_t>(range.count); ++k) {
     const size_t i = static_cast<size_t>(range.first) + k;
-    arm->flung[i] = false;
+    response->flung[i] = false;
     const double e = drives.stiffness[i] * (joints.target[i] - joints.q[i]);  // N, N m
     const double resistance = drives.damping[i] + dt * drives.stiffness[i];   // N s/m, N m s
     const double inertia = mass[k][k] + drives.armature[i];                   // kg, kg m2
@@ -65,15 +65,15 @@ void guess_saturation(const Drives& drives, const Joints& joints, JointRange ran
     const double speed = (inertia * joints.u[i] + dt * e) / (inertia + dt * resistance);
     const double torque = e - resistance * speed;
     const bool beyond = std::fabs(torque) > drives.limit[i];
-    arm->saturated[i] = !beyond ? 0 : (torque > 0 ? 1 : -1);
+    response->saturated[i] = !beyond ? 0 : (torque > 0 ? 1 : -1);
     // One that pressed with its limit and would press beyond it at its present speed still does.
     const double steady = joints.saturated[i] * (e - resistance * joints.u[i]);
-    if (steady > drives.limit[i]) arm->saturated[i] = joints.saturated[i];
+    if (steady > drives.limit[i]) response->saturated[i] = joints.saturated[i];
   }
 }
 
 bool respond(const Drives& drives, const Joints& joints, JointRange range, const JointMatrix& mass,
-             const JointArray* forces, double dt, ArmResponse* arm) {
+             const JointArray* forces, double dt, JointResponse* response) {
   const size_t n = static_cast<size_t>(range.count), first = static_cast<size_t>(range.first);
   JointMatrix m;          // kg, kg m, kg m2: what is inverted
   JointArray momentum{};  // N s, N m s: the right side
@@ -85,35 +85,36 @@ bool respond(const Drives& drives, const Joints& joints, JointRange range, const
       momentum[i] += m[i][j] * joints.u[first + j];
     }
     if (forces != nullptr) momentum[i] += dt * (*forces)[i];
-    if (arm->saturated[at] != 0) {
-      momentum[i] += dt * arm->saturated[at] * drives.limit[at];
+    if (response->saturated[at] != 0) {
+      momentum[i] += dt * response->saturated[at] * drives.limit[at];
       continue;
     }
     m[i][i] += dt * drives.damping[at] + dt * dt * drives.stiffness[at];
     momentum[i] += dt * drives.stiffness[at] * (joints.target[at] - joints.q[at]);
   }
-  const bool good = n == 8 ? invert(m, std::integral_constant<size_t, 8>{}, first, &arm->response)
-                           : invert(m, n, first, &arm->response);
+  const bool good = n == 8
+                        ? invert(m, std::integral_constant<size_t, 8>{}, first, &response->matrix)
+                        : invert(m, n, first, &response->matrix);
   if (!good) return false;
   for (size_t i = 0; i < n; ++i) {
     double speed = 0;
-    for (size_t j = 0; j < n; ++j) speed += arm->response[first + i][first + j] * momentum[j];
-    arm->free_speed[first + i] = speed;
+    for (size_t j = 0; j < n; ++j) speed += response->matrix[first + i][first + j] * momentum[j];
+    response->free_speed[first + i] = speed;
   }
   return true;
 }
 
-void hold_still(JointRange range, ArmResponse* arm) {
+void hold_still(JointRange range, JointResponse* response) {
   const size_t first = static_cast<size_t>(range.first);
   for (size_t i = first; i < first + static_cast<size_t>(range.count); ++i) {
-    arm->response[i].fill(0);
-    arm->free_speed[i] = 0;
-    arm->saturated[i] = 0;
+    response->matrix[i].fill(0);
+    response->free_speed[i] = 0;
+    response->saturated[i] = 0;
   }
 }
 
 bool find_overload(const Drives& drives, const Joints& joints, JointRange range,
-                   const JointArray& u, double dt, bool release, ArmResponse* arm) {
+                   const JointArray& u, double dt, bool release, JointResponse* response) {
   // Rounding beyond the limit is none: a drive just at it would change sides in every solution.
   constexpr double kOver = 1.001;
   bool any = false;
@@ -122,14 +123,14 @@ bool find_overload(const Drives& drives, const Joints& joints, JointRange range,
     // Of the implicit drive at the new speed, N, N m.
     const double torque = drives.stiffness[i] * (joints.target[i] - joints.q[i] - dt * u[i]) -
                           drives.damping[i] * u[i];
-    if (arm->saturated[i] != 0) {
-      arm->flung[i] = !release && arm->saturated[i] * torque < 0;
-      const bool below = release && arm->saturated[i] * torque <= drives.limit[i] / kOver;
-      if (!below && !arm->flung[i]) continue;
-      arm->saturated[i] = 0;
+    if (response->saturated[i] != 0) {
+      response->flung[i] = !release && response->saturated[i] * torque < 0;
+      const bool below = release && response->saturated[i] * torque <= drives.limit[i] / kOver;
+      if (!below && !response->flung[i]) continue;
+      response->saturated[i] = 0;
     } else {
-      if (arm->flung[i] || !(std::fabs(torque) > kOver * drives.limit[i])) continue;
-      arm->saturated[i] = torque > 0 ? 1 : -1;
+      if (response->flung[i] || !(std::fabs(torque) > kOver * drives.limit[i])) continue;
+      response->saturated[i] = torque > 0 ? 1 : -1;
     }
     any = true;
   }

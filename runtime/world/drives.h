@@ -6,10 +6,10 @@
 
 namespace probe::world {
 
-// Joints as the rows see them: u+ = free_speed + response J^T impulse. Articulations do not feel
+// Joints as the rows see them: u+ = free_speed + matrix J^T impulse. Articulations do not feel
 // each other but through rows: W has a block for each, zero for one that sleeps.
-struct ArmResponse {
-  JointMatrix response{};   // W, 1/kg and so on: the inverse of M + dt KD + dt^2 KP
+struct JointResponse {
+  JointMatrix matrix{};     // W, 1/kg and so on: the inverse of M + dt KD + dt^2 KP
   JointArray free_speed{};  // u*, m/s or rad/s, without contacts
   std::array<int, kMaxJoints>
       saturated{};  // -1, 0, +1: sign of the force limit that replaces the drive
@@ -25,7 +25,7 @@ struct ArmResponse {
 // creeps.
 // `mass` is of the range's joints, counted from 0.
 void guess_saturation(const Drives& drives, const Joints& joints, JointRange range,
-                      const JointMatrix& mass, double dt, ArmResponse* arm);
+                      const JointMatrix& mass, double dt, JointResponse* response);
 
 // W and u* of one articulation for the given saturation: with tau = KP (target - q - dt u+) - KD u+
 // and forces f of its own (weight, motion; null: none) acting at the speed after the substep,
@@ -33,15 +33,15 @@ void guess_saturation(const Drives& drives, const Joints& joints, JointRange ran
 // KP and KD diagonal, M with the joints' armature; a saturated drive gives dt times its limit
 // instead. False if the matrix is not positive definite.
 bool respond(const Drives& drives, const Joints& joints, JointRange range, const JointMatrix& mass,
-             const JointArray* forces, double dt, ArmResponse* arm);
+             const JointArray* forces, double dt, JointResponse* response);
 
 // Its joints do not move and do not give way.
-void hold_still(JointRange range, ArmResponse* arm);
+void hold_still(JointRange range, JointResponse* response);
 
 // Marks drives that exceed their limit at the new speeds `u` and unmarks those whose limit flung
 // the joint so far that the drive would already brake; with `release` all that would not reach it.
 // True if there are any.
 bool find_overload(const Drives& drives, const Joints& joints, JointRange range,
-                   const JointArray& u, double dt, bool release, ArmResponse* arm);
+                   const JointArray& u, double dt, bool release, JointResponse* response);
 
 }  // namespace probe::world

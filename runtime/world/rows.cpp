@@ -84,14 +84,14 @@ void add_columns(const JointTree& tree, std::uint32_t path, double sign, size_t 
 
 // W J^T and k of one row, `column` is J and W J^T after it.
 template <typename Lanes>
-void couple(const ArmResponse& arm, Lanes lanes, int joints, double body_k, double* column,
+void couple(const JointResponse& response, Lanes lanes, int joints, double body_k, double* column,
             Row* row) {
   row->k = body_k;
   if (column != nullptr) {
     double wj[kMaxJoints];
     for (int i = 0; i < lanes; ++i) wj[i] = 0;
     for (size_t j = 0; j < static_cast<size_t>(joints); ++j) {
-      if (column[j] != 0) add_scaled(wj, arm.response[j].data(), column[j], lanes);
+      if (column[j] != 0) add_scaled(wj, response.matrix[j].data(), column[j], lanes);
     }
     double* const out = column + lanes;
     for (int i = 0; i < lanes; ++i) out[i] = wj[i];
@@ -180,20 +180,20 @@ void build_joint_rows(const Parameters& parameters, const Drives& drives,
   }
 }
 
-void couple_joints(const ArmResponse& arm, Problem* problem) {
+void couple_joints(const JointResponse& response, Problem* problem) {
   with_lanes(problem->lanes, [&](auto lanes) {
     for (size_t index = 0; index < problem->contacts.size(); ++index) {
       const Contact& c = problem->contacts[index];
       ContactRows& rows = problem->rows[index];
       double* column = rows.columns;
       for (size_t r = 0; r < (rows.torsion ? kRows : kTwist); ++r) {
-        couple(arm, lanes, problem->joints, c.body_k[r], column, &rows.rows[r]);
+        couple(response, lanes, problem->joints, c.body_k[r], column, &rows.rows[r]);
         if (column != nullptr) column += 2 * lanes;
       }
     }
   });
   const auto own = [&](int joint) {
-    return arm.response[static_cast<size_t>(joint)][static_cast<size_t>(joint)];
+    return response.matrix[static_cast<size_t>(joint)][static_cast<size_t>(joint)];
   };
   for (LimitRow& row : problem->limits) row.k = own(row.joint);
   for (JointFrictionRow& row : problem->joint_frictions) row.k = own(row.joint);

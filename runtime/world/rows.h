@@ -34,6 +34,6 @@ void build_joint_rows(const Parameters& parameters, const Drives& drives,
                       Problem* problem);
 
 // The joints' share of the effective masses; again after each change of the drives' saturation.
-void couple_joints(const ArmResponse& arm, Problem* problem);
+void couple_joints(const JointResponse& response, Problem* problem);
 
 }  // namespace probe::world

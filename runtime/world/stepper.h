@@ -26,7 +26,7 @@ struct Stepper {
   PairTable table;
   Candidates scratch;
   Problem problem;
-  ArmResponse response;
+  JointResponse response;
   std::uint64_t substep = 1;  // the number of the next substep; records compare with it
   int last_sweeps = 0,
       resolves = 0;       // of the last substep, since the start: for tests and benchmarks

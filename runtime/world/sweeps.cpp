@@ -59,7 +59,7 @@ struct Sweeps {
 
 // A limit pushes one way: l >= 0, speed + bias >= 0, one of them 0.
 template <typename Lanes>
-double sweep_limits(const ArmResponse& arm, Lanes lanes, Problem* problem) {
+double sweep_limits(const JointResponse& response, Lanes lanes, Problem* problem) {
   double change = 0;
   for (LimitRow& row : problem->limits) {
     const size_t j = static_cast<size_t>(row.joint);
@@ -68,7 +68,7 @@ double sweep_limits(const ArmResponse& arm, Lanes lanes, Problem* problem) {
     const double delta = next - row.impulse;
     row.impulse = next;
     if (delta == 0) continue;
-    add_scaled(problem->u.data(), arm.response[j].data(), row.sign * delta, lanes);
+    add_scaled(problem->u.data(), response.matrix[j].data(), row.sign * delta, lanes);
     change = std::max(change, std::fabs(delta) * row.k * row.lever);
   }
   return change;
@@ -77,7 +77,7 @@ double sweep_limits(const ArmResponse& arm, Lanes lanes, Problem* problem) {
 // Friction in a joint stops it as far as its bound goes: |l| <= bound, speed 0 or l at the bound
 // against it.
 template <typename Lanes>
-double sweep_joint_frictions(const ArmResponse& arm, Lanes lanes, Problem* problem) {
+double sweep_joint_frictions(const JointResponse& response, Lanes lanes, Problem* problem) {
   double change = 0;
   for (JointFrictionRow& row : problem->joint_frictions) {
     const size_t j = static_cast<size_t>(row.joint);
@@ -85,7 +85,7 @@ double sweep_joint_frictions(const ArmResponse& arm, Lanes lanes, Problem* probl
     const double delta = next - row.impulse;
     row.impulse = next;
     if (delta == 0) continue;
-    add_scaled(problem->u.data(), arm.response[j].data(), delta, lanes);
+    add_scaled(problem->u.data(), response.matrix[j].data(), delta, lanes);
     change = std::max(change, std::fabs(delta) * row.k * row.lever);
   }
   return change;
@@ -146,11 +146,11 @@ inline double sweep_contact(ContactRows* contact, const Sides& s, double* u, Lan
 // Ends after a sweep that changes less than the tolerance, after `enough` sweeps unless the last
 // changed more than jam_change, and after `most` in any case.
 template <Friction kFriction, typename Lanes>
-Sweeps sweep(const Parameters& parameters, int enough, int most, const ArmResponse& arm,
+Sweeps sweep(const Parameters& parameters, int enough, int most, const JointResponse& response,
              Lanes lanes, Problem* problem) {
   for (int count = 1;; ++count) {
-    double change = sweep_limits(arm, lanes, problem);
-    change = std::max(change, sweep_joint_frictions(arm, lanes, problem));
+    double change = sweep_limits(response, lanes, problem);
+    change = std::max(change, sweep_joint_frictions(response, lanes, problem));
     for (ContactRows& c : problem->rows) {
       change = std::max(change, sweep_contact<kFriction>(&c, sides(c, problem->bodies),
                                                          problem->u.data(), lanes));
@@ -173,7 +173,7 @@ void reset_impulses(Problem* problem) {
 
 }  // namespace
 
-void warm_start(Problem* problem, const ArmResponse& arm) {
+void warm_start(Problem* problem, const JointResponse& response) {
   double* u = problem->u.data();
   with_lanes(problem->lanes, [&](auto lanes) {
     for (size_t index = 0; index < problem->rows.size(); ++index) {
@@ -189,18 +189,19 @@ void warm_start(Problem* problem, const ArmResponse& arm) {
   for (LimitRow& row : problem->limits) {
     row.start = row.impulse;
     if (row.impulse == 0) continue;
-    add_scaled(u, arm.response[static_cast<size_t>(row.joint)].data(), row.sign * row.impulse,
+    add_scaled(u, response.matrix[static_cast<size_t>(row.joint)].data(), row.sign * row.impulse,
                problem->lanes);
   }
   for (JointFrictionRow& row : problem->joint_frictions) {
     row.start = row.impulse;
     if (row.impulse == 0) continue;
-    add_scaled(u, arm.response[static_cast<size_t>(row.joint)].data(), row.impulse, problem->lanes);
+    add_scaled(u, response.matrix[static_cast<size_t>(row.joint)].data(), row.impulse,
+               problem->lanes);
   }
 }
 
-void rewind(Problem* problem, const ArmResponse& arm) {
-  problem->u = arm.free_speed;
+void rewind(Problem* problem, const JointResponse& response) {
+  problem->u = response.free_speed;
   for (Body& body : *problem->bodies) {
     if (body.asleep) continue;
     body.velocity = body.start_velocity;
@@ -208,25 +209,25 @@ void rewind(Problem* problem, const ArmResponse& arm) {
   }
 }
 
-int solve(const Parameters& parameters, const ArmResponse& arm, Problem* problem) {
+int solve(const Parameters& parameters, const JointResponse& response, Problem* problem) {
   if (problem->rows.empty() && problem->limits.empty() && problem->joint_frictions.empty()) {
     return 0;
   }
   return with_lanes(problem->lanes, [&](auto lanes) {
     const Sweeps free = sweep<Friction::kFollows>(parameters, parameters.max_sweeps,
-                                                  parameters.jam_sweeps, arm, lanes, problem);
+                                                  parameters.jam_sweeps, response, lanes, problem);
     if (!(free.change > parameters.runaway)) return free.count;
 
     // Normal impulses and friction drive each other up. Again from the start with friction's bounds
     // held, which makes the problem convex; bounds renewed a few times cannot run far.
     int count = free.count;
     reset_impulses(problem);
-    rewind(problem, arm);
-    warm_start(problem, arm);
+    rewind(problem, response);
+    warm_start(problem, response);
     for (int round = 0; round < kHeldRounds; ++round) {
       for (ContactRows& c : problem->rows) c.grip = c.friction * c.rows[kNormal].impulse;
-      count += sweep<Friction::kHeld>(parameters, parameters.max_sweeps, parameters.max_sweeps, arm,
-                                      lanes, problem)
+      count += sweep<Friction::kHeld>(parameters, parameters.max_sweeps, parameters.max_sweeps,
+                                      response, lanes, problem)
                    .count;
     }
     return count;

@@ -1,6 +1,8 @@
 // What is told of a world and to it, in the terms of its spec; the substep itself is stepper.cpp's.
 #include "runtime/world/world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,6 +23,8 @@ using std::size_t;
 constexpr double kTooFast = 50.0;  // m/s
 constexpr double kTooDeep = 1.0;   // m below the surface
 constexpr double kTooFar = 100.0;  // m from the world's origin
+
+std::string in(double limit, const char* unit) { return fmt::format("{:g} {}", limit, unit); }
 
 Failure lost(std::string message) { return {Fault::kWorld, std::move(message), ""}; }
 
@@ -161,13 +165,14 @@ Status World::check_state() const {
       return lost("body `" + std::string(name) + "` has a pose or velocity that is not finite");
     }
     if (body.velocity.squaredNorm() > kTooFast * kTooFast) {
-      return lost("body `" + std::string(name) + "` is faster than 50 m/s");
+      return lost("body `" + std::string(name) + "` is faster than " + in(kTooFast, "m/s"));
     }
     if (body.position.z() < spec_.surface_z - kTooDeep) {
-      return lost("body `" + std::string(name) + "` is more than 1 m below the surface");
+      return lost("body `" + std::string(name) + "` is more than " + in(kTooDeep, "m") +
+                  " below the surface");
     }
     if (body.position.squaredNorm() > kTooFar * kTooFar) {
-      return lost("body `" + std::string(name) + "` is farther than 100 m away");
+      return lost("body `" + std::string(name) + "` is farther than " + in(kTooFar, "m") + " away");
     }
   }
   return {};

@@ -3,8 +3,6 @@
 
 #include <doctest/doctest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -14,9 +12,14 @@
 #include "runtime/stage/measure.h"
 #include "runtime/stage/privileged.h"
 #include "tests/parity/published.h"
+#include "tests/runtime/robot/made_urdf.h"
 
 namespace probe::stage {
 namespace {
+
+using robot::test::drawer_text;
+using robot::test::link_text;
+using robot::test::load_text;
 
 constexpr const char* kTask = "carrot_on_plate";
 
@@ -115,29 +118,13 @@ TEST_CASE("a finger that the URDF lacks is refused by name") {
   CHECK(robot.failure().message == "no link `carrot_on_plate`");
 }
 
-std::string heavy(const std::string& link) {
-  return "<link name='" + link +
-         "'><inertial><mass value='2'/><inertia ixx='0.004' iyy='0.004' izz='0.004' ixy='0' "
-         "ixz='0' iyz='0'/></inertial></link>";
-}
-
-robot::RobotModel load_text(const std::string& text) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / "vlaprobe_robot_of_test.urdf").string();
-  std::ofstream(path) << text;
-  auto model = robot::load_urdf(path);
-  std::filesystem::remove(path);
-  REQUIRE_MESSAGE(model.ok(), (model.ok() ? "" : to_text(model.failure())));
-  return std::move(*model);
-}
-
 // A palm of 20 x 4 x 6 cm under z, and two fingers 1 cm thick, 2 cm wide and 4 cm long on it that
 // part along y by up to 4 cm each; the tool 1 cm above the tips.
 TEST_CASE("a hand that points along its z is measured in a frame whose x points there") {
   const std::string joint =
       "<origin xyz='0 0 0.06'/><limit lower='0' upper='0.04' effort='1' velocity='1'/></joint>";
   const robot::RobotModel model = load_text(
-      "<robot name='grabber'><link name='palm'/>" + heavy("left") + heavy("right") +
+      "<robot name='grabber'><link name='palm'/>" + link_text("left", 2) + link_text("right", 2) +
       "<link name='tool'/><joint name='left_slide' type='prismatic'><parent link='palm'/><child "
       "link='left'/><axis xyz='0 1 0'/>" +
       joint +
@@ -210,13 +197,6 @@ TEST_CASE("of three fingers each is seen to touch by itself, and what presses no
   CHECK(view.objects[0].finger_contact.empty());
 }
 
-robot::RobotModel drawer() {
-  return load_text("<robot name='cabinet'>" + heavy("frame") + heavy("drawer") +
-                   "<joint name='slide' type='prismatic'><parent link='frame'/><child "
-                   "link='drawer'/><axis xyz='1 0 0'/><limit lower='0' upper='0.2' effort='1' "
-                   "velocity='1'/></joint></robot>");
-}
-
 TEST_CASE("the sample has the joints of fixtures after those of the robot") {
   const Set set;
   const auto robot = robot_of(set.plan, set.record, *set.parts);
@@ -236,7 +216,7 @@ TEST_CASE("the sample has the joints of fixtures after those of the robot") {
   }
   const auto start = set.plan.joints(set.scene);
   arm.positions.assign(start.begin(), start.end());
-  const robot::RobotModel cabinet = drawer();
+  const robot::RobotModel cabinet = load_text(drawer_text());
   world::ArticulationSpec fixture;
   fixture.model = &cabinet;
   fixture.base = {Vec3(2, 0, 1), Quat(1, 0, -1, 0).normalized()};  // it slides down

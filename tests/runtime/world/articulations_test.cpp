@@ -2,14 +2,13 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "runtime/scene/hull.h"
 #include "runtime/world/stepper.h"
+#include "tests/runtime/robot/made_urdf.h"
 #include "tests/runtime/world/arm_bench.h"
 
 namespace probe::world {
@@ -17,37 +16,10 @@ namespace {
 
 constexpr double kDt = 0.002;
 
-robot::RobotModel load_text(const std::string& name, const std::string& text) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("vlaprobe_" + name + ".urdf")).string();
-  std::ofstream(path) << text;
-  auto model = robot::load_urdf(path);
-  std::filesystem::remove(path);
-  REQUIRE_MESSAGE(model.ok(), (model.ok() ? "" : to_text(model.failure())));
-  return std::move(model).value();
-}
-
-std::string link_text(const std::string& name, double mass, const std::string& center = "0 0 0") {
-  return "<link name='" + name + "'><inertial><origin xyz='" + center + "'/><mass value='" +
-         std::to_string(mass) +
-         "'/><inertia ixx='0.004' iyy='0.004' izz='0.004' ixy='0' ixz='0' iyz='0'/></inertial>"
-         "</link>";
-}
-
-std::string joint_text(const std::string& name, const std::string& type, const std::string& parent,
-                       const std::string& child, const std::string& axis,
-                       const std::string& xyz = "0 0 0", double lower = 0, double upper = 0.2) {
-  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent +
-         "'/><child link='" + child + "'/><origin xyz='" + xyz + "'/><axis xyz='" + axis +
-         "'/><limit lower='" + std::to_string(lower) + "' upper='" + std::to_string(upper) +
-         "' effort='1' velocity='1'/></joint>";
-}
-
-// A drawer of 2 kg that slides along x by 0.2 m.
-std::string drawer_text() {
-  return "<robot name='cabinet'>" + link_text("frame", 10) + link_text("drawer", 2) +
-         joint_text("slide", "prismatic", "frame", "drawer", "1 0 0") + "</robot>";
-}
+using robot::test::drawer_text;
+using robot::test::joint_text;
+using robot::test::link_text;
+using robot::test::load_text;
 
 // A door of 2 kg, its centre 0.3 m off the hinge along x.
 std::string door_text(const std::string& axis) {
@@ -90,7 +62,7 @@ WorldSpec pulled(const ArticulationSpec& articulation, double along_x) {
 }
 
 TEST_CASE("a drawer stays while the pull is below its friction and opens by the book above it") {
-  const robot::RobotModel model = load_text("drawer", drawer_text());
+  const robot::RobotModel model = load_text(drawer_text());
   const ArticulationSpec drawer = passive(model, {.joint = "slide", .damping = 5, .friction = 3});
   const auto held = make(pulled(drawer, 1.45));  // 2.9 N
   run(*held, 1000);
@@ -111,7 +83,7 @@ TEST_CASE("a drawer stays while the pull is below its friction and opens by the 
 }
 
 TEST_CASE("a drawer that is let go stops after the distance that its friction needs") {
-  const robot::RobotModel model = load_text("stops", drawer_text());
+  const robot::RobotModel model = load_text(drawer_text());
   const ArticulationSpec drawer = passive(model, {.joint = "slide", .friction = 3});
   const auto pulled_world = make(pulled(drawer, 4));
   run(*pulled_world, 100);
@@ -131,7 +103,7 @@ TEST_CASE("a drawer that is let go stops after the distance that its friction ne
 }
 
 TEST_CASE("a drawer does not pass its ends, however hard it is pulled, and does not bounce") {
-  const robot::RobotModel model = load_text("ends", drawer_text());
+  const robot::RobotModel model = load_text(drawer_text());
   for (const double pull : {-40.0, 40.0}) {
     const auto world = make(pulled(passive(model, {.joint = "slide"}, 0.1), pull));
     double least = 1, most = 0;
@@ -148,7 +120,7 @@ TEST_CASE("a drawer does not pass its ends, however hard it is pulled, and does 
 }
 
 TEST_CASE("a door on a spring swings with the period of its inertia and gains no energy") {
-  const robot::RobotModel model = load_text("spring", door_text("0 0 1"));
+  const robot::RobotModel model = load_text(door_text("0 0 1"));
   const double stiffness = 2;
   const auto world =
       make(pulled(passive(model, {.joint = "hinge", .stiffness = stiffness, .armature = 0.05}), 0));
@@ -186,7 +158,7 @@ TEST_CASE("a door on a spring swings with the period of its inertia and gains no
 }
 
 TEST_CASE("a lid falls by its weight as a pendulum does, and gains no energy") {
-  const robot::RobotModel model = load_text("lid", door_text("0 1 0"));
+  const robot::RobotModel model = load_text(door_text("0 1 0"));
   // Hanging straight down is q = pi / 2 about y for a centre along x; 0.05 rad beside it.
   const double down = std::numbers::pi / 2;
   const auto world = make(pulled(passive(model, {.joint = "hinge"}, down - 0.05), 0));
@@ -220,7 +192,7 @@ TEST_CASE("two doors one on the other keep their energy when nothing brakes them
       link_text("lower", 1, "0.15 0 0.1") +
       joint_text("first", "continuous", "frame", "upper", "0 1 0") +
       joint_text("second", "continuous", "upper", "lower", "0 0.6 0.8", "0.3 0 0") + "</robot>";
-  const robot::RobotModel model = load_text("folding", text);
+  const robot::RobotModel model = load_text(text);
   for (const double dt : {0.002, 0.0005}) {
     ArticulationSpec spec;
     spec.model = &model;
@@ -259,7 +231,7 @@ TEST_CASE("two doors one on the other keep their energy when nothing brakes them
 
 // A block with a handle on a slide over the table: what the arm pulls.
 struct Handle {
-  robot::RobotModel model = load_text("handle", drawer_text());
+  robot::RobotModel model = load_text(drawer_text());
   ArticulationSpec spec =
       passive(model, {.joint = "slide", .stiffness = 20, .damping = 5, .friction = 2}, 0.1);
   explicit Handle(const Vec3& at) {
@@ -340,7 +312,7 @@ TEST_CASE("a drawer falls asleep, costs nothing, and wakes when the arm comes ne
 }
 
 TEST_CASE("a cube that stands in a drawer sleeps with it and wakes with it") {
-  const robot::RobotModel model = load_text("tray", drawer_text());
+  const robot::RobotModel model = load_text(drawer_text());
   WorldSpec spec = pulled(passive(model, {.joint = "slide", .damping = 2, .friction = 1}, 0.05), 0);
   spec.articulations[0].links = {{"drawer", box({0.1, 0.1, 0.01}), 1, 0}};
   spec.bodies = {
@@ -368,7 +340,7 @@ TEST_CASE("a cube that stands in a drawer sleeps with it and wakes with it") {
 }
 
 TEST_CASE("articulations that cannot be are refused by name") {
-  const robot::RobotModel model = load_text("refused", drawer_text());
+  const robot::RobotModel model = load_text(drawer_text());
   const auto refused = [&](auto change) {
     WorldSpec spec = pulled(passive(model, {.joint = "slide"}), 0);
     spec.articulations[0].name = "kitchen_cabinet";

@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 
 #include "runtime/base/trig.h"
 #include "runtime/robot/ik.h"
@@ -13,6 +11,7 @@
 #include "runtime/scene/hull.h"
 #include "runtime/world/joint_tree.h"
 #include "runtime/world/world.h"
+#include "tests/runtime/robot/made_urdf.h"
 
 namespace probe::world {
 namespace {
@@ -96,15 +95,7 @@ std::string mobile_arm() {
   return text + "</robot>";
 }
 
-robot::RobotModel load(const std::string& name, const std::string& text) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("vlaprobe_" + name + ".urdf")).string();
-  std::ofstream(path) << text;
-  auto model = robot::load_urdf(path);
-  std::filesystem::remove(path);
-  REQUIRE_MESSAGE(model.ok(), (model.ok() ? "" : to_text(model.failure())));
-  return std::move(model).value();
-}
+using robot::test::load_text;
 
 std::shared_ptr<const scene::CollisionShape> box(const Vec3& low, const Vec3& high) {
   std::vector<Vec3> points;
@@ -126,7 +117,7 @@ struct Robot {
 };
 
 Robot geared() {
-  Robot r{load("geared", geared_arm()), {}, {}, 7};
+  Robot r{load_text(geared_arm()), {}, {}, 7};
   ArticulationSpec& arm = r.spec.articulations.emplace_back();
   for (int i = 1; i <= 7; ++i) {
     arm.joints.push_back({"joint" + std::to_string(i), 1000, 100, 100});
@@ -141,7 +132,7 @@ Robot geared() {
 }
 
 Robot mobile() {
-  Robot r{load("mobile", mobile_arm()), {}, {}, 7};
+  Robot r{load_text(mobile_arm()), {}, {}, 7};
   ArticulationSpec& arm = r.spec.articulations.emplace_back();
   for (const char* name : {"lift", "shoulder_yaw", "shoulder_pitch", "elbow", "forearm_roll",
                            "wrist_pitch", "gripper_roll"}) {
@@ -451,7 +442,7 @@ TEST_CASE("a follower's limits bind its leader, and limits that contradict are r
   };
   change("<mimic joint='slide1'/>", "<mimic joint='slide1' multiplier='2' offset='-0.01'/>");
   Robot r = geared();
-  r.model = load("geared2", text);
+  r.model = load_text(text);
   {
     const auto world = make(&r);
     std::vector<double> target = state(*world);
@@ -464,7 +455,7 @@ TEST_CASE("a follower's limits bind its leader, and limits that contradict are r
     }
   }
   change("offset='-0.01'", "offset='0.1'");
-  r.model = load("geared3", text);
+  r.model = load_text(text);
   r.spec.articulations[0].model = &r.model;
   const auto refused = World::create(r.spec);
   REQUIRE(!refused.ok());
@@ -482,7 +473,7 @@ TEST_CASE("more joints than a world has room for are refused") {
     r.spec.articulations[0].joints.push_back({"j" + n, 100, 50, 20});
     r.spec.articulations[0].positions.push_back(0);
   }
-  r.model = load("snake", text + "</robot>");
+  r.model = load_text(text + "</robot>");
   r.spec.articulations[0].model = &r.model;
   const auto refused = World::create(r.spec);
   REQUIRE(!refused.ok());
