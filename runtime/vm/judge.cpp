@@ -127,7 +127,7 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task) {
 }
 
 Status Judge::begin(std::span<const BodyStart> starts) {
-  begun_ = false;
+  begun_ = stepped_ = decided_ = false;
   if (starts.size() < bodies_) {
     return Failure{Fault::kJudge,
                    "the start has " + std::to_string(starts.size()) + " bodies, the task has " +
@@ -161,6 +161,7 @@ Status Judge::restore(std::span<const BodyStart> starts, const JudgeState& state
   }
   states_ = state.monitors;
   values_ = state.values;
+  decided_ = state.decided;
   return {};
 }
 
@@ -235,6 +236,7 @@ Status Judge::step(const StepSample& sample) {
   for (double value : emitted_) check.see(value);
   if (!check.ok()) return Failure{Fault::kJudge, "the value of a metric is not finite", task_name_};
   std::ranges::copy(emitted_, values_.begin());
+  stepped_ = true;
   return {};
 }
 

@@ -25,6 +25,7 @@ struct JudgeState {
   };
   std::vector<Monitor> monitors;
   std::vector<double> values;  // by metric
+  bool decided = false;        // Judge::decided()
 };
 
 class Judge {
@@ -44,13 +45,17 @@ class Judge {
 
   // The episode as it stands, and back to it: `starts` are those it began with. restore() fails
   // (kJudge) as begin() does, and on the state of another task.
-  JudgeState save() const { return {states_, values_}; }
+  JudgeState save() const { return {states_, values_, decided()}; }
   Status restore(std::span<const BodyStart> starts, const JudgeState& state);
 
   // By metric index, as last emitted; truths are 0 or 1. Zero before the first step.
   std::span<const double> values() const { return values_; }
   double value(std::uint32_t metric) const { return values_[metric]; }
   bool truth(std::uint32_t metric) const { return values_[metric] != 0.0; }
+
+  // That no further step can change any metric, whatever it measures: a `once` that was true, an
+  // `always` that was broken, and what hangs on such alone. False before the first step.
+  bool decided() const;
 
   std::size_t metric_count() const { return metrics_.size(); }
   const std::string& metric_name(std::uint32_t metric) const { return metrics_[metric].name; }
@@ -98,6 +103,8 @@ class Judge {
   std::vector<JudgeState::Monitor> states_;
   std::vector<double> values_, emitted_;
   bool begun_ = false;
+  bool stepped_ = false;  // since begin() or restore()
+  bool decided_ = false;  // as restored
 };
 
 }  // namespace probe::vm

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <set>
 
@@ -141,6 +142,79 @@ TEST_CASE("a judge restored in mid-episode says what the one that went on says, 
     }
   }
   CHECK(compared > 1000);
+}
+
+TEST_CASE("what is decided stays so, whatever is measured then, and a restored judge knows it") {
+  std::size_t decided = 0, open = 0, early = 0;
+  for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+    const Plan plan = RandomProgram(seed + 500).make(2 + seed % 8);
+    RandomWorld world(seed + 77);
+    Judge judge(plan, 1), other(plan, 1);
+    const auto starts = world.starts();
+    REQUIRE(judge.begin(starts).ok());
+    CHECK(!judge.decided());
+    std::optional<std::vector<double>> then;
+    for (int step = 1; step <= 12; ++step) {
+      REQUIRE(judge.step(world.step(step)).ok());
+      if (then) CHECK(std::ranges::equal(judge.values(), *then));
+      if (!judge.decided()) {
+        CHECK(!then);
+        ++open;
+        continue;
+      }
+      REQUIRE(other.restore(starts, judge.save()).ok());
+      CHECK(other.decided());
+      early += step > 1 && !then && judge.metric_count() > 0 ? 1 : 0;
+      then.emplace(judge.values().begin(), judge.values().end());
+      decided += judge.metric_count() > 0 ? 1 : 0;
+    }
+    REQUIRE(judge.begin(starts).ok());
+    CHECK(!judge.decided());
+  }
+  MESSAGE(decided, " decided, ", open, " open, ", early, " after the first step");
+  CHECK(decided > 100);
+  CHECK(open > 100);
+  CHECK(early > 0);
+}
+
+TEST_CASE("a `once` is decided when it was true, an `always` when it was broken, a count never") {
+  // One metric: `op` over "the tool is within 5 cm of the origin", of 5 steps where it takes any.
+  const auto decided_at = [](Op op) {
+    Writer w = small_writer();
+    Records& r = w.records;
+    r.spans.clear();
+    r.constants = {0.05};
+    const bool counts = op == Op::kCOUNT || op == Op::kFIRST;
+    r.states = {{static_cast<std::uint16_t>(op), std::uint16_t(op == Op::kHOLD ? 5 : 0)}};
+    r.metrics = {{w.text("m"),
+                  static_cast<std::uint32_t>(counts ? MetricType::kReal : MetricType::kBool), 1}};
+    r.code = {make_instruction(Op::kKR, 0, 0),
+              make_instruction(Op::kTCP, 1),
+              make_instruction(Op::kVLEN, 2, 1),
+              make_instruction(Op::kLT, 3, 2, 0),
+              make_instruction(op, 4, 3, 0),
+              make_instruction(counts ? Op::kEMITR : Op::kEMITB, 5, 4, 0),
+              make_instruction(Op::kEND, 5)};
+    r.programs[0].constants = r.programs[0].states = r.programs[0].metrics = {0, 1};
+    r.programs[0].code = {0, static_cast<std::uint32_t>(r.code.size())};
+    auto bytes = w.finish();
+    REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
+    const Plan plan = Plan::from_bytes(std::move(*bytes)).value();
+    Judge judge(plan, 0);
+    REQUIRE(judge.begin(std::vector<BodyStart>(kBodies)).ok());
+    for (int step = 1; step <= 12; ++step) {
+      StepSample sample = resting(step);
+      sample.tcp = {step == 3 || step > 5 ? 0.01 : 1.0, 0, 0};
+      REQUIRE(judge.step(sample).ok());
+      if (judge.decided()) return step;
+    }
+    return 0;
+  };
+  CHECK(decided_at(Op::kONCE) == 3);
+  CHECK(decided_at(Op::kALWAYS) == 1);
+  CHECK(decided_at(Op::kFIRST) == 3);
+  CHECK(decided_at(Op::kHOLD) == 0);
+  CHECK(decided_at(Op::kCOUNT) == 0);
 }
 
 TEST_CASE("the state of a judge of other metrics is refused, and no step may follow") {
