@@ -40,7 +40,7 @@ Instruments::Instruments(const plan::Plan& plan, const plan::TaskRecord& task,
 void Instruments::read(const world::World& world, int steps, int substeps, double openness,
                        vm::StepSample* sample) {
   sample->step = steps;
-  sample->time = steps * substeps / scene_.physics_hz;
+  sample->time = static_cast<double>(steps) * substeps / scene_.physics_hz;
   sample->grip = 1 - openness;
   sample->bodies.assign(bodies_.count(), {});
   for (std::size_t i = 0; i < bodies_.objects; ++i) {

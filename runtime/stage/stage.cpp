@@ -1,6 +1,7 @@
 // The order of an episode: settle, look, act, measure, judge.
 #include "runtime/stage/stage.h"
 
+#include <string>
 #include <utility>
 
 namespace probe::stage {
@@ -48,10 +49,23 @@ Status Stage::step(const policy::Action& action) {
   return judge_.step(world_->sample());
 }
 
-StageState Stage::save() const { return {start_, world_->save(), judge_.save()}; }
+bool Stage::done() const {
+  return judge_.decided() || steps() >= static_cast<int>(plan_.tasks()[task_].horizon);
+}
+
+StageState Stage::save() const {
+  const plan::EpisodeRecord& episode = plan_.episodes(plan_.tasks()[task_])[start_];
+  return {start_, Sha256{episode.episode_id}, world_->save(), judge_.save()};
+}
 
 Status Stage::restore(const StageState& state) {
   frames_ = {};
+  const auto episodes = plan_.episodes(plan_.tasks()[task_]);
+  if (state.start >= episodes.size() ||
+      state.episode_id != Sha256{episodes[state.start].episode_id}) {
+    return Failure{Fault::kWorld, "the saved state is of another plan, task or start",
+                   "task `" + std::string(plan_.text(plan_.tasks()[task_].name)) + "`"};
+  }
   PROBE_TRY(world_->restore(state.world));
   start_ = state.start;
   return judge_.restore(world_->starts(), state.judge);

@@ -18,6 +18,7 @@
 #include "runtime/stage/assets.h"
 #include "runtime/stage/episode_world.h"
 #include "runtime/stage/scene_view.h"
+#include "runtime/stage/stage_state.h"
 #include "runtime/vm/judge.h"
 
 namespace probe::stage {
@@ -25,13 +26,6 @@ namespace probe::stage {
 struct StageOptions {
   ImageSize image{};     // of every camera; zero: each camera's own
   bool pictures = true;  // false: observe() has no pictures, and nothing of them is set up
-};
-
-// All that changes while an episode goes on. Of no meaning to a stage of another plan or task.
-struct StageState {
-  std::uint32_t start = 0;  // within the task
-  WorldState world;         // bodies, joints, contacts, the controller's target, steps done
-  vm::JudgeState judge;     // monitors and verdicts so far
 };
 
 class Stage {
@@ -56,10 +50,14 @@ class Stage {
   Status step(const policy::Action& action);
 
   // The episode as it is now, and back to it: what follows is the same bit for bit, in this stage
-  // or in another of the same plan and task. restore() fails (kWorld or kJudge) on a state
-  // of another task.
+  // or in another of the same plan, task and fixtures, also in another process
+  // (StageState::to_bytes). restore() fails (kWorld or kJudge) on a state of another task.
   StageState save() const;
   Status restore(const StageState& state);
+
+  // The episode is over: the horizon is reached, or no verdict can change any more, whatever
+  // happens. Nothing keeps one from stepping on.
+  bool done() const;
 
   // What a policy is told at the beginning of an episode, but for what the run draws (its seeds).
   policy::EpisodeStart introduction() const;

@@ -1,0 +1,122 @@
+#include "runtime/stage/stage_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "runtime/base/bytes.h"
+#include "runtime/plan/limits.h"
+
+namespace probe::stage {
+namespace {
+
+constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'S', 'T', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kCheckBytes = 8;
+// Two objects of 256 parts of which each touches each of the other's would save 54 MB.
+constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+constexpr std::size_t kStartBytes = 9 * sizeof(double);
+constexpr std::size_t kMonitorBytes = sizeof(double) + 1;
+
+Failure refuse(std::string message) { return {Fault::kWorld, std::move(message), ""}; }
+
+void put_control(ByteWriter& to, const robot::ControlState& control) {
+  to.vec(control.target.position);
+  to.quat(control.target.rotation);
+  to.reals(control.joint_targets);
+  to.u8(control.reached ? 1 : 0);
+}
+
+robot::ControlState get_control(ByteReader& from) {
+  robot::ControlState control;
+  control.target.position = from.vec();
+  control.target.rotation = from.quat();
+  control.joint_targets = from.reals();
+  control.reached = from.u8() != 0;
+  return control;
+}
+
+std::span<const std::byte> check_of(const Sha256& hash) {
+  return std::as_bytes(std::span(hash.bytes)).first(kCheckBytes);
+}
+
+}  // namespace
+
+std::vector<std::byte> StageState::to_bytes() const {
+  ByteWriter to;
+  for (const std::uint8_t byte : kMagic) to.u8(byte);
+  to.u32(kVersion);
+  to.u32(start);
+  to.hash(episode_id);
+  to.u32(static_cast<std::uint32_t>(world.steps));
+  put_control(to, world.control);
+  to.u32(static_cast<std::uint32_t>(world.starts.size()));
+  for (const vm::BodyStart& body : world.starts) {
+    to.vec(body.position);
+    to.vec(body.half);
+    to.vec(body.opening);
+  }
+  to.text({reinterpret_cast<const char*>(world.physics.data()), world.physics.size()});
+  to.u32(static_cast<std::uint32_t>(judge.monitors.size()));
+  for (const vm::JudgeState::Monitor& monitor : judge.monitors) {
+    to.f64(monitor.value);
+    to.u8(monitor.started ? 1 : 0);
+  }
+  to.reals(judge.values);
+  to.u8(judge.decided ? 1 : 0);
+  std::vector<std::byte> bytes = to.bytes();
+  const Sha256 hash = sha256(std::span<const std::byte>(bytes));
+  const auto check = check_of(hash);
+  bytes.insert(bytes.end(), check.begin(), check.end());
+  return bytes;
+}
+
+Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
+  if (bytes.size() < kMagic.size() + sizeof kVersion + kCheckBytes ||
+      std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
+    return refuse("the bytes are not a saved stage");
+  }
+  if (bytes.size() > kMostBytes) {
+    return refuse(fmt::format("a saved stage of {} bytes, no stage needs more than {}",
+                              bytes.size(), kMostBytes));
+  }
+  ByteReader from(bytes.first(bytes.size() - kCheckBytes));
+  from.take(kMagic.size());
+  if (const std::uint32_t version = from.u32(); version != kVersion) {
+    return refuse(
+        fmt::format("a saved stage of format {}, this program reads {}", version, kVersion));
+  }
+  const Sha256 hash = sha256(bytes.first(bytes.size() - kCheckBytes));
+  if (!std::ranges::equal(bytes.last(kCheckBytes), check_of(hash))) {
+    return refuse("the saved stage is cut short or was changed: its check word differs");
+  }
+  StageState state;
+  state.start = from.u32();
+  state.episode_id = from.hash();
+  const std::uint32_t steps = from.u32();
+  state.world.steps = static_cast<int>(std::min(steps, plan::kMaxHorizon));
+  state.world.control = get_control(from);
+  state.world.starts.resize(from.count(from.u32(), kStartBytes));
+  for (vm::BodyStart& body : state.world.starts) {
+    body.position = from.vec();
+    body.half = from.vec();
+    body.opening = from.vec();
+  }
+  const auto physics = from.take(from.u32());
+  state.world.physics.assign(physics.begin(), physics.end());
+  state.judge.monitors.resize(from.count(from.u32(), kMonitorBytes));
+  for (vm::JudgeState::Monitor& monitor : state.judge.monitors) {
+    monitor.value = from.f64();
+    monitor.started = from.u8() != 0;
+  }
+  state.judge.values = from.reals();
+  state.judge.decided = from.u8() != 0;
+  if (!from.ok() || from.left() != 0 || steps > plan::kMaxHorizon) {
+    return refuse("the saved stage has another form than its version");
+  }
+  return state;
+}
+
+}  // namespace probe::stage

@@ -1,0 +1,35 @@
+// All that changes while an episode goes on, as data and as bytes that another process can go on
+// from.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/base/sha256.h"
+#include "runtime/stage/episode_world.h"
+#include "runtime/vm/judge.h"
+
+namespace probe::stage {
+
+// Of no meaning to a stage of another plan or task.
+struct StageState {
+  std::uint32_t start = 0;  // within the task
+  Sha256 episode_id;        // of that start, by the plan
+  WorldState world;         // bodies, joints, contacts, the controller's target, steps done
+  vm::JudgeState judge;     // monitors and verdicts so far
+
+  // Little endian: "\x89STG\r\n\x1a\n", u32 version 1; start, episode id; world: steps, controller
+  // (target pose, joint targets, u8 reached), bodies at the start, physics; judge: monitors,
+  // values, u8 decided; the first 8 bytes of the SHA-256 of all before. The physics has its own
+  // magic and counts (world/snapshot). Equal states have equal bytes.
+  std::vector<std::byte> to_bytes() const;
+  // Fails (kWorld) on bytes that are no saved stage, of another version, cut short, changed or
+  // longer than any stage needs; never takes more memory than a few times the bytes. Whether the
+  // state is this task's is Stage::restore()'s to say.
+  static Result<StageState> from_bytes(std::span<const std::byte> bytes);
+};
+
+}  // namespace probe::stage
