@@ -8,6 +8,7 @@
 
 #include "runtime/render/camera_rays.h"
 #include "runtime/render/instance_set.h"
+#include "runtime/render/projected_part.h"
 #include "runtime/render/top_scene.h"
 
 namespace probe::render {
@@ -29,6 +30,15 @@ class BlockMarks {
   InstanceSet touching(int x, int y) const { return marks_[at(x, y)]; }
   void unmark(int x, int y) { marks_[at(x, y)] = 0; }
   bool marked(int x, int y) const { return marks_[at(x, y)] != 0; }
+  // Whether something of the instance's is in that rectangle of blocks, both ends included.
+  bool any(int x0, int y0, int x1, int y1, InstanceSet bit) const {
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        if ((touching(x, y) & bit) != 0) return true;
+      }
+    }
+    return false;
+  }
   BlockSets tile_blocks(int tile_x, int tile_y) const;
 
  private:
@@ -36,16 +46,14 @@ class BlockMarks {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocks_x_) +
            static_cast<std::size_t>(x);
   }
-  void mark_part(const MeshGeometry::Part& part, const float (&rows)[12], InstanceSet bit);
-  void mark_rectangle(float min_x, float max_x, float min_y, float max_y, InstanceSet bit);
-  void mark_clipped(const float (&corners)[3][3], InstanceSet bit);
+  void mark_rectangle(const PixelBounds& bounds, InstanceSet bit);
 
   Camera camera_;  // of the samples
   float nearest_ = 0;
   float max_x_ = 0, max_y_ = 0;  // last pixel
   int blocks_x_ = 0, blocks_y_ = 0;
   std::vector<InstanceSet> marks_;
-  std::vector<float> x_, y_, z_;  // projected vertices of one part: pixels, pixels, metres
+  ProjectedPart part_;
 };
 
 }  // namespace probe::render

@@ -5,16 +5,18 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/hit_sheet.h"
 #include "runtime/render/top_scene.h"
 
 namespace probe::render {
 
 struct FilledBlock {
   bool filled = false;
-  std::uint32_t instance = 0, part = 0, primitive = 0;  // the triangle that fills it
+  TriangleName name;  // of the triangle that fills it
 };
 // A tile's, in sample order.
 using FilledBlocks = std::array<FilledBlock, 4>;
@@ -24,6 +26,9 @@ class BlockFills {
   // All triangles of `scene` as `camera` sees them; a scene of more than 512 has no filled blocks.
   void look(const TopScene& scene, const Camera& camera);
   FilledBlocks of_tile(int tile_x, int tile_y);
+  // Draws what the tile that was last asked for shows in its other blocks; holds until the next
+  // call.
+  KnownTriangles draw_rest(int tile_x, int tile_y, const FilledBlocks& filled);
 
  private:
   // Pixels, both ends included.
@@ -37,18 +42,27 @@ class BlockFills {
     Rectangle bounds;
     float closeness_a, closeness_b, closeness_c;
     float closest;  // 1 / the nearest corner's depth, infinite where that is behind the camera
-    FilledBlock name;
+    // Of a sample alone: how wrong the edges' values may be in Embree and here, and places, m.
+    float touch[3], doubt;
+    bool thin;  // rounding could turn it over
   };
 
-  void add(const Vec3 (&corners)[3], const FilledBlock& name, const Camera& camera);
+  void add(const Vec3 (&corners)[3], double doubt, const Camera& camera);
+  void draw_block(const Rectangle& block, int left, int top);
   FilledBlock find(const Rectangle& block) const;
 
   float farthest_ = 0;  // greatest depth whose points are all within reach of rays
+  float longest_ = 1;   // ray, with a forward part of 1
+  float across_ = 0;    // pixels a radian straight ahead
+  float depth_doubt_ = 0;
   std::vector<Triangle> triangles_;
+  std::vector<TriangleName> names_;  // of these
   // The edges' values and bounds again, an array a quantity, for the search by tile.
-  std::array<std::vector<float>, 13> columns_;
+  std::array<std::vector<float>, 14> columns_;
   std::vector<std::uint8_t> outside_;
   std::vector<std::uint32_t> near_;  // those that can touch the tile
+  HitSheet sheet_;                   // of one tile
+  std::unique_ptr<TriangleBatch> batch_ = std::make_unique<TriangleBatch>();
 };
 
 }  // namespace probe::render

@@ -1,5 +1,6 @@
 #include "runtime/render/mesh_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace probe::render {
@@ -119,6 +120,7 @@ Result<std::shared_ptr<const MeshGeometry>> MeshGeometry::build(
       part.x[v] = source.positions[3 * v];
       part.y[v] = source.positions[3 * v + 1];
       part.z[v] = source.positions[3 * v + 2];
+      part.reach = std::max(part.reach, std::hypot(part.x[v], part.y[v], part.z[v]));
     }
     part.triangles.reserve(part.indices.size() / 3);
     for (std::size_t i = 0; i < part.indices.size(); i += 3) {

@@ -28,6 +28,7 @@ struct MeshGeometry {
     std::vector<TriangleData> triangles;
     std::vector<float> positions;  // 4 floats longer than its vertices: Embree reads past the last
     std::vector<float> x, y, z;    // positions again, for projection
+    float reach = 0;               // the greatest distance of a vertex from the frame's origin
     std::vector<std::uint32_t> indices;
   };
 

@@ -6,6 +6,7 @@
 
 #include "runtime/render/blend.h"
 #include "runtime/render/block_marks.h"
+#include "runtime/render/known_hits.h"
 #include "runtime/render/scene_store.h"
 #include "runtime/render/static_picture.h"
 #include "runtime/render/tile_tracer.h"
@@ -57,7 +58,11 @@ class EmbreeRenderer final : public Renderer {
         restore_block(still_->picture, x, y, spec_.samples, frame_);
       }
     }
-    draw(*still_, stale_);
+    KnownTriangles known;
+    if (spec_.samples == 1) {
+      known = known_.look(dynamics_.instances(), spec_.camera, still_->rays, stale_);
+    }
+    draw(*still_, stale_, known);
     std::swap(marks_, last_marks_);
     return view();
   }
@@ -113,7 +118,7 @@ class EmbreeRenderer final : public Renderer {
     } else {
       mark(moving_, marks);
     }
-    draw(moving_, marks);
+    draw(moving_, marks, {});
     return view();
   }
 
@@ -130,25 +135,28 @@ class EmbreeRenderer final : public Renderer {
     shown_ = nullptr;
     BlockMarks marks(camera, rays);
     marks.mark(dynamics_.instances());
+    const KnownTriangles known = known_.look(dynamics_.instances(), camera, rays, marks);
     fills_.look(scene_->top, camera);
     for (int tile = 0; tile < rays.tiles(); ++tile) {
-      glance_at(tile, marks.tile_blocks(tile % rays.tiles_x, tile / rays.tiles_x));
+      glance_at(tile, marks.tile_blocks(tile % rays.tiles_x, tile / rays.tiles_x), known);
     }
     return view();
   }
 
-  void glance_at(int tile, const BlockSets& blocks) {
+  void glance_at(int tile, const BlockSets& blocks, const KnownTriangles& known) {
     const CameraRays& rays = moving_.rays;
     std::array<float, kTileSamples> farthest;
     farthest.fill(kFarthest);
+    const int tile_x = tile % rays.tiles_x, tile_y = tile / rays.tiles_x;
+    const FilledBlocks filled = fills_.of_tile(tile_x, tile_y);
     still_tracer_->trace(scene_->top, moving_.origins, rays, tile, kAllBlocks, farthest.data(),
-                         fills_.of_tile(tile % rays.tiles_x, tile / rays.tiles_x));
+                         filled, fills_.draw_rest(tile_x, tile_y, filled));
     const TileHits& still = still_tracer_->hits();
     if (!is_empty(blocks)) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(still.count); ++i) {
         farthest[still.sample[i]] = still.t[i];
       }
-      tracer_->trace(dynamics_, origins_, rays, tile, blocks, farthest.data());
+      tracer_->trace(dynamics_, origins_, rays, tile, blocks, farthest.data(), {}, known);
       const TileHits& hits = tracer_->hits();
       if (hits.count > 0) {
         std::array<bool, kTileSamples> covered{};
@@ -167,7 +175,7 @@ class EmbreeRenderer final : public Renderer {
   }
 
   // Traces the marked blocks and writes what moving things show there.
-  void draw(const StaticPicture& seen, const BlockMarks& marks) {
+  void draw(const StaticPicture& seen, const BlockMarks& marks, const KnownTriangles& known) {
     if (dynamics_.empty()) return;  // whatever is marked
     const bool plain = seen.samples == 1 && !seen.casts();
     for (int ty = 0; ty < seen.rays.tiles_y; ++ty) {
@@ -176,7 +184,8 @@ class EmbreeRenderer final : public Renderer {
         if (is_empty(blocks)) continue;
         const int tile = ty * seen.rays.tiles_x + tx;
         tracer_->trace(dynamics_, origins_, seen.rays, tile, blocks,
-                       seen.farthest.data() + static_cast<std::size_t>(tile) * kTileSamples);
+                       seen.farthest.data() + static_cast<std::size_t>(tile) * kTileSamples, {},
+                       known);
         if (plain) {
           draw_tile(seen, tile);
         } else {
@@ -206,6 +215,7 @@ class EmbreeRenderer final : public Renderer {
   BlockMarks stale_;  // what of this frame has to be traced
   ShadowMarks shadow_marks_;
   BlockFills fills_;
+  KnownHits known_;
   std::unique_ptr<TileTracer> tracer_ = std::make_unique<TileTracer>();
   std::unique_ptr<TileTracer> still_tracer_ = std::make_unique<TileTracer>();
   std::unique_ptr<TileBlender> blender_ = std::make_unique<TileBlender>();

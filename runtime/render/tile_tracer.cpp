@@ -25,7 +25,7 @@ inline void refine(const TriangleData& triangle, Vec4 origin, Vec4 d, float& t, 
   const Vec4 q = cross3(s, e1);
   const float inverse = 1.0f / dot3(e1, p);
   const float exact_t = dot3(e2, q) * inverse;
-  if (!(std::abs(exact_t - t) < 1e-3f)) return;
+  if (!(std::abs(exact_t - t) < 1e-3f) && t != kUnknownDistance) return;
   t = exact_t;
   u = std::clamp(dot3(s, p) * inverse, 0.0f, 1.0f);
   v = std::clamp(dot3(d, q) * inverse, 0.0f, 1.0f - u);
@@ -76,7 +76,7 @@ PROBE_CLONES void load_rays(const float* __restrict dx, const float* __restrict 
 // Every lane's numbers are written, and the place moves on only behind a hit: no branch to guess.
 void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
                                const BlockSets& blocks, const float* farthest,
-                               const FilledBlocks& filled) {
+                               const FilledBlocks& filled, const KnownTriangles& known) {
   constexpr std::size_t n = 8;
   alignas(32) static constexpr int kAll[n] = {-1, -1, -1, -1, -1, -1, -1, -1};
   RTCIntersectContext context;
@@ -93,6 +93,7 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
     packet.ray.flags[k] = 0;
   }
   std::size_t count = 0;
+  BlockAnswers answers;
   for (std::size_t block = 0; block < 4; ++block) {
     if (blocks[block] == 0) continue;
     if (filled[block].filled) {
@@ -100,8 +101,19 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
       count += 64;
       continue;
     }
+    if (known.sheet != nullptr) {
+      const int tile = static_cast<int>(base / kTileSamples), part = static_cast<int>(block);
+      known.sheet->answer(2 * (tile % rays.tiles_x - known.tile_x) + part % 2,
+                          2 * (tile / rays.tiles_x - known.tile_y) + part / 2,
+                          farthest + 64 * block, rays.cosine.data() + base + 64 * block, answers);
+    }
     for (std::size_t first = 64 * block; first < 64 * (block + 1); first += n) {
       const std::size_t from = base + first;
+      const std::size_t p = (first - 64 * block) / n;
+      if (known.sheet != nullptr && answers.settled(p)) {
+        count = take_known(known.names, answers, block, p, count);
+        continue;
+      }
       load_rays(rays.dx.data() + from, rays.dy.data() + from, rays.dz.data() + from,
                 farthest + first, blocks[block], packet);
       rtcIntersect8(kAll, scene, &context, &packet);
@@ -120,13 +132,30 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
   hits_.count = static_cast<int>(count);
 }
 
+// Behind the hits so far, whose number it gives with its own.
+std::size_t TileTracer::take_known(const TriangleName* names, const BlockAnswers& answers,
+                                   std::size_t block, std::size_t packet, std::size_t count) {
+  for (std::size_t k = 0; k < 8; ++k) {
+    if (answers.hit[8 * packet + k] == 0) continue;
+    const TriangleName& name = names[answers.triangle[packet][k]];
+    hits_.sample[count] = static_cast<std::uint8_t>(64 * block + 8 * packet + k);
+    hits_.instance[count] = name.instance;
+    hits_.part[count] = name.part;
+    hits_.primitive[count] = name.primitive;
+    hits_.t[count] = kUnknownDistance;
+    hits_.u[count] = hits_.v[count] = 0;
+    ++count;
+  }
+  return count;
+}
+
 void TileTracer::fill_block(std::size_t block, const FilledBlock& with, std::size_t count) {
   for (std::size_t k = 0; k < 64; ++k) {
     hits_.sample[count + k] = static_cast<std::uint8_t>(64 * block + k);
   }
-  std::fill_n(&hits_.instance[count], 64, with.instance);
-  std::fill_n(&hits_.part[count], 64, with.part);
-  std::fill_n(&hits_.primitive[count], 64, with.primitive);
+  std::fill_n(&hits_.instance[count], 64, with.name.instance);
+  std::fill_n(&hits_.part[count], 64, with.name.part);
+  std::fill_n(&hits_.primitive[count], 64, with.name.primitive);
   std::fill_n(&hits_.t[count], 64, kUnknownDistance);
   std::fill_n(&hits_.u[count], 64, 0.0f);
   std::fill_n(&hits_.v[count], 64, 0.0f);
@@ -134,9 +163,9 @@ void TileTracer::fill_block(std::size_t block, const FilledBlock& with, std::siz
 
 void TileTracer::trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
                        int tile, const BlockSets& blocks, const float* farthest,
-                       const FilledBlocks& filled) {
+                       const FilledBlocks& filled, const KnownTriangles& known) {
   const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
-  trace_packets(scene.scene(), rays, base, blocks, farthest, filled);
+  trace_packets(scene.scene(), rays, base, blocks, farthest, filled, known);
   find_triangles(scene);
   refine_hits(scene, origins, rays, base);
 }

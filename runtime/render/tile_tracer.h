@@ -11,6 +11,7 @@
 #include "runtime/render/camera_rays.h"
 #include "runtime/render/filled_blocks.h"
 #include "runtime/render/hit_runs.h"
+#include "runtime/render/hit_sheet.h"
 #include "runtime/render/occlusion.h"
 #include "runtime/render/shading.h"
 #include "runtime/render/top_scene.h"
@@ -53,9 +54,11 @@ class TileTracer {
  public:
   // Traces the blocks (b: samples 64 b .. 64 b + 63) against their instances, up to
   // `farthest[sample]`, then recomputes t, u and v of every hit in our own code, so that only the
-  // choice of the triangle is Embree's. Blocks in `filled` are known and not traced.
+  // choice of the triangle is Embree's. Blocks in `filled` and packets of which `known` knows all
+  // samples are not traced.
   void trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays, int tile,
-             const BlockSets& blocks, const float* farthest, const FilledBlocks& filled = {});
+             const BlockSets& blocks, const float* farthest, const FilledBlocks& filled = {},
+             const KnownTriangles& known = {});
   // Leaves out the samples in `hidden`.
   void drop(const std::array<bool, kTileSamples>& hidden);
   // Takes hits of that tile and blocks which were traced before, leaving out samples in `hidden`.
@@ -77,7 +80,10 @@ class TileTracer {
   void find_triangles(const TopScene& scene);
   void read_textures();
   void trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
-                     const BlockSets& blocks, const float* farthest, const FilledBlocks& filled);
+                     const BlockSets& blocks, const float* farthest, const FilledBlocks& filled,
+                     const KnownTriangles& known);
+  std::size_t take_known(const TriangleName* names, const BlockAnswers& answers, std::size_t block,
+                         std::size_t packet, std::size_t count);
   void fill_block(std::size_t block, const FilledBlock& with, std::size_t count);
   void refine_hits(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
                    std::size_t base);

@@ -41,7 +41,7 @@ std::array<std::array<int, 4>, 4> fills(const std::vector<Visual>& statics, cons
     for (std::size_t b = 0; b < 4; ++b) {
       if (!blocks[b].filled) continue;
       out[2 * (tile / 2) + b / 2][2 * (tile % 2) + b % 2] =
-          scene->top.instances()[blocks[b].instance].id;
+          scene->top.instances()[blocks[b].name.instance].id;
     }
   }
   return out;

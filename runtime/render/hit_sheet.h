@@ -1,0 +1,80 @@
+// Triangles drawn into a sheet of closeness a sample: where one of them is clearly hit and clearly
+// before all others, a ray could only say the same. Conservative, hence exact: what is doubtful is
+// left to rays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/render/camera_rays.h"
+
+namespace probe::render {
+
+// Of two triangles the second is clearly behind if it is less close than this part of the first.
+inline constexpr float kClearlyBehind = 0.997f;
+
+// Triangles as they are drawn, an array a quantity. A sample (x, y) pixels from the first sample of
+// the first packet is touched where all three a x + b y + e are at least -touch, and inside, of a
+// triangle that is `solid`, where they exceed touch. Closeness, 1 / depth, is w + wx x + wy y
+// there; of one that is not solid, at most.
+struct TriangleBatch {
+  static constexpr std::size_t kSize = 256;
+  using Floats = std::array<float, kSize>;
+  using Ints = std::array<std::int32_t, kSize>;
+  alignas(64) std::array<Floats, 3> a, b, e, touch;
+  alignas(64) Floats w, wx, wy;
+  alignas(64) Ints left, top, columns, rows;  // packets of 4 x 2 samples
+  alignas(64) Ints solid;
+  alignas(64) std::array<std::uint32_t, kSize> triangle;  // its number
+  // Those to draw.
+  std::array<std::uint16_t, kSize> order;
+  std::size_t count = 0;
+};
+
+// Of the 64 samples of a block, a byte each.
+struct BlockAnswers {
+  alignas(64) std::array<std::uint8_t, 64> hit;   // 1: meets the sheet's triangle
+  alignas(64) std::array<std::uint8_t, 64> open;  // 1: only a ray can tell
+  std::array<const std::uint32_t*, 8> triangle;   // a packet's eight numbers
+
+  // Of the 8 samples of a packet.
+  bool settled(std::size_t packet) const;
+};
+
+class HitSheet {
+ public:
+  // What is in it counts only where it is cleared.
+  void resize(int tiles_x, int tiles_y);
+  void clear_block(int x, int y);
+  void draw(const TriangleBatch& batch);
+  // Of a block of the sheet; nothing beyond `farthest` along each of its rays, whose cosines
+  // (camera_rays.h) are given too, is of interest.
+  void answer(int block_x, int block_y, const float* farthest, const float* cosines,
+              BlockAnswers& out) const;
+
+ private:
+  std::size_t packet_at(int x, int y) const {
+    return 8 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(packets_x_) +
+                static_cast<std::size_t>(x));
+  }
+
+  int packets_x_ = 0;
+  // A sample each, packets row by row: closeness of the foremost triangle that it is inside of, of
+  // the foremost other one that it touches, and the number of the first.
+  std::vector<float> closest_, other_;
+  std::vector<std::uint32_t> owner_;
+};
+
+struct TriangleName {
+  std::uint32_t instance = 0, part = 0, primitive = 0;
+};
+
+// A sheet that begins at a tile of the picture, and what its triangles' numbers mean.
+struct KnownTriangles {
+  const HitSheet* sheet = nullptr;  // null: nothing is known
+  const TriangleName* names = nullptr;
+  int tile_x = 0, tile_y = 0;
+};
+
+}  // namespace probe::render

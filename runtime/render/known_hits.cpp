@@ -1,0 +1,304 @@
+#include "runtime/render/known_hits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/render/clones.h"
+
+namespace probe::render {
+namespace {
+
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+// Embree turns a ray into the mesh's frame and tests it there, all in single precision: places are
+// wrong by at most about 1e-6 of the distances that take part, the camera's and the instance's from
+// the world's origin. Three times that.
+constexpr float kEmbreeDoubt = 3e-6f;
+// Eight roundings of 6e-8 in the projection, twice.
+constexpr float kProjectionDoubt = 1e-6f;
+// Roundings of an edge's value, by the greatest coordinate of a vertex.
+constexpr float kEdgeDoubt = 4e-7f;
+// Closeness of a triangle that is drawn as solid is wrong by less than this part of it, so that two
+// are well within kClearlyBehind ...
+constexpr float kDepthDoubt = 7e-4f;
+// ... and the distance along a ray by less than this, m: Embree's and ours then agree within the
+// millimetre that TileTracer's refine() asks for.
+constexpr float kDistanceDoubt = 3e-4f;
+// A triangle so thin that rounding can turn it over is doubtful along its line, also beyond its
+// ends, pixels.
+constexpr float kThinRoom = 16.0f;
+
+// Setting up and drawing this many triangles costs as much as tracing a packet of rays.
+constexpr std::size_t kTrianglesForPacket = 5;
+
+enum Kind : std::int32_t { kUnseen, kDrawn, kDoubtful };
+
+inline float least(float a, float b) { return a < b ? a : b; }
+inline float greatest(float a, float b) { return a > b ? a : b; }
+inline float least(float a, float b, float c) { return least(least(a, b), c); }
+inline float greatest(float a, float b, float c) { return greatest(greatest(a, b), c); }
+inline std::int32_t is(bool truth) { return truth ? 1 : 0; }
+
+// The packets that hold samples from `low` to `high` pixels, of a side that ends at `last`.
+struct Span {
+  std::int32_t first, count;  // no more than 0: none
+};
+inline Span packets_between(float low, float high, float last, std::int32_t side) {
+  // Sample i lies at i + 0.5. Cut as floats: a far-away triangle's pixels do not fit an int.
+  const float from = least(greatest(low - 0.5f, 0.0f), last + 1);
+  const float to = greatest(least(high - 0.5f, last), -1.0f);
+  const auto first = static_cast<std::int32_t>(std::ceil(from));
+  const auto end = static_cast<std::int32_t>(std::floor(to));
+  return {first / side, end < first ? 0 : end / side - first / side + 1};
+}
+
+// Sets up `count` triangles whose vertices are `index`, with a Kind each. Those that are doubtful
+// all over, being too near, too far out or too thin, are left to the caller.
+PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t count,
+                         const float* __restrict px, const float* __restrict py,
+                         const float* __restrict pz, const float* __restrict pw,
+                         const TriangleLimits& given, TriangleBatch& __restrict out,
+                         std::int32_t* __restrict kind) {
+  const TriangleLimits limits = given;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t v0 = index[3 * i], v1 = index[3 * i + 1], v2 = index[3 * i + 2];
+    const float x0 = px[v0], x1 = px[v1], x2 = px[v2];
+    const float y0 = py[v0], y1 = py[v1], y2 = py[v2];
+    const float w0 = pw[v0], w1 = pw[v1], w2 = pw[v2];
+    const float nearest_z = least(pz[v0], pz[v1], pz[v2]);
+    const float farthest_z = greatest(pz[v0], pz[v1], pz[v2]);
+    const float closest = greatest(w0, w1, w2), farthest = least(w0, w1, w2);
+    const float room = limits.pixels * closest + limits.fixed;
+
+    const float area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
+    const float sign = area < 0 ? -1.0f : 1.0f;
+    const float size = sign * area;
+    const float a0 = sign * (y1 - y2), b0 = sign * (x2 - x1);
+    const float a1 = sign * (y2 - y0), b1 = sign * (x0 - x2);
+    const float a2 = sign * (y0 - y1), b2 = sign * (x1 - x0);
+    // At least the sides' lengths.
+    const float side0 = std::abs(a0) + std::abs(b0), side1 = std::abs(a1) + std::abs(b1),
+                side2 = std::abs(a2) + std::abs(b2);
+    const float longest = greatest(side0, side1, side2);
+    const float left = least(x0, x1, x2), right = greatest(x0, x1, x2);
+    const float top = least(y0, y1, y2), bottom = greatest(y0, y1, y2);
+    // Strips round the lines of two sides meet beyond the corner between them.
+    const float beyond = room + room * longest * longest / size;
+    const Span across = packets_between(left - beyond, right + beyond, limits.max_x, 4);
+    const Span down = packets_between(top - beyond, bottom + beyond, limits.max_y, 2);
+    const float from_x = static_cast<float>(4 * across.first) + 0.5f;
+    const float from_y = static_cast<float>(2 * down.first) + 0.5f;
+
+    const float scale = 1.0f / size;
+    const float wx = (a0 * w0 + a1 * w1 + a2 * w2) * scale;
+    const float wy = (b0 * w0 + b1 * w1 + b2 * w2) * scale;
+    const float w = w0 + wx * (from_x - x0) + wy * (from_y - y0);
+    const float wrong = room * (std::abs(wx) + std::abs(wy)) + limits.distance * closest * closest;
+    const std::int32_t solid =
+        is(wrong < kDepthDoubt * farthest) & is(wrong < limits.depth * farthest * farthest);
+
+    out.a[0][i] = a0;
+    out.a[1][i] = a1;
+    out.a[2][i] = a2;
+    out.b[0][i] = b0;
+    out.b[1][i] = b1;
+    out.b[2][i] = b2;
+    out.e[0][i] = a0 * (from_x - x1) + b0 * (from_y - y1);
+    out.e[1][i] = a1 * (from_x - x2) + b1 * (from_y - y2);
+    out.e[2][i] = a2 * (from_x - x0) + b2 * (from_y - y0);
+    out.touch[0][i] = room * side0;
+    out.touch[1][i] = room * side1;
+    out.touch[2][i] = room * side2;
+    out.w[i] = solid != 0 ? w : w + wrong;
+    out.wx[i] = wx;
+    out.wy[i] = wy;
+    out.left[i] = across.first;
+    out.top[i] = down.first;
+    out.columns[i] = across.count;
+    out.rows[i] = down.count;
+    out.solid[i] = solid;
+
+    const std::int32_t untrusted = is(nearest_z < 2 * kNearest) | is(left < -limits.widest) |
+                                   is(right > limits.widest) | is(top < -limits.widest) |
+                                   is(bottom > limits.widest) | is(!(size > room * longest));
+    const std::int32_t inside = is(across.count > 0) & is(down.count > 0);
+    const std::int32_t seen = untrusted != 0 ? kDoubtful : inside != 0 ? kDrawn : kUnseen;
+    kind[i] = farthest_z > limits.nearest ? seen : kUnseen;
+  }
+}
+
+}  // namespace
+
+void KnownHits::name_all(const std::vector<Instance>& instances) {
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const auto& parts = instances[i].geometry->parts;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      parts_.push_back({instance_bit(i), parts[p].triangles.size()});
+      for (std::size_t k = 0; k < parts[p].triangles.size(); ++k) {
+        names_.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(p),
+                          static_cast<std::uint32_t>(k)});
+      }
+    }
+  }
+}
+
+void KnownHits::limit(const Instance& instance, const MeshGeometry::Part& part,
+                      const Projection& projection, const Camera& camera) {
+  const float* t = instance.translation;
+  const float placed = std::sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+  const auto eye = static_cast<float>(camera.position.norm());
+  float sums[3];  // of what is added up for x z, y z and z
+  for (int r = 0; r < 3; ++r) {
+    const float* row = projection.rows + 4 * r;
+    sums[r] =
+        (std::abs(row[0]) + std::abs(row[1]) + std::abs(row[2])) * part.reach + std::abs(row[3]);
+  }
+  limits_.distance = kEmbreeDoubt * (placed + eye + 2 * part.reach);
+  limits_.pixels = limits_.distance * static_cast<float>(std::max(camera.fx, camera.fy)) +
+                   kProjectionDoubt * (sums[0] + sums[1] + 2 * limits_.widest * sums[2]);
+}
+
+KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Camera& camera,
+                               const CameraRays& rays, const BlockMarks& marks) {
+  if (names_.empty()) name_all(instances);
+  if (!is_worth_it(marks)) return {};
+  limits_.nearest = 0.99f * rays.nearest_depth;  // as BlockMarks has it
+  limits_.widest = 4.0f * static_cast<float>(std::max(rays.width, rays.height));
+  limits_.max_x = static_cast<float>(rays.width - 1);
+  limits_.max_y = static_cast<float>(rays.height - 1);
+  limits_.fixed = kEdgeDoubt * limits_.widest;
+  limits_.depth = kDistanceDoubt * rays.nearest_depth / kNearest;
+  sheet_.resize(rays.tiles_x, rays.tiles_y);
+  for (int y = 0; y < marks.blocks_y(); ++y) {
+    for (int x = 0; x < marks.blocks_x(); ++x) {
+      if (!marks.marked(x, y)) continue;
+      sheet_.clear_block(x, y);
+    }
+  }
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const Instance& instance = instances[i];
+    const InstanceSet bit = instance_bit(i);
+    const Projection projection = projection_of(instance, camera);
+    for (const MeshGeometry::Part& part : instance.geometry->parts) {
+      if ((wanted_ & bit) != 0) {
+        part_.project(part, projection);
+        limit(instance, part, projection, camera);
+        draw(part, number, marks, bit);
+      }
+      number += static_cast<std::uint32_t>(part.triangles.size());
+    }
+  }
+  flush_doubtful();
+  return {&sheet_, names_.data(), 0, 0};
+}
+
+bool KnownHits::is_worth_it(const BlockMarks& marks) {
+  wanted_ = 0;
+  std::size_t packets = 0;
+  for (int y = 0; y < marks.blocks_y(); ++y) {
+    for (int x = 0; x < marks.blocks_x(); ++x) {
+      if (!marks.marked(x, y)) continue;
+      wanted_ |= marks.touching(x, y);
+      packets += 8;
+    }
+  }
+  std::size_t triangles = 0;
+  for (const Range& range : parts_) {
+    if ((wanted_ & range.bit) != 0) triangles += range.count;
+  }
+  return kTrianglesForPacket * packets > triangles;
+}
+
+void KnownHits::draw(const MeshGeometry::Part& part, std::uint32_t number, const BlockMarks& marks,
+                     InstanceSet bit) {
+  std::array<std::int32_t, TriangleBatch::kSize> kind;
+  TriangleBatch& batch = *batch_;
+  const std::size_t all = part.triangles.size();
+  for (std::size_t first = 0; first < all; first += TriangleBatch::kSize) {
+    const std::size_t count = std::min(all - first, TriangleBatch::kSize);
+    set_up(part.indices.data() + 3 * first, count, part_.x(), part_.y(), part_.depth(),
+           part_.closeness(), limits_, batch, kind.data());
+    batch.count = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (kind[i] == kUnseen) continue;
+      if (kind[i] == kDoubtful) {
+        add_doubtful(part, 3 * (first + i));
+        continue;
+      }
+      batch.triangle[i] = number + static_cast<std::uint32_t>(first + i);
+      if (!marks.any(batch.left[i] / 2, batch.top[i] / 4,
+                     (batch.left[i] + batch.columns[i] - 1) / 2,
+                     (batch.top[i] + batch.rows[i] - 1) / 4, bit)) {
+        continue;
+      }
+      batch.order[batch.count++] = static_cast<std::uint16_t>(i);
+    }
+    sheet_.draw(batch);
+  }
+}
+
+// One that is near, far out or thin: a ray has to tell wherever it may be.
+void KnownHits::add_doubtful(const MeshGeometry::Part& part, std::size_t index) {
+  PixelBounds bounds;
+  if (!part_.bounds(part, index, limits_.nearest, bounds)) return;
+  const std::uint32_t* v = part.indices.data() + index;
+  const float x[3] = {part_.x()[v[0]], part_.x()[v[1]], part_.x()[v[2]]};
+  const float y[3] = {part_.y()[v[0]], part_.y()[v[1]], part_.y()[v[2]]};
+  const float *depth = part_.depth(), *closeness = part_.closeness();
+  const bool near = least(depth[v[0]], depth[v[1]], depth[v[2]]) < 2 * kNearest ||
+                    bounds.min_x < -limits_.widest || bounds.max_x > limits_.widest ||
+                    bounds.min_y < -limits_.widest || bounds.max_y > limits_.widest;
+  const float beyond = near ? 1 : kThinRoom;
+  const Span across =
+      packets_between(bounds.min_x - beyond, bounds.max_x + beyond, limits_.max_x, 4);
+  const Span down = packets_between(bounds.min_y - beyond, bounds.max_y + beyond, limits_.max_y, 2);
+  if (across.count <= 0 || down.count <= 0) return;
+
+  TriangleBatch& out = *doubtful_;
+  if (out.count == TriangleBatch::kSize) flush_doubtful();
+  const std::size_t i = out.count++;
+  out.order[i] = static_cast<std::uint16_t>(i);
+  out.left[i] = across.first;
+  out.top[i] = down.first;
+  out.columns[i] = across.count;
+  out.rows[i] = down.count;
+  out.solid[i] = 0;
+  out.triangle[i] = 0;
+  out.w[i] = kInfinite;
+  out.wx[i] = out.wy[i] = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.a[k][i] = out.b[k][i] = out.e[k][i] = 0;
+    out.touch[k][i] = 1;
+  }
+  if (near) return;
+  // Near the line of its longest side, on either side of it.
+  float longest = -1;
+  const float from_x = static_cast<float>(4 * across.first) + 0.5f;
+  const float from_y = static_cast<float>(2 * down.first) + 0.5f;
+  const float room =
+      limits_.pixels * greatest(closeness[v[0]], closeness[v[1]], closeness[v[2]]) + limits_.fixed;
+  for (std::size_t p = 0; p < 3; ++p) {
+    const std::size_t q = (p + 1) % 3;
+    const float a = y[p] - y[q], b = x[q] - x[p];
+    const float length = std::abs(a) + std::abs(b);
+    if (!(length > longest)) continue;
+    longest = length;
+    const float e = a * (from_x - x[p]) + b * (from_y - y[p]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const float side = k == 0 ? 1.0f : -1.0f;
+      out.a[k][i] = side * a;
+      out.b[k][i] = side * b;
+      out.e[k][i] = side * e;
+      out.touch[k][i] = 3 * room * length;
+    }
+  }
+}
+
+void KnownHits::flush_doubtful() {
+  sheet_.draw(*doubtful_);
+  doubtful_->count = 0;
+}
+
+}  // namespace probe::render

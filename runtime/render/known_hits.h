@@ -1,0 +1,60 @@
+// What rays of a frame meet among moving things, as far as it can be known without rays: their
+// triangles, as placed, on a HitSheet.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/render/block_marks.h"
+#include "runtime/render/camera_rays.h"
+#include "runtime/render/hit_sheet.h"
+#include "runtime/render/projected_part.h"
+#include "runtime/render/top_scene.h"
+
+namespace probe::render {
+
+// What setting up a part's triangles takes; pixels and metres.
+struct TriangleLimits {
+  float nearest;       // depth: less is not seen
+  float widest;        // vertices farther out are not trusted
+  float max_x, max_y;  // last pixel
+  // How wrong places may be, in Embree's arithmetic and in ours: at `distance` metres, and in
+  // pixels at closeness w `pixels` w + `fixed`.
+  float distance, pixels, fixed;
+  float depth;  // how wrong a solid triangle's depth may be
+};
+
+class KnownHits {
+ public:
+  // Draws the instances, as placed, in the blocks that `marks` names for them. The same instances
+  // in every call. Gives what is known, of marked blocks only: nothing where drawing would cost
+  // more than the rays.
+  KnownTriangles look(const std::vector<Instance>& instances, const Camera& camera,
+                      const CameraRays& rays, const BlockMarks& marks);
+
+ private:
+  void name_all(const std::vector<Instance>& instances);
+  bool is_worth_it(const BlockMarks& marks);
+  void limit(const Instance& instance, const MeshGeometry::Part& part, const Projection& projection,
+             const Camera& camera);
+  void draw(const MeshGeometry::Part& part, std::uint32_t number, const BlockMarks& marks,
+            InstanceSet bit);
+  void add_doubtful(const MeshGeometry::Part& part, std::size_t index);
+  void flush_doubtful();
+
+  TriangleLimits limits_{};
+  struct Range {
+    InstanceSet bit;
+    std::size_t count;  // triangles
+  };
+  std::vector<Range> parts_;  // of all instances, in order
+  InstanceSet wanted_ = 0;    // of what is marked
+  std::vector<TriangleName> names_;
+  HitSheet sheet_;
+  ProjectedPart part_;
+  std::unique_ptr<TriangleBatch> batch_ = std::make_unique<TriangleBatch>();
+  std::unique_ptr<TriangleBatch> doubtful_ = std::make_unique<TriangleBatch>();
+};
+
+}  // namespace probe::render
