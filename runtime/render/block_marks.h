@@ -13,6 +13,11 @@
 
 namespace probe::render {
 
+// Of blocks, both ends included.
+struct BlockRectangle {
+  std::int16_t x0, x1, y0, y1;
+};
+
 class BlockMarks {
  public:
   // None is marked.
@@ -46,7 +51,7 @@ class BlockMarks {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocks_x_) +
            static_cast<std::size_t>(x);
   }
-  void mark_rectangle(const PixelBounds& bounds, InstanceSet bit);
+  void mark_rectangle(const BlockRectangle& rectangle, InstanceSet bit);
 
   Camera camera_;  // of the samples
   float nearest_ = 0;

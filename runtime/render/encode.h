@@ -52,12 +52,16 @@ constexpr std::array<DisplayStep, kSteps> make_display_steps() {
 }
 inline constexpr std::array<DisplayStep, kSteps> kDisplaySteps = make_display_steps();
 
+// Of a value from kDarkest to 1.
+inline const DisplayStep& step_of(float inside) {
+  return kDisplaySteps[(std::bit_cast<std::uint32_t>(inside) >> 16) - kFirstStep];
+}
+
 // NaN and negative values give 0, values above 1 give 255.
 inline std::uint8_t to_display_byte(float linear) {
   const float above = linear > kDarkest ? linear : kDarkest;
   const float inside = above < 1 ? above : 1;
-  const DisplayStep& step =
-      kDisplaySteps[(std::bit_cast<std::uint32_t>(inside) >> 16) - kFirstStep];
+  const DisplayStep& step = step_of(inside);
   return static_cast<std::uint8_t>(step.byte + (inside >= step.next ? 1 : 0));
 }
 

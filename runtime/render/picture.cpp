@@ -1,11 +1,30 @@
 #include "runtime/render/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
+#include "runtime/render/clones.h"
 #include "runtime/render/encode.h"
 
 namespace probe::render {
+namespace {
+
+// to_display_byte() of each. Two loops: compilers make neither an array loop if they are one.
+PROBE_CLONES void encode_all(const float* __restrict linear, std::size_t count,
+                             std::uint8_t* __restrict bytes) {
+  alignas(64) std::array<float, kTileSamples> inside;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float above = linear[i] > kDarkest ? linear[i] : kDarkest;
+    inside[i] = above < 1 ? above : 1;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const DisplayStep& step = step_of(inside[i]);
+    bytes[i] = static_cast<std::uint8_t>(step.byte + (inside[i] >= step.next ? 1 : 0));
+  }
+}
+
+}  // namespace
 
 void Picture::clear(int new_width, int new_height) {
   width = new_width;
@@ -20,18 +39,31 @@ void show_hits(const TileHits& hits, const TopScene& scene, const CameraRays& ra
                const ShadeOutput* colors, Picture& picture) {
   const float* cosine = rays.cosine.data() + static_cast<std::size_t>(tile) * kTileSamples;
   const int left = tile % rays.tiles_x * kTileSide, top = tile / rays.tiles_x * kTileSide;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(hits.count); ++i) {
+  const auto count = static_cast<std::size_t>(hits.count);
+  std::array<std::uint8_t, kTileSamples> red, green, blue;
+  if (colors != nullptr) {
+    encode_all(colors->r.data(), count, red.data());
+    encode_all(colors->g.data(), count, green.data());
+    encode_all(colors->b.data(), count, blue.data());
+  }
+  std::uint32_t last = ~0u;
+  std::uint16_t id = 0;
+  for (std::size_t i = 0; i < count; ++i) {
     const std::size_t sample = hits.sample[i];
     const int x = left + kTileOffsets[sample].x, y = top + kTileOffsets[sample].y;
     if (x >= rays.width || y >= rays.height) continue;
     const std::size_t pixel = picture.at(x, y);
     picture.depth[pixel] = hits.t[i] * cosine[sample];
-    picture.segmentation[pixel] = scene.instances()[hits.instance[i]].id;
+    if (hits.instance[i] != last) {
+      last = hits.instance[i];
+      id = scene.instances()[last].id;
+    }
+    picture.segmentation[pixel] = id;
     if (colors == nullptr) continue;
     std::uint8_t* rgb = picture.rgb.data() + 3 * pixel;
-    rgb[0] = to_display_byte(colors->r[i]);
-    rgb[1] = to_display_byte(colors->g[i]);
-    rgb[2] = to_display_byte(colors->b[i]);
+    rgb[0] = red[i];
+    rgb[1] = green[i];
+    rgb[2] = blue[i];
   }
 }
 

@@ -220,8 +220,10 @@ void TileTracer::find_triangles(const TopScene& scene) {
 }
 
 void TileTracer::drop(const std::array<bool, kTileSamples>& hidden) {
+  const auto all = static_cast<std::size_t>(hits_.count);
   std::size_t count = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
+  while (count < all && !hidden[hits_.sample[count]]) ++count;  // these stay where they are
+  for (std::size_t i = count; i < all; ++i) {
     hits_.sample[count] = hits_.sample[i];
     hits_.instance[count] = hits_.instance[i];
     hits_.part[count] = hits_.part[i];
