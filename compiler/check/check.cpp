@@ -7,6 +7,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_comparisons(model, reporter);
   check_phrases(model, reporter);
   check_mentions(model, reporter);
+  check_poses(model, reporter);
   check_starts(model, reporter);
   check_metrics(model, reporter);
   check_expectations(model, reporter);

@@ -31,6 +31,25 @@ bool has(const auto& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+// Whether one noun is the other in the plural, or they are the same: "knife", "knives".
+bool is_plural(std::string_view many, std::string_view one) {
+  const auto is = [&](std::size_t cut, std::string_view ending) {
+    return one.size() > cut && many.size() == one.size() - cut + ending.size() &&
+           many.starts_with(one.substr(0, one.size() - cut)) && many.ends_with(ending);
+  };
+  const auto ends = [&](auto... endings) { return (one.ends_with(endings) || ...); };
+  if (ends("s", "x", "z", "ch", "sh")) return is(0, "es");
+  if (ends("ay", "ey", "oy", "uy")) return is(0, "s");
+  if (ends("y")) return is(1, "ies");
+  if (ends("fe")) return is(2, "ves") || is(0, "s");
+  if (ends("f")) return is(1, "ves") || is(0, "s");
+  if (ends("o")) return is(0, "es") || is(0, "s");
+  return is(0, "s");
+}
+bool is_same_noun(std::string_view a, std::string_view b) {
+  return a == b || is_plural(a, b) || is_plural(b, a);
+}
+
 struct Word {
   std::string text;   // folded, without signs
   bool ends = false;  // a sign or the end of the literal words follows
@@ -107,10 +126,16 @@ struct Mentions {
   const std::vector<std::string>* longest(const std::vector<Word>& words, std::size_t from) const {
     const std::vector<std::string>* found = nullptr;
     for (const auto& [name, objects] : called) {
-      bool fits = from + name.size() <= words.size();
-      for (std::size_t k = 0; fits && k < name.size(); ++k)
-        fits = words[from + k].text == name[k] && (k + 1 == name.size() || !words[from + k].ends);
-      if (fits && (found == nullptr || name.size() > found->size())) found = &name;
+      const std::size_t last = from + name.size() - 1;
+      bool fits = last < words.size() && is_same_noun(words[last].text, name.back());
+      for (std::size_t k = from; fits && k < last; ++k)
+        fits = words[k].text == name[k - from] && !words[k].ends;
+      if (!fits) continue;
+      // The name itself before one that is in the plural.
+      const auto rank = [&](const std::vector<std::string>& of) {
+        return std::pair(of.size(), words[from + of.size() - 1].text == of.back());
+      };
+      if (found == nullptr || rank(name) > rank(*found)) found = &name;
     }
     return found;
   }
@@ -121,8 +146,9 @@ bool is_there(const Model& model, const Task& task, const std::vector<std::strin
   const auto ends_so = [&](std::string_view called) {
     const std::vector<std::string> own = split(fold_case(called));
     return own.size() >= name.size() &&
-           std::equal(name.begin(), name.end(),
-                      own.end() - static_cast<std::ptrdiff_t>(name.size()));
+           std::equal(name.begin(), name.end() - 1,
+                      own.end() - static_cast<std::ptrdiff_t>(name.size())) &&
+           is_same_noun(name.back(), own.back());
   };
   if (const auto& fixture = model.scenes[task.scene].fixture) {
     // A folder of assets is all the name that a fixture has.

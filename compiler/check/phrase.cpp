@@ -8,9 +8,9 @@
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
 #include "compiler/define/wording.h"
+#include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
 #include "runtime/plan/axes.h"
-#include "runtime/plan/text_rule.h"
 
 namespace probe::sema {
 namespace {
@@ -215,8 +215,10 @@ struct TaskLanguage {
 
   void check_sentence() const {
     const Span& span = task.say_span.is_none() ? task.span : task.say_span;
-    if (task.prompt.empty()) {
-      reporter.report(Situation::kNoWords, span, "the instruction of `" + task.name + "` is empty");
+    if (is_blank(task.prompt)) {
+      reporter.report(Situation::kNoWords, span,
+                      "the instruction of `" + task.name +
+                          (task.prompt.empty() ? "` is empty" : "` has no words"));
     } else if (task.prompt.size() > kMaxPromptBytes) {
       reporter.report(Situation::kPromptTooLong, span,
                       "the instruction of `" + task.name + "` is longer than " +
@@ -224,7 +226,7 @@ struct TaskLanguage {
     } else if (task.prompt.find_first_of("{}") != std::string::npos) {
       reporter.report(Situation::kBraces, span,
                       "braces are left in the instruction of `" + task.name + "`");
-    } else if (const char* defect = plan::find_text_defect(task.prompt)) {
+    } else if (const std::string defect = defect_of(task.prompt); !defect.empty()) {
       reporter.report(Situation::kPromptForm, span,
                       "the instruction of `" + task.name + "` " + defect);
     }

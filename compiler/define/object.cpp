@@ -6,6 +6,7 @@
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::sema {
 namespace {
@@ -106,7 +107,7 @@ struct ObjectReader {
   }
   void operator()(const syntax::NameStmt& stmt) {
     object.text = spelled(stmt.text);
-    if (object.text.text.find_first_not_of(' ') == std::string::npos)
+    if (is_blank(object.text.text))
       context.report(Situation::kNoWords, object.text.span, "an object's name has no words");
     check_text(context.diagnostics, object.text, "an object's name");
     object.bare = stmt.bare;
@@ -119,6 +120,8 @@ struct ObjectReader {
                   {},
                   {}};
     if (const auto axis = phrase_axis(context.diagnostics, stmt.axis)) phrase.axis = *axis;
+    if (is_blank(phrase.text.text))
+      context.report(Situation::kNoWords, phrase.text.span, "a phrase has no words");
     check_text(context.diagnostics, phrase.text, "a phrase");
     if (!compile_query(context, file, stmt.means, phrase.means)) return;
     phrase.means_text = std::string(context.sources.text(file[stmt.means].span));

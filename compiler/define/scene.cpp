@@ -16,6 +16,7 @@ struct SceneReader {
   Context& context;
   Scene& scene;
   bool has_surface = false, has_physics = false, has_backdrop = false, has_cameras = false;
+  bool has_joints = false;
 
   void operator()(const syntax::SceneRobotStmt& stmt) {
     const auto robot = context.symbols.robots.find(stmt.robot, context.diagnostics);
@@ -29,6 +30,7 @@ struct SceneReader {
     }
   }
   void operator()(const syntax::JointsStmt& stmt) {
+    has_joints = true;
     scene.joints.clear();
     scene.joints_span = stmt.span;
     // Lengths and angles mix here; each is checked against its joint when the robot is known.
@@ -129,8 +131,18 @@ struct SceneReader {
   }
 };
 
+// Which statements stand in the scene itself, and not in one that it copies.
+struct Own {
+  bool joints = false, physics = false;
+};
+
+// What is underlined was written for another scene: this one does not fit it.
+void name_copy(Diagnostic& said, const Scene& scene, bool is_own) {
+  if (!is_own) said.label(scene.span, "copied by `" + scene.name + "`");
+}
+
 // A world refuses joints that begin farther beyond a limit than rounding explains.
-void check_joint_limits(Context& context, const Scene& scene, const Robot& robot) {
+void check_joint_limits(Context& context, const Scene& scene, const Robot& robot, Own own) {
   if (!robot.model) return;
   constexpr double kRounding = 1e-3;  // m or rad, as in runtime/world
   for (std::size_t i = 0; i < scene.joints.size(); ++i) {
@@ -141,49 +153,51 @@ void check_joint_limits(Context& context, const Scene& scene, const Robot& robot
       continue;
     const double q = scene.joints[i].si();
     if (q >= joint.lower - kRounding && q <= joint.upper + kRounding) continue;
-    context
-        .report(Situation::kJointLimit, scene.joints_span,
-                fmt::format("joint `{}` starts at {:.6g}, beyond its limits of {:.6g} and {:.6g}",
-                            joint.name, q, joint.lower, joint.upper))
-        .point("number " + std::to_string(i + 1));
+    Diagnostic& said = context.report(
+        Situation::kJointLimit, scene.joints_span,
+        fmt::format("joint `{}` starts at {:.6g}, beyond its limits of {:.6g} and {:.6g}",
+                    joint.name, q, joint.lower, joint.upper));
+    name_copy(said.point("number " + std::to_string(i + 1)), scene, own.joints);
   }
 }
 
-void check_joints(Context& context, const Scene& scene) {
+void check_joints(Context& context, const Scene& scene, Own own) {
   if (scene.robot == RobotId::kNone || scene.joints_span.is_none()) return;
   const Robot& robot = context.model.robots[scene.robot];
   if (scene.joints.size() != robot.drives.size()) {
-    context.report(Situation::kJointCount, scene.joints_span,
-                   "expected " + std::to_string(robot.drives.size()) +
-                       " joints, one per drive of `" + robot.name + "`, found " +
-                       std::to_string(scene.joints.size()));
+    Diagnostic& said = context.report(Situation::kJointCount, scene.joints_span,
+                                      "expected " + std::to_string(robot.drives.size()) +
+                                          " joints, one per drive of `" + robot.name + "`, found " +
+                                          std::to_string(scene.joints.size()));
+    name_copy(said, scene, own.joints);
     return;
   }
   for (std::size_t i = 0; i < scene.joints.size(); ++i) {
     const bool slides = robot.drives[i].stiffness.dimension == dim::kLinearStiffness;
     const Dimension wanted = slides ? dim::kLength : dim::kAngle;
     if (scene.joints[i].dimension == wanted) continue;
-    context
-        .report(Code::P0302, scene.joints_span,
-                "expected " + name_of(wanted) + " for joint `" + robot.drives[i].joint.text +
-                    "`, found " + name_of(scene.joints[i].dimension))
-        .point("number " + std::to_string(i + 1));
+    Diagnostic& said =
+        context.report(Code::P0302, scene.joints_span,
+                       "expected " + name_of(wanted) + " for joint `" + robot.drives[i].joint.text +
+                           "`, found " + name_of(scene.joints[i].dimension));
+    name_copy(said.point("number " + std::to_string(i + 1)), scene, own.joints);
   }
-  check_joint_limits(context, scene, robot);
+  check_joint_limits(context, scene, robot, own);
 }
 
 // A control step is a whole number of physics steps.
-void check_rates(Context& context, const Scene& scene) {
+void check_rates(Context& context, const Scene& scene, Own own) {
   if (scene.robot == RobotId::kNone || scene.physics_hz == 0) return;
   const double control_hz = context.model.robots[scene.robot].control_hz;
   if (control_hz == 0) return;
   const double substeps = scene.physics_hz / control_hz;
   if (substeps >= 1 && substeps <= plan::kMaxSubsteps && substeps == std::floor(substeps)) return;
-  context
-      .report(Situation::kSubsteps, scene.physics_span,
-              "expected a whole number of physics steps in a control step, found " +
-                  fmt::format("{:.6g}", substeps))
-      .help("the robot is controlled at " + fmt::format("{:.6g}", control_hz) +
+  Diagnostic& said =
+      context.report(Situation::kSubsteps, scene.physics_span,
+                     "expected a whole number of physics steps in a control step, found " +
+                         fmt::format("{:.6g}", substeps));
+  name_copy(said, scene, own.physics);
+  said.help("the robot is controlled at " + fmt::format("{:.6g}", control_hz) +
             "Hz: write a multiple of that, such as `500Hz` for 5Hz");
 }
 
@@ -205,6 +219,7 @@ void check_photos(Context& context, const Scene& scene) {
 }  // namespace
 
 void define_scenes(Context& context) {
+  Own own;
   const auto read = [&](const Declared<syntax::SceneDecl>& declared, Scene& scene) {
     SceneReader reader{context, scene};
     const auto errors = context.mistakes();
@@ -212,6 +227,7 @@ void define_scenes(Context& context) {
     if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
     if (reader.has_backdrop) scene.backdrop_z = scene.surface_z;
     if (reader.has_cameras) scene.cameras_z = scene.surface_z;
+    own = {reader.has_joints, reader.has_physics};
     if (context.mistakes() == errors) check_photos(context, scene);
   };
   const auto complete = [&](Scene& scene, bool is_read) {
@@ -227,8 +243,8 @@ void define_scenes(Context& context) {
     need(scene.physics_hz != 0, "physics");
     if (scene.robot == RobotId::kNone) return;
     scene.broken = context.model.robots[scene.robot].broken;
-    if (!scene.broken) check_joints(context, scene);
-    check_rates(context, scene);
+    if (!scene.broken) check_joints(context, scene, own);
+    check_rates(context, scene, own);
   };
   define_records(context, context.symbols.scenes, context.symbols.scene_decls, context.model.scenes,
                  read, complete);

@@ -76,7 +76,13 @@ SetReader::Members SetReader::read_node(const syntax::File&, const Span&,
     const auto found = context_.symbols.tasks.find(name, *diagnostics_);
     if (!found) continue;
     const auto id = static_cast<TaskId>(*found);
-    if (seen.has(id)) continue;
+    if (seen.has(id)) {
+      diagnostics_
+          ->report(Code::P0203, name.span,
+                   "`" + std::string(name.text) + "` is listed twice")
+          .severity = Severity::kWarning;  // it is one member, as it is in a union
+      continue;
+    }
     if (context_.symbols.task_decls[*found].abstract) {
       diagnostics_
           ->report(Situation::kAbstractMember, name.span,
@@ -151,12 +157,10 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span& sp
   draws.resize(sample.count.value);
   Mask kept(context_.model.tasks.size());
   for (const auto& [draw, id] : draws) kept.add(id);
-  const Mask all(context_.model.tasks.size(), members);
   std::erase_if(members, [&](TaskId id) { return !kept.has(id); });
   for (const TaskId id : members) {
     const TaskId baseline = context_.model.tasks[id].baseline;
-    if (baseline != TaskId::kNone && all.has(baseline) && !kept.has(baseline))
-      cuts_.push_back({id, span});
+    if (baseline != TaskId::kNone && !kept.has(baseline)) cuts_.push_back({id, span});
   }
   return members;
 }

@@ -3,7 +3,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/set.h"
-#include "compiler/names/texts.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 namespace {
@@ -14,6 +14,7 @@ struct SuiteReader {
   const syntax::File& file;
   Suite& suite;
   bool has_tasks = false, has_seeds = false;
+  Span prefix_span = {};
 
   void operator()(const syntax::SuiteTasksStmt& stmt) {
     has_tasks = true;
@@ -27,8 +28,38 @@ struct SuiteReader {
     }
   }
   void operator()(const syntax::PrefixStmt& stmt) {
-    check_text(context.diagnostics, spelled(stmt.prefix), "a prefix");
-    suite.prefix = stmt.prefix.value;
+    prefix_span = stmt.prefix.span;
+    const std::string& text = stmt.prefix.value;
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto is_part = [&](char c) { return is_letter(c) || c == '_' || (c >= '0' && c <= '9'); };
+    if (text.size() > plan::kMaxNameBytes) {
+      context.report(Situation::kTextTooLong, prefix_span,
+                     "a prefix has at most " + std::to_string(plan::kMaxNameBytes) +
+                         " bytes, found " + std::to_string(text.size()));
+    } else if (text.empty() || !is_letter(text[0]) ||
+               !std::all_of(text.begin(), text.end(), is_part)) {
+      context
+          .report(Situation::kTextForm, prefix_span,
+                  "a prefix is letters, digits and `_`, a letter first")
+          .help("a task is also called by its name with the prefix before it");
+    } else {
+      suite.prefix = text;
+    }
+  }
+  // Asked for by either name, a task must be the only one that is meant.
+  void check_prefix() const {
+    if (suite.prefix.empty()) return;
+    for (const TaskId id : suite.members) {
+      const std::string& name = context.model.tasks[id].name;
+      const auto other = context.symbols.tasks.peek(suite.prefix + name);
+      if (!other) continue;
+      const std::string full = suite.prefix + name;
+      context
+          .report(Code::P0203, prefix_span,
+                  "with it, `" + name + "` is called `" + full + "` as another task is")
+          .label(context.symbols.task_decls[*other].name.span, "this one");
+      return;
+    }
   }
   void operator()(const syntax::SeedsStmt& stmt) {
     has_seeds = true;
@@ -66,6 +97,7 @@ void define_suites(Context& context) {
     }
     SuiteReader reader{context, sets, *declared.file, suite};
     for (const syntax::SuiteStmt& stmt : node.body) std::visit(reader, stmt);
+    reader.check_prefix();
     suite.broken = !declared.decl->complete || !reader.has_tasks;
     if (declared.decl->complete && !reader.has_tasks)
       context.report(Situation::kStatementMissing, suite.span,

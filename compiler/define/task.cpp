@@ -113,6 +113,7 @@ struct TaskReader {
   void operator()(const syntax::PoseStmt& stmt) {
     PoseOverride pose;
     field(pose.object, context.symbols.objects, stmt.object);
+    pose.span = stmt.object.span;
     const auto turns = read_turns(context, stmt.poses);
     if (!turns || pose.object == ObjectId::kNone) {
       poisoned = true;

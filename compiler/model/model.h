@@ -257,6 +257,7 @@ struct Template {
 
 struct PoseOverride {
   ObjectId object = ObjectId::kNone;
+  Span span;  // of the object's name
   std::vector<Turn> turns;
 };
 

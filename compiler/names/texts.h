@@ -2,6 +2,7 @@
 // where it is written.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "compiler/diag/diagnostic.h"
@@ -9,7 +10,10 @@
 
 namespace probe::sema {
 
-// P0304 for a text in another form than a plan keeps, or longer. `what`: "the name of an object".
+// What is wrong with a text that people and policies read, beside its length: "holds the invisible
+// character U+200B". Empty when nothing is.
+std::string defect_of(std::string_view text);
+// P0304 for a text with a defect or longer than a plan keeps. `what`: "the name of an object".
 void check_text(Diagnostics& diagnostics, const Spelled& text, std::string_view what);
 // P0304 for a name that is longer than a plan keeps.
 void check_name(Diagnostics& diagnostics, const syntax::Name& name);

@@ -43,4 +43,48 @@ std::string fold_case(std::string_view text) {
   return {reinterpret_cast<const char*>(folded.get()), static_cast<std::size_t>(size)};
 }
 
+namespace {
+
+// Letters without cases, and the marks upon them: Arabic, Indic scripts and others.
+bool is_joined(char32_t code) {
+  const auto category = utf8proc_category(static_cast<utf8proc_int32_t>(code));
+  return category == UTF8PROC_CATEGORY_LO || category == UTF8PROC_CATEGORY_MN ||
+         category == UTF8PROC_CATEGORY_MC;
+}
+
+}  // namespace
+
+std::optional<char32_t> find_invisible(std::string_view text) {
+  char32_t before = 0;
+  while (!text.empty()) {
+    const Utf8Char character = first_utf8(text);
+    if (character.bytes == 0) return std::nullopt;
+    text.remove_prefix(character.bytes);
+    const char32_t code = character.code;
+    const bool is_joiner = code == 0x200c || code == 0x200d;
+    if (is_joiner) {
+      if (!is_joined(before) || text.empty() || !is_joined(first_utf8(text).code)) return code;
+    } else if (code >= 0x80) {
+      const utf8proc_property_t& property =
+          *utf8proc_get_property(static_cast<utf8proc_int32_t>(code));
+      if (property.ignorable || property.category == UTF8PROC_CATEGORY_ZL ||
+          property.category == UTF8PROC_CATEGORY_ZP || (code >= 0xfff9 && code <= 0xfffb))
+        return code;
+    }
+    before = code;
+  }
+  return std::nullopt;
+}
+
+bool is_blank(std::string_view text) {
+  while (!text.empty()) {
+    const Utf8Char character = first_utf8(text);
+    if (character.bytes == 0) return false;
+    if (utf8proc_category(static_cast<utf8proc_int32_t>(character.code)) != UTF8PROC_CATEGORY_ZS)
+      return false;
+    text.remove_prefix(character.bytes);
+  }
+  return true;
+}
+
 }  // namespace probe

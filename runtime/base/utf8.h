@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,15 @@ std::size_t find_bad_utf8(std::string_view text);
 // The text without its cases, composed: what two spellings of one word have in common. As it is
 // where it is no UTF-8.
 std::string fold_case(std::string_view text);
+
+// The first character of a text that nobody sees: what Unicode ignores by default (spaces of no
+// width, marks that turn the direction of reading, tags, selectors) and separators of lines. The
+// two joiners count where they join nothing: outside of scripts without cases, some of which are
+// not spelt without them. Nothing in what is no UTF-8.
+std::optional<char32_t> find_invisible(std::string_view text);
+
+// Whether a text is spaces, of any width, and nothing else.
+bool is_blank(std::string_view text);
 
 // C0, DEL and C1, which terminals obey.
 constexpr bool is_control(char32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }

@@ -59,3 +59,29 @@ TEST_CASE("a published sentence that tells of what is not there is kept under an
       "variant w of v { light night }");
   CHECK_MESSAGE(a->codes() == "", a->said());
 }
+
+TEST_CASE("a name in the plural is a mention, too") {
+  const auto thing = [](const std::string& name) {
+    return "object thing like pale { name \"" + name + "\" }\n";
+  };
+  const std::pair<const char*, const char*> plurals[] = {{"carrot", "carrots"},
+                                                         {"box", "boxes"},
+                                                         {"dish", "dishes"},
+                                                         {"berry", "berries"},
+                                                         {"knife", "knives"},
+                                                         {"shelf", "shelves"},
+                                                         {"green cube", "green cubes"},
+                                                         {"tomato", "tomatoes"},
+                                                         {"tray lid", "tray lids"},
+                                                         {"toy", "toys"}};
+  for (const auto& [one, many] : plurals) {
+    CAPTURE(one);
+    CHECK(codes(std::string("put the ") + many + " on {target}", thing(one)) == "P0404");
+    CHECK(codes(std::string("put the ") + one + " on {target}", thing(many)) == "P0404");
+  }
+  // `red block` may be meant by "blocks", and no plural is made of what only looks like one.
+  CHECK(codes("put the blocks on {target}", thing("block")) == "");
+  CHECK(codes("put the gas on {target}", thing("ga")) == "P0404");
+  CHECK(codes("put the glass on {target}", thing("glas")) == "");
+  CHECK(codes("put the news on {target}", thing("ne")) == "");
+}

@@ -130,3 +130,48 @@ TEST_CASE("names that differ in case alone are the same words") {
                            "task t like red_on_tray { distractors other }")
             ->codes() == "P0405");
 }
+
+TEST_CASE("an instruction has words, and nothing in it is hidden") {
+  const auto said = [](const std::string& words) {
+    return analyze_with_suite("variant v of red_on_tray { say \"" + words + "\" }");
+  };
+  for (const char* blank : {"", " ", "\u00a0 ", "\u3000"}) {
+    const auto a = said(blank);
+    CAPTURE(a->said());
+    CHECK(a->codes() == "P0406");
+    CHECK(a->underlined() == std::string("say \"") + blank + "\"");
+  }
+  for (const char* hidden : {"\u200b", "\u202e", "\u2067", "\ufeff", "\u00ad"}) {
+    const auto a = said(std::string("put {source}") + hidden + " on {target}");
+    CAPTURE(a->said());
+    CHECK(a->codes() == "P0406");
+    CHECK(a->said().find("holds the invisible character U+") != std::string::npos);
+    CHECK(a->underlined().starts_with("say "));
+  }
+  // A word of Persian is spelt with a joiner.
+  CHECK(said("\u0645\u06cc\u200c\u062e\u0648\u0627\u0647\u0645 {source} {target}")->codes() == "");
+}
+
+TEST_CASE("a pose is of an object that the task has") {
+  const auto a =
+      analyze_with_suite("variant v of red_on_tray { pose blue yaw 90deg, yaw 90deg; say take }");
+  CHECK(a->codes() == "P0404");
+  CHECK(a->underlined() == "blue");
+  CHECK_MESSAGE(a->said().find("`blue` is not in the scene of `v`") != std::string::npos,
+                a->said());
+  CHECK(analyze_with_suite(
+            "variant v of red_on_tray { distractors blue; pose blue yaw 90deg, yaw 90deg }")
+            ->codes() == "");
+  // What a task copies may be of an object that it has no more, and a pattern is of any.
+  CHECK(analyze_with_suite("variant v of red_on_tray { pose red yaw 90deg, yaw 90deg }\n"
+                           "task w like v { source blue }")
+            ->codes() == "");
+  CHECK(analyze_with_suite("abstract task b like base { pose blue yaw 90deg, yaw 90deg }\n"
+                           "task w like b { source red; target tray }")
+            ->codes() == "");
+  // One line in many tasks is said once.
+  CHECK(analyze_with_suite("variant dark of red_on_tray { light night }\n"
+                           "derive \"{t}_x\" for t in { red_on_tray, dark } { pose blue yaw 90deg, "
+                           "yaw 90deg; say take }")
+            ->codes() == "P0404");
+}

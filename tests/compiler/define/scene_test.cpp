@@ -31,3 +31,28 @@ TEST_CASE("joints start within their limits") {
   CHECK(a->said().find("joint `waist` starts at 1.2, beyond its limits of -1 and 1") !=
         std::string::npos);
 }
+
+TEST_CASE("a scene that copies joints or a rate which do not fit its robot is shown beside them") {
+  const auto robot = [](const std::string& name, const std::string& hz, const std::string& drives) {
+    return "robot " + name +
+           " { urdf \"arm/arm.urdf\"; tcp tool; fingers left opens +y, right opens -y" +
+           "; control ee_delta_pose " + hz +
+           "Hz\n drive waist stiffness 100Nm/rad damping 10Nms/rad limit 20Nm\n" + drives +
+           " grip 1cm .. 4cm friction 2 patch 1cm }\n" + "camera c like eye { mount " + name +
+           ".base at (0cm, 0cm, 1m) look (1, 0, -1) }\n" + "scene s like bench { robot " + name +
+           " at (50cm, 0cm) yaw 180deg; camera c }";
+  };
+  const auto a = analyze_with_suite(
+      robot("stiff", "7", "drive l, r stiffness 1000N/m damping 200Ns/m limit 60N\n"));
+  REQUIRE(a->codes() == "P0304");
+  CHECK(a->underlined() == "500Hz");
+  CHECK_MESSAGE(a->said().find("copied by `s`") != std::string::npos, a->said());
+  const auto joints = analyze_with_suite(robot("single", "5", ""));
+  CHECK_MESSAGE(joints->said().find("expected 1 joints, one per drive of `single`, found 3") !=
+                    std::string::npos,
+                joints->said());
+  CHECK(joints->said().find("copied by `s`") != std::string::npos);
+  CHECK(analyze_with_suite("scene s like bench { joints (1.2rad, 2cm, 2cm) }")
+            ->said()
+            .find("copied by") == std::string::npos);
+}

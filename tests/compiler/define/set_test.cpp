@@ -67,3 +67,27 @@ TEST_CASE("a sample is a choice that a new task disturbs by at most one") {
   CHECK(kept >= 2);
   CHECK(analyze_with_suite("set some = sample 3 of tasks seed 7")->codes() == "P0304");
 }
+
+TEST_CASE("a sample of variants is told of baselines that its suite does not run") {
+  const std::string tasks =
+      "variants of red_on_tray { a { horizon 61 steps }\n b { horizon 62 steps }\n c { horizon 63 "
+      "steps } }\n";
+  const auto codes = [&](const std::string& set) {
+    return analyze_with_suite(tasks + "suite s { tasks " + set + "; seeds 1 }")->codes();
+  };
+  CHECK(codes("sample 2 of (variants of { red_on_tray }) seed 7") == "P0706");
+  CHECK(codes("sample 2 of { a, b, c } seed 7") == "P0706");
+  CHECK(codes("{ red_on_tray } | sample 2 of (variants of { red_on_tray }) seed 7") == "");
+  CHECK(codes("variants of { red_on_tray }") == "");
+}
+
+TEST_CASE("a task that a set names twice is said, tasks that two sets share are not") {
+  const auto a = analyze_with_suite(
+      "variant v of red_on_tray { light night }\n"
+      "set s = { red_on_tray, v, red_on_tray }");
+  CHECK(a->codes() == "P0203");
+  CHECK_MESSAGE(a->said().find("`red_on_tray` is listed twice") != std::string::npos, a->said());
+  CHECK(analyze_with_suite("variant v of red_on_tray { light night }\n"
+                           "suite s { tasks { red_on_tray, v } | { v }; seeds 1 }")
+            ->codes() == "");
+}

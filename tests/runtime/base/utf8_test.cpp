@@ -33,4 +33,29 @@ TEST_CASE("terminals obey the controls below a blank, DEL and those from 80 to 9
   for (const char32_t code : {0x20, 0x7e, 0xa0, 0x9d6f}) CHECK_FALSE(is_control(code));
 }
 
+TEST_CASE("a character that nobody sees is found, joiners of scripts that need them are not") {
+  CHECK(find_invisible("put the caf\u00e9 cup on \u676f").has_value() == false);
+  // A zero width space, both marks of direction, an override, an isolate, a soft hyphen, a byte
+  // order mark, a tag, a line separator, a filler.
+  for (const char* hidden : {"\u200b", "\u200e", "\u200f", "\u202e", "\u2066", "\u00ad", "\ufeff",
+                             "\U000e0041", "\u2028", "\u3164", "\ufe0f"}) {
+    CAPTURE(hidden);
+    CHECK(find_invisible(std::string("put") + hidden + " it") == first_utf8(hidden).code);
+  }
+  // Persian and Hindi are spelt with them; between other letters they are as hidden as the rest.
+  CHECK_FALSE(find_invisible("\u0645\u06cc\u200c\u062e\u0648\u0627\u0647\u0645"));
+  CHECK_FALSE(find_invisible("\u0915\u094d\u200d\u0937"));
+  CHECK(find_invisible("cu\u200dp") == U'\u200d');
+  CHECK(find_invisible("\u200cup") == U'\u200c');
+  CHECK(find_invisible("\u0645\u200c") == U'\u200c');
+}
+
+TEST_CASE("a text is blank when all of it is spaces of any width") {
+  CHECK(is_blank(""));
+  CHECK(is_blank("  \u00a0\u3000\u2003 "));
+  CHECK_FALSE(is_blank(" a "));
+  CHECK_FALSE(is_blank("\u676f"));
+  CHECK_FALSE(is_blank("\xff"));
+}
+
 }  // namespace probe
