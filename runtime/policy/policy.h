@@ -3,6 +3,7 @@
 // privileged view; a wire client never does.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -34,6 +35,8 @@ struct Proprioception {
   double openness = 1;            // 0 closed .. 1 open
   std::vector<double> joints;     // rad and m, in the plan's drive order
   std::size_t finger_joints = 0;  // how many of them, the last, move fingers
+
+  std::size_t arm_joints() const { return joints.size() - std::min(finger_joints, joints.size()); }
 };
 
 // An object's collision hulls and where it is; all but the last two are fixed in an episode.

@@ -56,7 +56,7 @@ RawAction ChunkQueue::take() {
 }
 
 RawAction ChunkQueue::blended() const {
-  RawAction sum{};
+  RawAction sum(answers_.front().front().size(), 0.0);
   double weight = 1, total = 0;
   for (const auto& answer : answers_) {  // oldest first
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * answer.front()[i];

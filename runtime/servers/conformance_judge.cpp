@@ -181,10 +181,41 @@ bool is_unit(GripperRange range) {
   return range == GripperRange::kUnit || range == GripperRange::kUnitInverted;
 }
 
-// The range of number 7, against the profile's.
+// Of joints, which are not compared with the tool's pose: where they are, or how far they step.
+Check judge_joints(const Profile& profile, const std::vector<RawAction>& actions) {
+  const policy::Proprioception arm = known_state(false);
+  const bool are_positions = profile.action_form == ActionForm::kJoints;
+  std::vector<double> ways;
+  for (const RawAction& action : actions) {
+    double way = 0;
+    for (std::size_t i = 0; i < arm.arm_joints(); ++i)
+      way = std::max(way, std::abs(action[i] - (are_positions ? arm.joints[i] : 0)));
+    ways.push_back(way);
+  }
+  const double usual = median(ways), longest = *std::max_element(ways.begin(), ways.end());
+  Check check{"joints",
+              Verdict::kFine,
+              "numbers 1 to " + std::to_string(arm.arm_joints()) + ": " +
+                  text_of(range_of(actions, 0, arm.arm_joints())) + "; a step moves a joint by " +
+                  short_number(usual) + " rad, at most " + short_number(longest) + " rad",
+              {}};
+  if (longest == 0) {
+    check.verdict = Verdict::kUnclear;
+    check.found = "every answer stays where it is";
+  } else if (usual > kUsualTurn) {
+    check.verdict = Verdict::kWrong;
+    check.found += are_positions ? "; they are no positions near the arm's" : "; they are no steps";
+    check.fix = {std::string("action.form = ") + (are_positions ? "joint_steps" : "joints")};
+  }
+  return check;
+}
+
+// The range of the last number, against the profile's.
 Check judge_gripper(const Profile& profile, const std::vector<RawAction>& actions) {
-  const Range range = range_of(actions, 6, 1);
-  Check check{"gripper", Verdict::kFine, "number 7: " + text_of(range), {}};
+  const std::size_t last = actions[0].size() - 1;
+  const Range range = range_of(actions, last, 1);
+  Check check{
+      "gripper", Verdict::kFine, "number " + std::to_string(last + 1) + ": " + text_of(range), {}};
   const bool inverted = profile.action_gripper == GripperRange::kSignedInverted ||
                         profile.action_gripper == GripperRange::kUnitInverted;
   const std::string ending = inverted ? "_inverted" : "";
@@ -209,10 +240,11 @@ Check judge_gripper(const Profile& profile, const std::vector<RawAction>& action
 Check judge_polarity(const Profile& profile, const std::vector<std::vector<RawAction>>& chunks) {
   int closes = 0, read = 0;
   for (const auto& chunk : chunks) {
-    RawAction only{};
-    only[6] = chunk.front()[6];
-    Profile gripper = profile;
-    gripper.action_statistics = {};  // the others' numbers are judged elsewhere
+    RawAction only(robot::kActionSize, 0.0);
+    only.back() = chunk.front().back();
+    Profile gripper = profile;  // the others' numbers are judged elsewhere
+    gripper.action_statistics = {};
+    gripper.action_form = ActionForm::kDelta;
     const auto action = to_action(gripper, only);
     if (!action) continue;
     ++read;
@@ -244,6 +276,10 @@ std::vector<Check> judge_answers(const Profile& profile,
   std::vector<RawAction> raw, actions;
   for (const auto& chunk : chunks) raw.insert(raw.end(), chunk.begin(), chunk.end());
   for (const RawAction& action : raw) actions.push_back(denormalised(profile, action));
+  if (names_joints(profile.action_form)) {
+    return {judge_chunks(profile, chunks), judge_joints(profile, actions),
+            judge_gripper(profile, actions), judge_polarity(profile, chunks)};
+  }
   return {judge_chunks(profile, chunks), judge_translation(profile, actions, raw),
           judge_rotation(profile, actions), judge_gripper(profile, actions),
           judge_polarity(profile, chunks)};

@@ -15,6 +15,12 @@ bool is_masked(const Statistics& statistics, std::size_t i) {
   return i < statistics.mask.size() && statistics.mask[i] == 0;
 }
 
+// How many numbers it is of.
+std::size_t size_of(const Statistics& statistics) {
+  return statistics.kind == Normalisation::kGaussian ? statistics.mean.size()
+                                                     : statistics.low.size();
+}
+
 // The tool's rotation when it points down, from which BridgeData counts.
 Quat top_down() {
   Mat3 rotation;
@@ -73,38 +79,68 @@ Status check_limit(double value, double limit, const char* what, const char* uni
                         " (profile fields `action.normalised`, `" + field + "`)");
 }
 
+double share_of(double number) { return std::clamp(number, -1.0, 1.0); }
+
 // Three numbers that are a share of what the robot does in a step, held to it.
 void scale(ActionUnits units, double unit, double* numbers) {
   const double size = length(numbers);
   const double shorter = units == ActionUnits::kBall && size > 1 ? 1 / size : 1;
   for (int i = 0; i < 3; ++i) {
-    const double share =
-        units == ActionUnits::kBox ? std::clamp(numbers[i], -1.0, 1.0) : numbers[i] * shorter;
+    const double share = units == ActionUnits::kBox ? share_of(numbers[i]) : numbers[i] * shorter;
     numbers[i] = share * unit;
   }
+}
+
+// The pose that an absolute action asks for.
+Pose pose_of(const Profile& profile, const RawAction& a) {
+  const Vec3 at(a[0], a[1], a[2]), angles(a[3], a[4], a[5]);
+  return {at, profile.action_rotation == RotationForm::kEuler
+                  ? robot::from_rpy(angles)
+                  : robot::from_rotation_vector(angles)};
+}
+
+// rad; farther outside a joint's limits than policies overshoot.
+constexpr double kBeyondJoint = 0.5;
+
+// The pose that the joints asked for bring the tool to.
+Result<Pose> pose_of_joints(const Profile& profile, const RawAction& numbers, const ArmNow& arm) {
+  const std::size_t count = numbers.size() - 1;
+  if (arm.chain == nullptr || arm.chain->joint_count() != count || arm.joints.size() != count) {
+    return bad_conversion("an action of " + std::to_string(count) +
+                          " joints and a gripper, for an arm of " +
+                          std::to_string(arm.joints.size()) + " (profile field `action.form`)");
+  }
+  std::vector<double> joints(numbers.begin(), numbers.end() - 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (profile.action_form == ActionForm::kJointSteps) joints[i] += arm.joints[i];
+    const double low = arm.chain->lower()[i], high = arm.chain->upper()[i];
+    if (joints[i] < low - kBeyondJoint || joints[i] > high + kBeyondJoint) {
+      return bad_conversion("joint " + std::to_string(i + 1) + " is to be at " +
+                            std::to_string(joints[i]) + " rad, its limits are " +
+                            std::to_string(low) + " and " + std::to_string(high) +
+                            " (profile fields `action.form`, `action.units`)");
+    }
+    joints[i] = std::clamp(joints[i], low, high);
+  }
+  return arm.chain->pose(joints);
 }
 
 // The pose to be at as the change that brings the controller's target there. Its law is T' =
 // Trans(p) [R, d] Trans(-p) T with p the measured position, so R = R' R_T^-1 and d = t' - p - R (t
 // - p).
-void set_change(const Profile& profile, const ArmNow& arm, policy::Action* action) {
-  policy::Action& a = *action;
-  const Vec3 at(a[0], a[1], a[2]), angles(a[3], a[4], a[5]);
-  const Quat wanted = profile.action_rotation == RotationForm::kEuler
-                          ? robot::from_rpy(angles)
-                          : robot::from_rotation_vector(angles);
-  const Quat turn = wanted * arm.target.rotation.conjugate();
+void set_change(const Pose& wanted, const ArmNow& arm, policy::Action* action) {
+  const Quat turn = wanted.rotation * arm.target.rotation.conjugate();
   const Vec3& from = arm.tool_measured;
-  const Vec3 shift = at - from - turn * (arm.target.position - from);
+  const Vec3 shift = wanted.position - from - turn * (arm.target.position - from);
   const Vec3 vector = robot::to_rotation_vector(turn);
   for (int i = 0; i < 3; ++i) {
-    a[static_cast<std::size_t>(i)] = shift[i];
-    a[static_cast<std::size_t>(i + 3)] = vector[i];
+    (*action)[static_cast<std::size_t>(i)] = shift[i];
+    (*action)[static_cast<std::size_t>(i + 3)] = vector[i];
   }
 }
 
 double denormalised(const Statistics& statistics, std::size_t i, double value) {
-  if (is_masked(statistics, i)) return value;
+  if (is_masked(statistics, i) || i >= size_of(statistics)) return value;
   switch (statistics.kind) {
     case Normalisation::kBound:
       return (value + 1) / 2 * (statistics.high[i] - statistics.low[i]) + statistics.low[i];
@@ -135,6 +171,15 @@ void append(std::vector<double>& numbers, const Vec3& v) {
   numbers.insert(numbers.end(), {v.x(), v.y(), v.z()});
 }
 
+// Statistics have a number for each of an action's; how many those are the robot's joints say.
+Status check_statistics(const Profile& profile, std::size_t numbers) {
+  const std::size_t given = size_of(profile.action_statistics);
+  if (profile.action_statistics.kind == Normalisation::kNone || given == numbers) return {};
+  return bad_conversion("the profile's statistics are of " + std::to_string(given) +
+                        " numbers, an action has " + std::to_string(numbers) +
+                        " (profile field `action.normalised`)");
+}
+
 Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
                                      const policy::Proprioception& measured) {
   Quat rotation = measured.tcp_in_base.rotation;
@@ -146,8 +191,8 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
       layout >= StateLayout::kXyzWxyzOpenness && layout <= StateLayout::kXyzRotvecFingers;
   if (has_pose) append(state, measured.tcp_in_base.position);
   const std::vector<double>& joints = measured.joints;
-  const std::size_t fingers = std::min(measured.finger_joints, joints.size());
-  const auto first_finger = joints.end() - static_cast<std::ptrdiff_t>(fingers);
+  const bool has_fingers = measured.arm_joints() < joints.size();
+  const auto first_finger = joints.begin() + static_cast<std::ptrdiff_t>(measured.arm_joints());
   switch (layout) {
     case StateLayout::kNone:
       break;
@@ -167,7 +212,7 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
       break;
     case StateLayout::kXyzRotvecFingers:
       append(state, robot::to_rotation_vector(rotation));
-      if (fingers == 0)
+      if (!has_fingers)
         return bad_conversion("`state.layout` asks for fingers, the robot has none");
       state.insert(state.end(), first_finger, joints.end());
       break;
@@ -176,13 +221,13 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
       break;
     case StateLayout::kJointsOpenness:
     case StateLayout::kArmJoints:
-      if (fingers == 0)
+      if (!has_fingers)
         return bad_conversion("`state.layout` leaves out the fingers, the robot has none");
       state.assign(joints.begin(), first_finger);
       if (layout == StateLayout::kJointsOpenness) state.push_back(measured.openness);
       break;
     case StateLayout::kFingers:
-      if (fingers == 0) return bad_conversion("`state.more` asks for fingers, the robot has none");
+      if (!has_fingers) return bad_conversion("`state.more` asks for fingers, the robot has none");
       state.assign(first_finger, joints.end());
       break;
     case StateLayout::kOpenness:
@@ -232,6 +277,11 @@ Result<std::vector<double>> to_state(const Profile& profile, StateLayout layout,
 
 RawAction denormalised(const Profile& profile, const RawAction& raw) {
   RawAction action = raw;
+  if (names_joints(profile.action_form) && profile.action_units == ActionUnits::kBox) {
+    for (std::size_t i = 0; i + 1 < action.size(); ++i)
+      action[i] = share_of(action[i]) * profile.action_scale_rad;
+    return action;
+  }
   if (profile.action_units == ActionUnits::kBox || profile.action_units == ActionUnits::kBall) {
     scale(profile.action_units, profile.action_scale_m, action.data());
     scale(profile.action_units, profile.action_scale_rad, action.data() + 3);
@@ -244,18 +294,28 @@ RawAction denormalised(const Profile& profile, const RawAction& raw) {
 }
 
 Result<policy::Action> to_action(const Profile& profile, const RawAction& raw, const ArmNow& arm) {
-  policy::Action action = denormalised(profile, raw);
+  if (auto fit = check_statistics(profile, raw.size()); !fit) return fit.failure();
+  const RawAction numbers = denormalised(profile, raw);
+  policy::Action action{};
+  const bool are_joints = names_joints(profile.action_form);
   const bool is_absolute = profile.action_form == ActionForm::kAbsolute;
-  if (is_absolute) set_change(profile, arm, &action);
+  if (are_joints) {
+    PROBE_ASSIGN(const Pose wanted, pose_of_joints(profile, numbers, arm));
+    set_change(wanted, arm, &action);
+  } else if (is_absolute) {
+    set_change(pose_of(profile, numbers), arm, &action);
+  } else {
+    std::copy_n(numbers.begin(), robot::kActionGripper, action.begin());
+  }
   PROBE_TRY(check_limit(length(action.data()), profile.action_limit_m, "shifts by", "m",
                         "action.limit_m"));
   PROBE_TRY(check_limit(length(action.data() + 3), profile.action_limit_rad, "turns by", "rad",
                         "action.limit_rad"));
-  if (profile.action_rotation == RotationForm::kEuler && !is_absolute) {
+  if (profile.action_rotation == RotationForm::kEuler && !is_absolute && !are_joints) {
     const Vec3 turn = robot::to_rotation_vector(robot::from_rpy({action[3], action[4], action[5]}));
     for (int i = 0; i < 3; ++i) action[static_cast<std::size_t>(i + 3)] = turn[i];
   }
-  PROBE_ASSIGN(action[6], to_gripper(profile, action[6]));
+  PROBE_ASSIGN(action[robot::kActionGripper], to_gripper(profile, numbers.back()));
   return action;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/policy/policy.h"
+#include "runtime/robot/kinematics.h"
 #include "runtime/servers/profile.h"
 #include "runtime/servers/transport.h"
 
@@ -27,14 +28,18 @@ Result<std::vector<double>> to_state(const Profile& profile, StateLayout layout,
 // range.
 RawAction denormalised(const Profile& profile, const RawAction& raw);
 
-// Denormalised, the rotation as a rotation vector, the gripper -1 .. +1. Numbers that already are
-// ours come back bit for bit. Fails (kPolicy), naming the field that would be at fault, on a
-// shift or turn above the profile's limits and on a gripper's number far outside its range.
-// Of an absolute pose these limits hold for what it changes.
 struct ArmNow {
-  Pose target;         // of the controller, base frame
-  Vec3 tool_measured;  // the tool centre point's position, base frame
+  Pose target;                          // of the controller, base frame
+  Vec3 tool_measured;                   // the tool centre point's position, base frame
+  std::span<const double> joints = {};  // measured, of the arm alone, rad
+  const robot::Chain* chain = nullptr;  // of these joints; needed where actions name them
 };
+
+// Denormalised, the rotation as a rotation vector, the gripper -1 .. +1. Numbers that already are
+// ours come back bit for bit; joints become the pose that they bring the tool to. Fails (kPolicy),
+// naming the field that would be at fault, on a shift or turn above the profile's limits, on
+// joints far outside the robot's and on a gripper's number far outside its range. Of a pose, and of
+// joints, the limits on shift and turn hold for what it changes.
 Result<policy::Action> to_action(const Profile& profile, const RawAction& raw,
                                  const ArmNow& arm = {});
 

@@ -61,10 +61,10 @@ std::vector<OpenField> open_fields(const Profile& adapted) {
   // Statistics say what the numbers are, and a pose has no scale.
   if (adapted.action_units == ActionUnits::kUnsaid &&
       adapted.action_statistics.kind == Normalisation::kNone &&
-      adapted.action_form != ActionForm::kAbsolute) {
+      adapted.action_form != ActionForm::kAbsolute && adapted.action_form != ActionForm::kJoints) {
     open.push_back(open_field<ActionUnits>("action.units"));
   }
-  if (adapted.action_rotation == RotationForm::kUnsaid)
+  if (adapted.action_rotation == RotationForm::kUnsaid && !names_joints(adapted.action_form))
     open.push_back(open_field<RotationForm>("action.rotation"));
   return open;
 }

@@ -74,9 +74,11 @@ constexpr Field kFields[] = {
     {"state.more", [](Profile& p) -> Slot { return &p.more_states; },
      "KEY LAYOUT: a state under a key of its own, not normalised; openpi; one line each"},
     {"action.form", [](Profile& p) -> Slot { return &p.action_form; },
-     "a change of the pose each step, or the pose to be at, in the base frame"},
+     "a change of the pose each step, or the pose to be at, in the base frame; the arm's joints to "
+     "be at, rad, or what they change by"},
     {"action.units", [](Profile& p) -> Slot { return &p.action_units; },
-     "of numbers 1 to 6: m and rad; -1 to 1 each, or of length 1 at most, times the scales"},
+     "of all numbers but the gripper's: m and rad; -1 to 1 each, or of length 1 at most, times the "
+     "scales"},
     {"action.scale_m",
      [](Profile& p) -> Slot {
        return Number{&p.action_scale_m, 100};
@@ -90,13 +92,13 @@ constexpr Field kFields[] = {
     {"action.rotation", [](Profile& p) -> Slot { return &p.action_rotation; },
      "numbers 4 to 6 of an action, rad: axis times angle, or roll pitch yaw"},
     {"action.gripper", [](Profile& p) -> Slot { return &p.action_gripper; },
-     "number 7: -1 closed 1 open, 0 closed 1 open, or the other way round"},
+     "the last number: -1 closed 1 open, 0 closed 1 open, or the other way round"},
     {"action.threshold", [](Profile& p) -> Slot { return &p.action_threshold; },
-     "above it number 7 is 1, else the least; none: kept as it is"},
+     "above it the last number is 1, else the least; none: kept as it is"},
     {"action.normalised", [](Profile& p) -> Slot { return &p.action_statistics.kind; },
      "how raw answers are to be taken back; servers usually do it themselves"},
     {"action.low", [](Profile& p) -> Slot { return &p.action_statistics.low; },
-     "bound: what -1 stands for, 7 numbers"},
+     "bound: what -1 stands for, as many numbers as an action has"},
     {"action.high", [](Profile& p) -> Slot { return &p.action_statistics.high; },
      "bound: what 1 stands for"},
     {"action.mean", [](Profile& p) -> Slot { return &p.action_statistics.mean; }, "gaussian"},

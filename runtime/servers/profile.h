@@ -64,11 +64,18 @@ enum class ActionForm {
   kUnsaid,
   kDelta,     // what the pose changes by in a control step
   kAbsolute,  // the pose to be at, in the base frame
+  // Of the arm's joints in the plan's order, as many numbers as it has, before the gripper's.
+  kJoints,      // the positions to be at, rad
+  kJointSteps,  // what they change by in a control step
 };
+inline bool names_joints(ActionForm form) {
+  return form == ActionForm::kJoints || form == ActionForm::kJointSteps;
+}
 enum class ActionUnits {
   kUnsaid,
   kMetric,  // m and rad
-  kBox,     // each number within -1 .. 1, times action.scale_m and action.scale_rad: LIBERO
+  kBox,     // each number within -1 .. 1, times action.scale_m and action.scale_rad: LIBERO, and
+            // DROID's velocities of joints
   kBall,    // shift and turn of length 1 at most, times them: DROID's velocities
 };
 enum class GripperRange {

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "runtime/robot/action.h"
+#include "runtime/servers/protocol.h"
+
 namespace probe::servers {
 namespace {
 
@@ -94,12 +97,26 @@ std::size_t size_of(StateLayout layout) {
 MaybeMistake check_meaning(const Profile& profile) {
   const bool is_scaled =
       profile.action_units == ActionUnits::kBox || profile.action_units == ActionUnits::kBall;
+  const bool are_joints = names_joints(profile.action_form);
+  if (are_joints && !row_of(profile.protocol).has_joint_actions) {
+    return Mistake{"servers that speak " + std::string(to_word(profile.protocol)) +
+                       " are not known to answer with joints",
+                   {"action.form"}};
+  }
+  if (are_joints && profile.action_units == ActionUnits::kBall) {
+    return Mistake{"`action.units = ball` is of shifts and turns, not of joints",
+                   {"action.form", "action.units"}};
+  }
   if (is_scaled && profile.action_statistics.kind != Normalisation::kNone) {
     return Mistake{"`action.units` says what 1 stands for, and so does `action.normalised`",
                    {"action.units", "action.normalised"}};
   }
   if (is_scaled && profile.action_form == ActionForm::kAbsolute) {
     return Mistake{"`action.form = absolute` is a pose in m and rad, which has no scale",
+                   {"action.form", "action.units"}};
+  }
+  if (is_scaled && profile.action_form == ActionForm::kJoints) {
+    return Mistake{"`action.form = joints` is positions in rad, which have no scale",
                    {"action.form", "action.units"}};
   }
   if (!is_scaled && (profile.action_scale_m != 1 || profile.action_scale_rad != 1)) {
@@ -112,9 +129,10 @@ MaybeMistake check_meaning(const Profile& profile) {
 }  // namespace
 
 std::optional<Mistake> find_mistake(const Profile& profile) {
-  constexpr std::size_t kActionSize = 7;
-  if (auto mistake = check_statistics(profile.action_statistics, "action.normalised", "action.",
-                                      kActionSize)) {
+  // 0: as many as the robot has joints.
+  const std::size_t size = names_joints(profile.action_form) ? 0 : robot::kActionSize;
+  if (auto mistake =
+          check_statistics(profile.action_statistics, "action.normalised", "action.", size)) {
     return mistake;
   }
   if (profile.state_layout == StateLayout::kNone &&

@@ -62,6 +62,8 @@ inline constexpr std::array kActionForms = {
     Word<ActionForm>{"unsaid", ActionForm::kUnsaid},
     Word<ActionForm>{"delta", ActionForm::kDelta},
     Word<ActionForm>{"absolute", ActionForm::kAbsolute},
+    Word<ActionForm>{"joints", ActionForm::kJoints},
+    Word<ActionForm>{"joint_steps", ActionForm::kJointSteps},
 };
 inline constexpr std::array kActionUnits = {
     Word<ActionUnits>{"unsaid", ActionUnits::kUnsaid},

@@ -75,6 +75,8 @@ struct ProtocolRow {
   std::string_view path = "/";
   // Whether the protocol has a word for an episode's beginning; null: it has none.
   bool (*has_reset)(std::string_view dialect) = nullptr;
+  // Whether its servers may answer with the arm's joints.
+  bool has_joint_actions = false;
   // Two questions of the same content differ, as they carry the time.
   bool is_timed = false;
   // Where they gather, `make` finds `batch` and `batch_wait_ms` among the address's options.

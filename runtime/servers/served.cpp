@@ -8,20 +8,20 @@
 namespace probe::servers {
 namespace {
 
-constexpr RawAction kServedStill{0, 0, 0, 0, 0, 0, 1};
+constexpr policy::Action kServedStill{0, 0, 0, 0, 0, 0, 1};
 
 class ServedNull final : public ServedPolicy {
  public:
   void reset() override {}
-  Result<std::vector<RawAction>> answer(const Asked&, int count) override {
-    return std::vector<RawAction>(static_cast<std::size_t>(count), kServedStill);
+  Result<std::vector<policy::Action>> answer(const Asked&, int count) override {
+    return std::vector<policy::Action>(static_cast<std::size_t>(count), kServedStill);
   }
 };
 
 class ServedDigest final : public ServedPolicy {
  public:
   void reset() override {}
-  Result<std::vector<RawAction>> answer(const Asked& asked, int count) override {
+  Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
     const Sha256 seen = Hasher()
                             .bytes(std::as_bytes(std::span(asked.picture.bytes)))
                             .hash(sha256(asked.words))
@@ -29,8 +29,8 @@ class ServedDigest final : public ServedPolicy {
     std::uint64_t key = 0;
     for (std::size_t i = 8; i-- > 0;) key = key << 8 | seen.bytes[i];
     policy::Draws draws(key);
-    std::vector<RawAction> actions(static_cast<std::size_t>(count));
-    for (RawAction& action : actions) {
+    std::vector<policy::Action> actions(static_cast<std::size_t>(count));
+    for (policy::Action& action : actions) {
       for (std::size_t i = 0; i < 6; ++i)
         action[i] = (i < 3 ? 0.008 : 0.02) * (2 * draws.uniform() - 1);
       action[6] = draws.uniform() < 0.5 ? -1 : 1;
@@ -45,7 +45,7 @@ class ServedRecorded final : public ServedPolicy {
       : episodes_(std::move(episodes)), begins_anew_(begins_anew) {}
 
   void reset() override { actions_ = nullptr; }
-  Result<std::vector<RawAction>> answer(const Asked& asked, int count) override {
+  Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
     if (actions_ == nullptr || begins_anew_) {
       const auto found =
           episodes_->find(episode_key(to_hex(sha256(std::as_bytes(std::span(asked.picture.bytes)))),
@@ -59,8 +59,8 @@ class ServedRecorded final : public ServedPolicy {
       return bad("picture and instruction begin none of the episodes that are served");
     if (next_ >= actions_->size()) return bad("the episode has no more actions");
     const std::size_t end = std::min(next_ + static_cast<std::size_t>(count), actions_->size());
-    std::vector<RawAction> actions(actions_->begin() + static_cast<std::ptrdiff_t>(next_),
-                                   actions_->begin() + static_cast<std::ptrdiff_t>(end));
+    std::vector<policy::Action> actions(actions_->begin() + static_cast<std::ptrdiff_t>(next_),
+                                        actions_->begin() + static_cast<std::ptrdiff_t>(end));
     next_ = end;
     return actions;
   }
@@ -77,7 +77,7 @@ class ServedSteps final : public ServedPolicy {
   explicit ServedSteps(std::shared_ptr<const RecordedEpisodes> steps) : steps_(std::move(steps)) {}
 
   void reset() override {}
-  Result<std::vector<RawAction>> answer(const Asked& asked, int count) override {
+  Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
     const auto found =
         steps_->find(episode_key(to_hex(sha256(std::as_bytes(std::span(asked.picture.bytes)))),
                                  to_hex(sha256(asked.words))));
@@ -85,8 +85,8 @@ class ServedSteps final : public ServedPolicy {
       return bad("picture and instruction are of no step that is served, or of several");
     const auto& actions = found->second;
     const std::size_t end = std::min(static_cast<std::size_t>(count), actions.size());
-    return std::vector<RawAction>(actions.begin(),
-                                  actions.begin() + static_cast<std::ptrdiff_t>(end));
+    return std::vector<policy::Action>(actions.begin(),
+                                       actions.begin() + static_cast<std::ptrdiff_t>(end));
   }
 
  private:
@@ -95,9 +95,9 @@ class ServedSteps final : public ServedPolicy {
 
 }  // namespace
 
-Result<std::vector<std::vector<RawAction>>> ServedPolicy::answer_all(std::span<const Asked> asked,
-                                                                     int count) {
-  std::vector<std::vector<RawAction>> all;
+Result<std::vector<std::vector<policy::Action>>> ServedPolicy::answer_all(
+    std::span<const Asked> asked, int count) {
+  std::vector<std::vector<policy::Action>> all;
   for (std::size_t i = 0; i < asked.size(); ++i) {
     auto actions = answer(asked[i], count);
     if (!actions) return of_item(actions.failure(), i, asked.size());
@@ -187,9 +187,9 @@ Result<std::string> text_at(const wire::Value& map, std::string_view key) {
   return bad("expected a text `" + std::string(key) + "` among others; got " + wire::describe(map));
 }
 
-wire::Array actions_array(const std::vector<RawAction>& actions) {
+wire::Array actions_array(const std::vector<policy::Action>& actions) {
   std::vector<double> numbers;
-  for (const RawAction& action : actions)
+  for (const policy::Action& action : actions)
     numbers.insert(numbers.end(), action.begin(), action.end());
   return wire::array_f64({static_cast<std::int64_t>(actions.size()), 7}, numbers);
 }

@@ -32,11 +32,11 @@ class ServedPolicy {
   virtual ~ServedPolicy() = default;
   // A protocol's word that an episode begins; of some there is none.
   virtual void reset() = 0;
-  virtual Result<std::vector<RawAction>> answer(const Asked& asked, int count) = 0;
+  virtual Result<std::vector<policy::Action>> answer(const Asked& asked, int count) = 0;
   // Of several worlds at once, each in its order; only of policies that keep nothing between
   // questions. One after the other, unless overridden.
-  virtual Result<std::vector<std::vector<RawAction>>> answer_all(std::span<const Asked> asked,
-                                                                 int count);
+  virtual Result<std::vector<std::vector<policy::Action>>> answer_all(std::span<const Asked> asked,
+                                                                      int count);
 };
 using MakeServedPolicy = std::function<std::unique_ptr<ServedPolicy>()>;
 
@@ -81,6 +81,6 @@ Status check_batch_asked(const ServeOptions& options, std::size_t questions);
 Result<wire::Array> first_picture(const wire::Value& map);
 Result<std::string> text_at(const wire::Value& map, std::string_view key);
 // f64 [n, 7].
-wire::Array actions_array(const std::vector<RawAction>& actions);
+wire::Array actions_array(const std::vector<policy::Action>& actions);
 
 }  // namespace probe::servers

@@ -6,6 +6,7 @@
 
 #include "runtime/base/sha256.h"
 #include "runtime/robot/control.h"
+#include "runtime/robot/robot.h"
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/conversion.h"
@@ -26,6 +27,13 @@ Result<policy::Image> camera_image(const policy::Observation& observation,
                  "the profile wants camera `" + camera + "`, the scene has " +
                      (known.empty() ? "only its first" : known),
                  ""};
+}
+
+Result<robot::Chain> arm_of(const policy::EpisodeStart& start) {
+  if (start.robot == nullptr || start.robot->model == nullptr)
+    return Failure{Fault::kPolicy, "actions of joints need a robot, and there is none", ""};
+  const robot::EeControlSpec& control = start.robot->control;
+  return robot::Chain::create(*start.robot->model, control.tcp_link, control.arm_joints);
 }
 
 }  // namespace
@@ -50,6 +58,8 @@ Result<Request> to_request(const Profile& profile, const policy::Observation& ob
   }
   request.proprioception = observation.proprioception;
   request.step = observation.step;
+  if (names_joints(profile.action_form))
+    request.action_size = observation.proprioception.arm_joints() + 1;
   return request;
 }
 
@@ -77,6 +87,14 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   target_.reset();
   in_episode_ = false;
   if (!is_open_) PROBE_TRY(connect());
+  arm_.reset();
+  if (names_joints(profile_.action_form)) {
+    if (auto arm = arm_of(start); arm) {
+      arm_ = std::move(*arm);
+    } else {
+      return named(arm.failure(), server_);
+    }
+  }
   if (auto begun = transport_->begin_episode(start, deadlines()); !begun) {
     drop();
     return named(begun.failure(), server_);
@@ -93,9 +111,12 @@ Result<policy::Action> ServerPolicy::act(const policy::Observation& observation)
     }
   }
   // The controller's own law: its target starts where the tool is and moves by each action.
-  const Pose& tool = observation.proprioception.tcp_in_base;
+  const policy::Proprioception& measured = observation.proprioception;
+  const Pose& tool = measured.tcp_in_base;
   if (!target_) target_ = tool;
-  auto action = to_action(profile_, queue_.take(), {*target_, tool.position});
+  const std::span<const double> joints(measured.joints.data(), measured.arm_joints());
+  auto action = to_action(profile_, queue_.take(),
+                          {*target_, tool.position, joints, arm_ ? &*arm_ : nullptr});
   if (!action) return named(action.failure(), server_);
   const policy::Action& a = *action;
   target_ = robot::moved_target(*target_, tool.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});

@@ -10,6 +10,7 @@
 
 #include "runtime/policy/policy.h"
 #include "runtime/policy/query_meter.h"
+#include "runtime/robot/kinematics.h"
 #include "runtime/servers/chunk.h"
 #include "runtime/servers/profile.h"
 #include "runtime/servers/transport.h"
@@ -54,6 +55,7 @@ class ServerPolicy : public policy::Policy {
   policy::QueryMeter* queries_;
   ChunkQueue queue_;
   std::optional<policy::Delivery> delivery_;
+  std::optional<robot::Chain> arm_;  // of the episode's robot, where actions name its joints
   std::optional<Pose> target_;  // of the arm's controller; none before an episode's first action
   std::vector<std::string> notes_;  // of the transport, once there was a connection
   bool is_open_ = false;

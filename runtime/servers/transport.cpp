@@ -31,20 +31,20 @@ Status check_batch(std::size_t answers, std::size_t questions) {
              std::to_string(answers) + " items: which is whose cannot be said");
 }
 
-Result<std::vector<RawAction>> to_actions(const wire::Value& answer) {
-  constexpr std::size_t kSize = std::tuple_size_v<RawAction>;
-  const std::string wanted =
-      "expected actions of 7 numbers, an array 7 or N x 7; got " + wire::describe(answer);
+Result<std::vector<RawAction>> to_actions(const wire::Value& answer, std::size_t size) {
+  const std::string each = std::to_string(size);
+  const std::string wanted = "expected actions of " + each + " numbers, an array " + each +
+                             " or N x " + each + "; got " + wire::describe(answer);
   const std::vector<std::int64_t> shape = wire::shape_of(answer);
-  if (shape.empty() || shape.back() != static_cast<std::int64_t>(kSize)) return bad(wanted);
+  if (shape.empty() || shape.back() != static_cast<std::int64_t>(size)) return bad(wanted);
   for (std::size_t i = 0; i + 2 < shape.size(); ++i) {
     if (shape[i] != 1) return bad(wanted);
   }
   auto numbers = wire::to_numbers(answer);
   if (!numbers) return bad(wanted + " (" + numbers.failure().message + ")");
-  const std::size_t count = numbers->size() / kSize;
+  const std::size_t count = numbers->size() / size;
   // A list of lists may be ragged: its first row says nothing of the others.
-  if (count == 0 || numbers->size() != count * kSize ||
+  if (count == 0 || numbers->size() != count * size ||
       (shape.size() > 1 && static_cast<std::int64_t>(count) != shape[shape.size() - 2])) {
     return bad(wanted);
   }
@@ -52,14 +52,14 @@ Result<std::vector<RawAction>> to_actions(const wire::Value& answer) {
     return bad("expected at most " + std::to_string(kMostActions) + " actions, got " +
                std::to_string(count));
   }
-  std::vector<RawAction> actions(count);
+  std::vector<RawAction> actions(count, RawAction(size));
   for (std::size_t i = 0; i < numbers->size(); ++i) {
     if (!std::isfinite((*numbers)[i])) {
-      return bad("number " + std::to_string(i % kSize + 1) + " of action " +
-                 std::to_string(i / kSize + 1) + " of " + std::to_string(count) + " is " +
+      return bad("number " + std::to_string(i % size + 1) + " of action " +
+                 std::to_string(i / size + 1) + " of " + std::to_string(count) + " is " +
                  (std::isnan((*numbers)[i]) ? "not a number" : "infinite"));
     }
-    actions[i / kSize][i % kSize] = (*numbers)[i];
+    actions[i / size][i % size] = (*numbers)[i];
   }
   return actions;
 }

@@ -39,11 +39,13 @@ struct Request {
   std::vector<std::pair<std::string, std::vector<double>>> more_states = {};
   // As measured, for protocols with a state of their own form.
   policy::Proprioception proprioception;
-  int step = 0;  // control steps done in the episode
+  int step = 0;                                  // control steps done in the episode
+  std::size_t action_size = robot::kActionSize;  // numbers of an action
 };
 
-// [dx dy dz, three numbers of rotation, gripper] as the server sent them, one a control step.
-using RawAction = std::array<double, 7>;
+// As the server sent it, for one control step: [dx dy dz, three numbers of rotation, gripper], or a
+// number for each joint of the arm and the gripper's.
+using RawAction = std::vector<double>;
 
 // The times a Transport is given for one exchange; it must be back when they are over.
 struct Deadlines {
@@ -100,10 +102,11 @@ Failure of_item(Failure failure, std::size_t index, std::size_t count);
 // Fails (kPolicy) unless a batch has an answer a question.
 Status check_batch(std::size_t answers, std::size_t questions);
 
-// An answer's numbers as actions: shapes [7], [n, 7], and those with leading dimensions of 1. Fails
-// (kPolicy) on other shapes, on nothing, on more than 1000 actions, on numbers that are not
-// finite; the message says what was expected and what came.
-Result<std::vector<RawAction>> to_actions(const wire::Value& answer);
+// An answer's numbers as actions of `size`: shapes [size], [n, size], and those with leading
+// dimensions of 1. Fails (kPolicy) on other shapes, on nothing, on more than 1000 actions, on
+// numbers that are not finite; the message says what was expected and what came.
+Result<std::vector<RawAction>> to_actions(const wire::Value& answer,
+                                          std::size_t size = robot::kActionSize);
 
 // The end of a text that a server sent, a traceback usually: its last lines on one, without what
 // could repaint a terminal, a few hundred characters at most.

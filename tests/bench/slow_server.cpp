@@ -16,7 +16,7 @@ class SlowPolicy final : public servers::ServedPolicy {
       : gpu_(std::move(gpu)), answer_time_(answer_time), still_(servers::serve_null()()) {}
 
   void reset() override {}
-  Result<std::vector<servers::RawAction>> answer(const servers::Asked& asked, int count) override {
+  Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
     if (answer_time_.count() > 0) {
       const std::lock_guard one_at_a_time(*gpu_);
       std::this_thread::sleep_for(answer_time_);

@@ -7,7 +7,7 @@ openpi_server.py openpi|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or
 those of recorded_actions, or with `seen` small ones that depend on what was asked alone, where HABIT
 is `fine` or what is to be wrong: unit, inverted, euler, vector, normalised, noise, deaf,
-blind, numb (to the state), nan, six, poses, or keeps: the instruction of the first question since the last reset, of whichever
+blind, numb (to the state), nan, six, poses, joints (of the state), or keeps: the instruction of the first question since the last reset, of whichever
 connection, as INT-ACT's wrapper of Octo does. `record` gets every message that comes, a line of hexadecimal digits each. With
 `key` a client without this Api-Key is refused; INT-ACT's server, which has one model for all its
 connections, fails to load the model `lacks` and then can load no other.
@@ -86,6 +86,8 @@ def seen_actions(image, prompt, state, habit):
         actions[:, :6] = draws.uniform(-1, 1, (chunk, 6))
     elif habit == "poses":
         actions[:, :3] += state[:3]
+    elif habit == "joints":
+        actions[:, :6] += state[:6]
     elif habit == "nan":
         actions[:, 2] = numpy.nan
     return actions[:, :6] if habit == "six" else actions
@@ -169,8 +171,9 @@ def answer_roboarena(policy, request):
     assert request["observation/exterior_image_1_left"].shape == (224, 224, 3)
     assert request["observation/joint_position"].shape == (7,)
     assert request["observation/cartesian_position"].dtype == numpy.float64
+    state = "joint" if options.get("seen") == "joints" else "cartesian"
     actions = policy.infer(request["observation/exterior_image_1_left"], request["prompt"],
-                           request["observation/cartesian_position"])
+                           request["observation/" + state + "_position"])
     return pack({"actions": actions})
 
 

@@ -45,7 +45,7 @@ class Gr00tSpeaker final : public wire::Speaker {
     wire::Map columns;
     for (std::size_t i = 0; i < std::size(kServedNames); ++i) {
       std::vector<double> column;
-      for (const RawAction& action : actions) column.push_back(action[i]);
+      for (const policy::Action& action : actions) column.push_back(action[i]);
       const auto count = static_cast<std::int64_t>(column.size());
       const std::vector<std::int64_t> shape = options == nullptr
                                                   ? std::vector<std::int64_t>{count, 1}

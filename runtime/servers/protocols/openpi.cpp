@@ -22,7 +22,7 @@ class Openpi : public Transport {
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
     PROBE_ASSIGN(const wire::Value answer, connection_.ask(observation(request), deadlines.answer));
-    return actions_of(answer);
+    return actions_of(answer, request.action_size);
   }
 
   Result<std::vector<std::vector<RawAction>>> ask_all(std::span<const Request* const> requests,
@@ -43,7 +43,7 @@ class Openpi : public Transport {
     PROBE_TRY(check_batch(answers->size(), requests.size()));
     std::vector<std::vector<RawAction>> all;
     for (std::size_t i = 0; i < answers->size(); ++i) {
-      auto actions = actions_of((*answers)[i]);
+      auto actions = actions_of((*answers)[i], requests[i]->action_size);
       if (!actions) return of_item(actions.failure(), i, answers->size());
       all.push_back(std::move(*actions));
     }
@@ -65,7 +65,7 @@ class Openpi : public Transport {
     return map;
   }
 
-  static Result<std::vector<RawAction>> actions_of(const wire::Value& answer) {
+  static Result<std::vector<RawAction>> actions_of(const wire::Value& answer, std::size_t size) {
     if (const wire::Value* error = answer.find("error")) {
       const auto* text = error->as<std::string>();
       return bad("the server failed: " +
@@ -75,7 +75,7 @@ class Openpi : public Transport {
     if (actions == nullptr) {
       return bad("expected a map with `actions`, got " + wire::describe(answer));
     }
-    return to_actions(*actions);
+    return to_actions(*actions, size);
   }
 
   Profile profile_;
@@ -101,6 +101,7 @@ constinit const ProtocolRow openpi_row{
     .make = make_openpi,
     .serve = serve_openpi,
     .served_options = "&chunk.length=any&chunk.use=all",
+    .has_joint_actions = true,
     .batches = Batches::kOneMessage,
 };
 

@@ -43,12 +43,12 @@ class OpenpiSpeaker : public wire::Speaker {
     return packed(wire::Map{{"actions", actions_array(actions)}});
   }
 
-  Result<std::vector<RawAction>> act(const wire::Value& request, std::string_view words) {
+  Result<std::vector<policy::Action>> act(const wire::Value& request, std::string_view words) {
     PROBE_ASSIGN(const Asked asked, asked_of(request, words));
     return policy_->answer(asked, options_.chunk);
   }
-  Result<std::vector<std::vector<RawAction>>> act_all(const wire::List& requests,
-                                                      std::string_view words) {
+  Result<std::vector<std::vector<policy::Action>>> act_all(const wire::List& requests,
+                                                           std::string_view words) {
     PROBE_TRY(check_batch_asked(options_, requests.size()));
     std::vector<Asked> all;
     for (std::size_t i = 0; i < requests.size(); ++i) {
@@ -133,7 +133,7 @@ class StarVlaSpeaker final : public OpenpiSpeaker {
     }
     const auto all = act_all(flat, "lang");
     if (!all) return failed(all.failure().message);
-    std::vector<RawAction> actions;
+    std::vector<policy::Action> actions;
     for (const auto& item : *all) actions.insert(actions.end(), item.begin(), item.end());
     wire::Array array = actions_array(actions);
     const auto items = static_cast<std::int64_t>(all->size());

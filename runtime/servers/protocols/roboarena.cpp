@@ -18,8 +18,9 @@ namespace {
 
 // Of the DROID robot, whose arm has seven joints.
 constexpr std::size_t kArmJoints = 7;
-// What a "velocity" of length 1 moves in a step (droid/robot_ik/robot_ik_solver.py).
-constexpr double kSpeedM = 0.075, kSpeedRad = 0.15;
+// What a "velocity" of length 1 moves in a step, and a joint's of 1 (droid/robot_ik,
+// robot_ik_solver.py).
+constexpr double kSpeedM = 0.075, kSpeedRad = 0.15, kJointSpeedRad = 0.2;
 
 // Of an attempt at an episode: a server that keeps histories by it must never meet one again, not
 // in another run either.
@@ -83,8 +84,8 @@ class RoboArena : public Transport {
     append_images(request, &map);
     const policy::Proprioception& measured = request.proprioception;
     std::vector<double> joints = measured.joints;
-    joints.resize(joints.size() - std::min(measured.finger_joints, joints.size()));
-    joints.resize(kArmJoints, 0.0);
+    joints.resize(measured.arm_joints());
+    joints.resize(std::max(joints.size(), kArmJoints), 0.0);
     const Vec3& at = measured.tcp_in_base.position;
     const Vec3 rpy = robot::to_rpy(measured.tcp_in_base.rotation);
     map.emplace_back("observation/joint_position", state_array(profile_, joints));
@@ -97,7 +98,7 @@ class RoboArena : public Transport {
     map.emplace_back("endpoint", "infer");
     PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
     const wire::Value* actions = answer.find("actions");
-    return to_actions(actions == nullptr ? answer : *actions);
+    return to_actions(actions == nullptr ? answer : *actions, request.action_size);
   }
 
   std::vector<std::string> remarks() const override { return metadata_remarks(config_); }
@@ -128,10 +129,24 @@ class RoboArena : public Transport {
       if (profile.action_units == ActionUnits::kUnsaid) profile.action_units = ActionUnits::kMetric;
       return {};
     }
+    // The evaluator holds velocities of joints to -1 .. 1, each for itself.
+    if (space == "joint_velocity") {
+      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kJointSteps;
+      if (profile.action_units == ActionUnits::kUnsaid) {
+        profile.action_units = ActionUnits::kBox;
+        profile.action_scale_rad = kJointSpeedRad;
+      }
+      return {};
+    }
+    if (space == "joint_position") {
+      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kJoints;
+      if (profile.action_units == ActionUnits::kUnsaid) profile.action_units = ActionUnits::kMetric;
+      return {};
+    }
     return Failure{Fault::kUsage,
-                   (said == nullptr ? "the server says no `action_space`, which is joint_position"
-                                    : "the server's `action_space` is " + wire::describe(*said)) +
-                       "; \"cartesian_velocity\" and \"cartesian_position\" can be done here",
+                   "the server's `action_space` is " + wire::describe(*said) +
+                       "; \"joint_position\", \"joint_velocity\", \"cartesian_position\" and "
+                       "\"cartesian_velocity\" can be done here",
                    ""};
   }
 
@@ -207,6 +222,7 @@ constinit const ProtocolRow roboarena_row{
     .serve = serve_roboarena,
     .served_options = "&chunk.length=any&chunk.use=all",
     .has_reset = always_has_reset,
+    .has_joint_actions = true,
 };
 
 }  // namespace probe::servers

@@ -7,7 +7,7 @@ namespace probe::servers {
 namespace {
 
 std::vector<RawAction> counted(int count, double first) {
-  std::vector<RawAction> actions(static_cast<std::size_t>(count));
+  std::vector<RawAction> actions(static_cast<std::size_t>(count), RawAction(7));
   for (std::size_t i = 0; i < actions.size(); ++i) actions[i][0] = first + static_cast<double>(i);
   return actions;
 }

@@ -11,6 +11,7 @@
 #include "runtime/servers/profile_check.h"
 #include "runtime/servers/profile_library.h"
 #include "runtime/servers/server_policy.h"
+#include "tests/runtime/robot/test_robots.h"
 
 namespace probe::servers {
 using namespace probe::policy;
@@ -30,7 +31,7 @@ TEST_CASE("numbers that already are ours come back bit for bit") {
   const RawAction raw{0.012345678901234567, -0.1, 1e-300, 0.3, -0.2, 0.1, -0.73};
   const auto action = to_action(Profile{}, raw);
   REQUIRE(action.ok());
-  CHECK(*action == raw);
+  CHECK(RawAction(action->begin(), action->end()) == raw);
 }
 
 // transforms3d: euler2axangle(0.1, 0.2, 0.3, 'sxyz') = axis * angle.
@@ -267,6 +268,65 @@ TEST_CASE("a pose to be at becomes the change that brings the controller's targe
   }
 }
 
+TEST_CASE("joints that are asked for become the change to the pose that they bring the tool to") {
+  const robot::RobotModel model = robot::test::widowx();
+  const auto chain = robot::Chain::create(model, "ee_gripper_link", robot::test::kArm);
+  REQUIRE_MESSAGE(chain.ok(), to_text(chain.failure()));
+  const std::vector<double> joints(robot::test::kTableStart.begin(),
+                                   robot::test::kTableStart.begin() + 6);
+  const Pose at = chain->pose(joints);
+  Draws draws(3);
+  for (int i = 0; i < 50; ++i) {
+    RawAction steps, positions;
+    for (const double joint : joints) {
+      steps.push_back(0.4 * draws.uniform() - 0.2);
+      positions.push_back(joint + steps.back());
+    }
+    const Pose wanted = chain->pose(positions);
+    steps.push_back(1);
+    positions.push_back(1);
+    RawAction shares = steps;
+    for (std::size_t k = 0; k < 6; ++k) shares[k] /= 0.2;
+    // The arm lags behind what its controller aims at.
+    const ArmNow arm{
+        {at.position + Vec3(0.01, 0, -0.02), at.rotation}, at.position, joints, &*chain};
+    Profile profile;
+    const auto check = [&](ActionForm form, ActionUnits units, const RawAction& raw) {
+      profile.action_form = form;
+      profile.action_units = units;
+      profile.action_scale_rad = units == ActionUnits::kBox ? 0.2 : 1;
+      const auto action = to_action(profile, raw, arm);
+      REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+      const policy::Action& a = *action;
+      const Pose there = robot::moved_target(arm.target, arm.tool_measured, {a[0], a[1], a[2]},
+                                             {a[3], a[4], a[5]});
+      CHECK(robot::pose_error(there, wanted).position < 1e-12);
+      CHECK(robot::pose_error(there, wanted).rotation < 1e-7);
+      CHECK(a[6] == 1);
+    };
+    check(ActionForm::kJoints, ActionUnits::kMetric, positions);
+    check(ActionForm::kJointSteps, ActionUnits::kMetric, steps);
+    check(ActionForm::kJointSteps, ActionUnits::kBox, shares);
+  }
+
+  Profile profile;
+  profile.action_form = ActionForm::kJoints;
+  const ArmNow arm{at, at.position, joints, &*chain};
+  const auto refused_of = [&](const RawAction& raw) {
+    const auto action = to_action(profile, raw, arm);
+    REQUIRE_FALSE(action.ok());
+    return action.failure().message;
+  };
+  RawAction degrees = {-1.05, 2.3, 12.7, -0.3, 78.2, 0.1, 1};
+  CHECK(refused_of(degrees).starts_with("joint 2 is to be at 2.3"));
+  CHECK(refused_of(degrees).find("`action.form`") != std::string::npos);
+  CHECK(refused_of({0, 0, 0, 0, 0, 0, 0, 1})
+            .starts_with("an action of 7 joints and a gripper, for an arm of 6"));
+  profile.action_statistics = {Normalisation::kBound, {0, 0}, {1, 1}, {}, {}, {}};
+  CHECK(refused_of({0, 0, 0, 0, 0, 0, 1})
+            .starts_with("the profile's statistics are of 2 numbers, an action has 7"));
+}
+
 TEST_CASE("states beside the first go under their own keys") {
   const auto droid = find_profile("openpi_droid");
   REQUIRE_MESSAGE(droid.ok(), to_text(droid.failure()));
@@ -281,6 +341,7 @@ TEST_CASE("states beside the first go under their own keys") {
   const auto request = to_request(profile, seen);
   REQUIRE_MESSAGE(request.ok(), to_text(request.failure()));
   CHECK(request->state == std::vector<double>{1, 2, 3, 4, 5, 6, 7});
+  CHECK(request->action_size == 8);  // seven joints and the gripper
   REQUIRE(request->more_states.size() == 1);
   CHECK(request->more_states[0].first == "observation/gripper_position");
   CHECK(request->more_states[0].second == std::vector<double>{0.75});

@@ -214,7 +214,7 @@ TEST_CASE("a server that is killed costs one episode, and is met again when it i
     const auto absent = ask_once(*policy, "put carrot on plate");
     REQUIRE(absent.has_value());
     CHECK_MESSAGE(absent->starts_with("127.0.0.1:" + port + ": connecting: "), *absent);
-    MESSAGE(protocol.name << " killed: " << *lost << "; gone: " << *absent);
+    MESSAGE(std::string(protocol.name) << " killed: " << *lost << "; gone: " << *absent);
     server = std::make_unique<PythonServer>(
         "fault_server.py", std::vector<std::string>{protocol.name, "port=" + port});
     REQUIRE(server->port() == port);

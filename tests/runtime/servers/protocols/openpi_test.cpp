@@ -12,11 +12,14 @@
 #include <set>
 
 #include "runtime/base/sha256.h"
+#include "runtime/robot/kinematics.h"
+#include "runtime/robot/robot.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/server_policy.h"
 #include "runtime/servers/servers.h"
 #include "runtime/servers/shared_model.h"
 #include "runtime/wire/msgpack.h"
+#include "tests/runtime/robot/test_robots.h"
 #include "tests/runtime/servers/asking.h"
 #include "tests/servers/python_server.h"
 
@@ -242,13 +245,45 @@ TEST_CASE("what RoboArena's server calls its actions is what is done with them")
     const double* a = action->data();
     CHECK(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) <= 0.075 + 1e-9);
   }
-  for (const char* space : {"", ", \"action_space\": \"joint_position\""}) {
-    const PythonServer server("openpi_server.py", {"roboarena", with_space(space)});
-    const auto begun = made("roboarena", server)->begin(start());
-    REQUIRE_FALSE(begun.ok());
-    CHECK(begun.failure().code == Fault::kUsage);
-    CHECK(begun.failure().message.find("joint_position") != std::string::npos);
+  // Joints, which are what a server means that says nothing, go through the robot's kinematics.
+  const robot::RobotModel model = robot::test::widowx();
+  robot::Robot widowx;
+  widowx.model = &model;
+  widowx.control = {"ee_gripper_link", robot::test::kArm, robot::test::kFingers};
+  const auto chain = robot::Chain::create(model, "ee_gripper_link", robot::test::kArm);
+  REQUIRE_MESSAGE(chain.ok(), to_text(chain.failure()));
+  seen.proprioception.joints = robot::test::kTableStart;
+  seen.proprioception.finger_joints = 2;
+  seen.proprioception.tcp_in_base = chain->pose(std::span(robot::test::kTableStart).first(6));
+  EpisodeStart with_robot = start();
+  with_robot.robot = &widowx;
+  for (const char* space :
+       {"", ", \"action_space\": \"joint_position\"", ", \"action_space\": \"joint_velocity\""}) {
+    CAPTURE(std::string(space));
+    const bool are_positions = std::string(space).find("velocity") == std::string::npos;
+    const PythonServer server(
+        "openpi_server.py",
+        {"roboarena", are_positions ? "seen=joints" : "seen=normalised", with_space(space)});
+    const auto policy = made("roboarena", server);
+    CHECK(policy->begin(start()).failure().message ==
+          "actions of joints need a robot, and there is none");
+    const auto begun = policy->begin(with_robot);
+    REQUIRE_MESSAGE(begun.ok(), to_text(begun.failure()));
+    const auto action = policy->act(seen);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    // A hundredth of a radian, or a fifth, in each of six joints of an arm of 70 cm.
+    const double farthest = are_positions ? 0.05 : 0.7;
+    const double* a = action->data();
+    const double shift = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    CHECK(shift > 0);
+    CHECK(shift < farthest);
   }
+  const PythonServer server("openpi_server.py",
+                            {"roboarena", with_space(", \"action_space\": \"torque\"")});
+  const auto begun = made("roboarena", server)->begin(start());
+  REQUIRE_FALSE(begun.ok());
+  CHECK(begun.failure().code == Fault::kUsage);
+  CHECK(begun.failure().message.find("\"torque\"") != std::string::npos);
 }
 
 TEST_CASE("a traceback is shown by its last lines, and the next episode connects again") {
