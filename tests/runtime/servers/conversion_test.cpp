@@ -318,7 +318,7 @@ TEST_CASE("joints that are asked for become the change to the pose that they bri
     return action.failure().message;
   };
   RawAction degrees = {-1.05, 2.3, 12.7, -0.3, 78.2, 0.1, 1};
-  CHECK(refused_of(degrees).starts_with("joint 2 is to be at 2.3"));
+  CHECK(refused_of(degrees).starts_with("joint 3 is to be at 12.7"));
   CHECK(refused_of(degrees).find("`action.form`") != std::string::npos);
   CHECK(refused_of({0, 0, 0, 0, 0, 0, 0, 1})
             .starts_with("an action of 7 joints and a gripper, for an arm of 6"));
