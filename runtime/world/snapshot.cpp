@@ -1,5 +1,6 @@
 #include "runtime/world/snapshot.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -106,6 +107,9 @@ void record_fields(Stream&& s, auto& record) {
   s(record.frozen), s(record.count), s(record.axes), s(record.offset), s(record.impulse);
 }
 
+// Of a saved count of substeps at rest: what is counted on from there cannot overflow.
+bool is_calm_count(int calm) { return calm >= 0 && calm < 1'000'000'000; }
+
 bool is_kept(const PairRecord& record, std::uint64_t next_substep) {
   return record.valid && (record.frozen || record.last + 1 == next_substep);
 }
@@ -176,6 +180,10 @@ Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
   for (Body& body : bodies) {
     body_fields(get, body);
     body.axes = body.rotation.toRotationMatrix();
+  }
+  const auto counts = [](const auto& of) { return is_calm_count(of.calm); };
+  if (!std::ranges::all_of(rests, counts) || !std::ranges::all_of(bodies, counts)) {
+    return Failure{Fault::kWorld, "the saved state has a time at rest that cannot be", ""};
   }
   get(kept);
   struct Kept {

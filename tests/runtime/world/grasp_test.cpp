@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "runtime/world/state.h"
 #include "tests/runtime/world/arm_bench.h"
 
 namespace probe::world {
@@ -100,6 +101,17 @@ TEST_CASE("a state saved in mid-grasp and restored in a fresh world goes on bit 
   }
   CHECK(!third.world->restore(std::span(state).first(state.size() - 1)).ok());
   CHECK(!third.world->restore(std::span(state).first(3)).ok());
+  // A time at rest that counting on from would overflow: the only one of the robot, after the
+  // joints.
+  constexpr std::size_t kHead = 5 * 4 + 8 + 1, kJoint = 6 * 8 + 1;
+  for (const std::byte last : {std::byte{0x7f}, std::byte{0xff}}) {
+    std::vector<std::byte> bad = state;
+    std::fill_n(bad.begin() + kHead + kJoint * kMaxJoints, 3, std::byte{0xff});
+    bad[kHead + kJoint * kMaxJoints + 3] = last;
+    const Status refused = third.world->restore(bad);
+    REQUIRE(!refused.ok());
+    CHECK(refused.failure().message == "the saved state has a time at rest that cannot be");
+  }
 }
 
 TEST_CASE("pressing a cube into the table stays within forces and speeds") {
