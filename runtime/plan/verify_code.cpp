@@ -2,7 +2,9 @@
 // so no fixpoint.
 #include <fmt/format.h>
 
+#include <array>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "runtime/base/check.h"
@@ -222,6 +224,9 @@ class ProgramCheck {
   std::vector<bool> states_used_, metrics_emitted_, finger_seen_;
 };
 
+// A robot in a plan has exactly as many as its record has places for.
+constexpr std::size_t kFingerCount = std::tuple_size_v<decltype(RobotRecord::fingers)>;
+
 Status check_task(const Place& place, const Tables& t, const TaskRecord& task, const Needs& needs) {
   if (needs.bodies > task.bodies.count) {
     return place.fail(Rule::kTaskBody, needs.highest,
@@ -230,7 +235,7 @@ Status check_task(const Place& place, const Tables& t, const TaskRecord& task, c
   }
   for (const auto& [op, operand] : needs.fingers) {
     const BodyRecord& body = slice_of(t.bodies, task.bodies)[*operand];
-    if (body.kind != static_cast<std::uint32_t>(BodyKind::kLink) || body.index >= 2) {
+    if (body.kind != static_cast<std::uint32_t>(BodyKind::kLink) || body.index >= kFingerCount) {
       return place.fail(Rule::kFinger, operand,
                         fmt::format("{} names body {}, which is no finger of task `{}`", op->name,
                                     *operand, t.text(task.name)));

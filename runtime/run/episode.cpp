@@ -42,7 +42,6 @@ class Loop {
   Loop(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
        store::TraceWriter& trace, show::FrameSink* frames, store::ResultRow& row)
       : stage_(stage),
-        plan_(plan),
         task_(plan.tasks()[job.task]),
         episode_(plan.episodes(task_)[job.index]),
         job_(job),
@@ -154,7 +153,6 @@ class Loop {
   }
 
   stage::Stage& stage_;
-  const plan::Plan& plan_;
   const plan::TaskRecord& task_;
   const plan::EpisodeRecord& episode_;
   const EpisodeJob& job_;

@@ -15,8 +15,12 @@ namespace {
 
 constexpr const char* kTask = "carrot_on_plate";
 
-// What a command writes to both streams, and how it ended.
-std::pair<std::string, int> output_of(const std::string& command) {
+struct Ended {
+  std::string text;  // of both streams
+  int status = 0;
+};
+
+Ended output_of(const std::string& command) {
   FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
   REQUIRE(pipe != nullptr);
   std::string text;
@@ -36,11 +40,14 @@ TEST_CASE("a program from outside steps a stage, and a second process goes on fr
   const std::string command = VLAPROBE_BINARY_DIR "/examples/stage/stage_example " +
                               (folder / "suite.plan") + " " VLAPROBE_SOURCE_DIR "/assets " + kTask +
                               " " + state;
-  const auto [whole, ended] = output_of(command);
-  REQUIRE_MESSAGE(ended == 0, whole);
+  const Ended first = output_of(command);
+  const std::string& whole = first.text;
+  REQUIRE_MESSAGE(first.status == 0, whole);
   CHECK(whole.find("60 steps, state ") != std::string::npos);
   REQUIRE(std::filesystem::exists(state));
-  CHECK(output_of(command) == std::pair(whole, 0));
+  const Ended second = output_of(command);
+  CHECK(second.text == whole);
+  CHECK(second.status == 0);
 
   // The same bits as in this process, which was compiled and linked otherwise.
   const std::uint32_t tasks[] = {plan.find_task(kTask).value()};
@@ -59,9 +66,9 @@ TEST_CASE("a program from outside steps a stage, and a second process goes on fr
 
   // What is wrong is said, and the program ends.
   std::ofstream(state, std::ios::app) << "more";
-  const auto [refused, status] = output_of(command);
-  CHECK(status != 0);
-  CHECK(refused.find("check word") != std::string::npos);
+  const Ended refused = output_of(command);
+  CHECK(refused.status != 0);
+  CHECK(refused.text.find("check word") != std::string::npos);
 }
 
 }  // namespace
