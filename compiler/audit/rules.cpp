@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/plan/isa.h"
+#include "runtime/plan/readouts.h"
 #include "runtime/vm/made_up.h"
 
 namespace probe::audit {
@@ -84,7 +85,9 @@ bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t suc
     open.pop_back();
     const plan::Instruction& in = defining[at];
     const plan::OpInfo& op = *plan::find_op(in.op);
-    if (op.op == plan::Op::kONCE) continue;  // remembered: nothing has to hold at the end
+    const plan::ReadoutInfo* readout = plan::readout_of(op.op);
+    // Nothing has to hold at the end of what an earlier step can decide.
+    if (readout != nullptr && readout->keeps == plan::Keeps::kEarlier) continue;
     const bool touches = op.op == plan::Op::kIMP || op.op == plan::Op::kPUSH;
     if (held && touches && (is_finger(in.a) || is_finger(in.b))) return true;
     const bool below = held || op.op == plan::Op::kHOLD;

@@ -96,7 +96,8 @@ class Emitter {
 
   // P0603 at once; P0602 when a metric is constant in every program and for every horizon that has
   // it: over the distractors of a task without any it may be.
-  void note_constants(std::uint32_t program, std::uint64_t horizon, double control_hz);
+  void note_constants(std::uint32_t program, std::uint64_t horizon, double control_hz,
+                      const lower::Room& room);
   void report_constants();
   bool needs(const sema::Task& task, const AssetOwner& owner) const;
 
@@ -135,7 +136,8 @@ class Emitter {
   Used<TaskId> tasks_;
   std::vector<lower::Program> programs_;
   std::map<std::vector<std::uint32_t>, std::uint32_t> programs_by_shape_;  // lower::shape_of
-  std::set<std::tuple<std::uint32_t, std::uint64_t, double>> noted_;  // program, horizon, control
+  // Program, horizon, control rate, room.
+  std::set<std::tuple<std::uint32_t, std::uint64_t, double, lower::Room>> noted_;
   struct Constant {
     lower::ProgramMetric metric;
     bool varies = false;

@@ -18,7 +18,8 @@ std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
   }
   // What is constant depends on how long an episode is.
   note_constants(known->second, task.horizon,
-                 model_.robots[model_.scenes[task.scene].robot].control_hz);
+                 model_.robots[model_.scenes[task.scene].robot].control_hz,
+                 lower::room_of(model_, task));
   return known->second;
 }
 
@@ -52,10 +53,11 @@ std::uint32_t Emitter::keep_program(lower::Program program) {
   return size32(programs_) - 1;
 }
 
-void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double control_hz) {
-  if (!noted_.insert({index, horizon, control_hz}).second) return;
+void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double control_hz,
+                             const lower::Room& room) {
+  if (!noted_.insert({index, horizon, control_hz, room}).second) return;
   const lower::Program& program = programs_[index];
-  const lower::Findings findings = lower::find_constants(program, horizon, control_hz);
+  const lower::Findings findings = lower::find_constants(program, horizon, control_hz, room);
   for (const std::size_t at : findings.contradictions) {
     const Span& span = program.spans[at];
     if (!contradictions_.insert({span.file.value, span.begin}).second) continue;

@@ -8,19 +8,18 @@
 #include <optional>
 
 #include "runtime/plan/isa.h"
+#include "runtime/plan/readouts.h"
 
 namespace probe::lower {
 namespace {
 
 using plan::Op;
 
+constexpr double kNever = *plan::info(plan::Readout::kFirst).never;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// No body is ever farther from the world's origin on any axis (m): an arm of a metre or two at a
-// table that stands on an endless floor.
-constexpr double kRoom = 20;
-// No half extent is larger (m), no body faster (m/s).
-constexpr double kLargest = 10, kFastest = 1000;
+// No body is faster (m/s).
+constexpr double kFastest = 1000;
 // Components of unit vectors, with room for their rounding.
 constexpr double kUnit = 1 + 1e-9;
 
@@ -77,8 +76,11 @@ struct Limits {
 
 class Pass {
  public:
-  Pass(const Program& program, std::uint64_t horizon, double control_hz)
-      : program_(program), horizon_(static_cast<double>(horizon)), control_hz_(control_hz) {}
+  Pass(const Program& program, std::uint64_t horizon, double control_hz, const Room& room)
+      : program_(program),
+        horizon_(static_cast<double>(horizon)),
+        control_hz_(control_hz),
+        room_(room) {}
 
   Findings run() {
     for (std::size_t i = 0; i < program_.code.size(); ++i) {
@@ -174,9 +176,9 @@ class Pass {
       case Op::kSTART:
       case Op::kORIGIN:
       case Op::kTCP:
-        return vector(-kRoom, kRoom);
+        return vector(-room_.farthest, room_.farthest);
       case Op::kHALF:
-        return vector(0, kLargest);
+        return vector(0, room_.largest);
       case Op::kOPEN:
       case Op::kAXIS:
         return vector(-kUnit, kUnit);
@@ -249,8 +251,8 @@ class Pass {
         if (a().truth) return number(*a().truth ? horizon_ : 0, *a().truth ? horizon_ : 0);
         return number(0, horizon_);
       case Op::kFIRST:
-        if (a().truth) return number(*a().truth ? 1 : -1, *a().truth ? 1 : -1);
-        return number(-1, horizon_);
+        if (a().truth) return number(*a().truth ? 1 : kNever, *a().truth ? 1 : kNever);
+        return number(kNever, horizon_);
       case Op::kMAXR:
       case Op::kMINR:
         return of(a().number);
@@ -354,14 +356,16 @@ class Pass {
 
   const Program& program_;
   double horizon_, control_hz_;
+  Room room_;
   std::vector<Known> known_;
   Findings findings_;
 };
 
 }  // namespace
 
-Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz) {
-  return Pass(program, horizon, control_hz).run();
+Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz,
+                        const Room& room) {
+  return Pass(program, horizon, control_hz, room).run();
 }
 
 }  // namespace probe::lower

@@ -3,6 +3,7 @@
 // leaves the room.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -17,6 +18,13 @@ struct ConstantMetric {
   std::optional<double> number;  // of a metric that is no condition
 };
 
+// How large the world of a task is: no body is ever farther from the origin on any axis (m), none
+// has a larger half extent (m). Twenty metres are more than an arm throws.
+struct Room {
+  double farthest = 20, largest = 10;
+  auto operator<=>(const Room&) const = default;
+};
+
 struct Findings {
   std::vector<ConstantMetric> constants;
   // Conditions joined by `and` that exclude one another, by instruction.
@@ -24,6 +32,7 @@ struct Findings {
 };
 
 // `horizon` in control steps, `control_hz` of them a second.
-Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz);
+Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz,
+                        const Room& room);
 
 }  // namespace probe::lower

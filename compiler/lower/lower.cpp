@@ -443,6 +443,30 @@ std::vector<std::uint32_t> shape_of(const sema::Task& task, const std::vector<Bo
   return shape;
 }
 
+Room room_of(const sema::Model& model, const sema::Task& task) {
+  const sema::Scene& scene = model.scenes[task.scene];
+  // Objects start within the area, and a plan may have that a kilometre away.
+  double farthest = std::abs(scene.surface_z) + model.layouts[task.layout].drop;
+  const auto reach = [&](const auto& coordinates) {
+    for (const double c : coordinates) farthest = std::max(farthest, std::abs(c));
+  };
+  reach(scene.area);
+  reach(scene.base_position);
+  if (scene.fixture) reach(scene.fixture_position);
+  Room room;
+  room.farthest += farthest;
+  for (const sema::ObjectId id : task.objects()) {
+    const sema::Object& object = model.objects[id];
+    double square = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double extent = object.box_max[i] - object.box_min[i];
+      square += extent * extent;
+    }
+    room.largest = std::max(room.largest, std::sqrt(square) / 2);
+  }
+  return room;
+}
+
 std::optional<Program> lower_task(const sema::Model& model, const sema::Task& task,
                                   const std::vector<Body>& bodies, Diagnostics& diagnostics) {
   Lowering lowering(model, bodies, diagnostics);

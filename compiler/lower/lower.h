@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
+#include "compiler/lower/intervals.h"
 #include "compiler/lower/program.h"
 #include "compiler/model/model.h"
 
@@ -25,6 +26,9 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task);
 
 // All that lower_task looks at: tasks of one shape have one program, whatever their objects are.
 std::vector<std::uint32_t> shape_of(const sema::Task& task, const std::vector<Body>& bodies);
+
+// What the task's scene, layout and objects leave room for.
+Room room_of(const sema::Model& model, const sema::Task& task);
 
 // In: a task whose metrics are typed, and its bodies. Out: its program, metric after metric in
 // their order, equal parts computed once; nothing when one cannot be measured, which has been

@@ -213,7 +213,7 @@ struct MetricRecord {
 static_assert(sizeof(MetricRecord) == 16);
 
 enum class Readout : std::uint32_t {
-#define PROBE_READOUT(id, name, words, takes, gives, monitor) k##name = id,
+#define PROBE_READOUT(id, name, words, takes, gives, monitor, keeps, never) k##name = id,
 #include "runtime/plan/readouts.def"
 };
 

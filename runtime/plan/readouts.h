@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "runtime/plan/format.h"
@@ -12,11 +13,16 @@
 
 namespace probe::plan {
 
+// Which steps decide: an earlier one alone can, or the last one has its say.
+enum class Keeps : std::uint8_t { kEarlier, kLast };
+
 struct ReadoutInfo {
   Readout readout;
   std::string_view words;  // "at end"
   Kind takes, gives;       // kBool or kReal
   Op monitor;              // what remembers; kEND: the value at the last step counts
+  Keeps keeps;
+  std::optional<double> never;  // the value of a condition that never held
 
   constexpr bool is_truth() const { return gives == Kind::kBool; }
   constexpr bool has_monitor() const { return monitor != Op::kEND; }
@@ -24,9 +30,14 @@ struct ReadoutInfo {
 
 // In the order of readouts.def.
 inline constexpr std::array kReadoutTable = {
-#define PROBE_READOUT(id, name, words, takes, gives, monitor)                                      \
-  ReadoutInfo{Readout::k##name, words, static_cast<Kind>(#takes[0]), static_cast<Kind>(#gives[0]), \
-              Op::k##monitor},
+#define PROBE_READOUT(id, name, words, takes, gives, monitor, keeps, never) \
+  ReadoutInfo{Readout::k##name,                                             \
+              words,                                                        \
+              static_cast<Kind>(#takes[0]),                                 \
+              static_cast<Kind>(#gives[0]),                                 \
+              Op::k##monitor,                                               \
+              Keeps::k##keeps,                                              \
+              never},
 #include "runtime/plan/readouts.def"
 };
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "runtime/plan/readouts.h"
 #include "runtime/rejudge/dimension.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
@@ -18,7 +19,7 @@ struct Column {
   std::string name;
   bool is_bool = true;
   int trues = 0;
-  int never = 0;  // of a `first`
+  int never = 0;  // of a read-out that has a value for it
   std::vector<double> values;
 };
 
@@ -31,7 +32,7 @@ struct Tally {
 // What the plan says of one metric; without it a number is a number.
 struct Kind {
   Dimension dimension = Dimension::kNumber;
-  bool is_first = false;
+  std::optional<double> never = {};  // the value that says so
 };
 
 Kind kind_of(const plan::Plan* plan, const std::string& task, const std::string& metric) {
@@ -41,7 +42,7 @@ Kind kind_of(const plan::Plan* plan, const std::string& task, const std::string&
   const auto at = plan->find_metric(record, metric);
   if (!at) return {};
   return {metric_dimensions(*plan, plan->programs()[record.program])[*at],
-          plan->metrics(record)[*at].readout == static_cast<std::uint32_t>(plan::Readout::kFirst)};
+          plan::find_readout(plan->metrics(record)[*at].readout)->never};
 }
 
 void add(Tally& tally, const store::ResultRow& row) {
@@ -65,11 +66,9 @@ void add(Tally& tally, const store::ResultRow& row) {
   }
 }
 
-// "mean 91.2cm, 88cm .. 1.02m", and of a `first` how often it never came.
+// "mean 91.2cm, 88cm .. 1.02m", and how often it never came.
 std::string numbers_text(Column column, const Kind& kind) {
-  if (kind.is_first) {
-    column.never = static_cast<int>(std::erase(column.values, -1.0));
-  }
+  if (kind.never) column.never = static_cast<int>(std::erase(column.values, *kind.never));
   std::string text;
   if (!column.values.empty()) {
     double sum = 0;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "runtime/base/check.h"
+#include "runtime/plan/readouts.h"
 
 namespace probe::vm {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 using plan::Kind;
 using plan::Op;
 
+constexpr double kNever = *plan::info(plan::Readout::kFirst).never;
 constexpr std::uint64_t kExponent = 0x7ff0000000000000u;
 
 // Gathers whether any number seen is infinite or not a number; integer operations only, so it
@@ -398,7 +400,7 @@ void Judge::run(std::span<const Step> steps, const StepSample& sample) {
       case Op::kFIRST: {
         JudgeState::Monitor& first = states_[s.b];
         if (a.x != 0.0 && !first.started) first = {sample.step, true};
-        d.x = first.started ? first.value : -1.0;
+        d.x = first.started ? first.value : kNever;
         break;
       }
       case Op::kMAXR:

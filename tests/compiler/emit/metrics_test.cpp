@@ -68,6 +68,27 @@ TEST_CASE("what no room holds is never true, by every comparison") {
   CHECK(codes("once impulse(source, target) > 1000Ns") == "");
 }
 
+TEST_CASE("a room is as large as its scene and objects are") {
+  const std::string far =
+      "scene far like bench { robot arm at (50cm, 0cm) yaw 180deg; surface 500m area (-50cm, "
+      "-50cm) .. (50cm, 50cm) }\n"
+      "abstract task away like red_on_tray { scene far }\n";
+  const auto codes_there = [&](const std::string& metric) {
+    auto a = test::analyze_with_suite(far + "metrics m like plain { x = " + metric +
+                                      " }\ntask t like away { metrics m }");
+    REQUIRE_MESSAGE(!a->diagnostics.has_errors(), a->said());
+    // The small suite's own task stands at the bench and keeps its own metrics.
+    const auto bytes = emit::emit(a->model, a->sources, {a->files[0].file.id},
+                                  {test::asset_root(), "", "", false}, a->diagnostics);
+    REQUIRE(bytes.ok());
+    return a->codes();
+  };
+  // P0303 doubts lengths like these.
+  CHECK(codes_there("once height(source) > 490m") == "P0303");
+  CHECK(codes_there("once height(source) > 600m") == "P0303 P0602");
+  CHECK(codes("once half_height(source) > 15m") == "P0602");
+}
+
 TEST_CASE("an angle between two vectors is at most half a turn") {
   CHECK(codes("once angle(axis_z(source), up) <= 200deg") == "P0304");
   CHECK(codes("once angle(axis_z(source), up) > -20deg") == "P0304");

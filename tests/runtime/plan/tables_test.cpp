@@ -1,6 +1,7 @@
 // The tables that compiler and runtime share: sections, axes, read-outs.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
 #include <set>
 
@@ -57,6 +58,21 @@ TEST_CASE("axes have a bit and a name each, and those of phrases are of language
         std::vector<std::string_view>{"language.paraphrase", "goal"});
 }
 
+TEST_CASE("a read-out whose last step decides is one of a condition or of no monitor at all") {
+  for (const ReadoutInfo& readout : kReadoutTable) {
+    CAPTURE(readout.words);
+    if (!readout.has_monitor()) CHECK(readout.keeps == Keeps::kLast);
+    // A number that says "never" is no number that the condition could give: steps are 1 and on.
+    if (!readout.never) continue;
+    CHECK(readout.takes == Kind::kBool);
+    CHECK(readout.gives == Kind::kReal);
+    CHECK(*readout.never < 1);
+  }
+  CHECK(info(Readout::kFirst).never == -1.0);
+  CHECK(info(Readout::kOnce).keeps == Keeps::kEarlier);
+  CHECK(info(Readout::kAlways).keeps == Keeps::kLast);
+}
+
 TEST_CASE("a read-out takes and gives what the operation that remembers for it does") {
   std::set<std::string_view> words;
   for (const ReadoutInfo& readout : kReadoutTable) {
@@ -74,7 +90,10 @@ TEST_CASE("a read-out takes and gives what the operation that remembers for it d
     CHECK(op.result == readout.gives);
     CHECK(readout_of(readout.monitor) == &readout);
   }
+  std::uint32_t last = 0;
+  for (const ReadoutInfo& readout : kReadoutTable)
+    last = std::max(last, static_cast<std::uint32_t>(readout.readout));
   CHECK(find_readout(0) == nullptr);
-  CHECK(find_readout(9) == nullptr);
+  CHECK(find_readout(last + 1) == nullptr);
   CHECK(readout_of(Op::kHOLD) == nullptr);
 }

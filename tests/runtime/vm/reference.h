@@ -9,6 +9,7 @@
 
 #include "runtime/plan/isa.h"
 #include "runtime/plan/plan.h"
+#include "runtime/plan/readouts.h"
 #include "runtime/vm/sample.h"
 
 namespace probe::vm {
@@ -191,37 +192,40 @@ class Reference {
     for (std::size_t i = 0; i <= now; ++i) past.push_back(eval(in.a, i)[0]);
     const auto count =
         static_cast<std::size_t>(std::ranges::count_if(past, [](double v) { return v != 0; }));
-    switch (static_cast<plan::Op>(in.op)) {
-      case kONCE:
+    if (static_cast<plan::Op>(in.op) == kHOLD) {
+      const std::size_t n = plan_.states(program_)[in.b].n;
+      if (past.size() < n) return truth(false);
+      return truth(std::all_of(past.end() - static_cast<std::ptrdiff_t>(n), past.end(),
+                               [](double v) { return v != 0; }));
+    }
+    // No `default`: whoever adds a read-out is asked for its case.
+    switch (plan::readout_of(static_cast<plan::Op>(in.op))->readout) {
+      case plan::Readout::kOnce:
         return truth(count > 0);
-      case kALWAYS:
+      case plan::Readout::kAlways:
         return truth(count == past.size());
-      case kHOLD: {
-        const std::size_t n = plan_.states(program_)[in.b].n;
-        if (past.size() < n) return truth(false);
-        return truth(std::all_of(past.end() - static_cast<std::ptrdiff_t>(n), past.end(),
-                                 [](double v) { return v != 0; }));
-      }
-      case kCOUNT:
+      case plan::Readout::kCount:
         return {static_cast<double>(count), 0, 0};
-      case kFIRST:
+      case plan::Readout::kFirst:
         for (std::size_t i = 0; i <= now; ++i) {
           if (past[i] != 0) return {history_[i].step, 0, 0};
         }
         return {-1, 0, 0};
-      case kMAXR: {
+      case plan::Readout::kMax: {
         double best = past[0];
         for (double v : past) best = v > best ? v : best;
         return {best, 0, 0};
       }
-      case kMINR: {
+      case plan::Readout::kMin: {
         double best = past[0];
         for (double v : past) best = v < best ? v : best;
         return {best, 0, 0};
       }
-      default:
-        return {NAN, NAN, NAN};
+      case plan::Readout::kAtEnd:
+      case plan::Readout::kFinal:
+        break;  // nothing remembers for them
     }
+    return {NAN, NAN, NAN};
   }
 
   const plan::Plan& plan_;
