@@ -1,6 +1,7 @@
 // P0502: a place outside the annulus that the arm reaches, or at which it cannot grasp or set down.
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "compiler/check/starts.h"
 #include "compiler/geometry/footprint.h"
@@ -24,7 +25,7 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
       const auto miss = found->second->misses(placed[i].x, placed[i].y, z);
       if (!miss) continue;
       char degrees[32];
-      std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / 3.14159265358979);
+      std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / std::numbers::pi);
       starts.reporter
           .report(Situation::kNoGrasp, starts.place({placed[i].object, placed[0].object}),
                   "`" + robot.name + "` cannot " +

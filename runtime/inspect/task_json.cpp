@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <numeric>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct RollPitchYaw {
 // written 90 reads 90; yaw in (-180, 180].
 RollPitchYaw to_angles(const std::array<double, 4>& q) {
   const auto [w, x, y, z] = q;
-  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
   const auto rounded = [](double degrees) {
     const double value = std::nearbyint(degrees * 1e9) / 1e9;
     return value == -180.0 ? 180.0 : value + 0.0;

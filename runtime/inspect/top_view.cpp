@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <tuple>
 
 #include "runtime/base/file.h"
@@ -18,7 +19,7 @@
 namespace probe::inspect {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kFar = 20;  // m; the picture of the table ends here where it has no other end
 
 Vec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }

@@ -30,16 +30,4 @@ Failure plan_failure(Rule rule, std::string message, std::string where) {
   return {Fault::kPlan, std::move(message) + " [" + std::string(id) + "]", std::move(where)};
 }
 
-const RuleInfo* rule_of(const Failure& failure) {
-  const std::string& text = failure.message;
-  const std::size_t open = text.rfind('[');
-  if (failure.code != Fault::kPlan || open == std::string::npos || !text.ends_with(']'))
-    return nullptr;
-  const std::string_view id = std::string_view(text).substr(open + 1, text.size() - open - 2);
-  for (const RuleInfo& info : kRules) {
-    if (info.id == id) return &info;
-  }
-  return nullptr;
-}
-
 }  // namespace probe::plan

@@ -27,7 +27,5 @@ std::span<const RuleInfo> all_rules();
 
 // How every refusal of the verifier reads: "message [rule-id]", kPlan.
 Failure plan_failure(Rule rule, std::string message, std::string where);
-// The rule that a refusal names; null for other failures.
-const RuleInfo* rule_of(const Failure& failure);
 
 }  // namespace probe::plan

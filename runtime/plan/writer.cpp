@@ -17,7 +17,7 @@ struct Part {
 
 // The canonical layout: header, directory, sections each at the next multiple of 64, zeros between,
 // none at the end.
-std::vector<std::byte> join(std::span<Part> parts, std::uint16_t minor) {
+std::vector<std::byte> join(std::span<Part> parts) {
   std::uint64_t end = sizeof(Header) + parts.size() * sizeof(DirectoryEntry);
   for (Part& part : parts) {
     part.entry.offset = align_up(end);
@@ -27,7 +27,7 @@ std::vector<std::byte> join(std::span<Part> parts, std::uint16_t minor) {
   for (const Part& part : parts) directory.push_back(part.entry);
 
   Header header;
-  header.minor = minor;
+  header.minor = kMinor;
   header.sections = static_cast<std::uint32_t>(parts.size());
   header.file_size = end;
   header.root = root_hash(header, directory).bytes;
@@ -112,7 +112,7 @@ std::vector<std::byte> Writer::lay_out() const {
     part.entry.sha256 = sha256(part.bytes).bytes;
     parts.push_back(part);
   });
-  return join(parts, kMinor);
+  return join(parts);
 }
 
 Result<std::vector<std::byte>> Writer::finish() {
@@ -127,21 +127,6 @@ Result<std::vector<std::byte>> Writer::finish() {
   bytes = lay_out();
   PROBE_TRY(verify(bytes));
   return bytes;
-}
-
-std::vector<std::byte> strip_sources(std::span<const std::byte> bytes) {
-  Header header;
-  std::memcpy(&header, bytes.data(), sizeof header);
-  std::vector<Part> parts;
-  for (std::uint32_t i = 0; i < header.sections; ++i) {
-    Part part;
-    std::memcpy(&part.entry, bytes.data() + sizeof header + i * sizeof part.entry,
-                sizeof part.entry);
-    if ((part.entry.flags & kIgnorable) != 0) continue;
-    part.bytes = bytes.subspan(part.entry.offset, part.entry.size);
-    parts.push_back(part);
-  }
-  return join(parts, header.minor);
 }
 
 }  // namespace probe::plan

@@ -68,9 +68,6 @@ Slice append(std::vector<Record>& table, std::span<const Record> records) {
   return slice;
 }
 
-// The same plan without its ignorable sections: same root, same ids. `bytes` is a verified plan.
-std::vector<std::byte> strip_sources(std::span<const std::byte> bytes);
-
 using probe::write_file;  // whole or absent
 
 }  // namespace probe::plan

@@ -491,10 +491,4 @@ CollisionShape join_shapes(std::vector<PlacedShape> shapes) {
   return joined;
 }
 
-CollisionShape make_plane_shape() {
-  CollisionShape slab = make_box_shape({10, 10, 0.5});
-  slab.center_of_mass = Vec3(0, 0, -0.5);
-  return slab;
-}
-
 }  // namespace probe::scene

@@ -45,8 +45,6 @@ CollisionShape make_box_shape(const Vec3& half);
 CollisionShape make_sphere_shape(double radius);
 CollisionShape make_capsule_shape(double radius, double half_length);   // along z, without the caps
 CollisionShape make_cylinder_shape(double radius, double half_length);  // along z
-// The half space below z = 0 as far as a room goes: 20 m wide, 1 m deep. For fixtures.
-CollisionShape make_plane_shape();
 
 // Several shapes of equal density in one frame, each at its place: all their parts.
 struct PlacedShape {

@@ -22,13 +22,6 @@ void feed(Hasher& hasher, const Texture& texture) {
 
 }  // namespace
 
-Sha256 texture_hash(const Texture& texture) {
-  Hasher hasher;
-  hasher.text("texture 1");
-  feed(hasher, texture);
-  return hasher.finish();
-}
-
 Sha256 mesh_hash(const Mesh& mesh) {
   Hasher hasher;
   hasher.text("mesh 1");

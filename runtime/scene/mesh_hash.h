@@ -10,6 +10,5 @@ namespace probe::scene {
 // SHA-256 of the decoded little-endian arrays, materials and texels. The name (a path) does not
 // count.
 Sha256 mesh_hash(const Mesh& mesh);
-Sha256 texture_hash(const Texture& texture);
 
 }  // namespace probe::scene

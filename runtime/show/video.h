@@ -21,12 +21,4 @@ class VideoWriter {
   virtual Status finish() = 0;
 };
 
-struct VideoInfo {
-  int width = 0, height = 0, frames = 0;
-  double frames_per_second = 0;
-  std::string codec;  // "h264"
-};
-// Decodes the whole file; for tests and `doctor`.
-Result<VideoInfo> inspect_video(const std::string& path);
-
 }  // namespace probe::show

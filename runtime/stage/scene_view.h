@@ -35,10 +35,6 @@ class SceneView {
                                                    std::shared_ptr<const SharedAssets> assets,
                                                    ImageSize size = {});
 
-  // The task's cameras in its scene's order, at least one.
-  std::size_t camera_count() const { return eyes_.size(); }
-  const std::string& camera_name(std::size_t camera) const { return eyes_[camera].name; }
-
   // `q`: the robot's joints in drive order, then those of fixtures. `objects` are model poses in
   // world, in the order source, target, distractors. A picture is valid until the same camera's
   // next.

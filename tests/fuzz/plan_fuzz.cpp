@@ -12,8 +12,8 @@
 #include "runtime/plan/dis.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/plan.h"
-#include "runtime/plan/rules.h"
 #include "runtime/vm/judge.h"
+#include "tests/plan/rule_of.h"
 
 namespace {
 

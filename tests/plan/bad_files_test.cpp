@@ -10,9 +10,9 @@
 #include <set>
 
 #include "runtime/plan/plan.h"
-#include "runtime/plan/rules.h"
 #include "tests/plan/defects.h"
 #include "tests/plan/hex.h"
+#include "tests/plan/rule_of.h"
 
 using namespace probe;
 using namespace probe::plan;

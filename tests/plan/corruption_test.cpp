@@ -11,8 +11,9 @@
 #include "compiler/emit/compile.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/plan.h"
-#include "runtime/plan/rules.h"
 #include "runtime/plan/writer.h"
+#include "tests/plan/rule_of.h"
+#include "tests/plan/strip_sources.h"
 
 using namespace probe;
 using namespace probe::plan;

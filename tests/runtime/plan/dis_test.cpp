@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/plan/strip_sources.h"
 #include "tests/runtime/plan/small_plan.h"
 
 using namespace probe;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "tests/plan/strip_sources.h"
 #include "tests/runtime/plan/small_plan.h"
 
 using namespace probe;

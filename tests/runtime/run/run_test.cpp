@@ -16,12 +16,12 @@
 #include "runtime/run/replay.h"
 #include "runtime/run/selection.h"
 #include "runtime/scene/image.h"
-#include "runtime/show/video.h"
 #include "runtime/store/store.h"
 #include "runtime/store/trace.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/show/inspect_video.h"
 
 namespace probe::run {
 using namespace probe::store;

@@ -7,8 +7,8 @@
 #include "runtime/show/episode_video.h"
 #include "runtime/show/picture_grid.h"
 #include "runtime/show/preview.h"
-#include "runtime/show/video.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/show/inspect_video.h"
 
 namespace probe::show {
 using namespace probe::stage;

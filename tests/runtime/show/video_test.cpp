@@ -9,6 +9,7 @@
 
 #include "runtime/show/overlay.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/show/inspect_video.h"
 
 namespace probe::show {
 using namespace probe::store;

@@ -320,8 +320,6 @@ TEST_CASE("a camera on the wrist sees the fingers in one place and the table pas
 TEST_CASE("each of several cameras shows what it shows alone, under its name in the scene") {
   const Pictures pictures;
   const auto all = pictures.stage("carrot_eyes");
-  REQUIRE(all.view->camera_count() == 3);
-  CHECK(all.view->camera_name(2) == "left");
   REQUIRE(all.world->reset(0).ok());
   const auto outside = pictures.stage("carrot_on_plate");
   const auto wrist = pictures.stage("carrot_wrist");
@@ -334,6 +332,7 @@ TEST_CASE("each of several cameras shows what it shows alone, under its name in 
     REQUIRE(frames->size() == 3);
     CHECK((*frames)[0].camera == "third_view");
     CHECK((*frames)[1].camera == "wrist");
+    CHECK((*frames)[2].camera == "left");
     const Picture first = copy((*frames)[0].frame), second = copy((*frames)[1].frame),
                   third = copy((*frames)[2].frame);
     CHECK(first == copy(outside.view->render(q, objects)));
