@@ -74,7 +74,9 @@ TEST_CASE("a name in the plural is a mention, too") {
                                                          {"tomato", "tomatoes"},
                                                          {"tray lid", "tray lids"},
                                                          {"toy", "toys"}};
-  for (const auto& [one, many] : plurals) {
+  for (const auto& plural : plurals) {
+    const char* const one = plural.first;
+    const char* const many = plural.second;
     CAPTURE(one);
     CHECK(codes(std::string("put the ") + many + " on {target}", thing(one)) == "P0404");
     CHECK(codes(std::string("put the ") + one + " on {target}", thing(many)) == "P0404");
