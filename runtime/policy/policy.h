@@ -95,6 +95,7 @@ struct EpisodeStart {
   std::uint64_t draw_seed =
       0;  // first 8 bytes of H(seed, episode): feed everything that draws from this
   int horizon = 0;
+  double control_hz = 0;                // control steps a second
   const robot::Robot* robot = nullptr;  // lives as long as the episode
 };
 
@@ -114,6 +115,9 @@ struct Delivery {
   bool operator==(const Delivery&) const = default;
 };
 
+class Answerer;
+struct LiveStep;
+
 class Policy {
  public:
   virtual ~Policy() = default;
@@ -124,6 +128,10 @@ class Policy {
   // Of the episode that was begun last; nothing of a policy in this process, or before the first
   // request.
   virtual std::optional<Delivery> delivery() const { return std::nullopt; }
+  // Its halves, where asking and doing are apart; see live.h.
+  virtual Answerer* answerer() { return nullptr; }
+  // Of the last act() in a world that does not wait, and nothing in one that does; see live.h.
+  virtual const LiveStep* live_step() const { return nullptr; }
   // Sentences that whoever reads the results should know, such as what a server asked for in vain.
   virtual std::vector<std::string> notes() const { return {}; }
 };

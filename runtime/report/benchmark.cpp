@@ -49,8 +49,12 @@ int good_of(std::string_view metric) {
   return metric == "wrong" ? -1 : 0;
 }
 
+// Begins what stands behind the name of a policy whose world did not wait for it: it is compared
+// with the same policy in a world that does, and never joined to it.
+constexpr std::string_view kLive = " (live, ";
+
 Role role_of(std::string_view policy) {
-  const std::string_view name = policy.substr(0, policy.find(':'));
+  const std::string_view name = policy.substr(0, std::min(policy.find(':'), policy.find(kLive)));
   if (name == "expert") return Role::kCeiling;
   if (name == "null" || name == "idle") return Role::kFloor;
   if (name == "random") return Role::kRandom;
@@ -105,9 +109,9 @@ class Loader {
 
   Status add_folder(const std::string& dir) {
     PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
-    PROBE_ASSIGN(std::vector<store::ResultRow> rows, rows_of(dir));
-    PROBE_ASSIGN(const int plan, plan_of(dir, record));
     RunInfo info;
+    PROBE_ASSIGN(std::vector<store::ResultRow> rows, rows_of(dir, &info.live));
+    PROBE_ASSIGN(const int plan, plan_of(dir, record));
     info.dir = dir;
     info.plan = plan;
     info.content = record.identity.policy_content;
@@ -123,7 +127,8 @@ class Loader {
     return {};
   }
 
-  Result<std::vector<store::ResultRow>> rows_of(const std::string& dir) {
+  // `live`: of a run whose world does not wait, how its policy answered.
+  Result<std::vector<store::ResultRow>> rows_of(const std::string& dir, std::string* live) {
     constexpr std::size_t kTold = 5;
     if (!options_.prove) return store::read_results(dir);
     PROBE_ASSIGN(store::ProvenResults proven, store::read_proven_results(dir));
@@ -132,11 +137,11 @@ class Loader {
       note("bad", printable(refused[i], kLongestText));
     }
     if (refused.size() > kTold) {
-      note("bad",
-           fmt::format("{} more rows of `{}` are left out, because their traces do not bear "
-                       "them",
-                       refused.size() - kTold, dir));
+      note("bad", fmt::format("{} more rows of `{}` are left out, because their traces do not bear "
+                              "them",
+                              refused.size() - kTold, dir));
     }
+    if (!proven.live_terms.empty()) *live = to_text(proven.live);
     return std::move(proven.rows);
   }
 
@@ -356,8 +361,10 @@ class Loader {
     const PlanInfo& of_plan = benchmark_.plans[static_cast<std::size_t>(plan)];
     info.expected =
         of_plan.starts * static_cast<int>(std::max<std::size_t>(1, record.seeds.size()));
-    place_run(printable(record.identity.policy, kLongestText), std::move(info),
-              std::move(episodes));
+    std::string name = printable(record.identity.policy, kLongestText);
+    if (!record.identity.live.empty())
+      name += " (" + printable(record.identity.live, kLongestText) + ")";
+    place_run(name, std::move(info), std::move(episodes));
   }
 
   int prompt_of(const std::string& hash) {

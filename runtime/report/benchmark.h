@@ -79,6 +79,7 @@ struct RunInfo {
   int tasks = 0;                       // that have an episode
   store::ReadingSummary reading = {};  // of a policy server
   std::string content = {};            // RunIdentity::policy_content
+  std::string live = {};               // of a world that does not wait: how the policy answered
 };
 
 enum class Role : std::uint8_t { kModel, kCeiling, kFloor, kRandom, kProbe };

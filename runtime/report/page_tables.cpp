@@ -136,6 +136,11 @@ Json delivery_json(const Benchmark& benchmark) {
                         {"policy", p},
                         {"text", fmt::format("{}: asked by {}", policy.label, run.content)}});
       }
+      if (!run.live.empty()) {
+        rows.push_back({{"level", "warn"},
+                        {"policy", p},
+                        {"text", fmt::format("{}: {}", policy.label, run.live)}});
+      }
       for (const std::string& text : run.reading.batches) {
         rows.push_back({{"level", "good"},
                         {"policy", p},

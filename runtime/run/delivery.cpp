@@ -44,6 +44,8 @@ const char* delivery_word(DeliveryFinding::Kind kind) {
       return "many_prompts";
     case DeliveryFinding::Kind::kSamePicture:
       return "same_picture";
+    case DeliveryFinding::Kind::kLive:
+      return "live";
     case DeliveryFinding::Kind::kNothing:
       break;
   }

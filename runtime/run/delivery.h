@@ -20,6 +20,7 @@ struct DeliveryFinding {
     kManyPrompts,  // one instruction of the plan, several texts sent
     kSamePicture,  // a variant and its baseline, equal first pictures of different starts
     kNothing,      // no valid episode: what reached the policy cannot be said
+    kLive,         // of a run whose world does not wait: how often and how late the policy answered
   };
   Kind kind = Kind::kSamePrompt;
   std::string task, other;  // the variant and its baseline, or any two tasks; `other` may be empty
@@ -37,7 +38,7 @@ std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
                                             std::span<const store::ResultRow> rows);
 
 // A JSON array of objects {kind, task, other, axes, episodes, compared, sentence}; kinds are
-// same_prompt, many_prompts, same_picture, nothing.
+// same_prompt, many_prompts, same_picture, nothing, live.
 std::string to_json(std::span<const DeliveryFinding> findings);
 
 }  // namespace probe::run

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <exception>
 
+#include "runtime/base/percent.h"
+
 namespace probe::run {
 namespace {
 
@@ -26,6 +28,8 @@ struct Outcome {
 };
 
 Outcome policy_failed(const Failure& failure) {
+  // Of a world that does not wait and cannot keep up.
+  if (failure.code == Fault::kWorld) return {reason("world", failure), {}};
   return {reason("policy", failure), {}, failure.code};
 }
 
@@ -58,11 +62,12 @@ class Loop {
     }
   }
 
-  Outcome run(int steps) {
+  Outcome run(int steps, double most_held) {
     Outcome outcome = begin();
     for (int step = 0; step < steps && !outcome.invalid && !outcome.broken; ++step) {
       outcome = this->step(step);
     }
+    if (!outcome.invalid && !outcome.broken) outcome = check_held(most_held);
     if (!outcome.invalid && !outcome.broken && frames_ != nullptr) outcome = last_frame(steps);
     if (row_.steps > 0) row_.frames_sha256 = to_hex(frames_hash_.finish());
     return outcome;
@@ -127,6 +132,10 @@ class Loop {
       return policy_failed({Fault::kPolicy, "an action with a number that is not finite", ""});
     }
     record.action = *action;
+    if (const policy::LiveStep* live = policy_.live_step()) {
+      record.live = *live;
+      live_.add(number, *live);
+    }
     record.policy_s = seconds_since(clock);
 
     clock = Clock::now();
@@ -143,6 +152,15 @@ class Loop {
     frames_hash_.hash(record.image_hash);
     row_.steps = number + 1;
     return {};
+  }
+
+  // A policy that is hardly ever in time was hardly asked for what its row says.
+  Outcome check_held(double most_held) const {
+    if (live_.held_share() <= most_held) return {};
+    return policy_failed({Fault::kPolicy,
+                          "slower than its rate: " + to_text(live_) + ", and the limit is " +
+                              decimal_text(100 * most_held, 1) + " % (--live-most-held)",
+                          ""});
   }
 
   Outcome last_frame(int number) {
@@ -164,14 +182,15 @@ class Loop {
   std::string_view prompt_;
   Sha256 prompt_hash_;
   Hasher frames_hash_;
+  policy::LiveFigures live_;
 };
 
 // Adapters catch what libraries throw; this is for what they missed, so that one episode cannot end
 // a run of thousands.
-Outcome run_guarded(Loop& loop, int steps) {
+Outcome run_guarded(Loop& loop, int steps, double most_held) {
   Outcome outcome;
   try {
-    outcome = loop.run(steps);
+    outcome = loop.run(steps, most_held);
   } catch (const std::exception& error) {
     outcome = {std::string("exception: ") + error.what(), {}};
   } catch (...) {
@@ -203,7 +222,8 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
 
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
                                      const stage::Stage& stage, const std::string& policy,
-                                     const std::string& fingerprint) {
+                                     const std::string& fingerprint,
+                                     const std::optional<policy::LiveTerms>& live) {
   const plan::TaskRecord& task = plan.tasks()[job.task];
   const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
   const plan::RobotRecord& robot = plan.robots()[plan.scenes()[task.scene].robot];
@@ -224,13 +244,15 @@ store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& j
     header.metrics.push_back({std::string(plan.text(metric.name)),
                               metric.type == static_cast<std::uint32_t>(plan::MetricType::kBool)});
   }
+  header.live = live;
   header.fingerprint = fingerprint;
   return header;
 }
 
 Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job,
                            const std::string& policy_name, policy::Policy& policy,
-                           store::TraceWriter& trace, show::FrameSink* frames, int steps) {
+                           store::TraceWriter& trace, show::FrameSink* frames, int steps,
+                           double most_held) {
   const plan::TaskRecord& task = plan.tasks()[job.task];
   const plan::EpisodeRecord& episode = plan.episodes(task)[job.index];
   store::ResultRow row;
@@ -243,7 +265,8 @@ Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const Ep
   row.start_id = to_hex(Sha256{episode.start_id});
 
   Loop loop(stage, plan, job, policy, trace, frames, row);
-  const Outcome outcome = run_guarded(loop, steps < 0 ? static_cast<int>(task.horizon) : steps);
+  const Outcome outcome =
+      run_guarded(loop, steps < 0 ? static_cast<int>(task.horizon) : steps, most_held);
   if (outcome.broken) return *outcome.broken;
   row.invalid = outcome.invalid;
   PROBE_ASSIGN(const Sha256 hash,

@@ -6,6 +6,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
+#include "runtime/policy/live.h"
 #include "runtime/policy/policy.h"
 #include "runtime/show/frame_sink.h"
 #include "runtime/stage/stage.h"
@@ -30,7 +31,8 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id);
 // `stage` is of the job's task: it knows the bodies and joints that are measured.
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,
                                      const stage::Stage& stage, const std::string& policy,
-                                     const std::string& fingerprint);
+                                     const std::string& fingerprint,
+                                     const std::optional<policy::LiveTerms>& live = {});
 
 struct Played {
   store::ResultRow row;               // its `trace` is left empty
@@ -40,12 +42,13 @@ struct Played {
 // In: a stage of the job's task and a policy. Out: the row, and the trace, closed. The order: the
 // stage is reset and the trace begun; the policy hears of the episode; then, step by step, look,
 // ask, act, judge, record; a last frame for the video; the policy hears of the end.
-// Runs the full horizon (`steps` of them if not negative). What goes wrong with the world, the
-// picture or the policy, exceptions included, makes the row invalid; a Failure is only what the
-// trace or the sink could not write.
+// A policy with a live_step() (policy/live.h) has more of its steps held than `most_held` allows:
+// the row is invalid. Runs the full horizon (`steps` of them if not negative). What goes wrong with
+// the world, the picture or the policy, exceptions included, makes the row invalid; a Failure is
+// only what the trace or the sink could not write.
 Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job,
                            const std::string& policy_name, policy::Policy& policy,
                            store::TraceWriter& trace, show::FrameSink* frames = nullptr,
-                           int steps = -1);
+                           int steps = -1, double most_held = 1);
 
 }  // namespace probe::run

@@ -1,10 +1,16 @@
 // Plan and trace from the folder, actions from the trace, everything else computed again.
 #include "runtime/run/replay.h"
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <memory>
+#include <utility>
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
+#include "runtime/policy/live.h"
 #include "runtime/run/episode.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/episode_video.h"
@@ -28,6 +34,71 @@ class TraceActions final : public policy::Policy {
 
  private:
   const store::Trace& trace_;
+};
+
+// The answers of a live episode, each in the step in which the trace has it take effect, with the
+// actions that were done of it: what asks, holds and goes on in between is for the rule of live
+// worlds to find again.
+class TraceAnswers final : public policy::Answerer {
+  using Time = policy::LiveClock::time_point;
+
+ public:
+  explicit TraceAnswers(const store::Trace& trace)
+      : steps_(trace.steps),
+        period_(static_cast<std::int64_t>(std::llround(1e9 / trace.header.control_hz))) {}
+
+  Status ask(const policy::Observation& seen) override {
+    const int asked = seen.step;
+    const auto is_answer = [&](const store::TraceStep& step) {
+      return std::ranges::any_of(step.live->answers, [&](const policy::LiveAnswer& answer) {
+        return answer.asked == asked;
+      });
+    };
+    const auto begin = std::find_if(steps_.begin(), steps_.end(), is_answer);
+    answer_.reset();
+    if (begin == steps_.end()) return {};  // the episode ended before it came
+    const auto effect = begin - steps_.begin();
+    const policy::LiveSource source = begin->live->source;
+    Answer answer;
+    answer.came = Time{} + effect * period_;
+    if (begin->live->answers.back().asked != asked) {
+      answer.actions.emplace_back();  // one that came right behind it was done instead
+    } else if (source == policy::LiveSource::kLate) {
+      answer.actions.push_back(said(begin->action));
+    } else if (source == policy::LiveSource::kAnswer) {
+      answer.actions.resize(static_cast<std::size_t>(effect - asked));  // their time was past
+      auto step = begin;
+      do {
+        answer.actions.push_back(said((step++)->action));
+      } while (step != steps_.end() && step->live->answers.empty() &&
+               step->live->source == policy::LiveSource::kAnswer);
+    }
+    answer_ = std::move(answer);
+    return {};
+  }
+  Result<std::optional<Answer>> wait(Time until) override {
+    if (!answer_ || answer_->came >= until) return std::optional<Answer>();
+    return std::exchange(answer_, std::nullopt);
+  }
+  Result<policy::Action> convert(const Said& said, const policy::Observation&) override {
+    policy::Action action{};
+    std::copy_n(said.begin(), action.size(), action.begin());
+    return action;
+  }
+  void done(const policy::Action&, const policy::Observation&) override {}
+  int steps_between(int asked) const override {
+    for (std::size_t i = static_cast<std::size_t>(asked) + 1; i < steps_.size(); ++i) {
+      if (steps_[i].live->asks) return static_cast<int>(i) - asked;
+    }
+    return static_cast<int>(steps_.size());
+  }
+
+ private:
+  static Said said(const policy::Action& action) { return {action.begin(), action.end()}; }
+
+  const std::vector<store::TraceStep>& steps_;
+  std::chrono::nanoseconds period_;
+  std::optional<Answer> answer_;
 };
 
 // Hands frames to the video and keeps the one that was asked for.
@@ -106,10 +177,15 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, job.task, std::move(assets)));
 
-  TraceActions actions(trace);
+  std::unique_ptr<policy::Policy> actions;
+  if (trace.header.live) {
+    actions = policy::make_live(std::make_unique<TraceAnswers>(trace));
+  } else {
+    actions = std::make_unique<TraceActions>(trace);
+  }
   store::TraceComparer comparer(trace);
   ReplayPictures pictures(trace.header, options);
-  PROBE_ASSIGN(const Played played, run_episode(*stage, plan, job, trace.header.policy, actions,
+  PROBE_ASSIGN(const Played played, run_episode(*stage, plan, job, trace.header.policy, *actions,
                                                 comparer, &pictures, steps));
   const store::ResultRow& row = played.row;
   PROBE_TRY(pictures.finish());

@@ -78,6 +78,8 @@ class EpisodeWorker {
 
   Status begin() {
     PROBE_ASSIGN(policy_, make_policy(shared_.options, &shared_));
+    if (shared_.options.live)
+      policy_ = policy::make_live(std::move(policy_), *shared_.options.live);
     return {};
   }
 
@@ -88,7 +90,8 @@ class EpisodeWorker {
       PROBE_ASSIGN(stage_, stage::Stage::create(shared_.plan, job.task, shared_.assets));
     }
     const store::TraceHeader header =
-        make_trace_header(shared_.plan, job, *stage_, shared_.options.name, shared_.fingerprint);
+        make_trace_header(shared_.plan, job, *stage_, shared_.options.name, shared_.fingerprint,
+                          shared_.options.live);
     PROBE_ASSIGN(const std::string path, shared_.store.temporary_trace(store::key_of(header)));
     for (int attempt = 0;; ++attempt) {
       auto played = write(job, header, path);
@@ -116,8 +119,10 @@ class EpisodeWorker {
       PROBE_TRY(make_folders(fs::path(file).parent_path().string()));
       video.emplace(header, file);
     }
-    PROBE_ASSIGN(Played played, run_episode(*stage_, shared_.plan, job, shared_.options.name,
-                                            *policy_, *trace, video ? &*video : nullptr));
+    PROBE_ASSIGN(Played played,
+                 run_episode(*stage_, shared_.plan, job, shared_.options.name, *policy_, *trace,
+                             video ? &*video : nullptr, -1,
+                             shared_.options.live ? shared_.options.live->most_held : 1));
     if (video) {
       const bool keep = shared_.options.video == VideoChoice::kAll || has_failed(played.row);
       PROBE_TRY(keep ? video->finish() : video->discard());
@@ -315,6 +320,34 @@ Status check_worlds(const RunOptions& options) {
                  "--jobs"};
 }
 
+// Delays that are measured must be the policy's alone: not those of other worlds' questions, and
+// not of a machine that is busy with other worlds.
+Status check_live(const RunOptions& options, const PolicyTraits& traits) {
+  if (!options.live) return {};
+  const auto refused = [](const std::string& why, const char* where) {
+    return Failure{Fault::kUsage, why, where};
+  };
+  if (traits.recorded) {
+    return refused("`replay:DIR` has the actions of every step at hand: nothing of it is late",
+                   "--live");
+  }
+  if (options.live->delay_s) return {};
+  if (options.jobs > 1) {
+    return refused(
+        "the worlds of a live run would wait for one another's answers, and the delays "
+        "that are measured not be the policy's; run with --jobs 1, or give every answer "
+        "a delay with --live-delay",
+        "--jobs");
+  }
+  const auto choice =
+      options.own_policy ? Result<servers::ServerChoice>(Failure{}) : server_choice(options.policy);
+  if (choice && choice->batch.most > 1) {
+    return refused("questions of a live run do not wait for others: ask without `batch`",
+                   "--policy");
+  }
+  return {};
+}
+
 // A batch holds no more than one question a world.
 void note_batch(const RunOptions& options, RunSummary& summary) {
   if (options.own_policy) return;
@@ -385,6 +418,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     PROBE_ASSIGN(traits, run::policy_traits(options.policy));
   }
   PROBE_TRY(check_worlds(options));
+  PROBE_TRY(check_live(options, traits));
   // Made once before anything else, so that a policy that cannot be had is told before the folder
   // exists.
   if (auto made = make_policy(options, nullptr); !made) return made.failure();
@@ -410,7 +444,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const store::Fingerprint fingerprint = store::take_fingerprint(stage::asset_digest(plan));
   store::RunRecord record{
       {to_hex(plan.root()), options.name.empty() ? options.policy : options.name,
-       content_of(options, traits)},
+       content_of(options, traits), options.live ? to_text(*options.live) : ""},
       selection.suite,
       selection.seeds,
       fingerprint};

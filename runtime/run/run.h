@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/policy/live.h"
 #include "runtime/run/policies.h"
 #include "runtime/store/results.h"
 #include "runtime/store/run_record.h"
@@ -63,6 +64,8 @@ struct RunOptions {
   int give_up_after = 5;
   bool accepts_any_certificate = false;  // of a server over TLS; stored and reported
   IfChanged if_changed = IfChanged::kRefuse;
+  // The world does not wait for the policy; see policy/live.h. None: it does.
+  std::optional<policy::LiveTerms> live = {};
   VideoChoice video = VideoChoice::kNone;  // DIR/videos/TASK/EPISODE-SEED.mp4
   std::string assets;                      // asset root, see find_asset_root
   // Called from worker threads, one call at a time.

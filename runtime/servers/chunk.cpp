@@ -22,7 +22,7 @@ void ChunkQueue::clear() {
 
 bool ChunkQueue::wants_answer() const { return blends_ ? !has_answer_ : next_ >= end_; }
 
-Status ChunkQueue::put(std::vector<RawAction> actions) {
+Status ChunkQueue::check(const std::vector<RawAction>& actions) const {
   if (length_ > 0 && actions.size() != static_cast<std::size_t>(length_)) {
     return Failure{Fault::kPolicy,
                    "expected a chunk of " + std::to_string(length_) + " actions, got " +
@@ -35,6 +35,11 @@ Status ChunkQueue::put(std::vector<RawAction> actions) {
                        std::to_string(actions.size()) + " (profile field `chunk.use`)",
                    ""};
   }
+  return {};
+}
+
+Status ChunkQueue::put(std::vector<RawAction> actions) {
+  PROBE_TRY(check(actions));
   has_answer_ = true;
   if (blends_) {
     answers_.emplace_back(actions.begin(), actions.end());

@@ -21,8 +21,10 @@ class ChunkQueue {
   // Whether the next action needs an answer first.
   bool wants_answer() const;
 
-  // An answer's actions, the first for this control step. Fails (kPolicy) when they are not
-  // as many as the profile says.
+  // Fails (kPolicy) when an answer's actions are not as many as the profile says.
+  Status check(const std::vector<RawAction>& actions) const;
+
+  // An answer's actions, the first for this control step. Fails as check does.
   Status put(std::vector<RawAction> actions);
 
   // The action of this control step; only when no answer is wanted.

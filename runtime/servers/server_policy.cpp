@@ -3,6 +3,7 @@
 #include "runtime/servers/server_policy.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "runtime/base/sha256.h"
 #include "runtime/robot/control.h"
@@ -105,25 +106,92 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
 
 Result<policy::Action> ServerPolicy::act(const policy::Observation& observation) {
   if (queue_.wants_answer()) {
-    if (auto asked = ask(observation); !asked) {
+    if (auto asked = ask_and_wait(observation); !asked) {
       drop();
       return named(asked.failure(), server_);
     }
   }
-  // The controller's own law: its target starts where the tool is and moves by each action.
-  const policy::Proprioception& measured = observation.proprioception;
-  const Pose& tool = measured.tcp_in_base;
-  if (!target_) target_ = tool;
-  const std::span<const double> joints(measured.joints.data(), measured.arm_joints());
-  auto action = to_action(profile_, queue_.take(),
-                          {*target_, tool.position, joints, arm_ ? &*arm_ : nullptr});
-  if (!action) return named(action.failure(), server_);
-  const policy::Action& a = *action;
-  target_ = robot::moved_target(*target_, tool.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});
+  auto action = convert(queue_.take(), observation);
+  if (action) done(*action, observation);
   return action;
 }
 
+// The controller's own law: its target starts where the tool is and moves by each action.
+Result<policy::Action> ServerPolicy::convert(const RawAction& said,
+                                             const policy::Observation& now) {
+  const policy::Proprioception& measured = now.proprioception;
+  const Pose& tool = measured.tcp_in_base;
+  if (!target_) target_ = tool;
+  const std::span<const double> joints(measured.joints.data(), measured.arm_joints());
+  auto action =
+      to_action(profile_, said, {*target_, tool.position, joints, arm_ ? &*arm_ : nullptr});
+  if (!action) return named(action.failure(), server_);
+  return action;
+}
+
+void ServerPolicy::done(const policy::Action& a, const policy::Observation& now) {
+  const Pose& tool = now.proprioception.tcp_in_base;
+  if (!target_) target_ = tool;
+  target_ = robot::moved_target(*target_, tool.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});
+}
+
+Status ServerPolicy::ask(const policy::Observation& seen) {
+  auto request = next_request(seen);
+  if (!request) {
+    drop();
+    return named(request.failure(), server_);
+  }
+  const auto asking = [this, asked = std::move(*request), times = deadlines()]() -> Result<Answer> {
+    const policy::QueryMeter::InFlight flight(queries_);
+    PROBE_ASSIGN(auto actions, transport_->ask(asked, times));
+    return Answer{std::move(actions), policy::LiveClock::now()};
+  };
+  try {
+    question_ = std::async(std::launch::async, asking);
+  } catch (const std::system_error&) {
+    return named(bad("the system gives no thread to ask on"), server_);
+  }
+  return {};
+}
+
+Result<std::optional<policy::Answerer::Answer>> ServerPolicy::wait(
+    policy::LiveClock::time_point until) {
+  // Far away is for good: the question has a limit of its own.
+  const bool is_bounded = until < policy::LiveClock::time_point::max();
+  if (is_bounded && question_.wait_until(until) != std::future_status::ready)
+    return std::optional<Answer>();
+  auto answer = question_.get();
+  const Status fits = answer ? queue_.check(answer->actions) : Status(answer.failure());
+  if (!fits) {
+    drop();
+    return named(fits.failure(), server_);
+  }
+  has_answered_ = true;
+  last_length_ = answer->actions.size();
+  return std::optional(std::move(*answer));
+}
+
+int ServerPolicy::steps_between(int /*asked*/) const {
+  if (profile_.ensemble == Ensemble::kTemporal) return 1;
+  return profile_.chunk_use > 0 ? profile_.chunk_use : static_cast<int>(last_length_);
+}
+
+std::optional<double> ServerPolicy::ensemble_ratio() const {
+  if (profile_.ensemble != Ensemble::kTemporal) return std::nullopt;
+  return profile_.ensemble_ratio;
+}
+
+void ServerPolicy::forget_question() {
+  if (!question_.valid()) return;
+  const auto answer = question_.get();
+  // A question that failed has left the connection in an unknown state.
+  if (answer) return;
+  if (is_open_) transport_->close();
+  is_open_ = in_episode_ = false;
+}
+
 void ServerPolicy::end(const policy::EpisodeEnd& end) {
+  forget_question();
   if (!in_episode_) return;
   in_episode_ = false;
   const auto ended = transport_->end_episode(end, deadlines());
@@ -140,10 +208,15 @@ Status ServerPolicy::connect() {
   return {};
 }
 
-Status ServerPolicy::ask(const policy::Observation& observation) {
+Result<Request> ServerPolicy::next_request(const policy::Observation& observation) {
   if (!in_episode_) return Failure{Fault::kPolicy, "the connection was lost in this episode", ""};
-  PROBE_ASSIGN(const Request request, to_request(profile_, observation));
+  PROBE_ASSIGN(Request request, to_request(profile_, observation));
   if (!delivery_) delivery_ = delivery_of(request);
+  return request;
+}
+
+Status ServerPolicy::ask_and_wait(const policy::Observation& observation) {
+  PROBE_ASSIGN(const Request request, next_request(observation));
   auto answer = [&] {
     const policy::QueryMeter::InFlight flight(queries_);
     return transport_->ask(request, deadlines());
@@ -160,6 +233,8 @@ Deadlines ServerPolicy::deadlines() const {
 }
 
 void ServerPolicy::drop() {
+  if (question_.valid()) question_.wait();
+  question_ = {};
   if (is_open_) transport_->close();
   is_open_ = in_episode_ = false;
 }

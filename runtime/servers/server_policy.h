@@ -3,11 +3,13 @@
 // Transport's.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "runtime/policy/live.h"
 #include "runtime/policy/policy.h"
 #include "runtime/policy/query_meter.h"
 #include "runtime/robot/kinematics.h"
@@ -25,8 +27,10 @@ Result<Request> to_request(const Profile& profile, const policy::Observation& ob
 policy::Delivery delivery_of(const Request& request);
 
 // One connection, used by one world. A failure in act() ends the episode: the connection is
-// dropped, and the next begin() makes another.
-class ServerPolicy : public policy::Policy {
+// dropped, and the next begin() makes another. In a world that does not wait a question is asked on
+// a thread of its own; one that is still under way when the episode ends is waited for, within its
+// time, and forgotten.
+class ServerPolicy : public policy::Policy, public policy::Answerer {
  public:
   // `server` is HOST:PORT, for messages. `queries` may be null, and outlives this.
   ServerPolicy(Profile profile, std::string server, std::unique_ptr<Transport> transport,
@@ -42,9 +46,19 @@ class ServerPolicy : public policy::Policy {
   std::optional<policy::Delivery> delivery() const override { return delivery_; }
   std::vector<std::string> notes() const override { return notes_; }
 
+  policy::Answerer* answerer() override { return this; }
+  Status ask(const policy::Observation& seen) override;
+  Result<std::optional<Answer>> wait(policy::LiveClock::time_point until) override;
+  Result<policy::Action> convert(const RawAction& said, const policy::Observation& now) override;
+  void done(const policy::Action& action, const policy::Observation& now) override;
+  int steps_between(int asked) const override;
+  std::optional<double> ensemble_ratio() const override;
+
  private:
   Status connect();
-  Status ask(const policy::Observation& observation);
+  Status ask_and_wait(const policy::Observation& observation);
+  Result<Request> next_request(const policy::Observation& observation);
+  void forget_question();
   Deadlines deadlines() const;
   void drop();
 
@@ -59,8 +73,10 @@ class ServerPolicy : public policy::Policy {
   std::optional<Pose> target_;  // of the arm's controller; none before an episode's first action
   std::vector<std::string> notes_;  // of the transport, once there was a connection
   bool is_open_ = false;
-  bool has_answered_ = false;  // this connection, once
-  bool in_episode_ = false;    // begin_episode was fine and the connection stands since
+  bool has_answered_ = false;             // this connection, once
+  std::future<Result<Answer>> question_;  // under way
+  std::size_t last_length_ = 1;           // actions of the last answer
+  bool in_episode_ = false;               // begin_episode was fine and the connection stands since
 };
 
 }  // namespace probe::servers

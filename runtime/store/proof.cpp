@@ -8,6 +8,7 @@
 
 #include "runtime/store/episode_key.h"
 #include "runtime/store/run_plan.h"
+#include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 #include "runtime/vm/judge.h"
 
@@ -55,7 +56,19 @@ std::string difference(const plan::Plan& plan, const ResultRow& row, const Trace
   return "its verdicts are not what its own plan says of its measurements";
 }
 
+std::string terms_of(const Trace& trace) {
+  return trace.header.live ? to_text(*trace.header.live) : "";
+}
+
 }  // namespace
+
+policy::LiveFigures live_figures(const Trace& trace) {
+  policy::LiveFigures figures;
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    if (trace.steps[i].live) figures.add(static_cast<int>(i), *trace.steps[i].live);
+  }
+  return figures;
+}
 
 Result<Trace> prove(const plan::Plan& plan, const ResultRow& row) {
   PROBE_ASSIGN(Trace trace, read_stored_trace(row));
@@ -67,11 +80,27 @@ Result<Trace> prove(const plan::Plan& plan, const ResultRow& row) {
 Result<ProvenResults> read_proven_results(const std::string& dir) {
   PROBE_ASSIGN(std::vector<ResultRow> rows, read_results(dir));
   PROBE_ASSIGN(const plan::Plan plan, open_run_plan(dir));
+  PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
+  ProvenResults proven;
+  proven.live_terms = record.identity.live;
   std::vector<std::optional<Failure>> wrong(rows.size());
+  std::vector<policy::LiveFigures> live(rows.size());
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (std::size_t i = next++; i < rows.size(); i = next++) {
-      if (auto proven = prove(plan, rows[i]); !proven) wrong[i] = proven.failure();
+      const auto trace = prove(plan, rows[i]);
+      if (!trace) {
+        wrong[i] = trace.failure();
+      } else if (const std::string terms = terms_of(*trace); terms != proven.live_terms) {
+        wrong[i] = Failure{Fault::kTrace,
+                           std::string("its world ") +
+                               (terms.empty() ? "waited for the policy" : "was " + terms) +
+                               ", that of its run " +
+                               (proven.live_terms.empty() ? "waits" : "is " + proven.live_terms),
+                           rows[i].trace};
+      } else if (!rows[i].invalid) {
+        live[i] = live_figures(*trace);
+      }
     }
   };
   std::vector<std::thread> others;
@@ -83,12 +112,12 @@ Result<ProvenResults> read_proven_results(const std::string& dir) {
   work();
   for (std::thread& thread : others) thread.join();
 
-  ProvenResults proven;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (wrong[i]) {
       proven.refused.push_back(to_text(key_of(rows[i])) + " is left out: " + to_text(*wrong[i]));
     } else {
       proven.rows.push_back(std::move(rows[i]));
+      proven.live.add(live[i]);
     }
   }
   return proven;

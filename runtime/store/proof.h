@@ -17,9 +17,15 @@ namespace probe::store {
 // long as the task, with verdicts that the plan's metrics give for its measurements at every step.
 Result<Trace> prove(const plan::Plan& plan, const ResultRow& row);
 
+policy::LiveFigures live_figures(const Trace& trace);
+
 struct ProvenResults {
   std::vector<ResultRow> rows;       // as read_results has them
   std::vector<std::string> refused;  // a sentence each: which episode, and what is wrong
+  // Of a run whose world does not wait: its terms, and how often and how late its policy answered
+  // in valid episodes. Empty: it waits.
+  std::string live_terms;
+  policy::LiveFigures live;
 };
 
 // The rows of a run that their traces bear; reads all of them, on every core. Fails as

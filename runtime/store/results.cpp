@@ -62,6 +62,9 @@ constexpr std::string_view kBehind[] = {"steps",
                                         "start_id",
                                         "trace"};
 
+// Behind those, of live runs alone.
+constexpr std::string_view kLiveField[] = {"live"};
+
 // A metric is called as in the text, and `metric.NAME` where a row has a field NAME: names in texts
 // have no dots, and those of a foreign plan that do are prefixed too.
 std::string column_of(const std::string& metric) {
@@ -69,7 +72,7 @@ std::string column_of(const std::string& metric) {
   const auto has = [&](const auto& fields) {
     return std::find(std::begin(fields), std::end(fields), metric) != std::end(fields);
   };
-  return has(kBefore) || has(kBehind) || metric.starts_with(kPrefix)
+  return has(kBefore) || has(kBehind) || has(kLiveField) || metric.starts_with(kPrefix)
              ? std::string(kPrefix) + metric
              : metric;
 }
@@ -120,6 +123,7 @@ std::string results_to_json(std::span<const ResultRow> rows) {
     json["episode_id"] = row.episode_id;
     json["start_id"] = row.start_id;
     json["trace"] = row.trace;
+    if (!row.live.empty()) json["live"] = row.live;
     array.push_back(std::move(json));
   }
   // A policy's error text may hold any bytes; what is not UTF-8 is replaced, never thrown.
@@ -131,6 +135,9 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
   std::vector<std::string> header(std::begin(kBefore), std::end(kBefore));
   for (const std::string& name : names) header.push_back(column_of(name));
   header.insert(header.end(), std::begin(kBehind), std::end(kBehind));
+  const bool has_live =
+      std::ranges::any_of(rows, [](const ResultRow& row) { return !row.live.empty(); });
+  if (has_live) header.emplace_back(kLiveField[0]);
   std::string text = line_of(header);
   for (const ResultRow& row : rows) {
     std::vector<std::string> cells = {row.task, std::to_string(row.episode),
@@ -143,6 +150,7 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
           row.episode_id, row.start_id, row.trace}) {
       cells.push_back(value);
     }
+    if (has_live) cells.push_back(row.live);
     text += line_of(cells);
   }
   return text;

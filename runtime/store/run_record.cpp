@@ -36,13 +36,15 @@ std::string percent(double part, double whole) {
 }  // namespace
 
 std::string record_to_text(const RunRecord& record) {
-  const Json json = {{"schema", std::to_string(record.schema)},
-                     {"plan_root", record.identity.plan_root},
-                     {"policy", record.identity.policy},
-                     {"policy_content", record.identity.policy_content},
-                     {"suite", record.suite},
-                     {"seeds", record.seeds},
-                     {"fingerprint", to_json(record.fingerprint)}};
+  const bool is_live = !record.identity.live.empty();
+  Json json = {{"schema", std::to_string(is_live ? kLiveSchemaVersion : record.schema)},
+               {"plan_root", record.identity.plan_root},
+               {"policy", record.identity.policy},
+               {"policy_content", record.identity.policy_content},
+               {"suite", record.suite},
+               {"seeds", record.seeds},
+               {"fingerprint", to_json(record.fingerprint)}};
+  if (is_live) json["live"] = record.identity.live;
   return json.sorted().dump();
 }
 
@@ -54,7 +56,8 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
   }
   RunRecord record;
   PROBE_ASSIGN(const std::string schema, record_text(json, "schema", where));
-  if (schema != "1" && schema != std::to_string(kSchemaVersion)) {
+  const bool is_live = schema == std::to_string(kLiveSchemaVersion);
+  if (schema != "1" && schema != std::to_string(kSchemaVersion) && !is_live) {
     return record_failure(
         "was written by a program with another layout of results (" + schema + ")", where);
   }
@@ -63,6 +66,10 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
   PROBE_ASSIGN(record.identity.policy, record_text(json, "policy", where));
   if (record.schema > 1) {
     PROBE_ASSIGN(record.identity.policy_content, record_text(json, "policy_content", where));
+  }
+  if (is_live) {
+    PROBE_ASSIGN(record.identity.live, record_text(json, "live", where));
+    if (record.identity.live.empty()) return bad_record("live", "a text that says how", where);
   }
   PROBE_ASSIGN(record.suite, record_text(json, "suite", where));
   const Json* seeds = json.find("seeds");
@@ -84,7 +91,13 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
   RunChanges changes;
   const RunIdentity& there = stored.identity;
   const RunIdentity& here = asked.identity;
-  if (there.policy != here.policy) {
+  const auto kind = [](const std::string& live) {
+    return live.empty() ? std::string("a run whose world waits for its policy")
+                        : "a run that is " + live;
+  };
+  if (there.live != here.live) {
+    changes.identity = "holds " + kind(there.live) + ", not " + kind(here.live);
+  } else if (there.policy != here.policy) {
     changes.identity = "holds a run of policy `" + there.policy + "`, not `" + here.policy + "`";
   } else if (there.plan_root != here.plan_root) {
     changes.identity = "holds a run of another plan (root " + short_form(there.plan_root, 12) +

@@ -15,8 +15,10 @@
 namespace probe::store {
 
 // Raised when the tables or the record change. Version 1 had neither `policy_content` nor calls nor
-// the hashes of what was sent; it is read, and raised to 2 when it is written.
+// the hashes of what was sent; it is read, and raised to 2 when it is written. A live run's record
+// is of version 3, which programs that know no live runs refuse.
 inline constexpr int kSchemaVersion = 2;
+inline constexpr int kLiveSchemaVersion = 3;
 
 // What must not change between two calls that write into one folder.
 struct RunIdentity {
@@ -24,6 +26,9 @@ struct RunIdentity {
   std::string policy;
   // What the name alone does not say: PolicyTraits::content, or which policy goes by another name.
   std::string policy_content = "";
+  // Of a world that does not wait for its policy: to_text of its policy::LiveTerms. Empty: it
+  // waits.
+  std::string live = "";
   bool operator==(const RunIdentity&) const = default;
 };
 

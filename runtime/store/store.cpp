@@ -162,6 +162,7 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
     row.trace = absolute_path((fs::path(dir) / select.text(13)).string());
     row.sent_prompt_sha256 = select.optional_text(14);
     row.sent_image_sha256 = select.optional_text(15);
+    row.live = record->identity.live;
     rows.push_back(std::move(row));
   }
   PROBE_TRY(select.done());

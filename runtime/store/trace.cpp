@@ -12,6 +12,7 @@
 #include <cstring>
 #include <memory>
 
+#include "runtime/base/check.h"
 #include "runtime/base/file.h"
 #include "runtime/store/trace_codec.h"
 
@@ -58,12 +59,18 @@ class FileTraceWriter final : public TraceWriter {
   Status begin(const TraceHeader& header) {
     ByteWriter head;
     for (const std::uint8_t byte : codec::kMagic) head.u8(byte);
-    head.u32(codec::kVersion);
+    is_live_ = header.live.has_value();
+    head.u32(is_live_ ? codec::kLiveVersion : codec::kVersion);
     head.u32(0);
     PROBE_TRY(compress(head.bytes(), ZSTD_e_continue));
     ByteWriter payload;
     codec::put_header(payload, header);
     PROBE_TRY(chunk(Tag::kHead, payload.bytes()));
+    if (is_live_) {
+      ByteWriter terms;
+      codec::put_terms(terms, *header.live);
+      PROBE_TRY(chunk(Tag::kLive, terms.bytes()));
+    }
     ByteWriter fingerprint;
     fingerprint.text(header.fingerprint);
     PROBE_TRY(chunk(Tag::kFingerprint, fingerprint.bytes()));
@@ -78,10 +85,16 @@ class FileTraceWriter final : public TraceWriter {
   }
 
   Status step(const TraceStep& step) override {
+    PROBE_CHECK(step.live.has_value() == is_live_, "every step of a live trace is a live one");
     ByteWriter payload;
     codec::put_step(payload, step);
     ByteWriter timing;
     for (const double seconds : {step.render_s, step.policy_s, step.physics_s}) timing.f64(seconds);
+    if (step.live) {
+      const auto& answers = step.live->answers;
+      for (std::size_t i = 0; i < policy::kMostAnswersOfAStep; ++i)
+        timing.f64(i < answers.size() ? answers[i].answer_s : 0);
+    }
     // The timing goes first, so that a whole step in the file has it.
     PROBE_TRY(chunk(Tag::kTime, timing.bytes()));
     PROBE_TRY(chunk(Tag::kStep, payload.bytes()));
@@ -149,6 +162,7 @@ class FileTraceWriter final : public TraceWriter {
 
   std::string path_;
   int file_;
+  bool is_live_ = false;
   ZSTD_CCtx* stream_ = nullptr;
   Hasher hasher_;
 };
@@ -217,6 +231,15 @@ bool fits(const TraceHeader& header, const TraceStep& step) {
   return step.q.size() == header.joints.size() && step.u.size() == header.joints.size() &&
          step.metrics.size() == header.metrics.size() && fits(header, step.sample);
 }
+// An answer is to a question that went out before, with an observation of this trace.
+bool fits(const std::vector<TraceStep>& before, const TraceStep& step) {
+  if (!step.live) return true;
+  return std::ranges::all_of(step.live->answers, [&](const policy::LiveAnswer& answer) {
+    const auto asked = static_cast<std::size_t>(answer.asked);
+    return asked < before.size() ? before[asked].live->asks
+                                 : asked == before.size() && step.live->asks;
+  });
+}
 bool fits(const TraceHeader& header, const TraceEnd& end) {
   const auto is_same = [](const MetricValue& value, const TraceHeader::Metric& metric) {
     return value.name == metric.name && value.is_bool == metric.is_bool;
@@ -225,13 +248,18 @@ bool fits(const TraceHeader& header, const TraceEnd& end) {
 }
 
 // One chunk into the trace; what is wrong with it, if anything is.
-std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing, Tag tag,
+// Seconds of rendering, policy, physics; of a live step those of its answers.
+using LiveTiming = std::array<double, 3 + policy::kMostAnswersOfAStep>;
+
+std::string accept(Trace& trace, bool is_live, bool& has_header, LiveTiming& timing, Tag tag,
                    std::span<const std::byte> payload) {
   if (!is_known(tag)) return "a chunk of unknown kind";
   if ((tag == Tag::kHead) == has_header) return has_header ? "a second header" : "no header";
   const bool needs_start = tag == Tag::kStep || tag == Tag::kTime;
   if (needs_start && !trace.start) return "a step before the settled start";
   if (trace.end && tag != Tag::kHash) return "a chunk after the end";
+  if (has_header && is_live && !trace.header.live && tag != Tag::kLive)
+    return "no terms of a live episode";
   ByteReader from(payload);
   switch (tag) {
     case Tag::kHead: {
@@ -241,6 +269,10 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
       has_header = true;
       return {};
     }
+    case Tag::kLive:
+      if (!is_live || trace.header.live) return "terms of a live episode where none belong";
+      trace.header.live = codec::get_terms(payload);
+      return trace.header.live ? "" : "terms of a live episode of another form";
     case Tag::kFingerprint:
       trace.header.fingerprint = from.text();
       return from.ok() && from.left() == 0 ? "" : "a fingerprint of another form";
@@ -253,15 +285,18 @@ std::string accept(Trace& trace, bool& has_header, std::array<double, 3>& timing
       return {};
     }
     case Tag::kTime:
-      for (double& seconds : timing) seconds = from.f64();
+      for (std::size_t i = 0; i < (is_live ? timing.size() : 3u); ++i) timing[i] = from.f64();
       return from.ok() && from.left() == 0 ? "" : "a timing of another form";
     case Tag::kStep: {
-      auto step = codec::get_step(payload);
+      auto step = codec::get_step(payload, is_live);
       if (!step) return "a step of another form";
+      if (!fits(trace.steps, *step)) return "an answer to a question that was not asked";
       if (!fits(trace.header, *step)) return "a step of other things than its header's";
       step->render_s = timing[0];
       step->policy_s = timing[1];
       step->physics_s = timing[2];
+      for (std::size_t i = 0; step->live && i < step->live->answers.size(); ++i)
+        step->live->answers[i].answer_s = timing[3 + i];
       trace.steps.push_back(std::move(*step));
       return {};
     }
@@ -303,9 +338,11 @@ Result<Trace> read_trace_prefix(const std::string& path) {
   }
   const std::uint32_t version = from.u32();
   const std::uint32_t zero = from.u32();
-  if (from.ok() && version != codec::kVersion) {
+  const bool is_live = version == codec::kLiveVersion;
+  if (from.ok() && version != codec::kVersion && !is_live) {
     return Failure{Fault::kTrace,
-                   "trace format " + std::to_string(version) + ", this program reads 1", path};
+                   "trace format " + std::to_string(version) + ", this program reads 1 and 2",
+                   path};
   }
 
   if (zero != 0)
@@ -315,7 +352,7 @@ Result<Trace> read_trace_prefix(const std::string& path) {
   Hasher hasher;
   bool has_header = false, has_hash = false;
   Sha256 recorded;
-  std::array<double, 3> timing{};
+  LiveTiming timing{};
   std::string wrong;
   while (wrong.empty() && from.left() > 0 && !has_hash) {
     const std::size_t begin = from.position();
@@ -329,7 +366,7 @@ Result<Trace> read_trace_prefix(const std::string& path) {
       wrong = "a chunk with another check word";
       break;
     }
-    wrong = accept(trace, has_header, timing, tag, payload);
+    wrong = accept(trace, is_live, has_header, timing, tag, payload);
     if (!wrong.empty()) break;
     if (is_hashed(tag)) hasher.bytes(chunk);
     if (tag == Tag::kHash) {

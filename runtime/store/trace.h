@@ -11,6 +11,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
+#include "runtime/policy/live.h"
 #include "runtime/robot/action.h"
 #include "runtime/store/results.h"
 #include "runtime/vm/sample.h"
@@ -34,6 +35,8 @@ struct TraceHeader {
     bool operator==(const Metric&) const = default;
   };
   std::vector<Metric> metrics;
+  // Of a world that did not wait for its policy; such a trace has version 2.
+  std::optional<policy::LiveTerms> live = {};
   std::string fingerprint;  // JSON; not part of the trace's hash
 };
 
@@ -54,6 +57,8 @@ struct TraceStep {
   vm::StepSample sample;
   std::vector<double> metrics;  // values so far; a truth is 0 or 1
   Sha256 state_hash;
+  // In every step of a trace whose header has the terms, and in no other.
+  std::optional<policy::LiveStep> live = {};
   // Seconds of wall clock; not part of the trace's hash.
   double render_s = 0, policy_s = 0, physics_s = 0;
 };

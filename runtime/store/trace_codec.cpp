@@ -120,6 +120,26 @@ std::optional<TraceHeader> get_header(std::span<const std::byte> bytes) {
   return whole(from, std::move(header));
 }
 
+void put_terms(ByteWriter& to, const policy::LiveTerms& terms) {
+  to.u8(terms.delay_s ? 1 : 0);
+  to.f64(terms.delay_s.value_or(0));
+  to.f64(terms.most_held);
+}
+
+std::optional<policy::LiveTerms> get_terms(std::span<const std::byte> bytes) {
+  ByteReader from(bytes);
+  policy::LiveTerms terms;
+  const std::uint8_t is_given = from.u8();
+  const double delay_s = from.f64();
+  terms.most_held = from.f64();
+  if (is_given == 1 && delay_s >= 0) terms.delay_s = delay_s;
+  if (is_given > 1 || (is_given == 0 && delay_s != 0) || (is_given == 1 && !terms.delay_s) ||
+      !(terms.most_held >= 0 && terms.most_held <= 1)) {
+    return std::nullopt;
+  }
+  return whole(from, terms);
+}
+
 void put_start(ByteWriter& to, const TraceStart& start) {
   to.hash(start.state_hash);
   to.reals(start.q);
@@ -157,9 +177,15 @@ void put_step(ByteWriter& to, const TraceStep& step) {
   to.reals(step.u);
   to.reals(step.metrics);
   put_sample(to, step.sample);
+  if (!step.live) return;
+  to.u8(static_cast<std::uint8_t>(step.live->source));
+  to.u8(step.live->asks ? 1 : 0);
+  to.u8(static_cast<std::uint8_t>(step.live->answers.size()));
+  for (const policy::LiveAnswer& answer : step.live->answers)
+    to.u32(static_cast<std::uint32_t>(answer.asked));
 }
 
-std::optional<TraceStep> get_step(std::span<const std::byte> bytes) {
+std::optional<TraceStep> get_step(std::span<const std::byte> bytes, bool is_live) {
   ByteReader from(bytes);
   TraceStep step;
   step.prompt_hash = from.hash();
@@ -171,6 +197,18 @@ std::optional<TraceStep> get_step(std::span<const std::byte> bytes) {
   step.metrics = from.reals();
   step.sample = get_sample(from);
   step.sample.joints = joints_of(step.q, step.u);
+  if (!is_live) return whole(from, std::move(step));
+  policy::LiveStep& live = step.live.emplace();
+  const std::uint8_t source = from.u8(), asks = from.u8(), answers = from.u8();
+  if (source > static_cast<std::uint8_t>(policy::LiveSource::kHeld) || asks > 1 ||
+      answers > policy::kMostAnswersOfAStep)
+    return std::nullopt;
+  live.source = static_cast<policy::LiveSource>(source);
+  live.asks = asks == 1;
+  for (int i = 0; i < answers; ++i) {
+    policy::LiveAnswer& answer = live.answers.emplace_back();
+    answer.asked = static_cast<int>(from.u32());
+  }
   return whole(from, std::move(step));
 }
 

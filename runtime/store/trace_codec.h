@@ -13,11 +13,13 @@
 namespace probe::store::codec {
 
 inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kLiveVersion = 2;  // of live episodes alone
 inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'T', 'R', 'C', '\r', '\n', 0x1a, '\n'};
 
 // Four letters each, as they stand in the file.
 enum class Tag : std::uint32_t {
   kHead = 0x44414548,         // HEAD
+  kLive = 0x4556494c,         // LIVE, of version 2
   kFingerprint = 0x474e4946,  // FING, not hashed
   kSettled = 0x4c544553,      // SETL
   kStep = 0x50455453,         // STEP
@@ -27,18 +29,22 @@ enum class Tag : std::uint32_t {
 };
 
 inline bool is_hashed(Tag tag) {
-  return tag == Tag::kHead || tag == Tag::kSettled || tag == Tag::kStep || tag == Tag::kDone;
+  return tag == Tag::kHead || tag == Tag::kLive || tag == Tag::kSettled || tag == Tag::kStep ||
+         tag == Tag::kDone;
 }
 
 void put_header(ByteWriter& to, const TraceHeader& header);
+void put_terms(ByteWriter& to, const policy::LiveTerms& terms);
 void put_start(ByteWriter& to, const TraceStart& start);
 void put_step(ByteWriter& to, const TraceStep& step);
 void put_end(ByteWriter& to, const TraceEnd& end);
 
 // Nothing if the bytes do not have the form of the record, all of them.
 std::optional<TraceHeader> get_header(std::span<const std::byte> bytes);
+std::optional<policy::LiveTerms> get_terms(std::span<const std::byte> bytes);
 std::optional<TraceStart> get_start(std::span<const std::byte> bytes);
-std::optional<TraceStep> get_step(std::span<const std::byte> bytes);
+// `is_live`: of version 2.
+std::optional<TraceStep> get_step(std::span<const std::byte> bytes, bool is_live);
 std::optional<TraceEnd> get_end(std::span<const std::byte> bytes);
 
 }  // namespace probe::store::codec

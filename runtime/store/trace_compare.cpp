@@ -76,6 +76,18 @@ class Finder {
       vec("push of " + name(a.a) + " on " + name(a.b), a.push, b.push);
     }
   }
+  void live(const policy::LiveStep& here, const policy::LiveStep& recorded) {
+    const auto said = [](const policy::LiveStep& live) {
+      const char* source = live.source == policy::LiveSource::kHeld   ? "no action"
+                           : live.source == policy::LiveSource::kLate ? "a late action"
+                                                                      : "an action";
+      std::string text = std::string(source) + (live.asks ? ", a question" : "");
+      for (const policy::LiveAnswer& answer : live.answers)
+        text += ", the answer to step " + std::to_string(answer.asked);
+      return text;
+    };
+    if (said(here) != said(recorded)) keep(said(here) + ", recorded " + said(recorded));
+  }
   const std::string& first() const { return first_; }
 
  private:
@@ -133,6 +145,8 @@ Status TraceComparer::step(const TraceStep& here) {
   // In the order of cause and effect: what was seen and done, then what came of it.
   finder.hash("prompt hash", here.prompt_hash, recorded.prompt_hash);
   finder.hash("image hash", here.image_hash, recorded.image_hash);
+  if (here.live && recorded.live) finder.live(*here.live, *recorded.live);
+  finder.count("live steps", here.live ? 1 : 0, recorded.live ? 1 : 0);
   for (std::size_t i = 0; i < here.action.size(); ++i) {
     finder.real("action " + std::to_string(i), here.action[i], recorded.action[i]);
   }

@@ -31,6 +31,13 @@ void print_readings(const std::string& dir) {
   for (const std::string& sentence : summary.batches) put("{}\n", sentence);
 }
 
+// Of a world that did not wait for its policy.
+void print_live(const store::ProvenResults& proven) {
+  if (proven.live_terms.empty()) return;
+  put("{}\n", proven.live_terms);
+  put("live: {}\n", to_text(proven.live));
+}
+
 // How the questions of the folder's calls went, where they went together.
 void print_batches(const std::string& dir) {
   const auto calls = store::read_run_calls(dir);
@@ -41,17 +48,26 @@ void print_batches(const std::string& dir) {
 }
 
 // Whether what makes tasks different reached the policy.
-int delivery_verb(const ResultsArguments& arguments, std::span<const store::ResultRow> rows) {
+int delivery_verb(const ResultsArguments& arguments, const store::ProvenResults& proven) {
+  const std::vector<store::ResultRow>& rows = proven.rows;
   const auto plan = rejudge::stored_plan(arguments.dir);
   if (!plan) return report({Fault::kStore, "its plan cannot be read", arguments.dir});
-  const auto findings = run::check_delivery(*plan, rows);
+  auto findings = run::check_delivery(*plan, rows);
   if (arguments.json) {
+    if (!proven.live_terms.empty()) {
+      run::DeliveryFinding live;
+      live.kind = run::DeliveryFinding::Kind::kLive;
+      live.episodes = static_cast<int>(rows.size());
+      live.sentence = proven.live_terms + ": " + to_text(proven.live);
+      findings.push_back(std::move(live));
+    }
     put("{}\n", run::to_json(findings));
     return kFine;
   }
   for (const run::DeliveryFinding& finding : findings) put("{}\n", finding.sentence);
   print_readings(arguments.dir);
   print_batches(arguments.dir);
+  print_live(proven);
   if (findings.empty()) {
     put("every instruction and picture that should differ reached the policy different\n");
   }
@@ -64,7 +80,7 @@ int results_verb(const ResultsArguments& arguments) {
   for (const std::string& sentence : proven->refused) say("vlaprobe: {}\n", sentence);
   const int exit = proven->refused.empty() ? kFine : kOutside;
   const std::vector<store::ResultRow>& rows = proven->rows;
-  if (arguments.delivery) return std::max(exit, delivery_verb(arguments, rows));
+  if (arguments.delivery) return std::max(exit, delivery_verb(arguments, *proven));
   if (arguments.json) {
     put("{}\n", store::results_to_json(rows));
   } else if (arguments.csv) {
@@ -72,6 +88,7 @@ int results_verb(const ResultsArguments& arguments) {
   } else {
     const auto plan = rejudge::stored_plan(arguments.dir);
     put("{}", rejudge::tally_text(rows, plan ? &*plan : nullptr));
+    print_live(*proven);
     print_readings(arguments.dir);
   }
   return exit;

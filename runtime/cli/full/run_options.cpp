@@ -14,6 +14,8 @@
 namespace probe::cli {
 namespace {
 
+constexpr double kLongestDelay = 3600;  // s
+
 Failure usage(std::string message) { return Failure{Fault::kUsage, std::move(message), ""}; }
 
 // "A-B" or "A".
@@ -40,6 +42,20 @@ Result<std::vector<int>> parse_seeds(const std::string& text) {
     begin = comma + 1;
   }
   return seeds;
+}
+
+// "80ms", "0.3s", in seconds.
+Result<double> parse_delay(const std::string& text) {
+  const double unit = text.ends_with("ms") ? 1e-3 : 1;
+  const std::size_t digits = text.size() - std::min<std::size_t>(unit < 1 ? 2 : 1, text.size());
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + digits, value);
+  if (!text.ends_with('s') || error != std::errc() || end != text.data() + digits ||
+      !(value >= 0) || value * unit > kLongestDelay) {
+    return usage(
+        fmt::format("--live-delay `{}` is not a time from 0ms to 3600s, as in 80ms", text));
+  }
+  return value * unit;
 }
 
 // The suites of a file that is only used are not what the user asked for.
@@ -87,6 +103,13 @@ Result<run::RunOptions> to_options(const RunArguments& arguments) {
   }
   if (!arguments.seeds.empty()) {
     PROBE_ASSIGN(options.seeds, parse_seeds(arguments.seeds));
+  }
+  if (arguments.live || !arguments.live_delay.empty()) {
+    options.live.emplace();
+    options.live->most_held = arguments.live_most_held / 100.0;
+    if (!arguments.live_delay.empty()) {
+      PROBE_ASSIGN(options.live->delay_s, parse_delay(arguments.live_delay));
+    }
   }
   static const std::map<std::string, run::VideoChoice> kVideo = {
       {"none", run::VideoChoice::kNone},
@@ -161,6 +184,13 @@ void add_run_options(Verb verb, RunArguments& arguments) {
   verb.add_option("--if-changed", arguments.if_changed,
                   "refuse, fork (into DIR-2) or continue over another build or profile")
       .one_of({"refuse", "fork", "continue"});
+  verb.add_flag("--live", arguments.live,
+                "the world does not wait for answers: each takes effect as late as it came");
+  verb.add_option("--live-delay", arguments.live_delay,
+                  "live, with this time for every answer instead of the measured, as in 80ms");
+  verb.add_option("--live-most-held", arguments.live_most_held,
+                  "percent of a live episode's steps without an action; more make it invalid (90)")
+      .between(0, 100);
   verb.add_option("--video", arguments.video, "none, failures or all")
       .one_of({"none", "failures", "all"});
   add_asset_option(verb, arguments.assets);

@@ -217,11 +217,17 @@ TEST_CASE("another version and unknown chunks are refused") {
   REQUIRE(write_sample_trace(folder / "a.trace", 1).ok());
   std::string content = unpacked(read_file(folder / "a.trace"));
   std::string later = content;
-  later[8] = 2;
+  later[8] = 3;
   write_file(folder / "later.trace", packed(later));
   const auto refused = read_trace_prefix(folder / "later.trace");
   REQUIRE_FALSE(refused.ok());
-  CHECK(refused.failure().message == "trace format 2, this program reads 1");
+  CHECK(refused.failure().message == "trace format 3, this program reads 1 and 2");
+  // A world that waited is no live one.
+  later[8] = 2;
+  write_file(folder / "live.trace", packed(later));
+  const auto live = read_trace(folder / "live.trace");
+  REQUIRE_FALSE(live.ok());
+  CHECK(live.failure().message.find("no terms of a live episode") == 0);
   std::uint32_t size = 0;
   std::memcpy(&size, content.data() + 20, sizeof size);
   content.insert(32 + size, chunk(codec::Tag{0x3f3f3f3f}, "what"));

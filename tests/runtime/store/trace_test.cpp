@@ -59,6 +59,51 @@ TEST_CASE("a trace comes back as it was written") {
   CHECK(comparer.difference() == "");
 }
 
+TEST_CASE("a live trace keeps its terms and what each step had of answers") {
+  TemporaryFolder folder;
+  TraceHeader header = sample_header();
+  header.live = policy::LiveTerms{.delay_s = 0.08, .most_held = 0.5};
+  const auto write = [&](const std::string& path, double answer_s, bool in_order) {
+    auto writer = TraceWriter::create(path, header);
+    REQUIRE(writer.ok());
+    REQUIRE((*writer)->start(sample_start()).ok());
+    for (int i = 0; i < 3; ++i) {
+      TraceStep step = sample_step(i + 1);
+      step.live.emplace();
+      step.live->asks = i < 2;
+      if (i == 1) {
+        step.live->source = policy::LiveSource::kLate;
+        step.live->answers = {{0, answer_s}, {in_order ? 1 : 2, 0.01}};
+      }
+      REQUIRE((*writer)->step(step).ok());
+    }
+    const auto hash = (*writer)->finish({3, {{"success", true, 1}, {"height", false, 0.5}}, {}});
+    REQUIRE(hash.ok());
+    return *hash;
+  };
+  const Sha256 hash = write(folder / "a.trace", 0.25, true);
+  const auto trace = read_trace(folder / "a.trace");
+  REQUIRE_MESSAGE(trace.ok(), to_text(trace.failure()));
+  CHECK(trace->header.live == header.live);
+  REQUIRE(trace->steps.size() == 3);
+  REQUIRE(trace->steps[1].live.has_value());
+  CHECK(trace->steps[0].live->asks);
+  CHECK(trace->steps[0].live->source == policy::LiveSource::kHeld);
+  CHECK(trace->steps[1].live->source == policy::LiveSource::kLate);
+  const std::vector<policy::LiveAnswer> answers = {{0, 0.25}, {1, 0.01}};
+  CHECK(trace->steps[1].live->answers == answers);
+  CHECK_FALSE(trace->steps[2].live->asks);
+  // The seconds of an answer are the clock's; its step is the trace's.
+  CHECK(write(folder / "b.trace", 0.31, true) == hash);
+  header.live->delay_s.reset();
+  CHECK(write(folder / "c.trace", 0.25, true) != hash);
+  CHECK(read_trace(folder / "c.trace")->header.live->delay_s == std::nullopt);
+  write(folder / "d.trace", 0.25, false);
+  const auto wrong = read_trace(folder / "d.trace");
+  REQUIRE_FALSE(wrong.ok());
+  CHECK(wrong.failure().message.find("an answer to a question that was not asked") == 0);
+}
+
 TEST_CASE("the hash covers everything but the clock") {
   TemporaryFolder folder;
   const auto a = write_sample_trace(folder / "a.trace", 3, 0.006);

@@ -1,0 +1,263 @@
+// Runs whose world does not wait: what is stored of delays repeats them bit for bit, in one go or
+// after a kill, and never mixes with runs that wait.
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "runtime/run/recorded.h"
+#include "runtime/run/replay.h"
+#include "runtime/run/run.h"
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/served.h"
+#include "runtime/store/merge.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/store.h"
+#include "runtime/store/trace.h"
+#include "tests/runtime/run/run_checks.h"
+#include "tests/runtime/run/table_plan.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::run {
+using namespace probe::servers;
+namespace {
+
+RunOptions live_options(const std::string& out, const std::string& policy,
+                        std::optional<double> delay_s, double most_held = 1) {
+  RunOptions options = options_for(out, policy);
+  options.seeds = {42};
+  options.live = policy::LiveTerms{delay_s, most_held};
+  return options;
+}
+
+Trace trace_of(const std::string& dir, int episode) {
+  const auto rows = read_results(dir);
+  REQUIRE(rows.ok());
+  REQUIRE(rows->size() > static_cast<std::size_t>(episode));
+  const ResultRow& row = rows->at(static_cast<std::size_t>(episode));
+  REQUIRE_MESSAGE(!row.invalid, row.invalid.value_or(""));
+  auto trace = read_trace(row.trace);
+  REQUIRE_MESSAGE(trace.ok(), to_text(trace.failure()));
+  return std::move(*trace);
+}
+
+void check_replays(const std::string& dir, int episodes) {
+  for (int episode = 0; episode < episodes; ++episode) {
+    ReplayOptions options;
+    options.verify = true;
+    options.assets = VLAPROBE_SOURCE_DIR "/assets";
+    const auto replayed = replay(dir, "carrot_on_plate", episode, 42, options);
+    REQUIRE_MESSAGE(replayed.ok(), to_text(replayed.failure()));
+    CHECK_MESSAGE(replayed->identical, replayed->difference);
+  }
+}
+
+std::vector<int> delays_of(const Trace& trace) { return live_figures(trace).delays; }
+
+// The served expert, whose answers take a time on the wall clock.
+class Late final : public ServedPolicy {
+ public:
+  Late(std::unique_ptr<ServedPolicy> inner, std::chrono::milliseconds time)
+      : inner_(std::move(inner)), time_(time) {}
+  void reset() override { inner_->reset(); }
+  Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
+    std::this_thread::sleep_for(time_);
+    return inner_->answer(asked, count);
+  }
+
+ private:
+  std::unique_ptr<ServedPolicy> inner_;
+  std::chrono::milliseconds time_;
+};
+
+}  // namespace
+
+TEST_CASE("a given delay of nothing is the run that waits, and others repeat bit for bit") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 12);
+  RunOptions waits = options_for(folder / "waits", "expert");
+  waits.seeds = {42};
+  must_run(plan, waits);
+  const Trace still = trace_of(folder / "waits", 0);
+  CHECK_FALSE(still.header.live.has_value());
+  for (const int late : {0, 1, 3}) {
+    CAPTURE(late);
+    const std::string dir = folder / ("late" + std::to_string(late));
+    RunOptions options = live_options(dir, "expert", 0.2 * late);
+    options.jobs = 2;
+    must_run(plan, options);
+    const Trace trace = trace_of(dir, 0);
+    REQUIRE(trace.header.live.has_value());
+    CHECK(trace.header.live->delay_s == 0.2 * late);
+    REQUIRE(trace.steps.size() == 12);
+    for (const int delay : delays_of(trace)) CHECK(delay == late);
+    for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+      REQUIRE(trace.steps[i].live.has_value());
+      if (late == 0) CHECK(trace.steps[i].state_hash == still.steps[i].state_hash);
+    }
+    // Nothing is done before the first answer, and then what it saw then.
+    for (int i = 0; i < late; ++i) {
+      const TraceStep& step = trace.steps[static_cast<std::size_t>(i)];
+      CHECK(step.live->source == policy::LiveSource::kHeld);
+      CHECK(step.action == policy::Action{0, 0, 0, 0, 0, 0, 1});
+    }
+    CHECK(trace.steps[static_cast<std::size_t>(late)].action == still.steps[0].action);
+    check_replays(dir, 2);
+    // The same once more has the same traces.
+    RunOptions again =
+        live_options(folder / ("again" + std::to_string(late)), "expert", 0.2 * late);
+    must_run(plan, again);
+    CHECK(hashes(again.out) == hashes(dir));
+  }
+}
+
+TEST_CASE("a served expert's delays on the wall clock are stored and repeat bit for bit") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 12);
+  RunOptions waits = options_for(folder / "waits", "expert");
+  waits.seeds = {42};
+  must_run(plan, waits);
+  const auto episodes = recorded_episodes(folder / "waits");
+  REQUIRE_MESSAGE(episodes.ok(), to_text(episodes.failure()));
+  struct Case {
+    int late;
+    std::chrono::milliseconds time;
+  };
+  for (const Case& now :
+       {Case{0, std::chrono::milliseconds(0)}, Case{1, std::chrono::milliseconds(290)},
+        Case{3, std::chrono::milliseconds(690)}}) {
+    CAPTURE(now.late);
+    ServeOptions options;
+    const auto inner = serve_recorded(*episodes, false);
+    options.policy = [inner, now] { return std::make_unique<Late>(inner(), now.time); };
+    const auto listener = serve(Protocol::kOpenpi, options);
+    REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+    const std::string dir = folder / ("late" + std::to_string(now.late));
+    const auto begun = std::chrono::steady_clock::now();
+    must_run(plan, live_options(dir,
+                                "openpi://127.0.0.1:" + (*listener)->port() +
+                                    "?image=first -> observation/image&" +
+                                    options_for_served(Protocol::kOpenpi, options),
+                                std::nullopt));
+    const double took =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    CHECK(took >= 11 * 0.2);
+    const Trace trace = trace_of(dir, 0);
+    REQUIRE_FALSE(delays_of(trace).empty());
+    CHECK(delays_of(trace).front() == now.late);
+    const auto figures = live_figures(trace);
+    for (std::size_t i = 0; i < figures.delays.size(); ++i) {
+      CHECK(figures.answer_s[i] >= 0.001 * static_cast<double>(now.time.count()));
+      // The recorded delay is that of the control step in whose period it came.
+      CHECK(figures.delays[i] >= static_cast<int>(figures.answer_s[i] / 0.2));
+    }
+    check_replays(dir, 1);
+    const auto proven = read_proven_results(dir);
+    REQUIRE(proven.ok());
+    CHECK(proven->live_terms == "live, as measured, at most 100 % held");
+    CHECK(proven->live.steps == 12);
+  }
+}
+
+TEST_CASE("a live run that was killed goes on, with the traces of one that was not") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(4, 6);
+  must_run(plan, live_options(folder / "whole", "expert", 0.25));
+  const std::string dir = folder / "killed";
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    RunOptions options = live_options(dir, "expert", 0.25);
+    options.progress = [](const RunProgress& progress) {
+      if (progress.done == 2) kill(getpid(), SIGKILL);
+    };
+    const auto ran = run(plan, options);
+    _exit(ran.ok() ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(WIFSIGNALED(status));
+  const RunSummary summary = must_run(plan, live_options(dir, "expert", 0.25));
+  CHECK(summary.skipped == 2);
+  CHECK(summary.done == 2);
+  CHECK(hashes(dir) == hashes(folder / "whole"));
+  check_replays(dir, 4);
+}
+
+TEST_CASE("live rows never stand beside rows of a world that waits") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 3);
+  RunOptions waits = options_for(folder / "waits", "null");
+  must_run(plan, waits);
+  must_run(plan, live_options(folder / "live", "null", 0.2));
+  const auto refusal = [&](RunOptions options, const std::string& out) {
+    options.out = out;
+    const auto ran = run(plan, options);
+    return ran.ok() ? std::string() : ran.failure().message;
+  };
+  CHECK(refusal(waits, folder / "live")
+            .find("holds a run that is live, 200 ms, at most 100 % held, "
+                  "not a run whose world waits for its policy") == 0);
+  const RunOptions live = live_options("", "null", 0.2);
+  CHECK(refusal(live, folder / "waits").find("holds a run whose world waits for its policy") == 0);
+  CHECK(refusal(live_options("", "null", 0.4), folder / "live")
+            .find("holds a run that is live, 200") == 0);
+  RunOptions forced = waits;
+  forced.if_changed = IfChanged::kContinue;
+  CHECK(refusal(forced, folder / "live").find("holds a run that is live") == 0);
+
+  MergeOptions merging;
+  merging.dirs = {folder / "waits", folder / "live"};
+  merging.out = folder / "merged";
+  const auto merged = merge(merging);
+  REQUIRE_FALSE(merged.ok());
+  CHECK(merged.failure().message.find("holds a run that is live") == 0);
+  CHECK_FALSE(std::filesystem::exists(folder / "merged/results.sqlite"));
+
+  // Nor does a trace pass for one of the other kind.
+  const auto rows = read_results(folder / "live");
+  REQUIRE(rows.ok());
+  CHECK(rows->size() == 1);
+}
+
+TEST_CASE("what cannot be live, or not measured so, is refused before anything runs") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 3);
+  const auto refusal = [&](RunOptions options) {
+    const auto ran = run(plan, options);
+    REQUIRE_FALSE(ran.ok());
+    CHECK(ran.failure().code == Fault::kUsage);
+    return ran.failure().message;
+  };
+  RunOptions many = live_options(folder / "a", "expert", std::nullopt);
+  many.jobs = 2;
+  CHECK(refusal(many).find("run with --jobs 1, or give every answer a delay with --live-delay") !=
+        std::string::npos);
+  CHECK(refusal(live_options(folder / "b", "openpi://localhost:1?batch=8", std::nullopt)) ==
+        "questions of a live run do not wait for others: ask without `batch`");
+  CHECK(refusal(live_options(folder / "c", "replay:" + (folder / "x"), 0.1))
+            .find("nothing of it is late") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "a"));
+}
+
+TEST_CASE("a policy that is hardly ever in time is named, and its episode does not count") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 10);
+  must_run(plan, live_options(folder / "slow", "expert", 0.6, 0.5));
+  const auto rows = read_results(folder / "slow");
+  REQUIRE(rows.ok());
+  REQUIRE(rows->size() == 1);
+  REQUIRE(rows->front().invalid.has_value());
+  CHECK(*rows->front().invalid ==
+        "policy: slower than its rate: 70.0 % of 10 control steps had no action of the policy, 3 "
+        "steps one that came after its time; 3 answers took effect after 3 control steps (600 ms) "
+        "at the median, 3 control steps (600 ms) at the 99th percentile, and the limit is 50.0 % "
+        "(--live-most-held)");
+}
+
+}  // namespace probe::run
