@@ -1,5 +1,5 @@
 // P0706: a suite that runs variants without the baselines they are compared with, because a
-// `sample` drew the one and not the other.
+// `sample` drew the one and not the other, or was of variants alone.
 #include <algorithm>
 #include <vector>
 

@@ -426,7 +426,8 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
 
 std::vector<std::uint32_t> shape_of(const sema::Task& task, const std::vector<Body>& bodies) {
   std::vector<std::uint32_t> shape;
-  shape.reserve(2 * bodies.size() + 9 * task.judged.size());
+  shape.reserve(1 + 2 * bodies.size() + 9 * task.judged.size());
+  shape.push_back(static_cast<std::uint32_t>(bodies.size()));
   for (const Body& body : bodies) {
     // Which object it is counts for nothing: instructions name bodies by their place in the list.
     shape.push_back(static_cast<std::uint32_t>(body.kind));

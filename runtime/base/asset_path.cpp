@@ -22,8 +22,9 @@ std::string lower_extension(const fs::path& path) {
   return text;
 }
 
-AssetFolder::AssetFolder(const fs::path& root) : root_(fs::absolute(root).lexically_normal()) {
+AssetFolder::AssetFolder(const fs::path& root) {
   std::error_code error;
+  root_ = fs::absolute(root, error).lexically_normal();  // an empty path has none
   real_ = fs::canonical(root_, error);
   if (error) real_.clear();
 }

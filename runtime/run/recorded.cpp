@@ -64,6 +64,12 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const st
     }
   }
   for (const std::string& key : ambiguous) steps->erase(key);
+  if (steps->empty() && !ambiguous.empty()) {
+    return Failure{Fault::kUsage,
+                   "has no step that its picture tells from all others, so none can be served in "
+                   "batches",
+                   dir};
+  }
   if (steps->empty()) return Failure{Fault::kUsage, "has no valid episode to serve", dir};
   return std::shared_ptr<const servers::RecordedEpisodes>(std::move(steps));
 }

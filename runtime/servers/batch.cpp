@@ -64,14 +64,18 @@ BatchLine::~BatchLine() {
 }
 
 Status BatchLine::open(const Deadlines& deadlines) {
+  const std::uint64_t before = attempts_;
   const std::lock_guard lock(line_);
   if (is_open_) return {};
-  if (auto opened = transport_->open(deadlines); !opened) {
+  if (attempts_ != before) return last_attempt_;  // made while this one waited
+  last_attempt_ = transport_->open(deadlines);
+  ++attempts_;
+  if (last_attempt_) {
+    is_open_ = true;
+  } else {
     transport_->close();
-    return opened;
   }
-  is_open_ = true;
-  return {};
+  return last_attempt_;
 }
 
 Status BatchLine::adapt(Profile& profile) const {
@@ -153,7 +157,16 @@ void BatchLine::run() {
   }
 }
 
-Result<std::vector<std::vector<RawAction>>> BatchLine::send(const Questions& batch) {
+// On the line's own thread, which nothing may leave by.
+Result<std::vector<BatchLine::Answer>> BatchLine::send(const Questions& batch) {
+  try {
+    return exchange(batch);
+  } catch (const std::exception& error) {
+    return bad(std::string("a batch: ") + error.what());
+  }
+}
+
+Result<std::vector<BatchLine::Answer>> BatchLine::exchange(const Questions& batch) {
   const auto now = Clock::now();
   Deadlines deadlines = batch.front()->deadlines;
   auto until = batch.front()->until;

@@ -4,6 +4,7 @@
 // keep nothing between questions: who asks beside whom changes no answer.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -34,7 +35,8 @@ class BatchLine {
   BatchLine(const BatchLine&) = delete;
   BatchLine& operator=(const BatchLine&) = delete;
 
-  // One attempt, unless the connection stands.
+  // One attempt, unless the connection stands; worlds that come while another tries have its
+  // attempt's failure.
   Status open(const Deadlines& deadlines);
   Status adapt(Profile& profile) const;
   std::vector<std::string> notes() const;
@@ -45,8 +47,9 @@ class BatchLine {
   void come();
   void go();
 
-  // Waits for `deadlines.answer` at most, from here on. The failure of a batch is that of each of
-  // its questions; the connection is then dropped, and the next batch makes another.
+  // Waits for `deadlines.answer` at most, from here on. What fails of one item is its question's
+  // alone. The failure of a whole batch is that of each of its questions; the connection is then
+  // dropped, and the next batch makes another.
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines);
 
  private:
@@ -68,7 +71,8 @@ class BatchLine {
   void run();
   std::size_t enough() const;  // questions that no other will come to; under mutex_
   Questions take();            // under mutex_
-  Result<std::vector<std::vector<RawAction>>> send(const Questions& batch);
+  Result<std::vector<Answer>> send(const Questions& batch);
+  Result<std::vector<Answer>> exchange(const Questions& batch);
 
   BatchLimits limits_;
   policy::QueryMeter* queries_;
@@ -76,6 +80,8 @@ class BatchLine {
   mutable std::mutex line_;  // the two below, and what goes over the wire
   std::unique_ptr<Transport> transport_;
   bool is_open_ = false;
+  Status last_attempt_;
+  std::atomic<std::uint64_t> attempts_ = 0;
 
   std::mutex mutex_;  // all below
   std::condition_variable asked_, answered_;

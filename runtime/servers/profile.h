@@ -32,8 +32,8 @@ enum class PixelLayout {
 };
 // Numbers of the end effector in the robot's base frame, in this order. Quaternions are w x y z;
 // rpy is R = Rz(yaw) Ry(pitch) Rx(roll), "sxyz"; openness is 0 closed .. 1 open; fingers are the
-// last joints, m, as many as move fingers; joints are all driven ones in the plan's order. A number
-// of numbers with fingers in it is that of two, which the robots of all known servers have.
+// last joints, m, as many as move fingers; joints are all driven ones in the plan's order. Counts
+// below are for two finger joints.
 enum class StateLayout {
   kNone,
   kXyzWxyzOpenness,    // 8

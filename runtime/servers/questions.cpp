@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/server_policy.h"
@@ -58,25 +59,42 @@ Status Questions::open() {
   return transport_.adapt(profile_);
 }
 
+namespace {
+
+// The largest of an answer's numbers from those of another; infinite where they are of other
+// lengths.
+double apart(const Chunk& here, const Chunk& there) {
+  double most = 0;
+  if (here.size() != there.size()) return std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < here.size(); ++k) {
+    if (here[k].size() != there[k].size()) return std::numeric_limits<double>::infinity();
+    for (std::size_t n = 0; n < here[k].size(); ++n)
+      most = std::max(most, std::abs(here[k][n] - there[k][n]));
+  }
+  return most;
+}
+
+// A pass over several questions may round otherwise than over one: an answer is another question's
+// where it is this many times nearer to that one's.
+constexpr double kNearer = 10;
+
+}  // namespace
+
 TogetherFinding compare_together(const std::vector<Chunk>& alone,
                                  const std::vector<Chunk>& together) {
   TogetherFinding finding;
   for (std::size_t i = 0; i < std::min(alone.size(), together.size()); ++i) {
-    for (std::size_t k = 0; k < alone.size(); ++k) {
-      if (together[i] == alone[i] || together[i] != alone[k]) continue;
-      finding.mixed = "in a batch, question " + std::to_string(i + 1) +
-                      " has the answer that question " + std::to_string(k + 1) + " has alone";
-    }
-    const Chunk &here = together[i], &there = alone[i];
-    if (here.size() != there.size()) {
-      finding.mixed = "in a batch, question " + std::to_string(i + 1) + " has " +
-                      std::to_string(here.size()) + " actions, alone " +
-                      std::to_string(there.size());
+    const std::string question = "in a batch, question " + std::to_string(i + 1) + " has ";
+    const double own = apart(together[i], alone[i]);
+    if (std::isinf(own)) {
+      finding.mixed = question + std::to_string(together[i].size()) + " actions, alone " +
+                      std::to_string(alone[i].size());
       continue;
     }
-    for (std::size_t k = 0; k < here.size(); ++k) {
-      for (std::size_t n = 0; n < here[k].size(); ++n)
-        finding.difference = std::max(finding.difference, std::abs(here[k][n] - there[k][n]));
+    finding.difference = std::max(finding.difference, own);
+    for (std::size_t k = 0; k < alone.size(); ++k) {
+      if (own <= kNearer * apart(together[i], alone[k])) continue;
+      finding.mixed = question + "the answer that question " + std::to_string(k + 1) + " has alone";
     }
   }
   return finding;
@@ -107,7 +125,13 @@ Result<std::vector<Chunk>> Questions::ask_together(const std::vector<Question>& 
   std::vector<const Request*> all;
   for (const Request& request : requests) all.push_back(&request);
   ++asked_;
-  return transport_.ask_all(all, deadlines());
+  PROBE_ASSIGN(auto answers, transport_.ask_all(all, deadlines()));
+  std::vector<Chunk> chunks;
+  for (auto& answer : answers) {
+    if (!answer) return answer.failure();
+    chunks.push_back(std::move(*answer));
+  }
+  return chunks;
 }
 
 Result<Chunk> Questions::ask(const Question& question) {

@@ -31,7 +31,7 @@ struct TogetherFinding {
   std::string mixed;
   double difference = 0;  // the largest of an answer's number from that of the question alone
 };
-// An answer of the batch that is bit for bit another question's, and not its own, is that one's.
+// An answer of the batch that is far nearer to another question's than to its own is that one's.
 TogetherFinding compare_together(const std::vector<Chunk>& alone,
                                  const std::vector<Chunk>& together);
 

@@ -19,20 +19,27 @@ std::string hash_of(const std::vector<Chunk>& answers) {
 
 // The questions once more in one message. Whatever does not answer it as it answers them alone, but
 // for rounding and draws, cannot be asked in batches.
-Status prove_batch(Questions& questions, const std::vector<Question>& asked,
-                   const std::vector<Chunk>& alone, const ServerChoice& choice,
-                   policy::Reading* reading) {
+Status prove_batch(Questions& questions, std::vector<Question> asked, std::vector<Chunk> alone,
+                   const ServerChoice& choice, policy::Reading* reading) {
   const auto refused = [&](const std::string& why) {
     return Failure{Fault::kUsage, "it cannot be asked in batches: " + why + "; ask without `batch`",
                    choice.server.name()};
   };
-  const auto size = static_cast<std::ptrdiff_t>(
-      std::min(asked.size(), static_cast<std::size_t>(choice.batch.most)));
-  const auto together = questions.ask_together({asked.begin(), asked.begin() + size});
-  if (!together) return refused(named(together.failure(), "").message);
+  // Of less room those go that differ in their pictures.
+  while (asked.size() > static_cast<std::size_t>(choice.batch.most) && asked.size() > 2) {
+    asked.erase(asked.begin() + 1);
+    alone.erase(alone.begin() + 1);
+  }
+  const auto together = questions.ask_together(asked);
+  if (!together) {
+    return Failure{together.failure().code,
+                   "it was not shown to answer batches: " + named(together.failure(), "").message +
+                       "; without `batch` it is asked one at a time",
+                   choice.server.name()};
+  }
   const TogetherFinding finding = compare_together(alone, *together);
   if (!finding.mixed.empty()) return refused(finding.mixed);
-  reading->batch = static_cast<int>(size);
+  reading->batch = static_cast<int>(asked.size());
   reading->batch_difference = finding.difference;
   return {};
 }

@@ -44,6 +44,8 @@ Result<BatchLimits> take_limits(Options& options, const ProtocolRow& row) {
     return usage("servers that speak " + std::string(row.word) +
                  " take no batches; those do that speak " + takers);
   }
+  if (options.contains(kWaitMs) && !options.contains("batch"))
+    return usage(std::string("`") + kWaitMs + "` is how long a batch waits: it goes with `batch`");
   PROBE_ASSIGN(const auto most, take_number(options, "batch", 1, kMostInBatch));
   PROBE_ASSIGN(const auto wait, take_number(options, kWaitMs, 0, kLongestWaitMs));
   limits.most = most.value_or(limits.most);

@@ -84,7 +84,7 @@ class Transport {
   // An answer to each of several requests that go in one message, in their order. Of protocols
   // whose row has batches; there, what a question is answered does not depend on those beside it.
   // Fails (kPolicy) as a whole, naming the item where one is at fault.
-  virtual Result<std::vector<std::vector<RawAction>>> ask_all(
+  virtual Result<std::vector<Result<std::vector<RawAction>>>> ask_all(
       std::span<const Request* const> requests, const Deadlines& deadlines);
   // After an episode whose begin_episode was fine and whose connection still stands.
   virtual Status end_episode(const policy::EpisodeEnd& /*end*/, const Deadlines& /*deadlines*/) {

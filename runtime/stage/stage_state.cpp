@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 
 #include "runtime/base/bytes.h"
 #include "runtime/plan/limits.h"
@@ -96,7 +97,8 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   state.start = from.u32();
   state.episode_id = from.hash();
   const std::uint32_t steps = from.u32();
-  state.world.steps = static_cast<int>(std::min(steps, plan::kMaxHorizon));
+  constexpr std::uint32_t kMostSteps = std::numeric_limits<int>::max();
+  state.world.steps = static_cast<int>(std::min(steps, kMostSteps));
   state.world.control = get_control(from);
   state.world.starts.resize(from.count(from.u32(), kStartBytes));
   for (vm::BodyStart& body : state.world.starts) {
@@ -113,7 +115,7 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   }
   state.judge.values = from.reals();
   state.judge.decided = from.u8() != 0;
-  if (!from.ok() || from.left() != 0 || steps > plan::kMaxHorizon) {
+  if (!from.ok() || from.left() != 0 || steps > kMostSteps) {
     return refuse("the saved stage has another form than its version");
   }
   return state;

@@ -197,9 +197,14 @@ std::optional<policy::Reading> reading_from_json(const Json& json) {
       measured == nullptr || !measured->is_object()) {
     return std::nullopt;
   }
-  policy::Reading reading{
-      *server, answers->get<int>(), *failure, flag("is_deaf"), flag("is_blind"), *hash, 0, 0,
-      {},      flag("is_unchecked")};
+  policy::Reading reading;
+  reading.server = *server;
+  reading.answers = answers->get<int>();
+  reading.failure = *failure;
+  reading.is_deaf = flag("is_deaf");
+  reading.is_blind = flag("is_blind");
+  reading.answers_sha256 = *hash;
+  reading.is_unchecked = flag("is_unchecked");
   const Json *batch = json.find("batch"), *difference = json.find("batch_difference");
   if (batch != nullptr && difference != nullptr) {
     if (!batch->is_number_integer() || !difference->is_number()) return std::nullopt;

@@ -140,12 +140,17 @@ Result<std::unique_ptr<TlsStream>> TlsStream::over(asio::ip::tcp::socket& socket
   boost::system::error_code no_address;
   asio::ip::make_address(server.host, no_address);
   X509_VERIFY_PARAM* wanted = SSL_get0_param(handle);
+  // Certificates know no scope ("fe80::1%eth0").
+  const std::string address = server.host.substr(0, server.host.find('%'));
+  bool is_set;
   if (no_address) {
     SSL_set_tlsext_host_name(handle, server.host.c_str());  // which of a machine's hosts is asked
-    X509_VERIFY_PARAM_set1_host(wanted, server.host.c_str(), 0);
+    is_set = X509_VERIFY_PARAM_set1_host(wanted, server.host.c_str(), 0) == 1;
   } else {
-    X509_VERIFY_PARAM_set1_ip_asc(wanted, server.host.c_str());
+    is_set = X509_VERIFY_PARAM_set1_ip_asc(wanted, address.c_str()) == 1;
   }
+  if (!is_set)
+    return Failure{Fault::kUsage, "no certificate can be of `" + server.host + "`", server.name()};
   return std::unique_ptr<TlsStream>(new TlsStream(std::move(parts)));
 }
 

@@ -61,8 +61,12 @@ class WebSocket::Connection {
     socket_.auto_fragment(false);
     socket_.write_buffer_bytes(std::size_t{1} << 16);
     socket_.binary(true);
-    if (auto agreed = shake_hands(stream, server, deadline); !agreed)
+    unsigned status = 0;
+    if (auto agreed = shake_hands(stream, server, deadline, &status); !agreed) {
+      // Ports of TLS answer plain questions with nothing that is HTTP, or with 400.
+      if (status != 0 && status != 400) return agreed;
       return unless_tls(agreed.failure(), server, deadline, options_.resolver, "wss://");
+    }
     io_.restart();
     read_next();
     thread_ = std::thread([this] { io_.run(); });
@@ -115,8 +119,9 @@ class WebSocket::Connection {
   }
 
  private:
+  // `status` becomes that of an HTTP answer that is no WebSocket.
   Status shake_hands(beast::tcp_stream& stream, const Endpoint& server,
-                     const beast_io::Deadline& deadline) {
+                     const beast_io::Deadline& deadline, unsigned* status) {
     // Filled in while the handshake runs; given up, it must outlive what is under way.
     const auto response = std::make_shared<websocket::response_type>();
     bool is_declined = false;
@@ -129,6 +134,7 @@ class WebSocket::Connection {
                                   });
         }));
     if (!is_declined) return {};
+    *status = response->result_int();
     const bool is_declined_for_good =
         response->result() == beast::http::status::unauthorized ||
         response->result() == beast::http::status::forbidden;  // others may be a server that starts

@@ -27,19 +27,20 @@ class Forward final : public ServedPolicy {
  public:
   explicit Forward(std::shared_ptr<std::mutex> gpu) : gpu_(std::move(gpu)) {}
   void reset() override {}
-  probe::Result<std::vector<RawAction>> answer(const Asked&, int count) override {
+  probe::Result<std::vector<probe::policy::Action>> answer(const Asked&, int count) override {
     pass();
     return still(count);
   }
-  probe::Result<std::vector<std::vector<RawAction>>> answer_all(std::span<const Asked> asked,
-                                                                int count) override {
+  probe::Result<std::vector<std::vector<probe::policy::Action>>> answer_all(
+      std::span<const Asked> asked, int count) override {
     pass();
-    return std::vector<std::vector<RawAction>>(asked.size(), still(count));
+    return std::vector<std::vector<probe::policy::Action>>(asked.size(), still(count));
   }
 
  private:
-  static std::vector<RawAction> still(int count) {
-    return std::vector<RawAction>(static_cast<std::size_t>(count), RawAction{0, 0, 0, 0, 0, 0, 1});
+  static std::vector<probe::policy::Action> still(int count) {
+    return std::vector<probe::policy::Action>(static_cast<std::size_t>(count),
+                                              probe::policy::Action{0, 0, 0, 0, 0, 0, 1});
   }
   void pass() const {
     const std::lock_guard one_at_a_time(*gpu_);

@@ -344,7 +344,8 @@ class VlaEval : public Transport {
         most->get<int>() == wanted.most) {
       return {};
     }
-    return Failure{Fault::kUsage,
+    // One that is starting may say so; any other answer stays as it is.
+    return Failure{said.status >= 500 ? Fault::kPolicy : Fault::kUsage,
                    "the server does not gather batches of " + std::to_string(wanted.most) +
                        ": /config is answered with HTTP " + std::to_string(said.status) + ", `" +
                        last_lines(said.body) + "`; ask without `batch`",

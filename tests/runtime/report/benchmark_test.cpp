@@ -205,7 +205,7 @@ TEST_CASE("a server's profile, and whether it reads, stand with what reached the
   CHECK(lines_of("deaf", reading)
             .find("bad: gr00t://h:1: the policy at h:1 answers two "
                   "instructions with one picture bit for bit the same") != std::string::npos);
-  reading = {"h:1", 3, "", false, false, "ab", {}, true};
+  reading = {.server = "h:1", .answers = 3, .answers_sha256 = "ab", .is_unchecked = true};
   CHECK(lines_of("unchecked", reading)
             .find("bad: gr00t://h:1: the policy at h:1 was asked with --insecure: its certificate "
                   "was not checked") != std::string::npos);

@@ -205,7 +205,11 @@ TEST_CASE("each call leaves its figures, the last state of each") {
     call.observations = 100 + i;
     call.elapsed_s = 10;
     call.queries = {25, 10, 9, 60, 8};
-    call.reading = {"gpu:443", 3, "", false, false, "ab", {{"action.form", "delta"}}, i == 1};
+    call.reading = policy::Reading{.server = "gpu:443",
+                                   .answers = 3,
+                                   .answers_sha256 = "ab",
+                                   .measured = {{"action.form", "delta"}},
+                                   .is_unchecked = i == 1};
     REQUIRE((*store)->write_call(call).ok());
   }
   const auto calls = read_run_calls(dir);
