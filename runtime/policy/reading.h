@@ -9,20 +9,20 @@
 namespace probe::policy {
 
 struct Reading {
-  std::string server;   // HOST:PORT
-  int answers = 0;      // that came; 0: nothing was asked, or nothing was answered
-  std::string failure;  // why it ended early; empty where it did not
+  std::string server = {};   // HOST:PORT
+  int answers = 0;           // that came; 0: nothing was asked, or nothing was answered
+  std::string failure = {};  // why it ended early; empty where it did not
   // Answers equal bit for bit: of two instructions with one picture, of one instruction with two
   // pictures.
   bool is_deaf = false, is_blind = false;
   // Over all answers, hex: two servers with equal ones can be one model. Empty where not all came.
-  std::string answers_sha256;
+  std::string answers_sha256 = {};
   // Questions that were asked once more in one message; 0: the run asks no batches. How far the
   // numbers of its answers were from those of the questions alone.
   int batch = 0;
   double batch_difference = 0;
   // Fields that the profile leaves open, with the value that the answers show.
-  std::vector<std::pair<std::string, std::string>> measured;
+  std::vector<std::pair<std::string, std::string>> measured = {};
   bool is_unchecked = false;  // TLS without a look at the certificate: it may be anybody's server
   bool operator==(const Reading&) const = default;
 };

@@ -60,7 +60,8 @@ class Counting final : public Transport {
     if (!fails_.empty()) return bad(fails_);
     std::vector<Result<std::vector<RawAction>>> all;
     for (const Request* request : requests)
-      all.push_back(std::vector{RawAction{static_cast<double>(request->step), 0, 0, 0, 0, 0, 1}});
+      all.push_back(
+          std::vector<RawAction>{RawAction{static_cast<double>(request->step), 0, 0, 0, 0, 0, 1}});
     return all;
   }
 
