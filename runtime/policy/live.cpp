@@ -120,7 +120,7 @@ class LivePolicy final : public Policy {
     answers_.clear();
     question_.reset();
     next_ = 0;
-    gripper_ = 0;
+    gripper_.reset();
     live_ = {};
     return inner_ ? inner_->begin(start) : Status();
   }
@@ -129,7 +129,7 @@ class LivePolicy final : public Policy {
     const int step = now.step;
     live_ = {};
     if (step == 0) begun_ = is_paced_ ? LiveClock::now() : Time{};
-    if (gripper_ == 0) gripper_ = now.proprioception.openness >= 0.5 ? 1 : -1;
+    if (!gripper_) gripper_ = now.proprioception.openness >= 0.5 ? 1 : -1;
     PROBE_TRY(keep_pace(step));
     seen_ = is_paced_ ? LiveClock::now() : begun_ + step * period_;
     if (!question_ && step >= next_) PROBE_TRY(ask(now, seen_));
@@ -180,11 +180,13 @@ class LivePolicy final : public Policy {
   }
 
   // The answer, where it comes before this step's period is over: counted from when its observation
-  // was there, as the step of that began then.
+  // was there, as the step of that began then, and no longer than the world's clock allows.
   Status look_for_answers(const Observation& now) {
     const int step = now.step;
     while (question_) {
-      const Time until = question_->seen + (step - question_->asked + 1) * period_;
+      Time until = question_->seen + (step - question_->asked + 1) * period_;
+      // A step that began late has less time to wait, else the world would never be in time again.
+      if (is_paced_) until = std::min(until, begun_ + (step + 1) * period_);
       std::optional<Answerer::Answer> answer;
       if (question_->answer) {
         if (question_->answer->came < until) answer = std::move(question_->answer);
@@ -206,7 +208,7 @@ class LivePolicy final : public Policy {
   }
 
   Result<Action> decide(const Observation& now) {
-    Action action{0, 0, 0, 0, 0, 0, gripper_};
+    Action action{0, 0, 0, 0, 0, 0, *gripper_};
     if (const auto said = answers_.at(now.step, !live_.answers.empty(), ratio(), &live_.source)) {
       if (halves_ != nullptr) {
         PROBE_ASSIGN(action, halves_->convert(*said, now));
@@ -233,7 +235,7 @@ class LivePolicy final : public Policy {
   std::optional<Question> question_;
   int next_ = 0;  // step of the next question, at the earliest
   LiveAnswers answers_;
-  double gripper_ = 0;  // as told last; 0: not yet
+  std::optional<double> gripper_;  // as told last
   LiveStep live_;
 };
 

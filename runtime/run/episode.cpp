@@ -154,10 +154,11 @@ class Loop {
     return {};
   }
 
-  // A policy that is hardly ever in time was hardly asked for what its row says.
+  // A policy that is hardly ever in time was hardly asked for what its row says; asking it once
+  // more would not make it faster.
   Outcome check_held(double most_held) const {
     if (live_.held_share() <= most_held) return {};
-    return policy_failed({Fault::kPolicy,
+    return policy_failed({Fault::kUsage,
                           "slower than its rate: " + to_text(live_) + ", and the limit is " +
                               decimal_text(100 * most_held, 1) + " % (--live-most-held)",
                           ""});

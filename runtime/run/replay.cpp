@@ -82,7 +82,9 @@ class TraceAnswers final : public policy::Answerer {
   }
   Result<policy::Action> convert(const Said& said, const policy::Observation&) override {
     policy::Action action{};
-    std::copy_n(said.begin(), action.size(), action.begin());
+    if (said.size() != action.size())
+      return Failure{Fault::kStore, "the trace has no action of an answer that it does", ""};
+    std::copy(said.begin(), said.end(), action.begin());
     return action;
   }
   void done(const policy::Action&, const policy::Observation&) override {}

@@ -157,12 +157,20 @@ void BatchLine::run() {
   }
 }
 
-// On the line's own thread, which nothing may leave by.
+// On the line's own thread, which nothing may leave by. What was under way then is unknown.
 Result<std::vector<BatchLine::Answer>> BatchLine::send(const Questions& batch) {
+  const auto dropped = [&](const char* what) {
+    const std::lock_guard lock(line_);
+    transport_->close();
+    is_open_ = false;
+    return bad(std::string("a batch: ") + what);
+  };
   try {
     return exchange(batch);
   } catch (const std::exception& error) {
-    return bad(std::string("a batch: ") + error.what());
+    return dropped(error.what());
+  } catch (...) {
+    return dropped("something that says nothing of itself");
   }
 }
 

@@ -32,10 +32,11 @@ Status prove_batch(Questions& questions, std::vector<Question> asked, std::vecto
   }
   const auto together = questions.ask_together(asked);
   if (!together) {
-    return Failure{together.failure().code,
-                   "it was not shown to answer batches: " + named(together.failure(), "").message +
+    const Failure failure = named(together.failure(), choice.server.name());
+    return Failure{failure.code,
+                   "it was not shown to answer batches: " + failure.message +
                        "; without `batch` it is asked one at a time",
-                   choice.server.name()};
+                   failure.where};
   }
   const TogetherFinding finding = compare_together(alone, *together);
   if (!finding.mixed.empty()) return refused(finding.mixed);

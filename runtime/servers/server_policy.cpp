@@ -143,8 +143,12 @@ Status ServerPolicy::ask(const policy::Observation& seen) {
   }
   const auto asking = [this, asked = std::move(*request), times = deadlines()]() -> Result<Answer> {
     const policy::QueryMeter::InFlight flight(queries_);
-    PROBE_ASSIGN(auto actions, transport_->ask(asked, times));
-    return Answer{std::move(actions), policy::LiveClock::now()};
+    try {
+      PROBE_ASSIGN(auto actions, transport_->ask(asked, times));
+      return Answer{std::move(actions), policy::LiveClock::now()};
+    } catch (const std::exception& error) {
+      return bad(std::string("a question: ") + error.what());  // and the connection is dropped
+    }
   };
   try {
     question_ = std::async(std::launch::async, asking);

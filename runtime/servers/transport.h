@@ -83,7 +83,8 @@ class Transport {
                                              const Deadlines& deadlines) = 0;
   // An answer to each of several requests that go in one message, in their order. Of protocols
   // whose row has batches; there, what a question is answered does not depend on those beside it.
-  // Fails (kPolicy) as a whole, naming the item where one is at fault.
+  // One at fault is a failure in its place, naming the item; the connection stands. Fails (kPolicy)
+  // as a whole where which answer is whose cannot be said.
   virtual Result<std::vector<Result<std::vector<RawAction>>>> ask_all(
       std::span<const Request* const> requests, const Deadlines& deadlines);
   // After an episode whose begin_episode was fine and whose connection still stands.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <limits>
 
 #include "runtime/base/bytes.h"
 #include "runtime/plan/limits.h"
@@ -97,7 +96,7 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   state.start = from.u32();
   state.episode_id = from.hash();
   const std::uint32_t steps = from.u32();
-  constexpr std::uint32_t kMostSteps = std::numeric_limits<int>::max();
+  constexpr std::uint32_t kMostSteps = 1'000'000'000;  // room to go on in an int
   state.world.steps = static_cast<int>(std::min(steps, kMostSteps));
   state.world.control = get_control(from);
   state.world.starts.resize(from.count(from.u32(), kStartBytes));

@@ -231,14 +231,21 @@ bool fits(const TraceHeader& header, const TraceStep& step) {
   return step.q.size() == header.joints.size() && step.u.size() == header.joints.size() &&
          step.metrics.size() == header.metrics.size() && fits(header, step.sample);
 }
-// An answer is to a question that went out before, with an observation of this trace.
+// An answer is to a question that went out before, with an observation of this trace, one after the
+// other; a second one of a step is to the question that went out in its middle.
 bool fits(const std::vector<TraceStep>& before, const TraceStep& step) {
-  if (!step.live) return true;
-  return std::ranges::all_of(step.live->answers, [&](const policy::LiveAnswer& answer) {
-    const auto asked = static_cast<std::size_t>(answer.asked);
-    return asked < before.size() ? before[asked].live->asks
-                                 : asked == before.size() && step.live->asks;
-  });
+  if (!step.live || step.live->answers.empty()) return true;
+  const auto has_answers = [](const TraceStep& earlier) { return !earlier.live->answers.empty(); };
+  const auto last = std::find_if(before.rbegin(), before.rend(), has_answers);
+  int answered = last == before.rend() ? -1 : last->live->answers.back().asked;
+  for (std::size_t i = 0; i < step.live->answers.size(); ++i) {
+    const int asked = step.live->answers[i].asked;
+    const auto at = static_cast<std::size_t>(asked);
+    if (asked <= answered || at > before.size() || (i > 0 && at != before.size())) return false;
+    if (!(at < before.size() ? before[at].live->asks : step.live->asks)) return false;
+    answered = asked;
+  }
+  return true;
 }
 bool fits(const TraceHeader& header, const TraceEnd& end) {
   const auto is_same = [](const MetricValue& value, const TraceHeader::Metric& metric) {

@@ -46,16 +46,17 @@ Result<std::vector<int>> parse_seeds(const std::string& text) {
 
 // "80ms", "0.3s", in seconds.
 Result<double> parse_delay(const std::string& text) {
-  const double unit = text.ends_with("ms") ? 1e-3 : 1;
-  const std::size_t digits = text.size() - std::min<std::size_t>(unit < 1 ? 2 : 1, text.size());
+  const double in_second = text.ends_with("ms") ? 1000 : 1;
+  const std::size_t digits =
+      text.size() - std::min<std::size_t>(in_second > 1 ? 2 : 1, text.size());
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + digits, value);
   if (!text.ends_with('s') || error != std::errc() || end != text.data() + digits ||
-      !(value >= 0) || value * unit > kLongestDelay) {
+      !(value >= 0) || value / in_second > kLongestDelay) {
     return usage(
         fmt::format("--live-delay `{}` is not a time from 0ms to 3600s, as in 80ms", text));
   }
-  return value * unit;
+  return value / in_second;  // the double nearest to it, however it is written
 }
 
 // The suites of a file that is only used are not what the user asked for.
@@ -104,9 +105,11 @@ Result<run::RunOptions> to_options(const RunArguments& arguments) {
   if (!arguments.seeds.empty()) {
     PROBE_ASSIGN(options.seeds, parse_seeds(arguments.seeds));
   }
+  if (arguments.live_most_held && !arguments.live && arguments.live_delay.empty())
+    return usage("--live-most-held goes with --live or --live-delay");
   if (arguments.live || !arguments.live_delay.empty()) {
     options.live.emplace();
-    options.live->most_held = arguments.live_most_held / 100.0;
+    if (arguments.live_most_held) options.live->most_held = *arguments.live_most_held / 100.0;
     if (!arguments.live_delay.empty()) {
       PROBE_ASSIGN(options.live->delay_s, parse_delay(arguments.live_delay));
     }

@@ -15,7 +15,7 @@ struct RunArguments {
   std::string policy, name, out, suite, tasks = "*", episodes, seeds;
   std::string video = "none", if_changed = "refuse", live_delay;
   bool live = false;
-  int live_most_held = 90;  // %
+  std::optional<int> live_most_held;  // %
   int jobs = 1, retries = 2, give_up_after = 5;
   bool insecure = false;
   AssetOptions assets;

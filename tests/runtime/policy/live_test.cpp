@@ -181,6 +181,39 @@ TEST_CASE("a simulation that falls behind the clock is told, and its episode doe
                                       "began ") == 0);
 }
 
+TEST_CASE("a policy slower than its rate does not make the world later with each question") {
+  auto halves = std::make_unique<Halves>(1, 1);
+  halves->times = {std::chrono::milliseconds(150)};
+  const auto policy = make_live(std::move(halves), LiveTerms{});
+  EpisodeStart start;
+  start.control_hz = 10;
+  REQUIRE(policy->begin(start).ok());
+  for (int step = 0; step < 30; ++step) {
+    Observation seen;
+    seen.step = step;
+    const auto action = policy->act(seen);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    std::this_thread::sleep_for(std::chrono::milliseconds(8));  // of physics and pictures
+  }
+}
+
+TEST_CASE("a gripper that was told to be half open stays so while nothing is done") {
+  class Half final : public Policy {
+   public:
+    Status begin(const EpisodeStart&) override { return {}; }
+    Result<Action> act(const Observation&) override { return Action{0, 0, 0, 0, 0, 0, 0}; }
+  };
+  const auto policy = make_live(std::make_unique<Half>(), LiveTerms{.delay_s = 0.6});
+  REQUIRE(policy->begin(live_start()).ok());
+  for (int step = 0; step < 6; ++step) {
+    Observation seen;
+    seen.step = step;
+    const auto action = policy->act(seen);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    CHECK((*action)[6] == (step < 3 ? 1.0 : 0.0));  // open at first, as it was found
+  }
+}
+
 TEST_CASE("a policy in this process is late by what it took") {
   class Slow final : public Policy {
    public:

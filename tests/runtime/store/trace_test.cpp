@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -63,7 +64,7 @@ TEST_CASE("a live trace keeps its terms and what each step had of answers") {
   TemporaryFolder folder;
   TraceHeader header = sample_header();
   header.live = policy::LiveTerms{.delay_s = 0.08, .most_held = 0.5};
-  const auto write = [&](const std::string& path, double answer_s, bool in_order) {
+  const auto write = [&](const std::string& path, double answer_s, std::pair<int, int> asked) {
     auto writer = TraceWriter::create(path, header);
     REQUIRE(writer.ok());
     REQUIRE((*writer)->start(sample_start()).ok());
@@ -73,7 +74,7 @@ TEST_CASE("a live trace keeps its terms and what each step had of answers") {
       step.live->asks = i < 2;
       if (i == 1) {
         step.live->source = policy::LiveSource::kLate;
-        step.live->answers = {{0, answer_s}, {in_order ? 1 : 2, 0.01}};
+        step.live->answers = {{asked.first, answer_s}, {asked.second, 0.01}};
       }
       REQUIRE((*writer)->step(step).ok());
     }
@@ -81,7 +82,7 @@ TEST_CASE("a live trace keeps its terms and what each step had of answers") {
     REQUIRE(hash.ok());
     return *hash;
   };
-  const Sha256 hash = write(folder / "a.trace", 0.25, true);
+  const Sha256 hash = write(folder / "a.trace", 0.25, {0, 1});
   const auto trace = read_trace(folder / "a.trace");
   REQUIRE_MESSAGE(trace.ok(), to_text(trace.failure()));
   CHECK(trace->header.live == header.live);
@@ -94,14 +95,18 @@ TEST_CASE("a live trace keeps its terms and what each step had of answers") {
   CHECK(trace->steps[1].live->answers == answers);
   CHECK_FALSE(trace->steps[2].live->asks);
   // The seconds of an answer are the clock's; its step is the trace's.
-  CHECK(write(folder / "b.trace", 0.31, true) == hash);
+  CHECK(write(folder / "b.trace", 0.31, {0, 1}) == hash);
   header.live->delay_s.reset();
-  CHECK(write(folder / "c.trace", 0.25, true) != hash);
+  CHECK(write(folder / "c.trace", 0.25, {0, 1}) != hash);
   CHECK(read_trace(folder / "c.trace")->header.live->delay_s == std::nullopt);
-  write(folder / "d.trace", 0.25, false);
-  const auto wrong = read_trace(folder / "d.trace");
-  REQUIRE_FALSE(wrong.ok());
-  CHECK(wrong.failure().message.find("an answer to a question that was not asked") == 0);
+  // A question that was not asked yet, answers in another order, and one that comes twice.
+  for (const std::pair<int, int>& asked : {std::pair{0, 2}, std::pair{1, 0}, std::pair{0, 0}}) {
+    write(folder / "d.trace", 0.25, asked);
+    const auto wrong = read_trace(folder / "d.trace");
+    REQUIRE_FALSE(wrong.ok());
+    CHECK(wrong.failure().message.find("an answer to a question that was not asked") == 0);
+    std::filesystem::remove(folder / "d.trace");
+  }
 }
 
 TEST_CASE("the hash covers everything but the clock") {
