@@ -99,15 +99,19 @@ TEST_CASE("a folder links what it includes, by itself or through what it links, 
   std::map<std::string, Folder> folders = all_folders();
   REQUIRE(folders.size() > 20);
   read_includes(folders);
-  for (const auto& [name, folder] : folders) {
+  for (const auto& entry : folders) {
+    const std::string& name = entry.first;
+    const Folder& folder = entry.second;
     for (const std::string& other : folder.links) {
       CHECK_MESSAGE(folder.includes.contains(other), folder.path, " links ", other,
                     " and includes nothing of it");
     }
     Names linked;
     add_linked(folders, name, linked);
-    for (const auto& [other, where] : folder.includes)
-      CHECK_MESSAGE(linked.contains(other), where, ", which ", folder.path, " does not link");
+    for (const auto& included : folder.includes) {
+      CHECK_MESSAGE(linked.contains(included.first), included.second, ", which ", folder.path,
+                    " does not link");
+    }
     CHECK_MESSAGE(!linked.contains(name), folder.path, " links itself in a circle");
   }
 }

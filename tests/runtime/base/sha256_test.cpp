@@ -39,7 +39,7 @@ TEST_CASE("how a message is cut into pieces does not show in its digest") {
   for (int i = 0; i < 3000; ++i) message.push_back(static_cast<char>(i * 7));
   const probe::Sha256 whole = probe::sha256(message);
   const auto all = std::as_bytes(std::span(message));
-  for (const std::size_t piece : {1, 7, 8, 511, 512, 513, 1024, 2999}) {
+  for (const std::size_t piece : {1u, 7u, 8u, 511u, 512u, 513u, 1024u, 2999u}) {
     CAPTURE(piece);
     probe::Hasher hasher;
     for (std::size_t at = 0; at < all.size(); at += piece)
