@@ -61,24 +61,44 @@ std::vector<Category> finest(const std::vector<Category>& sets) {
   return kept;
 }
 
+// Names of sets, in the order of the text.
+struct Dropped {
+  std::vector<std::string> covered;  // other columns have all their tasks
+  std::vector<std::string> helpers;  // other columns have most of them
+};
+
 // A set whose every task stands in another column is no column of its own: `quiet` of
 // suite/beyond.probe serves to derive tasks from, and its five are in `core` and `ood_source`. Of
-// two ways to divide the same tasks the one that is declared first stays. Returns what was left
-// out, in the order of the text.
-std::vector<std::string> drop_covered(std::vector<Category>& columns) {
+// two ways to divide the same tasks the one that is declared first stays. A set that shares most of
+// its tasks serves the same end, and one task more does not make its mean say anything: that task
+// counts under `all`, and is named.
+Dropped drop_helpers(std::vector<Category>& columns) {
   std::map<int, int> uses;
   for (const Category& column : columns) {
     for (const int t : column.tasks) ++uses[t];
   }
-  std::vector<std::string> dropped;
+  Dropped dropped;
   for (std::size_t i = columns.size(); i-- > 0;) {
     const std::vector<int>& tasks = columns[i].tasks;
-    if (std::any_of(tasks.begin(), tasks.end(), [&](int t) { return uses[t] == 1; })) continue;
+    const auto own = static_cast<std::size_t>(
+        std::count_if(tasks.begin(), tasks.end(), [&](int t) { return uses[t] == 1; }));
+    if (2 * own >= tasks.size()) continue;
     for (const int t : tasks) --uses[t];
-    dropped.insert(dropped.begin(), columns[i].name);
+    std::vector<std::string>& names = own == 0 ? dropped.covered : dropped.helpers;
+    names.insert(names.begin(), columns[i].name);
     columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(i));
   }
   return dropped;
+}
+
+void note_dropped(Benchmark& benchmark, const std::vector<std::string>& names, const char* share) {
+  if (names.empty()) return;
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "`" : ", `") + name + "`";
+  benchmark.notes.push_back(
+      {"note", fmt::format("sets without a column, since other columns have {} their tasks: {}; "
+                           "`--sets` chooses columns",
+                           share, list)});
 }
 
 bool are_originals(const Benchmark& benchmark, const Category& set) {
@@ -123,15 +143,9 @@ void find_categories(Benchmark& benchmark, const std::vector<std::string>& sets)
   std::vector<Category> chosen;
   if (sets.empty()) {
     chosen = finest(all);
-    std::string dropped;
-    for (const std::string& name : drop_covered(chosen))
-      dropped += (dropped.empty() ? "`" : ", `") + name + "`";
-    if (!dropped.empty()) {
-      benchmark.notes.push_back(
-          {"note", fmt::format("sets without a column, since other columns have all their tasks: "
-                               "{}; `--sets` chooses columns",
-                               dropped)});
-    }
+    const Dropped dropped = drop_helpers(chosen);
+    note_dropped(benchmark, dropped.covered, "all");
+    note_dropped(benchmark, dropped.helpers, "most of");
     std::stable_partition(chosen.begin(), chosen.end(),
                           [&](const Category& c) { return are_originals(benchmark, c); });
   }

@@ -9,9 +9,10 @@
 namespace probe::report {
 
 // Fills benchmark.categories. `sets` names them in order; if it is empty, every set of the plans
-// that holds a task and no other such set, and a task that no other column has: unions of sets and
-// sets that only serve to make others are not columns. The set of tasks without a baseline comes
-// first. Unknown names, tasks in no column and tasks in several are notes.
+// that holds a task and no other such set, and at least as many tasks that no other column has as
+// tasks that one has: unions of sets and sets that only serve to make others are not columns. The
+// set of tasks without a baseline comes first. Unknown names, sets that are left out, tasks in no
+// column and tasks in several are notes.
 void find_categories(Benchmark& benchmark, const std::vector<std::string>& sets);
 
 // Whether every variant of the category says something else than its baseline.

@@ -144,6 +144,30 @@ TEST_CASE("a set that only serves to make others is no column") {
   CHECK(chosen.categories[0].tasks.size() == 2);
 }
 
+TEST_CASE("a set that shares most of its tasks is no column, and the task it had alone is named") {
+  RunsFolder folder;
+  const std::string file = folder / "mine.probe";
+  std::ofstream(file)
+      << "use \"" VLAPROBE_SOURCE_DIR "/suite/intact.probe\"\n"
+      << "variant lonely of carrot_on_plate { horizon 70 steps }\n"
+      << "set quiet = { carrot_on_plate, coke_can_on_plate_clean, lonely }\n"
+      << "derive \"{t}_dim\" for t in quiet - { lonely } { light faint }\n"
+      << "set dim = variants of quiet where axis light\n"
+      << "suite mine trained on bridge_v2 { tasks published | dim | { lonely }; seeds 42 }\n";
+  const plan::Plan plan = plan_of(file);
+  fake_run(folder / "a", plan, "pi0", {.tasks = {"lonely"}, .last = 1}, always(true));
+  const auto has = [](const Benchmark& benchmark, const char* name) {
+    return std::any_of(benchmark.categories.begin(), benchmark.categories.end(),
+                       [&](const Category& category) { return category.name == name; });
+  };
+  const Benchmark benchmark = loaded({folder / "a"});
+  CHECK_FALSE(has(benchmark, "quiet"));
+  CHECK(has(benchmark, "core"));
+  CHECK(has(benchmark, "dim"));
+  CHECK(says(benchmark, "since other columns have most of their tasks: `quiet`"));
+  CHECK(says(benchmark, "1 tasks are in no category and count only under `all`: `lonely`"));
+}
+
 TEST_CASE("what a name says is text, whatever it looks like") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;
@@ -195,7 +219,10 @@ TEST_CASE("a server's profile, and whether it reads, stand with what reached the
       lines += row["level"].text() + ": " + row["text"].text() + "\n";
     return lines;
   };
-  policy::Reading reading{"h:1", 3, "", false, false, "ab", {}};
+  policy::Reading reading;
+  reading.server = "h:1";
+  reading.answers = 3;
+  reading.answers_sha256 = "ab";
   const std::string good = lines_of("good", reading);
   CHECK(good.find("good: gr00t://h:1: asked by gr00t profile gr00t_bridge_as_published") !=
         std::string::npos);
