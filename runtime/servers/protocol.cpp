@@ -22,6 +22,20 @@ constexpr Scheme kSchemes[] = {
 
 }  // namespace
 
+Listen listen_over(Carrier carrier) {
+  switch (carrier) {
+    case Carrier::kHttp:
+      return wire::listen_http;
+    case Carrier::kZmq:
+      return wire::listen_zmq;
+    case Carrier::kGrpc:
+      return wire::listen_grpc;
+    case Carrier::kWebSocket:
+      break;
+  }
+  return wire::listen_websocket;
+}
+
 std::span<const Scheme> url_schemes() { return kSchemes; }
 
 const ProtocolRow& row_of(Protocol protocol) {

@@ -13,10 +13,7 @@
 #include "runtime/servers/profile.h"
 #include "runtime/servers/transport.h"
 #include "runtime/wire/endpoint.h"
-
-namespace probe::wire {
-class Listener;
-}
+#include "runtime/wire/listener.h"
 
 namespace probe::servers {
 
@@ -31,7 +28,12 @@ struct KeyUse {
 };
 
 // What carries a protocol's messages.
-enum class Carrier : std::uint8_t { kWebSocket, kHttp, kZmq };
+enum class Carrier : std::uint8_t { kWebSocket, kHttp, kZmq, kGrpc };
+
+using Listen = Result<std::unique_ptr<wire::Listener>> (*)(const std::string& address,
+                                                           const std::string& port,
+                                                           wire::MakeSpeaker make);
+Listen listen_over(Carrier carrier);
 
 // How a protocol's servers take the questions of several worlds at once.
 enum class Batches : std::uint8_t {

@@ -8,6 +8,7 @@
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
 #include "runtime/servers/transcript.h"
+#include "runtime/wire/grpc.h"
 #include "runtime/wire/http.h"
 #include "runtime/wire/websocket.h"
 #include "runtime/wire/zmq.h"
@@ -90,7 +91,7 @@ class WebSocketBetween final : public wire::Speaker {
   std::unique_ptr<wire::WebSocket> socket_;
 };
 
-// ZeroMQ and HTTP: an answer to each question.
+// ZeroMQ, HTTP and gRPC: an answer to each question.
 class Between final : public wire::Speaker {
  public:
   Between(Protocol protocol, Upstream upstream, std::shared_ptr<Record> record)
@@ -101,7 +102,7 @@ class Between final : public wire::Speaker {
 
   Reply answer(const wire::Frame& asked) override {
     record_->add(connection_, true, asked);
-    auto bytes = row_of(protocol_).carrier == Carrier::kZmq ? by_zmq(asked) : by_http(asked);
+    auto bytes = carried(asked);
     if (!bytes) return {{}, bytes.failure().message};
     wire::Frame frame{false, std::move(*bytes)};
     record_->add(connection_, false, frame);
@@ -109,6 +110,28 @@ class Between final : public wire::Speaker {
   }
 
  private:
+  Result<wire::Bytes> carried(const wire::Frame& asked) {
+    switch (row_of(protocol_).carrier) {
+      case Carrier::kZmq:
+        return by_zmq(asked);
+      case Carrier::kGrpc:
+        return by_grpc(asked);
+      case Carrier::kHttp:
+      case Carrier::kWebSocket:
+        break;
+    }
+    return by_http(asked);
+  }
+  Result<wire::Bytes> by_grpc(const wire::Frame& asked) {
+    if (!channel_) {
+      wire::GrpcOptions options;
+      options.connect_timeout = upstream_.deadlines.connect;
+      options.largest_message = upstream_.largest;
+      PROBE_ASSIGN(channel_, wire::GrpcChannel::connect(upstream_.server, options));
+    }
+    PROBE_ASSIGN(const wire::GrpcCall call, wire::call_of(asked));
+    return channel_->call(call, upstream_.deadlines.answer);
+  }
   Result<wire::Bytes> by_zmq(const wire::Frame& asked) {
     if (!socket_) {
       wire::ZmqOptions options;
@@ -135,6 +158,7 @@ class Between final : public wire::Speaker {
   std::shared_ptr<Record> record_;
   std::size_t connection_;
   std::unique_ptr<wire::ZmqRequester> socket_;
+  std::unique_ptr<wire::GrpcChannel> channel_;
 };
 
 }  // namespace
@@ -152,10 +176,7 @@ Result<Transcript> record(const ServerChoice& choice) {
       return std::make_unique<Between>(protocol, upstream, kept);
     return std::make_unique<WebSocketBetween>(protocol, upstream, kept);
   };
-  const Carrier carrier = row_of(protocol).carrier;
-  auto listener = carrier == Carrier::kZmq    ? wire::listen_zmq("127.0.0.1", "0", between)
-                  : carrier == Carrier::kHttp ? wire::listen_http("127.0.0.1", "0", between)
-                                              : wire::listen_websocket("127.0.0.1", "0", between);
+  auto listener = listen_over(row_of(protocol).carrier)("127.0.0.1", "0", between);
   if (!listener) return listener.failure();
   ServerChoice here = choice;
   here.server.host = "127.0.0.1";

@@ -2,7 +2,7 @@
 
 namespace probe::servers {
 
-Status SharedModel::load_once(const std::function<Status()>& load) {
+Status SharedModel::load_once(const std::function<Status()>& load, std::string_view afterwards) {
   const std::lock_guard lock(mutex_);
   if (refusal_) return *refusal_;
   if (is_loaded_) return {};
@@ -12,7 +12,7 @@ Status SharedModel::load_once(const std::function<Status()>& load) {
     ++generation_;
   } else if (loaded.failure().code == Fault::kAnswered) {
     refusal_ = loaded.failure();
-    refusal_->message += "; it answers no more until it is restarted, whatever it says then";
+    refusal_->message += afterwards;
   }
   return loaded;
 }

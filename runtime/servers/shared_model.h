@@ -8,6 +8,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string_view>
 
 #include "runtime/base/result.h"
 
@@ -17,9 +18,14 @@ namespace probe::servers {
 class SharedModel {
  public:
   // Has the model loaded by `load` unless it is; callers that come meanwhile wait. A refusal
-  // (kAnswered) is kept and is what every later call fails with; other failures are not, since a
-  // connection that broke says nothing of the model.
-  Status load_once(const std::function<Status()>& load);
+  // (kAnswered) is kept and is what every later call fails with, and `afterwards` behind it; other
+  // failures are not, since a connection that broke says nothing of the model.
+  Status load_once(const std::function<Status()>& load, std::string_view afterwards = {});
+
+  // At a server that keeps one question for all who ask it: turn() is held from a question to its
+  // answer, and next_turn(), before it, by whoever comes next and may send part of a question.
+  std::mutex& turn() { return turn_; }
+  std::mutex& next_turn() { return next_turn_; }
 
   // Which loading this is; forget() of an older one does nothing, since another connection has
   // had it loaded again.
@@ -28,6 +34,7 @@ class SharedModel {
   void forget(std::uint64_t generation);
 
  private:
+  std::mutex turn_, next_turn_;
   mutable std::mutex mutex_;
   bool is_loaded_ = false;
   std::uint64_t generation_ = 0;

@@ -190,8 +190,7 @@ Result<std::unique_ptr<wire::Listener>> play(const Transcript& transcript,
     const auto make = [all, compares, tell] {
       return std::make_unique<Player>(all, true, compares, tell);
     };
-    return row.carrier == Carrier::kZmq ? wire::listen_zmq(address, port, make)
-                                        : wire::listen_http(address, port, make);
+    return listen_over(row.carrier)(address, port, make);
   }
   const auto opened = std::make_shared<std::atomic<std::size_t>>(0);
   return wire::listen_websocket(address, port, [transcript, opened, compares, tell] {

@@ -47,12 +47,15 @@ class Listener {
 
 // `address` is numeric; port "0" is any free one. Fail (kUsage) where nobody may listen there. A
 // WebSocket's connection has a speaker of its own; GET /healthz is answered with OK. ZeroMQ's REP
-// socket, and HTTP, where every POST is a message, have one for all.
+// socket, HTTP, where every POST is a message, and gRPC, where every call is one (grpc.h), have one
+// for all.
 Result<std::unique_ptr<Listener>> listen_websocket(const std::string& address,
                                                    const std::string& port, MakeSpeaker make);
 Result<std::unique_ptr<Listener>> listen_zmq(const std::string& address, const std::string& port,
                                              MakeSpeaker make);
 Result<std::unique_ptr<Listener>> listen_http(const std::string& address, const std::string& port,
+                                              MakeSpeaker make);
+Result<std::unique_ptr<Listener>> listen_grpc(const std::string& address, const std::string& port,
                                               MakeSpeaker make);
 
 }  // namespace probe::wire

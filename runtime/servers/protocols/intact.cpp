@@ -21,9 +21,11 @@ class Intact : public Transport {
     PROBE_ASSIGN(metadata_, connection_.open(profile_, deadlines));
     if (was_open_) PROBE_TRY(see_model(deadlines));
     // Loading a model takes as long as a first answer.
-    PROBE_TRY(shared_->load_once([&] {
-      return expect_status({{"new_model_path", model_}}, "model switched", deadlines);
-    }));
+    PROBE_TRY(shared_->load_once(
+        [&] {
+          return expect_status({{"new_model_path", model_}}, "model switched", deadlines);
+        },
+        "; it answers no more until it is restarted, whatever it says then"));
     was_open_ = true;
     return {};
   }

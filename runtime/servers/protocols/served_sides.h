@@ -12,5 +12,6 @@ Result<std::unique_ptr<wire::Listener>> serve_vlaeval(const ServeOptions& option
 Result<std::unique_ptr<wire::Listener>> serve_gr00t(const ServeOptions& options);
 Result<std::unique_ptr<wire::Listener>> serve_openvla(const ServeOptions& options);
 Result<std::unique_ptr<wire::Listener>> serve_starvla(const ServeOptions& options);
+Result<std::unique_ptr<wire::Listener>> serve_lerobot(const ServeOptions& options);
 
 }  // namespace probe::servers

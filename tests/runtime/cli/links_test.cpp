@@ -28,7 +28,7 @@ TEST_CASE("the program that checks texts links no simulator, renderer, video, HD
   const std::string libraries = libraries_of("vlaprobe");
   CHECK(contains(libraries, "libstdc++"));
   for (const char* library : {"libSimTK", "libembree", "libav", "libswscale", "libhdf5",
-                              "libsqlite", "libzmq", "libcholmod"}) {
+                              "libsqlite", "libzmq", "libgrpc", "libcholmod"}) {
     CAPTURE(library);
     CHECK(!contains(libraries, library));
     CHECK((contains(libraries_of("vlaprobe-full"), library) ||

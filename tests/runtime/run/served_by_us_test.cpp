@@ -18,6 +18,8 @@ std::vector<Form> forms_of(servers::Protocol protocol) {
       return {{"n1.6", 16, 1}, {"n1.6_nested", 16, 1}, {"n1.5", 16, 1}};
     case servers::Protocol::kOpenVla:
       return {{"plain", 8, 1}, {"encoded", 1, 1}};
+    case servers::Protocol::kLeRobot:
+      return {{"", 8, 1}};
     default:
       return {{"", 4, 2}};
   }

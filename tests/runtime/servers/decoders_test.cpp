@@ -6,6 +6,7 @@
 
 #include "runtime/base/json.h"
 #include "runtime/servers/protocols/gr00t.h"
+#include "runtime/servers/protocols/lerobot_messages.h"
 #include "runtime/servers/protocols/openvla.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
 #include "runtime/wire/json.h"
@@ -125,6 +126,32 @@ TEST_CASE("damaged messages of OpenVLA are refused or read") {
         });
     CHECK(failures > kCount / 4);
   }
+}
+
+TEST_CASE("damaged messages of LeRobot are refused or read, and a cut one is refused") {
+  const wire::Array action = wire::array_f64({7}, {0.1, 0.2, 0.3, 0, 0, 0, 1});
+  const Bytes good = lerobot::actions_message({{0, 7, action}, {0.03, 8, action}});
+  const auto read = [](const Bytes& bytes) { return status_of(lerobot::actions_of(bytes, 4096)); };
+  const int failures = refused(good, kCount, 5, read);
+  CHECK(failures > kCount / 4);
+  for (std::size_t size = 1; size < good.size(); ++size)
+    REQUIRE_FALSE(read({good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)}).ok());
+
+  const wire::GrpcCall sent =
+      lerobot::send_observation({1,
+                                 2,
+                                 {{"state.0", 0.5},
+                                  {"image", wire::array_u8({2, 1, 3}, {1, 2, 3, 4, 5, 6})},
+                                  {"task", "put"}}});
+  REQUIRE(sent.messages.size() == 1);
+  CHECK(refused(sent.messages.front(), kCount, 6, [](const Bytes& bytes) {
+          return status_of(lerobot::observation_of({lerobot::kSendObservations, {bytes}}));
+        }) > kCount / 4);
+  const wire::GrpcCall setup =
+      lerobot::send_policy({"act", "/m", "cpu", 4, {{"a", wire::List{1}}}});
+  CHECK(refused(setup.messages.front(), kCount, 7, [](const Bytes& bytes) {
+          return status_of(lerobot::setup_of({lerobot::kSendPolicy, {bytes}}));
+        }) > kCount / 4);
 }
 
 }  // namespace probe::servers

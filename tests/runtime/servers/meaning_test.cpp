@@ -111,7 +111,7 @@ TEST_CASE("every ready profile says what its actions mean, but where the server 
       CHECK(open == std::vector<std::string>{"action.rotation"});
     } else if (profile->protocol == Protocol::kRoboArena) {
       CHECK(open == std::vector<std::string>{"action.form", "action.units"});
-    } else if (profile->protocol == Protocol::kVlaEval) {
+    } else if (profile->protocol == Protocol::kVlaEval || ready.name == "lerobot") {
       CHECK(open.size() == 3);
     } else {
       CHECK(open.empty());
