@@ -52,7 +52,7 @@ class LeRobotSpeaker final : public wire::Speaker {
     PROBE_ASSIGN(const auto answered, policy_->answer({std::move(picture), std::move(words)},
                                                       std::min(chunk_, setup_->chunk)));
     std::vector<lerobot::TimedAction> timed;
-    for (const RawAction& action : answered) {
+    for (const policy::Action& action : answered) {
       const auto count = static_cast<double>(timed.size());
       // In double precision, which a tensor may have, so that nothing is lost.
       timed.push_back({seen.timestamp + count * kStepTime,
