@@ -3,6 +3,8 @@
 
 #include <cctype>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -56,6 +58,16 @@ std::vector<std::string> run_words(const run::RunOptions& options) {
   add("--give-up-after", std::to_string(options.give_up_after));
   if (options.if_changed == run::IfChanged::kContinue) add("--if-changed", "continue");
   if (options.accepts_any_certificate) words.push_back("--insecure");
+  if (options.live) {
+    if (options.live->delay_s) {
+      char delay[40];
+      std::snprintf(delay, sizeof delay, "%.17gs", *options.live->delay_s);
+      add("--live-delay", delay);
+    } else {
+      words.push_back("--live");
+    }
+    add("--live-most-held", std::to_string(std::lround(100 * options.live->most_held)));
+  }
   return words;
 }
 

@@ -71,16 +71,16 @@ class Halves final : public Policy, public Answerer {
   Answer answer_;
 };
 
-EpisodeStart live_start() {
+EpisodeStart live_start(double hz = kHz) {
   EpisodeStart start;
-  start.control_hz = kHz;
+  start.control_hz = hz;
   return start;
 }
 
 // What is done in each step as a number, "-" where nothing is, "?" behind one where a question went
 // out, "!" where the action is late, and "<n" where the answer to step n takes effect.
-std::string steps_of(Policy& policy, int count) {
-  REQUIRE(policy.begin(live_start()).ok());
+std::string steps_of(Policy& policy, int count, double hz = kHz) {
+  REQUIRE(policy.begin(live_start(hz)).ok());
   std::string text;
   for (int step = 0; step < count; ++step) {
     Observation seen;
@@ -154,15 +154,16 @@ TEST_CASE("answers that overlap are weighed together for the step that all of th
 TEST_CASE("on the wall clock an answer takes effect in the control step in whose time it came") {
   auto halves = std::make_unique<Halves>(1, 1);
   Halves& told = *halves;
-  told.times = {std::chrono::milliseconds(20), std::chrono::milliseconds(260),
-                std::chrono::milliseconds(5000)};
+  told.times = {std::chrono::milliseconds(20), std::chrono::milliseconds(1300),
+                std::chrono::milliseconds(50'000)};
   const auto policy = make_live(std::move(halves), LiveTerms{});
   const auto begun = LiveClock::now();
-  CHECK(steps_of(*policy, 5) == "0<0? -? 1!<1? - -");
+  // A second a step, so that a busy machine keeps up with it.
+  CHECK(steps_of(*policy, 5, 1) == "0<0? -? 1!<1? - -");
   CHECK(told.asked == std::vector<int>{0, 1, 2});
   // The answer that never came in time is nobody's.
   const double took = std::chrono::duration<double>(LiveClock::now() - begun).count();
-  CHECK(took >= 0.8);
+  CHECK(took >= 4);
 }
 
 TEST_CASE("a simulation that falls behind the clock is told, and its episode does not count") {
@@ -219,13 +220,13 @@ TEST_CASE("a policy in this process is late by what it took") {
    public:
     Status begin(const EpisodeStart&) override { return {}; }
     Result<Action> act(const Observation& seen) override {
-      std::this_thread::sleep_for(std::chrono::milliseconds(seen.step == 0 ? 210 : 0));
+      std::this_thread::sleep_for(std::chrono::milliseconds(seen.step == 0 ? 1050 : 0));
       return numbered(seen.step);
     }
   };
   const auto policy = make_live(std::make_unique<Slow>(), LiveTerms{});
   // Free again, it is in time with the picture of the step in which its first answer came.
-  CHECK(steps_of(*policy, 4) == "-? 1<0<1? 2<2? 3<3?");
+  CHECK(steps_of(*policy, 4, 1) == "-? 1<0<1? 2<2? 3<3?");
 }
 
 TEST_CASE("figures say how often nothing was done and how late answers were") {
