@@ -48,6 +48,17 @@ std::string without_key(std::string_view text, std::string_view key) {
   return clean;
 }
 
+void mask_key(std::span<std::uint8_t> bytes, std::string_view key) {
+  if (key.empty()) return;
+  const std::size_t least = std::min(kTelling, key.size());
+  while (!bytes.empty()) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t size = common_part(text, key);
+    if (size >= least) std::ranges::fill(bytes.first(size), std::uint8_t{'*'});
+    bytes = bytes.subspan(size >= least ? size : 1);
+  }
+}
+
 std::string without_key(std::string_view text) { return without_key(text, api_key()); }
 
 }  // namespace probe::servers

@@ -1,7 +1,10 @@
 // The one secret: what is sent to a server as its key, and must get into no message and no file.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "runtime/base/result.h"
 
@@ -17,5 +20,8 @@ Status check_api_key();
 // cut in the middle of it. Each is a `*`.
 std::string without_key(std::string_view text);
 std::string without_key(std::string_view text, std::string_view key);
+
+// The same of bytes that are no text, each byte becoming a `*` so that lengths stay.
+void mask_key(std::span<std::uint8_t> bytes, std::string_view key);
 
 }  // namespace probe::servers

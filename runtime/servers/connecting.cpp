@@ -38,6 +38,8 @@ Status open_patiently(Transport& transport, const Profile& given, const std::str
     auto opened = transport.open(deadlines);
     bool is_answer = opened.ok();
     if (opened) opened = transport.adapt(*adapted);
+    // What the server says and what the profile says must go together, too.
+    if (opened) opened = check_profile(*adapted);
     if (opened) return {};
     transport.close();
     is_answer = is_answer || opened.failure().code == Fault::kAnswered;

@@ -66,8 +66,15 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
     }
     answers.push_back(std::move(*answer));
   }
-  if (asks_together(choice) && answers.size() == asked.size())
+  if (asks_together(choice)) {
+    if (answers.size() < asked.size()) {
+      return Failure{Fault::kPolicy,
+                     "it was not shown to answer batches, as it did not answer alone: " +
+                         reading.failure + "; without `batch` it is asked one at a time",
+                     reading.server};
+    }
     PROBE_TRY(prove_batch(questions, asked, answers, choice, &reading));
+  }
   transport->close();
   reading.answers = static_cast<int>(answers.size());
   for (const OpenField& open : open_fields(adapted)) {

@@ -27,6 +27,7 @@ struct Record {
     return transcript.connections.size() - 1;
   }
   void add(std::size_t connection, bool is_question, wire::Frame frame) {
+    mask_key(frame.bytes, api_key());
     const std::lock_guard lock(mutex);
     transcript.connections[connection].push_back(line_of(is_question, std::move(frame)));
   }

@@ -22,6 +22,7 @@ struct Source {
   std::string dir;
   RunRecord record;
   std::vector<Fingerprint> builds;  // of the folder's first call and of all that are known
+  std::vector<RunCall> calls;
   std::vector<ResultRow> rows;
 };
 
@@ -40,8 +41,8 @@ Result<Source> read_source(const std::string& dir) {
   if (!record) return Failure{Fault::kUsage, "cannot be merged: " + record.failure().message, dir};
   source.record = std::move(*record);
   source.builds.push_back(source.record.fingerprint);
-  PROBE_ASSIGN(const auto calls, read_run_calls(dir));
-  for (const RunCall& call : calls) source.builds.push_back(call.fingerprint);
+  PROBE_ASSIGN(source.calls, read_run_calls(dir));
+  for (const RunCall& call : source.calls) source.builds.push_back(call.fingerprint);
   PROBE_ASSIGN(source.rows, read_results(dir));
   return source;
 }
@@ -74,6 +75,40 @@ Status check_same_run(const std::vector<Source>& sources, bool mixed_builds,
       }
       const std::string note = source.dir + " " + changes.build + " than " + first.dir;
       if (told.insert(note).second) notes.push_back(note);
+    }
+  }
+  return {};
+}
+
+// What answers showed of the server, where the profile left it open, is part of what a run is.
+Status check_same_meaning(const std::vector<Source>& sources) {
+  const policy::Reading* known = nullptr;
+  const Source* whose = nullptr;
+  for (const Source& source : sources) {
+    for (const RunCall& call : source.calls) {
+      if (!call.reading) continue;
+      if (known == nullptr) {
+        known = &*call.reading;
+        whose = &source;
+      }
+      if (call.reading->measured == known->measured) continue;
+      return Failure{Fault::kUsage,
+                     "its server's answers showed other units, forms or rotations than those of " +
+                         whose->dir + "; they are not parts of one run",
+                     source.dir};
+    }
+  }
+  return {};
+}
+
+// What was shown of the servers goes with the rows; a merge made again adds nothing.
+Status take_calls(const std::vector<Source>& sources, Store& store, const std::string& out) {
+  PROBE_ASSIGN(const auto there, read_run_calls(out));
+  std::set<std::string> known;
+  for (const RunCall& call : there) known.insert(call_to_json(call));
+  for (const Source& source : sources) {
+    for (const RunCall& call : source.calls) {
+      if (known.insert(call_to_json(call)).second) PROBE_TRY(store.add_call(call));
     }
   }
   return {};
@@ -165,6 +200,7 @@ Result<MergeSummary> merge(const MergeOptions& options) {
     sources.push_back(std::move(source));
   }
   PROBE_TRY(check_same_run(sources, options.mixed_builds, summary.notes));
+  PROBE_TRY(check_same_meaning(sources));
   std::map<EpisodeKey, Chosen> chosen;
   for (const Source& source : sources) {
     if (auto own = open_run_plan(source.dir); !own) return own.failure();
@@ -188,6 +224,7 @@ Result<MergeSummary> merge(const MergeOptions& options) {
   }
   record.seeds.assign(seeds.begin(), seeds.end());
   PROBE_ASSIGN(auto store, Store::open(options.out, record, plan.bytes()));
+  PROBE_TRY(take_calls(sources, *store, options.out));
   for (const auto& [key, best] : chosen) {
     ++summary.rows;
     if (best.row.invalid) ++summary.invalid;

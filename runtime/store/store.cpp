@@ -266,16 +266,30 @@ class FolderStore final : public Store {
   Status write_call(const RunCall& call) override {
     const std::lock_guard lock(mutex_);
     if (call_ == 0) {
-      Statement last(database_, "select coalesce(max(number), 0) from calls");
-      if (last.next()) call_ = last.number(0) + 1;
-      PROBE_TRY(last.done());
+      PROBE_ASSIGN(call_, next_call());
     }
-    Statement insert(database_, "insert or replace into calls values (?, ?)", Access::kWrite);
-    insert.bind(call_).bind(call_to_json(call)).next();
-    return insert.done();
+    return put_call(call_, call);
+  }
+  Status add_call(const RunCall& call) override {
+    const std::lock_guard lock(mutex_);
+    PROBE_ASSIGN(const auto number, next_call());
+    return put_call(number, call);
   }
 
  private:
+  Result<int> next_call() {
+    int number = 0;
+    Statement last(database_, "select coalesce(max(number), 0) from calls");
+    if (last.next()) number = last.number(0) + 1;
+    PROBE_TRY(last.done());
+    return number;
+  }
+  Status put_call(int number, const RunCall& call) {
+    Statement insert(database_, "insert or replace into calls values (?, ?)", Access::kWrite);
+    insert.bind(number).bind(call_to_json(call)).next();
+    return insert.done();
+  }
+
   // A plan that was lost, damaged or exchanged since: `plan_bytes` are of the root in the record.
   Status put_plan_back(std::span<const std::byte> plan_bytes) const {
     if (plan_bytes.empty()) return {};

@@ -46,6 +46,8 @@ class Store {
 
   // What this call of `run` has done so far; each write replaces the one before.
   virtual Status write_call(const RunCall& call) = 0;
+  // A call of another folder, whose rows come here.
+  virtual Status add_call(const RunCall& call) = 0;
 };
 
 // Nothing when no run was begun in `dir`; fails (kStore) on one that cannot be read.

@@ -34,6 +34,7 @@ class Openpi : public Transport {
     }
     PROBE_ASSIGN(const wire::Value answer,
                  connection_.ask(wire::Map{{"batch", std::move(items)}}, deadlines.answer));
+    PROBE_TRY(check_error(answer));
     const wire::Value* batch = answer.find("batch");
     const auto* answers = (batch == nullptr ? answer : *batch).as<wire::List>();
     if (answers == nullptr) {
@@ -65,12 +66,15 @@ class Openpi : public Transport {
     return map;
   }
 
+  static Status check_error(const wire::Value& answer) {
+    const wire::Value* error = answer.find("error");
+    if (error == nullptr) return {};
+    const auto* text = error->as<std::string>();
+    return bad("the server failed: " +
+               (text == nullptr ? wire::describe(*error) : last_lines(*text)));
+  }
   static Result<std::vector<RawAction>> actions_of(const wire::Value& answer, std::size_t size) {
-    if (const wire::Value* error = answer.find("error")) {
-      const auto* text = error->as<std::string>();
-      return bad("the server failed: " +
-                 (text == nullptr ? wire::describe(*error) : last_lines(*text)));
-    }
+    PROBE_TRY(check_error(answer));
     const wire::Value* actions = answer.find("actions");
     if (actions == nullptr) {
       return bad("expected a map with `actions`, got " + wire::describe(answer));

@@ -115,32 +115,31 @@ class RoboArena : public Transport {
     const std::string space = said == nullptr                      ? "joint_position"
                               : said->as<std::string>() == nullptr ? ""
                                                                    : *said->as<std::string>();
-    if (space == "cartesian_velocity") {
-      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kDelta;
-      if (profile.action_units == ActionUnits::kUnsaid) {
-        profile.action_units = ActionUnits::kBall;
-        profile.action_scale_m = kSpeedM;
-        profile.action_scale_rad = kSpeedRad;
-      }
-      return {};
-    }
-    if (space == "cartesian_position") {
-      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kAbsolute;
-      if (profile.action_units == ActionUnits::kUnsaid) profile.action_units = ActionUnits::kMetric;
-      return {};
-    }
+    struct Meaning {
+      std::string_view space;
+      ActionForm form;
+      ActionUnits units;
+      double scale_m, scale_rad;
+    };
     // The evaluator holds velocities of joints to -1 .. 1, each for itself.
-    if (space == "joint_velocity") {
-      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kJointSteps;
-      if (profile.action_units == ActionUnits::kUnsaid) {
-        profile.action_units = ActionUnits::kBox;
-        profile.action_scale_rad = kJointSpeedRad;
+    static constexpr Meaning kMeanings[] = {
+        {"cartesian_velocity", ActionForm::kDelta, ActionUnits::kBall, kSpeedM, kSpeedRad},
+        {"cartesian_position", ActionForm::kAbsolute, ActionUnits::kMetric, 1, 1},
+        {"joint_velocity", ActionForm::kJointSteps, ActionUnits::kBox, 1, kJointSpeedRad},
+        {"joint_position", ActionForm::kJoints, ActionUnits::kMetric, 1, 1}};
+    for (const Meaning& meaning : kMeanings) {
+      if (meaning.space != space) continue;
+      if (profile.action_form != ActionForm::kUnsaid && profile.action_form != meaning.form) {
+        return Failure{Fault::kUsage,
+                       "the server's `action_space` is " + std::string(space) +
+                           ", and the profile's `action.form` is of another",
+                       ""};
       }
-      return {};
-    }
-    if (space == "joint_position") {
-      if (profile.action_form == ActionForm::kUnsaid) profile.action_form = ActionForm::kJoints;
-      if (profile.action_units == ActionUnits::kUnsaid) profile.action_units = ActionUnits::kMetric;
+      profile.action_form = meaning.form;
+      if (profile.action_units != ActionUnits::kUnsaid) return {};
+      profile.action_units = meaning.units;
+      profile.action_scale_m = meaning.scale_m;
+      profile.action_scale_rad = meaning.scale_rad;
       return {};
     }
     return Failure{Fault::kUsage,

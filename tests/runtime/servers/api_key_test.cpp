@@ -26,6 +26,17 @@ TEST_CASE("a key is not shown, whole or cut at either end") {
         "twice *, *");
 }
 
+TEST_CASE("in bytes a key becomes as many stars, and so does a part of it") {
+  const auto masked = [](std::string bytes) {
+    mask_key({reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}, kKey);
+    return bytes;
+  };
+  CHECK(masked("\x83" + std::string(kKey) + "\xff") ==
+        "\x83" + std::string(kKey.size(), '*') + "\xff");
+  CHECK(masked("cut: " + std::string(kKey.substr(0, 9))) == "cut: *********");
+  CHECK(masked("the project's tail") == "the project's tail");
+}
+
 TEST_CASE("other words stay, and a short key is only taken out whole") {
   CHECK(without_key("the project's tail", kKey) == "the project's tail");
   CHECK(without_key("abc abcd", "abcd") == "abc *");

@@ -269,6 +269,10 @@ TEST_CASE("a batch's answer of another length, or with a failed item, is refused
   CHECK(failure_of(second(wire::Map{{"actions", wire::array_f64({6}, {0, 0, 0, 0, 0, 0})}})) ==
         "item 2 of 3 of a batch: expected actions of 7 numbers, an array 7 or N x 7; got an array "
         "6 of <f8");
+  CHECK(failure_of([](const wire::List& asked) -> wire::Value {
+          wire::List items(asked.size(), wire::Map{{"actions", Answering::still()}});
+          return wire::Map{{"batch", std::move(items)}, {"error", "partial failure"}};
+        }) == "the server failed: partial failure");
   // A server that does not know batches answers as if it were one observation.
   CHECK(failure_of([](const wire::List&) -> wire::Value {
           return wire::Map{{"actions", Answering::still()}};

@@ -163,6 +163,44 @@ TEST_CASE("a valid row wins over an invalid one wherever it stands, and damage c
   CHECK(half.notes[0].starts_with("carrot_on_plate episode 0 seed 42 is left out: "));
 }
 
+TEST_CASE("what was shown of a server goes with its rows, once, and must be the same everywhere") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 2);
+  const auto part = [&](const std::string& name, int start, const policy::Reading& reading) {
+    RunOptions options = options_for(folder / name, "null");
+    options.episodes = {start, start};
+    must_run(plan, options);
+    auto store = Store::open(folder / name, *read_run_record(folder / name), plan.bytes());
+    REQUIRE(store.ok());
+    RunCall call;
+    call.reading = reading;
+    REQUIRE((*store)->add_call(call).ok());
+  };
+  policy::Reading shown{.server = "gpu:443", .answers = 3, .answers_sha256 = "ab"};
+  shown.measured = {{"action.form", "delta"}};
+  policy::Reading unchecked = shown;
+  unchecked.is_unchecked = true;
+  part("a", 0, unchecked);
+  part("b", 1, shown);
+  for (int times = 0; times < 2; ++times) {
+    must_merge({{folder / "a", folder / "b"}, folder / "ab"});
+    const auto calls = read_run_calls(folder / "ab");
+    REQUIRE(calls.ok());
+    const auto readings =
+        std::ranges::count_if(*calls, [](const RunCall& call) { return call.reading.has_value(); });
+    CHECK(readings == 2);
+    CHECK(std::ranges::any_of(
+        *calls, [](const RunCall& call) { return call.reading && call.reading->is_unchecked; }));
+  }
+  shown.measured = {{"action.form", "absolute"}};
+  part("c", 1, shown);
+  const auto other = merge({{folder / "a", folder / "c"}, folder / "ac"});
+  REQUIRE_FALSE(other.ok());
+  CHECK(other.failure().where == folder / "c");
+  CHECK(other.failure().message.find("showed other units, forms or rotations") !=
+        std::string::npos);
+}
+
 TEST_CASE("what does not belong together is refused before anything is written") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(1, 2);

@@ -278,6 +278,13 @@ TEST_CASE("what RoboArena's server calls its actions is what is done with them")
     CHECK(shift > 0);
     CHECK(shift < farthest);
   }
+  const PythonServer velocities(
+      "openpi_server.py", {"roboarena", with_space(", \"action_space\": \"joint_velocity\"")});
+  CHECK(made("roboarena", velocities, "&action.form=delta")->begin(with_robot).failure().message ==
+        "the server's `action_space` is joint_velocity, and the profile's `action.form` is of "
+        "another");
+  CHECK(made("roboarena", velocities, "&action.units=ball")->begin(with_robot).failure().message ==
+        "`action.units = ball` is of shifts and turns, not of joints");
   const PythonServer server("openpi_server.py",
                             {"roboarena", with_space(", \"action_space\": \"torque\"")});
   const auto begun = made("roboarena", server)->begin(start());
