@@ -119,12 +119,14 @@ Status write_plan(const fs::path& path, const plan::Plan& plan) {
 }
 
 // What merging would refuse at the end is refused before the first task.
-Status check_same_run(const std::string& out, const plan::Plan& plan, const std::string& name) {
+Status check_same_run(const std::string& out, const plan::Plan& plan, const std::string& name,
+                      const std::optional<policy::LiveTerms>& live) {
   PROBE_ASSIGN(const auto record, store::find_run_record(out));
   if (!record) return {};
   store::RunRecord asked = *record;
   asked.identity.plan_root = to_hex(plan.root());
   asked.identity.policy = name;
+  asked.identity.live = live ? to_text(*live) : "";
   const std::string change = store::changes_between(*record, asked).identity;
   if (change.empty()) return {};
   return Failure{Fault::kStore, change + "; take another folder or remove this one", out};
@@ -251,7 +253,7 @@ Result<SlurmReport> run_on_slurm(const plan::Plan& plan, const SlurmOptions& opt
   script.worlds = options.run.jobs;
   script.run_arguments = run_words(options.run);
   PROBE_ASSIGN(const std::string text, to_text(script));
-  PROBE_TRY(check_same_run(out, plan, script.name));
+  PROBE_TRY(check_same_run(out, plan, script.name, options.run.live));
   std::error_code error;
   fs::create_directories(folder / "log", error);
   if (error) return Failure{Fault::kIo, "cannot be made: " + error.message(), folder.string()};
