@@ -13,12 +13,10 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/base/io_failure.h"
+
 namespace probe {
 namespace {
-
-Failure io_failure(const std::string& what, const std::string& path) {
-  return {.code = Fault::kIo, .message = what + ": " + std::strerror(errno), .where = path};
-}
 
 // Two threads may write one file.
 std::string next_suffix() {

@@ -9,14 +9,12 @@
 #include <cstring>
 #include <filesystem>
 
+#include "runtime/base/io_failure.h"
+
 namespace probe {
 namespace {
 
 namespace fs = std::filesystem;
-
-Failure io_failure(const std::string& what, int error, const std::string& path) {
-  return {Fault::kIo, what + ": " + std::strerror(error), path};
-}
 
 bool has_type(const std::string& path, fs::file_type type) {
   std::error_code error;

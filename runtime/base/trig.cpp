@@ -1,6 +1,7 @@
 #include "runtime/base/trig.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "runtime/base/trig_reduce.h"
 
@@ -66,7 +67,8 @@ double atan_kernel(double x) {
   return kHi[part] - ((x * (s1 + s2) - kLo[part]) - x);
 }
 
-constexpr double kPi = 3.14159265358979311600e+00;
+constexpr double kPi = std::numbers::pi;
+// Pi less kPi.
 constexpr double kPiLow = 1.2246467991473531772e-16;
 
 SinCos from_quadrant(long long quadrant, double s, double c) {

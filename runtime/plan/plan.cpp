@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <utility>
+
+#include "runtime/base/io_failure.h"
 
 namespace probe::plan {
 
@@ -49,9 +49,7 @@ class File {
   int fd_;
 };
 
-Failure io_failure(const std::string& path) {
-  return {Fault::kIo, std::string("cannot read the plan: ") + std::strerror(errno), path};
-}
+Failure not_read(const std::string& path) { return io_failure("cannot read the plan", path); }
 
 template <typename Record>
 std::optional<std::uint32_t> find_name(const Tables& t, std::span<const Record> table,
@@ -77,14 +75,14 @@ Result<Plan> Plan::adopt(std::unique_ptr<Storage> storage, const VerifyOptions& 
 
 Result<Plan> Plan::open(const std::string& path, const VerifyOptions& options) {
   const File file(path);
-  if (file.fd() < 0) return io_failure(path);
+  if (file.fd() < 0) return not_read(path);
   struct stat info {};
-  if (::fstat(file.fd(), &info) != 0) return io_failure(path);
+  if (::fstat(file.fd(), &info) != 0) return not_read(path);
   if (!S_ISREG(info.st_mode)) return Failure{Fault::kIo, "a plan is a regular file", path};
   const auto size = static_cast<std::size_t>(info.st_size);
   if (size == 0) return Failure{Fault::kPlan, "the file is empty", path};
   void* mapping = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd(), 0);
-  if (mapping == MAP_FAILED) return io_failure(path);
+  if (mapping == MAP_FAILED) return not_read(path);
   Result<Plan> plan = adopt(std::make_unique<Storage>(mapping, size), options);
   if (plan.ok()) return plan;
   Failure failure = plan.failure();

@@ -5,16 +5,13 @@
 #include <cmath>
 #include <exception>
 
+#include "runtime/base/clock.h"
 #include "runtime/base/percent.h"
 
 namespace probe::run {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point from) {
-  return std::chrono::duration<double>(Clock::now() - from).count();
-}
 
 std::string reason(const char* who, const Failure& failure) {
   return who + (": " + to_text(failure));

@@ -17,16 +17,13 @@
 #include <stb/stb_image_write.h>
 
 #include "runtime/base/file.h"
+#include "runtime/base/io_failure.h"
 
 namespace probe::scene {
 namespace {
 
 Failure asset_failure(std::string message, const std::string& where) {
   return {.code = Fault::kAsset, .message = std::move(message), .where = where};
-}
-
-Failure io_failure(const std::string& what, const std::string& path) {
-  return {.code = Fault::kIo, .message = what + ": " + std::strerror(errno), .where = path};
 }
 
 struct FileCloser {

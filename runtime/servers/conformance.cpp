@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "runtime/base/clock.h"
 #include "runtime/base/json.h"
 #include "runtime/policy/reading.h"
 #include "runtime/servers/api_key.h"
@@ -20,10 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kObservations = 6;
 constexpr int kRepeats = 3;
-
-double seconds_since(Clock::time_point from) {
-  return std::chrono::duration<double>(Clock::now() - from).count();
-}
 
 std::string number(double value) {
   char text[32];

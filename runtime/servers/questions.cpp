@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "runtime/base/clock.h"
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/server_policy.h"
 
@@ -150,7 +151,7 @@ Result<Chunk> Questions::ask(const Question& question) {
   const auto begun = QuestionClock::now();
   ++asked_;
   PROBE_ASSIGN(Chunk chunk, transport_.ask(request, deadlines()));
-  times_.push_back(std::chrono::duration<double>(QuestionClock::now() - begun).count());
+  times_.push_back(seconds_since(begun));
   PROBE_TRY(transport_.end_episode({true, false, 1}, deadlines()));
   return chunk;
 }

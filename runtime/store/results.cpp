@@ -2,20 +2,14 @@
 #include "runtime/store/results.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
 #include <string_view>
 
+#include "runtime/base/exact_text.h"
 #include "runtime/base/json.h"
 
 namespace probe::store {
 namespace {
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 std::string quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -43,7 +37,7 @@ std::string cell(const ResultRow& row, const std::string& metric) {
   for (const MetricValue& value : row.metrics) {
     if (value.name != metric) continue;
     if (value.is_bool) return value.value != 0 ? "true" : "false";
-    return number(value.value);
+    return exact_text(value.value);
   }
   return "";
 }

@@ -3,25 +3,19 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdio>
 
+#include "runtime/base/exact_text.h"
 #include "runtime/store/trace_codec.h"
 
 namespace probe::store {
 namespace {
-
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
 
 // Keeps the first thing that differs.
 class Finder {
  public:
   void real(const std::string& name, double here, double recorded) {
     if (std::bit_cast<std::uint64_t>(here) == std::bit_cast<std::uint64_t>(recorded)) return;
-    keep(name + " is " + number(here) + ", recorded " + number(recorded));
+    keep(name + " is " + exact_text(here) + ", recorded " + exact_text(recorded));
   }
   void vec(const std::string& name, const Vec3& here, const Vec3& recorded) {
     constexpr const char* kAxes[] = {"x", "y", "z"};

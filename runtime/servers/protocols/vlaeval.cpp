@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "runtime/base/clock.h"
 #include "runtime/base/json.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/served_sides.h"
@@ -24,11 +25,6 @@ constexpr std::int64_t kProtocolVersion = 1;
 
 bool is_this_machine(const std::string& host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
-}
-
-double unix_seconds() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(now).count();
 }
 
 // What its servers are told of batches, which they gather from all connections
@@ -182,7 +178,7 @@ class VlaEval : public Transport {
   }
 
   Status end_episode(const policy::EpisodeEnd& end, const Deadlines& deadlines) override {
-    const double elapsed = std::chrono::duration<double>(Clock::now() - started_).count();
+    const double elapsed = seconds_since(started_);
     return send("episode_end",
                 wire::Map{{"metrics", wire::Map{{"success", end.success}}},
                           {"steps", end.steps},

@@ -1,17 +1,11 @@
 // vla-eval's protocol 1 from the server's side, see vlaeval.cpp. Pictures are read raw: whoever
 // sends them as PNG is told so.
-#include <chrono>
-
+#include "runtime/base/clock.h"
 #include "runtime/servers/protocols/served_sides.h"
 #include "runtime/servers/protocols/vlaeval_messages.h"
 
 namespace probe::servers {
 namespace {
-
-double served_seconds() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration<double>(now).count();
-}
 
 wire::Value part_of_spec(const char* name, int dims, const char* format) {
   return wire::Map{{"name", name}, {"dims", dims}, {"format", format}};
@@ -54,7 +48,7 @@ class VlaEvalSpeaker final : public wire::Speaker {
   }
   static Reply said(std::string type, wire::Value payload, std::int64_t seq) {
     return {{wire::Frame{
-        false, vlaeval::to_bytes({std::move(type), std::move(payload), seq}, served_seconds())}}};
+        false, vlaeval::to_bytes({std::move(type), std::move(payload), seq}, unix_seconds())}}};
   }
 
   std::unique_ptr<ServedPolicy> policy_;

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <thread>
 
+#include "runtime/base/clock.h"
 #include "runtime/policy/reading.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/protocol.h"
@@ -22,10 +23,6 @@ namespace probe::servers {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point from) {
-  return std::chrono::duration<double>(Clock::now() - from).count();
-}
 
 // A server's side without a wire: answers `step` of each request, after a time.
 struct Told {
