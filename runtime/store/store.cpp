@@ -23,46 +23,77 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSchema = R"(
-create table if not exists run (name text primary key, value text not null) without rowid;
-create table if not exists episodes (
-  task text not null, episode integer not null, seed integer not null,
-  task_order integer not null, episode_id text not null, start_id text not null,
-  policy text not null, metrics text not null, steps integer not null, invalid text,
-  prompt_sha256 text not null, image_sha256 text not null, frames_sha256 text not null,
-  trace_sha256 text not null, trace text not null,
-  sent_prompt_sha256 text, sent_image_sha256 text,
-  primary key (task, episode, seed)) without rowid;
-create table if not exists calls (number integer primary key, value text not null);
-)";
-// Of version 1.
-constexpr const char* kRaiseSchema = R"(
-alter table episodes add column sent_prompt_sha256 text;
-alter table episodes add column sent_image_sha256 text;
-)";
-
-// Of every version; the two of kRaiseSchema may be absent.
+// The columns of `episodes`: the table is made, read, written and checked by this list.
+struct EpisodeColumn {
+  enum : int {
+#define PROBE_EPISODE_COLUMN(Name, name, type, since, value) k##Name,
+#include "runtime/store/episode_columns.def"
+    kCount
+  };
+};
+constexpr std::string_view kEpisodeColumns[] = {
+#define PROBE_EPISODE_COLUMN(Name, name, type, since, value) name,
+#include "runtime/store/episode_columns.def"
+};
+constexpr std::string_view kEpisodeTypes[] = {
+#define PROBE_EPISODE_COLUMN(Name, name, type, since, value) type,
+#include "runtime/store/episode_columns.def"
+};
+constexpr int kEpisodeSince[] = {
+#define PROBE_EPISODE_COLUMN(Name, name, type, since, value) since,
+#include "runtime/store/episode_columns.def"
+};
+// Of every version; those of version 2 may be absent.
 constexpr std::string_view kRunColumns[] = {"name", "value"};
 constexpr std::string_view kCallColumns[] = {"number", "value"};
-constexpr std::string_view kEpisodeColumns[] = {"task",
-                                                "episode",
-                                                "seed",
-                                                "task_order",
-                                                "episode_id",
-                                                "start_id",
-                                                "policy",
-                                                "metrics",
-                                                "steps",
-                                                "invalid",
-                                                "prompt_sha256",
-                                                "image_sha256",
-                                                "frames_sha256",
-                                                "trace_sha256",
-                                                "trace",
-                                                "sent_prompt_sha256",
-                                                "sent_image_sha256"};
 constexpr Database::Table kTables[] = {
     {"run", kRunColumns}, {"episodes", kEpisodeColumns}, {"calls", kCallColumns}};
+
+// What `item` gives for each column, with commas between.
+template <typename Item>
+std::string each_column(const Item& item) {
+  std::string out;
+  for (std::size_t k = 0; k < EpisodeColumn::kCount; ++k) {
+    out += (k == 0 ? "" : ", ") + item(k);
+  }
+  return out;
+}
+
+std::string column_defined(std::size_t column) {
+  return std::string(kEpisodeColumns[column]) + " " + std::string(kEpisodeTypes[column]);
+}
+
+std::string episode_schema() {
+  return "create table if not exists run (name text primary key, value text not null) "
+         "without rowid; create table if not exists episodes (" +
+         each_column(column_defined) +
+         ", primary key (task, episode, seed)) without rowid; "
+         "create table if not exists calls (number integer primary key, value text not null);";
+}
+
+// From version 1.
+std::string raised_schema() {
+  std::string out;
+  for (std::size_t k = 0; k < EpisodeColumn::kCount; ++k) {
+    if (kEpisodeSince[k] > 1) out += "alter table episodes add column " + column_defined(k) + "; ";
+  }
+  return out;
+}
+
+// All columns, by EpisodeColumn; null where the file's version has none.
+std::string select_episodes(int version) {
+  const auto item = [version](std::size_t k) {
+    return kEpisodeSince[k] > version ? std::string("null") : std::string(kEpisodeColumns[k]);
+  };
+  return "select " + each_column(item) + " from episodes order by task_order, task, episode, seed";
+}
+
+std::string insert_episode() {
+  const auto name = [](std::size_t k) { return std::string(kEpisodeColumns[k]); };
+  const auto place = [](std::size_t) { return std::string("?"); };
+  return "insert or replace into episodes (" + each_column(name) + ") values (" +
+         each_column(place) + ")";
+}
 
 // What is read of one folder: a campaign has a few hundred thousand episodes.
 constexpr int kMostRows = 1'000'000;
@@ -119,21 +150,14 @@ std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& tex
   return metrics;
 }
 
-constexpr int kRowColumns = 16;  // that load_rows selects
-
 Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
   PROBE_ASSIGN(const auto record, load_record(database));
   if (!record) return failed("no run here: results.sqlite is empty", dir);
-  std::string sql =
-      "select task, episode, seed, policy, metrics, steps, invalid, prompt_sha256, image_sha256, "
-      "frames_sha256, trace_sha256, episode_id, start_id, trace, ";
-  sql += record->schema == 1 ? "null, null" : "sent_prompt_sha256, sent_image_sha256";
-  sql += " from episodes order by task_order, task, episode, seed";
-  Statement select(database, sql.c_str());
+  Statement select(database, select_episodes(record->schema).c_str());
   std::vector<ResultRow> rows;
   std::size_t bytes = 0;
   while (select.next()) {
-    for (int column = 0; column < kRowColumns; ++column) bytes += select.bytes(column);
+    for (int column = 0; column < EpisodeColumn::kCount; ++column) bytes += select.bytes(column);
     if (bytes > kMostBytes || rows.size() >= kMostRows) {
       return failed("results.sqlite has more rows than any run: more than " +
                         std::to_string(kMostRows) + ", or more than " +
@@ -141,32 +165,37 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
                     database.path());
     }
     ResultRow row;
-    row.task = select.text(0);
-    row.episode = select.number(1);
-    row.seed = select.number(2);
-    row.policy = select.text(3);
-    auto metrics = metrics_from_text(select.text(4));
+    row.task = select.text(EpisodeColumn::kTask);
+    row.episode = select.number(EpisodeColumn::kEpisode);
+    row.seed = select.number(EpisodeColumn::kSeed);
+    row.policy = select.text(EpisodeColumn::kPolicy);
+    auto metrics = metrics_from_text(select.text(EpisodeColumn::kMetrics));
     if (metrics) row.metrics = std::move(*metrics);
-    row.steps = select.number(5);
-    row.invalid = select.optional_text(6);
+    row.steps = select.number(EpisodeColumn::kSteps);
+    row.invalid = select.optional_text(EpisodeColumn::kInvalid);
     if (!row.invalid && !metrics) {
       // One damaged row must not hide the others; the next run makes it anew.
       row.invalid = "store: its metrics in results.sqlite cannot be read";
     }
-    row.prompt_sha256 = select.text(7);
-    row.image_sha256 = select.text(8);
-    row.frames_sha256 = select.text(9);
-    row.trace_sha256 = select.text(10);
-    row.episode_id = select.text(11);
-    row.start_id = select.text(12);
-    row.trace = absolute_path((fs::path(dir) / select.text(13)).string());
-    row.sent_prompt_sha256 = select.optional_text(14);
-    row.sent_image_sha256 = select.optional_text(15);
+    row.prompt_sha256 = select.text(EpisodeColumn::kPromptSha);
+    row.image_sha256 = select.text(EpisodeColumn::kImageSha);
+    row.frames_sha256 = select.text(EpisodeColumn::kFramesSha);
+    row.trace_sha256 = select.text(EpisodeColumn::kTraceSha);
+    row.episode_id = select.text(EpisodeColumn::kEpisodeId);
+    row.start_id = select.text(EpisodeColumn::kStartId);
+    row.trace = absolute_path((fs::path(dir) / select.text(EpisodeColumn::kTrace)).string());
+    row.sent_prompt_sha256 = select.optional_text(EpisodeColumn::kSentPromptSha);
+    row.sent_image_sha256 = select.optional_text(EpisodeColumn::kSentImageSha);
     row.live = record->identity.live;
     rows.push_back(std::move(row));
   }
   PROBE_TRY(select.done());
   return rows;
+}
+
+void bind_episode(Statement& insert, const ResultRow& row, int task_order) {
+#define PROBE_EPISODE_COLUMN(Name, name, type, since, value) insert.bind(value);
+#include "runtime/store/episode_columns.def"
 }
 
 // "3-42.trace.tmp", "3-42.mp4.1234-0.tmp": what this program writes before it renames.
@@ -188,7 +217,7 @@ class FolderStore final : public Store {
 
   Status begin(const RunRecord& record, std::span<const std::byte> plan_bytes) {
     PROBE_ASSIGN(auto stored, load_record(database_));
-    PROBE_TRY(database_.execute(kSchema));
+    PROBE_TRY(database_.execute(episode_schema().c_str()));
     if (stored) {
       const RunChanges changes = changes_between(*stored, record);
       for (const std::string& change : {changes.identity, changes.policy_content}) {
@@ -247,18 +276,8 @@ class FolderStore final : public Store {
     // Waiting for the disk here is no business of other threads: each has files of its own.
     PROBE_TRY(sync_folder(fs::path(trace).parent_path().string()));
     const std::lock_guard lock(mutex_);
-    Statement insert(database_,
-                     "insert or replace into episodes (task, episode, seed, task_order, "
-                     "episode_id, start_id, policy, metrics, steps, invalid, prompt_sha256, "
-                     "image_sha256, frames_sha256, trace_sha256, trace, sent_prompt_sha256, "
-                     "sent_image_sha256) values (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?)",
-                     Access::kWrite);
-    insert.bind(row.task).bind(row.episode).bind(row.seed).bind(task_order);
-    insert.bind(row.episode_id).bind(row.start_id).bind(row.policy);
-    insert.bind(metrics_to_text(row.metrics)).bind(row.steps).bind(row.invalid);
-    insert.bind(row.prompt_sha256).bind(row.image_sha256).bind(row.frames_sha256);
-    insert.bind(row.trace_sha256).bind(relative_trace(key_of(row)));
-    insert.bind(row.sent_prompt_sha256).bind(row.sent_image_sha256);
+    Statement insert(database_, insert_episode().c_str(), Access::kWrite);
+    bind_episode(insert, row, task_order);
     insert.next();
     return insert.done();
   }
@@ -310,7 +329,7 @@ class FolderStore final : public Store {
   Status raise_schema() {
     record_.schema = kSchemaVersion;
     PROBE_TRY(database_.execute("begin immediate"));
-    PROBE_TRY(database_.execute(kRaiseSchema));
+    PROBE_TRY(database_.execute(raised_schema().c_str()));
     PROBE_TRY(write_record("update run set value = ? where name = 'record'"));
     return database_.execute("commit");
   }
