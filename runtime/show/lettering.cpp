@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "runtime/base/paths.h"
 #include "runtime/base/utf8.h"
 #include FT_FREETYPE_H
 
@@ -60,11 +61,20 @@ class Lettering::Faces {
     faces->library_.reset(library);
     for (const FontFile& file : files) {
       FT_Face face = nullptr;
-      if (FT_New_Face(library, file.path.c_str(), file.face, &face) != 0) continue;
-      if (FT_IS_SCALABLE(face))
+      const bool is_font = FT_New_Face(library, file.path.c_str(), file.face, &face) == 0;
+      if (is_font && FT_IS_SCALABLE(face)) {
         faces->faces_.emplace_back(face);
-      else
-        FT_Done_Face(face);
+        continue;
+      }
+      if (is_font) FT_Done_Face(face);
+      if (!file.asked_for) continue;  // one of many that the machine has
+      if (!is_file(file.path)) {
+        return Failure{Fault::kVideo, "VLAPROBE_FONT names no file", file.path};
+      }
+      return Failure{Fault::kVideo,
+                     is_font ? "VLAPROBE_FONT names a font of pixels; words need one that scales"
+                             : "VLAPROBE_FONT names a file that is no font",
+                     file.path};
     }
     if (!faces->faces_.empty()) return faces;
     return Failure{Fault::kVideo,
@@ -131,7 +141,7 @@ class Lettering::Faces {
 std::vector<FontFile> installed_fonts() {
   std::vector<FontFile> files;
   if (const char* named = std::getenv("VLAPROBE_FONT"); named != nullptr && *named != '\0') {
-    files.push_back({named, 0});
+    files.push_back({.path = named, .face = 0, .asked_for = true});
   }
   const Pattern wanted(FcNameParse(reinterpret_cast<const FcChar8*>("DejaVu Sans")));
   if (!wanted) return files;
@@ -149,7 +159,7 @@ std::vector<FontFile> installed_fonts() {
       continue;
     }
     FcPatternGetInteger(fonts->fonts[i], FC_INDEX, 0, &face);
-    files.push_back({reinterpret_cast<const char*>(path), face});
+    files.push_back({.path = reinterpret_cast<const char*>(path), .face = face});
   }
   return files;
 }

@@ -17,7 +17,8 @@ namespace probe::show {
 
 struct FontFile {
   std::string path;
-  int face = 0;  // of the several in one file
+  int face = 0;            // of the several in one file
+  bool asked_for = false;  // by VLAPROBE_FONT: if it is no font, that is a failure
 };
 
 // Scalable fonts, the best for a caption first; each adds characters that those before lack. Empty
@@ -27,7 +28,8 @@ std::vector<FontFile> installed_fonts();
 // Sizes are the pixels of an em. A character that no font has is drawn as the first font's box.
 class Lettering {
  public:
-  // Fails (kVideo) when none of the files is a font, saying what to install.
+  // Fails (kVideo) when none of the files is a font, saying what to install, and naming one that
+  // was asked for and is none.
   static Result<std::unique_ptr<Lettering>> open(const std::vector<FontFile>& files);
   // Of the installed fonts, made at the first call; any thread may use it.
   static Result<Lettering*> shared();

@@ -97,6 +97,36 @@ TEST_CASE("without a font there is no lettering, and the failure says what to in
   CHECK(other.failure().where == VLAPROBE_SOURCE_DIR "/README.md");
 }
 
+TEST_CASE("a font that was asked for and is none is refused by name, whatever else there is") {
+  std::vector<FontFile> files = installed_fonts();
+  REQUIRE_FALSE(files.empty());
+  files.insert(files.begin(), FontFile{VLAPROBE_SOURCE_DIR "/README.md", 0, true});
+  const auto no_font = Lettering::open(files);
+  REQUIRE_FALSE(no_font.ok());
+  CHECK(no_font.failure().code == Fault::kVideo);
+  CHECK(no_font.failure().message == "VLAPROBE_FONT names a file that is no font");
+  CHECK(no_font.failure().where == VLAPROBE_SOURCE_DIR "/README.md");
+  files.front().path = "/nowhere/at/all.ttf";
+  const auto no_file = Lettering::open(files);
+  REQUIRE_FALSE(no_file.ok());
+  CHECK(no_file.failure().message == "VLAPROBE_FONT names no file");
+  // One that the machine lists and nobody asked for is only left out.
+  files.front().asked_for = false;
+  CHECK(Lettering::open(files).ok());
+}
+
+TEST_CASE("with VLAPROBE_FONT set its file comes first and is known as asked for") {
+  const std::string font = installed_fonts().front().path;
+  ::setenv("VLAPROBE_FONT", font.c_str(), 1);
+  const std::vector<FontFile> files = installed_fonts();
+  ::unsetenv("VLAPROBE_FONT");
+  REQUIRE_FALSE(files.empty());
+  CHECK(files.front().asked_for);
+  CHECK(files.front().path == font);
+  CHECK(std::count_if(files.begin(), files.end(), [](const FontFile& f) { return f.asked_for; }) ==
+        1);
+}
+
 TEST_CASE("the strips of a video say instruction, step and verdicts, and leave the middle alone") {
   const Picture blank = make_picture(640, 480, {100, 100, 100});
   Picture frame = blank;
