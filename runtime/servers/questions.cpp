@@ -1,6 +1,7 @@
 #include "runtime/servers/questions.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -53,6 +54,14 @@ policy::Proprioception known_state(bool is_mirrored) {
   measured.joints = {side * 0.165, 0.040, 0.222, -0.005, 1.365, 0.002, 0.037, 0.037};
   measured.finger_joints = 2;
   return measured;
+}
+
+bool is_known_question(std::span<const std::uint8_t> picture, std::string_view words) {
+  if (std::ranges::find(kWords, words) == std::end(kWords)) return false;
+  constexpr int kPictures = 2;
+  static const std::array<wire::Bytes, kPictures> known = {known_picture(0), known_picture(1)};
+  return std::ranges::any_of(
+      known, [&](const wire::Bytes& bytes) { return std::ranges::equal(bytes, picture); });
 }
 
 Status Questions::open() {

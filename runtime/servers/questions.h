@@ -2,7 +2,10 @@
 // the probe at a run's beginning. Runs no simulator.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -38,6 +41,10 @@ TogetherFinding compare_together(const std::vector<Chunk>& alone,
 // Where a question's arm is: the WidowX at the start of its table tasks, gripper open, 5 cm to one
 // side so that mirroring it moves it.
 policy::Proprioception known_state(bool is_mirrored);
+
+// Whether a picture's bytes and an instruction are those of a question, as rendered and worded: our
+// own servers of recorded episodes answer them too, so that they can be shown to read.
+bool is_known_question(std::span<const std::uint8_t> picture, std::string_view words);
 
 class Questions {
  public:

@@ -4,6 +4,7 @@
 
 #include "runtime/base/sha256.h"
 #include "runtime/servers/protocol.h"
+#include "runtime/servers/questions.h"
 
 namespace probe::servers {
 namespace {
@@ -39,6 +40,14 @@ class ServedDigest final : public ServedPolicy {
   }
 };
 
+// Of an observation that no episode has: a question of a proof is answered as a digest does.
+Result<std::vector<policy::Action>> answer_unknown(const Asked& asked, int count,
+                                                   const char* refusal) {
+  if (is_known_question(asked.picture.bytes, asked.words))
+    return ServedDigest().answer(asked, count);
+  return bad(refusal);
+}
+
 class ServedRecorded final : public ServedPolicy {
  public:
   ServedRecorded(std::shared_ptr<const RecordedEpisodes> episodes, bool begins_anew)
@@ -55,8 +64,10 @@ class ServedRecorded final : public ServedPolicy {
         next_ = 0;
       }
     }
-    if (actions_ == nullptr)
-      return bad("picture and instruction begin none of the episodes that are served");
+    if (actions_ == nullptr) {
+      return answer_unknown(asked, count,
+                            "picture and instruction begin none of the episodes that are served");
+    }
     if (next_ >= actions_->size()) return bad("the episode has no more actions");
     const std::size_t end = std::min(next_ + static_cast<std::size_t>(count), actions_->size());
     std::vector<policy::Action> actions(actions_->begin() + static_cast<std::ptrdiff_t>(next_),
@@ -81,8 +92,10 @@ class ServedSteps final : public ServedPolicy {
     const auto found =
         steps_->find(episode_key(to_hex(sha256(std::as_bytes(std::span(asked.picture.bytes)))),
                                  to_hex(sha256(asked.words))));
-    if (found == steps_->end())
-      return bad("picture and instruction are of no step that is served, or of several");
+    if (found == steps_->end()) {
+      return answer_unknown(asked, count,
+                            "picture and instruction are of no step that is served, or of several");
+    }
     const auto& actions = found->second;
     const std::size_t end = std::min(static_cast<std::size_t>(count), actions.size());
     return std::vector<policy::Action>(actions.begin(),

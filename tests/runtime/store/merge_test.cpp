@@ -165,14 +165,16 @@ TEST_CASE("a valid row wins over an invalid one wherever it stands, and damage c
 
 TEST_CASE("what was shown of a server goes with its rows, once, and must be the same everywhere") {
   TemporaryFolder folder;
-  const plan::Plan plan = table_plan(1, 2);
+  const plan::Plan plan = table_plan(2, 2);
   const auto part = [&](const std::string& name, int start, const policy::Reading& reading) {
     RunOptions options = options_for(folder / name, "null");
     options.episodes = {start, start};
     must_run(plan, options);
-    auto store = Store::open(folder / name, *read_run_record(folder / name), plan.bytes());
+    const RunRecord record = *read_run_record(folder / name);
+    auto store = Store::open(folder / name, record, plan.bytes());
     REQUIRE(store.ok());
     RunCall call;
+    call.fingerprint = record.fingerprint;
     call.reading = reading;
     REQUIRE((*store)->add_call(call).ok());
   };

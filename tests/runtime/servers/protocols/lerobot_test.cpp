@@ -168,7 +168,12 @@ TEST_CASE("LeRobot: what listens and is no LeRobot server is told from one that 
     const PythonServer server("fault_server.py", {"openvla", "connect=" + std::string(fault)});
     const auto policy = lerobot_at(server, kQuick);
     const std::string said = ask_once(*policy, "put carrot on plate");
-    CHECK_MESSAGE(said.starts_with("127.0.0.1:" + server.port() + ": " + says), said);
+    // One that closed before our first words were out is only known to have gone.
+    const std::string place = "127.0.0.1:" + server.port() + ": ";
+    CHECK_MESSAGE(
+        (said.starts_with(place + says) || (std::string(says).starts_with("something listens") &&
+                                            said.starts_with(place + "the server went away"))),
+        said);
   }
 }
 
