@@ -13,11 +13,6 @@ constexpr std::size_t kMostTriangles = 512;  // beyond, the search costs more th
 constexpr float kRoom = 1.0f;                // pixels
 // Edge values are products of unit vectors; those of rays are wrong by less than this.
 constexpr float kDoubt = 1e-5f;
-// Of samples alone, as in known_hits.cpp: places, by the distances that take part; closeness, by
-// itself; distance along a ray, m.
-constexpr double kPlaceDoubt = 3e-6;
-constexpr float kDepthDoubt = 7e-4f;
-constexpr float kDistanceDoubt = 3e-4f;
 constexpr float kMostGrazing = 0.7f;  // least by greatest 1 / depth of a triangle in its block
 constexpr float kBehindBlock = 0.999f;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();

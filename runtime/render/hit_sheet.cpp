@@ -20,6 +20,14 @@ using EightInts = std::int32_t __attribute__((vector_size(32)));
 // Columns and rows of the samples of a packet.
 constexpr Eight kLaneX{0, 1, 0, 1, 2, 3, 2, 3};
 constexpr Eight kLaneY{0, 0, 1, 1, 0, 0, 1, 1};
+constexpr bool lanes_are_tile_offsets() {
+  constexpr unsigned x[] = {0, 1, 0, 1, 2, 3, 2, 3}, y[] = {0, 0, 1, 1, 0, 0, 1, 1};
+  for (std::size_t i = 0; i < 8; ++i) {
+    if (kTileOffsets[i].x != x[i] || kTileOffsets[i].y != y[i]) return false;
+  }
+  return true;
+}
+static_assert(lanes_are_tile_offsets(), "a packet's samples are the first eight of a tile's order");
 
 PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __restrict closest,
                            float* __restrict other, std::uint32_t* __restrict owner) {

@@ -14,6 +14,19 @@ namespace probe::render {
 // Of two triangles the second is clearly behind if it is less close than this part of the first.
 inline constexpr float kClearlyBehind = 0.997f;
 
+// How far what is drawn and what Embree finds may be apart, and still be told apart from another
+// triangle's. Embree turns a ray into the mesh's frame and tests it there, all in single precision:
+// places are wrong by at most about 1e-6 of the distances that take part, the camera's and the
+// instance's from the world's origin. Three times that.
+inline constexpr double kPlaceDoubt = 3e-6;
+// Closeness is wrong by less than this part of itself, so that two are well within kClearlyBehind
+// ...
+inline constexpr float kDepthDoubt = 7e-4f;
+static_assert(1 - 2 * kDepthDoubt > kClearlyBehind);
+// ... and the distance along a ray by less than this, m: Embree's and ours then agree within the
+// millimetre that TileTracer's refine() asks for.
+inline constexpr float kDistanceDoubt = 3e-4f;
+
 // Triangles as they are drawn, an array a quantity. A sample (x, y) pixels from the first sample of
 // the first packet is touched where all three a x + b y + e are at least -touch, and inside, of a
 // triangle that is `solid`, where they exceed touch. Closeness, 1 / depth, is w + wx x + wy y

@@ -11,20 +11,11 @@ namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-// Embree turns a ray into the mesh's frame and tests it there, all in single precision: places are
-// wrong by at most about 1e-6 of the distances that take part, the camera's and the instance's from
-// the world's origin. Three times that.
-constexpr float kEmbreeDoubt = 3e-6f;
+constexpr float kEmbreeDoubt = static_cast<float>(kPlaceDoubt);
 // Eight roundings of 6e-8 in the projection, twice.
 constexpr float kProjectionDoubt = 1e-6f;
 // Roundings of an edge's value, by the greatest coordinate of a vertex.
 constexpr float kEdgeDoubt = 4e-7f;
-// Closeness of a triangle that is drawn as solid is wrong by less than this part of it, so that two
-// are well within kClearlyBehind ...
-constexpr float kDepthDoubt = 7e-4f;
-// ... and the distance along a ray by less than this, m: Embree's and ours then agree within the
-// millimetre that TileTracer's refine() asks for.
-constexpr float kDistanceDoubt = 3e-4f;
 // A triangle so thin that rounding can turn it over is doubtful along its line, also beyond its
 // ends, pixels.
 constexpr float kThinRoom = 16.0f;
