@@ -54,7 +54,8 @@ class TraceAnswers final : public policy::Answerer {
         return answer.asked == asked;
       });
     };
-    const auto begin = std::find_if(steps_.begin(), steps_.end(), is_answer);
+    // No answer takes effect before it is asked for.
+    const auto begin = std::find_if(steps_.begin() + asked, steps_.end(), is_answer);
     answer_.reset();
     if (begin == steps_.end()) return {};  // the episode ended before it came
     const auto effect = begin - steps_.begin();

@@ -20,6 +20,12 @@ std::size_t common_part(std::string_view text, std::string_view key) {
   return longest;
 }
 
+// The size of the part of `key` that `text` begins with; 0: none that tells of it.
+std::size_t telling_part(std::string_view text, std::string_view key) {
+  const std::size_t size = common_part(text, key);
+  return size >= std::min(kTelling, key.size()) ? size : 0;
+}
+
 }  // namespace
 
 std::string api_key() {
@@ -38,24 +44,22 @@ Status check_api_key() {
 
 std::string without_key(std::string_view text, std::string_view key) {
   if (key.empty()) return std::string(text);
-  const std::size_t least = std::min(kTelling, key.size());
   std::string clean;
   while (!text.empty()) {
-    const std::size_t size = common_part(text, key);
-    clean += size >= least ? '*' : text[0];
-    text.remove_prefix(size >= least ? size : 1);
+    const std::size_t size = telling_part(text, key);
+    clean += size > 0 ? '*' : text[0];
+    text.remove_prefix(std::max<std::size_t>(size, 1));
   }
   return clean;
 }
 
 void mask_key(std::span<std::uint8_t> bytes, std::string_view key) {
   if (key.empty()) return;
-  const std::size_t least = std::min(kTelling, key.size());
   while (!bytes.empty()) {
-    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const std::size_t size = common_part(text, key);
-    if (size >= least) std::ranges::fill(bytes.first(size), std::uint8_t{'*'});
-    bytes = bytes.subspan(size >= least ? size : 1);
+    const std::size_t size =
+        telling_part({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, key);
+    std::ranges::fill(bytes.first(size), std::uint8_t{'*'});
+    bytes = bytes.subspan(std::max<std::size_t>(size, 1));
   }
 }
 

@@ -260,8 +260,7 @@ Result<std::vector<double>> to_state(const Profile& profile,
   PROBE_ASSIGN(std::vector<double> state, laid_out(profile, profile.state_layout, measured));
   const Statistics& statistics = profile.state_statistics;
   if (statistics.kind == Normalisation::kNone) return state;
-  const std::size_t known =
-      statistics.kind == Normalisation::kBound ? statistics.low.size() : statistics.mean.size();
+  const std::size_t known = size_of(statistics);
   if (known != state.size()) {
     return bad_conversion("the profile has statistics of " + std::to_string(known) +
                           " numbers, the state has " + std::to_string(state.size()));

@@ -18,13 +18,18 @@ struct ServeArguments {
   servers::ServeOptions options;
 };
 
+std::string protocol_words() {
+  std::string words;
+  for (const servers::Protocol protocol : servers::all_protocols())
+    words += (words.empty() ? "" : ", ") + std::string(servers::to_word(protocol));
+  return words;
+}
+
 Result<servers::Protocol> protocol_of(const std::string& word) {
-  std::string known;
   for (const servers::Protocol protocol : servers::all_protocols()) {
     if (servers::to_word(protocol) == word) return protocol;
-    known += (known.empty() ? "" : ", ") + std::string(servers::to_word(protocol));
   }
-  return Failure{Fault::kUsage, "`" + word + "` is none of " + known, "--protocol"};
+  return Failure{Fault::kUsage, "`" + word + "` is none of " + protocol_words(), "--protocol"};
 }
 
 // A policy of this process is run first; its server then knows the episodes by their first
@@ -106,10 +111,7 @@ void add_serve(Verb app, int& exit) {
       "           -o runs/expert --protocol gr00t --port 5555");
   verb.add_option("F", arguments->run.file, ".probe text or .plan file");
   verb.add_option("--policy", arguments->run.policy, "who acts").required();
-  std::string protocols;
-  for (const servers::Protocol protocol : servers::all_protocols())
-    protocols += (protocols.empty() ? "" : ", ") + std::string(servers::to_word(protocol));
-  verb.add_option("--protocol", arguments->protocol, protocols);
+  verb.add_option("--protocol", arguments->protocol, protocol_words());
   verb.add_option("--address", arguments->options.address, "numeric, to listen at");
   verb.add_option("--port", arguments->options.port, "to listen at; 0: any free one");
   verb.add_option("--chunk", arguments->options.chunk, "actions of an answer, at most")
