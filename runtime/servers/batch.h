@@ -21,11 +21,6 @@
 
 namespace probe::servers {
 
-struct BatchLimits {
-  int most = 8;             // questions of one message
-  wire::Duration wait{50};  // that the first of them waits for others
-};
-
 // The line that the worlds of a run share. Any thread may call any method at any time.
 class BatchLine {
  public:

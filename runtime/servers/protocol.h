@@ -81,7 +81,7 @@ struct ProtocolRow {
   bool has_joint_actions = false;
   // Two questions of the same content differ, as they carry the time.
   bool is_timed = false;
-  // Where they gather, `make` finds `batch` and `batch_wait_ms` among the address's options.
+  // Where they gather, Transport::gather() says how many.
   Batches batches = Batches::kNone;
 };
 

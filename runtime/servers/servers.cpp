@@ -167,12 +167,8 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
   PROBE_TRY(check_api_key());
   PROBE_TRY(check_dialect(choice.profile.protocol, choice.profile.dialect, "--policy"));
   const ProtocolRow& row = row_of(choice.profile.protocol);
-  wire::Endpoint server = choice.server;
-  if (row.batches == Batches::kGathered && choice.batch.most > 1) {
-    server.options["batch"] = std::to_string(choice.batch.most);
-    server.options[kWaitMs] = std::to_string(choice.batch.wait.count());
-  }
-  auto transport = row.make(choice.profile, server);
+  auto transport = row.make(choice.profile, choice.server);
+  if (transport && row.batches == Batches::kGathered) (*transport)->gather(choice.batch);
   if (transport && model) (*transport)->share(std::move(model));
   return transport;
 }

@@ -23,6 +23,12 @@ namespace probe::servers {
 
 class SharedModel;
 
+// How questions of several worlds go together.
+struct BatchLimits {
+  int most = 8;             // questions of one message
+  wire::Duration wait{50};  // that the first of them waits for others
+};
+
 // What a server sent and nothing can be done with.
 inline Failure bad(std::string message) { return {Fault::kPolicy, std::move(message), ""}; }
 
@@ -65,6 +71,8 @@ class Transport {
 
   // Before open(): what the connections of a run have in common; else each is on its own.
   virtual void share(std::shared_ptr<SharedModel> /*shared*/) {}
+  // Before open(): what a server that gathers batches from all its connections is to be told.
+  virtual void gather(const BatchLimits& /*limits*/) {}
 
   // Connects and does what the protocol wants first (metadata, hello, which model). One attempt.
   virtual Status open(const Deadlines& deadlines) = 0;

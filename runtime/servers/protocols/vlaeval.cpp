@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdlib>
 #include <optional>
 
 #include "runtime/base/clock.h"
@@ -27,15 +26,7 @@ bool is_this_machine(const std::string& host) {
   return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
-// What its servers are told of batches, which they gather from all connections
-// (model_servers/predict.py).
-struct Gathering {
-  int most = 1;
-  wire::Duration wait{0};
-};
-
 struct Choices {
-  Gathering gathering;
   PictureCoding coding = PictureCoding::kPng;
   std::optional<bool> send_state;  // nothing: as the server asks
 };
@@ -43,10 +34,6 @@ struct Choices {
 Result<Choices> read_choices(const wire::Endpoint& server) {
   Choices choices;
   if (is_this_machine(server.host)) choices.coding = PictureCoding::kRaw;
-  if (const auto it = server.options.find("batch"); it != server.options.end())
-    choices.gathering.most = std::atoi(it->second.c_str());
-  if (const auto it = server.options.find("batch_wait_ms"); it != server.options.end())
-    choices.gathering.wait = wire::Duration(std::atoi(it->second.c_str()));
   if (const auto it = server.options.find("pictures"); it != server.options.end()) {
     if (it->second == "raw") {
       choices.coding = PictureCoding::kRaw;
@@ -104,6 +91,8 @@ class VlaEval : public Transport {
  public:
   VlaEval(const Profile& profile, const wire::Endpoint& server, const Choices& choices)
       : profile_(profile), server_(server), choices_(choices) {}
+
+  void gather(const BatchLimits& limits) override { gathering_ = limits; }
 
   Status open(const Deadlines& deadlines) override {
     PROBE_TRY(tell_batches(deadlines));
@@ -324,7 +313,7 @@ class VlaEval : public Transport {
   // model_servers/serve.py: GET /config changes how the running server gathers, and says what
   // holds.
   Status tell_batches(const Deadlines& deadlines) const {
-    const Gathering& wanted = choices_.gathering;
+    const BatchLimits& wanted = gathering_;
     if (wanted.most <= 1) return {};
     wire::HttpRequest page;
     page.path = "/config?max_batch_size=" + std::to_string(wanted.most) +
@@ -382,6 +371,9 @@ class VlaEval : public Transport {
   Profile profile_;
   wire::Endpoint server_;
   Choices choices_;
+  // What its server is told of batches, which it gathers from all connections
+  // (model_servers/predict.py).
+  BatchLimits gathering_{.most = 1};
   std::unique_ptr<wire::WebSocket> socket_;
   std::int64_t seq_ = 0;
   wire::Value hello_;
