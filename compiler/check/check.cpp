@@ -5,7 +5,8 @@ namespace probe::sema {
 void check_model(const Checked& checked, Reporter& reporter) {
   const Model& model = checked.model;
   check_comparisons(model, reporter);
-  check_phrases(model, reporter);
+  check_phrases(model, checked.asset_root, reporter);
+  check_spatial_words(model, reporter);
   check_mentions(model, reporter);
   check_poses(model, reporter);
   check_starts(model, reporter);

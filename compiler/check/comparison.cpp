@@ -32,6 +32,7 @@ const Span* statement_of(const Task& task, plan::Axis axis) {
       return &task.layout_span;
     case plan::Axis::kLanguageAppearance:
     case plan::Axis::kLanguageCommonsense:
+    case plan::Axis::kLanguageSpatial:
     case plan::Axis::kScene:
     case plan::Axis::kLight:
     case plan::Axis::kCamera:

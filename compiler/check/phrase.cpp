@@ -2,9 +2,11 @@
 // instruction must be a sentence that a policy can be given.
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "compiler/check/check.h"
-#include "compiler/define/denote.h"
+#include "compiler/check/starts.h"
+#include "compiler/define/in_start.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
 #include "compiler/define/wording.h"
@@ -22,6 +24,7 @@ struct TaskLanguage {
   Reporter& reporter;
   const Task& task;
   Unfit& unfit;
+  Relations& relations;
 
   const Span& place(std::size_t role) const {
     return task.refer[role]          ? task.refer[role]->span
@@ -54,6 +57,7 @@ struct TaskLanguage {
   }
 
   void check_phrase(std::size_t role, const Phrase& phrase, ObjectId wanted_id) const {
+    if (phrase.is_spatial()) return check_places(role, phrase, wanted_id);
     const Object& wanted = model.objects[wanted_id];
     const std::string quoted = "\"" + phrase.text.text + "\"";
     const std::vector<ObjectId> objects = task.objects();
@@ -87,6 +91,57 @@ struct TaskLanguage {
       diagnostic.help("`" + hint + "` holds for `" + wanted.name + "` and not for `" + first.name +
                       "`");
     }
+  }
+
+  // What a phrase denotes in the starts of a task: those in which it does not denote the object
+  // that is meant, or denotes another one too, or where it cannot be told.
+  struct Unclear {
+    std::vector<std::size_t> unfit, ambiguous, unknown;
+    std::size_t count() const { return unfit.size() + ambiguous.size() + unknown.size(); }
+  };
+
+  Unclear unclear_starts(const Phrase& phrase, ObjectId wanted) const {
+    Unclear found;
+    for (std::size_t i = 0; i < task.starts.size(); ++i) {
+      const Denotation meant = InStart(relations, task, task.starts[i]).denote(phrase, wanted);
+      if (meant.is_clear()) continue;
+      auto& kind = !meant.may_fit       ? found.unfit
+                   : meant.sure.empty() ? found.unknown
+                                        : found.ambiguous;
+      kind.push_back(i);
+    }
+    return found;
+  }
+
+  // "start 7: coke at (7.5cm, 0cm), plate at (-7.5cm, 0cm)".
+  std::string drawn(std::size_t start) const {
+    std::string text;
+    for (const Start::Placed& placed : task.starts[start].placed)
+      text += (text.empty() ? "" : ", ") + at(model.objects[placed.object], placed);
+    return "start " + std::to_string(start) + ": " + text;
+  }
+
+  void check_places(std::size_t role, const Phrase& phrase, ObjectId wanted) const {
+    const std::size_t mistakes = reporter.diagnostics.error_count();
+    const Unclear found = unclear_starts(phrase, wanted);
+    if (found.count() == 0 || reporter.diagnostics.error_count() != mistakes) return;
+    const auto& [code, starts, says] =
+        !found.unfit.empty() ? std::tuple(Code::P0401, &found.unfit, "does not denote `")
+        : !found.ambiguous.empty()
+            ? std::tuple(Code::P0402, &found.ambiguous, "does not denote alone `")
+            : std::tuple(Code::P0403, &found.unknown, "is too close to call of `");
+    const std::string name = model.objects[wanted].name;
+    Diagnostic& diagnostic = reporter.report(
+        code, place(role),
+        "\"" + phrase.text.text + "\" " + says + name + "` in " + std::to_string(starts->size()) +
+            " of the " + std::to_string(task.starts.size()) + " starts of `" + task.name + "`");
+    diagnostic.point(drawn(starts->front()))
+        .label(phrase.text.span, "means `" + phrase.means_text + "`");
+    diagnostic.severity = Severity::kError;  // `where clear` is how such starts are left out
+    const std::size_t clear = task.starts.size() - found.count();
+    if (clear > 0)
+      diagnostic.help("it is clear in " + std::to_string(clear) + " of them: `layout " +
+                      model.layouts[task.layout].name + " where clear` keeps those");
   }
 
   void check_name(std::size_t role, ObjectId wanted_id) const {
@@ -223,12 +278,13 @@ struct TaskLanguage {
 
 }  // namespace
 
-void check_phrases(const Model& model, Reporter& reporter) {
+void check_phrases(const Model& model, const std::string& asset_root, Reporter& reporter) {
   Unfit unfit;
+  Relations relations(model, asset_root, reporter.diagnostics);
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
-    const TaskLanguage check{model, reporter, task, unfit};
+    const TaskLanguage check{model, reporter, task, unfit, relations};
     std::set<std::pair<std::string, bool>> checked;  // a second slot of one name says nothing new
     for (const Template::Part& part : model.templates[task.say].parts) {
       if (part.slot && checked.insert({part.slot->name.text, part.slot->avoid}).second)

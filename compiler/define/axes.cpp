@@ -193,6 +193,7 @@ class Comparison {
         return has_negation(say) != has_negation(said);
       case plan::Axis::kLanguageAppearance:
       case plan::Axis::kLanguageCommonsense:
+      case plan::Axis::kLanguageSpatial:
         return phrase_moves(axis, syntax::Role::kSource) ||
                phrase_moves(axis, syntax::Role::kTarget);
       case plan::Axis::kLanguageParaphrase:
@@ -310,6 +311,7 @@ bool uses(const Model& model, const Task& task, plan::Axis axis) {
       return has_negation(model.templates[task.say]);
     case plan::Axis::kLanguageAppearance:
     case plan::Axis::kLanguageCommonsense:
+    case plan::Axis::kLanguageSpatial:
       return has_phrase(model, task, axis);
     case plan::Axis::kLanguageParaphrase:
       return root.complete && is_reworded(model, task, root);

@@ -9,6 +9,7 @@ namespace {
 constexpr std::pair<std::string_view, SetOp> kSets[] = {
     {"fingers", SetOp::kFingers}, {"links", SetOp::kLinks},   {"bodies", SetOp::kBodies},
     {"objects", SetOp::kObjects}, {"others", SetOp::kOthers}, {"distractors", SetOp::kDistractors},
+    {"alike", SetOp::kAlike},
 };
 
 }  // namespace
@@ -19,6 +20,7 @@ bool ExprReader::only_objects(SetRef ref) {
     case SetOp::kObjects:
     case SetOp::kOthers:
     case SetOp::kDistractors:
+    case SetOp::kAlike:
       return true;
     case SetOp::kNames:
       return std::all_of(set.bodies.begin(), set.bodies.end(),
@@ -51,6 +53,7 @@ std::optional<SetRef> ExprReader::read_set(syntax::SetExprId id) {
     std::vector<std::string_view> candidates;
     bool found = false;
     for (const auto& [text, op] : kSets) {
+      if (op == SetOp::kAlike && !is_relation_) continue;
       candidates.push_back(text);
       if (text != name->name.text) continue;
       set.op = op;

@@ -10,7 +10,9 @@ namespace probe::sema {
 Denotation denote(const Model& model, std::span<const ObjectId> objects, const Phrase& phrase,
                   ObjectId wanted) {
   Denotation found;
-  found.fits = evaluate(phrase.means, model.objects[wanted]) == Truth::kYes;
+  const Truth own = evaluate(phrase.means, model.objects[wanted]);
+  found.fits = own == Truth::kYes;
+  found.may_fit = own != Truth::kNo;
   for (const ObjectId id : objects) {
     if (id == wanted) continue;
     const Truth truth = evaluate(phrase.means, model.objects[id]);

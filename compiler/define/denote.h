@@ -12,6 +12,7 @@ namespace probe::sema {
 
 struct Denotation {
   bool fits = false;              // the phrase is true of the object it is meant for
+  bool may_fit = false;           // or not known to be false
   std::vector<ObjectId> sure;     // others of which it is true
   std::vector<ObjectId> perhaps;  // others of which it is not known
 

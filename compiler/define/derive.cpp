@@ -3,8 +3,9 @@
 #include <algorithm>
 
 #include "compiler/define/axes.h"
-#include "compiler/define/denote.h"
+#include "compiler/define/in_start.h"
 #include "compiler/define/set.h"
+#include "compiler/define/starts.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
 #include "runtime/base/utf8.h"
@@ -201,10 +202,23 @@ class Derive {
     return true;
   }
 
+  // Whether the phrase means the object alone among those of the task; one that says where things
+  // are must in every start.
+  bool is_clear(const Task& base, const Phrase& phrase, ObjectId object) {
+    if (!phrase.is_spatial())
+      return denote(context_.model, base.objects(), phrase, object).is_clear();
+    std::optional<LayoutProblem> problem;
+    const std::vector<Start> starts = enumerate_starts(
+        context_.model, context_.model.layouts[base.layout], base, kMaxEpisodes, problem);
+    return std::all_of(starts.begin(), starts.end(), [&](const Start& start) {
+      return InStart(relations_, base, start).denote(phrase, object).is_clear();
+    });
+  }
+
   // What a binder stands for in the variants of one task. What the task has already is no choice:
   // its own objects, and templates that say the same.
   std::vector<std::string_view> choices(const syntax::Binder& binder, const Task& base,
-                                        std::string_view name) const {
+                                        std::string_view name) {
     const Model& model = context_.model;
     const std::vector<ObjectId> present = base.objects();
     std::vector<std::string_view> values;
@@ -213,8 +227,7 @@ class Derive {
       const plan::AxisInfo* axis = plan::find_language_axis(phrases->axis.text);
       for (const Phrase& phrase : model.objects[object].phrases) {
         if (axis == nullptr || phrase.axis != axis->axis) continue;
-        if (!phrases->clear || denote(model, present, phrase, object).is_clear())
-          values.push_back(phrase.name);
+        if (!phrases->clear || is_clear(base, phrase, object)) values.push_back(phrase.name);
       }
     } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
       const auto& declared = context_.symbols.templates.names();
@@ -289,6 +302,9 @@ class Derive {
   }
 
   Context& context_;
+  // What cannot be measured is said where the phrase is used.
+  Diagnostics unsaid_ = {};
+  Relations relations_{context_.model, context_.asset_root, unsaid_};
   TaskTable& table_;
   const Declared<syntax::DeriveDecl>& declared_;
   const syntax::DeriveDecl& node_;

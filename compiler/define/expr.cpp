@@ -4,6 +4,16 @@
 
 namespace probe::sema {
 
+namespace {
+
+// Counted from the first camera or the robot's base.
+bool is_of_frame(Measure measure) {
+  return measure == Measure::kViewX || measure == Measure::kViewY || measure == Measure::kRobotX ||
+         measure == Measure::kRobotY;
+}
+
+}  // namespace
+
 std::string type_name(const Type& type) {
   switch (type.kind) {
     case TypeKind::kPoison:
@@ -218,6 +228,7 @@ ExprRef ExprReader::add_measure(const Span& span, const MeasureInfo& measure,
   type.is_angle_between = measure.result == 'a';
   const ExprRef ref = add(ExprOp::kMeasure, type, span, std::move(args));
   arena().nodes[ref].measure = measure.measure;
+  arena().needs_frame = arena().needs_frame || is_of_frame(measure.measure);
   return ref;
 }
 

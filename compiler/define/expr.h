@@ -29,6 +29,8 @@ class ExprReader {
 
   ExprReader(Context& context, const syntax::File& file) : context_(context), file_(file) {}
 
+  // A relation's body may name the set `alike`.
+  void read_relation() { is_relation_ = true; }
   void add_variable(std::string_view name, const Type& type);
   std::uint32_t variables() const { return variables_; }
 
@@ -70,6 +72,8 @@ class ExprReader {
 
   ExprRef read_predicate(const Span& span, const syntax::ExprCall& call, PredicateId id);
 
+  ExprRef read_node(const Span& span, const syntax::ExprVector& vector);
+
   ExprRef read_node(const Span& span, const syntax::ExprUnary& unary);
   ExprRef negate_vector(const Span& span, ExprRef operand);
 
@@ -96,6 +100,11 @@ class ExprReader {
   const syntax::File& file_;
   std::vector<Variable> scope_;
   std::uint32_t variables_ = 0;
+  bool is_relation_ = false;
 };
+
+// Sets what a relation has beside a predicate. Reported: measures that no start has, words that are
+// none, parameters that no phrase can fill.
+void check_relation(Context& context, const syntax::PredicateDecl& node, Predicate& relation);
 
 }  // namespace probe::sema

@@ -23,6 +23,17 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprUnary& unary) 
   return add(op, bool_type(), span, {condition});
 }
 
+ExprRef ExprReader::read_node(const Span& span, const syntax::ExprVector& vector) {
+  std::vector<ExprRef> parts;
+  for (const syntax::ExprId id : vector.parts) {
+    const ExprRef part = expect(plain(read(id)), TypeKind::kReal, "a number");
+    if (is_poison(part)) return part;
+    if (!parts.empty() && !same_dimension(part, parts.front())) return poison(span);
+    parts.push_back(part);
+  }
+  return add(ExprOp::kVector, {TypeKind::kVector, node(parts.front()).type.dimension}, span, parts);
+}
+
 ExprRef ExprReader::negate_vector(const Span& span, ExprRef operand) {
   return add(ExprOp::kNegate, node(operand).type, span, {operand});
 }

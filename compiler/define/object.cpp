@@ -1,4 +1,6 @@
 // `object`: its statements over what it copied.
+#include <algorithm>
+
 #include "compiler/define/attribute.h"
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
@@ -145,6 +147,11 @@ struct ObjectReader {
 };
 
 }  // namespace
+
+bool Phrase::is_spatial() const {
+  return std::any_of(means.begin(), means.end(),
+                     [](const QueryOp& op) { return op.kind == QueryOp::kRelation; });
+}
 
 const Phrase* Object::find_phrase(std::string_view phrase) const {
   for (const Phrase& known : phrases) {

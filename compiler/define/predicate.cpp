@@ -40,6 +40,7 @@ void read_body(Context& context, PredicateId id) {
   }
   const auto errors = context.mistakes();
   ExprReader reader(context, *declared.file);
+  if (node.is_relation) reader.read_relation();
   std::vector<Parameter> parameters;
   for (const syntax::Param& param : node.params) {
     Parameter parameter{std::string(param.name.text), type_of(param), kNoExpr};
@@ -66,6 +67,7 @@ void read_body(Context& context, PredicateId id) {
   predicate.body = body;
   predicate.variables = reader.variables();
   predicate.type = context.model.exprs.nodes[body].type;
+  if (node.is_relation) check_relation(context, node, predicate);
   predicate.broken = !declared.decl->complete || context.mistakes() != errors;
 }
 

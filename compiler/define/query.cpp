@@ -1,6 +1,7 @@
 #include "compiler/define/query.h"
 
 #include <algorithm>
+#include <span>
 
 #include "compiler/define/attribute.h"
 
@@ -20,17 +21,68 @@ Truth has_value(const Object& object, std::uint32_t attribute, std::uint32_t val
 
 }  // namespace
 
+// The relation of that name. Its first object is the one that is described.
+std::optional<std::uint32_t> find_relation(const Context& context, std::string_view name) {
+  const auto found = context.symbols.predicates.peek(name);
+  if (!found || !context.symbols.predicate_decls[*found].node->is_relation) return std::nullopt;
+  return found;
+}
+
+// False when something was reported.
+bool compile_relation(Context& context, std::uint32_t relation, const syntax::Name& name,
+                      std::span<const syntax::Name> objects, Query& out) {
+  const syntax::PredicateDecl& node = *context.symbols.predicate_decls[relation].node;
+  const std::size_t wanted = objects_of(node);
+  if (objects.size() + 1 != wanted) {
+    context
+        .report(
+            Situation::kRelationObjects, name.span,
+            "`" + std::string(name.text) + "` takes " +
+                (wanted < 2 ? "no object"
+                            : std::to_string(wanted - 1) + (wanted == 2 ? " object" : " objects")) +
+                " behind the one that is described, found " + std::to_string(objects.size()))
+        .label(node.name.span, "declared here");
+    return false;
+  }
+  QueryOp op{QueryOp::kRelation, relation};
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const auto object = context.symbols.objects.find(objects[i], context.diagnostics);
+    if (!object) return false;
+    op.to[i] = static_cast<ObjectId>(*object);
+  }
+  out.push_back(op);
+  return true;
+}
+
 // The depth is bounded by the parser.
 bool compile_query(Context& context, const syntax::File& file, syntax::QueryId id, Query& out) {
   if (id.value == syntax::QueryId::kNone) return false;  // a syntax error, reported
   const auto& node = file[id].node;
   if (const auto* fact = std::get_if<syntax::QueryFact>(&node)) {
+    if (!context.symbols.facts.peek(fact->fact.text)) {
+      if (const auto relation = find_relation(context, fact->fact.text))
+        return compile_relation(context, *relation, fact->fact, {}, out);
+    }
     const auto found = context.symbols.facts.find(fact->fact, context.diagnostics);
     if (!found) return false;
     out.push_back({QueryOp::kFact, *found, 0});
     return true;
   }
+  if (const auto* placed = std::get_if<syntax::QueryRelation>(&node)) {
+    if (const auto relation = find_relation(context, placed->relation.text))
+      return compile_relation(context, *relation, placed->relation, placed->objects, out);
+    std::vector<std::string_view> known;
+    for (const auto& declared : context.symbols.predicate_decls) {
+      if (declared.node->is_relation) known.push_back(declared.node->name.text);
+    }
+    report_unknown(context.diagnostics, "relation", placed->relation, known);
+    return false;
+  }
   if (const auto* value = std::get_if<syntax::QueryValue>(&node)) {
+    if (!context.symbols.attributes.peek(value->attribute.text)) {
+      if (const auto relation = find_relation(context, value->attribute.text))
+        return compile_relation(context, *relation, value->attribute, {&value->value, 1}, out);
+    }
     const auto attribute = context.symbols.attributes.find(value->attribute, context.diagnostics);
     if (!attribute) return false;
     const auto found = find_value(context, static_cast<AttributeId>(*attribute), value->value);
@@ -56,6 +108,11 @@ bool compile_query(Context& context, const syntax::File& file, syntax::QueryId i
 }
 
 Truth evaluate(const Query& query, const Object& object) {
+  return evaluate(query, object, [](const QueryOp&) { return Truth::kUnknown; });
+}
+
+Truth evaluate(const Query& query, const Object& object,
+               const std::function<Truth(const QueryOp&)>& placed) {
   std::vector<Truth> stack;
   const auto pop = [&stack] {
     const Truth top = stack.back();
@@ -69,6 +126,9 @@ Truth evaluate(const Query& query, const Object& object) {
         break;
       case QueryOp::kValue:
         stack.push_back(has_value(object, op.a, op.b));
+        break;
+      case QueryOp::kRelation:
+        stack.push_back(placed(op));
         break;
       case QueryOp::kNot:
         stack.push_back(negate(pop()));

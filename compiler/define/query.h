@@ -2,6 +2,8 @@
 // evaluation.
 #pragma once
 
+#include <functional>
+
 #include "compiler/names/context.h"
 
 namespace probe::sema {
@@ -9,7 +11,13 @@ namespace probe::sema {
 // Appends the query to `out`. False when a part of it has no meaning, which is then reported.
 bool compile_query(Context& context, const syntax::File& file, syntax::QueryId id, Query& out);
 
-// Whether the object is what the query describes. An attribute without a value is unknown.
+// The objects that a relation takes: its first parameters.
+std::size_t objects_of(const syntax::PredicateDecl& relation);
+
+// Whether the object is what the query describes. An attribute without a value is unknown, and so
+// is where it stands: `placed` says whether a relation holds.
 Truth evaluate(const Query& query, const Object& object);
+Truth evaluate(const Query& query, const Object& object,
+               const std::function<Truth(const QueryOp&)>& placed);
 
 }  // namespace probe::sema

@@ -174,6 +174,18 @@ std::vector<std::string> sentence_of(const Template& say) {
   return words;
 }
 
+std::string opposite_in(const std::string& text, const std::vector<std::string>& words) {
+  for (const std::string& written : literal_words(text)) {
+    const std::string word = plain(written);
+    for (const std::string& own : words) {
+      for (const std::string& part : literal_words(own)) {
+        if (is_pair(kOpposites, word, part)) return word;
+      }
+    }
+  }
+  return {};
+}
+
 bool has_negation(const Template& say) {
   return std::any_of(say.parts.begin(), say.parts.end(),
                      [](const Template::Part& part) { return part.slot && part.slot->avoid; });

@@ -25,6 +25,10 @@ bool asks_otherwise(const Model& model, const Task& a, const Task& b);
 // round. Frames do not count.
 bool contradicts(const Model& model, const Task& a, const Task& b);
 
+// The first word of a folded text that is the opposite of a word of `words`, as in "left" of
+// "right"; empty when there is none.
+std::string opposite_in(const std::string& text, const std::vector<std::string>& words);
+
 // What a template says, word by word, in lower case, without articles and the signs around words;
 // a slot is one word: "{source}", "{avoid towel}".
 std::vector<std::string> sentence_of(const Template& say);

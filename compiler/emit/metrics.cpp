@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
 #include "compiler/lower/intervals.h"
 
@@ -11,9 +12,16 @@ std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
                                                   std::span<const sema::Metric> metrics,
                                                   const std::vector<lower::Body>& bodies) {
   std::vector<std::uint32_t> shape = lower::shape_of(metrics, bodies);
+  const sema::CameraId camera = sema::views_of(model_, task).front().camera;
+  // What is seen from elsewhere is another number.
+  if (model_.exprs.needs_frame)
+    shape.insert(shape.end(),
+                 {static_cast<std::uint32_t>(task.scene), static_cast<std::uint32_t>(camera)});
   auto known = programs_by_shape_.find(shape);
   if (known == programs_by_shape_.end()) {
-    auto program = lower::lower_metrics(model_, metrics, bodies, diagnostics_);
+    auto program = lower::lower_metrics(
+        model_, metrics, bodies,
+        sema::frame_of(model_, model_.scenes[task.scene], model_.cameras[camera]), diagnostics_);
     if (!program) return std::nullopt;
     known = programs_by_shape_.emplace(std::move(shape), keep_program(std::move(*program))).first;
   }

@@ -3,46 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/geometry/camera_pose.h"
+
 namespace probe::sema {
-namespace {
-
-Pose pose_of(const std::array<double, 3>& p, const std::array<double, 4>& q) {
-  return {{p[0], p[1], p[2]}, Quat(q[0], q[1], q[2], q[3]).normalized()};
-}
-
-Quat looking_along(const std::array<double, 4>& direction) {
-  const Vec3 forward = Vec3(direction[0], direction[1], direction[2]).normalized();
-  const Vec3 left = Vec3::UnitZ().cross(forward).normalized();
-  Mat3 axes;
-  axes << forward, left, forward.cross(left);
-  return Quat(axes);
-}
-
-}  // namespace
-
 std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const Camera& camera) {
-  if (scene.robot == RobotId::kNone || camera.mount_robot != scene.robot || camera.broken)
-    return std::nullopt;
-  const Robot& robot = model.robots[scene.robot];
-  if (!robot.model) return std::nullopt;
-  Pose mount;
-  for (int link = robot.model->find_link(camera.mount_link.text); link != robot.model->root;) {
-    if (link < 0) return std::nullopt;
-    const int above = robot.model->links[static_cast<std::size_t>(link)].parent_joint;
-    if (above < 0) return std::nullopt;
-    const robot::Joint& joint = robot.model->joints[static_cast<std::size_t>(above)];
-    if (joint.kind != robot::JointKind::kFixed) return std::nullopt;
-    mount = joint.origin * mount;
-    link = joint.parent_link;
-  }
-  Pose aim = pose_of(camera.position, {1, 0, 0, 0});
-  const auto& a = camera.aim_values;
-  aim.rotation = camera.aim == plan::CameraAim::kLook ? looking_along(a) : pose_of({}, a).rotation;
+  const auto pose = camera_pose(model, scene, camera);
+  if (!pose) return std::nullopt;
   Frustum view;
   view.camera_ = &camera;
   view.surface_z_ = scene.surface_z;
-  const Pose from_world =
-      (pose_of(scene.base_position, scene.base_turn.rotation) * mount * aim).inverse();
+  const Pose from_world = pose->inverse();
   view.turn_from_world_ = from_world.rotation.toRotationMatrix();
   view.world_in_view_ = from_world.position;
   return view;

@@ -20,13 +20,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // No body is faster (m/s).
 constexpr double kFastest = 1000;
+// Of RATIO.
+constexpr double kLeastDivisor = 1e-3;
 // Components of unit vectors, with room for their rounding.
 constexpr double kUnit = 1 + 1e-9;
-
-struct Interval {
-  double low = -kInfinity, high = kInfinity;
-  bool is_point() const { return low == high; }
-};
 
 // 0 times infinity is 0 here: the factor is 0 whatever the other is.
 double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
@@ -81,6 +78,9 @@ class Pass {
         horizon_(static_cast<double>(horizon)),
         control_hz_(control_hz),
         room_(room) {}
+  // In one start, before anything moves.
+  Pass(const Program& program, std::span<const PlacedBody> placed)
+      : program_(program), horizon_(1), control_hz_(0), placed_(placed) {}
 
   Findings run() {
     for (std::size_t i = 0; i < program_.code.size(); ++i) {
@@ -174,13 +174,20 @@ class Pass {
       }
       case Op::kPOS:
       case Op::kSTART:
+        if (code.a < placed_.size()) return vector(placed_[code.a].position);
+        return vector(-room_.farthest, room_.farthest);
       case Op::kORIGIN:
+        if (code.a < placed_.size()) return vector(placed_[code.a].origin);
+        return vector(-room_.farthest, room_.farthest);
       case Op::kTCP:
         return vector(-room_.farthest, room_.farthest);
       case Op::kHALF:
+        if (code.a < placed_.size()) return vector(placed_[code.a].half);
         return vector(0, room_.largest);
       case Op::kOPEN:
+        return vector(-kUnit, kUnit);
       case Op::kAXIS:
+        if (code.a < placed_.size()) return vector(placed_[code.a].axes[code.b]);
         return vector(-kUnit, kUnit);
       case Op::kVEL:
         return vector(-kFastest, kFastest);
@@ -221,6 +228,9 @@ class Pass {
         return of(sum(a().number, negative(b().number)));
       case Op::kMUL:
         return of(product(a().number, b().number));
+      case Op::kRATIO:
+        return of(product(a().number, {1 / std::max(b().number.high, kLeastDivisor),
+                                       1 / std::max(b().number.low, kLeastDivisor)}));
       case Op::kNEG:
         return of(negative(a().number));
       case Op::kABS:
@@ -357,6 +367,7 @@ class Pass {
   const Program& program_;
   double horizon_, control_hz_;
   Room room_;
+  std::span<const PlacedBody> placed_;
   std::vector<Known> known_;
   Findings findings_;
 };
@@ -366,6 +377,12 @@ class Pass {
 Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz,
                         const Room& room) {
   return Pass(program, horizon, control_hz, room).run();
+}
+
+std::optional<bool> holds(const Program& program, std::span<const PlacedBody> placed) {
+  const Findings findings = Pass(program, placed).run();
+  if (findings.constants.empty()) return std::nullopt;
+  return findings.constants.front().value;
 }
 
 }  // namespace probe::lower

@@ -3,14 +3,29 @@
 // leaves the room.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/lower/program.h"
 
 namespace probe::lower {
+
+struct Interval {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool is_point() const { return low == high; }
+};
+
+// A body as it is put down: what the instructions measure of it (m, world), as far as it is known.
+struct PlacedBody {
+  std::array<Interval, 3> position, origin, half;
+  std::array<std::array<Interval, 3>, 3> axes;  // unit vectors
+};
 
 struct ConstantMetric {
   std::size_t metric = 0;
@@ -34,5 +49,9 @@ struct Findings {
 // `horizon` in control steps, `control_hz` of them a second.
 Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz,
                         const Room& room);
+
+// Whether the one metric of a program of measurements holds of bodies as they are put down; nothing
+// when that cannot be told.
+std::optional<bool> holds(const Program& program, std::span<const PlacedBody> placed);
 
 }  // namespace probe::lower

@@ -23,8 +23,9 @@ using Bodies = std::vector<std::uint16_t>;  // ascending
 
 class Lowering {
  public:
-  Lowering(const sema::Model& model, const std::vector<Body>& bodies, Diagnostics& diagnostics)
-      : model_(model), bodies_(bodies), diagnostics_(diagnostics) {}
+  Lowering(const sema::Model& model, const std::vector<Body>& bodies, const sema::Frame& frame,
+           Diagnostics& diagnostics)
+      : model_(model), bodies_(bodies), frame_(frame), diagnostics_(diagnostics) {}
 
   // False when something was reported.
   bool metric(const sema::Metric& metric) {
@@ -42,6 +43,21 @@ class Lowering {
       ok_ = false;
     }
     return ok_;
+  }
+
+  // The same of a relation of bodies, as the one metric of a program.
+  bool relation(const sema::Predicate& relation, std::span<const std::uint16_t> of,
+                const Bodies& alike) {
+    variables_.assign(relation.variables, Value{});
+    for (std::size_t i = 0; i < relation.parameters.size(); ++i)
+      variables_[i] =
+          i < of.size() ? Value::of_body(of[i]) : eval(relation.parameters[i].default_value);
+    alike_ = alike;
+    const Value value = eval(relation.body);
+    builder_.at(relation.span);
+    builder_.emit_metric(
+        value, {relation.name, plan::MetricType::kBool, plan::Readout::kAtEnd, relation.span});
+    return ok_ && !builder_.is_full();
   }
 
   Program finish() { return builder_.finish(); }
@@ -75,6 +91,8 @@ class Lowering {
         return surface();
       case ExprOp::kVariable:
         return variables_[node.a];
+      case ExprOp::kVector:
+        return vector(node);
       case ExprOp::kMeasure:
         return measure(node);
       case ExprOp::kCall:
@@ -123,6 +141,19 @@ class Lowering {
     Value value = Value::of_number(quantity.si());
     if (quantity.dimension == sema::dim::kAngle) value.angle = quantity;
     return value;
+  }
+
+  Value vector(const ExprNode& node) {
+    double parts[3] = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Value part = eval(node.args[i]);
+      if (part.kind != Value::kNumber)
+        return fail(model_.exprs.nodes[node.args[i]].span,
+                    "the numbers of a vector are constants, this is measured");
+      parts[i] = part.number;
+    }
+    builder_.at(node.span);
+    return Value::of_register(builder_.vector(parts[0], parts[1], parts[2]));
   }
 
   Value surface() const {
@@ -200,6 +231,10 @@ class Lowering {
       case sema::SetOp::kDistractors:
         return where(
             [](const Body& b, std::size_t i) { return b.kind == BodyKind::kObject && i >= 2; });
+      case sema::SetOp::kAlike:
+        if (!alike_)
+          fail(set.span, "only a phrase has a rest that other objects fit: `alike` is not judged");
+        return alike_.value_or(Bodies{});
       case sema::SetOp::kNames: {
         Bodies result;
         for (const ExprRef body : set.bodies) result.push_back(eval(body).index);
@@ -311,6 +346,27 @@ class Lowering {
     return value.kind == Value::kBody ? builder_.emit(Op::kPOS, value.index) : value.index;
   }
 
+  // A point's coordinate along `axis` of the picture, as far away as the middle of the area: points
+  // of one line of sight have one.
+  Value in_view(const ExprNode& node, const Value& of, Vec3 sema::Sight::*axis) {
+    if (!frame_.sight)
+      return fail(node.span, "`" + std::string(sema::info(node.measure).name) +
+                                 "` needs a first camera that stands still and sees the area");
+    const sema::Sight& sight = *frame_.sight;
+    const std::uint16_t from_eye = builder_.emit(Op::kVSUB, point(of), vector_of(sight.eye));
+    const Vec3 scaled = sight.*axis * sight.depth;
+    const std::uint16_t across = builder_.emit(Op::kVDOT, from_eye, vector_of(scaled));
+    const std::uint16_t along = builder_.emit(Op::kVDOT, from_eye, vector_of(sight.forward));
+    return Value::of_register(builder_.emit(Op::kRATIO, across, along));
+  }
+
+  Value from_robot(const Value& of, const Vec3& axis) {
+    const std::uint16_t from_base = builder_.emit(Op::kVSUB, point(of), vector_of(frame_.base));
+    return Value::of_register(builder_.emit(Op::kVDOT, from_base, vector_of(axis)));
+  }
+
+  std::uint16_t vector_of(const Vec3& v) { return builder_.vector(v.x(), v.y(), v.z()); }
+
   Value measure(const ExprNode& node) {
     std::vector<Value> args;
     for (const ExprRef arg : node.args) args.push_back(eval(arg));
@@ -353,6 +409,20 @@ class Lowering {
         return reg(Op::kSPIN, first);
       case Measure::kHeight:
         return reg(Op::kVZ, point(args[0]));
+      case Measure::kX:
+        return reg(Op::kVX, point(args[0]));
+      case Measure::kY:
+        return reg(Op::kVY, point(args[0]));
+      case Measure::kZ:
+        return reg(Op::kVZ, point(args[0]));
+      case Measure::kViewX:
+        return in_view(node, args[0], &sema::Sight::right);
+      case Measure::kViewY:
+        return in_view(node, args[0], &sema::Sight::down);
+      case Measure::kRobotX:
+        return from_robot(args[0], frame_.ahead);
+      case Measure::kRobotY:
+        return from_robot(args[0], frame_.left);
       case Measure::kHalfHeight:
         return reg(Op::kVZ, builder_.emit(Op::kHALF, first));
       case Measure::kHalfDiagonal:
@@ -392,9 +462,11 @@ class Lowering {
 
   const sema::Model& model_;
   const std::vector<Body>& bodies_;
+  const sema::Frame& frame_;
   Diagnostics& diagnostics_;
   Builder builder_;
   std::vector<Value> variables_;
+  std::optional<Bodies> alike_;
   bool ok_ = true;
 };
 
@@ -471,11 +543,22 @@ Room room_of(const sema::Model& model, const sema::Task& task) {
 
 std::optional<Program> lower_metrics(const sema::Model& model,
                                      std::span<const sema::Metric> metrics,
-                                     const std::vector<Body>& bodies, Diagnostics& diagnostics) {
-  Lowering lowering(model, bodies, diagnostics);
+                                     const std::vector<Body>& bodies, const sema::Frame& frame,
+                                     Diagnostics& diagnostics) {
+  Lowering lowering(model, bodies, frame, diagnostics);
   for (const sema::Metric& metric : metrics) {
     if (!lowering.metric(metric)) return std::nullopt;
   }
+  return lowering.finish();
+}
+
+std::optional<Program> lower_relation(const sema::Model& model, const sema::Predicate& relation,
+                                      std::span<const std::uint16_t> of,
+                                      const std::vector<std::uint16_t>& alike,
+                                      const std::vector<Body>& bodies, const sema::Frame& frame,
+                                      Diagnostics& diagnostics) {
+  Lowering lowering(model, bodies, frame, diagnostics);
+  if (!lowering.relation(relation, of, alike)) return std::nullopt;
   return lowering.finish();
 }
 

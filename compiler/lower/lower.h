@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
+#include "compiler/geometry/frame.h"
 #include "compiler/lower/intervals.h"
 #include "compiler/lower/program.h"
 #include "compiler/model/model.h"
@@ -32,10 +33,20 @@ std::vector<std::uint32_t> shape_of(std::span<const sema::Metric> metrics,
 // What the task's scene, layout and objects leave room for.
 Room room_of(const sema::Model& model, const sema::Task& task);
 
-// In: typed metrics of a task, and its bodies. Out: their program, metric after metric in their
-// order, equal parts computed once; nothing when one cannot be measured, which has been reported.
+// In: typed metrics of a task, its bodies, and what they are placed in. Out: their program, metric
+// after metric in their order, equal parts computed once; nothing when one cannot be measured,
+// which has been reported.
 std::optional<Program> lower_metrics(const sema::Model& model,
                                      std::span<const sema::Metric> metrics,
-                                     const std::vector<Body>& bodies, Diagnostics& diagnostics);
+                                     const std::vector<Body>& bodies, const sema::Frame& frame,
+                                     Diagnostics& diagnostics);
+
+// The same of one relation of the bodies `of`, its objects; `alike` are the bodies of that set,
+// ascending. Its one metric says whether it holds.
+std::optional<Program> lower_relation(const sema::Model& model, const sema::Predicate& relation,
+                                      std::span<const std::uint16_t> of,
+                                      const std::vector<std::uint16_t>& alike,
+                                      const std::vector<Body>& bodies, const sema::Frame& frame,
+                                      Diagnostics& diagnostics);
 
 }  // namespace probe::lower

@@ -28,8 +28,11 @@ struct Printer {
       case plan::Kind::kUnused:
         return {};
       case plan::Kind::kConstant:
-      case plan::Kind::kThreeConstants:
         return number(program.constants[value]);
+      case plan::Kind::kThreeConstants:
+        return "(" + number(program.constants[value]) + ", " +
+               number(program.constants[value + 1u]) + ", " +
+               number(program.constants[value + 2u]) + ")";
       case plan::Kind::kImmediate:
         return std::to_string(value);
       case plan::Kind::kBody:

@@ -23,7 +23,7 @@ struct Type {
 };
 
 enum class Measure : std::uint8_t {
-#define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, meaning) id,
+#define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, of_start, meaning) id,
 #include "compiler/model/measures.def"
 };
 
@@ -37,6 +37,7 @@ enum class ExprOp : std::uint8_t {
   kRole,      // a: 0 source, 1 target
   kSurface,   // the surface as a body
   kVariable,  // a: parameter or quantifier variable of the enclosing predicate or metric
+  kVector,    // args: x, y, z, constants
   kMeasure,   // measure, args
   kCall,      // predicate, args: one per parameter
   kAdd,
@@ -77,6 +78,7 @@ enum class SetOp : std::uint8_t {
   kObjects,
   kOthers,
   kDistractors,
+  kAlike,  // relations: what the rest of a phrase fits
   kNames,  // bodies: expressions
   kUnion,
   kIntersection,
@@ -93,6 +95,7 @@ struct ExprArena {
   std::vector<ExprNode> nodes;
   std::vector<SetNode> sets;
   std::vector<Quantity> quantities;
+  bool needs_frame = false;  // something is measured from the first camera or the robot's base
 };
 
 struct Parameter {
@@ -108,6 +111,9 @@ struct Predicate {
   std::uint32_t variables = 0;  // parameters and quantifier variables
   ExprRef body = kNoExpr;
   Type type;
+  bool is_relation = false;        // measures what is known of a start, and phrases may use it
+  std::uint32_t objects = 0;       // of a relation: its first parameters, which are objects
+  std::vector<std::string> words;  // of a relation: what says it, in lower case
 };
 
 struct Metric {

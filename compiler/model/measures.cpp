@@ -4,8 +4,8 @@ namespace probe::sema {
 namespace {
 
 const MeasureInfo kMeasures[] = {
-#define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, meaning) \
-  {Measure::id, name, params, result, {length, time, angle, mass, 0}, meaning},
+#define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, of_start, meaning) \
+  {Measure::id, name, params, result, {length, time, angle, mass, 0}, of_start, meaning},
 #include "compiler/model/measures.def"
 };
 

@@ -15,6 +15,7 @@ struct MeasureInfo {
   std::string_view params;
   char result;
   Dimension dimension;
+  bool of_start;
   std::string_view meaning;
 };
 std::span<const MeasureInfo> all_measures();

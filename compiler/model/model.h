@@ -50,10 +50,12 @@ struct Attribute {
 
 // A query in postfix order, so that evaluation is a loop over a small stack.
 struct QueryOp {
-  enum Kind : std::uint8_t { kFact, kValue, kNot, kAnd, kOr };
+  enum Kind : std::uint8_t { kFact, kValue, kRelation, kNot, kAnd, kOr };
   Kind kind = kFact;
-  std::uint32_t a = 0;  // fact, or attribute
+  std::uint32_t a = 0;  // fact, attribute, or relation (PredicateId)
   std::uint32_t b = 0;  // value within the attribute
+  // Of a relation: its objects behind the one that is described.
+  std::array<ObjectId, 2> to{ObjectId::kNone, ObjectId::kNone};
 };
 using Query = std::vector<QueryOp>;
 
@@ -64,6 +66,9 @@ struct Phrase {
   bool bare = false;  // takes no article
   Query means;
   std::string means_text;  // as written, for messages
+
+  // Says where things are: what it denotes differs from start to start.
+  bool is_spatial() const;
 };
 
 // A turn about the world's axes; unit quaternion (w, x, y, z), exact at multiples of 90 degrees.

@@ -5,6 +5,7 @@
 // nodes in arrays of File, referred to by index, children first.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -126,6 +127,10 @@ struct QueryValue {  // `color orange`
   Name attribute;
   Name value;
 };
+struct QueryRelation {  // `between(plate, bowl)`
+  Name relation;
+  std::vector<Name> objects;
+};
 struct QueryNot {
   QueryId operand;
 };
@@ -137,7 +142,7 @@ struct QueryOr {
 };
 struct Query {
   Span span;
-  std::variant<QueryFact, QueryValue, QueryNot, QueryAnd, QueryOr> node;
+  std::variant<QueryFact, QueryValue, QueryRelation, QueryNot, QueryAnd, QueryOr> node;
 };
 
 // ---- expressions of predicates and metrics
@@ -175,6 +180,9 @@ struct ExprCall {
   Name callee;
   std::vector<Argument> arguments;
 };
+struct ExprVector {  // `(0, 0, 1)`
+  std::array<ExprId, 3> parts;
+};
 struct ExprUnary {
   UnaryOp op;
   Span op_span;
@@ -202,8 +210,8 @@ struct ExprQuantified {  // `no x in bodies - {a, b}: body`
 };
 struct Expr {
   Span span;
-  std::variant<ExprNumber, ExprName, ExprCall, ExprUnary, ExprBinary, ExprHold, ExprBlock,
-               ExprQuantified>
+  std::variant<ExprNumber, ExprName, ExprCall, ExprVector, ExprUnary, ExprBinary, ExprHold,
+               ExprBlock, ExprQuantified>
       node;
 };
 
@@ -586,6 +594,8 @@ struct PredicateDecl {
   Name name;
   std::vector<Param> params;
   ExprId body;
+  bool is_relation = false;  // `relation`: of where things start
+  std::vector<Text> words;   // of a relation: what says it
 };
 
 struct MetricStmt {

@@ -54,6 +54,14 @@ QueryId Parser::query_not() {
     return inner;
   }
   const Name first = name();
+  if (at(TokenKind::kLeftParen)) {
+    set_role(TokenRole::kTightParen);
+    accept(TokenKind::kLeftParen);
+    QueryRelation out{first, names()};
+    expect(TokenKind::kRightParen);
+    if (failed_) return {};
+    return add(Query{since(begin), std::move(out)}, {});
+  }
   const std::string_view next = kind() == TokenKind::kIdent ? text_at(pos_) : std::string_view();
   if (next.empty() || next == "and" || next == "or" || next == "not") {
     return add(Query{since(begin), QueryFact{first}}, {});

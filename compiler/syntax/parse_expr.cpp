@@ -167,6 +167,7 @@ ExprId Parser::unary() {
   }
   if (accept(TokenKind::kLeftParen)) {
     const ExprId inner = expr();
+    if (accept(TokenKind::kComma)) return vector_behind(begin, inner);
     expect(TokenKind::kRightParen);
     return failed_ ? ExprId{} : inner;
   }
@@ -177,6 +178,17 @@ ExprId Parser::unary() {
   if (at(TokenKind::kIdent)) return call_or_name();
   fail_expected();
   return {};
+}
+
+// After `(x,`.
+ExprId Parser::vector_behind(std::uint32_t begin, ExprId x) {
+  ExprVector out{{x, {}, {}}};
+  out.parts[1] = expr();
+  expect(TokenKind::kComma);
+  out.parts[2] = expr();
+  expect(TokenKind::kRightParen);
+  if (failed_) return {};
+  return add(Expr{since(begin), out}, {out.parts[0], out.parts[1], out.parts[2]});
 }
 
 ExprId Parser::call_or_name() {

@@ -15,14 +15,20 @@ constexpr TypeWord kTypes[] = {{"object", ParamType::kObject}, {"body", ParamTyp
 
 }  // namespace
 
-DeclNode Parser::predicate_decl() {
+DeclNode Parser::predicate_decl() { return predicate_or_relation(false); }
+
+DeclNode Parser::relation_decl() { return predicate_or_relation(true); }
+
+PredicateDecl Parser::predicate_or_relation(bool is_relation) {
   advance();
   PredicateDecl out;
+  out.is_relation = is_relation;
   out.name = name();
   set_role(TokenRole::kTightParen);
   expect(TokenKind::kLeftParen);
   if (!at(TokenKind::kRightParen)) out.params = comma_list([this] { return param(); });
   expect(TokenKind::kRightParen);
+  if (is_relation) out.words = comma_list([this] { return string(); });
   expect(TokenKind::kAssign);
   skip_newlines();
   out.body = expr();

@@ -191,6 +191,8 @@ class Parser {
   void braced_text(const Text& text, std::vector<Part>& parts, const char* noun, const char* help,
                    Read read);
   DeclNode predicate_decl();
+  DeclNode relation_decl();
+  PredicateDecl predicate_or_relation(bool is_relation);
   Param param();
   DeclNode metrics_decl();
   MetricStmt metric();
@@ -205,6 +207,7 @@ class Parser {
   ExprId sum();
   ExprId product();
   ExprId unary();
+  ExprId vector_behind(std::uint32_t begin, ExprId x);
   ExprId call_or_name();
   Argument argument();
   ExprId add(Expr node, std::initializer_list<ExprId> children);

@@ -146,6 +146,7 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
       case plan::Axis::kLanguageNegation:
       case plan::Axis::kLanguageAppearance:
       case plan::Axis::kLanguageCommonsense:
+      case plan::Axis::kLanguageSpatial:
       case plan::Axis::kLanguageParaphrase:
         break;
     }

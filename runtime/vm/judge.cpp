@@ -349,6 +349,9 @@ void Judge::run(std::span<const Step> steps, const StepSample& sample) {
       case Op::kMUL:
         d.x = a.x * b.x;
         break;
+      case Op::kRATIO:
+        d.x = a.x / (b.x < 1e-3 ? 1e-3 : b.x);
+        break;
       case Op::kNEG:
         d.x = -a.x;
         break;

@@ -205,6 +205,23 @@ TEST_CASE("predicate, param, type: arguments by place and by name, defaults, any
             .find("P0601") != std::string::npos);
 }
 
+TEST_CASE("relation: a predicate of places, coordinates and vectors of constants included") {
+  const std::string more =
+      "relation left_of(a: object, b: object, by: length = 2cm) \"left\" = y(a) > y(b) + by\n"
+      "relation leftmost(a: object) \"left\" = all o in alike - {a}: left_of(a, o)\n";
+  World world;
+  check_values({{"at end left_of(target, source, by: -1m)", 1},
+                {"final y(target) - y(source)", -0.3},
+                {"final z(target) - z((1cm, 2cm, 3cm))", 0.82},
+                {"final distance(target, (30cm, 10cm, 80cm)) + x(target)", 0.35},
+                {"at end angle(axis_z(target), (0, 0, -2)) > 179deg", 1}},
+               world, more);
+  // A metric has no phrase whose rest others could fit.
+  CHECK(analyze_with_suite(more + "metrics m like plain { x = at end leftmost(source) }\n"
+                                  "variant v of red_on_tray { metrics m }")
+            ->codes() == "");
+}
+
 TEST_CASE("arg: what a parameter does not take is said at the argument") {
   const std::string p = "predicate p(a: object, d: length = 1cm) = height(a) > d\n";
   const auto wrong = [&](const std::string& call) {

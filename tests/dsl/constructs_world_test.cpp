@@ -25,7 +25,7 @@ std::string truths(const Analysis& a, std::string_view object) {
 
 }  // namespace
 
-TEST_CASE("dataset, relation: what was seen together, in order and by name") {
+TEST_CASE("dataset, seen_on: what was seen together, in order and by name") {
   const auto a = clean(
       "dataset d \"The \\\"D\\\" set\" { relations red on tray, tray under blue }\n"
       "dataset bare \"Bare\"\n");

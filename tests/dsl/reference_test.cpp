@@ -100,7 +100,7 @@ TEST_CASE("the reference names every declaration, unit, measure and code") {
     CHECK_MESSAGE(page.find(unit) != std::string::npos, unit);
   }
   for (const std::string_view measure : {
-#define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, meaning) \
+#define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, of_start, meaning) \
   std::string_view("| `" name),
 #include "compiler/model/measures.def"
        }) {

@@ -2,12 +2,18 @@
 
 #include <doctest/doctest.h>
 
+#include "compiler/define/views.h"
 #include "compiler/lower/builder.h"
 #include "tests/compiler/small_suite.h"
 
 using namespace probe;
 
 namespace {
+
+sema::Frame frame_of(const test::Analysis& a, const sema::Task& task) {
+  return sema::frame_of(a.model, a.model.scenes[task.scene],
+                        a.model.cameras[sema::views_of(a.model, task).front().camera]);
+}
 
 struct Lowered {
   std::string text;  // the disassembly, with a line break before it
@@ -28,7 +34,8 @@ Lowered lowered(const std::string& metrics, const std::string& task = "",
     const auto bodies = lower::bodies_of(a->model, t);
     std::vector<std::string> names;
     for (const lower::Body& body : bodies) names.push_back(body.name);
-    const auto program = lower::lower_metrics(a->model, t.judged, bodies, a->diagnostics);
+    const auto program =
+        lower::lower_metrics(a->model, t.judged, bodies, frame_of(*a, t), a->diagnostics);
     if (program) result.text = "\n" + lower::to_text(*program, names);
   }
   result.codes = a->codes();
@@ -123,7 +130,7 @@ TEST_CASE("an angle becomes a cosine, exact for whole degrees") {
   const Lowered code = lowered("x = once (angle(axis_z(source), up()) <= 60deg)");
   CHECK_MESSAGE(code.text == R"(
    0  AXIS   r0    red 2
-   1  KV     r1    0
+   1  KV     r1    (0, 0, 1)
    2  VLEN   r2    r0
    3  VLEN   r3    r1
    4  KR     r4    0.5
@@ -204,6 +211,66 @@ TEST_CASE("the builder tells zero from minus zero and shares vectors") {
 }
 
 TEST_CASE(
+    "coordinates are the world's, the picture's or the robot's, and a vector is three constants") {
+  CHECK(lowered("ahead = final x(source); off = final distance(target, (10cm, -2cm, 1m))").text ==
+        R"(
+   0  POS    r0    red
+   1  VX     r1    r0
+   2  EMITR        r1 -> ahead
+   3  KV     r2    (0.1, -0.02, 1)
+   4  POS    r3    tray
+   5  VSUB   r4    r3 r2
+   6  VLEN   r5    r4
+   7  EMITR        r5 -> off
+   8  END
+)");
+  // The robot stands at (50cm, 0cm) and is turned by 180deg.
+  CHECK(lowered("ahead = final robot_x(source); left = final robot_y(source)").text == R"(
+   0  KV     r0    (0.5, 0, 0.8)
+   1  POS    r1    red
+   2  VSUB   r2    r1 r0
+   3  KV     r3    (-1, 0, 0)
+   4  VDOT   r4    r2 r3
+   5  EMITR        r4 -> ahead
+   6  KV     r5    (0, -1, 0)
+   7  VDOT   r6    r2 r5
+   8  EMITR        r6 -> left
+   9  END
+)");
+  // A metre above it the camera looks down along the robot's x: right in the picture is the world's
+  // y.
+  CHECK(lowered("right = final view_x(source)").text == R"(
+   0  KV     r0    (0.5, 0, 1.8)
+   1  POS    r1    red
+   2  VSUB   r2    r1 r0
+   3  KV     r3    (0, 1.0606601717798214, 0)
+   4  VDOT   r4    r2 r3
+   5  KV     r5    (-0.70710678118654746, 0, -0.70710678118654757)
+   6  VDOT   r6    r2 r5
+   7  RATIO  r7    r4 r6
+   8  EMITR        r7 -> right
+   9  END
+)");
+}
+
+TEST_CASE("what has no place in the picture and what is no vector is said at its place") {
+  const auto said = [](const std::string& metrics, const std::string& task = "",
+                       const std::string& more = "") {
+    const std::string text = lowered("m = at end " + metrics, task, more).said;
+    return text.substr(0, text.find('\n'));
+  };
+  CHECK(said("view_x(source) > 1cm", "camera on_wrist",
+             "camera on_wrist like eye { mount arm.wrist at (0cm, 0cm, 1m) look (1, 0, -1) }") ==
+        "error[P0601]: `view_x` needs a first camera that stands still and sees the area");
+  CHECK(said("distance(source, (x(target), 0cm, 0cm)) < 1cm") ==
+        "error[P0601]: the numbers of a vector are constants, this is measured");
+  CHECK(said("distance(source, (1cm, 0, 0cm)) < 1cm") ==
+        "error[P0302]: expected a length, found a number");
+  CHECK(said("angle(axis_z(source), (0, 0, source)) < 10deg") ==
+        "error[P0601]: expected a number, found an object");
+}
+
+TEST_CASE(
     "tasks of one shape have one program, and another metric or another body is another shape") {
   const auto a = test::analyze_with_suite(R"(
 metrics other like plain { success = at end (height(source) > 2 * height(target)) }
@@ -218,7 +285,7 @@ variant longer of red_on_tray { horizon 70 steps })");
   const auto code = [&](const char* name) {
     const sema::Task& task = a->task(name);
     return *lower::lower_metrics(a->model, task.judged, lower::bodies_of(a->model, task),
-                                 a->diagnostics);
+                                 frame_of(*a, task), a->diagnostics);
   };
   for (const char* same : {"turned", "longer"}) {
     CAPTURE(same);

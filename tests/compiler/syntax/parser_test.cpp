@@ -36,6 +36,10 @@ struct Show {
     }
     return joined({node.callee.text, "(", arguments, ")"});
   }
+  std::string operator()(const ExprVector& node) const {
+    return joined({"<", show(parsed, node.parts[0]), " ", show(parsed, node.parts[1]), " ",
+                   show(parsed, node.parts[2]), ">"});
+  }
   std::string operator()(const ExprUnary& node) const {
     return joined({parsed.text(node.op_span), "[", show(parsed, node.operand), "]"});
   }
@@ -281,6 +285,7 @@ TEST_CASE("operators bind in the order of the grammar") {
         "(((((a + (b * c)) - -[d]) < (e / 2)) and f) or (not[g] and h))");
   CHECK(grouped("once not always a") == "once[not[always[a]]]");
   CHECK(grouped("(a or b) and c") == "((a or b) and c)");
+  CHECK(grouped("f((1cm, -2cm, x + y)) > (a)") == "(f(<1cm -[2cm] (x + y)>) > a)");
   CHECK(grouped("f(a, slack: 1cm, b() + 2) for 5 steps") == "[f(a, slack: 1cm, (b() + 2)) for 5]");
   CHECK(grouped("not a > 1 for 2 steps") == "not[[(a > 1) for 2]]");
 }

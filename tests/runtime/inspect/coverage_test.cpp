@@ -27,6 +27,7 @@ language.negation        .      .      .
 language.appearance      1      .      1
 language.commonsense     .      .      .
 language.paraphrase      .      .      .
+language.spatial         .      .      .
 layout                   .      .      .
 scene                    .      .      .
 light                    1      .      1
@@ -39,7 +40,7 @@ ood target               .      .      .
 ood relation             .      1      1
 tasks                    7      1      8
 
-21 of 26 cells are empty
+23 of 28 cells are empty
 objects never a source: plate
 objects never a target: carrot, twig
 objects never a distractor: carrot, plate

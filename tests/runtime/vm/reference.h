@@ -147,6 +147,8 @@ class Reference {
         return {x(in.a)[0] - x(in.b)[0], 0, 0};
       case kMUL:
         return {x(in.a)[0] * x(in.b)[0], 0, 0};
+      case kRATIO:
+        return {x(in.a)[0] / std::max(x(in.b)[0], 0.001), 0, 0};
       case kNEG:
         return {-x(in.a)[0], 0, 0};
       case kABS:

@@ -1,0 +1,24 @@
+#include "compiler/geometry/centre.h"
+
+#include <filesystem>
+
+#include "runtime/scene/collision_mesh.h"
+
+namespace probe::sema {
+
+const Centre& Centres::of(const Object& object) {
+  const auto [at, is_new] = known_.try_emplace(object.name);
+  if (!is_new) return at->second;
+  const std::filesystem::path path =
+      std::filesystem::path(asset_root_) / "objects" / object.mesh.text / "collision.obj";
+  if (const auto shape = scene::load_collision_mesh(path.string(), {1, 1, 1})) {
+    at->second.at = shape->center_of_mass;
+    return at->second;
+  }
+  const Vec3 low(object.box_min.data()), high(object.box_max.data());
+  at->second.at = (low + high) / 2;
+  at->second.within = (high - low) / 4;
+  return at->second;
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,27 @@
+#include "compiler/geometry/frame.h"
+
+#include "compiler/geometry/camera_pose.h"
+
+namespace probe::sema {
+
+Frame frame_of(const Model& model, const Scene& scene, const Camera& camera) {
+  const Pose base = pose_of(scene.base_position, scene.base_turn.rotation);
+  Frame frame;
+  frame.base = base.position;
+  frame.ahead = base.rotation * Vec3::UnitX();
+  frame.left = base.rotation * Vec3::UnitY();
+  const auto pose = camera_pose(model, scene, camera);
+  if (!pose) return frame;
+  Sight sight;
+  sight.eye = pose->position;
+  sight.forward = pose->rotation * Vec3::UnitX();
+  sight.right = pose->rotation * -Vec3::UnitY();
+  sight.down = pose->rotation * -Vec3::UnitZ();
+  const Vec3 middle((scene.area[0] + scene.area[2]) / 2, (scene.area[1] + scene.area[3]) / 2,
+                    scene.surface_z);
+  sight.depth = sight.forward.dot(middle - sight.eye);
+  if (sight.depth > 1e-3) frame.sight = sight;
+  return frame;
+}
+
+}  // namespace probe::sema

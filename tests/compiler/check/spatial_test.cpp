@@ -1,0 +1,137 @@
+// Phrases that say where things are, proved in every start; and the words they must have.
+#include <doctest/doctest.h>
+
+#include "runtime/plan/axes.h"
+#include "tests/compiler/small_suite.h"
+
+using namespace probe;
+
+namespace {
+
+const char* const kRelations = R"(
+relation left_of(a: object, b: object, by: length = 2cm) "left" = view_x(a) < view_x(b) - by
+relation leftmost(a: object) "left" = all o in alike - {a}: left_of(a, o)
+relation between(a: object, b: object, c: object) "between" = distance_xy(a, b) + distance_xy(a, c) < distance_xy(b, c) + 20cm
+object sided like red {
+  phrase side spatial "left block" means category toy and leftmost
+  phrase by_tray spatial "block left of the tray" means category toy and left_of tray
+  phrase amid spatial "block between the tray and the pale one" means category toy and between(tray, pale)
+}
+)";
+
+// Red, blue, the tray and the pale block on one line, which the camera sees from the side: a larger
+// y is farther right in its picture.
+std::string row(const char* red, const char* blue, const char* tray = "0cm",
+                const char* pale = "") {
+  std::string text = std::string(kRelations) + "layout row { place sided at (0cm, " + red +
+                     "); place blue at (0cm, " + blue + "); place tray at (0cm, " + tray + ")";
+  if (*pale != '\0') text += std::string("; place pale at (0cm, ") + pale + ")";
+  return text + "; orient by rest; drop 10cm settle 0.5s }\n";
+}
+
+std::string said(const std::string& layout, const std::string& phrase,
+                 const std::string& distractors = "blue") {
+  return test::analyze_with_suite(layout +
+                                  "task t like base { layout row; source sided; target tray; "
+                                  "distractors " +
+                                  distractors + "; refer source as " + phrase + " }")
+      ->said();
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+TEST_CASE("a phrase of places is clear where the relation holds of its object alone") {
+  CHECK(said(row("-20cm", "20cm"), "side") == "");
+  CHECK(said(row("-20cm", "20cm"), "by_tray") == "");
+  CHECK(said(row("10cm", "-20cm", "0cm", "20cm"), "amid", "blue, pale") == "");
+}
+
+TEST_CASE("where it does not hold, or of another one too, the start is named and drawn") {
+  const std::string wrong = said(row("20cm", "-20cm"), "side");
+  CHECK(first_line(wrong) ==
+        "error[P0401]: \"left block\" does not denote `sided` in 2 of the 2 starts of `t`");
+  CHECK(wrong.find("start 0: sided at (0cm, 20cm), tray at (0cm, 0cm), blue at (0cm, -20cm)") !=
+        std::string::npos);
+  CHECK(first_line(said(row("-20cm", "-10cm"), "by_tray")) ==
+        "error[P0402]: \"block left of the tray\" does not denote alone `sided` in 2 of the 2 "
+        "starts of `t`");
+}
+
+TEST_CASE("what settling may turn over is too close to call") {
+  CHECK(first_line(said(row("-20cm", "-16cm"), "side")) ==
+        "error[P0403]: \"left block\" is too close to call of `sided` in 1 of the 2 starts of `t`");
+  CHECK(said(row("-20cm", "-12cm"), "side") == "");
+}
+
+TEST_CASE("a variant that says where things are moves the spatial axis") {
+  const auto a = test::analyze_with_suite(
+      row("-20cm", "20cm") +
+      "task t like base { layout row; source sided; target tray; distractors blue }\n"
+      "variant v of t { refer source as side }");
+  CHECK(a->said() == "");
+  CHECK(plan::axis_names(a->task("v").axes) == std::vector<std::string_view>{"language.spatial"});
+  CHECK(a->task("v").prompt == "put left block on the tray");
+}
+
+TEST_CASE("a derive takes the clear phrases of each task's own starts") {
+  const auto a = test::analyze_with_suite(
+      row("-20cm", "20cm", "0cm", "10cm") +
+      "task t like base { layout row; source sided; target tray; distractors blue, pale }\n"
+      "derive \"{t}_{p}\" for t in { t }, p in clear phrases spatial of source { refer source as p "
+      "}");
+  CHECK(a->said() == "");
+  std::string names;
+  for (const sema::Task& task : a->model.tasks) {
+    if (task.derived) names += task.name + " ";
+  }
+  CHECK(names == "t_side t_by_tray ");
+}
+
+TEST_CASE("metrics judge a relation as any predicate, but for the rest of a phrase") {
+  const auto judged = [](const char* goal) {
+    return test::analyze_with_suite(row("-20cm", "20cm") + "metrics m { success = at end " + goal +
+                                    " }\ntask t like base { layout row; source sided; target tray; "
+                                    "distractors blue; metrics m }");
+  };
+  CHECK(judged("left_of(source, target)")->said() == "");
+}
+
+TEST_CASE("a relation measures what is known of a start, of objects alone, and has its words") {
+  const auto mistake = [](const char* text) {
+    return first_line(test::analyze_with_suite(text)->said());
+  };
+  CHECK(mistake("relation r(a: object, b: object) \"touching\" = impulse(a, b) > 0Ns") ==
+        "error[P1201]: `impulse` is not known before anything moves");
+  CHECK(mistake("predicate p(a: object) = once (height(a) > 1cm)\n"
+                "relation r(a: object) \"high\" = p(a)") ==
+        "error[P1201]: what was is not known before anything moves");
+  CHECK(mistake("relation r(a: object) \"clear\" = no x in bodies - {a}: distance(a, x) < 1cm") ==
+        "error[P1201]: a relation is one of objects, this set has others");
+  CHECK(mistake("relation r(a: object, least: length) \"high\" = height(a) > least") ==
+        "error[P1201]: a relation takes one to three objects; whatever stands behind them has a "
+        "default");
+  CHECK(mistake("relation r(a: object) \" \" = x(a) > 0cm") ==
+        "error[P1201]: a relation has words that say it");
+  CHECK(mistake("relation r(a: object) \"far\" = x(a)") ==
+        "error[P0601]: expected a condition, found a length");
+  CHECK(mistake("relation r(a: object, b: object) \"far\" = x(a) > x(b)\n"
+                "object other like red { phrase p spatial \"far one\" means r }") ==
+        "error[P1201]: `r` takes 1 object behind the one that is described, found 0");
+  CHECK(mistake("predicate p(a: object) = all o in alike - {a}: x(a) > x(o)") ==
+        "error[P0201]: unknown set of bodies `alike`");
+}
+
+TEST_CASE("words say the relation that proves or judges them") {
+  const auto mistake = [](const std::string& text) {
+    return first_line(test::analyze_with_suite(std::string(kRelations) + text)->said());
+  };
+  CHECK(mistake("object other like red { phrase p spatial \"right block\" means leftmost }") ==
+        "error[P1202]: \"right block\" does not say `leftmost`");
+  CHECK(mistake("object other like red { phrase p spatial \"Left block\" means leftmost }") == "");
+  CHECK(mistake("template aside \"put {the source} to the right of {the target}\"\n"
+                "metrics m { success = at end left_of(source, target) }\n"
+                "task t like red_on_tray { metrics m; say aside }") ==
+        "error[P1202]: `t` says \"right\" and is judged by `left_of`");
+}
