@@ -27,7 +27,8 @@ std::string factors(std::span<const Start> starts) {
 
 void check_task(const Model& model, const Task& task, Reporter& reporter) {
   const Layout& layout = model.layouts[task.layout];
-  if (!layout.expect || *layout.expect == task.starts.size()) return;
+  // What is chosen of a layout is not all that it has.
+  if (!layout.expect || !task.clear.empty() || *layout.expect == task.starts.size()) return;
   const About about(reporter, task.decl_span);
   reporter
       .report(Code::P0504, layout.expect_span,

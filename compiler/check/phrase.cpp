@@ -141,7 +141,8 @@ struct TaskLanguage {
     const std::size_t clear = task.starts.size() - found.count();
     if (clear > 0)
       diagnostic.help("it is clear in " + std::to_string(clear) + " of them: `layout " +
-                      model.layouts[task.layout].name + " where clear` keeps those");
+                      model.layouts[task.layout].name + " where clear " + phrase.name + " of " +
+                      (role == 0 ? "source" : "target") + "` keeps those, in its baseline, too");
   }
 
   void check_name(std::size_t role, ObjectId wanted_id) const {

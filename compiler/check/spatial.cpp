@@ -9,7 +9,7 @@
 namespace probe::sema {
 namespace {
 
-bool is_letter(char c) {
+bool is_in_word(char c) {
   const auto u = static_cast<unsigned char>(c);
   return u >= 0x80 || (u >= 'a' && u <= 'z');
 }
@@ -18,7 +18,7 @@ bool is_letter(char c) {
 bool says(std::string_view text, std::string_view words) {
   for (std::size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) {
     const std::size_t end = at + words.size();
-    if ((at == 0 || !is_letter(text[at - 1])) && (end == text.size() || !is_letter(text[end])))
+    if ((at == 0 || !is_in_word(text[at - 1])) && (end == text.size() || !is_in_word(text[end])))
       return true;
   }
   return false;

@@ -39,6 +39,14 @@ bool same_words(const std::vector<Spelled>& a, const std::vector<Spelled>& b) {
                     [](const Spelled& p, const Spelled& q) { return p.text == q.text; });
 }
 
+// Whether they take the same of a layout's starts, as far as that is said.
+bool same_choice(const Task& a, const Task& b) {
+  return std::equal(a.clear.begin(), a.clear.end(), b.clear.begin(), b.clear.end(),
+                    [](const ClearPhrase& p, const ClearPhrase& q) {
+                      return p.role == q.role && p.phrase.text == q.phrase.text;
+                    });
+}
+
 bool same_layout(const Layout& a, const Layout& b) {
   if (a.by_rest != b.by_rest || a.jitter != b.jitter || a.drop != b.drop || a.settle != b.settle)
     return false;
@@ -134,6 +142,7 @@ bool is_same_body(const Object& a, const Object& b) {
 bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
   const Layout& layout = model.layouts[a.layout];
   if (!same_goal(model, a, b) || !same_layout(layout, model.layouts[b.layout]) ||
+      !same_choice(a, b) ||
       (a.scene != b.scene && !same_scene(model.scenes[a.scene], model.scenes[b.scene])) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) || a.distractors.size() != b.distractors.size())
@@ -200,7 +209,7 @@ class Comparison {
         return is_reworded(model_, task_, baseline_);
       case plan::Axis::kLayout:
         return !same_layout(model_.layouts[task_.layout], model_.layouts[baseline_.layout]) ||
-               !same_poses(model_, task_, baseline_);
+               !same_choice(task_, baseline_) || !same_poses(model_, task_, baseline_);
       case plan::Axis::kScene:
         return scene_moves_;
       // Another scene comes with its own camera and light; only an override makes them a change of

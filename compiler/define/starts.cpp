@@ -6,7 +6,9 @@
 #include <set>
 
 #include "compiler/define/define.h"
+#include "compiler/define/in_start.h"
 #include "compiler/define/task.h"
+#include "compiler/define/views.h"
 #include "runtime/base/sha256.h"
 
 namespace probe::sema {
@@ -246,7 +248,7 @@ std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, co
 namespace {
 
 // What the starts of a task depend on.
-std::vector<double> starts_key(const Task& task) {
+std::vector<double> starts_key(const Model& model, const Task& task) {
   std::vector<double> key = {static_cast<double>(task.layout)};
   for (const ObjectId id : task.objects()) key.push_back(static_cast<double>(id));
   for (const PoseOverride& pose : task.poses) {
@@ -255,7 +257,33 @@ std::vector<double> starts_key(const Task& task) {
     for (const Turn& turn : pose.turns)
       key.insert(key.end(), turn.rotation.begin(), turn.rotation.end());
   }
+  // What a phrase denotes depends on the camera, too.
+  if (!task.clear.empty()) {
+    key.push_back(-2);
+    key.push_back(static_cast<double>(task.scene));
+    key.push_back(static_cast<double>(views_of(model, task).front().camera));
+    for (const ClearPhrase& clear : task.clear) {
+      key.push_back(static_cast<double>(clear.role));
+      const ObjectId object = clear.role == 0 ? task.source : task.target;
+      const auto& phrases = model.objects[object].phrases;
+      key.push_back(static_cast<double>(model.objects[object].find_phrase(clear.phrase.text) -
+                                        phrases.data()));
+    }
+  }
   return key;
+}
+
+// The starts in which the task's chosen phrases are clear.
+std::vector<Start> clear_starts(Relations& relations, const Model& model, const Task& task,
+                                std::vector<Start> starts) {
+  for (const ClearPhrase& clear : task.clear) {
+    const ObjectId object = clear.role == 0 ? task.source : task.target;
+    const Phrase& phrase = *model.objects[object].find_phrase(clear.phrase.text);
+    std::erase_if(starts, [&](const Start& start) {
+      return !InStart(relations, task, start).denote(phrase, object).is_clear();
+    });
+  }
+  return starts;
 }
 
 void report_problem(Context& context, const Task& task, const LayoutProblem& problem) {
@@ -275,11 +303,12 @@ void define_starts(Context& context) {
   Model& model = context.model;
   std::map<std::vector<double>, const std::vector<Start>*> known;
   std::set<LayoutId> incomplete_layouts;  // that lack a place: said once
+  Relations relations(model, context.asset_root, context.diagnostics);
   std::size_t episodes = 0;
   for (Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(context.reporter, task.decl_span);
-    const std::vector<Start>*& starts = known[starts_key(task)];
+    const std::vector<Start>*& starts = known[starts_key(model, task)];
     if (starts == nullptr) {
       const Layout& layout = model.layouts[task.layout];
       std::optional<LayoutProblem> problem;
@@ -291,6 +320,14 @@ void define_starts(Context& context) {
         const bool is_layout = problem->what == Situation::kNotPlaced;
         if (is_layout && (!incomplete_layouts.insert(task.layout).second || is_known)) continue;
         report_problem(context, task, *problem);
+        continue;
+      }
+      const std::size_t all = found.size();
+      found = clear_starts(relations, model, task, std::move(found));
+      if (found.empty()) {
+        context.report(Code::P0402, task.clear.back().phrase.span,
+                       "none of the " + std::to_string(all) + " starts of `" + task.name +
+                           "` has clear phrases");
         continue;
       }
       starts = &model.start_lists.emplace_back(std::move(found));

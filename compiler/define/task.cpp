@@ -50,9 +50,6 @@ struct TaskReader {
     switch (stmt.field) {
       case syntax::TaskField::kScene:
         return field(task.scene, symbols.scenes, stmt.value);
-      case syntax::TaskField::kLayout:
-        task.layout_span = stmt.value.span;
-        return field(task.layout, symbols.layouts, stmt.value);
       case syntax::TaskField::kSource:
         return role(0, stmt.value);
       case syntax::TaskField::kTarget:
@@ -62,6 +59,14 @@ struct TaskReader {
       case syntax::TaskField::kLight:
         return field(task.light, symbols.lights, stmt.value);
     }
+  }
+  void operator()(const syntax::TaskLayoutStmt& stmt) {
+    task.layout_span = stmt.layout.span;
+    task.clear.clear();
+    for (const syntax::ClearPhrase& clear : stmt.clear)
+      task.clear.push_back(
+          {clear.role == syntax::Role::kSource ? std::size_t{0} : 1, spelled(bound(clear.phrase))});
+    field(task.layout, context.symbols.layouts, stmt.layout);
   }
   void operator()(const syntax::TaskCameraStmt& stmt) {
     Task::OtherCamera other;
@@ -140,17 +145,22 @@ struct TaskReader {
   }
 };
 
-void check_refer(Context& context, Task& task, std::size_t role, bool& poisoned) {
+void check_phrase_of(Context& context, const Task& task, std::size_t role, const Spelled& wanted,
+                     bool& poisoned) {
   const ObjectId id = role == 0 ? task.source : task.target;
-  if (!task.refer[role] || id == ObjectId::kNone) return;
+  if (id == ObjectId::kNone) return;
   const Object& object = context.model.objects[id];
-  if (object.find_phrase(task.refer[role]->text) != nullptr) return;
+  if (object.find_phrase(wanted.text) != nullptr) return;
   std::vector<std::string_view> candidates;
   for (const Phrase& phrase : object.phrases) candidates.push_back(phrase.name);
-  report_unknown(context.diagnostics, "phrase of `" + object.name + "`",
-                 {task.refer[role]->span, task.refer[role]->text}, candidates)
+  report_unknown(context.diagnostics, "phrase of `" + object.name + "`", {wanted.span, wanted.text},
+                 candidates)
       .label(object.span, "the object");
   poisoned = true;
+}
+
+void check_refer(Context& context, const Task& task, std::size_t role, bool& poisoned) {
+  if (task.refer[role]) check_phrase_of(context, task, role, *task.refer[role], poisoned);
 }
 
 // A record with a mistake of its own: what it does to the task is not said.
@@ -323,6 +333,9 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   poisoned = poisoned || has_broken_part(model, task);
   if (!poisoned) check_refer(context_, task, 0, poisoned);
   if (!poisoned) check_refer(context_, task, 1, poisoned);
+  for (const ClearPhrase& clear : task.clear) {
+    if (!poisoned) check_phrase_of(context_, task, clear.role, clear.phrase, poisoned);
+  }
   const std::string missing = missing_statements(task);
   if (task.scene != SceneId::kNone) poisoned = poisoned || model.scenes[task.scene].broken;
   task.complete = missing.empty() && !poisoned;

@@ -277,6 +277,12 @@ struct Start {
   std::vector<Placed> placed;  // source, target, distractors
 };
 
+// A phrase that starts are chosen by: those in which it is clear.
+struct ClearPhrase {
+  std::size_t role = 0;  // source, target
+  Spelled phrase;
+};
+
 struct Task {
   std::string name;
   Span span;       // of its name
@@ -290,6 +296,7 @@ struct Task {
 
   SceneId scene = SceneId::kNone;
   LayoutId layout = LayoutId::kNone;
+  std::vector<ClearPhrase> clear;  // of the layout's starts, those in which these are
   MetricsId metrics = MetricsId::kNone;
   LightId light = LightId::kNone;  // overrides the scene's
   struct OtherCamera {

@@ -612,11 +612,20 @@ struct MetricsDecl {
 // ---- tasks, variants, suites
 // ----------------------------------------------------------------------------------------
 
-enum class TaskField : std::uint8_t { kScene, kLayout, kSource, kTarget, kMetrics, kLight };
+enum class TaskField : std::uint8_t { kScene, kSource, kTarget, kMetrics, kLight };
 struct FieldStmt {  // `scene table`
   Span span;
   TaskField field = TaskField::kScene;
   Name value;
+};
+struct ClearPhrase {  // `side of source`
+  Name phrase;
+  Role role = Role::kSource;
+};
+struct TaskLayoutStmt {  // `layout grid where clear side of source`
+  Span span;
+  Name layout;
+  std::vector<ClearPhrase> clear;
 };
 struct TaskCameraStmt {  // `camera near_wrist as wrist`: in place of the scene's camera of that
                          // name
@@ -646,7 +655,7 @@ struct HorizonStmt {
   Span span;
   Int steps;
 };
-using TaskStmt = std::variant<FieldStmt, TaskCameraStmt, DistractorsStmt, SayStmt, ReferStmt,
+using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt, ReferStmt,
                               PoseStmt, HorizonStmt, MetricStmt>;
 
 struct TaskDecl {

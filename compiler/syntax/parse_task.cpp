@@ -54,6 +54,21 @@ std::vector<TaskStmt> Parser::task_body() {
   return body<TaskStmt>(kRules, "a statement of a task");
 }
 
+TaskStmt Parser::task_layout() {
+  TaskLayoutStmt out;
+  out.layout = name();
+  if (!accept_word("where")) return out;
+  expect_word("clear");
+  out.clear = comma_list([this] {
+    ClearPhrase phrase;
+    phrase.phrase = name();
+    expect_word("of");
+    phrase.role = role();
+    return phrase;
+  });
+  return out;
+}
+
 TaskStmt Parser::task_camera() {
   TaskCameraStmt out;
   out.camera = name();

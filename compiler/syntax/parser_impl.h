@@ -226,6 +226,7 @@ class Parser {
   std::vector<TaskStmt> task_body();
   template <TaskField field>
   TaskStmt task_field();
+  TaskStmt task_layout();
   TaskStmt task_camera();
   TaskStmt task_distractors();
   TaskStmt task_say();

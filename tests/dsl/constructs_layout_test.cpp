@@ -151,3 +151,14 @@ TEST_CASE("layout_st: jitter shifts every start by a draw that depends on the st
   CHECK(starts_text(*a, "v") == starts_text(*a, "w"));
   CHECK(axes_text(*a, "v") == "layout");
 }
+
+TEST_CASE("clear: of a layout's starts, those in which phrases of roles are clear") {
+  const std::string text =
+      "relation first(a: object) \"first\" = all o in alike - {a}: x(a) < x(o) - 1cm\n"
+      "object one like red { phrase ahead spatial \"first toy\" means category toy and first }\n"
+      "task all like red_on_tray { source one; distractors blue }\n";
+  const auto a = clean(text + "task v like all { layout pairs where clear ahead of source }\n");
+  CHECK(a->task("all").starts.size() == 24);
+  CHECK(a->task("v").starts.size() == 4);
+  for (const sema::Start& start : a->task("v").starts) CHECK(start.placed[0].x < start.placed[2].x);
+}

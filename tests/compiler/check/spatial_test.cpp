@@ -135,3 +135,39 @@ TEST_CASE("words say the relation that proves or judges them") {
                 "task t like red_on_tray { metrics m; say aside }") ==
         "error[P1202]: `t` says \"right\" and is judged by `left_of`");
 }
+
+TEST_CASE("a layout is cut to the starts in which a phrase is clear, for the baseline too") {
+  const std::string two_places =
+      std::string(kRelations) +
+      "layout any { cells spots = grid 1 x 2 at (0cm, 0cm) spread (0cm, 20cm)\n"
+      "place source, blue in distinct spots; place tray at (-20cm, 0cm)\n"
+      "orient by rest; drop 10cm settle 0.5s; expect 4 episodes }\n"
+      "task all like base { layout any; source sided; target tray; distractors blue }\n";
+  const auto cut =
+      test::analyze_with_suite(two_places +
+                               "task some like all { layout any where clear side of source }\n"
+                               "variant v of some { refer source as side }");
+  CHECK(cut->said() == "");
+  CHECK(cut->task("all").starts.size() == 4);
+  CHECK(cut->task("some").starts.size() == 2);
+  CHECK(cut->task("v").starts.data() == cut->task("some").starts.data());
+  CHECK(plan::axis_names(cut->task("v").axes) == std::vector<std::string_view>{"language.spatial"});
+
+  const std::string uncut =
+      test::analyze_with_suite(two_places + "variant v of all { refer source as side }")->said();
+  CHECK(first_line(uncut) ==
+        "error[P0401]: \"left block\" does not denote `sided` in 2 of the 4 starts of `v`");
+  CHECK(uncut.find("help: it is clear in 2 of them: `layout any where clear side of source` keeps "
+                   "those, in its baseline, too") != std::string::npos);
+
+  CHECK(first_line(test::analyze_with_suite(
+                       two_places + "variant v of all { layout any where clear side of source; "
+                                    "refer source as side }")
+                       ->said()) == "warning[P0701]: `v` differs from its baseline on 2 axes");
+  CHECK(first_line(test::analyze_with_suite(
+                       two_places + "task t like all { layout any where clear sight of source }")
+                       ->said()) == "error[P0201]: unknown phrase of `sided` `sight`");
+  CHECK(first_line(test::analyze_with_suite(
+                       two_places + "task t like all { layout any where clear amid of source }")
+                       ->said()) == "error[P0402]: none of the 4 starts of `t` has clear phrases");
+}
