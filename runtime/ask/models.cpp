@@ -79,7 +79,7 @@ std::string first_says(const AskedQuery& asked) {
     case plan::QuestionForm::kPoint:
       return point_text(asked.width / 2, asked.height / 2);
     case plan::QuestionForm::kFree:
-      return sentence(asked, 0, asked.wording.shown.size() > 1 ? 1 : 0);
+      return "A";  // no habit says a sentence about these objects: never right
   }
   return {};
 }
@@ -92,7 +92,7 @@ struct OwnEntry {
 constexpr std::array kOwnModels = {
     OwnEntry{"truth", truth_says, "knows every right answer: what reads answers is checked by it"},
     OwnEntry{"random", random_says, "any answer, each as likely: what luck gets"},
-    OwnEntry{"first", first_says, "always A, yes, 1, the middle: what a habit gets"},
+    OwnEntry{"first", first_says, "always A, yes, 1, the middle, no sentence: what a habit gets"},
 };
 
 class OwnModel final : public Model {

@@ -195,68 +195,6 @@ std::span<const ReadRule> rules_of(plan::QuestionForm form) {
 
 constexpr int kDeepest = 3;  // a box in a tag in JSON
 
-class Reader {
- public:
-  explicit Reader(const ReadContext& context)
-      : context_(context), names_(context.options, context.question) {}
-
-  Reading read(std::string_view text, int depth) const {
-    text = trimmed(text);
-    if (text.empty()) return {.verdict = Verdict::kEmpty, .rule = "blank"};
-    // A sentence is read as it stands.
-    const bool is_free = context_.form == plan::QuestionForm::kFree;
-    for (const Place& place : kPlaces) {
-      if (depth == kDeepest || (is_free && place.find == find_answer_lines)) break;
-      const Texts parts = place.find(context_, text);
-      // A part that is the text itself would be found again.
-      if (parts.empty() || (parts.size() == 1 && parts[0].size() >= text.size())) continue;
-      Reading reading = agreed(parts, depth);
-      reading.rule = std::string(place.info.name) + ": " + reading.rule;
-      return reading;
-    }
-    return by_rules(text);
-  }
-
- private:
-  // Blank parts say nothing.
-  Reading agreed(const Texts& parts, int depth) const {
-    std::optional<Reading> first;
-    std::string first_rule;
-    for (const std::string& part : parts) {
-      Reading reading = read(part, depth + 1);
-      if (reading.verdict == Verdict::kEmpty) continue;
-      std::string rule = std::exchange(reading.rule, {});
-      if (!first) {
-        first = reading;
-        first_rule = std::move(rule);
-      } else if (reading != *first) {
-        return {.verdict = Verdict::kUnclear, .rule = "two answers"};
-      }
-    }
-    if (!first) return {.verdict = Verdict::kEmpty, .rule = "blank"};
-    first->rule = std::move(first_rule);
-    return *first;
-  }
-
-  Reading by_rules(std::string_view text) const {
-    const Tokens tokens = tokens_of(text);
-    const std::vector<Named> named = names_.find(tokens);
-    for (const ReadRule& rule : rules_of(context_.form)) {
-      const AnswerPart part{text, tokens, named};
-      std::optional<Reading> reading = rule.read(context_, part);
-      if (!reading) continue;
-      if (reading->verdict == Verdict::kRead && is_doubtful(context_, part, rule, *reading))
-        reading = unclear();
-      reading->rule = rule.name;
-      return *reading;
-    }
-    return {.verdict = Verdict::kUnclear, .rule = "nothing that answers"};
-  }
-
-  const ReadContext& context_;
-  NameTable names_;
-};
-
 }  // namespace
 
 std::vector<std::pair<std::size_t, std::size_t>> sentences_of(std::span<const Token> tokens) {
@@ -293,6 +231,8 @@ bool is_denied(std::span<const Token> tokens, std::size_t at) {
   while (at > last) {
     const Token& token = tokens[--at];
     if (token.is_end() || token.is_sign(';') || token.is_sign(':') || token.is("but")) return false;
+    // "The others are wrong, so it is B" concludes.
+    if (token.is("so") && at > 0 && tokens[at - 1].is_sign(',')) return false;
     if (std::find(kDenials.begin(), kDenials.end(), token.text) != kDenials.end()) return true;
   }
   return false;
@@ -310,7 +250,62 @@ bool has_superscript(std::string_view text) {
 
 }  // namespace
 
-Reading read_answer(const ReadContext& context, std::string_view raw) {
+AnswerReader::AnswerReader(ReadContext context)
+    : context_(std::move(context)), names_(context_.options, context_.question) {}
+
+Reading AnswerReader::read_part(std::string_view text, int depth) const {
+  text = trimmed(text);
+  if (text.empty()) return {.verdict = Verdict::kEmpty, .rule = "blank"};
+  // A sentence is read as it stands.
+  const bool is_free = context_.form == plan::QuestionForm::kFree;
+  for (const Place& place : kPlaces) {
+    if (depth == kDeepest || (is_free && place.find == find_answer_lines)) break;
+    const Texts parts = place.find(context_, text);
+    // A part that is the text itself would be found again.
+    if (parts.empty() || (parts.size() == 1 && parts[0].size() >= text.size())) continue;
+    Reading reading = agreed(parts, depth);
+    reading.rule = std::string(place.info.name) + ": " + reading.rule;
+    return reading;
+  }
+  return by_rules(text);
+}
+
+// Blank parts say nothing.
+Reading AnswerReader::agreed(const Texts& parts, int depth) const {
+  std::optional<Reading> first;
+  std::string first_rule;
+  for (const std::string& part : parts) {
+    Reading reading = read_part(part, depth + 1);
+    if (reading.verdict == Verdict::kEmpty) continue;
+    std::string rule = std::exchange(reading.rule, {});
+    if (!first) {
+      first = reading;
+      first_rule = std::move(rule);
+    } else if (reading != *first) {
+      return {.verdict = Verdict::kUnclear, .rule = "two answers"};
+    }
+  }
+  if (!first) return {.verdict = Verdict::kEmpty, .rule = "blank"};
+  first->rule = std::move(first_rule);
+  return *first;
+}
+
+Reading AnswerReader::by_rules(std::string_view text) const {
+  const Tokens tokens = tokens_of(text);
+  const std::vector<Named> named = names_.find(tokens);
+  for (const ReadRule& rule : rules_of(context_.form)) {
+    const AnswerPart part{text, tokens, named};
+    std::optional<Reading> reading = rule.read(context_, part);
+    if (!reading) continue;
+    if (reading->verdict == Verdict::kRead && is_doubtful(context_, part, rule, *reading))
+      reading = unclear();
+    reading->rule = rule.name;
+    return *reading;
+  }
+  return {.verdict = Verdict::kUnclear, .rule = "nothing that answers"};
+}
+
+Reading AnswerReader::read(std::string_view raw) const {
   const std::string said = without_thoughts(raw);
   const std::string_view answer = trimmed(said);
   if (answer.size() > kLongestAnswer) return {.verdict = Verdict::kUnclear, .rule = "too long"};
@@ -319,11 +314,15 @@ Reading read_answer(const ReadContext& context, std::string_view raw) {
     return {.verdict = Verdict::kEmpty,
             .rule = said.size() == raw.size() ? "blank" : "thoughts alone"};
   // "1\u00b2" would be 12 without its superscript.
-  if (context.form == plan::QuestionForm::kNumber && has_superscript(answer))
+  if (context_.form == plan::QuestionForm::kNumber && has_superscript(answer))
     return {.verdict = Verdict::kUnclear, .rule = "hedged"};
   // Compatible characters may be written out at length.
   if (text.size() > 4 * kLongestAnswer) return {.verdict = Verdict::kUnclear, .rule = "too long"};
-  return Reader(context).read(text, 0);
+  return read_part(text, 0);
+}
+
+Reading read_answer(const ReadContext& context, std::string_view raw) {
+  return AnswerReader(context).read(raw);
 }
 
 std::string free_part(std::string_view raw) {

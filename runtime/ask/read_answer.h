@@ -44,6 +44,21 @@ inline constexpr std::size_t kLongestAnswer = std::size_t{1} << 16;
 // <loc0512><loc0256>, y before x in 1,024 steps of the picture, can mean nothing else and is read.
 Reading read_answer(const ReadContext& context, std::string_view raw);
 
+// The same for many answers to one question: what its options are called is worked out once.
+class AnswerReader {
+ public:
+  explicit AnswerReader(ReadContext context);
+  Reading read(std::string_view raw) const;
+
+ private:
+  Reading read_part(std::string_view text, int depth) const;
+  Reading agreed(const std::vector<std::string>& parts, int depth) const;
+  Reading by_rules(std::string_view text) const;
+
+  ReadContext context_;
+  NameTable names_;
+};
+
 // The tables, for pages and tests.
 struct RuleInfo {
   std::string_view name;

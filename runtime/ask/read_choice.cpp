@@ -68,8 +68,8 @@ std::optional<LetterAt> letter_at(const Tokens& tokens, std::size_t at) {
   if (!tokens[at].capital) return std::nullopt;
   const bool is_article_or_pronoun = tokens[at].is("a") || tokens[at].is("i");
   if (!is_article_or_pronoun) return found;
-  // What follows an article is a noun; a sign, an end or a verb is none.
-  if (ends || after->kind == TokenKind::kSign) return found;
+  // What follows an article is a noun; a sign, an end, a verb or another letter ("A-B") is none.
+  if (ends || after->kind == TokenKind::kSign || (after->capital && letter(*after))) return found;
   if (tokens[at].is("a") && (is_word_of(kVerbs, *after) || is_word_of(kJoins, *after)))
     return found;
   return std::nullopt;

@@ -27,10 +27,10 @@ bool is_denying(const Token& token) { return one_of(kDenying, token); }
 
 // Words that say which one it is not, wherever they stand.
 constexpr auto kRejecting = std::to_array<std::string_view>(
-    {"incorrect", "wrong",    "false",    "eliminate", "eliminated", "eliminating",
-     "exclude",   "excluded", "opposite", "least",     "unlikely",   "besides",
-     "except",    "alone",    "ruled",    "untouched", "avoid",      "avoided",
-     "reject",    "rejected", "wait",     "actually",  "correction", "scratch"});
+    {"incorrect", "wrong",      "false",   "eliminate", "eliminated", "eliminating", "exclude",
+     "excluded",  "opposite",   "least",   "unlikely",  "besides",    "except",      "alone",
+     "ruled",     "untouched",  "avoid",   "avoided",   "reject",     "rejected",    "wait",
+     "actually",  "correction", "scratch", "none",      "neither"});
 constexpr auto kOtherThan = std::to_array<std::string_view>(
     {"other than", "anything but", "all but", "everything but", "rather than"});
 constexpr auto kMore = std::to_array<std::string_view>({"or", "and", "then"});
@@ -39,6 +39,57 @@ constexpr auto kAreVerbs = std::to_array<std::string_view>(
     {"is",       "are",  "was",    "isnt", "arent", "wasnt",   "should",
      "shouldnt", "must", "mustnt", "can",  "cant",  "cannot",  "does",
      "doesnt",   "has",  "will",   "wont", "would", "wouldnt", "could"});
+
+// "the others are wrong", "none of the other options is round": a clause that speaks of those that
+// were not chosen, and so denies nothing of the one that was. Its tokens' range is [at, end); its
+// end is at, where it is none.
+std::size_t end_of_others(const ReadContext& context, const AnswerPart& part, std::size_t at) {
+  constexpr auto kLeading = std::to_array<std::string_view>(
+      {"all", "none", "neither", "of", "and", "but", "while", "because", "as", "since", "the"});
+  const Tokens& tokens = part.tokens;
+  std::size_t from = at;
+  while (from < tokens.size() && one_of(kLeading, tokens[from])) ++from;
+  constexpr auto kOthers = std::to_array<std::string_view>({"others", "other", "rest"});
+  if (from == tokens.size() || !one_of(kOthers, tokens[from])) return at;
+  std::size_t end = from;
+  const auto is_break = [](const Token& token) {
+    return token.is_end() || token.is_sign(';') || token.is_sign(',');
+  };
+  while (end < tokens.size() && !is_break(tokens[end])) ++end;
+  // Who names an option speaks of that one, too.
+  for (std::size_t i = from; i < end; ++i) {
+    const bool is_letter =
+        context.letters && tokens[i].capital && tokens[i].is_word() && tokens[i].text.size() == 1;
+    if (is_letter) return at;
+  }
+  const auto is_inside = [&](const Named& name) { return name.begin >= from && name.begin < end; };
+  return std::any_of(part.named.begin(), part.named.end(), is_inside) ? at : end;
+}
+
+// All but such clauses.
+Tokens about_the_chosen(const ReadContext& context, const AnswerPart& part) {
+  Tokens left;
+  bool begins = true;  // a clause
+  for (std::size_t at = 0; at < part.tokens.size();) {
+    const Token& token = part.tokens[at];
+    begins = begins || token.is("because") || token.is("and") || token.is("while");
+    const std::size_t end = begins ? end_of_others(context, part, at) : at;
+    begins = end > at || !token.is_word();
+    if (end == at) left.push_back(token);
+    at = std::max(end, at + 1);
+  }
+  return left;
+}
+
+// "B is closest", which hedges; "closest to the gripper" describes.
+bool is_nearly(const Tokens& tokens) {
+  constexpr auto kNearly = std::to_array<std::string_view>({"close", "closest", "nearest"});
+  for (std::size_t at = 0; at < tokens.size(); ++at) {
+    const bool describes = at + 1 < tokens.size() && tokens[at + 1].is_word();
+    if (one_of(kNearly, tokens[at]) && !describes) return true;
+  }
+  return false;
+}
 
 // The first word behind `at`, before its sentence ends; a sign of a letter ("B.") ends it, too.
 std::size_t word_behind(const Tokens& tokens, std::size_t at) {
@@ -86,7 +137,9 @@ bool is_letter_doubtful(const ReadContext& context, const Tokens& tokens, const 
 bool is_choice_doubtful(const ReadContext& context, const AnswerPart& part, const ReadRule& rule,
                         const Reading& reading) {
   const Tokens& tokens = part.tokens;
-  if (has_any(tokens, kRejecting) || has_phrase(tokens, kOtherThan)) return true;
+  const Tokens chosen = about_the_chosen(context, part);
+  if (has_any(chosen, kRejecting) || has_phrase(chosen, kOtherThan) || is_nearly(tokens))
+    return true;
   if (part.text.find("~~") != part.text.npos) return true;
   // Who asks has not answered.
   const auto asks = [](const Token& token) { return token.is_sign('?'); };
@@ -176,8 +229,11 @@ bool is_pronoun_one(const Tokens& tokens, std::size_t at) {
   if (!tokens[at].is("one")) return false;
   const bool more = at + 1 < tokens.size() && tokens[at + 1].is_word();
   if (more && one_of(kModals, tokens[at + 1])) return true;
+  // "One of them" is one that is meant, "only one of them" a count.
   const bool ends = !more || tokens[at + 1].is("and");
-  return ends && at > 0 && tokens[at - 1].is_word() && !one_of(kCounting, tokens[at - 1]);
+  const bool part = more && tokens[at + 1].is("of");
+  if (part && (at == 0 || !tokens[at - 1].is_word())) return true;
+  return (ends || part) && at > 0 && tokens[at - 1].is_word() && !one_of(kCounting, tokens[at - 1]);
 }
 
 bool is_number_doubtful(const AnswerPart& part, const Reading& reading) {
@@ -198,12 +254,29 @@ bool is_number_doubtful(const AnswerPart& part, const Reading& reading) {
   return false;
 }
 
+// "top left: (1, 2)", "the upper left corner of the carrot": of a box, or of who knows what.
+bool is_corner(const Tokens& tokens, std::size_t at) {
+  constexpr auto kUpright = std::to_array<std::string_view>({"top", "upper", "bottom", "lower"});
+  constexpr auto kSideways = std::to_array<std::string_view>({"left", "right"});
+  constexpr auto kWholes = std::to_array<std::string_view>(
+      {"of the picture", "of the image", "of the table", "of the frame", "of the scene"});
+  if (at + 1 >= tokens.size() || !one_of(kUpright, tokens[at])) return false;
+  std::size_t next = at + 1;
+  if (tokens[next].is_sign('-')) ++next;
+  if (next >= tokens.size() || !one_of(kSideways, tokens[next])) return false;
+  ++next;
+  if (next < tokens.size() && tokens[next].is("corner")) ++next;
+  // "in the upper left of the picture" says where it lies.
+  return std::none_of(kWholes.begin(), kWholes.end(),
+                      [&](std::string_view whole) { return stands_phrase(tokens, next, whole); });
+}
+
 bool is_point_doubtful(const AnswerPart& part) {
   constexpr auto kSizes = std::to_array<std::string_view>({"w", "h", "width", "height"});
   const Tokens& tokens = part.tokens;
   for (std::size_t at = 0; at < tokens.size(); ++at) {
     const Token& token = tokens[at];
-    if (token.is("row") || token.is_sign('?')) return true;
+    if (token.is("row") || token.is_sign('?') || is_corner(tokens, at)) return true;
     if (token.is_sign('%') || token.is("percent")) return true;
     const auto sign = [&](std::size_t i, char c) {
       return i < tokens.size() && tokens[i].is_sign(c);

@@ -53,12 +53,28 @@ TEST_CASE("a choice that is denied, rejected, asked back or taken back is unclea
                           "B and also C",
                           "B then C",
                           "B is least likely",
-                          "All but B"}) {
+                          "All but B",
+                          "None of them, but B is closest",
+                          "None of these. B",
+                          "Neither, but if I have to say: B",
+                          "B is closest",
+                          "B comes close",
+                          "A-B",
+                          "A-C",
+                          "A B",
+                          "A B-shaped object",
+                          "B is correct; the others are wrong, and C is wrong",
+                          "A is wrong; the others are correct",
+                          "The others are wrong, B is wrong, too"}) {
     CAPTURE(raw);
     CHECK(short_of(QuestionForm::kChoice, raw) == "unclear");
   }
-  for (const char* raw : {"B", "(B)", "B.", "B) plate", "B. Because the plate is not what it needs",
-                          "The answer is (B)", "B. No other object is round."}) {
+  for (const char* raw :
+       {"B", "(B)", "B.", "B) plate", "B. Because the plate is not what it needs",
+        "The answer is (B)", "B. No other object is round.", "B is correct; the others are wrong",
+        "B. All other options are wrong.", "It is B, because the others are incorrect.",
+        "The others are wrong, so it is B.", "B, none of the others is round.",
+        "B is closest to the gripper"}) {
     CAPTURE(raw);
     CHECK(short_of(QuestionForm::kChoice, raw) == "option 5");
   }
@@ -92,19 +108,22 @@ TEST_CASE("yes and no that are hedged, contradicted or about another noun are un
 TEST_CASE("a number word that counts nothing and a number with a sign of doubt are unclear") {
   for (const char* raw : {"One can see a carrot and a tomato.", "The orange one and the red one.",
                           "a carrot and another one", "a couple: one orange and one red",
-                          "none, one would say", "thirty-one", "3?", "1+", "~1", "1\u00b2"}) {
+                          "none, one would say", "thirty-one", "3?", "1+", "~1", "1\u00b2",
+                          "one of them", "One of them is orange.", "One of the carrots."}) {
     CAPTURE(raw);
     CHECK(short_of(QuestionForm::kNumber, raw) == "unclear");
   }
   CHECK(short_of(QuestionForm::kNumber, "There is one.") == "1");
   CHECK(short_of(QuestionForm::kNumber, "one carrot") == "1");
+  CHECK(short_of(QuestionForm::kNumber, "Only one of them is a carrot.") == "1");
 }
 
 TEST_CASE("a point with a size, per cent, a range, y before x or a denial is unclear") {
   for (const char* raw :
        {"{\"x\": 120, \"y\": 40, \"width\": 30, \"height\": 20}", "x=120, y=40, w=30, h=20",
         "(50%, 25%)", "x: 50%, y: 25%", "x: 120-140, y: 45", "(y, x) = (45, 123)",
-        "not at (320, 240)", "(row, col) = (3, 4)"}) {
+        "not at (320, 240)", "(row, col) = (3, 4)", "top left: (1,2)", "Top-left (1, 2)",
+        "upper left corner: (120, 45)", "The bottom right corner of the carrot is at (123, 45)."}) {
     CAPTURE(raw);
     CHECK(short_of(QuestionForm::kPoint, raw) == "unclear");
   }
