@@ -80,6 +80,10 @@ struct Usage {
   std::vector<std::optional<double>> letter_logprobs = {};
 };
 
+// Of the tables that read answers (READING.md): raised whenever one reads some text otherwise, so
+// that rows of an older one are told from rows that were changed.
+inline constexpr int kReaderVersion = 2;
+
 struct AnswerRow {
   // Which: the first six are the key, exactly one row each.
   std::string question_id, start_id;  // hex
@@ -108,6 +112,7 @@ struct AnswerRow {
   // names is in that picture's scene too; nothing where it names no object.
   std::string shown_start_id = {};
   std::optional<bool> shown_has_answer = {};
+  int reader = kReaderVersion;  // which read `raw` when it came
 };
 
 }  // namespace probe::ask

@@ -7,6 +7,7 @@
 
 #include "runtime/ask/answer_fields.h"
 #include "runtime/ask/answers.h"
+#include "runtime/ask/vouch.h"
 
 namespace probe::ask {
 namespace {
@@ -94,7 +95,9 @@ Status check_same_asking(const std::vector<AnswerSource>& sources, bool mixed_bu
 Status choose(const std::vector<AnswerSource>& sources, std::map<Sha256, BestAnswer>& best,
               store::MergeSummary& summary) {
   for (std::size_t i = 0; i < sources.size(); ++i) {
+    RowFindings rows;
     PROBE_TRY(for_each_answer(sources[i].dir, [&](AnswerRow row, std::uint32_t) -> Status {
+      rows.add(row);
       const BestAnswer here{content_hash(row), i, !row.invalid};
       const auto [at, is_new] = best.try_emplace(key_hash(row), here);
       if (is_new) return {};
@@ -111,6 +114,8 @@ Status choose(const std::vector<AnswerSource>& sources, std::map<Sha256, BestAns
                          "; nothing was merged",
                      sources[i].dir};
     }));
+    for (const std::string& sentence : rows.sentences())
+      summary.notes.push_back(sources[i].dir + ": " + sentence);
   }
   return {};
 }
@@ -160,6 +165,7 @@ Result<store::MergeSummary> merge(const store::MergeOptions& options) {
       if (row.invalid) ++summary.invalid;
       if (is_there) return {};
       ++summary.added;
+      row.reader = kReaderVersion;  // as it was read just now
       return answers->commit(row, place);
     }));
     if (is_there) continue;

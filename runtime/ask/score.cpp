@@ -235,6 +235,8 @@ Tally::Tally(const plan::Plan& plan) : plan_(plan) {
 
 Status Tally::add(const AnswerRow& row) {
   const auto alike = questions_.find(row.question_id);
+  // What is invalid may be so because it fits nowhere.
+  if (alike == questions_.end() && row.invalid) return {};
   if (alike == questions_.end())
     return Failure{Fault::kStore, "the plan has no question " + row.question_id, row.task};
   std::optional<std::uint32_t> episode;
@@ -244,11 +246,13 @@ Status Tally::add(const AnswerRow& row) {
     episode = episode_like(plan_, q, static_cast<std::uint32_t>(row.episode), row.start_id);
     if (episode) break;
   }
+  if (!episode && row.invalid) return {};
   if (!episode)
     return Failure{Fault::kStore,
                    "the plan asks " + row.question_id + " about no start " + row.start_id,
                    row.task};
   const std::uint32_t rotations = rotations_of(plan_, plan_.questions()[question]);
+  if (row.rotation >= rotations && row.invalid) return {};
   Seen& seen = seen_[{question, *episode, row.seed, row.arm}];
   if (seen.has.empty()) {
     seen.asked = {.question = question, .episode = *episode, .seed = row.seed, .arm = row.arm};

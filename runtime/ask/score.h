@@ -51,7 +51,8 @@ class Tally {
  public:
   explicit Tally(const plan::Plan& plan);  // which must live as long
 
-  // Fails (kStore) on a row whose question or start the plan does not have, or that came before.
+  // Fails (kStore) on a row whose question or start the plan does not have, or that came before; an
+  // invalid one that fits nowhere counts nowhere.
   Status add(const AnswerRow& row);
 
   // By question in the plan's order, episode, seed, arm.

@@ -104,6 +104,16 @@ Truth area_of(const plan::Plan& plan, const plan::OptionRecord& option, const Vi
 
 }  // namespace
 
+std::optional<Truth> known_truth(const plan::Plan& plan, const plan::QuestionRecord& question) {
+  if (plan::truth_of(question) == plan::QuestionTruth::kProved) return proved(plan, question);
+  if (plan::truth_of(question) != plan::QuestionTruth::kMentions) return std::nullopt;
+  const auto options = options_of(plan, question);
+  Truth truth;
+  truth.expected = std::string(plan.text(options[question.a].text)) + ", " +
+                   std::string(plan.text(options[question.b].text));
+  return truth;
+}
+
 Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, const View& view,
                  const PictureRule& rule, std::optional<bool> recorded) {
   const auto options = options_of(plan, question);
@@ -120,13 +130,8 @@ Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, c
   };
   switch (plan::truth_of(question)) {
     case plan::QuestionTruth::kProved:
-      return proved(plan, question);
-    case plan::QuestionTruth::kMentions: {
-      Truth truth;
-      truth.expected = std::string(plan.text(options[question.a].text)) + ", " +
-                       std::string(plan.text(options[question.b].text));
-      return truth;
-    }
+    case plan::QuestionTruth::kMentions:
+      return *known_truth(plan, question);
     case plan::QuestionTruth::kRecorded:
       return recorded ? yes_or_no(*recorded) : left_out("no episode was recorded");
     case plan::QuestionTruth::kPixelsOf:

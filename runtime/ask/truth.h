@@ -28,6 +28,10 @@ struct Truth {
   std::string left_out = {};  // why the question is not asked of this picture; else empty
 };
 
+// What is right without a look at a picture: as the text proves it, or, of a free answer, what has
+// to be mentioned. Nothing where a picture or a recorded episode tells.
+std::optional<Truth> known_truth(const plan::Plan& plan, const plan::QuestionRecord& question);
+
 // `view`: what is looked at; `recorded`: what the question's program says of the recorded episode,
 // where its truth is of one.
 Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, const View& view,

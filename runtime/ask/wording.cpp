@@ -1,8 +1,34 @@
 #include "runtime/ask/wording.h"
 
+#include <charconv>
+
 #include "runtime/plan/questions.h"
 
 namespace probe::ask {
+namespace {
+
+constexpr std::string_view kBeforeWidth = "\nThe picture is ";
+constexpr std::string_view kBeforeHeight = " pixels wide and ";
+
+// The number that stands in `text` behind the last `mark`.
+std::optional<int> number_behind(std::string_view text, std::string_view mark) {
+  const std::size_t at = text.rfind(mark);
+  if (at == text.npos) return std::nullopt;
+  const std::string_view rest = text.substr(at + mark.size());
+  int number = 0;
+  const auto read = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+  if (read.ec != std::errc()) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
+std::optional<ToldSize> told_size(std::string_view words) {
+  const auto width = number_behind(words, kBeforeWidth);
+  const auto height = number_behind(words, kBeforeHeight);
+  if (!width || !height) return std::nullopt;
+  return ToldSize{*width, *height};
+}
 
 std::span<const plan::OptionRecord> options_of(const plan::Plan& plan,
                                                const plan::QuestionRecord& question) {
@@ -32,8 +58,9 @@ Wording word(const plan::Plan& plan, const plan::QuestionRecord& question, std::
       wording.text += "\nAnswer with one whole number.";
       break;
     case plan::QuestionForm::kPoint:
-      wording.text += "\nThe picture is " + std::to_string(width) + " pixels wide and " +
-                      std::to_string(height) + " high; (0, 0) is its upper left corner.";
+      wording.text += std::string(kBeforeWidth) + std::to_string(width) +
+                      std::string(kBeforeHeight) + std::to_string(height) +
+                      " high; (0, 0) is its upper left corner.";
       break;
     case plan::QuestionForm::kFree:
       break;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +24,12 @@ struct Wording {
 // shows option (place + rotation) % n at each place; other forms keep their options' order.
 Wording word(const plan::Plan& plan, const plan::QuestionRecord& question, std::uint32_t rotation,
              int width, int height);
+
+// The size that the words of a question for a point tell; nothing where they tell none.
+struct ToldSize {
+  int width = 0, height = 0;
+};
+std::optional<ToldSize> told_size(std::string_view words);
 
 // Of a place among a choice's options.
 inline std::string letter_of(std::size_t place) {

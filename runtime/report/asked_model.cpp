@@ -7,6 +7,7 @@
 
 #include "runtime/ask/answers.h"
 #include "runtime/ask/queries.h"
+#include "runtime/ask/vouch.h"
 #include "runtime/plan/questions.h"
 
 namespace probe::report {
@@ -46,11 +47,14 @@ Result<AskedModel> read_asked_model(const std::string& dir, const plan::Plan& pl
     }
   }
   ask::Tally tally(plan);
+  ask::RowFindings rows;
   PROBE_TRY(ask::for_each_answer(dir, [&](const ask::AnswerRow& row, std::uint32_t) {
     ++model.answers;
     model.invalid += row.invalid ? 1 : 0;
+    rows.add(row);
     return tally.add(row);
   }));
+  model.doubts = rows.sentences();
   PROBE_TRY(ask::for_each_left_out(dir, [&](const ask::LeftOut&, std::uint32_t) -> Status {
     ++model.left_out;
     return {};

@@ -19,6 +19,7 @@ struct AskedModel {
   std::int64_t left_out = 0;               // questions that were not asked of a picture
   bool is_unchecked = false;               // asked with --insecure
   std::vector<std::string> findings = {};  // of its server: does it look, does it read
+  std::vector<std::string> doubts = {};    // of its rows: ask::RowFindings
   std::vector<ask::ScoreRow> scores = {};  // all tasks, then by set of the plan
   // What was right, and what was wrong; not what is missing or invalid.
   struct Known {

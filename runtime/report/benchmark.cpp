@@ -147,6 +147,8 @@ class Loader {
     }
     for (const std::string& finding : model.findings)
       note("bad", fmt::format("`{}`: {}", dir, finding));
+    for (const std::string& doubt : model.doubts)
+      note("bad", printable(fmt::format("`{}`: {}", dir, doubt), kLongestText));
     benchmark_.models.push_back(std::move(model));
     return {};
   }

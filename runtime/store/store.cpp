@@ -12,6 +12,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
 #include "runtime/base/paths.h"
+#include "runtime/store/calls_table.h"
 #include "runtime/store/database.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
@@ -45,7 +46,6 @@ constexpr int kEpisodeSince[] = {
 };
 // Of every version; those of version 2 may be absent.
 constexpr std::string_view kRunColumns[] = {"name", "value"};
-constexpr std::string_view kCallColumns[] = {"number", "value"};
 constexpr Database::Table kTables[] = {
     {"run", kRunColumns}, {"episodes", kEpisodeColumns}, {"calls", kCallColumns}};
 
@@ -67,8 +67,7 @@ std::string episode_schema() {
   return "create table if not exists run (name text primary key, value text not null) "
          "without rowid; create table if not exists episodes (" +
          each_column(column_defined) +
-         ", primary key (task, episode, seed)) without rowid; "
-         "create table if not exists calls (number integer primary key, value text not null);";
+         ", primary key (task, episode, seed)) without rowid; " + std::string(kCallsSchema);
 }
 
 // From version 1.
@@ -301,31 +300,14 @@ class FolderStore final : public Store {
 
   Status write_call(const RunCall& call) override {
     const std::lock_guard lock(mutex_);
-    if (call_ == 0) {
-      PROBE_ASSIGN(call_, next_call());
-    }
-    return put_call(call_, call);
+    return calls_.write(call_to_json(call));
   }
   Status add_call(const RunCall& call) override {
     const std::lock_guard lock(mutex_);
-    PROBE_ASSIGN(const auto number, next_call());
-    return put_call(number, call);
+    return calls_.add(call_to_json(call));
   }
 
  private:
-  Result<int> next_call() {
-    int number = 0;
-    Statement last(database_, "select coalesce(max(number), 0) from calls");
-    if (last.next()) number = last.number(0) + 1;
-    PROBE_TRY(last.done());
-    return number;
-  }
-  Status put_call(int number, const RunCall& call) {
-    Statement insert(database_, "insert or replace into calls values (?, ?)", Access::kWrite);
-    insert.bind(number).bind(call_to_json(call)).next();
-    return insert.done();
-  }
-
   // A plan that was lost, damaged or exchanged since: `plan_bytes` are of the root in the record.
   Status put_plan_back(std::span<const std::byte> plan_bytes) const {
     if (plan_bytes.empty()) return {};
@@ -382,7 +364,7 @@ class FolderStore final : public Store {
   std::mutex mutex_;  // of the database
   Database database_;
   RunRecord record_;
-  int call_ = 0;  // of this object in the table of calls; 0: not written yet
+  CallsTable calls_{database_};
 };
 
 }  // namespace

@@ -19,6 +19,11 @@
 #include "runtime/ask/answers.h"
 #include "runtime/ask/ask.h"
 #include "runtime/ask/picture.h"
+#include "runtime/ask/plan_reading.h"
+#include "runtime/ask/truth.h"
+#include "runtime/ask/wording.h"
+#include "runtime/base/sha256.h"
+#include "runtime/plan/ids.h"
 #include "tests/bench/need.h"
 #include "tests/runtime/ask/asking_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
@@ -173,38 +178,79 @@ void slow_server(benchmark::State& state) {
   state.counters["questions_at_it"] = waiting / elapsed;
 }
 
+// Rows as asking stores them, about the choice (3 orders) and the yes or no of each start in three
+// arms; `visit` takes them with the question's place.
+template <typename Visit>
+void make_rows(const plan::Plan& plan, const Visit& visit) {
+  std::vector<ask::AnswerRow> of_start;
+  std::vector<std::uint32_t> places;
+  for (std::uint32_t q = 0; q < 2; ++q) {
+    const plan::QuestionRecord& question = plan.questions()[q];
+    const plan::FamilyRecord& family = plan.families()[question.family];
+    for (std::uint32_t rotation = 0; rotation < ask::rotations_of(plan, question); ++rotation) {
+      ask::AnswerRow row;
+      row.question_id = to_hex(plan::to_sha256(question.question_id));
+      row.rotation = rotation;
+      row.set = plan.text(family.set);
+      row.family = plan.text(family.name);
+      row.task = plan.text(plan.tasks()[question.task].name);
+      const ask::Wording wording = ask::word(plan, question, rotation, 640, 480);
+      row.text = wording.text;
+      row.prompt_sha256 = row.image_sha256 = row.request_sha256 = to_hex(sha256(row.text));
+      row.raw = q == 0 ? "The answer is B, because of what the robot was told to do with it."
+                       : "No, there is none on the table.";
+      row.reading =
+          ask::read_answer(ask::read_context(plan, question, wording.shown, 640, 480), row.raw);
+      const ask::Truth truth = *ask::known_truth(plan, question);
+      row.expected = truth.expected;
+      row.right = ask::is_right(truth, row.reading);
+      of_start.push_back(std::move(row));
+      places.push_back(q);
+    }
+  }
+  for (const plan::EpisodeRecord& episode : plan.episodes()) {
+    for (const ask::Arm arm : {ask::Arm::kPicture, ask::Arm::kBlind, ask::Arm::kPrior}) {
+      for (std::size_t i = 0; i < of_start.size(); ++i) {
+        ask::AnswerRow& row = of_start[i];
+        row.start_id = to_hex(plan::to_sha256(episode.start_id));
+        row.episode = static_cast<int>(episode.index);
+        row.arm = arm;
+        visit(row, places[i]);
+      }
+    }
+  }
+}
+
 void rows(benchmark::State& state) {
-  constexpr int kRows = 100'000;
-  const plan::Plan plan = ask::asking_plan(1);
+  const plan::Plan plan = ask::asking_plan(8'334);
+  std::int64_t written = 0;
   for (auto _ : state) {
     const run::TemporaryFolder folder;
     const ask::AskRecord record{{to_hex(plan.root()), "m", "bench"}, "smoke", {}};
-    const double before = peak_mb();
+    written = 0;
+    state.counters["peak_mb_before"] = peak_mb();
     {
       const auto answers = need(ask::Answers::open(folder / "answers", record, plan.bytes()));
-      ask::AnswerRow row;
-      row.text = std::string(300, 'q');
-      row.raw = std::string(60, 'a');
-      row.right = true;
-      row.prompt_sha256 = row.image_sha256 = row.request_sha256 = std::string(64, '0');
-      for (int i = 0; i < kRows; ++i) {
-        row.question_id = to_hex(sha256("question " + std::to_string(i % 50)));
-        row.start_id = to_hex(sha256("start " + std::to_string(i / 50)));
-        need(answers->commit(row, static_cast<std::uint32_t>(i % 50)));
-      }
+      make_rows(plan, [&](const ask::AnswerRow& row, std::uint32_t place) {
+        need(answers->commit(row, place));
+        ++written;
+      });
       need(answers->flush());
     }
-    state.counters["peak_mb_before"] = before;
     state.counters["peak_mb_written"] = peak_mb();
     std::int64_t count = 0;
-    need(ask::for_each_answer(folder / "answers", [&](ask::AnswerRow, std::uint32_t) -> Status {
+    const auto begun = std::chrono::steady_clock::now();
+    need(ask::for_each_answer(folder / "answers", [&](ask::AnswerRow row, std::uint32_t) -> Status {
+      if (row.invalid) state.SkipWithError(row.invalid->c_str());
       ++count;
       return {};
     }));
-    if (count != kRows) state.SkipWithError("not as many rows as were written");
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begun;
+    state.counters["read_s"] = took.count();
+    if (count != written) state.SkipWithError("not as many rows as were written");
     state.counters["peak_mb_read"] = peak_mb();
   }
-  state.counters["rows"] = benchmark::Counter(static_cast<double>(state.iterations() * kRows),
+  state.counters["rows"] = benchmark::Counter(static_cast<double>(state.iterations() * written),
                                               benchmark::Counter::kIsRate);
 }
 

@@ -8,6 +8,7 @@
 #include "runtime/ask/answer_fields.h"
 #include "runtime/ask/answers.h"
 #include "runtime/ask/score.h"
+#include "runtime/ask/vouch.h"
 #include "runtime/base/percent.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
@@ -40,8 +41,11 @@ Status print_table(const std::string& dir) {
   PROBE_ASSIGN(const ask::AskRecord record, ask::read_ask_record(dir));
   PROBE_ASSIGN(const plan::Plan plan, ask::open_asked_plan(dir));
   ask::Tally tally(plan);
-  PROBE_TRY(ask::for_each_answer(
-      dir, [&](const ask::AnswerRow& row, std::uint32_t) { return tally.add(row); }));
+  ask::RowFindings rows;
+  PROBE_TRY(ask::for_each_answer(dir, [&](const ask::AnswerRow& row, std::uint32_t) {
+    rows.add(row);
+    return tally.add(row);
+  }));
   put("model {}\n", record.identity.model);
   if (!record.identity.frames.empty()) put("ends of {}\n", record.identity.frames);
   put("{:<28} {:<8} {:<28} {:<28} {}\n", "question", "arm", "right in every order",
@@ -67,6 +71,7 @@ Status print_table(const std::string& dir) {
     ++left_out[out.set + "." + out.family + ": " + out.why];
     return {};
   }));
+  for (const std::string& sentence : rows.sentences()) put("{}\n", sentence);
   for (const auto& [why, count] : left_out) put("not asked, {} times: {}\n", count, why);
   PROBE_ASSIGN(const auto calls, ask::read_ask_calls(dir));
   std::set<std::string> told;
@@ -80,8 +85,10 @@ Status print_table(const std::string& dir) {
 
 Status print_rows(const std::string& dir, AnswerForm form) {
   bool is_first = true;
+  ask::RowFindings rows;
   put("{}", form == AnswerForm::kJson ? "[" : ask::csv_header() + "\n");
   PROBE_TRY(ask::for_each_answer(dir, [&](const ask::AnswerRow& row, std::uint32_t) -> Status {
+    rows.add(row);
     if (form == AnswerForm::kJson) {
       put("{}\n{}", is_first ? "" : ",", ask::to_json(row).dump());
     } else {
@@ -91,6 +98,7 @@ Status print_rows(const std::string& dir, AnswerForm form) {
     return {};
   }));
   if (form == AnswerForm::kJson) put("\n]\n");
+  for (const std::string& sentence : rows.sentences()) say("{}\n", sentence);
   return {};
 }
 

@@ -80,6 +80,7 @@ Json to_json(const ask::AnswerRow& row) {
                {"raw", row.raw},
                {"read_as", ask::word_of(row.reading.verdict)},
                {"rule", row.reading.rule},
+               {"reader", row.reader},
                {"expected", row.expected},
                {"right", row.right ? Json(*row.right) : Json()},
                {"image_sha256", row.image_sha256}};
@@ -120,7 +121,8 @@ void print_answer(const ask::AnswerRow& row) {
                               : !row.right ? std::string("neither right nor wrong is stored")
                               : *row.right ? "right"
                                            : "wrong, right is " + shown(row.expected);
-  put("  {:<14} \"{}\"  {}{}: {}\n", which, shown(row.raw), ask::word_of(row.reading.verdict),
+  put("  {:<14} \"{}\"  {}{}{}: {}\n", which, shown(row.raw),
+      row.reader == ask::kReaderVersion ? "" : "read anew as ", ask::word_of(row.reading.verdict),
       row.reading.rule.empty() ? "" : " by \"" + row.reading.rule + "\"", verdict);
 }
 

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <functional>
 #include <string>
 
 #include "runtime/ask/answers.h"
+#include "runtime/ask/plan_reading.h"
 #include "runtime/ask/queries.h"
+#include "runtime/ask/truth.h"
+#include "runtime/ask/wording.h"
+#include "runtime/base/sha256.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/plan.h"
 #include "runtime/plan/questions.h"
@@ -20,9 +25,69 @@ enum class Said { kRight, kWrong, kUnclear, kInvalid, kNotAsked };
 using AnswerScript =
     std::function<Said(const std::string& family, const std::string& task, int episode)>;
 
-// Makes DIR with an answer to every question about the start of every task in every order.
+// What is right: as the text proves it, or of what a picture shows, yes, and a point of its own.
+inline ask::Truth fake_truth(const plan::Plan& plan, const plan::QuestionRecord& question) {
+  if (const auto known = ask::known_truth(plan, question)) return *known;
+  if (plan::truth_of(question) == plan::QuestionTruth::kPixelsOf)
+    return {.expected = "on `it`, such as (300, 200)"};
+  return {.yes = true, .expected = "yes"};
+}
+
+// Words that are right, or wrong, and nothing else.
+inline std::string fake_words(const plan::Plan& plan, const plan::QuestionRecord& question,
+                              const ask::Wording& wording, bool right) {
+  const ask::Truth truth = fake_truth(plan, question);
+  const auto options = ask::options_of(plan, question);
+  switch (plan::form_of(plan.families()[question.family])) {
+    case plan::QuestionForm::kChoice:
+      for (std::size_t place = 0; place < wording.shown.size(); ++place) {
+        if ((wording.shown[place] == *truth.option) == right) return ask::letter_of(place);
+      }
+      break;
+    case plan::QuestionForm::kYesNo:
+      return *truth.yes == right ? "yes" : "no";
+    case plan::QuestionForm::kNumber:
+      return std::to_string(*truth.number + (right ? 0 : 1));
+    case plan::QuestionForm::kPoint:
+      return right ? "(300, 200)" : "(3, 2)";
+    case plan::QuestionForm::kFree:
+      return fmt::format("Put the {} on the {}.",
+                         plan.text(options[right ? question.a : question.b].text),
+                         plan.text(options[right ? question.b : question.a].text));
+  }
+  return {};
+}
+
+// As asking would store it.
+inline void fake_answer(const plan::Plan& plan, const plan::QuestionRecord& question, Said said,
+                        ask::AnswerRow& row) {
+  const ask::Wording wording = ask::word(plan, question, row.rotation, 640, 480);
+  row.text = wording.text;
+  row.prompt_sha256 = to_hex(sha256(row.text));
+  const ask::Truth truth = fake_truth(plan, question);
+  row.expected = truth.expected;
+  if (said == Said::kInvalid) {
+    row.invalid = "the server hung up";
+    return;
+  }
+  row.raw =
+      said == Said::kUnclear ? "hm" : fake_words(plan, question, wording, said == Said::kRight);
+  if (plan::truth_of(question) == plan::QuestionTruth::kMentions) {
+    const ask::Restatement restated = ask::restate(plan, question, row.raw);
+    row.reading = restated.reading;
+    row.right = restated.right;
+    row.copied = restated.copied;
+    return;
+  }
+  row.reading =
+      ask::read_answer(ask::read_context(plan, question, wording.shown, 640, 480), row.raw);
+  row.right = row.reading.point ? said == Said::kRight : ask::is_right(truth, row.reading);
+}
+
+// Makes DIR, or goes on with it under another arm, with an answer to every question about the start
+// of every task in every order.
 inline void fake_answers(const std::string& dir, const plan::Plan& plan, const std::string& model,
-                         const AnswerScript& script) {
+                         const AnswerScript& script, ask::Arm arm = ask::Arm::kPicture) {
   ask::AskRecord record;
   record.identity.plan_root = to_hex(plan.root());
   record.identity.model = model;
@@ -44,17 +109,13 @@ inline void fake_answers(const std::string& dir, const plan::Plan& plan, const s
       row.family = plan.text(family.name);
       row.task = plan.text(task.name);
       row.model = model;
-      row.raw = "made up";
+      row.arm = arm;
       const Said said = script(row.family, row.task, row.episode);
       if (said == Said::kNotAsked) continue;
-      row.reading.verdict = said == Said::kUnclear ? ask::Verdict::kUnclear : ask::Verdict::kRead;
-      if (said == Said::kInvalid) {
-        row.invalid = "the server hung up";
-      } else {
-        row.right = said == Said::kRight;
-      }
-      for (row.rotation = 0; row.rotation < ask::rotations_of(plan, question); ++row.rotation)
+      for (row.rotation = 0; row.rotation < ask::rotations_of(plan, question); ++row.rotation) {
+        fake_answer(plan, question, said, row);
         REQUIRE((*answers)->commit(row, q).ok());
+      }
     }
   }
   REQUIRE((*answers)->flush().ok());

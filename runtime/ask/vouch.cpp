@@ -1,0 +1,209 @@
+#include "runtime/ask/vouch.h"
+
+#include <cmath>
+#include <utility>
+
+#include "runtime/ask/plan_reading.h"
+#include "runtime/ask/queries.h"
+#include "runtime/ask/wording.h"
+#include "runtime/base/sha256.h"
+#include "runtime/plan/ids.h"
+#include "runtime/plan/questions.h"
+
+namespace probe::ask {
+namespace {
+
+// Begins the reason of a row that cannot be vouched for.
+constexpr std::string_view kUnvouched = "store: ";
+
+std::string does_not_follow(std::string_view cell, std::string_view from) {
+  return "its `" + std::string(cell) + "` does not follow from " + std::string(from);
+}
+
+// The cell that holds another reading than today's, by its name; empty: none does.
+std::string_view differing_cell(const Reading& stored, const Reading& today) {
+  if (stored.verdict != today.verdict) return "verdict";
+  if (stored.option != today.option) return "option";
+  if (stored.yes != today.yes) return "yes";
+  if (stored.number != today.number) return "number";
+  if (stored.point != today.point) return "point";
+  if (stored.mentioned != today.mentioned) return "mentioned";
+  return stored.rule == today.rule ? "" : "rule";
+}
+
+// Its set, family and task are those of the question.
+bool is_named_so(const plan::Plan& plan, const AnswerRow& row, std::uint32_t index) {
+  const plan::QuestionRecord& question = plan.questions()[index];
+  const plan::FamilyRecord& family = plan.families()[question.family];
+  return row.set == plan.text(family.set) && row.family == plan.text(family.name) &&
+         row.task == plan.text(plan.tasks()[question.task].name);
+}
+
+bool is_about(const plan::Plan& plan, const AnswerRow& row, std::uint32_t index) {
+  const plan::TaskRecord& task = plan.tasks()[plan.questions()[index].task];
+  if (row.episode < 0 || static_cast<std::uint32_t>(row.episode) >= task.episodes.count)
+    return false;
+  const plan::EpisodeRecord& episode =
+      plan.episodes()[task.episodes.first + static_cast<std::uint32_t>(row.episode)];
+  return to_hex(plan::to_sha256(episode.start_id)) == row.start_id;
+}
+
+// Of a truth that the picture or the recorded episode told, as its words say.
+std::optional<bool> told_yes(const std::string& expected) {
+  if (expected == "yes") return true;
+  if (expected == "no") return false;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Voucher::Voucher(const plan::Plan& plan) : plan_(plan) {
+  for (std::uint32_t q = 0; q < plan.questions().size(); ++q)
+    questions_[to_hex(plan::to_sha256(plan.questions()[q].question_id))].push_back(q);
+}
+
+void Voucher::vouch(AnswerRow& row) {
+  std::string why = reason(row);
+  if (why.empty()) return;
+  row.invalid = std::string(kUnvouched) + why;
+  row.right.reset();
+}
+
+// Why the row cannot be what asking stored; empty where it can.
+std::string Voucher::reason(AnswerRow& row) {
+  const auto alike = questions_.find(row.question_id);
+  if (alike == questions_.end()) return "the plan has no question " + row.question_id;
+  std::uint32_t question = plan::kNone;
+  for (const std::uint32_t q : alike->second) {
+    if (is_named_so(plan_, row, q)) question = q;
+  }
+  if (question == plan::kNone) {
+    return "the plan asks " + row.question_id + " not as " + row.set + "." + row.family + " of " +
+           row.task;
+  }
+  if (!is_about(plan_, row, question)) {
+    return row.task + " has no start " + row.start_id + " at " + std::to_string(row.episode);
+  }
+  if (row.rotation >= rotations_of(plan_, plan_.questions()[question]))
+    return "rotation " + std::to_string(row.rotation) + " is none of its options";
+  const plan::FamilyRecord& family = plan_.families()[plan_.questions()[question].family];
+  const bool is_end = plan::moment_of(family) == plan::QuestionMoment::kEnd;
+  if (is_end != (row.seed >= 0))
+    return is_end ? "it is asked at an episode's end and names none"
+                  : "it is asked of starts alone";
+  if (row.invalid) return {};
+  if (!row.right) return "it is neither right nor wrong";
+  return read_again(row, question);
+}
+
+// Nothing where the words of a question for a point tell no size.
+const Voucher::Order* Voucher::order_of(const AnswerRow& row, std::uint32_t question) {
+  const auto [at, is_new] = orders_.try_emplace({question, row.rotation});
+  Order& order = at->second;
+  const plan::QuestionRecord& record = plan_.questions()[question];
+  const bool is_point =
+      plan::form_of(plan_.families()[record.family]) == plan::QuestionForm::kPoint;
+  // Pictures of one folder have one size; of another, the words differ.
+  if (!is_new && (!is_point || order.text == row.text)) return &order;
+  ToldSize size;
+  if (is_point) {
+    const auto told = told_size(row.text);
+    if (!told) return nullptr;
+    size = *told;
+  }
+  Wording wording = word(plan_, record, row.rotation, size.width, size.height);
+  order.prompt_sha256 = to_hex(sha256(wording.text));
+  order.reader = std::make_unique<AnswerReader>(
+      read_context(plan_, record, wording.shown, size.width, size.height));
+  order.text = std::move(wording.text);
+  return &order;
+}
+
+std::string Voucher::read_again(AnswerRow& row, std::uint32_t question) {
+  const plan::QuestionRecord& record = plan_.questions()[question];
+  const Order* order = order_of(row, question);
+  if (order == nullptr || row.text != order->text)
+    return does_not_follow("text", "the plan's question");
+  if (row.prompt_sha256 != order->prompt_sha256)
+    return does_not_follow("prompt_sha256", "its `text`");
+  const bool is_older = row.reader != kReaderVersion;
+  if (plan::truth_of(record) == plan::QuestionTruth::kMentions) {
+    if (row.expected != known_truth(plan_, record)->expected)
+      return does_not_follow("expected", "the plan");
+    Restatement today = restate(plan_, record, row.raw);
+    const std::string_view cell = differing_cell(row.reading, today.reading);
+    if (!is_older && !cell.empty()) return does_not_follow(cell, "its `raw`");
+    if (!is_older && today.copied != row.copied) return does_not_follow("copied", "its `raw`");
+    if (!is_older && today.right != *row.right) return does_not_follow("right", "its `raw`");
+    row.reading = std::move(today.reading);
+    row.right = today.right;
+    row.copied = today.copied;
+    return {};
+  }
+  const Reading today = order->reader->read(row.raw);
+  const std::string_view cell = differing_cell(row.reading, today);
+  if (!is_older && !cell.empty()) return does_not_follow(cell, "its `raw`");
+  return judge_again(row, question, today);
+}
+
+std::string Voucher::judge_again(AnswerRow& row, std::uint32_t question, const Reading& today) {
+  const plan::QuestionRecord& record = plan_.questions()[question];
+  std::optional<Truth> truth = known_truth(plan_, record);
+  if (truth && row.expected != truth->expected) return does_not_follow("expected", "the plan");
+  if (!truth && plan::truth_of(record) != plan::QuestionTruth::kPixelsOf) {
+    const auto yes = told_yes(row.expected);
+    if (!yes) return "its `expected` is neither yes nor no";
+    truth = Truth{.yes = yes, .expected = row.expected};
+  }
+  if (!truth) {
+    // Which pixels are right is not stored: a point is believed, or asked for again.
+    const bool same = today.verdict == row.reading.verdict && today.point == row.reading.point;
+    if (!same && today.verdict == Verdict::kRead)
+      return "today's reader takes another point from it; ask again";
+    const bool can_be_right = today.verdict == Verdict::kRead;
+    if (*row.right && !can_be_right && row.reader == kReaderVersion)
+      return does_not_follow("right", "its `raw`");
+    row.right = *row.right && can_be_right;
+    row.reading = today;
+    return {};
+  }
+  const bool right = is_right(*truth, today);
+  if (row.reader == kReaderVersion && right != *row.right)
+    return does_not_follow("right", "its `raw`");
+  row.reading = today;
+  row.right = right;
+  return {};
+}
+
+void RowFindings::add(const AnswerRow& row) {
+  if (row.reader != kReaderVersion) ++read_anew_;
+  constexpr std::size_t kMostKept = 100;  // reasons that name ids may be as many as rows
+  if (!row.invalid || !row.invalid->starts_with(kUnvouched)) return;
+  ++refused_;
+  if (reasons_.size() < kMostKept || reasons_.contains(*row.invalid)) ++reasons_[*row.invalid];
+}
+
+std::vector<std::string> RowFindings::sentences() const {
+  std::vector<std::string> out;
+  if (read_anew_ > 0) {
+    out.push_back(std::to_string(read_anew_) +
+                  (read_anew_ == 1
+                       ? " answer was read by another version of the reader and is"
+                       : " answers were read by another version of the reader and are") +
+                  " read anew by today's rules");
+  }
+  constexpr std::size_t kTold = 5;
+  std::int64_t told = 0;
+  for (const auto& [reason, count] : reasons_) {
+    if (out.size() == kTold) break;
+    out.push_back(std::to_string(count) + (count == 1 ? " answer counts" : " answers count") +
+                  " neither way: " + reason.substr(kUnvouched.size()));
+    told += count;
+  }
+  if (told < refused_)
+    out.push_back(std::to_string(refused_ - told) +
+                  " more answers cannot be vouched for, for other reasons");
+  return out;
+}
+
+}  // namespace probe::ask
