@@ -6,9 +6,8 @@
 #include "runtime/base/csv.h"
 #include "runtime/base/percent.h"
 #include "runtime/report/categories.h"
-#include "runtime/report/knowledge.h"
 #include "runtime/report/page_data.h"
-#include "runtime/report/table_text.h"
+#include "runtime/report/table_parts.h"
 
 namespace probe::report {
 namespace {
@@ -62,12 +61,12 @@ std::string lines(const Benchmark& benchmark, const Tables& tables) {
 
 }  // namespace
 
-std::string differences_csv(const Benchmark& benchmark, const Tables& tables) {
-  std::string text = std::string(kHead) + lines(benchmark, tables);
-  if (benchmark.models.empty()) return text;
-  const Benchmark models = models_as_policies(benchmark);
-  text += lines(models, make_tables(models));
-  for (const KnowsRow& row : make_knowledge(benchmark).knows) {
+std::string differences_csv(const TablesToPrint& print) {
+  const Benchmark& benchmark = print.benchmark;
+  std::string text = std::string(kHead) + lines(benchmark, print.tables);
+  if (print.asked == nullptr) return text;
+  text += lines(print.asked->benchmark, print.asked->tables);
+  for (const KnowsRow& row : print.asked->knowledge.knows) {
     text +=
         line("knows-goes", benchmark.models[static_cast<std::size_t>(row.model)].label,
              benchmark.policies[static_cast<std::size_t>(row.policy)].label,

@@ -188,6 +188,20 @@ std::int64_t KnowsRow::with(bool knows, bool goes) const {
   return counts[at] + counts[at + 1];
 }
 
+FamilyNames::FamilyNames(const Benchmark& benchmark) {
+  std::map<std::string, std::string> worded;  // by name: the words of the first of that name
+  for (const AskedModel& model : benchmark.models) {
+    const plan::Plan& plan = plan_of(benchmark, model);
+    std::vector<std::string>& names = names_.emplace_back();
+    for (std::uint32_t f = 0; f < plan.families().size(); ++f) {
+      std::string name = family_name(plan, f);
+      const std::string words(plan.text(plan.families()[f].text));
+      if (worded.try_emplace(name, words).first->second != words) name += " \"" + words + "\"";
+      names.push_back(std::move(name));
+    }
+  }
+}
+
 Benchmark models_as_policies(const Benchmark& benchmark) {
   Benchmark out;
   out.things = "questions";
@@ -195,22 +209,19 @@ Benchmark models_as_policies(const Benchmark& benchmark) {
   out.plans = benchmark.plans;
   out.notes = benchmark.notes;
   std::map<std::string, int> metrics;
-  std::map<std::pair<int, int>, int> tasks;   // task of the benchmark and metric
-  std::map<std::string, std::string> worded;  // by name: the words of the first of that name
-  const auto metric_of = [&](const AskedModel& model, std::uint32_t family) {
-    const plan::Plan& plan = plan_of(benchmark, model);
-    std::string name = family_name(plan, family);
-    const std::string words(plan.text(plan.families()[family].text));
-    // Plans that ask other words under one name ask something else.
-    if (worded.try_emplace(name, words).first->second != words) name += " \"" + words + "\"";
+  std::map<std::pair<int, int>, int> tasks;  // task of the benchmark and metric
+  const FamilyNames names(benchmark);
+  const auto metric_of = [&](int model, std::uint32_t family) {
+    const std::string& name = names.of(model, family);
     const auto [known, fresh] = metrics.try_emplace(name, static_cast<int>(out.metrics.size()));
     if (fresh) out.metrics.push_back({name, true, +1});
     return known->second;
   };
   Pairing pairing;
-  for (const AskedModel& model : benchmark.models) {
-    for (const AskedModel::Known& known : model.known)
-      tasks.try_emplace({known.task, metric_of(model, known.family)}, 0);
+  const auto count = static_cast<int>(benchmark.models.size());
+  for (int m = 0; m < count; ++m) {
+    for (const AskedModel::Known& known : model_at(benchmark, m).known)
+      tasks.try_emplace({known.task, metric_of(m, known.family)}, 0);
   }
   for (auto& [key, index] : tasks) {
     index = static_cast<int>(out.tasks.size());
@@ -232,10 +243,11 @@ Benchmark models_as_policies(const Benchmark& benchmark) {
     category.tasks = std::move(members);
     out.categories.push_back(std::move(category));
   }
-  for (const AskedModel& model : benchmark.models) {
+  for (int m = 0; m < count; ++m) {
+    const AskedModel& model = model_at(benchmark, m);
     Policy policy{model.name, model.label, Role::kModel, {}};
     for (const AskedModel::Known& known : model.known) {
-      const int metric = metric_of(model, known.family);
+      const int metric = metric_of(m, known.family);
       Episode episode;
       episode.policy = static_cast<int>(out.policies.size());
       episode.task = tasks.at({known.task, metric});

@@ -40,6 +40,19 @@ struct Knowledge {
   std::vector<KnowsRow> knows;  // `adjusted` after Holm: sums among themselves, categories of a sum
 };
 
+// What each family is called in tables of models: "understanding.source", and with its words where
+// a plan before asks other words under that name.
+class FamilyNames {
+ public:
+  explicit FamilyNames(const Benchmark& benchmark);
+  const std::string& of(int model, std::uint32_t family) const {
+    return names_[static_cast<std::size_t>(model)][family];
+  }
+
+ private:
+  std::vector<std::vector<std::string>> names_;  // by model, family
+};
+
 // The models as policies, families of questions as metrics, and as an episode what was answered in
 // all orders of the options about one start: so that tables and comparisons of policies are those
 // of models, too. A task stands there once for each family that it is asked.

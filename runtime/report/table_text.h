@@ -36,12 +36,11 @@ std::optional<TableFormat> table_format(std::string_view name);
 //   differences by category. For a paper take a table and the two commands before the document
 //   begins.
 // Models that were asked stand in the same tables, behind the policies, with families of questions
-// for metrics; json has `models` and `knows`, csv-differences lines of kind knows-goes, latex a
-// table. Every percentage has its count beside it.
+// for metrics: what is right in every order of the options. Beside it stand the rates of
+// kRateKinds: in csv as metrics "FAMILY (blind)", in json as `models.rates`, in latex in a table.
+// json has `models` and `knows`, csv-differences lines of kind knows-goes, latex a table. Every
+// percentage has its count beside it, but for what is computed.
 std::string table_text(const Benchmark& benchmark, const Tables& tables,
                        const std::vector<PublishedTable>& published, TableFormat format);
-
-// Its parts.
-std::string differences_csv(const Benchmark& benchmark, const Tables& tables);
 
 }  // namespace probe::report

@@ -103,6 +103,71 @@ TEST_CASE("answers without a run make tables and a page of their own") {
     CHECK(!table_text(benchmark, tables, {}, format).empty());
 }
 
+TEST_CASE("tables of models have what stands beside: one order, no picture, another one, luck") {
+  RunsFolder folder;
+  const plan::Plan asked = suite_plan("questions.probe");
+  fake_answers(folder / "answers", asked, "pali_gemma", knows_carrots);
+  const auto blind = [](const std::string&, const std::string& task, int episode) {
+    return task == kCarrot && episode < 6 ? Said::kRight : Said::kWrong;
+  };
+  fake_answers(folder / "answers", asked, "pali_gemma", blind, ask::Arm::kBlind);
+  const Benchmark benchmark = loaded({folder / "answers"});
+  const Tables tables = make_tables(benchmark);
+  const std::string n = std::to_string(51 * 24);
+
+  const std::string csv = table_text(benchmark, tables, {}, TableFormat::kCsv);
+  const std::string head = csv.substr(0, csv.find('\n'));
+  const auto fields = [](const std::string& line) {
+    return std::count(line.begin(), line.end(), ',');
+  };
+  std::map<std::string, std::string> lines;  // of the source, by metric
+  for (std::size_t at = 0; at < csv.size(); at = csv.find('\n', at) + 1) {
+    const std::string line = csv.substr(at, csv.find('\n', at) - at);
+    CHECK_MESSAGE(fields(line) == fields(head), line);
+    const std::string begin = "pali_gemma,understanding.source";
+    if (line.starts_with(begin))
+      lines[line.substr(begin.size(), line.find(',', begin.size()) - begin.size())] = line;
+  }
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[""].find(",18," + n) != std::string::npos);
+  CHECK(lines[" (plain)"].find(",18," + n) != std::string::npos);
+  CHECK(lines[" (blind)"].find(",6," + n) != std::string::npos);
+  CHECK(lines[" (blind)"].starts_with("pali_gemma,understanding.source (blind),0.5,"));
+  // Two to four objects a task; nothing was counted.
+  CHECK(lines[" (luck)"].ends_with(",computed"));
+  CHECK(lines[" (luck)"].find(n) == std::string::npos);
+  CHECK(!lines.contains(" (prior)"));
+
+  const Json json = Json::parse(table_text(benchmark, tables, {}, TableFormat::kJson));
+  std::map<std::string, Json> rates;
+  for (const Json& row : json["models"]["rates"]) {
+    if (row["metric"] == "understanding.source") rates[row["rate"].text()] = row["columns"]["avg"];
+  }
+  REQUIRE(rates.size() == 3);
+  CHECK(rates["plain"]["k"] == 18);
+  CHECK(rates["blind"]["k"] == 6);
+  CHECK(rates["blind"]["n"] == 51 * 24);
+  CHECK(!rates["luck"].contains("n"));
+  // The page has them from the same computation.
+  const Json page = page_data(benchmark, tables, {.title = "", .models = false});
+  const Json& on_page = page["tables"]["accuracy"][0];
+  REQUIRE(page["models"][0]["families"][0]["name"] == "understanding.source");
+  REQUIRE(on_page["category"] == kAbsent);
+  CHECK(on_page["blind"]["circular"][0] == 6);
+  CHECK(rounded(100 * on_page["random"].get<double>()) ==
+        doctest::Approx(rates["luck"]["percent"].get<double>()).epsilon(0.01));
+
+  const std::string latex = table_text(benchmark, tables, {}, TableFormat::kLatex);
+  const std::size_t heads = latex.find("in one order & without the picture & with another picture");
+  REQUIRE(heads != std::string::npos);
+  const std::size_t row = latex.find("pali\\_gemma & understanding.source & ", heads);
+  REQUIRE(row != std::string::npos);
+  const std::string cells = latex.substr(row, latex.find("\\\\\n", row) - row);
+  CHECK(cells.find("{18/" + n + "}") != std::string::npos);
+  CHECK(cells.find("{6/" + n + "}") != std::string::npos);
+  CHECK(std::count(cells.begin(), cells.end(), '&') == 5);
+}
+
 TEST_CASE("two models are compared on the same questions") {
   RunsFolder folder;
   const plan::Plan asked = suite_plan("questions.probe");
