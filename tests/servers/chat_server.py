@@ -159,6 +159,11 @@ def failing(handler, request, answer):
     handler.reply(500, error("CUDA out of memory", "InternalServerError", 500))
 
 
+def moved(handler, request, answer):
+    handler.reply(307, error("moved", "Redirect", 307),
+                  {"Location": "http://elsewhere:9000/v1/chat/completions?key=secret"})
+
+
 def closes(handler, request, answer):
     handler.close_connection = True
 
@@ -193,7 +198,7 @@ def says(make):
 
 
 FAULTS = {
-    "slow": slow, "busy": busy, "error": failing, "closes": closes, "cut": cut, "text": text,
+    "slow": slow, "busy": busy, "moved": moved, "error": failing, "closes": closes, "cut": cut, "text": text,
     "stream": stream, "no_vision": no_vision,
     "shape": says(lambda request, answer: {"object": "list", "data": []}),
     "null": says(lambda request, answer: completion(request, None)),

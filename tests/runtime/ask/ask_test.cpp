@@ -67,6 +67,21 @@ TEST_CASE("the model that knows is right everywhere, in every form and rotation"
   CHECK(again.skipped == summary.total);
 }
 
+TEST_CASE("a habit has no sentence: it is right about none, and about one order of a choice") {
+  TemporaryFolder folder;
+  must_ask(asking_plan(2), asking_options("first", folder / "first"));
+  int sentences = 0, choices = 0;
+  for (const AnswerRow& row : rows_in(folder / "first")) {
+    CAPTURE(row.family);
+    if (row.family == "source") choices += row.right == true ? 1 : 0;
+    if (row.family != "restate") continue;
+    CHECK(row.right == false);
+    ++sentences;
+  }
+  CHECK(sentences == 2);
+  CHECK(choices == 2);
+}
+
 TEST_CASE("one job or three, in one go or in shards: the same answers") {
   TemporaryFolder folder;
   const plan::Plan plan = asking_plan(3);

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <map>
 
 #include "runtime/ask/answers.h"
@@ -133,6 +134,47 @@ TEST_CASE("what cannot be asked at all is told before there is a row") {
   CHECK(refusal("openai://127.0.0.1:1?model=m&size=224").starts_with("`size` is written WxH"));
   CHECK(refusal("openai://127.0.0.1:1?model=m&api_key=x").find("VLAPROBE_API_KEY") !=
         std::string::npos);
+}
+
+TEST_CASE("a server that sends elsewhere is told where to, and one without TLS that it has none") {
+  const TemporaryFolder folder;
+  const plan::Plan plan = asking_plan(1);
+  const PythonServer moved("chat_server.py", {"always_a", "fault=moved"});
+  const auto sent = ask(plan, asking_at(address_of(moved, "always_a"), folder / "answers"));
+  REQUIRE(!sent.ok());
+  CHECK(sent.failure().message ==
+        "answered with HTTP status 307, which sends to "
+        "`http://elsewhere:9000/v1/chat/completions`: let the address name that: moved");
+
+  const PythonServer plain("chat_server.py", {"always_a"});
+  const std::string address =
+      "https://127.0.0.1:" + plain.port() + "?model=always_a&timeout.wait_s=60";
+  const auto begun = std::chrono::steady_clock::now();
+  const auto refused = ask(plan, asking_at(address, folder / "answers"));
+  REQUIRE(!refused.ok());
+  CHECK_MESSAGE(refused.failure().message.find("speak TLS") != std::string::npos,
+                refused.failure().message);
+  CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(50));
+  CHECK(!holds_answers(folder / "answers"));
+}
+
+TEST_CASE("answers that were asked for in two ways are never mixed, whatever is said") {
+  const TemporaryFolder folder;
+  const PythonServer server("chat_server.py", {"always_a"});
+  const plan::Plan plan = asking_plan(1);
+  const std::string small = address_of(server, "always_a", "&size=224x168");
+  REQUIRE(ask(plan, asking_at(small, folder / "answers")).ok());
+  AskOptions other = asking_at(address_of(server, "always_a", "&size=320x240"), folder / "answers");
+  other.if_changed = run::IfChanged::kContinue;
+  const auto mixed = ask(plan, other);
+  REQUIRE(!mixed.ok());
+  CHECK(mixed.failure().message.starts_with("was begun by asking in another way (recorded chat"));
+  CHECK(mixed.failure().message.find("--if-changed fork") != std::string::npos);
+  CHECK(mixed.failure().message.find("--if-changed continue") == std::string::npos);
+  other.if_changed = run::IfChanged::kFork;
+  const auto forked = ask(plan, other);
+  REQUIRE_MESSAGE(forked.ok(), to_text(forked.failure()));
+  CHECK(forked->out == (folder / "answers") + "-2");
 }
 
 TEST_CASE("a call gives up after so many lost questions, and the same call goes on later") {

@@ -1,0 +1,49 @@
+#include "runtime/ask/recorded.h"
+
+#include "runtime/ask/ask.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/store.h"
+
+namespace probe::ask {
+
+Result<Recorded> read_recorded(const plan::Plan& plan, const std::string& dir,
+                               std::vector<std::string>& notes) {
+  PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+  PROBE_ASSIGN(store::ProvenResults proven, store::read_proven_results(dir));
+  Recorded recorded;
+  const store::RunIdentity& identity = record.identity;
+  constexpr std::size_t kShownRoot = 12;
+  recorded.identity = identity.policy + ", plan " + identity.plan_root.substr(0, kShownRoot);
+  if (!identity.policy_content.empty()) recorded.identity += ", " + identity.policy_content;
+  if (!identity.live.empty()) recorded.identity += ", " + identity.live;
+  for (const std::string& sentence : proven.refused) notes.push_back(sentence);
+  std::size_t strange = 0;
+  for (store::ResultRow& row : proven.rows) {
+    if (row.invalid) continue;
+    const auto task = plan.find_task(row.task);
+    const auto index = static_cast<std::uint32_t>(row.episode);
+    const bool is_there = task && index < plan.tasks()[*task].episodes.count;
+    const std::uint32_t episode = is_there ? plan.tasks()[*task].episodes.first + index : 0;
+    const bool is_same = is_there && start_id_of(plan, episode) == row.start_id &&
+                         to_hex(sha256(plan.text(plan.tasks()[*task].prompt))) == row.prompt_sha256;
+    if (!is_same) {
+      ++strange;
+      continue;
+    }
+    recorded.ends.push_back({episode, row.seed, recorded.rows.size()});
+    recorded.rows.push_back(std::move(row));
+  }
+  if (strange > 0) {
+    notes.push_back(std::to_string(strange) + " episodes of " + dir +
+                    " are left out: the plan has no task of that name, start and instruction");
+  }
+  return recorded;
+}
+
+Result<std::vector<RecordedEnd>> recorded_ends(const plan::Plan& plan, const std::string& dir) {
+  std::vector<std::string> notes;
+  PROBE_ASSIGN(Recorded recorded, read_recorded(plan, dir, notes));
+  return std::move(recorded.ends);
+}
+
+}  // namespace probe::ask
