@@ -11,4 +11,8 @@ namespace probe::rephrase {
 // Apostrophes leave no gap, so "rabbit's" is "rabbits".
 std::string likeness(std::string_view wording);
 
+// The same without what only asks politely ("please", "could you"): who was trained on the one form
+// has seen the other. Nothing but such words are their own likeness.
+std::string likeness_without_courtesy(std::string_view wording);
+
 }  // namespace probe::rephrase

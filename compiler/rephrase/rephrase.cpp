@@ -66,9 +66,10 @@ void weigh(TaskWordings& of_task, const Options& options) {
 Rephrased rephrase(const sema::Model& model, std::span<const sema::TaskId> tasks,
                    const std::vector<Evaluation>& not_in, const Options& options) {
   const Evaluations evaluations(not_in);
-  std::set<std::string> instructions;  // as likeness() has them
+  std::set<std::string> instructions;  // as likeness_without_courtesy() has them
   for (const sema::Task& task : model.tasks) {
-    if (!task.abstract && task.complete) instructions.insert(likeness(task.prompt));
+    if (!task.abstract && task.complete)
+      instructions.insert(likeness_without_courtesy(task.prompt));
   }
   Prover prover(model);
   std::vector<Proved> of_tasks;
@@ -97,15 +98,15 @@ Rephrased rephrase(const sema::Model& model, std::span<const sema::TaskId> tasks
     }
     of_task.over_cap = cap(proved.wordings, task.prompt, options);
     for (Wording& wording : proved.wordings) {
-      const std::string like = likeness(wording.text);
       if (!options.drop_leaks) {
-        if (auto leak = evaluations.find(wording.text, like)) {
+        if (auto leak = evaluations.find(wording.text, likeness(wording.text))) {
           ++of_task.leaks;
           all.leaks.push_back({id, wording.text, *std::move(leak)});
         }
       }
-      const bool is_held_out = !instructions.contains(like) &&
-                               draw_share("split", options.seed, like) < options.held_out;
+      const std::string core = likeness_without_courtesy(wording.text);
+      const bool is_held_out = !instructions.contains(core) &&
+                               draw_share("split", options.seed, core) < options.held_out;
       ++(is_held_out ? of_task.held_out : of_task.train);
       of_task.lines.push_back({std::move(wording), is_held_out, 0});
     }

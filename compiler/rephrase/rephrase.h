@@ -65,7 +65,8 @@ struct Rephrased {
 
 // `tasks`: concrete ones of `model`, which has no errors and must live as long as the result. A
 // wording's split is drawn from the seed and its words, up to how they are compared with
-// evaluations, so that no other task has it in another split; what is an instruction of any task
+// evaluations and without courtesies, so that no other task has it in another split, not even more
+// politely; what is an instruction of any task
 // of the model is trained on. Which wordings a task keeps under its cap is drawn from the seed, its
 // instruction and the wording.
 Rephrased rephrase(const sema::Model& model, std::span<const sema::TaskId> tasks,

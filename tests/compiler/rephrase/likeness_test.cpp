@@ -16,6 +16,21 @@ TEST_CASE("wordings are alike up to case, articles, punctuation and the order of
     CHECK_MESSAGE(likeness(other) != plain, other);
 }
 
+TEST_CASE("who asks politely asks for the same, and what is only polite stays what it is") {
+  const std::string plain = likeness_without_courtesy("put carrot on plate");
+  for (const char* same :
+       {"Please put the carrot on the plate.", "could you put the carrot on the plate?",
+        "Could you please put the carrot on the plate",
+        "I'd like you to put the carrot on the plate", "put the carrot on the plate, please",
+        "on the plate, put the carrot, thank you!"})
+    CHECK_MESSAGE(likeness_without_courtesy(same) == plain, same);
+  for (const char* other :
+       {"I want the carrot on the plate", "could put carrot on plate", "put you carrot on plate"})
+    CHECK_MESSAGE(likeness_without_courtesy(other) != plain, other);
+  CHECK(likeness_without_courtesy("please") == "please");
+  CHECK(likeness("please put carrot on plate") != likeness("put carrot on plate"));
+}
+
 TEST_CASE("apostrophes leave no gap, and words of other scripts keep their letters") {
   CHECK(likeness("rabbit's favorite") == likeness("rabbit\u2019s favorite"));
   CHECK(likeness("rabbit's") == likeness("Rabbits"));

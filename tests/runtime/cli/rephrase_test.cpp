@@ -74,11 +74,19 @@ TEST_CASE("training and held-out wordings are disjoint, and the same bytes come 
   REQUIRE(box.vlaprobe(half + "-o b.jsonl").exit == 0);
   const std::string lines = read_file(box / "a.jsonl");
   CHECK(lines == read_file(box / "b.jsonl"));
-  std::map<std::string, std::string> split;
+  std::map<std::string, std::string> split, core;
   std::set<std::string> both;
   for (const Json& row : rows(lines)) {
     CHECK(split.try_emplace(row["wording"].text(), row["split"].text()).first->second ==
           row["split"].text());
+    // A policy that was trained on "please put ..." has seen "put ...".
+    std::string plain = row["wording"].text();
+    for (const std::string polite : {"please ", "could you "}) {
+      if (plain.starts_with(polite)) plain.erase(0, polite.size());
+    }
+    if (plain.ends_with('?')) plain.pop_back();
+    CHECK_MESSAGE(core.try_emplace(plain, row["split"].text()).first->second == row["split"].text(),
+                  plain);
     both.insert(row["split"].text());
   }
   CHECK(both.size() == 2);
