@@ -5,6 +5,7 @@
 
 #include "runtime/plan/isa.h"
 #include "runtime/plan/readouts.h"
+#include "runtime/plan/roles.h"
 #include "runtime/vm/made_up.h"
 
 namespace probe::audit {
@@ -18,39 +19,48 @@ constexpr double kLedge = 0.01;    // m: from one height of it to the next
 // Where the source's box is beside the target's, its thin side against the target's: as near as the
 // two can be without standing in one another. At the target's height.
 Vec3 beside(const vm::MadeUpWorld& world) {
-  const Vec3 source = world.starts[0].half, target = world.starts[1].half;
+  const Vec3 source = world.starts[world.source].half, target = world.starts[world.target].half;
   const double apart = std::min(source.x(), source.y()) + std::min(target.x(), target.y()) + kGap;
   const bool along_x = target.x() <= target.y();
-  return world.sample.bodies[1].position + (along_x ? Vec3(apart, 0, 0) : Vec3(0, apart, 0));
+  return world.sample.bodies[world.target].position +
+         (along_x ? Vec3(apart, 0, 0) : Vec3(0, apart, 0));
+}
+
+// Rules about one thing that goes to another are asked of no other task.
+bool has_both(const plan::Plan& plan, std::uint32_t task) {
+  return plan::roles_of(plan.tables(), plan.tasks()[task]).has_both();
 }
 
 }  // namespace
 
 Result<bool> wrong_counts_target(const plan::Plan& plan, std::uint32_t task, std::uint32_t wrong) {
+  if (!has_both(plan, task)) return false;
   vm::MadeUpWorld world = vm::make_up_world(plan, task);
-  world.put(1, world.sample.bodies[1].position + Vec3(0.1, 0, 0));
+  world.put(world.target, world.sample.bodies[world.target].position + Vec3(0.1, 0, 0));
   return vm::judge_world(plan, task, wrong, std::move(world));
 }
 
 Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  if (!has_both(plan, task)) return false;
   if (plan.scenes()[plan.tasks()[task].scene].fixture_collision != plan::kNone) return false;
   vm::MadeUpWorld world = vm::make_up_world(plan, task);
   Vec3 at = beside(world);
-  at.z() = world.sample.bodies[0].position.z();
-  world.put(0, at);
-  for (const std::uint16_t body : {std::uint16_t{0}, std::uint16_t{1}})
+  at.z() = world.sample.bodies[world.source].position.z();
+  world.put(world.source, at);
+  for (const std::uint16_t body : {world.source, world.target})
     world.press_down(body, world.surface);
   return vm::judge_world(plan, task, success, std::move(world));
 }
 
 Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  if (!has_both(plan, task)) return false;
   if (plan.scenes()[plan.tasks()[task].scene].fixture_collision == plan::kNone) return false;
   for (double height = 0; height <= kHighest; height += kLedge) {
     vm::MadeUpWorld world = vm::make_up_world(plan, task);
     Vec3 at = beside(world);
-    at.z() += height - world.starts[1].half.z() + world.starts[0].half.z();
-    world.put(0, at);
-    for (const std::uint16_t body : {std::uint16_t{0}, std::uint16_t{1}})
+    at.z() += height - world.starts[world.target].half.z() + world.starts[world.source].half.z();
+    world.put(world.source, at);
+    for (const std::uint16_t body : {world.source, world.target})
       world.press_down(body, world.fixture);
     PROBE_ASSIGN(const bool passes, vm::judge_world(plan, task, success, std::move(world)));
     if (passes) return true;
@@ -59,9 +69,11 @@ Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::
 }
 
 Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  if (!has_both(plan, task)) return false;
   vm::MadeUpWorld world = vm::make_up_world(plan, task);
-  const double above = world.starts[0].half.z() + world.starts[1].half.z() + kHeldGap;
-  world.put(0, world.sample.bodies[1].position + Vec3(0, 0, above));
+  const double above =
+      world.starts[world.source].half.z() + world.starts[world.target].half.z() + kHeldGap;
+  world.put(world.source, world.sample.bodies[world.target].position + Vec3(0, 0, above));
   world.hold_source();
   return vm::judge_world(plan, task, success, std::move(world));
 }

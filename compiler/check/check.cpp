@@ -9,6 +9,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_spatial_words(model, reporter);
   check_mentions(model, reporter);
   check_poses(model, reporter);
+  check_named(model, reporter);
   check_starts(model, reporter);
   check_metrics(model, reporter);
   check_expectations(model, reporter);

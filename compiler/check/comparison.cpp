@@ -22,6 +22,8 @@ const Span* statement_of(const Task& task, plan::Axis axis) {
       return &task.role_span[0];
     case plan::Axis::kObjectTarget:
       return &task.role_span[1];
+    case plan::Axis::kObjectOther:
+      return task.others.empty() ? nullptr : &task.others.front().span;
     case plan::Axis::kDistractors:
       return &task.distractors_span;
     case plan::Axis::kLanguageAction:

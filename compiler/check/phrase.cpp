@@ -26,15 +26,14 @@ struct TaskLanguage {
   Unfit& unfit;
   Relations& relations;
 
-  const Span& place(std::size_t role) const {
-    return task.refer[role]          ? task.refer[role]->span
-           : task.say_span.is_none() ? task.span
-                                     : task.say_span;
+  const Span& place(RoleId role) const {
+    const Spelled* refer = task.refer_of(role);
+    return refer != nullptr ? refer->span : task.say_span.is_none() ? task.span : task.say_span;
   }
 
   // What made `other` a rival of the words for a role: the newcomer when the words were there
   // before it, else the words.
-  Span rivalry(std::size_t role, ObjectId other) const {
+  Span rivalry(RoleId role, ObjectId other) const {
     if (is_within(place(role), task.decl_span)) return place(role);
     return entry_of(task, other).value_or(task.span);
   }
@@ -56,11 +55,11 @@ struct TaskLanguage {
     return {};
   }
 
-  void check_phrase(std::size_t role, const Phrase& phrase, ObjectId wanted_id) const {
+  void check_phrase(RoleId role, const Phrase& phrase, ObjectId wanted_id) const {
     if (phrase.is_spatial()) return check_places(role, phrase, wanted_id);
     const Object& wanted = model.objects[wanted_id];
     const std::string quoted = "\"" + phrase.text.text + "\"";
-    const std::vector<ObjectId> objects = task.objects();
+    const std::vector<ObjectId> objects = rivals_of(role, wanted_id);
     const Denotation meant = denote(model, objects, phrase, wanted_id);
     if (!meant.fits) {
       if (!unfit.insert({&phrase, wanted_id}).second) return;
@@ -121,7 +120,7 @@ struct TaskLanguage {
     return "start " + std::to_string(start) + ": " + text;
   }
 
-  void check_places(std::size_t role, const Phrase& phrase, ObjectId wanted) const {
+  void check_places(RoleId role, const Phrase& phrase, ObjectId wanted) const {
     const std::size_t mistakes = reporter.diagnostics.error_count();
     const Unclear found = unclear_starts(phrase, wanted);
     if (found.count() == 0 || reporter.diagnostics.error_count() != mistakes) return;
@@ -142,12 +141,22 @@ struct TaskLanguage {
     if (clear > 0)
       diagnostic.help("it is clear in " + std::to_string(clear) + " of them: `layout " +
                       model.layouts[task.layout].name + " where clear " + phrase.name + " of " +
-                      (role == 0 ? "source" : "target") + "` keeps those, in its baseline, too");
+                      model.roles[role].name + "` keeps those, in its baseline, too");
   }
 
-  void check_name(std::size_t role, ObjectId wanted_id) const {
+  // With `wanted`, the objects that it has to be told apart from: those that are said in one breath
+  // with it have not.
+  std::vector<ObjectId> rivals_of(RoleId role, ObjectId wanted) const {
+    std::vector<ObjectId> objects = task.objects();
+    std::erase_if(objects, [&](ObjectId id) {
+      return id != wanted && model.roles[role].is_set && task.role_of(id) == role;
+    });
+    return objects;
+  }
+
+  void check_name(RoleId role, ObjectId wanted_id) const {
     const Object& wanted = model.objects[wanted_id];
-    for (const ObjectId id : task.objects()) {
+    for (const ObjectId id : rivals_of(role, wanted_id)) {
       if (id == wanted_id) continue;
       const std::string& other = model.objects[id].text.text;
       const std::string& name = wanted.text.text;
@@ -177,15 +186,16 @@ struct TaskLanguage {
 
   // The source is what is to be moved, and the target is avoided only where the goal moves with it.
   bool check_avoided(const SlotRef& slot) const {
-    const auto is = [&](const char* role, ObjectId id) {
-      return slot.name.text == role || slot.name.text == model.objects[id].name;
+    const auto is = [&](RoleId role, ObjectId id) {
+      return slot.role == role ||
+             (id != ObjectId::kNone && slot.name.text == model.objects[id].name);
     };
-    if (is("source", task.source)) {
+    if (is(RoleId::kSource, task.source)) {
       reporter.report(Situation::kAvoidsSource, slot.span,
                       "the source cannot be the object to avoid");
       return false;
     }
-    if (!is("target", task.target) || task.baseline == TaskId::kNone) return true;
+    if (!is(RoleId::kTarget, task.target) || task.baseline == TaskId::kNone) return true;
     const Task& baseline = model.tasks[task.baseline];
     if (!baseline.complete || baseline.abstract || has_negation(model.templates[baseline.say]) ||
         plan::moves(task.axes, plan::Axis::kGoal))
@@ -198,17 +208,50 @@ struct TaskLanguage {
     return false;
   }
 
+  // Words that count, held against how many there are: of the role, and in the scene where one noun
+  // stands for all.
+  bool check_count(const SlotRef& slot, const std::vector<ObjectId>& meant) const {
+    using syntax::SlotCount;
+    const Template& say = model.templates[task.say];
+    const Counted counted = count_of(model, task, say, slot);
+    if (counted.fit == CountFit::kYes) return true;
+    const std::size_t number = task.objects_in(slot.role).size();
+    const std::string of_role = "`" + slot.name.text + "` of `" + task.name + "` is " +
+                                std::to_string(number) + (number == 1 ? " object" : " objects");
+    const bool is_noun = counted.fit == CountFit::kNoun;
+    std::string why = "the words count otherwise: " + of_role;
+    if (slot.count == SlotCount::kOther)
+      why = "\"the other\" is one: " + of_role + ", of which " + std::to_string(meant.size()) +
+            " were not said before";
+    if (is_noun)
+      why = "`" + model.objects[counted.other].name + "` of `" + task.name +
+            "` is called so, too, and is not of `" + slot.name.text + "`";
+    Diagnostic& said = reporter.report(
+        Code::P1104, task.say_span.is_none() ? task.span : task.say_span, std::move(why));
+    said.label(slot.span, "these words");
+    if (is_noun) {
+      said.label(entry_of(task, counted.other).value_or(task.span), "it is in the scene");
+    } else if (slot.count == SlotCount::kAll && slot.number == 0 && number == 2) {
+      said.help("of two one says `{both " + slot.name.text + "}`");
+    }
+    return false;
+  }
+
   void check_slot(const SlotRef& slot) const {
     if (slot.avoid && !check_avoided(slot)) return;
-    const bool is_source = slot.name.text == "source";
-    if (is_source || slot.name.text == "target") {
-      const ObjectId id = is_source ? task.source : task.target;
-      const std::size_t role = is_source ? 0 : 1;
-      check_category(slot, model.objects[id]);
-      const Referring words =
-          referring(model, task, is_source ? syntax::Role::kSource : syntax::Role::kTarget);
-      if (words.phrase != nullptr) return check_phrase(role, *words.phrase, id);
-      return check_name(role, id);
+    if (slot.role != RoleId::kNone) {
+      const std::vector<ObjectId> meant = meant_by(model, task, model.templates[task.say], slot);
+      if (!check_count(slot, meant)) return;
+      for (const ObjectId id : meant) {
+        check_category(slot, model.objects[id]);
+        const Referring words = referring(model, task, id);
+        if (words.phrase != nullptr) {
+          check_phrase(slot.role, *words.phrase, id);
+        } else {
+          check_name(slot.role, id);
+        }
+      }
+      return;
     }
     std::string scene;
     for (const ObjectId id : task.objects()) {
@@ -286,9 +329,11 @@ void check_phrases(const Model& model, const std::string& asset_root, Reporter& 
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
     const TaskLanguage check{model, reporter, task, unfit, relations};
-    std::set<std::pair<std::string, bool>> checked;  // a second slot of one name says nothing new
+    // A second slot of one name says nothing new, unless it counts.
+    std::set<std::tuple<std::string, bool, syntax::SlotCount>> checked;
     for (const Template::Part& part : model.templates[task.say].parts) {
-      if (part.slot && checked.insert({part.slot->name.text, part.slot->avoid}).second)
+      if (part.slot &&
+          checked.insert({part.slot->name.text, part.slot->avoid, part.slot->count}).second)
         check.check_slot(*part.slot);
     }
     check.check_sentence();

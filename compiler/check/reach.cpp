@@ -14,13 +14,16 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
   auto found = arms.find(starts.task.scene);
   if (found == arms.end())
     found = arms.emplace(starts.task.scene, Arm::of(starts.model, scene)).first;
-  if (!found->second) return true;
+  if (!found->second || starts.task.source == ObjectId::kNone) return true;
   constexpr double kAboveTarget = 0.02;  // m
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     const auto& placed = starts.task.starts[e].placed;
+    // Source and target are the first two, as far as there are any.
+    const bool has_both = starts.task.has_both();
     const double half = height(starts.object(placed[0]), placed[0].turn) / 2;
-    const double on_target = height(starts.object(placed[1]), placed[1].turn) + half + kAboveTarget;
-    for (std::size_t i = 0; i < 2; ++i) {
+    const double on_target =
+        has_both ? height(starts.object(placed[1]), placed[1].turn) + half + kAboveTarget : 0;
+    for (std::size_t i = 0; i < (has_both ? 2u : 1u); ++i) {
       const double z = scene.surface_z + (i == 0 ? half : on_target);
       const auto miss = found->second->misses(placed[i].x, placed[i].y, z);
       if (!miss) continue;

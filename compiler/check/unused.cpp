@@ -137,6 +137,8 @@ void check_unused(const Checked& checked, Reporter& reporter) {
           report("template", tmpl->name);
       } else if (const auto* predicate = std::get_if<syntax::PredicateDecl>(&decl.node)) {
         if (words[predicate->name.text] <= 1) report("predicate", predicate->name);
+      } else if (const auto* role = std::get_if<syntax::RoleDecl>(&decl.node)) {
+        if (words[role->name.text] <= 1) report("role", role->name);
       } else if (const auto* questions = std::get_if<syntax::QuestionsDecl>(&decl.node)) {
         if (!is_asked(checked, questions->name.text, *file))
           report("set of questions", questions->name);

@@ -4,6 +4,7 @@
 
 #include "compiler/define/query.h"
 #include "compiler/define/set.h"
+#include "compiler/model/mentioned.h"
 #include "runtime/base/sha256.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
@@ -47,15 +48,28 @@ class FamilyAsker {
  private:
   using MayOmit = std::optional<OmissionReason>;
 
+  ObjectId filled_by(RoleId role) const {
+    const std::vector<ObjectId> objects = task_.objects_in(role);
+    return objects.empty() ? ObjectId::kNone : objects.front();
+  }
+  // Whether the instruction speaks of what fills another role than source and target: then these
+  // two are not all that it asks for.
+  bool asks_for_more() const {
+    return std::any_of(task_.others.begin(), task_.others.end(), [&](const Task::Filled& filled) {
+      return std::any_of(filled.objects.begin(), filled.objects.end(),
+                         [&](ObjectId id) { return scene_.is_told(id); });
+    });
+  }
+
   // Who is meant in this task.
   MayOmit resolve(const Who& who, ObjectId& out) {
     switch (who.kind) {
       case Who::kSource:
         out = task_.source;
-        return {};
+        return out == ObjectId::kNone ? MayOmit(OmissionReason::kNoMember) : MayOmit();
       case Who::kTarget:
         out = task_.target;
-        return {};
+        return out == ObjectId::kNone ? MayOmit(OmissionReason::kNoMember) : MayOmit();
       case Who::kAvoided:
         if (scene_.avoided().empty()) return OmissionReason::kNothingToAvoid;
         if (scene_.avoided().size() > 1)
@@ -70,6 +84,9 @@ class FamilyAsker {
       case Who::kObject:
         out = who.object;
         return {};
+      case Who::kRole:
+        out = filled_by(who.role);
+        return out == ObjectId::kNone ? MayOmit(OmissionReason::kNoMember) : MayOmit();
     }
     return OmissionReason::kNoMember;
   }
@@ -209,6 +226,8 @@ class FamilyAsker {
         return bound_;
       case Who::kObject:
         return who.object;
+      case Who::kRole:
+        return filled_by(who.role);
     }
     return ObjectId::kNone;
   }
@@ -337,6 +356,7 @@ class FamilyAsker {
     if (who.kind == Who::kAvoided) return check_name_of(id, family_.answer.span);
     if (scene_.is_avoided(id)) return OmissionReason::kAvoidsIt;
     if (!scene_.is_told(id)) return OmissionReason::kNotTold;
+    if (who.kind == Who::kSource && asks_for_more()) return OmissionReason::kAmbiguous;
     return check_told(id, family_.answer.span);
   }
 
@@ -455,6 +475,7 @@ class FamilyAsker {
     if (auto why_not = resolve_there(family_.answer.who[0], what)) return why_not;
     if (auto why_not = resolve_there(family_.answer.who[1], to)) return why_not;
     if (what == to) return OmissionReason::kNoMember;
+    if (asks_for_more()) return OmissionReason::kAmbiguous;
     if (auto why_not = check_role(family_.answer.who[0], what)) return why_not;
     if (auto why_not = check_role(family_.answer.who[1], to)) return why_not;
     if (auto why_not = check_options(objects_)) return why_not;
@@ -478,6 +499,15 @@ class FamilyAsker {
       if (judged == task_.judged.end()) return OmissionReason::kNoSuchMetric;
       question_.recorded = *judged;
     }
+    // What is measured must be there.
+    const Mentioned measured = MentionedIn(model_).expression(question_.recorded->expr);
+    for (const auto& [role, span] : measured.roles) {
+      if (task_.objects_in(role).empty()) return OmissionReason::kNoMember;
+    }
+    for (const auto& [id, span] : measured.objects) {
+      if (!scene_.body_of(id)) return OmissionReason::kNoMember;
+    }
+    if (measured.fixture && !model_.scenes[task_.scene].fixture) return OmissionReason::kNoMember;
     for (const ObjectId id : mentioned_) add_option(id, true);
     return {};
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/define/role.h"
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
 #include "compiler/define/wording.h"
@@ -138,6 +139,22 @@ bool is_same_body(const Object& a, const Object& b) {
          a.density == b.density && a.friction == b.friction;
 }
 
+// How many objects have a role.
+std::size_t roles_filled(const Task& task) {
+  return task.objects().size() - task.distractors.size() - task.placed.size();
+}
+
+// The same roles are filled, each by as many objects.
+bool same_shape(const Task& a, const Task& b) {
+  const auto same_number = [](const Task::Filled& p, const Task::Filled& q) {
+    return p.role == q.role && p.objects.size() == q.objects.size();
+  };
+  return (a.source == ObjectId::kNone) == (b.source == ObjectId::kNone) &&
+         (a.target == ObjectId::kNone) == (b.target == ObjectId::kNone) &&
+         std::equal(a.others.begin(), a.others.end(), b.others.begin(), b.others.end(),
+                    same_number);
+}
+
 // Whether a policy hears, sees and is judged by the same, whatever declarations say it.
 bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
   const Layout& layout = model.layouts[a.layout];
@@ -145,23 +162,23 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       !same_choice(a, b) ||
       (a.scene != b.scene && !same_scene(model.scenes[a.scene], model.scenes[b.scene])) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
-      !same_cameras(model, a, b) || a.distractors.size() != b.distractors.size())
+      !same_cameras(model, a, b) || a.distractors.size() != b.distractors.size() ||
+      a.objects().size() != b.objects().size() || !same_shape(a, b))
     return false;
   // The order of distractors that both have is no difference.
   std::vector<ObjectId> here = a.objects(), there = b.objects();
-  std::sort(here.begin() + 2, here.end());
-  std::sort(there.begin() + 2, there.end());
-  const bool by_name =
-      std::any_of(layout.places.begin(), layout.places.end(),
-                  [](const Place& p) {
-                    return std::any_of(p.what.begin(), p.what.end(), [](const Spelled& word) {
-                      return word.text != "source" && word.text != "target" &&
-                             word.text != "distractors";
-                    });
-                  }) ||
-      std::any_of(layout.orients.begin(), layout.orients.end(), [](const Orient& o) {
-        return o.what.text != "source" && o.what.text != "target" && o.what.text != "distractors";
-      });
+  const auto in_roles = static_cast<std::ptrdiff_t>(roles_filled(a));
+  std::sort(here.begin() + in_roles, here.end());
+  std::sort(there.begin() + in_roles, there.end());
+  const auto is_name = [&](const Spelled& word) {
+    return word.text != "distractors" && !find_role(model, word.text);
+  };
+  const bool by_name = std::any_of(layout.places.begin(), layout.places.end(),
+                                   [&](const Place& p) {
+                                     return std::any_of(p.what.begin(), p.what.end(), is_name);
+                                   }) ||
+                       std::any_of(layout.orients.begin(), layout.orients.end(),
+                                   [&](const Orient& o) { return is_name(o.what); });
   for (std::size_t i = 0; i < here.size(); ++i) {
     if (rest_of(model, a, here[i]) != rest_of(model, b, there[i])) return false;
     // A layout that jitters, or that names objects, puts a twin elsewhere.
@@ -194,6 +211,12 @@ class Comparison {
         return task_.source != baseline_.source;
       case plan::Axis::kObjectTarget:
         return task_.target != baseline_.target;
+      case plan::Axis::kObjectOther: {
+        for (const Role& role : model_.roles) {
+          if (other_moves(task_, baseline_, *find_role(model_, role.name))) return true;
+        }
+        return false;
+      }
       case plan::Axis::kDistractors:
         return sorted(task_.distractors) != sorted(baseline_.distractors);
       case plan::Axis::kLanguageAction:
@@ -203,8 +226,7 @@ class Comparison {
       case plan::Axis::kLanguageAppearance:
       case plan::Axis::kLanguageCommonsense:
       case plan::Axis::kLanguageSpatial:
-        return phrase_moves(axis, syntax::Role::kSource) ||
-               phrase_moves(axis, syntax::Role::kTarget);
+        return phrase_moves(axis);
       case plan::Axis::kLanguageParaphrase:
         return is_reworded(model_, task_, baseline_);
       case plan::Axis::kLayout:
@@ -234,13 +256,17 @@ class Comparison {
     return objects;
   }
 
-  bool phrase_moves(plan::Axis axis, syntax::Role role) const {
-    const bool is_source = role == syntax::Role::kSource;
+  bool phrase_moves(plan::Axis axis) const {
+    for (std::size_t i = 0; i < model_.roles.size(); ++i) {
+      if (phrase_moves(axis, model_.roles.id(i))) return true;
+    }
+    return false;
+  }
+  bool phrase_moves(plan::Axis axis, RoleId role) const {
     const Phrase* now = referring(model_, task_, role).phrase;
     const Phrase* then = referring(model_, baseline_, role).phrase;
     if (now == nullptr && then == nullptr) return false;
-    const bool same_object =
-        is_source ? task_.source == baseline_.source : task_.target == baseline_.target;
+    const bool same_object = task_.objects_in(role) == baseline_.objects_in(role);
     if (now != nullptr && then != nullptr) {
       // Two phrases of different objects are alike when they refer in the same way.
       if (same_object ? now->name == then->name : now->axis == then->axis) return false;
@@ -255,6 +281,11 @@ class Comparison {
 };
 
 }  // namespace
+
+bool other_moves(const Task& task, const Task& baseline, RoleId role) {
+  return role != RoleId::kSource && role != RoleId::kTarget &&
+         task.objects_in(role) != baseline.objects_in(role);
+}
 
 std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline) {
   if (is_same_experiment(model, task, baseline)) return 0;
@@ -278,10 +309,11 @@ std::optional<plan::Axis> phrase_axis(Diagnostics& diagnostics, const syntax::Na
 
 std::uint32_t out_of_distribution(const Model& model, const Task& task) {
   if (model.datasets.size() == 0) return 0;
-  const Object& source = model.objects[task.source];
-  const Object& target = model.objects[task.target];
-  std::uint32_t mask = (is_seen(source) ? 0u : 1u) | (is_seen(target) ? 0u : 2u);
-  if (mask != 0) return mask;
+  const auto is_new = [&](ObjectId id) {
+    return id != ObjectId::kNone && !is_seen(model.objects[id]);
+  };
+  const std::uint32_t mask = (is_new(task.source) ? 1u : 0u) | (is_new(task.target) ? 2u : 0u);
+  if (mask != 0 || !task.has_both()) return mask;
   for (const Dataset& dataset : model.datasets) {
     for (const Dataset::Relation& relation : dataset.relations) {
       if (relation.subject == task.source && relation.object == task.target) return 0;
@@ -302,8 +334,8 @@ const Task& root_of(const Model& model, const Task& task) {
 }
 
 bool has_phrase(const Model& model, const Task& task, plan::Axis axis) {
-  for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
-    const Phrase* phrase = referring(model, task, role).phrase;
+  for (std::size_t i = 0; i < model.roles.size(); ++i) {
+    const Phrase* phrase = referring(model, task, model.roles.id(i)).phrase;
     if (phrase != nullptr && phrase->axis == axis) return true;
   }
   return false;
@@ -326,6 +358,7 @@ bool uses(const Model& model, const Task& task, plan::Axis axis) {
       return root.complete && is_reworded(model, task, root);
     case plan::Axis::kObjectSource:
     case plan::Axis::kObjectTarget:
+    case plan::Axis::kObjectOther:
     case plan::Axis::kDistractors:
     case plan::Axis::kLayout:
     case plan::Axis::kScene:

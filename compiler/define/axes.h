@@ -14,6 +14,9 @@
 
 namespace probe::sema {
 
+// Whether a role beside source and target is filled by other objects.
+bool other_moves(const Task& task, const Task& baseline, RoleId role);
+
 // A mask of plan::Axis over the normalised records; names do not count.
 std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline);
 

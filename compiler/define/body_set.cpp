@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "compiler/define/expr.h"
+#include "compiler/define/role.h"
 
 namespace probe::sema {
 namespace {
@@ -21,6 +22,7 @@ bool ExprReader::only_objects(SetRef ref) {
     case SetOp::kOthers:
     case SetOp::kDistractors:
     case SetOp::kAlike:
+    case SetOp::kRole:
       return true;
     case SetOp::kNames:
       return std::all_of(set.bodies.begin(), set.bodies.end(),
@@ -59,6 +61,12 @@ std::optional<SetRef> ExprReader::read_set(syntax::SetExprId id) {
       set.op = op;
       found = true;
     }
+    if (const auto role = find_role(context_, name->name.text); role && !found) {
+      set.op = SetOp::kRole;
+      set.role = *role;
+      found = true;
+    }
+    for (const Role& role : context_.model.roles) candidates.push_back(role.name);
     if (!found) {
       report_unknown(context_.diagnostics, "set of bodies", name->name, candidates);
       return std::nullopt;

@@ -10,6 +10,7 @@ void define_model(Context& context) {
   define_cameras(context);
   define_lights(context);
   define_scenes(context);
+  define_roles(context);
   define_layouts(context);
   define_templates(context);
   define_predicates(context);

@@ -4,6 +4,7 @@
 
 #include "compiler/define/axes.h"
 #include "compiler/define/in_start.h"
+#include "compiler/define/role.h"
 #include "compiler/define/set.h"
 #include "compiler/define/starts.h"
 #include "compiler/define/task.h"
@@ -66,13 +67,21 @@ class Derive {
       names.push_back(binder.name.text);
       if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
         fits = phrase_axis(context_.diagnostics, phrases->axis).has_value() && fits;
+        fits = find_single_role(context_, phrases->role).has_value() && fits;
       } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
         fits = check_frame(templates->frame) && fits;
       } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
         for (const syntax::Name& object : objects->objects)
           fits = context_.symbols.objects.find(object, context_.diagnostics).has_value() && fits;
       } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
-        of_task_.push_back(&others->task);
+        if (others->role.text == "distractors" || find_role(context_, others->role.text)) {
+          of_task_.push_back(&others->task);
+          continue;
+        }
+        std::vector<std::string_view> known = role_names(context_);
+        known.insert(known.end(), {"distractors", "templates", "phrases", "variants"});
+        report_unknown(context_.diagnostics, "role", others->role, known);
+        fits = false;
       } else if (tasks_ == nullptr) {
         tasks_ = &binder;
       } else {
@@ -223,7 +232,10 @@ class Derive {
     const std::vector<ObjectId> present = base.objects();
     std::vector<std::string_view> values;
     if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
-      const ObjectId object = phrases->role == syntax::Role::kSource ? base.source : base.target;
+      const std::vector<ObjectId> filled =
+          base.objects_in(*find_role(context_, phrases->role.text));
+      if (filled.empty()) return values;
+      const ObjectId object = filled.front();
       const plan::AxisInfo* axis = plan::find_language_axis(phrases->axis.text);
       for (const Phrase& phrase : model.objects[object].phrases) {
         if (axis == nullptr || phrase.axis != axis->axis) continue;
@@ -234,6 +246,7 @@ class Derive {
       Task other = base;
       for (std::size_t i = 0; i < declared.size(); ++i) {
         other.say = static_cast<TemplateId>(i);
+        if (!fills_all(base, model.templates[other.say])) continue;
         if (model.templates[other.say].frame == fold_case(templates->frame.text) &&
             axes_between(model, other, base) != 0)
           values.push_back(declared[i].text);
@@ -244,8 +257,10 @@ class Derive {
         if (std::find(present.begin(), present.end(), id) == present.end())
           values.push_back(object.text);
       }
-    } else if (std::holds_alternative<syntax::BinderDistractors>(binder.over)) {
-      for (const ObjectId id : base.distractors) values.push_back(model.objects[id].name);
+    } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
+      const auto role = find_role(context_, others->role.text);
+      for (const ObjectId id : role ? base.objects_in(*role) : base.distractors)
+        values.push_back(model.objects[id].name);
     } else {
       values.push_back(name);
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "compiler/define/role.h"
+
 namespace probe::sema {
 
 namespace {
@@ -125,7 +127,11 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprName& name) {
         .help("write `" + std::string(measure.name) + "(...)`");
     return poison(span);
   }
-  std::vector<std::string_view> candidates = {"source", "target", "surface"};
+  if (const auto ref = named_body(name.name)) return *ref;
+  std::vector<std::string_view> candidates = role_names(context_);
+  candidates.push_back("surface");
+  for (const syntax::Name& object : context_.symbols.objects.names())
+    candidates.push_back(object.text);
   for (const Variable& variable : scope_) candidates.push_back(variable.name);
   for (const MeasureInfo& measure : all_measures()) {
     if (measure.params.empty()) candidates.push_back(measure.name);
@@ -134,10 +140,33 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprName& name) {
   return poison(span);
 }
 
+// An object or a fixture by its own name; whether it is in the scene is asked of each task.
+std::optional<ExprRef> ExprReader::named_body(const syntax::Name& name) {
+  if (const auto object = context_.symbols.objects.peek(name.text)) {
+    arena().names_objects = true;
+    return add(ExprOp::kObject, {TypeKind::kBody, dim::kNumber, true}, name.span, {}, *object);
+  }
+  const auto& scenes = context_.model.scenes;
+  const bool is_fixture = std::any_of(scenes.begin(), scenes.end(), [&](const Scene& scene) {
+    return scene.fixture && scene.fixture->text == name.text;
+  });
+  if (!is_fixture) return std::nullopt;
+  arena().names_objects = true;
+  return add(ExprOp::kFixture, {TypeKind::kBody, dim::kNumber, false}, name.span);
+}
+
 std::optional<ExprRef> ExprReader::body_name(const syntax::Name& name) {
-  if (name.text == "source" || name.text == "target") {
-    const std::uint32_t role = name.text == "source" ? 0 : 1;
-    return add(ExprOp::kRole, {TypeKind::kBody, dim::kNumber, true}, name.span, {}, role);
+  if (const auto role = find_role(context_, name.text)) {
+    if (context_.model.roles[*role].is_set) {
+      context_
+          .report(Code::P1105, name.span,
+                  "`" + std::string(name.text) + "` is a set, and one object is wanted here")
+          .label(context_.model.roles[*role].span, "declared as a set")
+          .help("ask of each: `all o in " + std::string(name.text) + ": ...`");
+      return poison(name.span);
+    }
+    return add(ExprOp::kRole, {TypeKind::kBody, dim::kNumber, true}, name.span, {},
+               static_cast<std::uint32_t>(*role));
   }
   if (name.text == "surface")
     return add(ExprOp::kSurface, {TypeKind::kBody, dim::kNumber, false}, name.span);

@@ -61,6 +61,7 @@ class ExprReader {
   ExprRef read_node(const Span& span, const syntax::ExprName& name);
 
   std::optional<ExprRef> body_name(const syntax::Name& name);
+  std::optional<ExprRef> named_body(const syntax::Name& name);
 
   ExprRef read_node(const Span& span, const syntax::ExprCall& call);
 

@@ -61,6 +61,11 @@ const lower::Program* Relations::program(const Task& task, std::uint32_t relatio
                                          const std::vector<std::uint16_t>& alike) {
   const CameraId camera = views_of(model_, task).front().camera;
   Key key{{task.scene, camera}, {relation, static_cast<std::uint32_t>(task.objects().size())}};
+  // Which body has which role, where a relation speaks of roles; and which object it is, by name.
+  for (const ObjectId id : task.objects()) {
+    key.second.push_back(static_cast<std::uint32_t>(task.role_of(id)));
+    if (model_.exprs.names_objects) key.second.push_back(static_cast<std::uint32_t>(id));
+  }
   key.second.push_back(static_cast<std::uint32_t>(of.size()));
   key.second.insert(key.second.end(), of.begin(), of.end());
   key.second.insert(key.second.end(), alike.begin(), alike.end());

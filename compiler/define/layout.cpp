@@ -5,6 +5,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
+#include "compiler/define/role.h"
 #include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
 
@@ -93,8 +94,7 @@ struct LayoutReader {
   std::vector<Spelled> placed_names(const std::vector<syntax::Name>& names) {
     std::vector<Spelled> result;
     for (const syntax::Name& name : names) {
-      const bool is_role =
-          name.text == "source" || name.text == "target" || name.text == "distractors";
+      const bool is_role = name.text == "distractors" || find_role(context, name.text);
       if (!is_role && !context.symbols.objects.find(name, context.diagnostics)) continue;
       result.push_back(spelled(name));
     }
@@ -136,8 +136,7 @@ struct LayoutReader {
   }
   void operator()(const syntax::OrientStmt& stmt) {
     begin_orient();
-    if (stmt.what.text != "source" && stmt.what.text != "target" &&
-        stmt.what.text != "distractors" &&
+    if (stmt.what.text != "distractors" && !find_role(context, stmt.what.text) &&
         !context.symbols.objects.find(stmt.what, context.diagnostics)) {
       return;
     }

@@ -3,6 +3,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/expr.h"
+#include "compiler/define/role.h"
 #include "compiler/define/set.h"
 #include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
@@ -138,13 +139,20 @@ struct FamilyReader {
 
   std::optional<Who> who(const syntax::Name& name) {
     const auto is = [&](Who::Kind kind) {
-      return Who{kind, ObjectId::kNone, std::string(name.text), name.span};
+      return Who{kind, ObjectId::kNone, std::string(name.text), name.span, RoleId::kNone};
     };
     if (name.text.empty()) return std::nullopt;  // a syntax error, reported
     if (stmt.binder && name.text == stmt.binder->text) return is(Who::kBound);
     if (name.text == "source") return is(Who::kSource);
     if (name.text == "target") return is(Who::kTarget);
     if (name.text == "avoided") return is(Who::kAvoided);
+    if (find_role(context, name.text)) {
+      const auto role = find_single_role(context, name);
+      if (!role) return std::nullopt;
+      Who out = is(Who::kRole);
+      out.role = *role;
+      return out;
+    }
     if (const auto object = context.symbols.objects.peek(name.text)) {
       Who out = is(Who::kObject);
       out.object = static_cast<ObjectId>(*object);

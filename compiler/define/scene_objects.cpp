@@ -42,8 +42,10 @@ SceneObjects::SceneObjects(const Model& model, const ObjectNames& names, TaskId 
 }
 
 std::optional<ObjectId> SceneObjects::object_of(const SlotRef& slot) const {
-  if (slot.name.text == "source") return task_.source;
-  if (slot.name.text == "target") return task_.target;
+  if (slot.role != RoleId::kNone) {
+    const std::vector<ObjectId> filled = task_.objects_in(slot.role);
+    return filled.size() == 1 ? std::optional(filled.front()) : std::nullopt;
+  }
   for (const ObjectId id : objects_) {
     if (model_.objects[id].name == slot.name.text) return id;
   }
@@ -63,7 +65,9 @@ bool SceneObjects::is_avoided(ObjectId id) const {
 bool SceneObjects::is_slot(ObjectId id) const {
   const auto& parts = model_.templates[task_.say].parts;
   return std::any_of(parts.begin(), parts.end(), [&](const Template::Part& part) {
-    return part.slot && !part.slot->avoid && object_of(*part.slot) == id;
+    if (!part.slot || part.slot->avoid) return false;
+    const auto meant = meant_by(model_, task_, model_.templates[task_.say], *part.slot);
+    return std::find(meant.begin(), meant.end(), id) != meant.end();
   });
 }
 
@@ -72,9 +76,7 @@ bool SceneObjects::is_told(ObjectId id) const {
 }
 
 const Phrase* SceneObjects::phrase_for(ObjectId id) const {
-  if (id == task_.source) return referring(model_, task_, syntax::Role::kSource).phrase;
-  if (id == task_.target) return referring(model_, task_, syntax::Role::kTarget).phrase;
-  return nullptr;
+  return task_.role_of(id) == RoleId::kNone ? nullptr : referring(model_, task_, id).phrase;
 }
 
 bool SceneObjects::find_absent(ObjectId id, const std::string& fixture) const {
@@ -84,7 +86,7 @@ bool SceneObjects::find_absent(ObjectId id, const std::string& fixture) const {
     if (names_.are_alike(id, other) || model_.objects[other].mesh.text == object.mesh.text)
       return false;
   }
-  for (const ObjectId said : {task_.source, task_.target}) {
+  for (const ObjectId said : objects_) {
     const Phrase* phrase = phrase_for(said);
     if (phrase != nullptr && evaluate(phrase->means, object) != Truth::kNo) return false;
   }

@@ -5,6 +5,7 @@
 
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
+#include "compiler/define/role.h"
 #include "compiler/define/template.h"
 #include "compiler/names/uses.h"
 #include "runtime/base/sha256.h"
@@ -204,11 +205,16 @@ bool SetReader::check_condition(const syntax::File& file, syntax::CondId id) {
   }
   const auto& test = std::get<syntax::CondTest>(node);
   std::vector<std::string_view> words;
+  std::vector<std::string> axes_of_roles;
   const char* kind = "";
   switch (test.kind) {
     case syntax::CondKind::kAxis:
       kind = "axis";
       for (const plan::AxisInfo& axis : plan::kAxisTable) words.push_back(axis.name);
+      for (const syntax::Name& role : context_.symbols.roles.names()) {
+        axes_of_roles.push_back("object." + std::string(role.text));
+      }
+      words.insert(words.end(), axes_of_roles.begin(), axes_of_roles.end());
       break;
     case syntax::CondKind::kUses:
       kind = "use of language";
@@ -261,7 +267,11 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
   const std::string word = path_text(test.path);
   switch (test.kind) {
     case syntax::CondKind::kAxis:
-      return plan::moves(task.axes, plan::find_axis(word)->axis);
+      if (const plan::AxisInfo* axis = plan::find_axis(word))
+        return plan::moves(task.axes, axis->axis);
+      return plan::moves(task.axes, plan::Axis::kObjectOther) &&
+             other_moves(task, model.tasks[task.baseline],
+                         *find_role(model, word.substr(word.find('.') + 1)));
     case syntax::CondKind::kUses:
       return uses(model, task, plan::find_language_axis(word)->axis);
     case syntax::CondKind::kOod:

@@ -7,6 +7,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/in_start.h"
+#include "compiler/define/role.h"
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
 #include "runtime/base/sha256.h"
@@ -36,14 +37,19 @@ struct Enumerator {
     return static_cast<std::size_t>(at - objects.begin());
   }
 
+  bool is_distractor(ObjectId object) const {
+    return std::find(task.distractors.begin(), task.distractors.end(), object) !=
+           task.distractors.end();
+  }
+
   // The task's objects that a line's word means; an object that is not in the task is nothing.
   std::vector<std::size_t> meant(const Spelled& word) const {
-    if (word.text == "source") return {0};
-    if (word.text == "target") return {1};
     std::vector<std::size_t> result;
+    const auto role = find_role(model, word.text);
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      const bool by_role = word.text == "distractors" && i >= 2;
-      if (by_role || model.objects[objects[i]].name == word.text) result.push_back(i);
+      const bool by_role = role ? task.role_of(objects[i]) == *role
+                                : word.text == "distractors" && is_distractor(objects[i]);
+      if (by_role || (!role && model.objects[objects[i]].name == word.text)) result.push_back(i);
     }
     return result;
   }
@@ -250,7 +256,11 @@ namespace {
 // What the starts of a task depend on.
 std::vector<double> starts_key(const Model& model, const Task& task) {
   std::vector<double> key = {static_cast<double>(task.layout)};
-  for (const ObjectId id : task.objects()) key.push_back(static_cast<double>(id));
+  // Layouts place by role, so equal objects in other roles lie elsewhere.
+  for (const ObjectId id : task.objects()) {
+    key.push_back(static_cast<double>(id));
+    key.push_back(static_cast<double>(task.role_of(id)));
+  }
   for (const PoseOverride& pose : task.poses) {
     key.push_back(-1);
     key.push_back(static_cast<double>(pose.object));
@@ -264,7 +274,7 @@ std::vector<double> starts_key(const Model& model, const Task& task) {
     key.push_back(static_cast<double>(views_of(model, task).front().camera));
     for (const ClearPhrase& clear : task.clear) {
       key.push_back(static_cast<double>(clear.role));
-      const ObjectId object = clear.role == 0 ? task.source : task.target;
+      const ObjectId object = task.objects_in(clear.role).front();
       const auto& phrases = model.objects[object].phrases;
       key.push_back(static_cast<double>(model.objects[object].find_phrase(clear.phrase.text) -
                                         phrases.data()));
@@ -277,7 +287,7 @@ std::vector<double> starts_key(const Model& model, const Task& task) {
 std::vector<Start> clear_starts(Relations& relations, const Model& model, const Task& task,
                                 std::vector<Start> starts) {
   for (const ClearPhrase& clear : task.clear) {
-    const ObjectId object = clear.role == 0 ? task.source : task.target;
+    const ObjectId object = task.objects_in(clear.role).front();
     const Phrase& phrase = *model.objects[object].find_phrase(clear.phrase.text);
     std::erase_if(starts, [&](const Start& start) {
       return !InStart(relations, task, start).denote(phrase, object).is_clear();

@@ -7,11 +7,13 @@
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
 #include "compiler/define/metrics.h"
+#include "compiler/define/role.h"
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
 #include "compiler/define/wording.h"
 #include "compiler/names/like.h"
 #include "compiler/names/quantities.h"
+#include "compiler/syntax/words.h"
 #include "runtime/plan/limits.h"
 
 namespace probe::sema {
@@ -39,10 +41,58 @@ struct TaskReader {
     }
     return name;
   }
-  void role(std::size_t index, const syntax::Name& name) {
-    field(index == 0 ? task.source : task.target, context.symbols.objects, bound(name));
-    task.refer[index].reset();
-    task.role_span[index] = name.span;
+  // `none` takes what was copied away again.
+  void role(RoleId role, const syntax::Name& name) {
+    ObjectId& object = role == RoleId::kSource ? task.source : task.target;
+    if (name.text == "none" && !context.symbols.objects.peek(name.text)) {
+      object = ObjectId::kNone;
+    } else {
+      field(object, context.symbols.objects, bound(name));
+    }
+    task.refer.erase(role);
+    task.role_span[static_cast<std::size_t>(role)] = name.span;
+  }
+  void operator()(const syntax::RoleStmt& stmt) {
+    const auto role = find_role(context, stmt.role.text);
+    if (!role) {
+      std::vector<std::string_view> known = role_names(context);
+      for (const syntax::StatementWord& word : syntax::statement_words()) {
+        if (word.block == syntax::Block::kTask) known.push_back(word.word);
+      }
+      report_unknown(context.diagnostics, "role", stmt.role, known)
+          .help("a statement that begins with another word fills a role: `role " +
+                std::string(stmt.role.text) + "` declares one");
+      poisoned = true;
+      return;
+    }
+    task.refer.erase(*role);
+    std::erase_if(task.others, [&](const Task::Filled& old) { return old.role == *role; });
+    Task::Filled filled{*role, {}, {}, stmt.span};
+    for (const syntax::Name& name : stmt.objects) {
+      ObjectId object = ObjectId::kNone;
+      field(object, context.symbols.objects, bound(name));
+      if (object == ObjectId::kNone) continue;
+      if (std::find(filled.objects.begin(), filled.objects.end(), object) != filled.objects.end()) {
+        context.report(Code::P0203, name.span, "`" + std::string(name.text) + "` is listed twice");
+        poisoned = true;
+        continue;
+      }
+      filled.objects.push_back(object);
+      filled.spans.push_back(name.span);
+    }
+    const Role& record = context.model.roles[*role];
+    if (!record.is_set && filled.objects.size() > 1) {
+      context
+          .report(
+              Code::P1105, stmt.span,
+              "`" + record.name + "` is one object, found " + std::to_string(filled.objects.size()))
+          .label(record.span, "write `role " + record.name + ": set` for several");
+      poisoned = true;
+    }
+    if (filled.objects.empty()) return;
+    const auto behind = std::find_if(task.others.begin(), task.others.end(),
+                                     [&](const Task::Filled& old) { return old.role > *role; });
+    task.others.insert(behind, std::move(filled));
   }
 
   void operator()(const syntax::FieldStmt& stmt) {
@@ -51,9 +101,9 @@ struct TaskReader {
       case syntax::TaskField::kScene:
         return field(task.scene, symbols.scenes, stmt.value);
       case syntax::TaskField::kSource:
-        return role(0, stmt.value);
+        return role(RoleId::kSource, stmt.value);
       case syntax::TaskField::kTarget:
-        return role(1, stmt.value);
+        return role(RoleId::kTarget, stmt.value);
       case syntax::TaskField::kMetrics:
         return field(task.metrics, symbols.metrics, stmt.value);
       case syntax::TaskField::kLight:
@@ -63,9 +113,11 @@ struct TaskReader {
   void operator()(const syntax::TaskLayoutStmt& stmt) {
     task.layout_span = stmt.layout.span;
     task.clear.clear();
-    for (const syntax::ClearPhrase& clear : stmt.clear)
-      task.clear.push_back(
-          {clear.role == syntax::Role::kSource ? std::size_t{0} : 1, spelled(bound(clear.phrase))});
+    for (const syntax::ClearPhrase& clear : stmt.clear) {
+      const auto role = find_single_role(context, clear.role);
+      if (role) task.clear.push_back({*role, spelled(bound(clear.phrase))});
+      poisoned = poisoned || !role;
+    }
     field(task.layout, context.symbols.layouts, stmt.layout);
   }
   void operator()(const syntax::TaskCameraStmt& stmt) {
@@ -112,8 +164,13 @@ struct TaskReader {
   }
   // After the roles: a new source or target drops what was said of the old one.
   void operator()(const syntax::ReferStmt& stmt) {
-    const std::size_t index = stmt.role == syntax::Role::kSource ? 0 : 1;
-    task.refer[index] = spelled(bound(stmt.phrase));
+    const auto role = find_role(context, stmt.role.text);
+    if (!role) {
+      report_unknown(context.diagnostics, "role", stmt.role, role_names(context));
+      poisoned = true;
+      return;
+    }
+    task.refer[*role] = spelled(bound(stmt.phrase));
   }
   void operator()(const syntax::PoseStmt& stmt) {
     PoseOverride pose;
@@ -145,22 +202,20 @@ struct TaskReader {
   }
 };
 
-void check_phrase_of(Context& context, const Task& task, std::size_t role, const Spelled& wanted,
-                     bool& poisoned) {
-  const ObjectId id = role == 0 ? task.source : task.target;
-  if (id == ObjectId::kNone) return;
-  const Object& object = context.model.objects[id];
-  if (object.find_phrase(wanted.text) != nullptr) return;
-  std::vector<std::string_view> candidates;
-  for (const Phrase& phrase : object.phrases) candidates.push_back(phrase.name);
-  report_unknown(context.diagnostics, "phrase of `" + object.name + "`", {wanted.span, wanted.text},
-                 candidates)
-      .label(object.span, "the object");
-  poisoned = true;
-}
-
-void check_refer(Context& context, const Task& task, std::size_t role, bool& poisoned) {
-  if (task.refer[role]) check_phrase_of(context, task, role, *task.refer[role], poisoned);
+// Every object that fills the role has the phrase.
+void check_refer(Context& context, const Task& task, RoleId role, const Spelled& refer,
+                 bool& poisoned) {
+  for (const ObjectId id : task.objects_in(role)) {
+    const Object& object = context.model.objects[id];
+    if (object.find_phrase(refer.text) != nullptr) continue;
+    std::vector<std::string_view> candidates;
+    for (const Phrase& phrase : object.phrases) candidates.push_back(phrase.name);
+    report_unknown(context.diagnostics, "phrase of `" + object.name + "`", {refer.span, refer.text},
+                   candidates)
+        .label(object.span, "the object");
+    poisoned = true;
+    return;
+  }
 }
 
 // A record with a mistake of its own: what it does to the task is not said.
@@ -222,12 +277,15 @@ void check_cameras(Context& context, const Task& task, bool& poisoned) {
   }
 }
 
+// A task needs the roles that its words, metrics and layout speak of, once it has those.
 std::string missing_statements(const Task& task) {
+  const bool is_free = !task.abstract && task.layout != LayoutId::kNone &&
+                       task.metrics != MetricsId::kNone && task.say != TemplateId::kNone;
   const std::pair<bool, const char*> wanted[] = {
       {task.scene != SceneId::kNone, "scene"},
       {task.layout != LayoutId::kNone, "layout"},
-      {task.source != ObjectId::kNone, "source"},
-      {task.target != ObjectId::kNone, "target"},
+      {task.source != ObjectId::kNone || is_free, "source"},
+      {task.target != ObjectId::kNone || is_free, "target"},
       {task.metrics != MetricsId::kNone, "metrics"},
       {task.say != TemplateId::kNone, "say"},
       {task.horizon != 0, "horizon"},
@@ -237,6 +295,21 @@ std::string missing_statements(const Task& task) {
     if (!there) missing += (missing.empty() ? "`" : ", `") + std::string(name) + "`";
   }
   return missing;
+}
+
+// Objects that the layout places by name belong to the scene, whether they have a role or not.
+void place_by_name(Context& context, Task& task) {
+  task.placed.clear();
+  if (task.layout == LayoutId::kNone) return;
+  for (const Place& line : context.model.layouts[task.layout].places) {
+    for (const Spelled& word : line.what) {
+      const auto object = context.symbols.objects.peek(word.text);
+      if (word.text == "distractors" || find_role(context, word.text) || !object) continue;
+      const auto id = static_cast<ObjectId>(*object);
+      const std::vector<ObjectId> known = task.objects();
+      if (std::find(known.begin(), known.end(), id) == known.end()) task.placed.push_back(id);
+    }
+  }
 }
 
 std::vector<Metric> judged_metrics(const Model& model, const Task& task) {
@@ -275,9 +348,36 @@ void read_allows(const syntax::Decl& decl, const std::vector<syntax::TaskStmt>& 
 }  // namespace
 
 std::vector<ObjectId> Task::objects() const {
-  std::vector<ObjectId> all = {source, target};
+  std::vector<ObjectId> all;
+  for (const ObjectId id : {source, target}) {
+    if (id != ObjectId::kNone) all.push_back(id);
+  }
+  for (const Filled& role : others) all.insert(all.end(), role.objects.begin(), role.objects.end());
   all.insert(all.end(), distractors.begin(), distractors.end());
+  all.insert(all.end(), placed.begin(), placed.end());
   return all;
+}
+
+std::vector<ObjectId> Task::objects_in(RoleId role) const {
+  if (role == RoleId::kSource || role == RoleId::kTarget) {
+    const ObjectId id = role == RoleId::kSource ? source : target;
+    return id == ObjectId::kNone ? std::vector<ObjectId>() : std::vector<ObjectId>{id};
+  }
+  for (const Filled& filled : others) {
+    if (filled.role == role) return filled.objects;
+  }
+  return {};
+}
+
+RoleId Task::role_of(ObjectId object) const {
+  if (object == ObjectId::kNone) return RoleId::kNone;
+  if (object == source) return RoleId::kSource;
+  if (object == target) return RoleId::kTarget;
+  for (const Filled& filled : others) {
+    if (std::find(filled.objects.begin(), filled.objects.end(), object) != filled.objects.end())
+      return filled.role;
+  }
+  return RoleId::kNone;
 }
 
 std::optional<Span> entry_of(const Task& task, ObjectId object) {
@@ -286,6 +386,11 @@ std::optional<Span> entry_of(const Task& task, ObjectId object) {
   };
   if (object == task.source && own(task.role_span[0])) return task.role_span[0];
   if (object == task.target && own(task.role_span[1])) return task.role_span[1];
+  for (const Task::Filled& filled : task.others) {
+    for (std::size_t i = 0; i < filled.objects.size(); ++i) {
+      if (filled.objects[i] == object && own(filled.spans[i])) return filled.spans[i];
+    }
+  }
   for (std::size_t i = 0; i < task.distractors.size() && i < task.distractor_spans.size(); ++i) {
     if (task.distractors[i] == object && own(task.distractor_spans[i]))
       return task.distractor_spans[i];
@@ -293,7 +398,7 @@ std::optional<Span> entry_of(const Task& task, ObjectId object) {
   return std::nullopt;
 }
 
-TaskTable::TaskTable(Context& context) : context_(context) {
+TaskTable::TaskTable(Context& context) : context_(context), mentioned_(context.model) {
   for (std::size_t i = 0; i < context.symbols.task_decls.size(); ++i) add_row();
 }
 
@@ -331,14 +436,20 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
     if (std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
   }
   poisoned = poisoned || has_broken_part(model, task);
-  if (!poisoned) check_refer(context_, task, 0, poisoned);
-  if (!poisoned) check_refer(context_, task, 1, poisoned);
-  for (const ClearPhrase& clear : task.clear) {
-    if (!poisoned) check_phrase_of(context_, task, clear.role, clear.phrase, poisoned);
+  for (const auto& [role, refer] : task.refer) {
+    if (!poisoned) check_refer(context_, task, role, refer, poisoned);
   }
+  for (const ClearPhrase& clear : task.clear) {
+    if (!poisoned) check_refer(context_, task, clear.role, clear.phrase, poisoned);
+  }
+  place_by_name(context_, task);
   const std::string missing = missing_statements(task);
   if (task.scene != SceneId::kNone) poisoned = poisoned || model.scenes[task.scene].broken;
   task.complete = missing.empty() && !poisoned;
+  if (task.complete) {
+    task.judged = judged_metrics(model, task);
+    task.complete = task.abstract || check_filled(task, poisoned);
+  }
   if (task.complete) check_roles(context_, task, poisoned);
   if (task.complete) check_cameras(context_, task, poisoned);
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
@@ -347,27 +458,86 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   defined_[index] = true;
   if (task.complete) {
     task.prompt = render_prompt(model, task);
-    task.judged = judged_metrics(model, task);
     task.ood = out_of_distribution(model, task);
   }
   model.tasks[static_cast<TaskId>(index)] = std::move(task);
 }
 
+// Who is spoken of fills a role, and who fills a declared role is spoken of.
+bool TaskTable::check_filled(const Task& task, bool& poisoned) {
+  const Model& model = context_.model;
+  bool is_complete = true;
+  std::string missing;                                    // of source and target
+  std::map<RoleId, std::pair<Span, const char*>> spoken;  // with how the task comes to it
+  for (const Template::Part& part : model.templates[task.say].parts) {
+    if (part.slot && part.slot->role != RoleId::kNone)
+      spoken.try_emplace(part.slot->role, part.slot->span, "its words speak of it");
+  }
+  for (const auto& [role, span] : mentioned_.metrics(task.judged).roles)
+    spoken.try_emplace(role, span, "its metrics measure it");
+  const auto in_words = spoken;
+  const auto place = [&](const Spelled& word) {
+    if (const auto role = find_role(model, word.text))
+      spoken.try_emplace(*role, word.span, "its layout places it");
+  };
+  const Layout& layout = model.layouts[task.layout];
+  for (const Place& line : layout.places) std::for_each(line.what.begin(), line.what.end(), place);
+  for (const Orient& line : layout.orients) place(line.what);
+  for (const ClearPhrase& clear : task.clear)
+    spoken.try_emplace(clear.role, clear.phrase.span, "its starts are chosen by it");
+  for (const auto& [role, where] : spoken) {
+    if (!task.objects_in(role).empty()) continue;
+    is_complete = false;
+    const std::string& name = model.roles[role].name;
+    if (role == RoleId::kSource || role == RoleId::kTarget) {
+      missing += (missing.empty() ? "`" : ", `") + name + "`";
+      continue;
+    }
+    poisoned = true;
+    context_
+        .report(Code::P1102, task.span,
+                "nothing fills role `" + name + "` in task `" + task.name + "`")
+        .label(where.first, where.second)
+        .help("write `" + name + " OBJECT`");
+  }
+  if (Diagnostic* said = missing.empty() ? nullptr : report_missing(task, missing)) {
+    for (const RoleId role : {RoleId::kSource, RoleId::kTarget}) {
+      const auto where = spoken.find(role);
+      if (where != spoken.end() && task.objects_in(role).empty())
+        said->label(where->second.first, where->second.second);
+    }
+  }
+  for (const Task::Filled& filled : task.others) {
+    if (in_words.contains(filled.role) || !is_within(filled.span, task.decl_span)) continue;
+    poisoned = true;
+    context_
+        .report(Code::P1103, filled.span,
+                "neither the words nor the metrics of task `" + task.name + "` speak of `" +
+                    model.roles[filled.role].name + "`")
+        .help("what only lies there is a distractor: `distractors " +
+              model.objects[filled.objects.front()].name + "`");
+  }
+  return is_complete && !poisoned;
+}
+
 // What a task lacks, its copies lack: said of the first, and once for the copies of an abstract
 // one.
-void TaskTable::report_missing(const Task& task, const std::string& missing) {
+Diagnostic* TaskTable::report_missing(const Task& task, const std::string& missing) {
   const bool is_copy = task.like != TaskId::kNone;
   if (is_copy && !context_.model.tasks[task.like].abstract &&
       !context_.model.tasks[task.like].complete)
-    return;
+    return nullptr;
   const auto [first, is_new] = missing_.try_emplace({task.like, missing}, nullptr);
   if (is_new || !is_copy) {
     first->second = &context_.report(Situation::kStatementMissing, task.span,
                                      "task `" + task.name + "` has no " + missing);
-  } else if (first->second->notes.empty()) {
+    return first->second;
+  }
+  if (first->second->notes.empty()) {
     first->second->note("nor has any other task that lacks it and is `like " +
                         context_.model.tasks[task.like].name + "`");
   }
+  return nullptr;
 }
 
 void TaskTable::compare(std::uint32_t index, bool last_chance) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/model/mentioned.h"
 #include "compiler/names/context.h"
 
 namespace probe::sema {
@@ -29,9 +30,13 @@ class TaskTable {
   bool is_defined(TaskId id) const { return defined_[static_cast<std::size_t>(id)]; }
 
  private:
-  void report_missing(const Task& task, const std::string& missing);
+  // Null when it was added to what was said before.
+  Diagnostic* report_missing(const Task& task, const std::string& missing);
+  // False when a role is spoken of that nothing fills; every task's own mistakes poison it.
+  bool check_filled(const Task& task, bool& poisoned);
 
   Context& context_;
+  MentionedIn mentioned_;
   std::map<std::pair<TaskId, std::string>, Diagnostic*> missing_;  // by what is copied
   std::vector<bool> poison_;  // has a statement that was reported
   std::vector<bool> defined_;

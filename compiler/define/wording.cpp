@@ -59,11 +59,12 @@ bool has(const std::vector<Word>& words, std::string_view text) {
 }
 
 // The name of the object of a slot; one that fills a role is that role, however the text names it.
-std::string object_of(const Model& model, const Task& task, const std::string& slot) {
-  const std::string& source = model.objects[task.source].name;
-  const std::string& target = model.objects[task.target].name;
-  if (slot == "source" || slot == source) return "source";
-  return slot == "target" || slot == target ? "target" : slot;
+std::string object_of(const Model& model, const Task& task, const SlotRef& slot) {
+  if (slot.role != RoleId::kNone) {
+    // Of a set `{both goods}` and `{the goods}` are other words for the same.
+    return slot.count == syntax::SlotCount::kOther ? "other " + slot.name.text : slot.name.text;
+  }
+  return role_word(model, task, slot.name.text);
 }
 
 // As they are written, but for articles.
@@ -84,7 +85,11 @@ std::vector<Word> words_of(const Model& model, const Task& task) {
   std::vector<Word> words;
   for (const Template::Part& part : model.templates[task.say].parts) {
     if (part.slot) {
-      words.push_back({object_of(model, task, part.slot->name.text), true});
+      words.push_back({object_of(model, task, *part.slot), true});
+      // Words that count are words of their own.
+      const auto count = part.slot->count;
+      if (count == syntax::SlotCount::kBoth) words.push_back({"both"});
+      if (count == syntax::SlotCount::kAll) words.push_back({"all"});
       continue;
     }
     for (std::string& word : literal_words(part.literal)) words.push_back({std::move(word)});
@@ -151,6 +156,15 @@ bool goes_the_other_way(const std::vector<Word>& a, const std::vector<Word>& b) 
 }
 
 }  // namespace
+
+std::string role_word(const Model& model, const Task& task, const std::string& object) {
+  for (std::size_t i = 0; i < model.roles.size(); ++i) {
+    const std::vector<ObjectId> objects = task.objects_in(model.roles.id(i));
+    if (objects.size() == 1 && model.objects[objects.front()].name == object)
+      return model.roles[model.roles.id(i)].name;
+  }
+  return object;
+}
 
 std::string first_word(const std::vector<Template::Part>& parts) {
   if (parts.empty() || parts[0].slot) return {};

@@ -9,6 +9,9 @@
 
 namespace probe::sema {
 
+// The role that an object of this name fills alone in the task, else the name.
+std::string role_word(const Model& model, const Task& task, const std::string& object);
+
 // The verb of words on the spot: the first one, whatever its case and the signs around it. Empty
 // when a slot stands first.
 std::string first_word(const std::vector<Template::Part>& parts);

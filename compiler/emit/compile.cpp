@@ -74,8 +74,9 @@ std::vector<std::string> unused_phrases(const sema::Model& model) {
   for (const sema::Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     for (const sema::ObjectId object : task.objects()) objects.insert(object);
-    if (task.refer[0]) used.emplace(task.source, task.refer[0]->text);
-    if (task.refer[1]) used.emplace(task.target, task.refer[1]->text);
+    for (const auto& [role, refer] : task.refer) {
+      for (const sema::ObjectId object : task.objects_in(role)) used.emplace(object, refer.text);
+    }
   }
   std::vector<std::string> names;
   for (const sema::ObjectId object : objects) {
@@ -92,10 +93,10 @@ std::vector<ReferringWords> referring_words(const sema::Model& model) {
   std::vector<ReferringWords> all;
   for (const sema::Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
-    for (const syntax::Role role : {syntax::Role::kSource, syntax::Role::kTarget}) {
-      const sema::Referring said = sema::referring(model, task, role);
+    for (const sema::ObjectId object : task.objects()) {
+      if (task.role_of(object) == sema::RoleId::kNone) continue;
+      const sema::Referring said = sema::referring(model, task, object);
       if (said.text == nullptr || task.prompt.find(*said.text) == std::string::npos) continue;
-      const sema::ObjectId object = role == syntax::Role::kSource ? task.source : task.target;
       all.push_back({task.name, *said.text, model.objects[object].name, said.phrase != nullptr});
     }
   }

@@ -112,6 +112,8 @@ class Emitter {
   // One for each start, in their order; tasks with one list of starts share the answer.
   const std::vector<plan::Slice>& placements_of(std::span<const sema::Start> starts, double z);
 
+  // Tasks of one shape share them.
+  plan::Slice add_roles(const sema::Task& task);
   // Tasks of one scene share them.
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
   void add_task(const sema::Task& task);
@@ -154,7 +156,7 @@ class Emitter {
   std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
   std::map<std::vector<double>, plan::Slice> placements_;
   std::map<std::pair<const sema::Start*, double>, std::vector<plan::Slice>> placement_lists_;
-  std::map<std::vector<std::uint32_t>, plan::Slice> views_;
+  std::map<std::vector<std::uint32_t>, plan::Slice> views_, roles_;
 };
 
 }  // namespace probe::emit

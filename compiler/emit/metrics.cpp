@@ -11,7 +11,7 @@ namespace probe::emit {
 std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
                                                   std::span<const sema::Metric> metrics,
                                                   const std::vector<lower::Body>& bodies) {
-  std::vector<std::uint32_t> shape = lower::shape_of(metrics, bodies);
+  std::vector<std::uint32_t> shape = lower::shape_of(model_, metrics, bodies);
   const sema::CameraId camera = sema::views_of(model_, task).front().camera;
   // What is seen from elsewhere is another number.
   if (model_.exprs.needs_frame)

@@ -47,6 +47,30 @@ const std::vector<plan::Slice>& Emitter::placements_of(std::span<const sema::Sta
   return at->second;
 }
 
+plan::Slice Emitter::add_roles(const sema::Task& task) {
+  std::vector<plan::RoleRecord> rows;
+  std::vector<std::uint32_t> key;
+  std::uint32_t next = task.source == ObjectId::kNone ? 0 : 1;
+  if (task.target != ObjectId::kNone) ++next;
+  const auto add = [&](plan::StringRef name, plan::RoleKind kind, std::size_t count) {
+    rows.push_back(
+        {name, static_cast<std::uint32_t>(kind), next, static_cast<std::uint32_t>(count), 0, 0});
+    key.insert(key.end(), {name.offset, name.length, rows.back().kind, next, rows.back().count});
+    next += rows.back().count;
+  };
+  for (const sema::Task::Filled& filled : task.others) {
+    const sema::Role& role = model_.roles[filled.role];
+    add(writer_.text(role.name), role.is_set ? plan::RoleKind::kSet : plan::RoleKind::kOne,
+        filled.objects.size());
+  }
+  next += size32(task.distractors);
+  if (!task.placed.empty()) add({}, plan::RoleKind::kPlaced, task.placed.size());
+  if (rows.empty()) return {};
+  const auto [at, is_new] = roles_.try_emplace(std::move(key), plan::Slice{});
+  if (is_new) at->second = plan::append(records().roles, std::span<const plan::RoleRecord>(rows));
+  return at->second;
+}
+
 void Emitter::add_task(const sema::Task& task) {
   const sema::Scene& scene = model_.scenes[task.scene];
   if (!model_.robots[scene.robot].model || model_.robots[scene.robot].fingers.size() != 2) return;
@@ -79,6 +103,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.source = objects_[task.source];
   record.target = objects_[task.target];
   record.bodies = add_bodies(bodies);
+  record.roles = add_roles(task);
   record.distractors = size32(task.distractors);
   record.horizon = static_cast<std::uint32_t>(task.horizon);
   record.baseline = tasks_[task.baseline];

@@ -21,6 +21,8 @@ using sema::Measure;
 
 using Bodies = std::vector<std::uint16_t>;  // ascending
 
+constexpr auto kSourceRole = static_cast<std::uint32_t>(sema::RoleId::kSource);
+
 class Lowering {
  public:
   Lowering(const sema::Model& model, const std::vector<Body>& bodies, const sema::Frame& frame,
@@ -86,7 +88,13 @@ class Lowering {
       case ExprOp::kConstant:
         return constant(node);
       case ExprOp::kRole:
-        return Value::of_body(static_cast<std::uint16_t>(node.a));
+        return only(node, [&](const Body& b) { return b.role == node.a; });
+      case ExprOp::kObject:
+        return only(node, [&](const Body& b) {
+          return b.kind == plan::BodyKind::kObject && b.index == node.a;
+        });
+      case ExprOp::kFixture:
+        return only(node, [](const Body& b) { return b.kind == plan::BodyKind::kFixture; });
       case ExprOp::kSurface:
         return surface();
       case ExprOp::kVariable:
@@ -154,6 +162,14 @@ class Lowering {
     }
     builder_.at(node.span);
     return Value::of_register(builder_.vector(parts[0], parts[1], parts[2]));
+  }
+
+  // The first body that is meant; that there is one was checked.
+  template <typename Meant>
+  Value only(const ExprNode& node, Meant meant) {
+    const auto at = std::find_if(bodies_.begin(), bodies_.end(), meant);
+    if (at == bodies_.end()) return fail(node.span, "this is not in the scene");
+    return Value::of_body(static_cast<std::uint16_t>(at - bodies_.begin()));
   }
 
   Value surface() const {
@@ -226,15 +242,19 @@ class Lowering {
       case sema::SetOp::kObjects:
         return where([](const Body& b, std::size_t) { return b.kind == BodyKind::kObject; });
       case sema::SetOp::kOthers:
-        return where(
-            [](const Body& b, std::size_t i) { return b.kind == BodyKind::kObject && i != 0; });
+        return where([](const Body& b, std::size_t) {
+          return b.kind == BodyKind::kObject && b.role != kSourceRole;
+        });
       case sema::SetOp::kDistractors:
-        return where(
-            [](const Body& b, std::size_t i) { return b.kind == BodyKind::kObject && i >= 2; });
+        return where([](const Body& b, std::size_t) { return b.role == kDistractorRole; });
       case sema::SetOp::kAlike:
         if (!alike_)
           fail(set.span, "only a phrase has a rest that other objects fit: `alike` is not judged");
         return alike_.value_or(Bodies{});
+      case sema::SetOp::kRole:
+        return where([&](const Body& b, std::size_t) {
+          return b.role == static_cast<std::uint32_t>(set.role);
+        });
       case sema::SetOp::kNames: {
         Bodies result;
         for (const ExprRef body : set.bodies) result.push_back(eval(body).index);
@@ -472,14 +492,27 @@ class Lowering {
 
 }  // namespace
 
+namespace {
+
+std::uint32_t role_number(const sema::Task& task, sema::ObjectId object) {
+  const sema::RoleId role = task.role_of(object);
+  if (role != sema::RoleId::kNone) return static_cast<std::uint32_t>(role);
+  const auto& others = task.distractors;
+  return std::find(others.begin(), others.end(), object) != others.end()
+             ? kDistractorRole
+             : static_cast<std::uint32_t>(sema::RoleId::kNone);
+}
+
+}  // namespace
+
 std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
   const sema::Scene& scene = model.scenes[task.scene];
   const sema::Robot& robot = model.robots[scene.robot];
   PROBE_CHECK(robot.model.has_value(), "a task is lowered only after its robot was read");
   std::vector<Body> bodies;
   for (const sema::ObjectId id : task.objects()) {
-    bodies.push_back(
-        {plan::BodyKind::kObject, static_cast<std::uint32_t>(id), model.objects[id].name});
+    bodies.push_back({plan::BodyKind::kObject, static_cast<std::uint32_t>(id),
+                      model.objects[id].name, role_number(task, id)});
   }
   bodies.push_back({plan::BodyKind::kSurface, 0, "surface"});
   if (scene.fixture) bodies.push_back({plan::BodyKind::kFixture, 0, scene.fixture->text});
@@ -496,15 +529,18 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
   return bodies;
 }
 
-std::vector<std::uint32_t> shape_of(std::span<const sema::Metric> metrics,
+std::vector<std::uint32_t> shape_of(const sema::Model& model, std::span<const sema::Metric> metrics,
                                     const std::vector<Body>& bodies) {
   std::vector<std::uint32_t> shape;
-  shape.reserve(1 + 2 * bodies.size() + 9 * metrics.size());
+  shape.reserve(1 + 3 * bodies.size() + 9 * metrics.size());
   shape.push_back(static_cast<std::uint32_t>(bodies.size()));
   for (const Body& body : bodies) {
-    // Which object it is counts for nothing: instructions name bodies by their place in the list.
+    // Which object it is counts for nothing: instructions name bodies by their place in the list,
+    // unless some metric of the text calls one by its name.
+    const bool is_any = body.kind == plan::BodyKind::kObject && !model.exprs.names_objects;
     shape.push_back(static_cast<std::uint32_t>(body.kind));
-    shape.push_back(body.kind == plan::BodyKind::kObject ? 0 : body.index);
+    shape.push_back(is_any ? 0 : body.index);
+    shape.push_back(body.role);
   }
   for (const sema::Metric& metric : metrics) {
     // A metric's name stands at its span.

@@ -21,13 +21,16 @@ struct Body {
   plan::BodyKind kind = plan::BodyKind::kObject;
   std::uint32_t index = 0;  // kObject: sema::ObjectId; kLink: 0, 1 fingers, then on
   std::string name;
+  // Of an object: its sema::RoleId, kDistractor, or kNone for what the layout placed.
+  std::uint32_t role = 0xffffffffu;
 };
+inline constexpr std::uint32_t kDistractorRole = 0xfffffffeu;
 
 // The robot of the task's scene must have its model.
 std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task);
 
 // All that lower_metrics looks at: metrics of one shape have one program, whatever the objects are.
-std::vector<std::uint32_t> shape_of(std::span<const sema::Metric> metrics,
+std::vector<std::uint32_t> shape_of(const sema::Model& model, std::span<const sema::Metric> metrics,
                                     const std::vector<Body>& bodies);
 
 // What the task's scene, layout and objects leave room for.

@@ -34,7 +34,9 @@ using SetRef = std::uint32_t;
 enum class ExprOp : std::uint8_t {
   kPoison,
   kConstant,  // a: index into quantities
-  kRole,      // a: 0 source, 1 target
+  kRole,      // a: RoleId
+  kObject,    // a: ObjectId, by its name
+  kFixture,   // the scene's fixture, by its name
   kSurface,   // the surface as a body
   kVariable,  // a: parameter or quantifier variable of the enclosing predicate or metric
   kVector,    // args: x, y, z, constants
@@ -79,6 +81,7 @@ enum class SetOp : std::uint8_t {
   kOthers,
   kDistractors,
   kAlike,  // relations: what the rest of a phrase fits
+  kRole,   // role: all that fill it
   kNames,  // bodies: expressions
   kUnion,
   kIntersection,
@@ -89,6 +92,7 @@ struct SetNode {
   Span span;
   std::vector<ExprRef> bodies;
   SetRef left = 0, right = 0;
+  RoleId role = RoleId::kNone;
 };
 
 struct ExprArena {
@@ -96,6 +100,7 @@ struct ExprArena {
   std::vector<SetNode> sets;
   std::vector<Quantity> quantities;
   bool needs_frame = false;  // something is measured from the first camera or the robot's base
+  bool names_objects = false;  // some expression names an object or a fixture
 };
 
 struct Parameter {

@@ -20,6 +20,8 @@ enum class LayoutId : std::uint32_t { kNone = 0xffffffffu };
 enum class TemplateId : std::uint32_t { kNone = 0xffffffffu };
 enum class PredicateId : std::uint32_t { kNone = 0xffffffffu };
 enum class MetricsId : std::uint32_t { kNone = 0xffffffffu };
+// The first two are there in every text; others are declared, and their objects follow those two.
+enum class RoleId : std::uint32_t { kSource = 0, kTarget = 1, kNone = 0xffffffffu };
 enum class TaskId : std::uint32_t { kNone = 0xffffffffu };
 enum class SetId : std::uint32_t { kNone = 0xffffffffu };
 enum class SuiteId : std::uint32_t { kNone = 0xffffffffu };

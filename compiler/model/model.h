@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,6 +17,7 @@
 #include "compiler/model/questions.h"
 #include "compiler/model/units.h"
 #include "compiler/source/source.h"
+#include "compiler/syntax/ast.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/format.h"
 #include "runtime/robot/urdf.h"
@@ -209,7 +211,7 @@ struct Cells {
 struct Place {
   enum How : std::uint8_t { kAt, kDistinct, kRemaining };
   How how = kAt;
-  std::vector<Spelled> what;  // source, target, distractors or an object
+  std::vector<Spelled> what;  // a role, `distractors` or an object
   Cell at;                    // kAt
   std::string cells;          // else
   Span span;
@@ -236,13 +238,25 @@ struct Layout {
   Span expect_span;
 };
 
+// ---- roles
+// --------------------------------------------------------------------------------------------------------
+
+struct Role {
+  std::string name;
+  Span span;
+  bool is_set = false;
+};
+
 // ---- language
 // -------------------------------------------------------------------------------------------------------
 
 struct SlotRef {
   bool avoid = false;
   bool the = false;
-  Spelled name;  // source, target or an object
+  syntax::SlotCount count = syntax::SlotCount::kPlain;
+  std::uint32_t number = 0;     // behind `all`, 0 for none
+  Spelled name;                 // a role or an object
+  RoleId role = RoleId::kNone;  // which
   std::optional<Spelled> category;
   Span span;
 };
@@ -274,12 +288,12 @@ struct Start {
     double x = 0, y = 0;
     Turn turn;
   };
-  std::vector<Placed> placed;  // source, target, distractors
+  std::vector<Placed> placed;  // in the order of Task::objects()
 };
 
 // A phrase that starts are chosen by: those in which it is clear.
 struct ClearPhrase {
-  std::size_t role = 0;  // source, target
+  RoleId role = RoleId::kSource;
   Spelled phrase;
 };
 
@@ -305,9 +319,17 @@ struct Task {
   };
   std::vector<OtherCamera> cameras;  // in place of the scene's; a later one wins
   ObjectId source = ObjectId::kNone, target = ObjectId::kNone;
+  struct Filled {
+    RoleId role = RoleId::kNone;
+    std::vector<ObjectId> objects;
+    std::vector<Span> spans;  // by object
+    Span span;                // of the statement
+  };
+  std::vector<Filled> others;  // other roles, ascending
   std::vector<ObjectId> distractors;
+  std::vector<ObjectId> placed;  // in no role: what the layout puts into the scene by name
   TemplateId say = TemplateId::kNone;
-  std::array<std::optional<Spelled>, 2> refer;  // by role: source, target
+  std::map<RoleId, Spelled> refer;  // by which phrase
   std::vector<PoseOverride> poses;
   std::uint64_t horizon = 0;
   std::vector<Metric> overrides;  // `set`
@@ -327,8 +349,18 @@ struct Task {
   std::vector<Metric> judged;     // the metrics it is judged by, in order
   std::span<const Start> starts;  // in Model::start_lists; equal tasks share one
 
-  // source, target, distractors
+  // In the order of the plan's bodies: source and target if there are any, other roles,
+  // distractors, what the layout placed.
   std::vector<ObjectId> objects() const;
+  // What fills a role; none for one that nothing fills.
+  std::vector<ObjectId> objects_in(RoleId role) const;
+  // kNone for an object that fills none: a distractor, or one that was placed.
+  RoleId role_of(ObjectId object) const;
+  bool has_both() const { return source != ObjectId::kNone && target != ObjectId::kNone; }
+  const Spelled* refer_of(RoleId role) const {
+    const auto at = refer.find(role);
+    return at == refer.end() ? nullptr : &at->second;
+  }
 };
 
 // A variant that a `sample` took without the baseline that it is compared with.
@@ -376,6 +408,7 @@ struct Model {
   ExprArena exprs;
   Table<PredicateId, Predicate> predicates;
   Table<MetricsId, Metrics> metrics;
+  Table<RoleId, Role> roles;  // source and target are the first two
   Table<TaskId, Task> tasks;
   Table<SetId, TaskSet> sets;
   Table<SuiteId, Suite> suites;

@@ -21,12 +21,15 @@ namespace probe::sema {
 
 // Of which object something is said.
 struct Who {
-  enum Kind : std::uint8_t { kSource, kTarget, kAvoided, kBound, kObject };
+  enum Kind : std::uint8_t { kSource, kTarget, kAvoided, kBound, kObject, kRole };
   Kind kind = kSource;
   ObjectId object = ObjectId::kNone;  // kObject
   std::string text;                   // as written
   Span span;
-  bool operator==(const Who& other) const { return kind == other.kind && object == other.object; }
+  RoleId role = RoleId::kNone;  // kRole: one that is declared
+  bool operator==(const Who& other) const {
+    return kind == other.kind && object == other.object && role == other.role;
+  }
 };
 
 // `{the phrase of source}`

@@ -50,7 +50,7 @@ struct Comparison {
     if (left == right) return true;
     const SetNode& a = model.exprs.sets[left];
     const SetNode& b = model.exprs.sets[right];
-    if (a.op != b.op || a.bodies.size() != b.bodies.size()) return false;
+    if (a.op != b.op || a.role != b.role || a.bodies.size() != b.bodies.size()) return false;
     for (std::size_t i = 0; i < a.bodies.size(); ++i) {
       if (!nodes(a.bodies[i], b.bodies[i])) return false;
     }

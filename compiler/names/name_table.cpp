@@ -43,7 +43,10 @@ Diagnostic& report_unknown(Diagnostics& diagnostics, std::string_view kind,
   Diagnostic& diagnostic =
       diagnostics.report(Situation::kUnknownName, name.span,
                          "unknown " + std::string(kind) + " `" + std::string(name.text) + "`");
-  diagnostic.subject = std::string(kind) + " " + std::string(name.text);
+  // A role or an object that is not declared is missed in words, metrics and layouts alike.
+  const bool is_body =
+      kind == "object" || kind == "role" || kind == "name" || kind == "set of bodies";
+  diagnostic.subject = (is_body ? "body" : std::string(kind)) + " " + std::string(name.text);
   auto near = nearest(name.text, candidates);
   if (!near && name.text.size() > 2) {
     // `bridge` for `bridge_v2`: the only one that begins so.

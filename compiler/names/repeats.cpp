@@ -18,9 +18,7 @@ std::string_view name_in(const syntax::PhraseStmt& stmt) { return stmt.name.text
 std::string_view name_in(const syntax::CellsStmt& stmt) { return stmt.name.text; }
 std::string_view name_in(const syntax::PoseStmt& stmt) { return stmt.object.text; }
 std::string_view name_in(const syntax::MetricStmt& stmt) { return stmt.name.text; }
-std::string_view name_in(const syntax::ReferStmt& stmt) {
-  return stmt.role == syntax::Role::kSource ? "source" : "target";
-}
+std::string_view name_in(const syntax::ReferStmt& stmt) { return stmt.role.text; }
 
 struct KeyOf {
   const syntax::StatementWord& said;
@@ -28,6 +26,7 @@ struct KeyOf {
   Key operator()(const syntax::TaskCameraStmt& stmt) const {
     return stmt.as ? "camera as " + std::string(stmt.as->text) : "camera";
   }
+  Key operator()(const syntax::RoleStmt& stmt) const { return Key(stmt.role.text); }
   template <typename Stmt>
   Key operator()(const Stmt& stmt) const {
     const Key word(said.word);

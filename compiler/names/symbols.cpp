@@ -58,6 +58,9 @@ struct Collector {
   void operator()(const syntax::MetricsDecl& node) const {
     collect(symbols.metrics, symbols.metrics_decls, diagnostics, file, decl, node);
   }
+  void operator()(const syntax::RoleDecl& node) const {
+    collect(symbols.roles, symbols.role_decls, diagnostics, file, decl, node);
+  }
   void operator()(const syntax::TaskDecl& node) const {
     collect_task(symbols, diagnostics,
                  {&file, &decl, node.name, node.abstract, node.like, node.against, &node.body});

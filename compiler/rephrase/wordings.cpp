@@ -28,8 +28,7 @@ namespace {
 
 // The object of a slot; one that fills a role is that role, however the text names it.
 std::string role_of(const Model& model, const Task& task, const std::string& slot) {
-  if (slot == "source" || slot == model.objects[task.source].name) return "source";
-  return slot == "target" || slot == model.objects[task.target].name ? "target" : slot;
+  return sema::role_word(model, task, slot);
 }
 
 std::set<std::string> wanted_by(const Model& model, const Task& task, const Template& say) {
@@ -61,7 +60,9 @@ Task words_alone(const Task& task) {
   words.scene = task.scene;
   words.source = task.source;
   words.target = task.target;
+  words.others = task.others;
   words.distractors = task.distractors;
+  words.placed = task.placed;
   words.say = task.say;
   words.refer = task.refer;
   return words;
@@ -104,6 +105,7 @@ std::optional<Refusal> Prover::why_no_phrase(const Task& task, ObjectId wanted,
 
 std::vector<Prover::Choice> Prover::choices(const Task& task, bool is_source, bool is_said) const {
   const ObjectId wanted = is_source ? task.source : task.target;
+  if (wanted == ObjectId::kNone) return std::vector<Choice>(1);
   const sema::Object& object = model_.objects[wanted];
   std::vector<Choice> all(1);
   if (!is_said) return all;
@@ -157,6 +159,13 @@ std::optional<Refusal> Prover::why_not(const Task& task, TemplateId say) {
   const Template& own = model_.templates[task.say];
   const Template& words = model_.templates[say];
   if (wanted_by(model_, task, own) != wanted_by(model_, task, words)) return Refusal::kRoles;
+  if (!sema::fills_all(task, words)) return Refusal::kRoles;
+  for (const Template::Part& part : words.parts) {
+    if (!part.slot) continue;
+    const sema::CountFit fit = sema::count_of(model_, task, words, *part.slot).fit;
+    if (fit == sema::CountFit::kNumber) return Refusal::kRoles;
+    if (fit == sema::CountFit::kNoun) return Refusal::kAmbiguous;
+  }
   if (forbidden_by(model_, task, actions_, task.say) != forbidden_by(model_, task, actions_, say))
     return Refusal::kNegation;
   std::vector<ObjectId> named = mentions_.in(say), said = mentions_.in(task.say);
@@ -175,8 +184,9 @@ std::optional<Refusal> Prover::why_not(const Task& task, TemplateId say) {
     if (!part.slot || !part.slot->category) continue;
     const std::string role = role_of(model_, task, part.slot->name.text);
     for (const ObjectId id : task.objects()) {
-      const bool fills = (role == "source" && id == task.source) ||
-                         (role == "target" && id == task.target) || role == model_.objects[id].name;
+      const sema::RoleId filled = task.role_of(id);
+      const bool fills = role == model_.objects[id].name ||
+                         (filled != sema::RoleId::kNone && role == model_.roles[filled].name);
       if (fills && sema::fits_category(model_, model_.objects[id], part.slot->category->text) !=
                        sema::CategoryFit::kYes)
         return Refusal::kCategory;
@@ -221,14 +231,16 @@ Proved Prover::prove(const Task& task, std::uint64_t seed) {
   proved.not_drawn = count - made.size();
   std::set<std::string> known = {task.prompt};
   Task words = words_alone(task);
-  const auto refer = [](const Phrase* phrase) {
-    return phrase == nullptr ? std::nullopt
-                             : std::optional(sema::Spelled{phrase->name, phrase->text.span});
+  const auto set_refer = [&words](sema::RoleId role, const Phrase* phrase) {
+    words.refer.erase(role);
+    if (phrase != nullptr) words.refer[role] = {phrase->name, phrase->text.span};
   };
   for (const std::uint64_t at : made) {
     const auto& [source, target] = called[at % called.size()];
     words.say = templates[at / called.size()];
-    words.refer = {refer(source), refer(target)};
+    words.refer = task.refer;
+    set_refer(sema::RoleId::kSource, source);
+    set_refer(sema::RoleId::kTarget, target);
     std::string text = sema::render_prompt(model_, words);
     if (sema::fault_of_prompt(text) != sema::PromptFault::kNone) {
       ++proved.refused[Refusal::kForm];

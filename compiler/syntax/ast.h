@@ -62,12 +62,22 @@ struct Text {
   std::string value;
 };
 
-// One piece of a text with slots: literal bytes, or "{" [avoid] [the] name [":" category] "}".
+// How many of a role a slot speaks of.
+enum class SlotCount : std::uint8_t {
+  kPlain,  // of all that fill it: `{the goods}`
+  kBoth,   // `{both goods}`
+  kAll,    // `{all goods}`, `{all three goods}`
+  kOther,  // `{the other goods}`: the one that was not said before
+};
+// One piece of a text with slots: literal bytes, or
+// "{" [avoid] [the] [both | all [number] | other] name [":" category] "}".
 struct Slot {
   Span span;  // with the braces
   bool avoid = false;
   bool the = false;
-  Name name;                     // source, target, an object, or a binder of `derive`
+  SlotCount count = SlotCount::kPlain;
+  std::uint32_t number = 0;      // behind `all`, 0 for none
+  Name name;                     // a role, an object, or a binder of `derive`
   std::optional<Name> category;  // accepts only this value of attribute `category`
 };
 using TemplatePart = std::variant<std::string, Slot>;
@@ -92,8 +102,6 @@ struct Pose {
   Span span;
   std::vector<Angle> angles;  // at least one
 };
-
-enum class Role : std::uint8_t { kSource, kTarget };
 
 // Indices into the arrays of File.
 struct ExprId {
@@ -612,6 +620,10 @@ struct MetricsDecl {
 // ---- tasks, variants, suites
 // ----------------------------------------------------------------------------------------
 
+struct RoleDecl {  // `role helper`, `role goods: set`
+  Name name;
+  bool is_set = false;
+};
 enum class TaskField : std::uint8_t { kScene, kSource, kTarget, kMetrics, kLight };
 struct FieldStmt {  // `scene table`
   Span span;
@@ -620,7 +632,7 @@ struct FieldStmt {  // `scene table`
 };
 struct ClearPhrase {  // `side of source`
   Name phrase;
-  Role role = Role::kSource;
+  Name role;
 };
 struct TaskLayoutStmt {  // `layout grid where clear side of source`
   Span span;
@@ -637,13 +649,18 @@ struct DistractorsStmt {  // `none` is the empty list
   Span span;
   std::vector<Name> objects;
 };
+struct RoleStmt {  // `helper spoon`, `goods carrot, spoon`; `none` is the empty list
+  Span span;
+  Name role;
+  std::vector<Name> objects;
+};
 struct SayStmt {
   Span span;
   std::variant<Name, TemplateText> what;  // a template by name, or words on the spot
 };
 struct ReferStmt {
   Span span;
-  Role role = Role::kSource;
+  Name role;
   Name phrase;
 };
 struct PoseStmt {
@@ -655,8 +672,8 @@ struct HorizonStmt {
   Span span;
   Int steps;
 };
-using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt, ReferStmt,
-                              PoseStmt, HorizonStmt, MetricStmt>;
+using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
+                              ReferStmt, PoseStmt, HorizonStmt, MetricStmt, RoleStmt>;
 
 struct TaskDecl {
   bool abstract = false;
@@ -683,7 +700,7 @@ struct VariantsDecl {
 
 struct BinderPhrases {  // `p in clear phrases appearance of source`
   Name axis;
-  Role role = Role::kSource;
+  Name role;
   bool clear = false;  // only those that describe their object alone
 };
 struct BinderTemplates {  // `w in templates of put`
@@ -692,7 +709,8 @@ struct BinderTemplates {  // `w in templates of put`
 struct BinderObjects {  // `o in objects (carrot, spoon)`
   std::vector<Name> objects;
 };
-struct BinderDistractors {  // `o in distractors of t`
+struct BinderDistractors {  // `o in distractors of t`, `o in goods of t`
+  Name role;
   Name task;
 };
 struct BinderTasks {  // `t in core`; a `where` belongs to the derive
@@ -818,8 +836,8 @@ struct Allow {  // @allow(confounded, "why")
 
 using DeclNode = std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, RobotDecl,
                               CameraDecl, LightDecl, SceneDecl, LayoutDecl, TemplateDecl,
-                              PredicateDecl, MetricsDecl, TaskDecl, VariantDecl, VariantsDecl,
-                              DeriveDecl, SetDecl, QuestionsDecl, SuiteDecl>;
+                              PredicateDecl, MetricsDecl, RoleDecl, TaskDecl, VariantDecl,
+                              VariantsDecl, DeriveDecl, SetDecl, QuestionsDecl, SuiteDecl>;
 
 struct Decl {
   Span span;  // keyword to the last token

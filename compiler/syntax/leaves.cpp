@@ -160,12 +160,6 @@ std::vector<Pose> Parser::poses() {
   return comma_list([this] { return pose(); });
 }
 
-Role Parser::role() {
-  if (accept_word("source")) return Role::kSource;
-  expect_word("target");
-  return Role::kTarget;
-}
-
 std::optional<Name> Parser::optional_name_after(std::string_view word) {
   if (!accept_word(word)) return std::nullopt;
   return name();

@@ -28,16 +28,18 @@ Binder Parser::binder() {
     phrases.clear = clear;
     phrases.axis = name();
     expect_word("of");
-    phrases.role = role();
+    phrases.role = name();
     out.over = phrases;
   } else if (at_word("templates") && text_ahead(1) == "of") {
     advance();
     advance();
     out.over = BinderTemplates{name()};
-  } else if (at_word("distractors") && text_ahead(1) == "of") {
-    advance();
-    advance();
-    out.over = BinderDistractors{name()};
+  } else if (kind() == TokenKind::kIdent && text_ahead(1) == "of" && !at_word("variants")) {
+    BinderDistractors others;
+    others.role = name();
+    expect_word("of");
+    others.task = name();
+    out.over = others;
   } else if (at_word("objects") && kind_ahead(1) == TokenKind::kLeftParen) {
     advance();
     advance();

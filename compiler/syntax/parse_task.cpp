@@ -1,4 +1,7 @@
 // Tasks and their variants.
+#include <iterator>
+
+#include "compiler/diag/diagnostic.h"
 #include "compiler/syntax/parser_impl.h"
 
 namespace probe::syntax {
@@ -51,7 +54,7 @@ std::vector<TaskStmt> Parser::task_body() {
 #define PROBE_IN_TASK(word, parse, repeat) {#word, &Parser::parse},
 #include "compiler/syntax/keywords.def"
   };
-  return body<TaskStmt>(kRules, "a statement of a task");
+  return body<TaskStmt>(kRules, "a statement of a task", &Parser::task_role, &Parser::begins_role);
 }
 
 TaskStmt Parser::task_layout() {
@@ -63,7 +66,7 @@ TaskStmt Parser::task_layout() {
     ClearPhrase phrase;
     phrase.phrase = name();
     expect_word("of");
-    phrase.role = role();
+    phrase.role = name();
     return phrase;
   });
   return out;
@@ -96,7 +99,7 @@ TaskStmt Parser::task_say() {
 
 TaskStmt Parser::task_refer() {
   ReferStmt out;
-  out.role = role();
+  out.role = name();
   expect_word("as");
   out.phrase = name();
   return out;
@@ -113,6 +116,49 @@ TaskStmt Parser::task_horizon() {
   HorizonStmt out;
   out.steps = integer();
   expect_word("steps");
+  return out;
+}
+
+DeclNode Parser::role_decl() {
+  advance();
+  RoleDecl out;
+  out.name = name();
+  if (accept(TokenKind::kColon)) {
+    expect_word("set");
+    out.is_set = true;
+  }
+  return out;
+}
+
+// Declared in this file, wherever.
+bool Parser::is_own_role(std::string_view word) const {
+  for (std::size_t i = 0; i + 1 < tokens_.size(); ++i) {
+    if (text_at(static_cast<std::uint32_t>(i)) == "role" &&
+        text_at(static_cast<std::uint32_t>(i + 1)) == word)
+      return true;
+  }
+  return false;
+}
+
+// A word that is no statement's, with a name behind it. One that is nearly a statement's is that
+// statement misspelt, unless this file declares a role of that name.
+bool Parser::begins_role() const {
+  if (kind() != TokenKind::kIdent || kind_ahead(1) != TokenKind::kIdent) return false;
+  static constexpr std::string_view kWords[] = {
+#define PROBE_IN_TASK(word, parse, repeat) #word,
+#include "compiler/syntax/keywords.def"
+  };
+  const std::vector<std::string_view> words(std::begin(kWords), std::end(kWords));
+  return !nearest(text_at(pos_), words) || is_own_role(text_at(pos_));
+}
+
+// Which roles there are is known when all files are read.
+TaskStmt Parser::task_role() {
+  expected_count_ = 0;
+  RoleStmt out;
+  out.role = name();
+  out.objects = names();
+  if (out.objects.size() == 1 && out.objects.front().text == "none") out.objects.clear();
   return out;
 }
 

@@ -5,6 +5,16 @@
 namespace probe::syntax {
 namespace {
 
+// 0 for a word that is no number from two to twelve.
+std::uint32_t number_of_word(std::string_view word) {
+  constexpr std::string_view kWords[] = {"two",   "three", "four", "five",   "six",   "seven",
+                                         "eight", "nine",  "ten",  "eleven", "twelve"};
+  for (std::uint32_t i = 0; i < std::size(kWords); ++i) {
+    if (kWords[i] == word) return i + 2;
+  }
+  return 0;
+}
+
 // What is wrong with it; empty when `slot` could be read.
 std::string read_slot(BraceWords& words, Slot& slot) {
   Name word;
@@ -15,6 +25,18 @@ std::string read_slot(BraceWords& words, Slot& slot) {
   }
   if (word.text == "the" && words.is_word_next()) {
     slot.the = true;
+    words.take_word(word);
+  }
+  if (words.is_word_next()) {
+    slot.count = word.text == "both"                ? SlotCount::kBoth
+                 : word.text == "all"               ? SlotCount::kAll
+                 : slot.the && word.text == "other" ? SlotCount::kOther
+                                                    : SlotCount::kPlain;
+    if (slot.count != SlotCount::kPlain) words.take_word(word);
+  }
+  if (slot.count == SlotCount::kAll && words.is_word_next()) {
+    slot.number = number_of_word(word.text);
+    if (slot.number == 0) return "a number such as `three`";
     words.take_word(word);
   }
   slot.name = word;

@@ -93,7 +93,8 @@ class Parser {
   // read by `other`, or is an error that expects `noun`.
   template <typename Stmt>
   std::vector<Stmt> body(std::span<const Rule<Stmt>> rules, std::string_view noun,
-                         Stmt (Parser::*other)() = nullptr);
+                         Stmt (Parser::*other)() = nullptr,
+                         bool (Parser::*takes)() const = nullptr);
 
   // ---- leaves.cpp ----
   Name name();
@@ -108,7 +109,6 @@ class Parser {
   Point point();
   Pose pose();
   std::vector<Pose> poses();
-  Role role();
   std::optional<Name> optional_name_after(std::string_view word);
 
   template <typename Item>
@@ -234,6 +234,10 @@ class Parser {
   TaskStmt task_pose();
   TaskStmt task_horizon();
   TaskStmt task_metric();
+  TaskStmt task_role();
+  DeclNode role_decl();
+  bool is_own_role(std::string_view word) const;
+  bool begins_role() const;
 
   // ---- parse_derive.cpp ----
   DeclNode derive_decl();
@@ -352,10 +356,11 @@ void Parser::block(const Begins& begins, Statement statement) {
 
 template <typename Stmt>
 std::vector<Stmt> Parser::body(std::span<const Rule<Stmt>> rules, std::string_view noun,
-                               Stmt (Parser::*other)()) {
+                               Stmt (Parser::*other)(), bool (Parser::*takes)() const) {
   std::vector<Stmt> out;
   const auto begins = [&](std::string_view word) {
-    return other != nullptr || std::ranges::find(rules, word, &Rule<Stmt>::word) != rules.end();
+    return (other != nullptr && takes == nullptr) ||
+           std::ranges::find(rules, word, &Rule<Stmt>::word) != rules.end();
   };
   block(begins, [&] {
     const std::uint32_t begin = mark();
@@ -364,7 +369,7 @@ std::vector<Stmt> Parser::body(std::span<const Rule<Stmt>> rules, std::string_vi
     Stmt stmt;
     if (rule != rules.end()) {
       stmt = (this->*rule->parse)();
-    } else if (other != nullptr) {
+    } else if (other != nullptr && (takes == nullptr || (this->*takes)())) {
       stmt = (this->*other)();
     } else {
       fail_expected(noun);

@@ -45,7 +45,9 @@ std::optional<Vec2> find_spot(const Scene& scene, const Reach& reach) {
       const Vec2 way = distance * Vec2(t.cos, t.sin);
       const Vec2 at = scene.source.center + way;
       const double room = room_at(scene, way);
-      if (room < kNarrow || (at - scene.target.center).norm() < apart) continue;
+      const bool is_on_target =
+          !scene.target.whole.empty() && (at - scene.target.center).norm() < apart;
+      if (room < kNarrow || is_on_target) continue;
       spots.push_back({at, 50 * (kRoomy - room) + 10 * distance});
     }
   }
@@ -70,7 +72,7 @@ Scene with_spot(Scene scene, const Vec2& spot) {
   mark.center = spot;
   mark.radius = kHalf * std::numbers::sqrt2;
   mark.bottom = mark.top = scene.surface;
-  scene.others.push_back(std::move(scene.target));
+  if (!scene.target.whole.empty()) scene.others.push_back(std::move(scene.target));
   scene.target = std::move(mark);
   return scene;
 }

@@ -27,6 +27,7 @@ enum class Phase {
   kClose,      // still, fingers closing
   kTransport,  // with the source to the place, on a planned path
   kLower,      // until the source rests on the target
+  kLift,       // instead of a transport, for what shall only be picked up: straight up
   kKeep,       // instead of all that follows, for what shall not lie on the target: still, closed
   kLoosen,     // fingers just off the source
   kOpen,       // fingers wide
@@ -41,6 +42,8 @@ constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
 
 constexpr double kThin = 0.015;       // m high
 constexpr int kLongestShove = 8;      // steps
+constexpr double kLift = 0.12;        // m, of what is picked up
+constexpr int kLongestLift = 10;      // steps
 constexpr double kShoved = 0.038;     // m that are enough
 constexpr int kLongestApproach = 30;  // steps in which a source that moves is followed
 
@@ -73,8 +76,12 @@ class Expert final : public policy::Policy {
 
   Result<policy::Action> act(const policy::Observation& observation) override {
     PROBE_TRY(check(observation));
-    Scene scene =
-        look(observation, {options_.source, options_.close ? options_.target : -1}, reach_->hand());
+    const policy::Privileged& view = *observation.privileged;
+    Scene scene = look(
+        observation,
+        {view.object_of(options_.source), options_.close ? view.object_of(options_.target) : -1},
+        reach_->hand());
+    lifts_ = options_.close && view.goal == policy::Goal::kLifted;
     if (!started_) look_for_spot(observation, scene);
     if (spot_) scene = with_spot(std::move(scene), *spot_);
     if (observation.horizon > 0) horizon_ = observation.horizon;
@@ -112,14 +119,22 @@ class Expert final : public policy::Policy {
     if (observation.privileged == nullptr) {
       return Failure{Fault::kPolicy, "the expert needs the privileged view and got none", ""};
     }
-    const auto count = int(observation.privileged->objects.size());
-    const bool lacks_target = options_.close && (options_.target < 0 || options_.target >= count);
-    if (options_.source < 0 || options_.source >= count || lacks_target) {
+    const policy::Privileged& view = *observation.privileged;
+    const bool lacks_target = options_.close && view.goal != policy::Goal::kLifted &&
+                              view.goal != policy::Goal::kAway &&
+                              view.object_of(options_.target) < 0;
+    // What only reaches, or goes for a distractor, does so whatever the goal is.
+    const bool is_other =
+        options_.close && options_.source == 0 && view.goal == policy::Goal::kOther;
+    const auto is_missing = [&](int role) { return role > 1 && view.object_of(role) < 0; };
+    if (is_missing(options_.source) || (options_.close && is_missing(options_.target))) {
       return Failure{Fault::kPolicy,
                      fmt::format("the expert works on roles {} and {}, the episode has {} objects",
-                                 options_.source, options_.target, count),
+                                 options_.source, options_.target, view.objects.size()),
                      ""};
     }
+    if (view.object_of(options_.source) < 0 || lacks_target || is_other)
+      return Failure{Fault::kPolicy, std::string(policy::kNoSolution), ""};
     if (observation.proprioception.joints.size() < reach_->chain().joint_count()) {
       return Failure{
           Fault::kPolicy,
@@ -184,6 +199,10 @@ class Expert final : public policy::Policy {
         return advance_transport(s);
       case Phase::kLower:
         return advance_lower(s);
+      case Phase::kLift:
+        if (!holds(s)) return start_over();
+        if (near(s.tcp, place_, 0.01, 0.2) || steps_ >= kLongestLift) enter(Phase::kKeep);
+        return;
       case Phase::kKeep:
         if (!holds(s)) start_over();
         return;
@@ -221,11 +240,11 @@ class Expert final : public policy::Policy {
   }
 
   bool plan_to_grasp(const Scene& s) {
-    pick_ = plan_pick(s, *reach_, options_.close, failed_);
+    pick_ = plan_pick(s, *reach_, options_.close && !lifts_, failed_);
     shove_.reset();
     // A thin rim that slipped once slips again.
     const int rims = s.source.top - s.source.bottom < kThin ? 1 : 2;
-    if (options_.close && (!pick_ || (pick_->grasp.rim && tries_ >= rims))) {
+    if (options_.close && !lifts_ && (!pick_ || (pick_->grasp.rim && tries_ >= rims))) {
       shove_ = plan_shove(s, *reach_);
       if (shove_) pick_ = shove_->start;
     }
@@ -270,9 +289,15 @@ class Expert final : public policy::Policy {
       in_hand_ = s.tcp.inverse().apply(s.source_pose.position);
       taken_ = s.tcp;
       taken_bottom_ = s.source.bottom;
-      return begin_transport(s);
+      return lifts_ ? begin_lift() : begin_transport(s);
     }
     if (steps_ >= 4) start_over();
+  }
+
+  void begin_lift() {
+    place_ = taken_;
+    place_.position.z() += kLift;
+    enter(Phase::kLift);
   }
 
   void begin_transport(const Scene& s) {
@@ -321,6 +346,8 @@ class Expert final : public policy::Policy {
         return follow_path(s, kClosedGripper);
       case Phase::kLower:
         return command_lower(s);
+      case Phase::kLift:
+        return servo_.toward(place_, arm_of(s), kClosedGripper, kHeldPace);
       case Phase::kKeep:
         return servo_.hold(kClosedGripper);
       case Phase::kLoosen:
@@ -376,7 +403,8 @@ class Expert final : public policy::Policy {
   bool started_ = false;
   Servo servo_;
   Phase phase_ = Phase::kRaise;
-  int steps_ = 0;  // in this phase
+  bool lifts_ = false;  // the source shall only be picked up
+  int steps_ = 0;       // in this phase
   int tries_ = 0;
   std::vector<Pose> failed_;  // grasps, in the source's frame
   Scene last_;

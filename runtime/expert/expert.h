@@ -10,12 +10,13 @@
 namespace probe::expert {
 
 struct ExpertOptions {
-  int source = 0;     // index of a role in Privileged::objects: what to take...
+  int source = 0;     // what to take, as Privileged::object_of() counts roles...
   int target = 1;     // ...and where to put it; not read if close is false
   bool close = true;  // false: goes to the source and stays there with open fingers
 };
 
-// act() fails (kPolicy) without the privileged view or if a role has no object.
+// act() fails (kPolicy) without the privileged view, and with policy::kNoSolution where the task is
+// none of those that picking and placing solves.
 Result<std::unique_ptr<policy::Policy>> make_expert(const ExpertOptions& options);
 
 }  // namespace probe::expert

@@ -28,7 +28,7 @@ struct Scene {
   double surface = 0;
 };
 
-// The indices must be those of objects in the view; target -1 for none.
+// Indices of objects in the view; target -1 for none.
 struct Roles {
   int source = 0, target = 1;
 };

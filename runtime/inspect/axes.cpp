@@ -5,17 +5,37 @@
 #include <optional>
 
 #include "runtime/plan/ids.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::inspect {
 namespace {
 
+using ByRole = std::vector<std::pair<std::string_view, std::vector<std::uint32_t>>>;
+ByRole objects_by_role(const plan::Plan& plan, const plan::TaskRecord& task) {
+  ByRole all;
+  for (const plan::RoleRecord& role : plan::roles_of(plan.tables(), task).others) {
+    if (role.kind == static_cast<std::uint32_t>(plan::RoleKind::kPlaced)) continue;
+    auto& objects = all.emplace_back(plan.text(role.name), std::vector<std::uint32_t>()).second;
+    for (const plan::BodyRecord& body : plan.bodies(task).subspan(role.first, role.count))
+      objects.push_back(body.index);
+    std::sort(objects.begin(), objects.end());
+  }
+  return all;
+}
+
 std::vector<std::uint32_t> distractors(const plan::Plan& plan, const plan::TaskRecord& task) {
   std::vector<std::uint32_t> objects;
-  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors)) {
+  const plan::Slice slice = plan::roles_of(plan.tables(), task).distractors;
+  for (const plan::BodyRecord& body : plan.bodies(task).subspan(slice.first, slice.count)) {
     objects.push_back(body.index);
   }
   std::sort(objects.begin(), objects.end());
   return objects;
+}
+
+// Whether the declared roles are filled by the same objects; those of a set in any order.
+bool same_others(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+  return objects_by_role(plan, a) == objects_by_role(plan, b);
 }
 
 void replace_all(std::string& text, std::string_view what, std::string_view by) {
@@ -30,11 +50,14 @@ void replace_all(std::string& text, std::string_view what, std::string_view by) 
 // of the other.
 std::string frame_of(const plan::Plan& plan, const plan::TaskRecord& task) {
   std::string text(plan.text(task.prompt));
-  std::string_view source = plan.text(plan.objects()[task.source].text);
-  std::string_view target = plan.text(plan.objects()[task.target].text);
-  std::array<std::pair<std::string_view, std::string_view>, 2> names = {
-      {{source, "{source}"}, {target, "{target}"}}};
-  if (target.size() > source.size()) std::swap(names[0], names[1]);
+  const plan::TaskRoles roles = plan::roles_of(plan.tables(), task);
+  std::vector<std::pair<std::string_view, std::string>> names;
+  for (std::uint32_t i = 0; i < roles.distractors.first; ++i) {
+    names.emplace_back(plan.text(plan.objects()[plan.bodies(task)[i].index].text),
+                       "{" + plan::label_of_body(plan.tables(), roles, i) + "}");
+  }
+  std::stable_sort(names.begin(), names.end(),
+                   [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
   for (const auto& [name, role] : names) replace_all(text, name, role);
   return text;
 }
@@ -60,7 +83,14 @@ bool same_layout(const plan::Plan& plan, const plan::TaskRecord& a, const plan::
   const auto ours = plan.episodes(a);
   const auto theirs = plan.episodes(b);
   if (a.drop != b.drop || a.settle != b.settle || ours.size() != theirs.size()) return false;
-  const std::size_t compared = same_distractors ? 2 + std::size_t{a.distractors} : 2;
+  const plan::TaskRoles ours_by_role = plan::roles_of(plan.tables(), a);
+  const plan::TaskRoles theirs_by_role = plan::roles_of(plan.tables(), b);
+  // Of tasks with other roles those bodies are compared that have a role in both.
+  const std::size_t in_roles =
+      std::min(ours_by_role.distractors.first, theirs_by_role.distractors.first);
+  const bool same_shape = ours_by_role.distractors.first == theirs_by_role.distractors.first &&
+                          ours_by_role.objects == theirs_by_role.objects;
+  const std::size_t compared = same_distractors && same_shape ? ours_by_role.objects : in_roles;
   const bool is_said_to_be = is_kept(plan, a, b, plan::Axis::kLayout);
   for (std::size_t e = 0; e < ours.size(); ++e) {
     const auto here = plan.placements(ours[e]);
@@ -127,6 +157,8 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
         return a.source != b.source;
       case plan::Axis::kObjectTarget:
         return a.target != b.target;
+      case plan::Axis::kObjectOther:
+        return !same_others(plan, a, b);
       case plan::Axis::kDistractors:
         return !same_distractors;
       case plan::Axis::kLayout:
@@ -159,15 +191,15 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   return found;
 }
 
-std::vector<std::string_view> axes_between(const plan::Plan& plan, std::uint32_t a,
-                                           std::uint32_t b) {
+std::vector<std::string> axes_between(const plan::Plan& plan, std::uint32_t a, std::uint32_t b) {
   const Difference found = difference(plan, a, b);
   std::optional<std::uint32_t> declared;
   if (plan.tasks()[a].baseline == b) declared = plan.tasks()[a].axes;
   if (plan.tasks()[b].baseline == a) declared = plan.tasks()[b].axes;
   const std::uint32_t language = declared.value_or(0) & plan::kLanguageAxes;
-  std::vector<std::string_view> names = plan::axis_names(found.axes | language);
-  if (found.language && language == 0) names.push_back("language");
+  std::vector<std::string> names = plan::axis_names_between(plan.tables(), found.axes | language,
+                                                            plan.tasks()[a], plan.tasks()[b]);
+  if (found.language && language == 0) names.emplace_back("language");
   return names;
 }
 

@@ -24,7 +24,6 @@ Difference difference(const plan::Plan& plan, std::uint32_t a, std::uint32_t b);
 
 // The same by name. Between a variant and its baseline the language axes are those the compiler
 // stored, between any other two tasks there is one word for them, "language".
-std::vector<std::string_view> axes_between(const plan::Plan& plan, std::uint32_t a,
-                                           std::uint32_t b);
+std::vector<std::string> axes_between(const plan::Plan& plan, std::uint32_t a, std::uint32_t b);
 
 }  // namespace probe::inspect

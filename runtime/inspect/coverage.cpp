@@ -12,6 +12,7 @@
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/wrap.h"
 #include "runtime/plan/axes.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::inspect {
 namespace {
@@ -52,9 +53,10 @@ Json unused_objects(const plan::Plan& plan, std::span<const std::uint32_t> tasks
   std::vector<std::array<bool, 3>> used(plan.objects().size());
   for (const std::uint32_t index : tasks) {
     const plan::TaskRecord& task = plan.tasks()[index];
-    used[task.source][kSource] = true;
-    used[task.target][kTarget] = true;
-    for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors))
+    if (task.source != plan::kNone) used[task.source][kSource] = true;
+    if (task.target != plan::kNone) used[task.target][kTarget] = true;
+    const plan::Slice others = plan::roles_of(plan.tables(), task).distractors;
+    for (const plan::BodyRecord& body : plan.bodies(task).subspan(others.first, others.count))
       used[body.index][kDistractor] = true;
   }
   const auto never = [&](Use use) {

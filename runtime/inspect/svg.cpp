@@ -28,7 +28,10 @@ std::string_view colour(Role role) {
       return "#d1560f";
     case Role::kTarget:
       return "#1664a5";
+    case Role::kOther:
+      return "#8a2f6b";
     case Role::kDistractor:
+    case Role::kPlaced:
       return "#5f6b73";
   }
   return kInk;
@@ -130,7 +133,9 @@ class Page {
     table();
     reach();
     images();
-    for (const Role role : {Role::kTarget, Role::kDistractor, Role::kSource}) footprints(role);
+    for (const Role role :
+         {Role::kTarget, Role::kPlaced, Role::kDistractor, Role::kOther, Role::kSource})
+      footprints(role);
     cells();
     markers();
     put("</g>\n");
@@ -308,7 +313,8 @@ class Page {
       }
       line += 8;
     };
-    const auto objects = [&](Role role, const char* name, const std::vector<std::string>& names) {
+    const auto objects = [&](Role role, const std::string& name,
+                             const std::vector<std::string>& names) {
       if (names.empty()) return;
       put("<rect x=\"{0}\" y=\"{1}\" width=\"24\" height=\"12\" fill=\"{2}\" "
           "fill-opacity=\"0.25\" stroke=\"{2}\"/>\n",
@@ -319,7 +325,13 @@ class Page {
     };
     objects(Role::kSource, "source", view_.sources);
     objects(Role::kTarget, "target", view_.targets);
+    for (const TopView::NamedRole& other : view_.others) {
+      if (!other.role.empty()) objects(Role::kOther, other.role, other.objects);
+    }
     objects(Role::kDistractor, "distractors", view_.distractors);
+    for (const TopView::NamedRole& other : view_.others) {
+      if (other.role.empty()) objects(Role::kPlaced, "placed", other.objects);
+    }
     const auto stroke = [&](std::string_view path, std::string_view more, std::string_view fill) {
       put("<path d=\"M{} {}{}\" stroke=\"{}\"{} fill=\"none\"/>\n", px(left), px(line - 5), path,
           fill, more);

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "runtime/inspect/axes.h"
+#include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/words.h"
 #include "runtime/inspect/wrap.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::inspect {
 namespace {
@@ -16,11 +18,7 @@ namespace {
 Json side(const plan::Plan& plan, const plan::TaskRecord& task) {
   Json json;
   json["prompt"] = plan.text(task.prompt);
-  json["source"] = plan.text(plan.objects()[task.source].name);
-  json["target"] = plan.text(plan.objects()[task.target].name);
-  json["distractors"] = Json::array();
-  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors))
-    json["distractors"].push_back(plan.text(body.name));
+  add_roles(plan, task, json);
   json["baseline"] =
       task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
   json["scene"] = plan.text(plan.scenes()[task.scene].name);
@@ -96,8 +94,8 @@ Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t secon
   json["b"] = plan.text(b.name);
   json["baseline"] = a_varies ? Json("b") : b_varies ? Json("a") : Json();
   json["axes"] = axes_between(plan, first, second);
-  json["declared_axes"] = a_varies   ? Json(plan::axis_names(a.axes))
-                          : b_varies ? Json(plan::axis_names(b.axes))
+  json["declared_axes"] = a_varies   ? Json(plan::moved_axes(plan.tables(), a))
+                          : b_varies ? Json(plan::moved_axes(plan.tables(), b))
                                      : Json();
   json["equal"] = equal_ids(plan, a, b);
   json["left"] = side(plan, a);
@@ -113,10 +111,27 @@ std::string diff_text(const Json& diff) {
     bool differs;
   };
   std::vector<Row> rows = {{"", cell(diff["a"]), cell(diff["b"]), false}};
-  for (const auto& [key, left] : diff["left"].items()) {
-    const Json& right = diff["right"][key];
+  const auto add = [&rows](const std::string& key, const Json& left, const Json& right) {
     rows.push_back({key, cell(left), cell(right), left != right});
+  };
+  const Json sides[] = {diff["left"], diff["right"]};
+  for (const auto& [key, left] : sides[0].items()) {
+    if (key == "roles" || key == "placed") continue;
+    add(key, left, sides[1][key]);
+    if (key != "target") continue;
+    // Other roles of either side stand below the two that most tasks have.
+    const auto filled = [&](std::size_t side, const std::string& role) {
+      return sides[side].contains("roles") ? sides[side]["roles"].value(role, Json()) : Json();
+    };
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!sides[side].contains("roles")) continue;
+      for (const auto& [role, objects] : sides[side]["roles"].items()) {
+        if (side == 0 || filled(0, role).is_null()) add(role, filled(0, role), filled(1, role));
+      }
+    }
   }
+  if (sides[0].contains("placed") || sides[1].contains("placed"))
+    add("placed", sides[0].value("placed", Json()), sides[1].value("placed", Json()));
   rows[1].a = marked(to_words(diff["words_a"]));
   rows[1].b = marked(to_words(diff["words_b"]));
   // Two columns side by side within a screen of 100; longer cells go on below themselves.

@@ -13,8 +13,10 @@
 #include "runtime/base/trig.h"
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/question_json.h"
+#include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/wrap.h"
 #include "runtime/plan/ids.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::inspect {
 namespace {
@@ -60,7 +62,7 @@ Json summarise(const plan::Plan& plan, std::uint32_t index,
   json["task"] = plan.text(task.name);
   json["baseline"] =
       task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
-  json["axes"] = plan::axis_names(task.axes);
+  json["axes"] = plan::moved_axes(plan.tables(), task);
   json["categories"] = categories;
   json["prompt"] = plan.text(task.prompt);
   json["episodes"] = task.episodes.count;
@@ -127,11 +129,7 @@ Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
 Json describe(const plan::Plan& plan, std::uint32_t index) {
   const plan::TaskRecord& task = plan.tasks()[index];
   Json json = summarise(plan, index, categories_of(plan)[index]);
-  json["source"] = object_name(plan, task.source);
-  json["target"] = object_name(plan, task.target);
-  json["distractors"] = Json::array();
-  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors))
-    json["distractors"].push_back(plan.text(body.name));
+  add_roles(plan, task, json);
   json["horizon"] = task.horizon;
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
@@ -157,10 +155,12 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
                  {"judge", hex(task.judge_id)},
                  {"starts", Json::array()},
                  {"episodes", Json::array()}};
+  const plan::TaskRoles roles = plan::roles_of(plan.tables(), task);
   for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
     const auto placements = plan.placements(episode);
     json["starts"].push_back(start_of(plan, episode));
-    json["distances_m"].push_back(distance(placements[0], placements[1]));
+    if (roles.has_both())
+      json["distances_m"].push_back(distance(placements[roles.source], placements[roles.target]));
     json["ids"]["starts"].push_back(hex(episode.start_id));
     json["ids"]["episodes"].push_back(hex(episode.episode_id));
   }
@@ -219,12 +219,15 @@ std::string starts_text(const Json& task) {
   const auto column = [&](std::size_t i, const std::string& cell) {
     fmt::format_to(out, "  {:<{}}", cell, i + 1 < names.size() ? widths[i] : 0);
   };
-  fmt::format_to(out, "{:>5}  {:<8}  {:>5}", "start", "start id", "apart");
+  // How far source and target are apart, where there are both.
+  const bool has_both = !task["distances_m"].empty();
+  fmt::format_to(out, "{:>5}  {:<8}", "start", "start id");
+  if (has_both) fmt::format_to(out, "  {:>5}", "apart");
   for (std::size_t i = 0; i < names.size(); ++i) column(i, names[i]);
   text += '\n';
   for (std::size_t e = 0; e < task["starts"].size(); ++e) {
-    fmt::format_to(out, "{:>5}  {}  {:>5}", e, short_id(task["ids"]["starts"][e]),
-                   tenth(task["distances_m"][e].get<double>(), 100));
+    fmt::format_to(out, "{:>5}  {}", e, short_id(task["ids"]["starts"][e]));
+    if (has_both) fmt::format_to(out, "  {:>5}", tenth(task["distances_m"][e].get<double>(), 100));
     for (std::size_t i = 0; i < names.size(); ++i) column(i, place_text(task["starts"][e][i]));
     text += '\n';
   }
@@ -246,9 +249,14 @@ std::string describe_text(const Json& task) {
   const auto word = [&](const char* key) { line(key, task[key].get<std::string>()); };
   word("task");
   word("prompt");
-  word("source");
-  word("target");
+  for (const char* role : {"source", "target"})
+    line(role, task[role].is_null() ? "none" : task[role].get<std::string>());
+  if (task.contains("roles")) {
+    for (const auto& [role, filled] : task["roles"].items())
+      line(role.c_str(), filled.is_array() ? joined(filled, "none") : filled.get<std::string>());
+  }
   line("distractors", joined(task["distractors"], "none"));
+  if (task.contains("placed")) line("placed", joined(task["placed"], "none"));
   line("baseline", task["baseline"].is_null() ? "none" : task["baseline"].get<std::string>());
   line("axes", joined(task["axes"], "none"));
   if (!task["allow"].is_null()) line("allowed", task["allow"].get<std::string>());
@@ -270,7 +278,9 @@ std::string describe_text(const Json& task) {
   const Json& ids = task["ids"];
   line("prompt id", short_id(ids["prompt"]));
   line("judge id", short_id(ids["judge"]));
-  text += "\nstarts: cm and degrees, source and target apart in cm\n" + starts_text(task);
+  text += task["distances_m"].empty() ? "\nstarts: cm and degrees\n"
+                                      : "\nstarts: cm and degrees, source and target apart in cm\n";
+  text += starts_text(task);
   const std::string questions = questions_text(task["questions"], task["not_asked"]);
   if (!questions.empty()) text += "\nquestions\n" + questions;
   return text;

@@ -13,6 +13,7 @@
 #include "runtime/base/trig.h"
 #include "runtime/inspect/ground_image.h"
 #include "runtime/plan/ids.h"
+#include "runtime/plan/roles.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/robot/urdf.h"
 
@@ -51,8 +52,17 @@ Footprint footprint_of(const plan::Plan& plan, const plan::PlacementRecord& plac
   return print;
 }
 
+Role role_of(const plan::TaskRoles& roles, std::uint32_t body) {
+  if (body == roles.source) return Role::kSource;
+  if (body == roles.target) return Role::kTarget;
+  if (body < roles.distractors.first) return Role::kOther;
+  return body - roles.distractors.first < roles.distractors.count ? Role::kDistractor
+                                                                  : Role::kPlaced;
+}
+
 // Every different way in which something stands, in the order of the first start that has it.
 void add_starts(const plan::Plan& plan, const plan::TaskRecord& task, TopView& view) {
+  const plan::TaskRoles roles = plan::roles_of(plan.tables(), task);
   std::map<std::tuple<Role, std::uint32_t, std::array<double, 3>, std::array<double, 4>>,
            std::size_t>
       known;
@@ -60,7 +70,7 @@ void add_starts(const plan::Plan& plan, const plan::TaskRecord& task, TopView& v
     const auto placements = plan.placements(episode);
     for (std::size_t i = 0; i < placements.size(); ++i) {
       const plan::PlacementRecord& placement = placements[i];
-      const Role role = i == 0 ? Role::kSource : i == 1 ? Role::kTarget : Role::kDistractor;
+      const Role role = role_of(roles, static_cast<std::uint32_t>(i));
       const auto [at, is_new] = known.try_emplace(
           {role, placement.object, placement.position, placement.rotation}, view.footprints.size());
       if (is_new) view.footprints.push_back(footprint_of(plan, placement, role));
@@ -169,10 +179,19 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
   view.prompt = plan.text(task.prompt);
   view.starts = task.episodes.count;
   view.area = scene.area;
-  view.sources.emplace_back(plan.text(plan.objects()[task.source].name));
-  view.targets.emplace_back(plan.text(plan.objects()[task.target].name));
-  for (const plan::BodyRecord& body : plan.bodies(task).subspan(2, task.distractors))
-    view.distractors.emplace_back(plan.text(body.name));
+  const plan::TaskRoles roles = plan::roles_of(plan.tables(), task);
+  const auto bodies = plan.bodies(task);
+  const auto names_of = [&](std::uint32_t first, std::uint32_t count) {
+    std::vector<std::string> names;
+    for (const plan::BodyRecord& body : bodies.subspan(first, count))
+      names.emplace_back(plan.text(body.name));
+    return names;
+  };
+  if (roles.has_source()) view.sources = names_of(roles.source, 1);
+  if (roles.has_target()) view.targets = names_of(roles.target, 1);
+  for (const plan::RoleRecord& role : roles.others)
+    view.others.push_back({std::string(plan.text(role.name)), names_of(role.first, role.count)});
+  view.distractors = names_of(roles.distractors.first, roles.distractors.count);
   add_starts(plan, task, view);
   view.robot = plan.text(robot.name);
   view.base = {scene.base_position[0], scene.base_position[1]};

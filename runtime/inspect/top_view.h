@@ -18,7 +18,7 @@ struct Point {
   auto operator<=>(const Point&) const = default;
 };
 
-enum class Role : std::uint8_t { kSource, kTarget, kDistractor };
+enum class Role : std::uint8_t { kSource, kTarget, kDistractor, kOther, kPlaced };
 
 // One way an object stands, with all starts in which it stands so.
 struct Footprint {
@@ -44,6 +44,11 @@ struct TopView {
   std::vector<Point> cells;      // where origins stand, ascending
   std::vector<Footprint> footprints;
   std::vector<std::string> sources, targets, distractors;  // object names by role
+  struct NamedRole {
+    std::string role;  // "helper"; empty: what the layout placed by name
+    std::vector<std::string> objects;
+  };
+  std::vector<NamedRole> others;
   Point base;
   double base_yaw_deg = 0;
   double reach_min = 0, reach_max = 0;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/plan/isa.h"
+#include "runtime/plan/roles.h"
 #include "runtime/plan/source_line.h"
 
 namespace probe::plan {
@@ -91,6 +92,17 @@ class Lister {
   std::size_t last_line_ = 0;
 };
 
+// Of a task that has others than source, target and distractors: the bodies that instructions name.
+void list_roles(std::string& out, const Plan& plan, const TaskRecord& task) {
+  const TaskRoles roles = roles_of(plan.tables(), task);
+  if (roles.has_both() && roles.others.empty()) return;
+  for (std::uint32_t i = 0; i < roles.objects; ++i) {
+    fmt::format_to(std::back_inserter(out), "  body {} {}: {}\n", i,
+                   label_of_body(plan.tables(), roles, i), plan.text(plan.bodies(task)[i].name));
+  }
+  out += "\n";
+}
+
 // `task` names the bodies.
 void list_program(std::string& out, const Plan& plan, const TaskRecord& task, std::uint32_t index,
                   std::string_view users) {
@@ -100,6 +112,7 @@ void list_program(std::string& out, const Plan& plan, const TaskRecord& task, st
   fmt::format_to(std::back_inserter(out),
                  "  {} instructions, {} constants, {} states, {} metrics\n\n", program.code.count,
                  program.constants.count, program.states.count, program.metrics.count);
+  list_roles(out, plan, task);
   Lister(plan, task, index).list(out);
 }
 

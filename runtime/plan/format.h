@@ -217,8 +217,9 @@ enum class Readout : std::uint32_t {
 #include "runtime/plan/readouts.def"
 };
 
-// Task-local bodies, in this order: source, target, distractors, surface, fixture (if any), then
-// links: fingers in the robot's order, then every other link with collision in URDF order.
+// Task-local bodies, in this order: source and target (those that there are), the objects of other
+// roles, distractors, objects that the layout placed, surface, fixture (if any), then links:
+// fingers in the robot's order, then every other link with collision in URDF order. See roles.h.
 enum class BodyKind : std::uint32_t { kObject = 1, kSurface = 2, kFixture = 3, kLink = 4 };
 
 struct BodyRecord {
@@ -236,6 +237,23 @@ struct PlacementRecord {
 };
 static_assert(sizeof(PlacementRecord) == 64);
 
+enum class RoleKind : std::uint32_t {
+  kOne = 1,     // one object
+  kSet = 2,     // one or more
+  kPlaced = 3,  // in no role: what the layout puts into the scene by name
+};
+
+// What fills a role beside source, target and distractors: bodies [first, first + count) of a task.
+struct RoleRecord {
+  StringRef name;          // as declared; empty: kPlaced
+  std::uint32_t kind = 0;  // RoleKind
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  std::uint32_t zero = 0;
+  std::uint64_t zero2 = 0;
+};
+static_assert(sizeof(RoleRecord) == 32);
+
 struct TaskRecord {
   StringRef name;
   StringRef prompt;
@@ -243,9 +261,9 @@ struct TaskRecord {
   std::uint32_t camera = kNone;
   std::uint32_t light = kNone;
   std::uint32_t program = kNone;
-  std::uint32_t source = 0;  // kObjects
-  std::uint32_t target = 0;  // kObjects
-  Slice bodies;              // kBodies; source and target are the first two, then the distractors
+  std::uint32_t source = 0;  // kObjects, or kNone
+  std::uint32_t target = 0;  // kObjects, or kNone
+  Slice bodies;              // kBodies; which of them has which role: roles.h
   std::uint32_t distractors = 0;
   std::uint32_t horizon = 0;       // control steps
   std::uint32_t baseline = kNone;  // kTasks
@@ -258,7 +276,8 @@ struct TaskRecord {
   double settle = 0;  // s, per phase of the drop
   std::array<std::uint8_t, 32> judge_id{};
   Slice views;  // kViews, the first shows `camera`; empty: that camera alone, under its own name
-  std::uint64_t zero2[6] = {};
+  Slice roles;  // kRoles, in the order of their bodies
+  std::uint64_t zero2[5] = {};
 };
 static_assert(sizeof(TaskRecord) == 192);
 
@@ -280,7 +299,7 @@ enum class Axis : std::uint32_t {
 struct EpisodeRecord {
   std::uint32_t task = 0;   // kTasks
   std::uint32_t index = 0;  // 0 .. n-1 within the task
-  Slice placements;         // kPlacements, source, target, distractors
+  Slice placements;         // kPlacements, of the task's objects in the order of its bodies
   std::array<std::uint8_t, 32> start_id{};
   std::array<std::uint8_t, 32> episode_id{};
   std::uint64_t zero[6] = {};

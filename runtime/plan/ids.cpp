@@ -1,6 +1,7 @@
 #include "runtime/plan/ids.h"
 
 #include "runtime/plan/questions.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::plan {
 namespace {
@@ -209,11 +210,10 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
                                   {"camera", cameras(task)},
                                   {"light", light(task.light)},
                                   {"drop", drop.finish()}};
+  const TaskRoles roles = roles_of(tables_, task);
   std::uint32_t number = 0;
   for (const PlacementRecord& p : slice_of(tables_.placements, episode.placements)) {
-    const std::string role = number == 0   ? "source"
-                             : number == 1 ? "target"
-                                           : "distractor " + std::to_string(number - 1);
+    const std::string role = label_of_body(tables_, roles, number);
     Hasher pose = tagged("vlaprobe.pose.1");
     pose.f64s(p.position).f64s(p.rotation);
     parts.push_back({role, object(p.object)});

@@ -9,6 +9,7 @@
 
 #include "runtime/plan/limits.h"
 #include "runtime/plan/questions.h"
+#include "runtime/plan/roles.h"
 #include "runtime/plan/verify.h"
 #include "runtime/plan/verify_records.h"
 
@@ -149,9 +150,10 @@ class QuestionCheck : FieldCheck {
                   fmt::format("a question has {} options", q.options.count));
     }
     const TaskRecord& task = t.tasks[q.task];
+    const std::uint32_t objects = roles_of(t, task).objects;
     std::vector<std::string_view> texts;
     for (const OptionRecord& o : slice_of(t.options, q.options)) {
-      if (o.body != kNone && o.body >= 2 + task.distractors)
+      if (o.body != kNone && o.body >= objects)
         return fail(Rule::kOptionBody, &o.body,
                     fmt::format("body {} of task `{}` is no object", o.body, t.text(task.name)));
       texts.push_back(t.text(o.text));

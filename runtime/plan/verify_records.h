@@ -50,6 +50,7 @@ class RecordCheck : FieldCheck {
   Status check(const MetricRecord& metric) const;
   Status check(const BodyRecord& body) const;
   Status check(const PlacementRecord& placement) const;
+  Status check(const RoleRecord& role) const;
   Status check(const TaskRecord& task) const;
   Status check(const EpisodeRecord& episode) const;
   Status check(const SetRecord& set) const;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/plan/roles.h"
 #include "runtime/plan/verify.h"
 #include "runtime/plan/verify_records.h"
 
@@ -70,6 +71,7 @@ class RelationCheck : FieldCheck {
     std::uint64_t episodes = 0;
     for (std::uint32_t i = 0; i < t.tasks.size(); ++i) {
       PROBE_TRY(task_views(t.tasks[i]));
+      PROBE_TRY(task_roles(t.tasks[i]));
       PROBE_TRY(task_bodies(t.tasks[i]));
       PROBE_TRY(task_episodes(i));
       episodes += t.tasks[i].episodes.count;
@@ -106,10 +108,42 @@ class RelationCheck : FieldCheck {
     return {};
   }
 
+  // Each role begins where the one before it ends, and what was placed comes behind the
+  // distractors.
+  Status task_roles(const TaskRecord& k) const {
+    std::uint64_t next = (k.source == kNone ? 0 : 1) + (k.target == kNone ? 0 : 1);
+    bool is_last = false;
+    std::vector<std::string_view> names;
+    for (const RoleRecord& role : slice_of(t.roles, k.roles)) {
+      const bool is_placed = role.kind == static_cast<std::uint32_t>(RoleKind::kPlaced);
+      if (is_placed) next += k.distractors;
+      if (is_last || role.first != next)
+        return fail(Rule::kRoleOrder, &k.roles,
+                    fmt::format("role `{}` of task `{}` begins at body {}, not {}",
+                                t.text(role.name), t.text(k.name), role.first, next));
+      next += role.count;
+      is_last = is_placed;
+      names.push_back(t.text(role.name));
+    }
+    std::ranges::sort(names);
+    if (std::ranges::adjacent_find(names) != names.end())
+      return fail(Rule::kRoleTwice, &k.roles,
+                  fmt::format("two roles of task `{}` have one name", t.text(k.name)));
+    return {};
+  }
+
+  // Wide enough for any counts; once the bodies are there it is TaskRoles::objects.
+  std::uint64_t objects_of(const TaskRecord& k) const {
+    std::uint64_t objects =
+        std::uint64_t{k.distractors} + (k.source == kNone ? 0 : 1) + (k.target == kNone ? 0 : 1);
+    for (const RoleRecord& role : slice_of(t.roles, k.roles)) objects += role.count;
+    return objects;
+  }
+
   Status task_bodies(const TaskRecord& k) const {
     const SceneRecord& scene = t.scenes[k.scene];
     const bool has_fixture = scene.fixture_collision != kNone;
-    const std::uint64_t objects = 2 + std::uint64_t{k.distractors};
+    const std::uint64_t objects = objects_of(k);
     const std::uint64_t first_link = objects + 1 + (has_fixture ? 1 : 0);
     const std::uint64_t least = first_link + t.robots[scene.robot].fingers.size();
     if (k.bodies.count > kMaxBodies || k.bodies.count < least) {
@@ -133,10 +167,12 @@ class RelationCheck : FieldCheck {
                     "links are numbered from 0, the fingers first");
       }
     }
-    if (bodies[0].index != k.source)
-      return fail(Rule::kSourceFirst, &bodies[0].index, "the first body is the source");
-    if (bodies[1].index != k.target)
-      return fail(Rule::kTargetSecond, &bodies[1].index, "the second body is the target");
+    const TaskRoles roles = roles_of(t, k);
+    if (roles.has_source() && bodies[roles.source].index != k.source)
+      return fail(Rule::kSourceFirst, &bodies[roles.source].index, "the first body is the source");
+    if (roles.has_target() && bodies[roles.target].index != k.target)
+      return fail(Rule::kTargetSecond, &bodies[roles.target].index,
+                  "the second body is the target");
     const RobotRecord& robot = t.robots[scene.robot];
     for (std::size_t f = 0; f < robot.fingers.size(); ++f) {
       const BodyRecord& finger = bodies[first_link + f];
@@ -155,6 +191,7 @@ class RelationCheck : FieldCheck {
       return fail(Rule::kEpisodeCount, &k.episodes,
                   fmt::format("task `{}` has no episode", t.text(k.name)));
     const auto bodies = slice_of(t.bodies, k.bodies);
+    const std::uint32_t objects = roles_of(t, k).objects;
     std::uint32_t number = 0;
     for (const EpisodeRecord& e : slice_of(t.episodes, k.episodes)) {
       if (e.task != index) {
@@ -166,10 +203,10 @@ class RelationCheck : FieldCheck {
         return fail(Rule::kEpisodeIndex, &e.index,
                     fmt::format("episode {} says it is episode {}", number, e.index));
       ++number;
-      if (e.placements.count != 2 + k.distractors) {
+      if (e.placements.count != objects) {
         return fail(Rule::kPlacementCount, &e.placements,
                     fmt::format("an episode places {} objects, its task has {}", e.placements.count,
-                                2 + k.distractors));
+                                objects));
       }
       for (std::uint32_t i = 0; i < e.placements.count; ++i) {
         const PlacementRecord& p = t.placements[e.placements.first + i];

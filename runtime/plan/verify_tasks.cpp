@@ -79,6 +79,24 @@ Status RecordCheck::check(const PlacementRecord& p) const {
   return check_unit(p.rotation, "the rotation of a placement");
 }
 
+Status RecordCheck::check(const RoleRecord& r) const {
+  if (r.kind < static_cast<std::uint32_t>(RoleKind::kOne) ||
+      r.kind > static_cast<std::uint32_t>(RoleKind::kPlaced))
+    return fail(Rule::kRoleKind, &r.kind, fmt::format("role kind {} is not known", r.kind));
+  const bool is_placed = r.kind == static_cast<std::uint32_t>(RoleKind::kPlaced);
+  if (!is_placed) PROBE_TRY(check_word(r.name, "the name of a role"));
+  const std::string_view name = is_placed ? "" : t.text(r.name);
+  if ((is_placed && r.name.length != 0) || name == "source" || name == "target" ||
+      name == "distractors" || name == "distractor")
+    return fail(Rule::kRoleName, &r.name,
+                "a role has a name of its own, and what a layout places has none");
+  const bool is_one = r.kind == static_cast<std::uint32_t>(RoleKind::kOne);
+  if (r.count == 0 || r.count > kMaxBodies || (is_one && r.count != 1))
+    return fail(Rule::kRoleCount, &r.count, fmt::format("{} bodies fill a role", r.count));
+  PROBE_TRY(check_zero(r.zero));
+  return check_zero({&r.zero2, 1});
+}
+
 Status RecordCheck::check(const TaskRecord& k) const {
   PROBE_TRY(check_word(k.name, "the name of a task"));
   PROBE_TRY(check_name(k.prompt, "an instruction"));
@@ -86,8 +104,8 @@ Status RecordCheck::check(const TaskRecord& k) const {
   PROBE_TRY(check_index(k.camera, t.cameras.size(), "CAMR"));
   PROBE_TRY(check_index(k.light, t.lights.size(), "LITE"));
   PROBE_TRY(check_index(k.program, t.programs.size(), "PROG"));
-  PROBE_TRY(check_index(k.source, t.objects.size(), "OBJT"));
-  PROBE_TRY(check_index(k.target, t.objects.size(), "OBJT"));
+  if (k.source != kNone) PROBE_TRY(check_index(k.source, t.objects.size(), "OBJT"));
+  if (k.target != kNone) PROBE_TRY(check_index(k.target, t.objects.size(), "OBJT"));
   if (k.horizon == 0 || k.horizon > kMaxHorizon) {
     return fail(Rule::kHorizon, &k.horizon,
                 fmt::format("a horizon has 1 to {} steps, not {}", kMaxHorizon, k.horizon));
@@ -109,6 +127,7 @@ Status RecordCheck::check(const TaskRecord& k) const {
   PROBE_TRY(check_slice(k.bodies, t.bodies.size(), "BODY"));
   PROBE_TRY(check_slice(k.episodes, t.episodes.size(), "EPIS"));
   PROBE_TRY(check_slice(k.views, t.views.size(), "VIEW"));
+  PROBE_TRY(check_slice(k.roles, t.roles.size(), "ROLE"));
   return check_zero(k.zero2);
 }
 

@@ -39,6 +39,10 @@ struct Proprioception {
   std::size_t arm_joints() const { return joints.size() - std::min(finger_joints, joints.size()); }
 };
 
+// How a scripted policy fails (kPolicy) in a task that asks for what it has no skill for: a status of
+// its own, and no failed start.
+inline constexpr std::string_view kNoSolution = "no solution in skills for this goal";
+
 // An object's collision hulls and where it is; all but the last two are fixed in an episode.
 struct PrivilegedObject {
   std::string name;
@@ -59,12 +63,25 @@ struct PrivilegedFixture {
 // What success asks for.
 enum class Goal : std::uint8_t {
   kOnTarget,
-  kAway,  // anywhere but on the target, still in the hand at the end
+  kAway,    // anywhere but on the target, still in the hand at the end
+  kLifted,  // in the hand above where it was
+  kOther,   // nothing that is found by moving the source about
 };
 
-// The privileged view: task roles by index into `objects` (0 source, 1 target, 2.. distractors).
+// The privileged view.
 struct Privileged {
-  std::vector<PrivilegedObject> objects;
+  std::vector<PrivilegedObject> objects;  // in the order of the task's bodies
+  int source = 0, target = 1;             // indices into `objects`; -1 for none
+  int first_distractor = 2;               // the others follow it; -1 for none
+
+  // Role 0 is the source, 1 the target, 2.. distractors: an index into `objects`, -1 for none.
+  int object_of(int role) const {
+    const int at = role == 0                          ? source
+                   : role == 1                        ? target
+                   : role < 0 || first_distractor < 0 ? -1
+                                                      : first_distractor + role - 2;
+    return at < static_cast<int>(objects.size()) ? at : -1;
+  }
   std::vector<PrivilegedFixture> fixtures;
   Pose base;  // robot base in world
   double surface_z = 0;

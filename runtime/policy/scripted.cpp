@@ -67,17 +67,17 @@ class RecordedPolicy final : public Policy {
 class StillWithoutPolicy final : public Policy {
  public:
   StillWithoutPolicy(int role, std::unique_ptr<Policy> inner)
-      : role_(static_cast<std::size_t>(role)), inner_(std::move(inner)) {}
+      : role_(role), inner_(std::move(inner)) {}
 
   Status begin(const EpisodeStart& start) override { return inner_->begin(start); }
   Result<Action> act(const Observation& observation) override {
     const Privileged* view = observation.privileged;
-    if (view != nullptr && view->objects.size() <= role_) return kStill;
+    if (view != nullptr && view->object_of(role_) < 0) return kStill;
     return inner_->act(observation);
   }
 
  private:
-  std::size_t role_;
+  int role_;
   std::unique_ptr<Policy> inner_;
 };
 

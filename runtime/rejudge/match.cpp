@@ -35,7 +35,7 @@ std::string difference(const plan::Plan& plan, std::uint32_t task, std::uint32_t
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
     if (a[i] != b[i]) parts.push_back(a[i].name);
   }
-  if (a.size() != b.size()) parts.emplace_back("number of distractors");
+  if (a.size() != b.size()) parts.emplace_back("number of objects");
   return parts.empty() ? "it is not the start of the stored plan"
                        : "they differ in: " + joined(parts);
 }

@@ -24,8 +24,9 @@ struct Column {
 };
 
 struct Tally {
-  int valid = 0, invalid = 0;
+  int valid = 0, invalid = 0, not_attempted = 0;
   std::string first_invalid;  // which, and why
+  std::string why_not;        // attempted
   std::vector<Column> columns;
 };
 
@@ -46,6 +47,11 @@ Kind kind_of(const plan::Plan* plan, const std::string& task, const std::string&
 }
 
 void add(Tally& tally, const store::ResultRow& row) {
+  if (store::is_not_attempted(row)) {
+    ++tally.not_attempted;
+    tally.why_not = row.invalid->substr(store::kNotAttempted.size());
+    return;
+  }
   if (row.invalid) {
     if (tally.invalid++ == 0) {
       tally.first_invalid =
@@ -103,7 +109,9 @@ std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan*
   const auto out = std::back_inserter(text);
   for (const std::string& task : order) {
     const Tally& tally = tallies[task];
-    fmt::format_to(out, "{}: {} episodes", task, tally.valid + tally.invalid);
+    fmt::format_to(out, "{}: {} episodes", task, tally.valid + tally.invalid + tally.not_attempted);
+    if (tally.not_attempted > 0)
+      fmt::format_to(out, ", {} not attempted ({})", tally.not_attempted, tally.why_not);
     if (tally.invalid > 0)
       fmt::format_to(out, ", {} invalid ({})", tally.invalid, tally.first_invalid);
     text += '\n';

@@ -9,6 +9,7 @@
 #include "runtime/ask/queries.h"
 #include "runtime/ask/vouch.h"
 #include "runtime/plan/questions.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::report {
 
@@ -17,7 +18,6 @@ std::string family_name(const plan::Plan& plan, std::uint32_t family) {
 }
 
 bool asks_for_source(const plan::Plan& plan, std::uint32_t family) {
-  constexpr std::uint32_t kSourceBody = 0;
   bool any = false;
   if (plan::moment_of(plan.families()[family]) != plan::QuestionMoment::kStart) return false;
   for (const plan::QuestionRecord& q : plan.questions()) {
@@ -27,7 +27,9 @@ bool asks_for_source(const plan::Plan& plan, std::uint32_t family) {
     const std::uint32_t right = is_choice                                             ? q.right
                                 : plan::truth_of(q) == plan::QuestionTruth::kMentions ? q.a
                                                                                       : plan::kNone;
-    if (right == plan::kNone || options[right].body != kSourceBody) return false;
+    const std::uint32_t source = plan::roles_of(plan.tables(), plan.tasks()[q.task]).source;
+    if (right == plan::kNone || source == plan::kNone || options[right].body != source)
+      return false;
     any = true;
   }
   return any;

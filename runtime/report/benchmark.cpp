@@ -16,6 +16,7 @@
 #include "runtime/inspect/axes.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/places.h"
+#include "runtime/plan/roles.h"
 #include "runtime/plan/source_line.h"
 #include "runtime/report/categories.h"
 #include "runtime/run/delivery.h"
@@ -245,12 +246,16 @@ class Loader {
     maps_.push_back(std::move(map));
   }
 
+  // Empty where there is none.
+  static std::string object_name(const plan::Plan& plan, std::uint32_t object) {
+    return object == plan::kNone ? "" : std::string(plan.text(plan.objects()[object].name));
+  }
+
   void add_task(const plan::Plan& plan, int index, std::uint32_t t, PlanTasks& map) {
     const plan::TaskRecord& record = plan.tasks()[t];
     const std::string name(plan.text(record.name));
     const auto key = std::tuple(name, std::string(plan.text(record.prompt)), hex(record.judge_id),
-                                std::string(plan.text(plan.objects()[record.source].name)),
-                                std::string(plan.text(plan.objects()[record.target].name)));
+                                object_name(plan, record.source), object_name(plan, record.target));
     const auto [known, fresh] = by_content_.try_emplace(key, benchmark_.tasks.size());
     map.task[t] = static_cast<int>(known->second);
     if (fresh) benchmark_.tasks.push_back(describe(plan, index, t));
@@ -295,19 +300,28 @@ class Loader {
     index_in(benchmark_.prompts, task.prompt);
     task.plan = index;
     task.axes = record.axes;
-    for (const std::string_view axis : plan::axis_names(record.axes))
-      task.axis_names.emplace_back(axis);
-    task.source = object(plan, record.source);
-    task.target = object(plan, record.target);
-    for (const plan::BodyRecord& body : plan.bodies(record).subspan(2, record.distractors))
-      task.distractors.push_back(object(plan, body.index));
+    task.axis_names = plan::moved_axes(plan.tables(), record);
+    const plan::TaskRoles roles = plan::roles_of(plan.tables(), record);
+    const auto objects_of = [&](std::uint32_t first, std::uint32_t count) {
+      std::vector<int> objects;
+      for (const plan::BodyRecord& body : plan.bodies(record).subspan(first, count))
+        objects.push_back(object(plan, body.index));
+      return objects;
+    };
+    if (roles.has_source()) task.source = object(plan, record.source);
+    if (roles.has_target()) task.target = object(plan, record.target);
+    for (const plan::RoleRecord& role : roles.others)
+      task.roles.push_back({std::string(plan.text(role.name)), objects_of(role.first, role.count)});
+    task.distractors = objects_of(roles.distractors.first, roles.distractors.count);
     for (std::size_t bit = 0; bit < plan::kNovelty.size(); ++bit) {
       if ((record.ood >> bit & 1U) != 0) task.ood.emplace_back(plan::kNovelty[bit]);
     }
-    benchmark_.objects[static_cast<std::size_t>(task.source)].seen_as_source =
-        (record.ood & 1U) == 0;
-    benchmark_.objects[static_cast<std::size_t>(task.target)].seen_as_target =
-        (record.ood & 2U) == 0;
+    if (roles.has_source())
+      benchmark_.objects[static_cast<std::size_t>(task.source)].seen_as_source =
+          (record.ood & 1U) == 0;
+    if (roles.has_target())
+      benchmark_.objects[static_cast<std::size_t>(task.target)].seen_as_target =
+          (record.ood & 2U) == 0;
     const plan::SceneRecord& scene = plan.scenes()[record.scene];
     task.scene = plan.text(scene.name);
     task.horizon = static_cast<int>(record.horizon);
@@ -361,7 +375,7 @@ class Loader {
       episode.plan = plan;
       if (row.invalid) {
         episode.reason = index_in(benchmark_.reasons, printable(*row.invalid, kLongestText));
-        ++info.invalid;
+        ++(store::is_not_attempted(row) ? info.not_attempted : info.invalid);
       } else {
         for (const store::MetricValue& value : row.metrics) {
           const int m = metric(value.name, value.is_bool);
@@ -509,16 +523,23 @@ class Loader {
   void note_runs() {
     note_two_meanings();
     for (const Policy& policy : benchmark_.policies) {
-      int done = 0, invalid = 0, expected = 0;
+      int done = 0, invalid = 0, not_attempted = 0, expected = 0;
       for (const RunInfo& run : policy.runs) {
         done += run.done;
         invalid += run.invalid;
+        not_attempted += run.not_attempted;
         expected = std::max(expected, run.expected);
       }
       if (done < expected) {
         note("warn", fmt::format("`{}` is partial: {} of {} episodes of the suite; only starts "
                                  "that both sides have are compared",
                                  policy.label, done, expected));
+      }
+      if (not_attempted > 0) {
+        note("note",
+             fmt::format("`{}`: {} of {} episodes were not attempted: no solution in skills "
+                         "for their goal",
+                         policy.label, not_attempted, done));
       }
       if (invalid > 0) {
         note(invalid == done ? "bad" : "warn",

@@ -35,7 +35,7 @@ struct Object {
 struct StartPlace {
   std::string start_id, episode_id;  // hex
   std::uint32_t cluster = 0;         // starts of any task that lie in the same places share it
-  std::vector<std::array<double, 3>> bodies;  // x, y (m), yaw (deg): source, target, distractors
+  std::vector<std::array<double, 3>> bodies;  // x, y (m), yaw (deg): as the task's bodies
 };
 
 // Tasks of several plans are one if name, instruction, judge, source and target agree; their starts
@@ -46,7 +46,12 @@ struct Task {
   int baseline = kAbsent;
   std::uint32_t axes = 0;  // mask of plan::Axis, against the baseline
   std::vector<std::string> axis_names;
-  int source = 0, target = 0;
+  int source = kAbsent, target = kAbsent;
+  struct NamedRole {
+    std::string name;  // "helper"; empty: what the layout placed by name
+    std::vector<int> objects;
+  };
+  std::vector<NamedRole> roles;  // beside them
   std::vector<int> distractors;
   std::vector<std::string> ood;  // "source", "target", "relation"
   int horizon = 0;               // control steps
@@ -77,6 +82,7 @@ struct RunInfo {
   int plan = 0, fingerprint = 0;
   std::vector<int> seeds;
   int done = 0, expected = 0, invalid = 0, videos = 0;
+  int not_attempted = 0;               // a policy of ours had no skill for them
   int tasks = 0;                       // that have an episode
   store::ReadingSummary reading = {};  // of a policy server
   std::string content = {};            // RunIdentity::policy_content

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "runtime/base/json.h"
+#include "runtime/plan/roles.h"
 #include "runtime/rejudge/explain.h"
 #include "runtime/run/workers.h"
 #include "runtime/store/stored_trace.h"
@@ -133,10 +134,16 @@ Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> m
     reading.problem = to_text(trace.failure());
     return reading;
   }
-  reading.timeline = encode_timeline(*trace, metrics);
+  const auto task = episode.plan->find_task(episode.row->task);
+  Ends ends;
+  if (task) {
+    const plan::TaskRoles roles =
+        plan::roles_of(episode.plan->tables(), episode.plan->tasks()[*task]);
+    ends = {roles.source, roles.target};
+  }
+  reading.timeline = encode_timeline(*trace, metrics, ends);
   reading.bodies = trace->header.bodies;
   if (!explained) return reading;
-  const auto task = episode.plan->find_task(episode.row->task);
   if (!task || trace->header.plan_root != episode.plan->root()) return reading;
   auto why = rejudge::explain(*episode.plan, *task, *trace);
   if (why) {
@@ -149,7 +156,8 @@ Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> m
 
 }  // namespace
 
-std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics) {
+std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics,
+                            Ends ends) {
   std::string text;
   for (std::size_t m = 0; m < trace.header.metrics.size(); ++m) {
     const auto& metric = trace.header.metrics[m];
@@ -179,8 +187,8 @@ std::string encode_timeline(const store::Trace& trace, std::span<const std::stri
   std::string distances;
   for (std::size_t i = 0; i < trace.steps.size(); i += kEvery) {
     const auto& bodies = trace.steps[i].sample.bodies;
-    if (bodies.size() < 2) break;
-    const double cm = 100 * (bodies[0].position - bodies[1].position).norm();
+    if (std::max(ends.source, ends.target) >= bodies.size()) break;
+    const double cm = 100 * (bodies[ends.source].position - bodies[ends.target].position).norm();
     distances += fmt::format("{}{:.1f}", distances.empty() ? "" : ",", cm);
   }
   if (!distances.empty()) text += fmt::format("{}d:{}", text.empty() ? "" : ";", distances);

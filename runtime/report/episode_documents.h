@@ -38,6 +38,10 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
                                    const EpisodeDocumentOptions& options);
 
 // The record of one trace as PAGE_DATA.md encodes it.
-std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics);
+struct Ends {
+  std::uint32_t source = 0, target = 1;  // bodies whose distance is told; plan::kNone: it is not
+};
+std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics,
+                            Ends ends = {});
 
 }  // namespace probe::report

@@ -41,6 +41,7 @@ Json policies_json(const Benchmark& benchmark, const PageOptions& options) {
                       {"expected", run.expected},
                       {"invalid", run.invalid},
                       {"videos", run.videos}});
+      if (run.not_attempted > 0) runs.back()["not_attempted"] = run.not_attempted;
     }
     policies.push_back({{"name", policy.name},
                         {"label", policy.label},
@@ -76,6 +77,8 @@ Json tasks_json(const Benchmark& benchmark) {
         {"source", task.source},   {"target", task.target},       {"distractors", task.distractors},
         {"ood", task.ood},         {"horizon", task.horizon},     {"hz", task.hz},
         {"scene", task.scene},     {"metrics", task.metrics},     {"starts", starts_json(task)}};
+    for (const Task::NamedRole& role : task.roles)
+      json["roles"].push_back({{"name", role.name}, {"objects", role.objects}});
     if (!task.confounded.empty()) json["confounded"] = task.confounded;
     if (!task.allowed.empty()) {
       json["allowed"] = Json::array();

@@ -206,9 +206,10 @@ class Maker {
     for (int t = 0; t < task_count(); ++t) {
       if (!is_plain(benchmark_, t)) continue;
       const Task& task = task_at(benchmark_, t);
-      pairs[{task.source, task.target}].push_back(t);
-      single[{false, task.source}].push_back(t);
-      single[{true, task.target}].push_back(t);
+      if (task.source != kAbsent && task.target != kAbsent)
+        pairs[{task.source, task.target}].push_back(t);
+      if (task.source != kAbsent) single[{false, task.source}].push_back(t);
+      if (task.target != kAbsent) single[{true, task.target}].push_back(t);
     }
     for (const auto& [objects, tasks] : pairs) {
       const auto e = estimate(benchmark_, policy, metric, tasks);

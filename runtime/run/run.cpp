@@ -68,7 +68,7 @@ void add_once(std::vector<std::string>& notes, std::string note) {
 }
 
 bool has_failed(const store::ResultRow& row) {
-  if (row.invalid) return true;
+  if (row.invalid) return !store::is_not_attempted(row);
   for (const store::MetricValue& metric : row.metrics) {
     if (metric.name == "success") return metric.value == 0;
   }
@@ -147,7 +147,9 @@ class EpisodeWorker {
     ++shared_.summary.done;
     shared_.summary.call.observations += row.steps;
     for (std::string& note : policy_->notes()) add_once(shared_.summary.notes, std::move(note));
-    if (row.invalid) {
+    if (store::is_not_attempted(row)) {
+      ++shared_.summary.not_attempted;
+    } else if (row.invalid) {
       ++shared_.summary.invalid;
     } else {
       shared_.valid.push_back(store::key_of(row));
@@ -168,7 +170,7 @@ class EpisodeWorker {
 
   Failure give_up(const std::string& last) const {
     const RunSummary& summary = shared_.summary;
-    const int stored = summary.skipped + summary.done - summary.invalid;
+    const int stored = summary.skipped + summary.done - summary.invalid - summary.not_attempted;
     return {Fault::kPolicy,
             "the policy failed in " + std::to_string(shared_.lost_in_a_row) +
                 " episodes in a row, the last time so: " + last + "\n  " + std::to_string(stored) +
@@ -228,7 +230,7 @@ Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, store::Store& s
   std::size_t again = 0;
   for (const store::StoredEpisode& episode : stored) {
     if (!chosen.contains(episode.key)) continue;
-    if (episode.valid) {
+    if (episode.valid || episode.why.starts_with(store::kNotAttempted)) {
       valid.insert(episode.key);
     } else if (++again <= kToldOneByOne) {
       summary.notes.push_back(to_text(episode.key) + " was run again: " + episode.why);

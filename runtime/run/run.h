@@ -75,6 +75,7 @@ struct RunOptions {
 
 struct RunSummary {
   int total = 0, done = 0, skipped = 0, invalid = 0;
+  int not_attempted = 0;           // a policy of ours has no skill for them; not among the invalid
   std::vector<std::string> notes;  // sentences for stderr, such as why seeds were dropped
   std::string out;                 // the folder that was written
   store::RunCall call;             // speed, and how busy server and simulators were

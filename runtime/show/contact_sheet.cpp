@@ -6,6 +6,7 @@
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/glob.h"
+#include "runtime/plan/roles.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/picture_grid.h"
 #include "runtime/stage/assets.h"
@@ -76,7 +77,7 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
       const std::uint32_t tasks[] = {*task};
       PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
       PROBE_ASSIGN(view, stage::SceneView::create(plan, *task, std::move(assets)));
-      objects = 2 + plan.tasks()[*task].distractors;
+      objects = plan::roles_of(plan.tables(), plan.tasks()[*task]).objects;
       task_name = row.task;
     }
     PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));

@@ -58,7 +58,7 @@ class EpisodeWorld {
   // The robot's joints in drive order, then those of fixtures: rad and m, rad/s and m/s.
   std::span<const double> q() const { return world_->joints(); }
   std::span<const double> u() const { return world_->joint_speeds(); }
-  // Model poses: source, target, distractors.
+  // Model poses of the objects, in the order of the task's bodies.
   std::span<const Pose> objects() const { return objects_; }
   Sha256 state_hash() const { return world_->state_hash(); }
 

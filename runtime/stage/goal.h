@@ -11,7 +11,8 @@
 namespace probe::stage {
 
 // kAway where a source that lies on the target, let go, is no success and one held far from it is;
-// kOnTarget for all else.
+// without a target kLifted or kAway where one held above its start or far from it is. For all else
+// kOnTarget where the task has a source, a target and no other role, or kOther.
 Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task);
 
 }  // namespace probe::stage

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "runtime/plan/roles.h"
 #include "runtime/stage/goal.h"
 #include "runtime/stage/robot_of.h"
 
@@ -63,6 +64,11 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
                              vertices_of(*shapes[static_cast<std::size_t>(link)], Vec3::Zero()),
                              {}});
   }
+  const plan::TaskRoles roles = plan::roles_of(plan.tables(), task);
+  view.source = roles.has_source() ? static_cast<int>(roles.source) : -1;
+  view.target = roles.has_target() ? static_cast<int>(roles.target) : -1;
+  view.first_distractor =
+      roles.distractors.count > 0 ? static_cast<int>(roles.distractors.first) : -1;
   PROBE_ASSIGN(view.goal, goal_of(plan, task_index));
   return view;
 }

@@ -36,7 +36,7 @@ class SceneView {
                                                    ImageSize size = {});
 
   // `q`: the robot's joints in drive order, then those of fixtures. `objects` are model poses in
-  // world, in the order source, target, distractors. A picture is valid until the same camera's
+  // world, in the order of the task's bodies. A picture is valid until the same camera's
   // next.
   Result<render::FrameView> render(std::span<const double> q, std::span<const Pose> objects,
                                    std::size_t camera = 0);

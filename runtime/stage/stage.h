@@ -78,7 +78,7 @@ class Stage {
   // What traces call the joints of q() and the bodies of sample(); a fixture's are "cabinet.top".
   std::vector<std::string> joint_names() const { return world_->joint_names(); }
   const std::vector<std::string>& body_names() const { return world_->bodies().names; }
-  // Model poses in world: source, target, distractors.
+  // Model poses of the objects in world, in the order of the task's bodies.
   std::span<const Pose> objects() const { return world_->objects(); }
   Sha256 state_hash() const { return world_->state_hash(); }
 

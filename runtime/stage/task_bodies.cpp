@@ -1,6 +1,7 @@
 #include "runtime/stage/task_bodies.h"
 
 #include "runtime/base/check.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::stage {
 
@@ -9,7 +10,7 @@ Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& t
   const UrdfParts* robot = assets.robot(plan.robots()[plan.scenes()[task.scene].robot].urdf);
   PROBE_CHECK(robot != nullptr, "assets are loaded for the tasks that run");
   TaskBodies out;
-  out.objects = 2 + task.distractors;
+  out.objects = plan::roles_of(plan.tables(), task).objects;
   std::size_t objects = 0;
   for (const plan::BodyRecord& body : plan.bodies(task)) {
     const auto local = static_cast<std::uint16_t>(out.count());
@@ -35,7 +36,7 @@ Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& t
     }
   }
   if (objects != out.objects) {
-    return Failure{Fault::kPlan, "bodies and distractors do not add up",
+    return Failure{Fault::kPlan, "bodies and roles do not add up",
                    "task `" + std::string(plan.text(task.name)) + "`"};
   }
   out.first_link = static_cast<std::uint16_t>(out.count() - out.links.size());

@@ -22,7 +22,7 @@ struct TaskBodies {
     int link = 0;          // of its URDF
   };
   std::vector<std::string> names;  // of all: the plan's bodies, then the links of fixtures
-  std::size_t objects = 0;         // bodies 0 .. objects - 1: source, target, distractors
+  std::size_t objects = 0;         // bodies 0 .. objects - 1
   std::uint16_t surface = 0, fixture = kNone, first_link = 0;
   std::size_t robot_links = 0;
   std::vector<Link> links;  // from first_link on, as the world counts them: the robot's with its

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/plan/roles.h"
 #include "runtime/vm/judge.h"
 
 namespace probe::vm {
@@ -34,7 +35,10 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
   const std::size_t fingers = robot.fingers.size();  // the first of the links
   const auto bodies = plan.bodies(record);
   const auto episodes = plan.episodes(record);
+  const plan::TaskRoles roles = plan::roles_of(plan.tables(), record);
   MadeUpWorld world;
+  if (roles.has_source()) world.source = static_cast<std::uint16_t>(roles.source);
+  if (roles.has_target()) world.target = static_cast<std::uint16_t>(roles.target);
   world.starts.resize(bodies.size());
   world.sample.bodies.resize(bodies.size());
   world.sample.tcp = {0, 0, table + kFar};

@@ -15,10 +15,11 @@ namespace probe::vm {
 inline constexpr double kMadeUpContact = 0.01;
 
 // The task's bodies where its first episode turns them, half a metre from one another and from the
-// arm; nothing touches. Bodies 0 and 1 are source and target.
+// arm; nothing touches.
 struct MadeUpWorld {
   std::vector<BodyStart> starts;
   StepSample sample;
+  std::uint16_t source = 0, target = 0;    // of tasks that have them
   std::uint16_t surface = 0, fixture = 0;  // the fixture 0 where the scene has none
   std::vector<std::uint16_t> fingers;      // each opens along +y
 
@@ -32,8 +33,8 @@ struct MadeUpWorld {
   // Every finger is pressed open by the source.
   void hold_source() {
     for (const std::uint16_t finger : fingers)
-      sample.contacts.push_back({0, finger, {0, kMadeUpContact, 0}});
-    sample.tcp = sample.bodies[0].position;
+      sample.contacts.push_back({source, finger, {0, kMadeUpContact, 0}});
+    sample.tcp = sample.bodies[source].position;
   }
 };
 

@@ -223,8 +223,34 @@ inline std::vector<Defect> catalogue_defects() {
   };
 }
 
+// Roles of the first task: `second` behind `first`.
+inline void give_roles(Records& r, const RoleRecord& first, const RoleRecord& second) {
+  r.roles = {first, second};
+  r.tasks[0].roles = {0, 2};
+}
+
 inline std::vector<Defect> task_defects() {
   return {
+      {"ROLE", "role kind",
+       [](Records& r, Writer& w) {
+         r.roles.push_back({w.text("helper"), 4, 2, 1});
+       }},
+      {"ROLE", "a name of its own",
+       [](Records& r, Writer& w) {
+         r.roles.push_back({w.text("source"), 1, 2, 1});
+       }},
+      {"ROLE", "2 bodies fill a role",
+       [](Records& r, Writer& w) {
+         r.roles.push_back({w.text("helper"), 1, 2, 2});
+       }},
+      {"TASK", "begins at body 4, not 3",
+       [](Records& r, Writer& w) {
+         give_roles(r, {w.text("helper"), 1, 2, 1}, {w.text("goods"), 2, 4, 1});
+       }},
+      {"TASK", "two roles of task",
+       [](Records& r, Writer& w) {
+         give_roles(r, {w.text("helper"), 1, 2, 1}, {w.text("helper"), 2, 3, 1});
+       }},
       {"CNST", "finite", [](Records& r, Writer&) { r.constants[0] = std::nan(""); }},
       {"STAT", "not a monitor", [](Records& r, Writer&) { r.states[0].kind = 0x30; }},
       {"STAT", "at least one step", [](Records& r, Writer&) { r.states[1].n = 0; }},

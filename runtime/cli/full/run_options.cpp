@@ -163,6 +163,7 @@ void warn_of_insecure(const std::string& policy) {
 }
 
 void print_invalid(const store::ResultRow& row) {
+  if (store::is_not_attempted(row)) return;  // told once, of all of them
   say("invalid: {} episode {} seed {}: {}\n", row.task, row.episode, row.seed, *row.invalid);
 }
 
@@ -171,6 +172,9 @@ void print_summary(const run::RunSummary& summary) {
   if (summary.total == 0) return;
   say("{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total, summary.out,
       summary.done, summary.skipped, summary.invalid);
+  if (summary.not_attempted > 0)
+    say("{} of them were not attempted: the policy has no solution in skills for their goal\n",
+        summary.not_attempted);
   if (summary.done > 0) say("{}\n", store::to_text(summary.call));
   if (summary.call.retried > 0) {
     say("{} attempts that the server spoiled were made again\n", summary.call.retried);

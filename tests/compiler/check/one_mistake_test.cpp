@@ -14,6 +14,30 @@ namespace {
 // Every construct in a few lines, behind the small suite.
 const char* const kMore = R"(
 layout close like pairs { drop 5cm }
+role helper
+role goods: set
+layout three {
+  cells all = grid 2 x 2 at (0cm, 0cm) spread (10cm, 10cm)
+  place source, helper, target in distinct all
+  orient by rest
+  drop 10cm settle 0.5s
+}
+layout heap {
+  cells all = grid 2 x 2 at (0cm, 0cm) spread (10cm, 10cm)
+  place source, target, goods in distinct all
+  orient by rest
+  drop 10cm settle 0.5s
+}
+metrics pair_up like plain { high = once (height(helper) > height(red)) }
+metrics all_up like plain { each = at end (all g in goods: height(g) > height(target)) }
+task pair like base {
+  layout three; metrics pair_up; source red; helper blue; target tray
+  say "put {the source} and {the helper} on {the target}"
+}
+task pile like base {
+  layout heap; metrics all_up; source pale; goods red, blue; target tray
+  say "put {the source} and {the goods} on {the target}"
+}
 layout turned like pairs { orient source yaw 0deg, yaw 90deg; jitter 1mm; expect 24 episodes }
 template shove frame shove "shove {the source: toy} to {the target: dish}"
 predicate near(o: object, gap: length = 2cm) = distance(tcp, o) < gap
@@ -31,7 +55,7 @@ variants of red_on_tray { dark { light night }; longer { horizon 90 steps } }
 variant shaken of red_on_tray { layout turned }
 derive "{t}_of_{p}" for t in { red_on_tray }, p in phrases appearance of source { refer source as p }
 set wordy = tasks where uses appearance or axis language.action
-set rest = tasks - wordy
+set rest = tasks - wordy - { pair, pile }
 questions asked {
   choice pick "told {instruction}, which one?" answer source among objects and 1 absent
   choice shun "told {instruction}, which one not?" answer avoided among objects where uses negation

@@ -280,7 +280,7 @@ variant judged of red_on_tray { metrics other }
 variant longer of red_on_tray { horizon 70 steps })");
   const auto shape = [&](const char* name) {
     const sema::Task& task = a->task(name);
-    return lower::shape_of(task.judged, lower::bodies_of(a->model, task));
+    return lower::shape_of(a->model, task.judged, lower::bodies_of(a->model, task));
   };
   const auto code = [&](const char* name) {
     const sema::Task& task = a->task(name);

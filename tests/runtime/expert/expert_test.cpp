@@ -167,6 +167,28 @@ TEST_CASE("an action costs little") {
   CHECK(total / 60 < 0.01);
 }
 
+TEST_CASE("what shall only be picked up is lifted and kept in hand") {
+  test::FakeTable table(test::carrot(-0.2, 0.02, 180), test::plate(-0.1, -0.1));
+  table.set_goal(policy::Goal::kLifted);
+  const double before = table.source().pose.position.z();
+  const auto policy = expert();
+  CHECK(play(table, *policy) == -1);
+  CHECK(table.held());
+  CHECK(table.source().pose.position.z() - before > 0.09);
+}
+
+TEST_CASE("a goal that picking and placing does not reach is not attempted") {
+  test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
+  table.set_goal(policy::Goal::kOther);
+  const auto policy = expert();
+  REQUIRE(policy->begin(table.start()).ok());
+  CHECK(refusal(policy->act(table.observe(0))) == policy::kNoSolution);
+  // What only goes there needs no goal.
+  const auto reach = expert({.source = 0, .target = -1, .close = false});
+  REQUIRE(reach->begin(table.start()).ok());
+  CHECK(reach->act(table.observe(0)).ok());
+}
+
 TEST_CASE("without what it needs the expert says so") {
   test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
   auto policy = expert();

@@ -4,12 +4,18 @@
 
 using namespace probe;
 using namespace probe::inspect;
-using Names = std::vector<std::string_view>;
+using Names = std::vector<std::string>;
 
 namespace {
 
 Names between(const char* a, const char* b) {
   return axes_between(test::small_plan(), test::task(a), test::task(b));
+}
+
+// By the names of the table, as a variant has them stored.
+Names stored(std::uint32_t axes) {
+  const auto names = probe::plan::axis_names(axes);
+  return {names.begin(), names.end()};
 }
 
 }  // namespace
@@ -22,8 +28,8 @@ TEST_CASE("the records of a variant and its baseline say the same axes as the co
     if (task.baseline == plan::kNone) continue;
     ++pairs;
     INFO(plan.text(task.name));
-    CHECK(axes_between(plan, t, task.baseline) == probe::plan::axis_names(task.axes));
-    CHECK(axes_between(plan, task.baseline, t) == probe::plan::axis_names(task.axes));
+    CHECK(axes_between(plan, t, task.baseline) == stored(task.axes));
+    CHECK(axes_between(plan, task.baseline, t) == stored(task.axes));
     CHECK(difference(plan, t, task.baseline).language == ((task.axes & plan::kLanguageAxes) != 0));
   }
   CHECK(pairs == 6);
@@ -67,6 +73,6 @@ variants of carrots { spoons { source spoon }; covered { distractors towel }; st
   CHECK(axes_between(shaken, base, *shaken.find_task("straight")) == Names{"layout"});
   for (const char* name : {"spoons", "covered", "straight"}) {
     const plan::TaskRecord& task = shaken.tasks()[*shaken.find_task(name)];
-    CHECK(axes_between(shaken, *shaken.find_task(name), base) == plan::axis_names(task.axes));
+    CHECK(axes_between(shaken, *shaken.find_task(name), base) == stored(task.axes));
   }
 }

@@ -21,6 +21,7 @@ TEST_CASE("coverage counts the variants of every base by axis and shows what is 
         R"(                      base  other  total
 object.source            .      .      .
 object.target            .      .      .
+object.other             .      .      .
 distractors              2      .      2
 language.action          2      .      2
 language.negation        .      .      .
@@ -40,7 +41,7 @@ ood target               .      .      .
 ood relation             .      1      1
 tasks                    7      1      8
 
-23 of 28 cells are empty
+25 of 30 cells are empty
 objects never a source: plate
 objects never a target: carrot, twig
 objects never a distractor: carrot, plate

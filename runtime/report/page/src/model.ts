@@ -9,12 +9,12 @@ export interface Category { name: string; label: string; tasks: number[] }
 export interface Thing { name: string; label?: string; seen?: { source?: boolean | null; target?: boolean | null } | null }
 export interface Run {
   dir: string; plan: number; fingerprint: number; seeds: number[];
-  done: number; expected: number; invalid: number; videos: number;
+  done: number; expected: number; invalid: number; videos: number; not_attempted?: number;
 }
 export interface Policy { name: string; label: string; role: string; runs: Run[] }
 export interface Task {
   plan: number; name: string; baseline: number | null; axes: string[]; categories: number[]; prompt: string;
-  source: number; target: number; distractors: number[]; ood: string[]; horizon: number; hz: number; scene?: string;
+  source: number; target: number; roles?: { name: string; objects: number[] }[]; distractors: number[]; ood: string[]; horizon: number; hz: number; scene?: string;
   metrics: number[]; confounded?: string | null; unpaired?: string; allowed?: { word: string; reason: string }[];
   starts?: number[][][]; rule?: { file: string; line: number; text: string };
 }
@@ -138,5 +138,12 @@ export class EpisodeIndex {
 }
 
 export const metricIndex = (data: Data, name: string): number => data.metrics.findIndex((m) => m.name === name);
+// The objects of a task's bodies in their order, each with the class of its role.
+export function bodiesOf(t: Task): { object: number; role: string }[] {
+  const of = (objects: number[], role: string) => objects.filter((object) => object >= 0).map((object) => ({ object, role }));
+  const others = t.roles ?? [];
+  return [...of([t.source], "source"), ...of([t.target], "target"), ...others.filter((r) => r.name).flatMap((r) => of(r.objects, "other")),
+    ...of(t.distractors, "distractor"), ...others.filter((r) => !r.name).flatMap((r) => of(r.objects, "distractor"))];
+}
 export const objectName = (data: Data, object: number): string => data.objects[object]?.label ?? data.objects[object]?.name ?? "";
 export const taskName = (data: Data, task: number | null | undefined): string => data.tasks[task ?? -1]?.name ?? "";

@@ -1,7 +1,7 @@
 // One episode: where things stood, what was said, what happened when, and why it was judged so.
 import { type Child, h, s } from "../dom";
 import { safeLink, shellWord } from "../format";
-import { type Data, isTrue, objectName, readTimelines, readWhys, taskName, type WhyMetric } from "../model";
+import { bodiesOf, type Data, isTrue, objectName, readTimelines, readWhys, taskName, type WhyMetric } from "../model";
 import { policyLabel } from "../parts";
 import type { State } from "../state";
 
@@ -55,7 +55,7 @@ function topView(data: Data, task: number, start: number): Child {
   const t = data.tasks[task]!;
   const places = t.starts?.[start];
   if (!places?.length) return null;
-  const objects = [t.source, t.target, ...t.distractors];
+  const bodies = bodiesOf(t), objects = bodies.map((body) => body.object);
   const all = t.starts!.flat();
   const low = [0, 1].map((i) => Math.min(...all.map((p) => p[i]!))), high = [0, 1].map((i) => Math.max(...all.map((p) => p[i]!)));
   const half = Math.max(0.1, ...[0, 1].map((i) => (high[i]! - low[i]!) / 2)) * 1.45;
@@ -67,7 +67,7 @@ function topView(data: Data, task: number, start: number): Child {
       [...new Set(all.map((p) => at(p).map((v) => v.toFixed(1)).join(" ")))].map((key) => { const [cx, cy] = key.split(" "); return s("circle", { class: "place", cx, cy, r: 1.6 }); }),
       places.map((p, i) => {
         const [x, y] = at(p), turn = ((p[2] ?? 0) * Math.PI) / 180, name = objectName(data, objects[i] ?? -1);
-        return s("g", { class: i === 0 ? "source" : i === 1 ? "target" : "distractor" }, s("circle", { cx: x, cy: y, r: i === 1 ? 15 : 10 }),
+        return s("g", { class: bodies[i]?.role ?? "distractor" }, s("circle", { cx: x, cy: y, r: bodies[i]?.role === "target" ? 15 : 10 }),
           s("line", { x1: x, y1: y, x2: x + 19 * Math.cos(turn), y2: y - 19 * Math.sin(turn) }),
           s("text", { x: Math.min(190, Math.max(30, x)), y: y + 28, "text-anchor": "middle" }, name.length > 18 ? name.slice(0, 17) + "\u2026" : name));
       })));

@@ -31,7 +31,7 @@ export function invalid(state: State): Panel {
       shown.length < rows.length ? h("button", { type: "button", click: () => { all = true; draw(); } }, `Show all ${count(rows.length)}`) : null);
   };
   state.watch(draw);
-  return panel("invalid", "Invalid episodes", "Episodes that ended by a failure of the policy server, the network or the world. They count neither as success nor as failure.", holder);
+  return panel("invalid", "Invalid episodes", "Episodes that ended by a failure of the policy server, the network or the world, and those that a scripted policy did not attempt because it has no skill for them. They count neither as success nor as failure.", holder);
 }
 
 export function delivery(state: State): Panel {
@@ -52,7 +52,7 @@ export function runs(state: State): Panel {
     data.fingerprint_differences?.length ? details("What differs between the fingerprints", h("ul", { class: "differences" }, data.fingerprint_differences.map((text) => h("li", {}, text)))) : null,
     data.policies.length ? simpleTable("Runs", ["Policy", "Folder", "Plan", "Suite", "Seeds", "Episodes", "Invalid", "Videos", "Fingerprint"],
       data.policies.flatMap((policy, p) => policy.runs.map((run) => [policyLabel(state, p), h("code", {}, run.dir), h("code", { title: data.plans[run.plan]?.root ?? "" }, (data.plans[run.plan]?.root ?? "").slice(0, 12)),
-        data.plans[run.plan]?.suite ?? "", run.seeds.join(", "), run.done === run.expected ? count(run.done) : `${count(run.done)} of ${count(run.expected)}`, count(run.invalid), run.videos ? count(run.videos) : "none", `no. ${run.fingerprint + 1}`]))) : nothing(data, "runs", "No run was given."),
+        data.plans[run.plan]?.suite ?? "", run.seeds.join(", "), run.done === run.expected ? count(run.done) : `${count(run.done)} of ${count(run.expected)}`, run.not_attempted ? `${count(run.invalid)}; ${count(run.not_attempted)} not attempted` : count(run.invalid), run.videos ? count(run.videos) : "none", `no. ${run.fingerprint + 1}`]))) : nothing(data, "runs", "No run was given."),
     data.plans.map((plan) => h("dl", { class: "facts" }, h("dt", {}, "Plan"), h("dd", {}, h("code", { class: "long" }, plan.root)), h("dt", {}, "Suite"), h("dd", {}, `${plan.suite}: ${plural(plan.tasks, "task")}, ${plural(plan.starts, "start")}${plan.trained_on ? `, trained on ${plan.trained_on}` : ""}`))),
     data.fingerprints.map((entries, i) => details(`Fingerprint no. ${i + 1}: ${entries.length} entries`, simpleTable(`Fingerprint no. ${i + 1}`, ["What", "Which"], entries.map(([name, value]) => [name, h("code", { class: "long" }, value)])))),
     data.command ? h("dl", { class: "facts" }, h("dt", {}, "This page"), h("dd", {}, h("code", { class: "long" }, data.command), data.program ? ` with ${data.program}` : "")) : null));

@@ -14,6 +14,7 @@ function outcomes(data: Data): (row: number) => Outcome {
   const [success, grasp, intention, wrong] = ["success", "grasp", "intention", "wrong"].map(bit) as [number, number, number, number];
   const has = (row: number, m: number) => m >= 0 && isTrue(data.episodes, row, m);
   return (row) => {
+    if (data.reasons[data.episodes.reason[row]!]?.startsWith("not attempted")) return { sign: "\u2013", word: "not attempted", kind: "invalid" };
     if (data.episodes.reason[row]! >= 0) return { sign: "!", word: "invalid", kind: "invalid" };
     if (has(row, success)) return { sign: "\u25cf", word: "success", kind: "success" };
     if (has(row, wrong)) return { sign: "\u00d7", word: "wrong object", kind: "wrong" };
@@ -74,10 +75,11 @@ function startGrid(state: State, task: number, open: (row: number) => void): HTM
 function taskView(state: State, task: number, open: (row: number) => void): Child {
   const { data } = state;
   const t = data.tasks[task]!;
-  const thing = (o: number, role?: "source" | "target"): Child => [objectName(data, o), role && data.objects[o]?.seen?.[role] === false ? novel() : null];
+  const thing = (o: number, role?: "source" | "target"): Child => o < 0 ? "none" : [objectName(data, o), role && data.objects[o]?.seen?.[role] === false ? novel() : null];
   const facts: [string, Child][] = [
     ["Instruction", h("q", { class: "prompt" }, t.prompt)],
     ["Source", thing(t.source, "source")], ["Target", thing(t.target, "target")],
+    ...(t.roles ?? []).map((r): [string, Child] => [r.name ? r.name[0]!.toUpperCase() + r.name.slice(1) : "Placed", r.objects.map((o) => objectName(data, o)).join(", ")]),
     ["Distractors", t.distractors.length ? t.distractors.map((o) => objectName(data, o)).join(", ") : "none"],
     ["New to training", t.ood.length ? t.ood.join(", ") : "nothing"],
     ["Categories", t.categories.map((c) => data.categories[c]?.label).filter(Boolean).join(", ") || "none"],

@@ -1,0 +1,41 @@
+// P0201 for an object or a fixture that a metric names and that is not in the scene of a task.
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "compiler/check/check.h"
+#include "compiler/model/mentioned.h"
+
+namespace probe::sema {
+
+void check_named(const Model& model, Reporter& reporter) {
+  MentionedIn mentioned(model);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> said;  // one place is one mistake
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    const About about(reporter, task.decl_span);
+    const std::vector<ObjectId> objects = task.objects();
+    std::string scene;
+    for (const ObjectId id : objects) scene += (scene.empty() ? "" : ", ") + model.objects[id].name;
+    const Mentioned found = mentioned.metrics(task.judged);
+    for (const auto& [id, span] : found.objects) {
+      if (std::find(objects.begin(), objects.end(), id) != objects.end()) continue;
+      if (!said.insert({span.file.value, span.begin}).second) continue;
+      const std::string& name = model.objects[id].name;
+      reporter
+          .report(Situation::kNotInScene, span,
+                  "object `" + name + "` is not in the scene of `" + task.name + "`")
+          .label(task.span, "judged by this; its scene has " + scene)
+          .help("place it there: `place " + name + " at (..)` in the layout, or `distractors " +
+                name + "`");
+    }
+    if (!found.fixture || model.scenes[task.scene].fixture) continue;
+    if (!said.insert({found.fixture->file.value, found.fixture->begin}).second) continue;
+    reporter
+        .report(Situation::kNotInScene, *found.fixture,
+                "no fixture is in the scene of `" + task.name + "`")
+        .label(task.span, "judged by this");
+  }
+}
+
+}  // namespace probe::sema

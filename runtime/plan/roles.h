@@ -1,0 +1,48 @@
+// Which body of a task has which role: the one place that knows the order of a task's objects.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/plan/tables.h"
+
+namespace probe::plan {
+
+// Bodies of a task. Those below `objects` are its objects, and the placements of its episodes are
+// in their order.
+struct TaskRoles {
+  std::uint32_t source = kNone, target = kNone;  // a body, or none
+  std::span<const RoleRecord> others;  // declared roles and, last, what the layout placed by name
+  Slice distractors;
+  std::uint32_t objects = 0;
+
+  bool has_source() const { return source != kNone; }
+  bool has_target() const { return target != kNone; }
+  // What most of the field's tasks are: one thing goes to another.
+  bool has_both() const { return has_source() && has_target(); }
+};
+
+// The references of the task are verified, or are those of a writer.
+TaskRoles roles_of(const Tables& tables, const TaskRecord& task);
+
+// The role that a body below `objects` has: "source", "helper", "distractor"; empty for an object
+// that is in none.
+std::string_view role_of_body(const Tables& tables, const TaskRoles& roles, std::uint32_t body);
+// The same, told apart where several have it: "distractor 2", "goods 1"; "placed 1" for one in
+// none.
+std::string label_of_body(const Tables& tables, const TaskRoles& roles, std::uint32_t body);
+
+// The declared role of that name; null where the task has none.
+const RoleRecord* find_role(const Tables& tables, const TaskRoles& roles, std::string_view name);
+
+// The names of the axes of `mask` between two tasks; roles beside source and target under their
+// own: "object.helper".
+std::vector<std::string> axis_names_between(const Tables& tables, std::uint32_t mask,
+                                            const TaskRecord& a, const TaskRecord& b);
+// Of a variant against its baseline: what it was declared to move.
+std::vector<std::string> moved_axes(const Tables& tables, const TaskRecord& task);
+
+}  // namespace probe::plan
