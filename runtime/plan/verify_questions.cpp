@@ -156,6 +156,7 @@ class QuestionCheck : FieldCheck {
       if (o.body != kNone && o.body >= objects)
         return fail(Rule::kOptionBody, &o.body,
                     fmt::format("body {} of task `{}` is no object", o.body, t.text(task.name)));
+      PROBE_TRY(called(task, o));
       texts.push_back(t.text(o.text));
       for (const StringRef& word : slice_of(t.words, o.words)) texts.push_back(t.text(word));
     }
@@ -166,6 +167,38 @@ class QuestionCheck : FieldCheck {
     if (twice == texts.end()) return {};
     return fail(Rule::kOptionTwice, &q.options,
                 fmt::format("`{}` stands for two options of a question", *twice));
+  }
+
+  // A question that was tied to another task would call its objects by other names, or ask for what
+  // is there as if it were not.
+  Status called(const TaskRecord& task, const OptionRecord& o) const {
+    const std::string_view name = t.text(o.text);
+    const auto bodies = slice_of(t.bodies, task.bodies).first(2 + task.distractors);
+    const auto name_of = [&](const BodyRecord& body) { return t.text(t.objects[body.index].text); };
+    if (o.body != kNone) {
+      if (name_of(bodies[o.body]) == name) return {};
+      return fail(Rule::kOptionName, &o.text,
+                  fmt::format("`{}` is called \"{}\" in task `{}`", name, name_of(bodies[o.body]),
+                              t.text(task.name)));
+    }
+    if (std::ranges::find(bodies, name, name_of) == bodies.end()) return {};
+    return fail(Rule::kOptionName, &o.text,
+                fmt::format("`{}` is an object of task `{}`", name, t.text(task.name)));
+  }
+
+  // Is there a carrot?
+  Status presence(const QuestionRecord& q) const {
+    const bool asks = form_of(t.families[q.family]) == QuestionForm::kYesNo &&
+                      truth_of(q) == QuestionTruth::kProved;
+    if (!asks) return {};
+    if (q.options.count != 1)
+      return fail(Rule::kQuestionPresence, &q.options,
+                  fmt::format("it asks for {} objects", q.options.count));
+    const bool is_there = t.options[q.options.first].body != kNone;
+    if (q.right == (is_there ? 1 : 0)) return {};
+    return fail(
+        Rule::kQuestionPresence, &q.right,
+        fmt::format("{} is no answer about what is {}there", q.right, is_there ? "" : "not "));
   }
 
   Status truth(const QuestionRecord& q) const {
@@ -179,6 +212,7 @@ class QuestionCheck : FieldCheck {
                               find_form(family.form)->word, q.truth));
     if (!is_right(form, q))
       return fail(Rule::kQuestionRight, &q.right, fmt::format("{} is no right answer", q.right));
+    PROBE_TRY(presence(q));
     PROBE_TRY(about(q));
     const bool has_program = q.program != kNone;
     if (has_program != (truth == QuestionTruth::kRecorded) || (has_program && !is_truth(q.program)))

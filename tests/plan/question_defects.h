@@ -41,10 +41,28 @@ inline std::vector<Defect> question_defects() {
            if (r.options[i].words.count > 0) --r.options[i].words.first;
          }
        }},
-      {"QUES", "`carrot` stands for two options",
-       [](Records& r, Writer&) { r.options[1].text = r.options[0].text; }},
+      {"QUES", "`plate` stands for two options",
+       [](Records& r, Writer&) { r.words[0] = r.options[1].text; }},
       {"QUES", "`orange thing` stands for two options",
-       [](Records& r, Writer&) { r.options[1].text = r.words[0]; }},
+       [](Records& r, Writer&) { r.words[1] = r.words[0]; }},
+      // Tied to other tasks, or to other answers.
+      {"QOPT", "is called \"carrot\" in task",
+       [](Records& r, Writer& w) { r.options[0].text = w.text("tomato"); }},
+      {"QOPT", "`carrot` is an object of task",
+       [](Records& r, Writer& w) { r.options.back().text = w.text("carrot"); }},
+      {"QUES", "1 is no answer about what is not there",
+       [](Records& r, Writer&) { r.questions.back().right = 1; }},
+      {"QUES", "0 is no answer about what is there",
+       [](Records& r, Writer& w) {
+         r.options.back().text = w.text("carrot");
+         r.options.back().body = 0;
+       }},
+      {"QUES", "it asks for 2 objects",
+       [](Records& r, Writer& w) {
+         r.options.push_back(r.options.back());
+         r.options.back().text = w.text("tomato");
+         r.questions.back().options.count = 2;
+       }},
       {"QUES", "3 is no right answer", [](Records& r, Writer&) { r.questions[0].right = 3; }},
       {"QUES", "0 is no right answer", [](Records& r, Writer&) { r.questions[1].right = 0; }},
       {"QUES", "cannot have truth 4", [](Records& r, Writer&) { r.questions[0].truth = 4; }},

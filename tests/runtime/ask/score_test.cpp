@@ -83,6 +83,7 @@ plan::Plan plan_with(const std::vector<Asks>& all) {
 
 const std::vector<std::vector<std::string>> kThree = {
     {"carrot", "orange object"}, {"plate"}, {"towel"}};
+const std::vector<std::vector<std::string>> kOne = {{"carrot", "orange object"}};
 
 Asks source_of(std::uint32_t task, const std::string& text = "Which one?") {
   return {"all", "source", QuestionForm::kChoice, QuestionTruth::kProved, task, text, kThree, 0};
@@ -198,7 +199,7 @@ TEST_CASE("what is invalid or missing counts neither way, what was not read coun
 TEST_CASE("arms, recorded episodes and families are counted apart") {
   const plan::Plan plan = plan_with(
       {source_of(0),
-       {"all", "there", QuestionForm::kYesNo, QuestionTruth::kProved, 0, "Is it there?", kThree, 1},
+       {"all", "there", QuestionForm::kYesNo, QuestionTruth::kProved, 0, "Is it there?", kOne, 1},
        {"all", "left", QuestionForm::kYesNo, QuestionTruth::kLeftOf, 0, "Left?", kThree,
         plan::kNone, 0, 1}});
   std::vector<AnswerRow> rows;

@@ -70,6 +70,20 @@ inline QuestionRecord& add_question(Writer& w, std::uint32_t family, QuestionTru
   return w.records.questions.back();
 }
 
+// Is there a spoon? It is in no scene.
+inline void add_presence(Writer& w, std::uint32_t family) {
+  QuestionRecord question;
+  question.family = family;
+  question.task = 0;
+  question.text = w.text("Is there a spoon on the table?");
+  question.truth = static_cast<std::uint32_t>(QuestionTruth::kProved);
+  OptionRecord spoon;
+  spoon.text = w.text("spoon");
+  question.options = append<OptionRecord>(w.records.options, std::vector<OptionRecord>{spoon});
+  question.right = 0;
+  w.records.questions.push_back(question);
+}
+
 inline Writer question_writer() {
   Writer w = small_writer();
   add_family(w, "which", QuestionForm::kChoice);
@@ -78,6 +92,7 @@ inline Writer question_writer() {
   add_family(w, "where", QuestionForm::kPoint);
   add_family(w, "say", QuestionForm::kFree);
   add_family(w, "done", QuestionForm::kYesNo, QuestionMoment::kEnd);
+  add_family(w, "there", QuestionForm::kYesNo);
   add_question(w, 0, QuestionTruth::kProved).right = 0;
   QuestionRecord& left = add_question(w, 1, QuestionTruth::kLeftOf);
   left.a = 0;
@@ -89,6 +104,7 @@ inline Writer question_writer() {
   say.b = 1;
   const std::uint32_t program = add_truth(w);
   add_question(w, 5, QuestionTruth::kRecorded).program = program;
+  add_presence(w, 6);
   w.records.omissions.push_back({0, 1, static_cast<std::uint32_t>(OmissionReason::kPhraseIsName)});
   w.records.omissions.push_back({3, 1, static_cast<std::uint32_t>(OmissionReason::kCondition)});
   return w;
