@@ -52,13 +52,18 @@ void report_unasked(Context& context, const std::vector<std::set<QuestionSetId>>
     const About about(context.reporter, set.decl_span);
     for (std::uint32_t f = 0; f < set.families.size(); ++f) {
       if (set.families[f].broken || asked.contains({id, f})) continue;
+      std::set<OmissionReason> reasons;
+      for (const LeftOut& left : model.left_out) {
+        if (left.set == id && left.family == f) reasons.insert(left.reason);
+      }
+      // That it has no single right answer has been said.
+      if (reasons.size() == 1 && reasons.contains(OmissionReason::kAmbiguous)) continue;
       Diagnostic& said =
           context.report(Code::P0903, set.families[f].span,
                          "question `" + set.families[f].name + "` is asked of none of " +
                              std::to_string(tasks) + (tasks == 1 ? " task" : " tasks"));
-      std::set<OmissionReason> reasons;
       for (const LeftOut& left : model.left_out) {
-        if (left.set != id || left.family != f || !reasons.insert(left.reason).second) continue;
+        if (left.set != id || left.family != f || reasons.erase(left.reason) == 0) continue;
         said.note("in `" + model.tasks[left.task].name + "` " +
                   std::string(plan::find_omission(static_cast<std::uint32_t>(left.reason))->says));
       }

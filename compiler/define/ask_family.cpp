@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "compiler/define/option_words.h"
 #include "compiler/define/query.h"
+#include "compiler/define/question_pool.h"
 #include "compiler/define/set.h"
 #include "compiler/model/mentioned.h"
-#include "runtime/base/sha256.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
 #include "runtime/plan/limits.h"
@@ -30,14 +31,14 @@ class FamilyAsker {
         family_(set_.families[family]),
         task_(scene.task()),
         objects_(scene.all()),
-        family_text_(fold_case(family_.text)) {}
+        pools_(model_, scene, set_, family_) {}
 
   // Nothing when at least one question came of it.
   std::optional<OmissionReason> ask() {
     if (!family_.over) return ask_one(ObjectId::kNone);
     std::optional<OmissionReason> reason = OmissionReason::kNoMember;
     bool asked = false;
-    for (const ObjectId bound : members(*family_.over)) {
+    for (const ObjectId bound : members_of(*family_.over)) {
       const auto why_not = ask_one(bound);
       asked = asked || !why_not;
       if (why_not) reason = why_not;
@@ -48,10 +49,6 @@ class FamilyAsker {
  private:
   using MayOmit = std::optional<OmissionReason>;
 
-  ObjectId filled_by(RoleId role) const {
-    const std::vector<ObjectId> objects = task_.objects_in(role);
-    return objects.empty() ? ObjectId::kNone : objects.front();
-  }
   // Whether the instruction speaks of what fills another role than source and target: then these
   // two are not all that it asks for.
   bool asks_for_more() const {
@@ -85,7 +82,7 @@ class FamilyAsker {
         out = who.object;
         return {};
       case Who::kRole:
-        out = filled_by(who.role);
+        out = scene_.filled_by(who.role);
         return out == ObjectId::kNone ? MayOmit(OmissionReason::kNoMember) : MayOmit();
     }
     return OmissionReason::kNoMember;
@@ -131,19 +128,6 @@ class FamilyAsker {
     return check_name_of(id, span);
   }
 
-  std::optional<std::uint32_t> value_of(AttributeId attribute, ObjectId id) const {
-    if (attribute == AttributeId::kNone) return std::nullopt;
-    const auto& values = model_.objects[id].values[static_cast<std::size_t>(attribute)];
-    if (values.size() != 1) return std::nullopt;
-    return values[0];
-  }
-  Truth has_value(AttributeId attribute, std::uint32_t value, ObjectId id) const {
-    const auto& values = model_.objects[id].values[static_cast<std::size_t>(attribute)];
-    if (values.empty()) return Truth::kUnknown;
-    return std::find(values.begin(), values.end(), value) != values.end() ? Truth::kYes
-                                                                          : Truth::kNo;
-  }
-
   // ---- words
 
   static std::string with_article(Placeholder::Article article, bool bare, std::string_view words) {
@@ -176,7 +160,7 @@ class FamilyAsker {
       mention(id);
       return is_asked_for ? MayOmit{} : check_name_of(id, placeholder.span);
     }
-    const auto value = value_of(placeholder.attribute, id);
+    const auto value = value_of(model_, placeholder.attribute, id);
     if (!value) return OmissionReason::kNotKnown;
     std::string words = model_.attributes[placeholder.attribute].values[*value];
     std::replace(words.begin(), words.end(), '_', ' ');
@@ -206,75 +190,20 @@ class FamilyAsker {
     return {};
   }
 
-  // ---- pools
-
-  // An object that is certainly not in the scene, whatever it is called and shown as.
-  bool can_be_absent(ObjectId id) const {
-    return scene_.is_absent(id) && !has_words(family_text_, scene_.name(id)) &&
-           !fits_description(id);
-  }
-  // Who is meant, where that is one object.
-  ObjectId described_by(const Who& who) const {
-    switch (who.kind) {
-      case Who::kSource:
-        return task_.source;
-      case Who::kTarget:
-        return task_.target;
-      case Who::kAvoided:
-        return scene_.avoided().size() == 1 ? scene_.avoided()[0] : ObjectId::kNone;
-      case Who::kBound:
-        return bound_;
-      case Who::kObject:
-        return who.object;
-      case Who::kRole:
-        return filled_by(who.role);
+  // Tells once of a family that it gets fewer that are not there than it wants.
+  std::vector<ObjectId> members_of(const QuestionPool& pool) {
+    std::vector<ObjectId> members = pools_.members(pool, bound_);
+    const std::uint64_t absent = members.size() - objects_.size();
+    // A library wants what a small catalogue may not have.
+    const bool is_root = std::find(context_.roots.begin(), context_.roots.end(),
+                                   family_.span.file) != context_.roots.end();
+    if (is_root && !pool.is_catalogue && absent < pool.absent) {
+      ambiguities_.tell(Code::P0905, family_.span,
+                        here() + std::to_string(pool.absent) +
+                            " absent objects are wanted, and there " +
+                            (absent == 1 ? "is " : "are ") + std::to_string(absent));
     }
-    return ObjectId::kNone;
-  }
-  // What the question says of its answer by an attribute.
-  bool fits_description(ObjectId id) const {
-    for (const Family::Part& part : family_.parts) {
-      if (!part.placeholder || part.placeholder->kind != Placeholder::kAttribute) continue;
-      const Placeholder& said = *part.placeholder;
-      const ObjectId described = described_by(said.who);
-      if (described == ObjectId::kNone) continue;
-      const auto value = value_of(said.attribute, described);
-      if (value && has_value(said.attribute, *value, id) != Truth::kNo) return true;
-    }
-    return false;
-  }
-
-  Sha256 draw(std::string_view what, ObjectId id) const {
-    Hasher hasher;
-    hasher.text(what).text(set_.name).text(family_.name).text(task_.name);
-    return hasher.text(model_.objects[id].name).finish();
-  }
-  std::vector<ObjectId> drawn(std::string_view what, const std::vector<ObjectId>& from) const {
-    std::vector<std::pair<Sha256, ObjectId>> draws;
-    for (const ObjectId id : from) draws.emplace_back(draw(what, id), id);
-    std::sort(draws.begin(), draws.end());
-    std::vector<ObjectId> out;
-    for (const auto& [hash, id] : draws) out.push_back(id);
-    return out;
-  }
-
-  // Those of the scene first, in its order. Fewer than asked for when there are no more.
-  std::vector<ObjectId> members(const QuestionPool& pool) const {
-    std::vector<ObjectId> out = objects_;
-    if (!pool.is_catalogue && pool.absent == 0) return out;
-    std::vector<ObjectId> absent;
-    for (std::size_t i = 0; i < model_.objects.size(); ++i) {
-      if (can_be_absent(model_.objects.id(i))) absent.push_back(model_.objects.id(i));
-    }
-    if (!pool.is_catalogue) absent = drawn("vlaprobe.absent", absent);
-    for (const ObjectId id : absent) {
-      if (!pool.is_catalogue && out.size() - objects_.size() >= pool.absent) break;
-      const bool is_new = std::none_of(out.begin(), out.end(), [&](ObjectId other) {
-        return scene_.names().are_alike(id, other);
-      });
-      if (is_new) out.push_back(id);
-    }
-    return out;
+    return members;
   }
 
   // ---- the question
@@ -290,6 +219,7 @@ class FamilyAsker {
     }
     if (auto why_not = render()) return why_not;
     if (auto why_not = answer()) return why_not;
+    if (auto why_not = check_said_before()) return why_not;
     // Things of one name can be counted; else an answer's name must tell them apart.
     if (family_.form != plan::QuestionForm::kNumber) {
       std::vector<ObjectId> named;
@@ -305,8 +235,53 @@ class FamilyAsker {
     question_.family = family_index_;
     question_.task = scene_.task_id();
     question_.text = text_;
-    add_words();
+    add_option_words(model_, scene_, question_);
     context_.model.asked.push_back(std::move(question_));
+    return {};
+  }
+
+  // What the right answer is, in words that compare: who is chosen, pointed at, left of whom.
+  std::string right_of(const AskedQuestion& question) const {
+    const auto name = [&](std::uint32_t option) {
+      return option == plan::kNone ? std::string("-")
+                                   : model_.objects[question.options[option].object].name;
+    };
+    const bool is_choice =
+        family_of(question).form == plan::QuestionForm::kChoice && question.right != plan::kNone;
+    return std::to_string(static_cast<int>(question.truth)) + " " + name(question.a) + " " +
+           name(question.b) + " " +
+           (is_choice ? name(question.right) : std::to_string(question.right));
+  }
+  const Family& family_of(const AskedQuestion& question) const {
+    return model_.question_sets[question.set].families[question.family];
+  }
+  static bool offers(const AskedQuestion& question, ObjectId id) {
+    return std::any_of(question.options.begin(), question.options.end(),
+                       [&](const AskedOption& option) { return option.object == id; });
+  }
+  // The same words about the same picture, which the one calls right and the other wrong. Who asks
+  // of a choice between other objects asks something else.
+  MayOmit check_said_before() {
+    for (auto other = model_.asked.rbegin();
+         other != model_.asked.rend() && other->task == scene_.task_id(); ++other) {
+      const Family& before = family_of(*other);
+      if (&before == &family_ || other->text != text_ || before.form != family_.form ||
+          before.moment != family_.moment)
+        continue;
+      question_.set = set_id_;
+      question_.family = family_index_;
+      if (question_.truth == plan::QuestionTruth::kRecorded ||
+          right_of(*other) == right_of(question_))
+        continue;
+      const bool is_choice = family_.form == plan::QuestionForm::kChoice;
+      if (is_choice && (!offers(question_, other->options[other->right].object) ||
+                        !offers(*other, question_.options[question_.right].object)))
+        continue;
+      return ambiguous(family_.text_span, here() + "`" + model_.question_sets[other->set].name +
+                                              "." + before.name +
+                                              "` asks by the same words and has another right "
+                                              "answer");
+    }
     return {};
   }
 
@@ -368,7 +343,8 @@ class FamilyAsker {
     }
     if (auto why_not = check_attributes(right)) return why_not;
     if (has_words(fold_case(own_), scene_.name(right))) return OmissionReason::kShowsAnswer;
-    const std::vector<ObjectId> options = drawn("vlaprobe.order", members(*family_.among));
+    const std::vector<ObjectId> options =
+        pools_.drawn("vlaprobe.order", members_of(*family_.among));
     if (options.size() < 2) return OmissionReason::kOneOption;
     if (options.size() > plan::kMaxOptions) {
       context_.report(Situation::kTooManyOptions, family_.answer.span,
@@ -389,9 +365,10 @@ class FamilyAsker {
           !(part.placeholder->who == family_.answer.who[0]))
         continue;
       const Placeholder& said = *part.placeholder;
-      const auto value = value_of(said.attribute, right);
+      const auto value = value_of(model_, said.attribute, right);
       for (const ObjectId other : objects_) {
-        if (!value || other == right || has_value(said.attribute, *value, other) == Truth::kNo)
+        if (!value || other == right ||
+            has_value(model_, said.attribute, *value, other) == Truth::kNo)
           continue;
         return ambiguous(said.span, here() + "`" + model_.attributes[said.attribute].name + " " +
                                         model_.attributes[said.attribute].values[*value] +
@@ -425,7 +402,7 @@ class FamilyAsker {
   MayOmit present() {
     ObjectId id = ObjectId::kNone;
     if (auto why_not = resolve(family_.answer.who[0], id)) return why_not;
-    if (!scene_.body_of(id) && !can_be_absent(id)) {
+    if (!scene_.body_of(id) && !pools_.can_be_absent(id, bound_)) {
       for (const ObjectId other : objects_) {
         if (scene_.names().are_alike(id, other))
           return ambiguous(family_.answer.span, here() + "`" + model_.objects[other].name +
@@ -456,10 +433,10 @@ class FamilyAsker {
     ObjectId of = ObjectId::kNone;
     if (auto why_not = resolve_there(family_.answer.who[0], of)) return why_not;
     const AttributeId attribute = family_.answer.attribute;
-    const auto value = value_of(attribute, of);
+    const auto value = value_of(model_, attribute, of);
     if (!value) return OmissionReason::kNotKnown;
     for (const ObjectId id : objects_) {
-      const Truth truth = has_value(attribute, *value, id);
+      const Truth truth = has_value(model_, attribute, *value, id);
       if (truth == Truth::kUnknown)
         return ambiguous(family_.answer.span, here() + "nothing says the `" +
                                                   model_.attributes[attribute].name + "` of `" +
@@ -512,53 +489,6 @@ class FamilyAsker {
     return {};
   }
 
-  // ---- what else an option may be called: its last word, and phrases that fit it alone.
-
-  void add_words() {
-    struct Words {
-      std::string text, folded;
-    };
-    std::vector<AskedOption>& options = question_.options;
-    std::vector<std::vector<Words>> candidates(options.size());
-    const auto calls = [&](std::size_t i, std::string_view folded) {
-      return scene_.name(options[i].object) == folded ||
-             std::any_of(candidates[i].begin(), candidates[i].end(),
-                         [&](const Words& words) { return words.folded == folded; });
-    };
-    for (std::size_t i = 0; i < options.size(); ++i) {
-      const Object& object = model_.objects[options[i].object];
-      const std::string& name = object.text.text;
-      const auto propose = [&](const std::string& text, const std::string& folded) {
-        if (!calls(i, folded)) candidates[i].push_back({text, folded});
-      };
-      const std::size_t blank = name.rfind(' ');
-      if (blank != std::string::npos && blank + 1 < name.size())
-        propose(name.substr(blank + 1), fold_case(name.substr(blank + 1)));
-      for (std::size_t p = 0; p < object.phrases.size(); ++p) {
-        const std::string& folded = scene_.names().phrase(options[i].object, p);
-        if (fits_alone(object.phrases[p], i)) propose(object.phrases[p].text.text, folded);
-      }
-    }
-    for (std::size_t i = 0; i < options.size(); ++i) {
-      for (Words& words : candidates[i]) {
-        bool is_free = true;
-        for (std::size_t k = 0; k < options.size() && is_free; ++k) {
-          is_free = k == i || (!calls(k, words.folded) &&
-                               !has_words(scene_.name(options[k].object), words.folded));
-        }
-        if (is_free) options[i].words.push_back(words.text);
-      }
-    }
-  }
-  bool fits_alone(const Phrase& phrase, std::size_t option) const {
-    if (is_blank(phrase.text.text)) return false;
-    for (std::size_t k = 0; k < question_.options.size(); ++k) {
-      const Truth truth = evaluate(phrase.means, model_.objects[question_.options[k].object]);
-      if (truth != (k == option ? Truth::kYes : Truth::kNo)) return false;
-    }
-    return true;
-  }
-
   Context& context_;
   Ambiguities& ambiguities_;
   const Model& model_;
@@ -569,7 +499,7 @@ class FamilyAsker {
   const Family& family_;
   const Task& task_;
   const std::vector<ObjectId>& objects_;
-  std::string family_text_;  // folded
+  PoolReader pools_;
 
   ObjectId bound_ = ObjectId::kNone;
   std::string text_, own_;

@@ -14,7 +14,8 @@
 
 namespace probe::sema {
 
-// Questions without a single right answer, said of the first task of each place alone.
+// Questions without a single right answer, or without what they want, said of the first task of
+// each place alone.
 class Ambiguities {
  public:
   explicit Ambiguities(Context& context) : context_(context) {}
@@ -41,6 +42,12 @@ class Ambiguities {
           std::string(slug) + ", \"...\")` above the set");
     }
     return plan::OmissionReason::kAmbiguous;
+  }
+
+  // What is as good as can be had, and is to be known.
+  void tell(Code code, const Span& span, const std::string& message) {
+    Said& said = said_[{code, span.file.value, span.begin, span.end}];
+    if (said.count++ == 0) said.first = &context_.report(code, span, message);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include "compiler/define/set.h"
 #include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
+#include "runtime/base/words.h"
 #include "runtime/plan/limits.h"
 
 namespace probe::sema {
@@ -208,6 +209,51 @@ void check_moment(Context& context, const Family& family) {
                  "the text proves what is there at the start, not at the end");
 }
 
+// The words between two names, where a question says which side the first is on.
+struct SideWords {
+  std::string_view words;
+  QuestionAnswer::Kind kind;
+  bool is_first;  // of the first name, as the answer has it; else of the second
+};
+constexpr SideWords kSideWords[] = {
+    {"left of", QuestionAnswer::kLeft, true},
+    {"right of", QuestionAnswer::kLeft, false},
+    {"nearer to the camera than", QuestionAnswer::kNearer, true},
+    {"closer to the camera than", QuestionAnswer::kNearer, true},
+    {"further from the camera than", QuestionAnswer::kNearer, false},
+    {"farther from the camera than", QuestionAnswer::kNearer, false},
+};
+
+// "Is X to the left of Y?" with the answer left(Y, X): every answer would be read the wrong way
+// round. Words that are put otherwise, or deny, are the author's own.
+void check_sides(Context& context, const Family& family) {
+  const auto& who = family.answer.who;
+  if (who.size() != 2) return;
+  std::vector<const Placeholder*> said;
+  std::string between;
+  for (const Family::Part& part : family.parts) {
+    if (part.placeholder) {
+      said.push_back(&*part.placeholder);
+    } else if (said.size() == 1) {
+      between += fold_case(part.literal);
+    } else if (has_words(fold_case(part.literal), "not")) {
+      return;
+    }
+  }
+  if (said.size() != 2 || has_words(between, "not")) return;
+  for (const SideWords& side : kSideWords) {
+    if (side.kind != family.answer.kind || !has_words(between, side.words)) continue;
+    const Who& first = side.is_first ? who[0] : who[1];
+    const Who& second = side.is_first ? who[1] : who[0];
+    if (!(said[0]->who == second) || !(said[1]->who == first)) continue;
+    context
+        .report(Code::P0904, family.answer.span,
+                "question `" + family.name + "` says \"" + std::string(side.words) + "\" with `" +
+                    said[0]->who.text + "` and `" + said[1]->who.text + "` the other way round")
+        .help("exchange `" + who[0].text + "` and `" + who[1].text + "` in the answer");
+  }
+}
+
 }  // namespace
 
 void define_questions(Context& context) {
@@ -242,6 +288,7 @@ void define_questions(Context& context) {
       if (!family.broken) {
         check_told(context, family);
         check_moment(context, family);
+        check_sides(context, family);
       }
       set.families.push_back(std::move(family));
     }

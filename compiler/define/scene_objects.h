@@ -43,6 +43,12 @@ class SceneObjects {
   // Its place among them; nothing when it is not in the scene.
   std::optional<std::uint32_t> body_of(ObjectId id) const;
 
+  // The object that fills a role, of a set the first; kNone where nothing does.
+  ObjectId filled_by(RoleId role) const {
+    const std::vector<ObjectId> objects = task_.objects_in(role);
+    return objects.empty() ? ObjectId::kNone : objects.front();
+  }
+
   // What the instruction says to leave alone, each once.
   const std::vector<ObjectId>& avoided() const { return avoided_; }
   bool is_avoided(ObjectId id) const;

@@ -95,9 +95,9 @@ constexpr std::array kOwnModels = {
     OwnEntry{"first", first_says, "always A, yes, 1, the middle, no sentence: what a habit gets"},
 };
 
-class OwnModel final : public Model {
+class InProcessModel final : public Model {
  public:
-  explicit OwnModel(const OwnEntry& entry) : entry_(entry) {}
+  explicit InProcessModel(const OwnEntry& entry) : entry_(entry) {}
   Result<Said> answer(const AskedQuery& asked) override { return Said{.raw = entry_.says(asked)}; }
 
  private:
@@ -128,7 +128,7 @@ Result<ModelTraits> model_traits(std::string_view text) {
 
 std::unique_ptr<Model> make_own_model(std::string_view text) {
   const OwnEntry* entry = find_own(text);
-  return entry == nullptr ? nullptr : std::make_unique<OwnModel>(*entry);
+  return entry == nullptr ? nullptr : std::make_unique<InProcessModel>(*entry);
 }
 
 std::string model_help() {
