@@ -34,9 +34,9 @@ TEST_CASE("a plan with a question of each form is one that the verifier takes") 
   REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
   const auto plan = Plan::from_bytes(*bytes);
   REQUIRE(plan.ok());
-  CHECK(plan->families().size() == 6);
-  CHECK(plan->questions().size() == 6);
-  CHECK(plan->options().size() == 13);
+  CHECK(plan->families().size() == 7);
+  CHECK(plan->questions().size() == 7);
+  CHECK(plan->options().size() == 14);
   CHECK(plan->words().size() == 7);
   CHECK(plan->omissions().size() == 2);
   CHECK(plan->text(plan->families()[1].name) == "left");
