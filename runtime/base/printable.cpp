@@ -1,14 +1,12 @@
 #include "runtime/base/printable.h"
 
+#include "runtime/base/invisible.h"
 #include "runtime/base/utf8.h"
 
 namespace probe {
 
 bool is_unsafe(char32_t code) {
-  return is_control(code) || code == 0x061c || (code >= 0x200e && code <= 0x200f) ||
-         (code >= 0x2028 && code <= 0x202e) || (code >= 0x2060 && code <= 0x206f) ||
-         code == 0xfeff || (code >= 0xfff9 && code <= 0xfffb) ||
-         (code >= 0xe0000 && code <= 0xe007f);
+  return is_control(code) || (is_invisible(code) && !is_selector(code));
 }
 
 std::string shown(std::string_view text) {

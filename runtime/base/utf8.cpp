@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include "runtime/base/invisible.h"
+
 namespace probe {
 
 Utf8Char first_utf8(std::string_view text) {
@@ -99,16 +101,10 @@ std::optional<char32_t> find_invisible(std::string_view text) {
     if (character.bytes == 0) return std::nullopt;
     text.remove_prefix(character.bytes);
     const char32_t code = character.code;
-    const bool is_joiner = code == 0x200c || code == 0x200d;
-    if (is_joiner) {
-      if (!is_joined(before) || text.empty() || !is_joined(first_utf8(text).code)) return code;
-    } else if (code >= 0x80) {
-      const utf8proc_property_t& property =
-          *utf8proc_get_property(static_cast<utf8proc_int32_t>(code));
-      if (property.ignorable || property.category == UTF8PROC_CATEGORY_ZL ||
-          property.category == UTF8PROC_CATEGORY_ZP || (code >= 0xfff9 && code <= 0xfffb))
-        return code;
-    }
+    if (is_invisible(code)) return code;
+    if (is_joiner(code) &&
+        (!is_joined(before) || text.empty() || !is_joined(first_utf8(text).code)))
+      return code;
     before = code;
   }
   return std::nullopt;

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "runtime/base/invisible.h"
+
 namespace probe {
 
 TEST_CASE("text stays, controls are blanks and what is no UTF-8 question marks") {
@@ -29,6 +31,20 @@ TEST_CASE("a terminal gets no escape, no control and nothing that turns text aro
     CHECK(printable(std::string("x") + turned + "y", 9) == "x y");
     CHECK_FALSE(is_printable(turned));
   }
+}
+
+TEST_CASE(
+    "what nobody sees is unsafe wherever it hides, but selectors and joiners mean something") {
+  for (const char32_t code :
+       {0xad, 0x34f, 0x61c, 0x200b, 0x200e, 0x2028, 0x2029, 0x202e, 0x2060, 0x2065, 0x206f, 0x3164,
+        0xfeff, 0xfff9, 0xfffb, 0xe0000, 0xe0041, 0xe007f}) {
+    CAPTURE(static_cast<unsigned>(code));
+    CHECK(is_invisible(code));
+    CHECK(is_unsafe(code));
+  }
+  CHECK(is_invisible(0xfe0f));
+  for (const char32_t code : {0xfe0f, 0x200c, 0x200d, 0x20, 0xe4, 0x65e5, 0x1f955})
+    CHECK_FALSE(is_unsafe(code));
 }
 
 TEST_CASE("a text is printable or it is not") {
