@@ -173,7 +173,7 @@ class QuestionCheck : FieldCheck {
   // is there as if it were not.
   Status called(const TaskRecord& task, const OptionRecord& o) const {
     const std::string_view name = t.text(o.text);
-    const auto bodies = slice_of(t.bodies, task.bodies).first(2 + task.distractors);
+    const auto bodies = slice_of(t.bodies, task.bodies).first(roles_of(t, task).objects);
     const auto name_of = [&](const BodyRecord& body) { return t.text(t.objects[body.index].text); };
     if (o.body != kNone) {
       if (name_of(bodies[o.body]) == name) return {};
