@@ -38,6 +38,18 @@ int report_unknown(const CLI::App& app, const CLI::ParseError& error, std::span<
   return kUser;
 }
 
+// The help has what something is said of.
+class SaidFormatter final : public CLI::Formatter {
+ public:
+  std::string make_group(std::string group, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override {
+    std::erase_if(options,
+                  [](const CLI::Option* option) { return option->get_description().empty(); });
+    if (options.empty()) return "";
+    return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+  }
+};
+
 }  // namespace
 
 Option& Option::required() {
@@ -131,6 +143,7 @@ CommandLine::CommandLine(const std::string& about, const std::string& footer,
   app_->footer(footer);
   app_->require_subcommand(0, 1);
   app_->set_version_flag("--version", version);
+  app_->formatter(std::make_shared<SaidFormatter>());  // verbs have that of the program
   app_->get_formatter()->column_width(28);
 }
 

@@ -49,8 +49,8 @@ class Verb {
   // At least one of the subcommands has to follow.
   void require_subcommand();
   void footer(const std::string& text);
-  // "-o,--out": the names of an option; "DIR": a positional. The variable is set while the line is
-  // parsed and must live until then; what it holds is the default. Lists take one value or more.
+  // "-o,--out": an option; "DIR": a positional. The variable, set while the line is parsed, holds
+  // the default. Lists take one value or more. Without an `about` it works and is not in the help.
   Option add_option(const std::string& names, std::string& value, const std::string& about);
   Option add_option(const std::string& names, int& value, const std::string& about);
   Option add_option(const std::string& names, std::optional<int>& value, const std::string& about);

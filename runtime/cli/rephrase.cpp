@@ -218,9 +218,7 @@ void add_rephrase(Verb app, int& exit) {
       "rephrase", "other words for instructions, proved to mean the same, to train on");
   verb.footer(
       "example: vlaprobe rephrase suite/rephrase.probe --not-in suite/beyond.probe --drop-leaks -o "
-      "words.jsonl\n"
-      "         vlaprobe rephrase suite/rephrase.probe --preset intact --format intact -o "
-      "words.pkl");
+      "words.jsonl");
   verb.add_option("F", arguments->file, ".probe text").required();
   verb.add_option("--tasks", arguments->assets.tasks, "only tasks whose names match this pattern");
   verb.add_option("--suite", arguments->suite, "only the members of this suite");

@@ -122,8 +122,8 @@ int ask_verb(const AskArguments& arguments) {
 void add_ask(Verb app, int& exit) {
   auto arguments = std::make_shared<AskArguments>();
   Verb verb = app.add_subcommand("ask", "put a plan's questions to a model that sees and reads");
-  verb.footer("models:\n" + ask::model_help() +
-              "\nexample: vlaprobe ask suite/questions.probe -o answers/qwen --jobs 32 \\\n"
+  verb.footer(std::string(kMoreAskOptions) +
+              "example: vlaprobe ask suite/questions.probe -o answers/qwen --jobs 32 \\\n"
               "           --model 'openai://127.0.0.1:8000?model=Qwen2.5-VL-7B&size=448x336'");
   add_ask_options(verb, *arguments);
   verb.add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them");

@@ -60,9 +60,10 @@ LoadedPlan load_asked(const AskArguments& arguments, ask::AskOptions& options) {
 void add_ask_options(Verb verb, AskArguments& arguments) {
   RunArguments& run = arguments.run;
   verb.add_option("F", run.file, ".probe text or .plan file").required();
-  verb.add_option("--model", arguments.model, "who answers").required();
+  verb.add_option("--model", arguments.model,
+                  "openai://HOST:PORT?model=NAME, also https://...; or truth, random, first")
+      .required();
   verb.add_option("-o,--out", run.out, "folder of answers").required();
-  verb.add_option("--name", run.name, "what the rows call the model (default: its own name)");
   verb.add_option("--questions", arguments.questions, "SET or SET.FAMILY, with * and ? (all)")
       .delimiter(',')
       .no_extra_values();
@@ -72,22 +73,18 @@ void add_ask_options(Verb verb, AskArguments& arguments) {
       .no_extra_values();
   verb.add_option("--frames", arguments.frames,
                   "folder of a run: its ends are what questions at the end are about");
-  verb.add_option("--suite", run.suite, "which suite (default: the first that is asked something)");
   verb.add_option("--tasks", run.tasks, "glob over task names");
   verb.add_option("--episodes", run.episodes, "A-B, first and last start of each task");
   verb.add_option("--jobs", run.jobs, "questions at the server at a time (1)").between(1, 1024);
-  verb.add_option("--retries", run.retries,
-                  "how often a question that the server failed is asked again at once (2)")
-      .between(0, 1000);
-  verb.add_option("--give-up-after", run.give_up_after,
-                  "stop when the server failed that many questions in a row; 0: never (5)")
-      .between(0, 1000000);
-  verb.add_flag("--insecure", run.insecure,
-                "accept any certificate of an https:// server; stored and reported");
-  verb.add_option("--if-changed", run.if_changed,
-                  "refuse, fork (into DIR-2) or continue over another build or way of asking")
-      .one_of({"refuse", "fork", "continue"});
-  add_asset_option(verb, run.assets);
+  // On the verb's page, so that the help fits a screen: kMoreAskOptions.
+  verb.add_option("--name", run.name, "");
+  verb.add_option("--suite", run.suite, "");
+  verb.add_option("--retries", run.retries, "").between(0, 1000);
+  verb.add_option("--give-up-after", run.give_up_after, "").between(0, 1000000);
+  verb.add_flag("--insecure", run.insecure, "");
+  verb.add_option("--if-changed", run.if_changed, "").one_of({"refuse", "fork", "continue"});
+  verb.add_option("--assets", run.assets.root, "");
+  verb.add_option("--std", run.assets.library, "");
 }
 
 }  // namespace probe::cli

@@ -17,6 +17,10 @@ struct AskArguments {
 };
 
 void add_ask_options(Verb verb, AskArguments& arguments);
+// Of these the help has no words of their own.
+inline constexpr const char* kMoreAskOptions =
+    "more, in runtime/ask/README.md: --name --suite --retries --give-up-after --insecure "
+    "--if-changed --assets --std\n";
 
 // All but progress.
 Result<ask::AskOptions> ask_options(const AskArguments& arguments);

@@ -120,6 +120,7 @@ void add_slurm_ask(Verb app, int& exit) {
   auto arguments = std::make_shared<SlurmAskArguments>();
   Verb verb = app.add_subcommand("slurm-ask", "`ask` as an array job of Slurm, merged at the end");
   verb.footer(
+      std::string(kMoreAskOptions) +
       "-o holds shards/, slurm/job.sh, its logs and, at the end, the merged answers.\n"
       "example: vlaprobe slurm-ask suite/questions.probe --array 8 --jobs 32 -o answers/qwen \\\n"
       "           --submit --model 'openai://127.0.0.1:{port}?model=qwen' \\\n"

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <thread>
 
 #include "runtime/base/json.h"
@@ -102,6 +103,48 @@ TEST_CASE("list and show have the promised keys") {
   CHECK(task["starts"][0][0]["object"] == "carrot");
 }
 
+TEST_CASE("questions are listed with how often they are asked, and why a task is not asked them") {
+  Sandbox box;
+  const std::string suite = VLAPROBE_SOURCE_DIR "/suite/questions.probe";
+  const auto listed = parsed(box.vlaprobe("list " + suite + " --questions --json"));
+  REQUIRE(listed.contains("families"));
+  std::int64_t questions = 0, asked = 0;
+  std::map<std::string, const probe::Json*> families;
+  for (const probe::Json& family : listed["families"]) {
+    for (const char* key : {"form", "moment", "text", "pixels"}) CHECK(family.contains(key));
+    questions += family["questions"].get<std::int64_t>();
+    asked += family["asked"].get<std::int64_t>();
+    families[family["set"].text() + "." + family["name"].text()] = &family;
+    // A task is asked, or left out for a reason.
+    std::size_t tasks = family["tasks"].get<std::size_t>();
+    for (const probe::Json& omitted : family["omitted"]) {
+      CHECK(!omitted["reason"].text().empty());
+      tasks += omitted["tasks"].size();
+    }
+    CHECK(tasks == 51);
+  }
+  CHECK(listed["questions"] == questions);
+  CHECK(listed["asked"] == asked);
+  REQUIRE(families.contains("understanding.source"));
+  const probe::Json& source = *families["understanding.source"];
+  CHECK(source["form"] == "choice");
+  CHECK(source["moment"] == "at start");
+  CHECK(source["questions"] == 51);
+  CHECK(source["asked"] == 51 * 24);
+  REQUIRE(families.contains("understanding.avoid"));
+  const probe::Json& avoid = *families["understanding.avoid"];
+  CHECK(avoid["omitted"][0]["reason"] == "the instruction tells of nothing to leave alone");
+
+  const Outcome text = box.vlaprobe("list " + suite + " --questions");
+  CHECK(text.exit == 0);
+  CHECK(contains(text.out, "understanding.source"));
+  CHECK(contains(text.out, "51 tasks, 51 questions, asked 1224 times"));
+  CHECK(contains(text.out + text.err, "questions, asked " + std::to_string(asked) + " times"));
+  const Outcome none = box.vlaprobe("list $SUITE --questions");
+  CHECK(none.exit == 0);
+  CHECK(contains(none.out + none.err, "0 questions, asked 0 times"));
+}
+
 TEST_CASE("the count is of tasks and episodes and agrees with the list") {
   Sandbox box;
   const auto list = parsed(box.vlaprobe("list $SUITE --json"));
@@ -168,12 +211,27 @@ TEST_CASE("a picture goes to stdout or, whole, into a file") {
 
 TEST_CASE("the help of each verb fits a screen and has an example") {
   Sandbox box;
-  for (const char* verb : {"list", "show", "diff", "coverage", "graph", "draw", "check"}) {
+  for (const char* verb :
+       {"list", "show", "diff", "coverage", "graph", "draw", "check", "rephrase", "ask"}) {
     const Outcome help = box.vlaprobe(std::string(verb) + " --help");
     CHECK(help.exit == 0);
     CHECK(std::count(help.out.begin(), help.out.end(), '\n') <= 24);
     CHECK(contains(help.out, "example: vlaprobe " + std::string(verb)));
   }
+}
+
+TEST_CASE("what the help of ask leaves out works, and has a page") {
+  Sandbox box;
+  const Outcome help = box.vlaprobe("ask --help");
+  const std::string page = read_file(VLAPROBE_SOURCE_DIR "/runtime/ask/README.md");
+  for (const char* option : {"--name", "--suite", "--retries", "--give-up-after", "--insecure",
+                             "--if-changed", "--assets", "--std"}) {
+    CHECK_MESSAGE(contains(help.out, option), option);
+    CHECK_MESSAGE(contains(page, "`" + std::string(option)), option);
+  }
+  const Outcome wrong = box.vlaprobe("ask $SUITE --model truth -o answers --if-changed maybe");
+  CHECK(wrong.exit == 1);
+  CHECK(contains(wrong.err, "--if-changed"));
 }
 
 TEST_CASE("a watched suite is checked again when a file it uses changes or is replaced") {
