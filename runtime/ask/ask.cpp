@@ -83,14 +83,7 @@ Result<std::optional<ChatChoice>> chat_choice(const AskOptions& options) {
   if (!options.own_model && is_chat(options.model)) {
     PROBE_ASSIGN(choice, choose_chat(options.model));
   }
-  if (!options.accepts_any_certificate) return choice;
-  if (!choice || !choice->server.tls.is_on) {
-    return Failure{Fault::kUsage,
-                   "`" + options.model +
-                       "` shows no certificate that could be left unchecked: it is no https://",
-                   "--insecure"};
-  }
-  choice->server.tls.accepts_any = true;
+  if (choice) choice->server.tls.accepts_any = options.accepts_any_certificate;
   return choice;
 }
 
@@ -112,7 +105,7 @@ Result<AskSummary> ask(const plan::Plan& plan, const AskOptions& given) {
   if (options.own_model) {
     traits = options.own_model->traits;
   } else {
-    PROBE_ASSIGN(traits, model_traits(options.model));
+    PROBE_ASSIGN(traits, model_traits(options.model, options.accepts_any_certificate));
   }
   if (options.name.empty()) options.name = traits.name;
   PROBE_TRY(check_arms(traits, options.choice.arms));

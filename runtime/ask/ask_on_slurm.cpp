@@ -127,7 +127,7 @@ Result<cluster::SlurmReport> ask_on_slurm(const plan::Plan& plan, const AskOptio
                                           const cluster::ArrayOptions& options) {
   std::string model = asking.model;  // its port does not matter for what it is
   if (const auto at = model.find("{port}"); at != std::string::npos) model.replace(at, 6, "1");
-  PROBE_ASSIGN(const ModelTraits traits, model_traits(model));
+  PROBE_ASSIGN(const ModelTraits traits, model_traits(model, asking.accepts_any_certificate));
   QueryChoice choice = asking.choice;
   choice.shard = choice.shards = 1;
   if (!asking.frames.empty()) {

@@ -109,13 +109,23 @@ const OwnEntry* find_own(std::string_view name) {
   return found == kOwnModels.end() ? nullptr : &*found;
 }
 
+Failure nothing_to_accept(std::string_view model) {
+  return {Fault::kUsage,
+          "`" + std::string(model) +
+              "` shows no certificate that could be left unchecked: it is no https://",
+          "--insecure"};
+}
+
 }  // namespace
 
-Result<ModelTraits> model_traits(std::string_view text) {
-  if (find_own(text) != nullptr)
+Result<ModelTraits> model_traits(std::string_view text, bool accepts_any_certificate) {
+  const bool is_own = find_own(text) != nullptr;
+  if (is_own && accepts_any_certificate) return nothing_to_accept(text);
+  if (is_own)
     return ModelTraits{std::string(text), "in this process: " + std::string(text), {Arm::kPicture}};
   if (is_chat(text)) {
     PROBE_ASSIGN(const ChatChoice choice, choose_chat(text));
+    if (accepts_any_certificate && !choice.server.tls.is_on) return nothing_to_accept(text);
     return traits_of(choice);
   }
   std::vector<std::string> names = {"openai"};

@@ -56,8 +56,8 @@ struct ModelTraits {
 };
 
 // Fails (kUsage, --model) on an unknown model, with the known ones and the nearest, and on options
-// that it does not have.
-Result<ModelTraits> model_traits(std::string_view text);
+// that it does not have; and where a certificate that is not there is to be accepted unchecked.
+Result<ModelTraits> model_traits(std::string_view text, bool accepts_any_certificate = false);
 
 // Of a model in this process; null for a server.
 std::unique_ptr<Model> make_own_model(std::string_view text);

@@ -77,18 +77,15 @@ Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
                                              const run::RunOptions& options) {
   std::string policy = options.policy;  // its port does not matter for what it draws
   if (const auto at = policy.find("{port}"); at != std::string::npos) policy.replace(at, 6, "1");
-  PROBE_ASSIGN(const auto traits, run::policy_traits(policy));
-  if (options.accepts_any_certificate) {
-    run::PolicyContext context;
-    context.accepts_any_certificate = true;
-    if (const auto made = run::make_policy(policy, context); !made) return made.failure();
-  }
-  if (traits.recorded) {
+  run::RunOptions whole = options;
+  whole.policy = policy;
+  whole.shard = whole.shards = 1;
+  // Every task would refuse what one does.
+  PROBE_ASSIGN(const run::Actor actor, run::choose_actor(whole));
+  if (actor.traits.recorded) {
     return Failure{Fault::kUsage, "a replay needs no cluster; `vlaprobe run` does it", "--policy"};
   }
-  run::RunOptions whole = options;
-  whole.shard = whole.shards = 1;
-  PROBE_ASSIGN(const run::Selection selection, run::select_jobs(plan, whole, traits.draws));
+  PROBE_ASSIGN(const run::Selection selection, run::select_jobs(plan, whole, actor.traits.draws));
   std::set<EpisodeKey> chosen;
   for (const run::EpisodeJob& job : selection.jobs) chosen.insert(run::key_of(plan, job));
   return chosen;

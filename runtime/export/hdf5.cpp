@@ -48,6 +48,7 @@ class Hdf5 final : public Sink {
     if (trace.start) start(group, *trace.start);
     steps(group, trace);
     contacts(group, trace);
+    if (header.live) live(group, trace);
     return ok_ ? Status() : failed();
   }
 
@@ -71,6 +72,8 @@ class Hdf5 final : public Sink {
     text(group, "start_id", to_hex(header.start_id));
     text(group, "trace_sha256", row.trace_sha256);
     text(group, "invalid", row.invalid.value_or(""));
+    text(group, "live", header.live ? to_text(*header.live) : "");
+    if (header.live && header.live->delay_s) number(group, "live_delay_s", *header.live->delay_s);
     number(group, "episode", header.episode);
     number(group, "seed", header.seed);
     number(group, "horizon", header.horizon);
@@ -164,6 +167,31 @@ class Hdf5 final : public Sink {
     dataset(group, "contact_bodies", H5T_STD_U16LE, H5T_NATIVE_UINT16, pairs.data(), pairs.size(),
             {n, 2});
     reals(group, "contact_push", push, {n, 3});
+  }
+
+  // Of a world that does not wait; answers are rows of their own, as a step has several or none.
+  void live(hid_t group, const store::Trace& trace) {
+    std::vector<std::uint8_t> source, asks;
+    std::vector<double> step, asked, steps_late, seconds;
+    for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+      const store::TraceStep& s = trace.steps[i];
+      if (!s.live) continue;  // and the shapes below do not fit
+      source.push_back(static_cast<std::uint8_t>(s.live->source));
+      asks.push_back(s.live->asks);
+      for (const policy::LiveAnswer& answer : s.live->answers) {
+        step.push_back(s.sample.step);
+        asked.push_back(answer.asked);
+        steps_late.push_back(static_cast<double>(i) - answer.asked);
+        seconds.push_back(answer.answer_s);
+      }
+    }
+    const hsize_t n = trace.steps.size(), answers = step.size();
+    bytes(group, "live_source", source, {n});
+    bytes(group, "live_asks", asks, {n});
+    reals(group, "answer_step", step, {answers});
+    reals(group, "answer_asked", asked, {answers});
+    reals(group, "answer_delay_steps", steps_late, {answers});
+    reals(group, "answer_delay_s", seconds, {answers});
   }
 
   static void put(std::vector<double>& to, const Vec3& v) {

@@ -45,6 +45,25 @@ Json sample_json(const vm::StepSample& sample, const std::vector<std::string>& n
   return json;
 }
 
+// Delays in control steps count from the one whose observation was asked with.
+Json live_json(int step, const policy::LiveStep& live) {
+  Json json;
+  json["source"] = to_word(live.source);
+  json["asks"] = live.asks;
+  json["answers"] = Json::array();
+  for (const policy::LiveAnswer& answer : live.answers) {
+    json["answers"].push_back({{"asked", answer.asked},
+                               {"delay_steps", step - answer.asked},
+                               {"delay_s", answer.answer_s}});
+  }
+  return json;
+}
+
+Json terms_json(const policy::LiveTerms& terms) {
+  return {{"delay_s", terms.delay_s ? Json(*terms.delay_s) : Json(nullptr)},
+          {"most_held", terms.most_held}};
+}
+
 Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
   const store::TraceHeader& header = trace.header;
   Json json;
@@ -62,6 +81,7 @@ Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
   json["control_hz"] = header.control_hz;
   json["steps"] = trace.steps.size();
   json["invalid"] = row.invalid ? Json(*row.invalid) : Json(nullptr);
+  json["live"] = header.live ? terms_json(*header.live) : Json(nullptr);
   json["bodies"] = header.bodies;
   json["joints"] = header.joints;
   Json metrics = Json::object();
@@ -88,7 +108,7 @@ Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
   return json;
 }
 
-Json step_json(const store::TraceHeader& header, const store::TraceStep& step) {
+Json step_json(const store::TraceHeader& header, const store::TraceStep& step, int number) {
   Json json;
   json["kind"] = "step";
   json["task"] = header.task;
@@ -96,6 +116,7 @@ Json step_json(const store::TraceHeader& header, const store::TraceStep& step) {
   json["seed"] = header.seed;
   json.update(sample_json(step.sample, header.bodies));
   json["action"] = step.action;
+  json["live"] = step.live ? live_json(number, *step.live) : Json(nullptr);
   json["q"] = step.q;
   json["u"] = step.u;
   Json metrics = Json::object();
@@ -122,7 +143,9 @@ class JsonLines final : public Sink {
 
   Status episode(const store::ResultRow& row, const store::Trace& trace) override {
     PROBE_TRY(line(episode_json(row, trace)));
-    for (const store::TraceStep& step : trace.steps) PROBE_TRY(line(step_json(trace.header, step)));
+    int number = 0;  // of steps done before
+    for (const store::TraceStep& step : trace.steps)
+      PROBE_TRY(line(step_json(trace.header, step, number++)));
     return {};
   }
 

@@ -36,7 +36,7 @@ class Standing {
     const Time begun = LiveClock::now();
     Answerer::Answer answer;
     if (Answerer* halves = inner_.answerer()) {
-      PROBE_TRY(halves->ask(seen));
+      PROBE_TRY(halves->ask(seen, Time::max()));
       PROBE_ASSIGN(auto came, halves->wait(Time::max()));
       if (!came) return Failure{Fault::kPolicy, "no answer came", ""};
       answer = std::move(came).value();
@@ -173,7 +173,8 @@ class LivePolicy final : public Policy {
   Status ask(const Observation& now, Time when) {
     live_.asks = true;
     question_ = Question{now.step, seen_, std::nullopt};
-    if (is_paced_ || recorded_) return halves_->ask(now);
+    if (is_paced_) return halves_->ask(now, begun_ + std::max(now.horizon, now.step + 1) * period_);
+    if (recorded_) return halves_->ask(now, Time::max());
     Standing standing(*inner_, terms_.delay_s);
     PROBE_ASSIGN(question_->answer, standing.ask(now, when));
     return {};
@@ -246,6 +247,18 @@ std::string plural(std::int64_t count, const char* what) {
 std::string percent_of(double share) { return decimal_text(100 * share, 1) + " %"; }
 
 }  // namespace
+
+std::string_view to_word(LiveSource source) {
+  switch (source) {
+    case LiveSource::kAnswer:
+      return "answer";
+    case LiveSource::kLate:
+      return "late";
+    case LiveSource::kHeld:
+      break;
+  }
+  return "held";
+}
 
 std::string to_text(const LiveTerms& terms) {
   char delay[40] = "as measured", most[40];

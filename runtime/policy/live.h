@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -34,6 +35,8 @@ enum class LiveSource : std::uint8_t {
   kLate,    // the last action of an answer that came after the time of all of them
   kHeld,    // none: no motion
 };
+// "answer", "late", "held".
+std::string_view to_word(LiveSource source);
 
 // An answer, in the control step in which it takes effect; its delay in control steps is that
 // step's number less `asked`.
@@ -80,8 +83,9 @@ class Answerer {
   };
   virtual ~Answerer() = default;
 
-  // What is asked does not change any more when this returns.
-  virtual Status ask(const Observation& seen) = 0;
+  // What is asked does not change any more when this returns. An answer is of use until
+  // `useful_until`, the episode's end on the wall clock; max(): whenever it comes.
+  virtual Status ask(const Observation& seen, LiveClock::time_point useful_until) = 0;
   // The answer to the question, if it comes before `until`.
   virtual Result<std::optional<Answer>> wait(LiveClock::time_point until) = 0;
   // One of an answer's actions as what is done in the step of `now`.

@@ -153,26 +153,31 @@ Result<std::unique_ptr<policy::Policy>> make_scripted(Kind kind) {
 
 }  // namespace
 
-Result<PolicyTraits> policy_traits(std::string_view text) {
+Result<PolicyChoice> choose_policy(std::string_view text, bool accepts_any_certificate) {
   PROBE_ASSIGN(const Choice choice, choose(text));
+  PolicyChoice chosen{std::string(text), choice.entry->traits, nullptr};
   if (choice.entry->kind == Kind::kNoisy) {
     PROBE_ASSIGN(const double sigma, read_sigma(choice.argument));
-    return PolicyTraits{sigma > 0, false, false};
+    chosen.traits.draws = sigma > 0;
   }
   if (choice.entry->kind == Kind::kServer) {
-    PROBE_ASSIGN(const servers::ServerChoice server, server_of(choice));
-    PolicyTraits traits = choice.entry->traits;
-    traits.content = servers::describe(server);
-    return traits;
+    PROBE_ASSIGN(servers::ServerChoice server, server_of(choice));
+    chosen.traits.content = servers::describe(server);
+    server.server.tls.accepts_any = accepts_any_certificate;
+    chosen.server = std::make_shared<servers::ServerChoice>(std::move(server));
   }
-  return choice.entry->traits;
+  if (accepts_any_certificate && (!chosen.server || !chosen.server->server.tls.is_on))
+    return nothing_to_accept(text);
+  return chosen;
 }
 
-Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
+Result<std::unique_ptr<policy::Policy>> make_policy(const PolicyChoice& chosen,
                                                     const PolicyContext& context) {
-  PROBE_ASSIGN(const Choice choice, choose(text));
-  if (choice.entry->kind != Kind::kServer && context.accepts_any_certificate)
-    return nothing_to_accept(text);
+  if (chosen.server) {
+    return servers::make_server(*chosen.server, context.queries, context.model, context.measured,
+                                context.line);
+  }
+  PROBE_ASSIGN(const Choice choice, choose(chosen.text));
   switch (choice.entry->kind) {
     case Kind::kNull:
       return policy::make_null();
@@ -192,20 +197,13 @@ Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
     case Kind::kServer:
       break;
   }
-  PROBE_ASSIGN(servers::ServerChoice server, server_choice(text, context.accepts_any_certificate));
-  return servers::make_server(std::move(server), context.queries, context.model, context.measured,
-                              context.line);
+  return Failure{Fault::kInternal, "a server was not chosen", "--policy"};
 }
 
 Result<servers::ServerChoice> server_choice(std::string_view text, bool accepts_any_certificate) {
-  PROBE_ASSIGN(const Choice choice, choose(text));
-  if (choice.entry->kind != Kind::kServer) {
-    return Failure{Fault::kUsage, "policy `" + std::string(text) + "` is no server", "--policy"};
-  }
-  PROBE_ASSIGN(servers::ServerChoice server, server_of(choice));
-  if (accepts_any_certificate && !server.server.tls.is_on) return nothing_to_accept(text);
-  server.server.tls.accepts_any = accepts_any_certificate;
-  return server;
+  PROBE_ASSIGN(const PolicyChoice choice, choose_policy(text, accepts_any_certificate));
+  if (choice.server) return *choice.server;
+  return Failure{Fault::kUsage, "policy `" + std::string(text) + "` is no server", "--policy"};
 }
 
 std::string policy_argument(std::string_view text) {

@@ -40,17 +40,29 @@ struct PolicyContext {
   std::shared_ptr<servers::SharedLine> line = nullptr;    // of its worlds' batches; may be null
   // Of a server: what its profile leaves open and its answers have shown, see policy::Reading.
   std::vector<std::pair<std::string, std::string>> measured = {};
-  bool accepts_any_certificate = false;  // of a server over TLS; of others it is refused
 };
 
-// Fail (kUsage) on an unknown policy, with the known ones and the nearest spelling, and on a
-// bad argument.
-Result<PolicyTraits> policy_traits(std::string_view text);
-Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
+// What stands after --policy, read once.
+struct PolicyChoice {
+  std::string text;
+  PolicyTraits traits;
+  std::shared_ptr<const servers::ServerChoice> server;  // none: a policy in this process
+};
+
+// Fails (kUsage) on an unknown policy, with the known ones and the nearest spelling, on a bad
+// argument, and where a certificate that is not there is to be accepted unchecked.
+Result<PolicyChoice> choose_policy(std::string_view text, bool accepts_any_certificate = false);
+Result<std::unique_ptr<policy::Policy>> make_policy(const PolicyChoice& choice,
                                                     const PolicyContext& context = {});
 
-// Of a policy that is a server; fails (kUsage) on any other, and where a certificate that is not
-// there is to be accepted unchecked.
+// The same of a text that is read for this alone.
+inline Result<std::unique_ptr<policy::Policy>> make_policy(std::string_view text,
+                                                           const PolicyContext& context = {}) {
+  PROBE_ASSIGN(const PolicyChoice choice, choose_policy(text));
+  return make_policy(choice, context);
+}
+
+// Of a policy that is a server; fails (kUsage) on any other, and as choose_policy does.
 Result<servers::ServerChoice> server_choice(std::string_view text,
                                             bool accepts_any_certificate = false);
 

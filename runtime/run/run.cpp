@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 struct Shared {
   const plan::Plan& plan;
   const RunOptions& options;
+  const Actor& actor;
   std::shared_ptr<const stage::SharedAssets> assets;
   std::string fingerprint;
   std::vector<EpisodeJob> jobs;
@@ -41,27 +42,11 @@ struct Shared {
   std::shared_ptr<servers::SharedModel> model;  // of all connections to a server
   std::shared_ptr<servers::SharedLine> line;    // of all worlds, where they ask in batches
   std::vector<std::pair<std::string, std::string>> measured;
-  bool asks_server = false;
   std::mutex mutex = {};                      // summary, progress and what follows
   std::vector<store::EpisodeKey> valid = {};  // of this call
   int lost_in_a_row = 0;  // episodes that a policy server's failures spoiled for good
   std::atomic<bool> given_up = false;
 };
-
-// Of a worker, or none's: then the policy is only made to see whether it can be.
-Result<std::unique_ptr<policy::Policy>> make_policy(const RunOptions& options,
-                                                    const Shared* shared) {
-  run::PolicyContext context = policy_context();
-  if (shared != nullptr) {
-    context.queries = &shared->queries;
-    context.model = shared->model;
-    context.line = shared->line;
-    context.measured = shared->measured;
-  }
-  context.accepts_any_certificate = options.accepts_any_certificate;
-  return options.own_policy ? options.own_policy->make(context)
-                            : run::make_policy(options.policy, context);
-}
 
 void add_once(std::vector<std::string>& notes, std::string note) {
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
@@ -80,7 +65,12 @@ class EpisodeWorker {
   explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
 
   Status begin() {
-    PROBE_ASSIGN(policy_, make_policy(shared_.options, &shared_));
+    run::PolicyContext context = policy_context();
+    context.queries = &shared_.queries;
+    context.model = shared_.model;
+    context.line = shared_.line;
+    context.measured = shared_.measured;
+    PROBE_ASSIGN(policy_, shared_.actor.make(context));
     if (shared_.options.live)
       policy_ = policy::make_live(std::move(policy_), *shared_.options.live);
     return {};
@@ -136,7 +126,8 @@ class EpisodeWorker {
   // Whether a policy server kept the episode from its end. Other failures, those of policies in
   // this process, and what profile and server do not agree on would only repeat themselves.
   bool is_spoiled(const Played& played) const {
-    return shared_.asks_server && played.policy_fault && *played.policy_fault != Fault::kUsage;
+    return !shared_.actor.traits.content.empty() && played.policy_fault &&
+           *played.policy_fault != Fault::kUsage;
   }
 
   Status commit(const Played& played, int task_order) {
@@ -304,12 +295,12 @@ Result<std::string> choose_folder(const RunOptions& options, store::RunRecord& r
 }
 
 // Two worlds at a server that keeps one episode's words would be done with each other's.
-Status check_worlds(const RunOptions& options) {
-  if (options.own_policy || options.jobs <= 1) return {};
-  const auto choice = run::server_choice(options.policy);
-  if (!choice || choice->profile.worlds == servers::WorldsAtOnce::kMany) return {};
+Status check_worlds(const RunOptions& options, const Actor& actor) {
+  if (!actor.server || options.jobs <= 1) return {};
+  const servers::Profile& profile = actor.server->profile;
+  if (profile.worlds == servers::WorldsAtOnce::kMany) return {};
   return Failure{Fault::kUsage,
-                 "profile `" + choice->profile.name +
+                 "profile `" + profile.name +
                      "` has `worlds = one`: the server keeps something of an episode for all who "
                      "ask it, and worlds would be done with each other's instructions; run with "
                      "--jobs 1, or say worlds=many of a policy that keeps nothing",
@@ -318,12 +309,12 @@ Status check_worlds(const RunOptions& options) {
 
 // Delays that are measured must be the policy's alone: not those of other worlds' questions, and
 // not of a machine that is busy with other worlds.
-Status check_live(const RunOptions& options, const PolicyTraits& traits) {
+Status check_live(const RunOptions& options, const Actor& actor) {
   if (!options.live) return {};
   const auto refused = [](const std::string& why, const char* where) {
     return Failure{Fault::kUsage, why, where};
   };
-  if (traits.recorded) {
+  if (actor.traits.recorded) {
     return refused("`replay:DIR` has the actions of every step at hand: nothing of it is late",
                    "--live");
   }
@@ -335,9 +326,7 @@ Status check_live(const RunOptions& options, const PolicyTraits& traits) {
         "a delay with --live-delay",
         "--jobs");
   }
-  const auto choice =
-      options.own_policy ? Result<servers::ServerChoice>(Failure{}) : server_choice(options.policy);
-  if (choice && choice->batch.most > 1) {
+  if (actor.server && actor.server->batch.most > 1) {
     return refused("questions of a live run do not wait for others: ask without `batch`",
                    "--policy");
   }
@@ -345,11 +334,9 @@ Status check_live(const RunOptions& options, const PolicyTraits& traits) {
 }
 
 // A batch holds no more than one question a world.
-void note_batch(const RunOptions& options, RunSummary& summary) {
-  if (options.own_policy) return;
-  const auto choice = run::server_choice(options.policy);
-  if (!choice || choice->batch.most <= options.jobs) return;
-  summary.notes.push_back("batches of " + std::to_string(choice->batch.most) +
+void note_batch(const RunOptions& options, const Actor& actor, RunSummary& summary) {
+  if (!actor.server || actor.server->batch.most <= options.jobs) return;
+  summary.notes.push_back("batches of " + std::to_string(actor.server->batch.most) +
                           " never fill with --jobs " + std::to_string(options.jobs) +
                           ": each world asks one question at a time");
 }
@@ -369,14 +356,12 @@ struct ServerProof {
   std::shared_ptr<servers::SharedModel> model;
 };
 
-Result<ServerProof> proof_of(const RunOptions& options, int worlds, const servers::KnownArm& arm,
-                             std::shared_ptr<servers::SharedModel> model) {
-  PROBE_ASSIGN(servers::ServerChoice choice,
-               run::server_choice(options.policy, options.accepts_any_certificate));
+ServerProof proof_of(servers::ServerChoice choice, int worlds, const servers::KnownArm& arm,
+                     std::shared_ptr<servers::SharedModel> model) {
   // No batch of the run will hold more; of one question, a batch shows nothing.
   constexpr int kLeastShown = 2;
   choice.batch.most = std::min(choice.batch.most, std::max(worlds, kLeastShown));
-  return ServerProof{std::move(choice), arm, std::move(model)};
+  return {std::move(choice), arm, std::move(model)};
 }
 
 // What is shown of the server must be what it was when the folder was begun.
@@ -437,10 +422,6 @@ Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary&
   return {};
 }
 
-}  // namespace
-
-namespace {
-
 // What the rows' name does not say of the policy: a server's profile; of a policy in this process
 // that goes by another name, which one it is. Two policies under one name are not one run.
 std::string content_of(const RunOptions& options, const PolicyTraits& traits) {
@@ -452,19 +433,28 @@ std::string content_of(const RunOptions& options, const PolicyTraits& traits) {
 
 }  // namespace
 
-Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
-  RunOptions options = asked;
-  run::PolicyTraits traits;
+Result<Actor> choose_actor(const RunOptions& options) {
+  Actor actor;
   if (options.own_policy) {
-    traits = options.own_policy->traits;
+    actor = {options.own_policy->traits, nullptr, options.own_policy->make};
   } else {
-    PROBE_ASSIGN(traits, run::policy_traits(options.policy));
+    PROBE_ASSIGN(auto choice, choose_policy(options.policy, options.accepts_any_certificate));
+    actor = {choice.traits, choice.server, [choice](const run::PolicyContext& context) {
+               return run::make_policy(choice, context);
+             }};
   }
-  PROBE_TRY(check_worlds(options));
-  PROBE_TRY(check_live(options, traits));
+  PROBE_TRY(check_worlds(options, actor));
+  PROBE_TRY(check_live(options, actor));
   // Made once before anything else, so that a policy that cannot be had is told before the folder
   // exists.
-  if (auto made = make_policy(options, nullptr); !made) return made.failure();
+  if (auto made = actor.make(policy_context()); !made) return made.failure();
+  return actor;
+}
+
+Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
+  RunOptions options = asked;
+  PROBE_ASSIGN(const Actor actor, choose_actor(options));
+  const run::PolicyTraits& traits = actor.traits;
   std::vector<store::ResultRow> recorded;
   if (traits.recorded) {
     PROBE_ASSIGN(recorded, recorded_rows(run::policy_argument(options.policy)));
@@ -506,19 +496,20 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
       static_cast<int>(std::min(selection.jobs.size(), static_cast<std::size_t>(options.jobs)));
   const auto model = std::make_shared<servers::SharedModel>();
   std::optional<ServerProof> proof;
-  if (!options.own_policy && !traits.content.empty()) {
+  if (actor.server) {
     PROBE_ASSIGN(const servers::KnownArm arm, arm_of(plan, selection.jobs.front().task, *assets));
-    PROBE_ASSIGN(proof, proof_of(options, summary.call.worlds, arm, model));
+    proof = proof_of(*actor.server, summary.call.worlds, arm, model);
     PROBE_ASSIGN(summary.call.reading, servers::prove_reading(proof->choice, model, arm));
     PROBE_TRY(check_as_before(*summary.call.reading, options, summary.notes));
     for (std::string& finding : policy::findings_of(*summary.call.reading))
       summary.notes.push_back(std::move(finding));
   }
   PROBE_TRY(store->write_call(summary.call));
-  note_batch(options, summary);
+  note_batch(options, actor, summary);
   policy::QueryMeter queries;
   Shared shared{.plan = plan,
                 .options = options,
+                .actor = actor,
                 .assets = std::move(assets),
                 .fingerprint = store::to_json(fingerprint),
                 .jobs = std::move(selection.jobs),
@@ -528,8 +519,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
                 .model = model,
                 .line = std::make_shared<servers::SharedLine>(),
                 .measured = summary.call.reading ? summary.call.reading->measured
-                                                 : decltype(Shared::measured)(),
-                .asks_server = !traits.content.empty()};
+                                                 : decltype(Shared::measured)()};
   const auto make_worker = [&shared]() -> Result<Worker> {
     auto worker = std::make_shared<EpisodeWorker>(shared);
     PROBE_TRY(worker->begin());

@@ -81,6 +81,17 @@ struct RunSummary {
   store::RunCall call;             // speed, and how busy server and simulators were
 };
 
+// Who acts, in each of a run's worlds.
+struct Actor {
+  run::PolicyTraits traits;
+  std::shared_ptr<const servers::ServerChoice> server;  // none: in this process
+  std::function<Result<std::unique_ptr<policy::Policy>>(const run::PolicyContext&)> make;
+};
+
+// Of `options.own_policy` or `options.policy`. Fails (kUsage) where no run could be: an unknown
+// policy, worlds that a server cannot tell apart, terms of a live world that it cannot keep.
+Result<Actor> choose_actor(const RunOptions& options);
+
 // In: a verified plan and what to do with it. Out: the folder, and what to tell of it. The order:
 // all that can be refused before there is a folder (policy, selection, assets); the folder and its
 // record; which of its episodes are done; the questions of a policy server (servers/reading.h); the

@@ -37,7 +37,7 @@ std::string with_checkpoint(std::string text, const std::string& checkpoint) {
   return text;
 }
 
-Status check(const SweepOptions& options) {
+Status check_checkpoints(const SweepOptions& options) {
   if (options.run.policy.find(kPlace) == std::string::npos) {
     return misused("`" + options.run.policy +
                        "` has no {} for a checkpoint, as in intact://HOST:PORT?model={}",
@@ -64,14 +64,15 @@ Status check_policies(const SweepOptions& options) {
   std::map<std::string, std::string> asked;  // a server that ignores checkpoints: the first of them
   for (const std::string& checkpoint : options.checkpoints) {
     const std::string policy = with_checkpoint(options.run.policy, checkpoint);
-    PROBE_TRY(run::policy_traits(policy));
-    const auto choice = run::server_choice(policy);
-    if (!choice || choice->profile.checkpoint == servers::CheckpointUse::kNamed) continue;
-    const auto [first, is_first] = asked.emplace(choice->server.name(), checkpoint);
+    PROBE_ASSIGN(const PolicyChoice choice,
+                 choose_policy(policy, options.run.accepts_any_certificate));
+    const servers::ServerChoice* const server = choice.server.get();
+    if (server == nullptr || server->profile.checkpoint == servers::CheckpointUse::kNamed) continue;
+    const auto [first, is_first] = asked.emplace(server->server.name(), checkpoint);
     if (is_first) continue;
     return misused("the server at " + first->first +
                        " does not load the checkpoint that it is told (`" +
-                       "checkpoint = ignored` in profile `" + choice->profile.name + "`): `" +
+                       "checkpoint = ignored` in profile `" + server->profile.name + "`): `" +
                        first->second + "` and `" + checkpoint +
                        "` would be one model; start a server for each and write {} into the port",
                    "--policy");
@@ -97,8 +98,8 @@ double value_of(const store::ResultRow& row, const char* metric) {
 // Of the rows of the original tasks that `run` chose; its folder may hold more.
 Result<CheckpointScore> score_of(const plan::Plan& plan, const RunOptions& run,
                                  const std::string& checkpoint) {
-  PROBE_ASSIGN(const auto traits, run::policy_traits(run.policy));
-  PROBE_ASSIGN(const Selection selection, select_jobs(plan, run, traits.draws));
+  PROBE_ASSIGN(const PolicyChoice choice, choose_policy(run.policy));
+  PROBE_ASSIGN(const Selection selection, select_jobs(plan, run, choice.traits.draws));
   std::set<store::EpisodeKey> chosen;
   for (const EpisodeJob& job : selection.jobs) chosen.insert(key_of(plan, job));
   PROBE_ASSIGN(const auto proven, store::read_proven_results(run.out));
@@ -211,10 +212,13 @@ std::string checkpoint_folder(const std::string& checkpoint) {
          to_hex(sha256(std::string_view(checkpoint))).substr(0, 8);
 }
 
+Status check_sweep(const SweepOptions& options) {
+  PROBE_TRY(check_checkpoints(options));
+  return check_policies(options);
+}
+
 Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options) {
-  PROBE_TRY(check(options));
-  // What cannot be run is told before the first is run.
-  PROBE_TRY(check_policies(options));
+  PROBE_TRY(check_sweep(options));
   const auto tell = [&](const std::string& text) {
     if (options.tell) options.tell(text);
   };

@@ -39,8 +39,12 @@ struct SweepSummary {
   RunSummary whole;  // the best one's run of the whole suite
 };
 
+// Fails (kUsage) without a `{}`, with a checkpoint named twice, and where a run of one could not
+// be.
+Status check_sweep(const SweepOptions& options);
+
 // Runs what is missing, also when it was killed before. Writes OUT/sweep.json with scores, rule and
-// choice. Fails (kUsage) without a `{}` or with a checkpoint named twice, (kPolicy)
+// choice. Fails as check_sweep does before the first is run, and (kPolicy)
 // when an episode of the original tasks is invalid: nothing is chosen by halves.
 Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options);
 

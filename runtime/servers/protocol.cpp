@@ -25,7 +25,9 @@ constexpr Scheme kSchemes[] = {
 Listen listen_over(Carrier carrier) {
   switch (carrier) {
     case Carrier::kHttp:
-      return wire::listen_http;
+      return [](const std::string& address, const std::string& port, wire::MakeSpeaker make) {
+        return wire::listen_http(address, port, std::move(make));
+      };
     case Carrier::kZmq:
       return wire::listen_zmq;
     case Carrier::kGrpc:
@@ -33,7 +35,9 @@ Listen listen_over(Carrier carrier) {
     case Carrier::kWebSocket:
       break;
   }
-  return wire::listen_websocket;
+  return [](const std::string& address, const std::string& port, wire::MakeSpeaker make) {
+    return wire::listen_websocket(address, port, std::move(make));
+  };
 }
 
 std::span<const Scheme> url_schemes() { return kSchemes; }

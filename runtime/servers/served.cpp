@@ -145,14 +145,41 @@ Status check_batch_asked(const ServeOptions& options, std::size_t questions) {
              (most > 1 ? "1 to " + std::to_string(most) : "no batches"));
 }
 
+namespace {
+
+// What a URL of the protocol begins with over TLS; none: it goes over no URL.
+const Scheme* tls_scheme(const ProtocolRow& row) {
+  for (const Scheme& scheme : url_schemes()) {
+    if (scheme.carrier == row.carrier && scheme.is_tls) return &scheme;
+  }
+  return nullptr;
+}
+
+Status check_tls(const ProtocolRow& row, const wire::TlsFiles& tls) {
+  if (tls.certificate.empty() && tls.key.empty()) return {};
+  if (tls.key.empty())
+    return Failure{Fault::kUsage, "a certificate is shown with its key: add --tls-key FILE",
+                   "--tls-cert"};
+  if (tls.certificate.empty())
+    return Failure{Fault::kUsage, "a key is of a certificate: add --tls-cert FILE", "--tls-key"};
+  if (tls_scheme(row) != nullptr) return {};
+  return Failure{Fault::kUsage,
+                 "protocol " + std::string(row.word) +
+                     " is spoken plain: it goes over no wss:// or "
+                     "https://",
+                 "--tls-cert"};
+}
+
+}  // namespace
+
 Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOptions& options) {
   PROBE_TRY(check_dialect(protocol, options.dialect, "--dialect"));
   const ProtocolRow& row = row_of(protocol);
-  if (options.batch > 1 && row.batches != Batches::kOneMessage) {
-    return Failure{Fault::kUsage,
-                   "protocol " + std::string(row.word) + " has no messages of several questions",
+  if (options.batch > 1 && row.batches == Batches::kNone) {
+    return Failure{Fault::kUsage, "protocol " + std::string(row.word) + " has no batches",
                    "--batch"};
   }
+  PROBE_TRY(check_tls(row, options.tls));
   ServeOptions numeric = options;
   PROBE_ASSIGN(numeric.address, listening_address(options.address, options.port));
   return row.serve(numeric);
@@ -171,6 +198,15 @@ std::string options_for_served(Protocol protocol, const ServeOptions& options) {
   if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
   if (options.batch > 1) text += "&batch=" + std::to_string(options.batch);
   return text;
+}
+
+std::string address_of_served(Protocol protocol, const ServeOptions& options,
+                              const std::string& place) {
+  const ProtocolRow& row = row_of(protocol);
+  const std::string word(row.word), rest = options_for_served(protocol, options);
+  const Scheme* const scheme = options.tls.is_on() ? tls_scheme(row) : nullptr;
+  if (scheme == nullptr) return word + "://" + place + "?" + rest;
+  return std::string(scheme->word) + "://" + place + "?protocol=" + word + "&" + rest;
 }
 
 Result<wire::Array> first_picture(const wire::Value& map) {

@@ -59,9 +59,11 @@ MakeServedPolicy serve_steps(std::shared_ptr<const RecordedEpisodes> steps);
 struct ServeOptions {
   std::string address = "127.0.0.1";
   std::string port = "0";
-  int chunk = 1;        // actions of an answer, at most; vla-eval's have one
-  int batch = 1;        // questions of a message, at most; 1: there are no batches
-  std::string dialect;  // of GR00T and OpenVLA, as in a profile
+  int chunk = 1;  // actions of an answer, at most; vla-eval's have one
+  // Questions of a message, at most, or of those that vla-eval's server gathers; 1: no batches.
+  int batch = 1;
+  std::string dialect;      // of GR00T and OpenVLA, as in a profile
+  wire::TlsFiles tls = {};  // of protocols over WebSocket and HTTP; none: plain
   MakeServedPolicy policy;
 };
 
@@ -73,6 +75,11 @@ bool has_reset(Protocol protocol, const std::string& dialect);
 
 // The options of an address that read such a server as it is meant: "action.rotation=vector&...".
 std::string options_for_served(Protocol protocol, const ServeOptions& options);
+
+// The address of such a server at `place`, HOST:PORT: "openpi://HOST:PORT?...", and over TLS
+// "wss://HOST:PORT?protocol=openpi&...".
+std::string address_of_served(Protocol protocol, const ServeOptions& options,
+                              const std::string& place);
 
 // For the protocols' files.
 // Fails unless there may be that many questions in one message.

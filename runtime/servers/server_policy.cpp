@@ -135,13 +135,22 @@ void ServerPolicy::done(const policy::Action& a, const policy::Observation& now)
   target_ = robot::moved_target(*target_, tool.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});
 }
 
-Status ServerPolicy::ask(const policy::Observation& seen) {
+Status ServerPolicy::ask(const policy::Observation& seen,
+                         policy::LiveClock::time_point useful_until) {
+  using policy::LiveClock;
+  Deadlines times = deadlines();
+  if (useful_until < LiveClock::time_point::max()) {
+    // A server that is a little late is free again when the next episode asks it; for one that
+    // hangs no episode stands still.
+    const auto left = std::chrono::ceil<wire::Duration>(useful_until - LiveClock::now());
+    times.answer = std::min(times.answer, std::max(left, wire::Duration(0)) + times.connect);
+  }
   auto request = next_request(seen);
   if (!request) {
     drop();
     return named(request.failure(), server_);
   }
-  const auto asking = [this, asked = std::move(*request), times = deadlines()]() -> Result<Answer> {
+  const auto asking = [this, asked = std::move(*request), times]() -> Result<Answer> {
     const policy::QueryMeter::InFlight flight(queries_);
     try {
       PROBE_ASSIGN(auto actions, transport_->ask(asked, times));

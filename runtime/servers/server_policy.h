@@ -28,8 +28,8 @@ policy::Delivery delivery_of(const Request& request);
 
 // One connection, used by one world. A failure in act() ends the episode: the connection is
 // dropped, and the next begin() makes another. In a world that does not wait a question is asked on
-// a thread of its own; one that is still under way when the episode ends is waited for, within its
-// time, and forgotten.
+// a thread of its own; one that is still under way when the episode ends is waited for, no longer
+// than an attempt to connect, and forgotten.
 class ServerPolicy : public policy::Policy, public policy::Answerer {
  public:
   // `server` is HOST:PORT, for messages. `queries` may be null, and outlives this.
@@ -47,7 +47,7 @@ class ServerPolicy : public policy::Policy, public policy::Answerer {
   std::vector<std::string> notes() const override { return notes_; }
 
   policy::Answerer* answerer() override { return this; }
-  Status ask(const policy::Observation& seen) override;
+  Status ask(const policy::Observation& seen, policy::LiveClock::time_point useful_until) override;
   Result<std::optional<Answer>> wait(policy::LiveClock::time_point until) override;
   Result<policy::Action> convert(const RawAction& said, const policy::Observation& now) override;
   void done(const policy::Action& action, const policy::Observation& now) override;

@@ -14,8 +14,8 @@ constexpr std::size_t kMostActions = 1000;
 
 }  // namespace
 
-Result<std::vector<Result<std::vector<RawAction>>>> Transport::ask_all(
-    std::span<const Request* const> /*requests*/, const Deadlines& /*deadlines*/) {
+Result<BatchAnswers> Transport::ask_all(std::span<const Request* const> /*requests*/,
+                                        const Deadlines& /*deadlines*/) {
   return bad("this protocol has no batches");
 }
 

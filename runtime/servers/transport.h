@@ -55,6 +55,10 @@ struct Request {
 // As the server sent it, for one control step: [dx dy dz, three numbers of rotation, gripper], or a
 // number for each joint of the arm and the gripper's.
 using RawAction = std::vector<double>;
+// What one question is answered: actions for the steps from its own on.
+using RawActions = std::vector<RawAction>;
+// What the questions of a batch are answered, in their order.
+using BatchAnswers = std::vector<Result<RawActions>>;
 
 // The times a Transport is given for one exchange; it must be back when they are over.
 struct Deadlines {
@@ -96,8 +100,8 @@ class Transport {
   // whose row has batches; there, what a question is answered does not depend on those beside it.
   // One at fault is a failure in its place, naming the item; the connection stands. Fails (kPolicy)
   // as a whole where which answer is whose cannot be said.
-  virtual Result<std::vector<Result<std::vector<RawAction>>>> ask_all(
-      std::span<const Request* const> requests, const Deadlines& deadlines);
+  virtual Result<BatchAnswers> ask_all(std::span<const Request* const> requests,
+                                       const Deadlines& deadlines);
   // After an episode whose begin_episode was fine and whose connection still stands.
   virtual Status end_episode(const policy::EpisodeEnd& /*end*/, const Deadlines& /*deadlines*/) {
     return {};

@@ -70,7 +70,8 @@ class Finder {
       vec("push of " + name(a.a) + " on " + name(a.b), a.push, b.push);
     }
   }
-  void live(const policy::LiveStep& here, const policy::LiveStep& recorded) {
+  // Delays that were measured are the wall clock's, and never come again.
+  void live(const policy::LiveStep& here, const policy::LiveStep& recorded, bool with_delays) {
     const auto said = [](const policy::LiveStep& live) {
       const char* source = live.source == policy::LiveSource::kHeld   ? "no action"
                            : live.source == policy::LiveSource::kLate ? "a late action"
@@ -80,7 +81,11 @@ class Finder {
         text += ", the answer to step " + std::to_string(answer.asked);
       return text;
     };
-    if (said(here) != said(recorded)) keep(said(here) + ", recorded " + said(recorded));
+    if (said(here) != said(recorded)) return keep(said(here) + ", recorded " + said(recorded));
+    for (std::size_t i = 0; with_delays && i < here.answers.size(); ++i) {
+      real("the delay of the answer to step " + std::to_string(here.answers[i].asked),
+           here.answers[i].answer_s, recorded.answers[i].answer_s);
+    }
   }
   const std::string& first() const { return first_; }
 
@@ -134,12 +139,14 @@ Status TraceComparer::step(const TraceStep& here) {
     return {};
   }
   const TraceStep& recorded = recorded_.steps[index];
-  if (same_bytes(codec::put_step, here, recorded)) return {};
+  const bool is_given = recorded_.header.live && recorded_.header.live->delay_s;
+  const bool same_delays = !is_given || here.live == recorded.live;
+  if (same_delays && same_bytes(codec::put_step, here, recorded)) return {};
   Finder finder;
   // In the order of cause and effect: what was seen and done, then what came of it.
   finder.hash("prompt hash", here.prompt_hash, recorded.prompt_hash);
   finder.hash("image hash", here.image_hash, recorded.image_hash);
-  if (here.live && recorded.live) finder.live(*here.live, *recorded.live);
+  if (here.live && recorded.live) finder.live(*here.live, *recorded.live, is_given);
   finder.count("live steps", here.live ? 1 : 0, recorded.live ? 1 : 0);
   for (std::size_t i = 0; i < here.action.size(); ++i) {
     finder.real("action " + std::to_string(i), here.action[i], recorded.action[i]);

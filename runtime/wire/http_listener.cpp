@@ -18,11 +18,11 @@ class HttpListener final : public beast_io::TcpListener {
   ~HttpListener() override { stop(); }
 
  private:
-  void serve(Socket& socket) override {
+  void serve(beast_io::ServedLink& link) override {
     boost::beast::flat_buffer buffer;
     http::request_parser<http::string_body> parser;
     parser.body_limit(kLargestBody);
-    http::read(socket, buffer, parser);
+    http::read(link, buffer, parser);
     const auto& asked = parser.get();
     http::response<http::string_body> page(http::status::not_found, asked.version());
     page.set(http::field::content_type, "application/json");
@@ -36,7 +36,8 @@ class HttpListener final : public beast_io::TcpListener {
     }
     page.keep_alive(false);
     page.prepare_payload();
-    http::write(socket, page);
+    http::write(link, page);
+    link.end();
   }
 
   std::mutex talk_;  // the speaker
@@ -46,9 +47,9 @@ class HttpListener final : public beast_io::TcpListener {
 }  // namespace
 
 Result<std::unique_ptr<Listener>> listen_http(const std::string& address, const std::string& port,
-                                              MakeSpeaker make) {
+                                              MakeSpeaker make, const TlsFiles& tls) {
   auto listener = std::make_unique<HttpListener>(make);
-  PROBE_TRY(listener->listen(address, port));
+  PROBE_TRY(listener->listen(address, port, tls));
   return std::unique_ptr<Listener>(std::move(listener));
 }
 

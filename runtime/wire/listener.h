@@ -45,16 +45,31 @@ class Listener {
   virtual std::string port() const = 0;
 };
 
-// `address` is numeric; port "0" is any free one. Fail (kUsage) where nobody may listen there. A
-// WebSocket's connection has a speaker of its own; GET /healthz is answered with OK. ZeroMQ's REP
-// socket, HTTP, where every POST is a message, and gRPC, where every call is one (grpc.h), have one
-// for all.
+// A server's certificate, with those between it and an authority behind it, and its key, both PEM.
+struct TlsFiles {
+  std::string certificate, key;
+  bool is_on() const { return !certificate.empty(); }
+};
+
+// What a GET is answered with; nothing: that there is no such page. From several threads at once.
+struct Page {
+  int status = 200;
+  std::string type, body;
+};
+using AnswerPage = std::function<std::optional<Page>(const std::string& target)>;
+
+// `address` is numeric; port "0" is any free one. Fail (kUsage) where nobody may listen there, and
+// where certificate and key cannot be shown. A WebSocket's connection has a speaker of its own; GET
+// /healthz is answered with OK, and others by `page`. ZeroMQ's REP socket, HTTP, where every POST
+// is a message, and gRPC, where every call is one (grpc.h), have one for all.
 Result<std::unique_ptr<Listener>> listen_websocket(const std::string& address,
-                                                   const std::string& port, MakeSpeaker make);
+                                                   const std::string& port, MakeSpeaker make,
+                                                   const TlsFiles& tls = {},
+                                                   AnswerPage page = nullptr);
 Result<std::unique_ptr<Listener>> listen_zmq(const std::string& address, const std::string& port,
                                              MakeSpeaker make);
 Result<std::unique_ptr<Listener>> listen_http(const std::string& address, const std::string& port,
-                                              MakeSpeaker make);
+                                              MakeSpeaker make, const TlsFiles& tls = {});
 Result<std::unique_ptr<Listener>> listen_grpc(const std::string& address, const std::string& port,
                                               MakeSpeaker make);
 

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "runtime/wire/listener.h"
+#include "runtime/wire/served_link.h"
 
 namespace probe::wire::beast_io {
 
@@ -20,7 +21,10 @@ class TcpListener : public Listener {
   TcpListener(const TcpListener&) = delete;
   TcpListener& operator=(const TcpListener&) = delete;
 
-  Status listen(const std::string& address, const std::string& port) {
+  Status listen(const std::string& address, const std::string& port, const TlsFiles& tls) {
+    if (tls.is_on()) {
+      PROBE_ASSIGN(identity_, TlsIdentity::read(tls));
+    }
     boost::system::error_code error;
     const auto failed = [&](const char* doing) {
       return Failure{Fault::kUsage, std::string(doing) + ": " + error.message(),
@@ -52,7 +56,7 @@ class TcpListener : public Listener {
 
  protected:
   // A connection from its first byte to its last; whatever it throws ends it alone.
-  virtual void serve(Socket& socket) = 0;
+  virtual void serve(ServedLink& link) = 0;
 
   // By the destructors of derived classes, whose serve() uses what they have.
   void stop() {
@@ -90,7 +94,10 @@ class TcpListener : public Listener {
       Connection& connection = connections_.emplace_back(std::move(socket));
       connection.thread = std::thread([this, &connection] {
         try {
-          serve(connection.socket);
+          boost::system::error_code refused;
+          ServedLink link(connection.socket, identity_);
+          link.open(refused);
+          if (!refused) serve(link);
         } catch (const std::exception&) {
         }
         boost::system::error_code ignored;
@@ -109,6 +116,7 @@ class TcpListener : public Listener {
   boost::asio::io_context io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   std::string port_;
+  std::shared_ptr<TlsIdentity> identity_;  // none: plain
   std::thread thread_;
   std::mutex mutex_;  // the two below
   std::list<Connection> connections_;

@@ -1,5 +1,5 @@
 // TLS over a TCP connection, by OpenSSL: certificates and host names are checked. Private to
-// link.*; tls.cpp is the only file that includes OpenSSL and Boost.Asio's part of it.
+// link.*; tls.cpp and tls_served.cpp alone include OpenSSL and Boost.Asio's part of it.
 #pragma once
 
 #include <boost/asio/buffer.hpp>

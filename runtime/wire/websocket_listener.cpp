@@ -15,18 +15,19 @@ constexpr std::size_t kLargestQuestion = std::size_t{256} << 20;
 
 class WebSocketListener final : public beast_io::TcpListener {
  public:
-  explicit WebSocketListener(MakeSpeaker make) : make_(std::move(make)) {}
+  WebSocketListener(MakeSpeaker make, AnswerPage page)
+      : make_(std::move(make)), page_(std::move(page)) {}
   ~WebSocketListener() override { stop(); }
 
  private:
-  using Stream = websocket::stream<Socket&>;
+  using Stream = websocket::stream<beast_io::ServedLink&>;
 
-  void serve(Socket& socket) override {
+  void serve(beast_io::ServedLink& link) override {
     beast::flat_buffer buffer;
     beast::http::request<beast::http::string_body> asked;
-    beast::http::read(socket, buffer, asked);
-    if (!websocket::is_upgrade(asked)) return answer_page(socket, asked);
-    Stream stream(socket);
+    beast::http::read(link, buffer, asked);
+    if (!websocket::is_upgrade(asked)) return answer_page(link, asked);
+    Stream stream(link);
     stream.read_message_max(kLargestQuestion);
     stream.auto_fragment(false);
     stream.accept(asked);
@@ -50,19 +51,27 @@ class WebSocketListener final : public beast_io::TcpListener {
     stream.write(boost::asio::buffer(frame.bytes));
   }
 
-  static void answer_page(Socket& socket,
-                          const beast::http::request<beast::http::string_body>& asked) {
-    const bool is_health = asked.target() == "/healthz";
+  void answer_page(beast_io::ServedLink& link,
+                   const beast::http::request<beast::http::string_body>& asked) const {
+    const std::string target(asked.target());
+    Page said{404, "text/plain", "a policy server; speak WebSocket\n"};
+    if (target == "/healthz") {
+      said = {200, "text/plain", "OK\n"};
+    } else if (auto own = page_ ? page_(target) : std::nullopt) {
+      said = std::move(*own);
+    }
     beast::http::response<beast::http::string_body> page(
-        is_health ? beast::http::status::ok : beast::http::status::not_found, asked.version());
-    page.set(beast::http::field::content_type, "text/plain");
-    page.body() = is_health ? "OK\n" : "a policy server; speak WebSocket\n";
+        beast::http::int_to_status(static_cast<unsigned>(said.status)), asked.version());
+    page.set(beast::http::field::content_type, said.type);
+    page.body() = std::move(said.body);
     page.keep_alive(false);
     page.prepare_payload();
-    beast::http::write(socket, page);
+    beast::http::write(link, page);
+    link.end();
   }
 
   MakeSpeaker make_;
+  AnswerPage page_;
 };
 
 }  // namespace
@@ -70,9 +79,10 @@ class WebSocketListener final : public beast_io::TcpListener {
 Frame text_frame(std::string_view text) { return {true, Bytes(text.begin(), text.end())}; }
 
 Result<std::unique_ptr<Listener>> listen_websocket(const std::string& address,
-                                                   const std::string& port, MakeSpeaker make) {
-  auto listener = std::make_unique<WebSocketListener>(std::move(make));
-  PROBE_TRY(listener->listen(address, port));
+                                                   const std::string& port, MakeSpeaker make,
+                                                   const TlsFiles& tls, AnswerPage page) {
+  auto listener = std::make_unique<WebSocketListener>(std::move(make), std::move(page));
+  PROBE_TRY(listener->listen(address, port, tls));
   return std::unique_ptr<Listener>(std::move(listener));
 }
 

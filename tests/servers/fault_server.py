@@ -1,6 +1,6 @@
 """A policy server that misbehaves in one way at a time, for every protocol.
 
-fault_server.py openpi|intact|vlaeval|gr00t|openvla [connect=FAULT] [port=N]
+fault_server.py openpi|intact|vlaeval|gr00t|openvla|roboarena|starvla [connect=FAULT] [port=N]
 
 It answers well until a prompt reads "fault:NAME": then that answer fails as named in AT_ANSWER. With
 `connect` every connection fails as named in AT_CONNECTION. Frames are made by hand, because real
@@ -132,8 +132,14 @@ class Http:
         return b""
 
 
-FRAMING = {"openpi": WebSocket, "intact": WebSocket, "vlaeval": WebSocket, "gr00t": Zmtp,
-           "openvla": Http}[protocol]
+FRAMING = {"gr00t": Zmtp, "openvla": Http}.get(protocol, WebSocket)
+
+# What is said of the server before anything is asked.
+METADATA = {
+    "openpi": {}, "intact": {}, "starvla": {"env": "starvla_policy_server"},
+    "roboarena": {"image_resolution": None, "needs_wrist_camera": False, "n_external_cameras": 1,
+                  "needs_stereo_camera": False, "needs_session_id": True,
+                  "action_space": "cartesian_velocity"}}
 
 
 # ---- messages -----------------------------------------------------------------------------------
@@ -157,8 +163,11 @@ def envelope(kind, payload, seq):
 def action_message(numbers, seq):
     if protocol == "openvla":
         return json.dumps(array(numbers)).encode()
-    if protocol == "openpi":
+    if protocol in ("openpi", "roboarena"):
         return msgpack.packb({"actions": array(numbers)})
+    if protocol == "starvla":
+        return msgpack.packb({"status": "ok", "ok": True, "type": "inference_result",
+                              "request_id": "default", "data": {"actions": array(numbers)}})
     if protocol == "intact":
         return msgpack.packb(array(numbers))
     if protocol == "vlaeval":
@@ -185,6 +194,9 @@ def failure_frame(wire, seq):
         return wire.frame(msgpack.packb(envelope("error", error, seq)))
     if protocol == "gr00t":
         return wire.frame(msgpack.packb({"error": TRACEBACK}))
+    if protocol == "starvla":
+        return wire.frame(msgpack.packb({"status": "error", "ok": False,
+                                         "error": {"message": TRACEBACK}}))
     return wire.frame(TRACEBACK.encode(), opcode=1)
 
 
@@ -202,6 +214,8 @@ def side_answer(request):
         if "new_model_path" in message:
             return msgpack.packb({"status": "model switched"})
         return msgpack.packb({"status": "reset"}) if "reset" in message else b""
+    if protocol == "roboarena":
+        return b"reset successful" if message["endpoint"] == "reset" else b""
     if protocol == "gr00t":
         return b"" if message["endpoint"] == "get_action" else msgpack.packb({"status": "ok"})
     return b""
@@ -319,8 +333,8 @@ async def serve(wire):
     if "connect" in options:
         return await AT_CONNECTION[options["connect"]](wire)
     await wire.accept()
-    if protocol in ("openpi", "intact"):
-        wire.writer.write(wire.frame(msgpack.packb({})))
+    if protocol in METADATA:
+        wire.writer.write(wire.frame(msgpack.packb(METADATA[protocol])))
     seq = 0
     while True:
         request = await wire.read()
@@ -331,7 +345,8 @@ async def serve(wire):
             continue
         fault = re.search(rb"fault:(\w+)", request)
         if side:
-            wire.writer.write(wire.frame(side))
+            is_text = {"opcode": 1} if protocol == "roboarena" else {}
+            wire.writer.write(wire.frame(side, **is_text))
         elif fault:
             await AT_ANSWER[fault.group(1).decode()](wire, seq)
         else:

@@ -1,7 +1,7 @@
 """A server that speaks openpi's protocol or one of its dialects as their own servers do, and is as
 strict as they are.
 
-openpi_server.py openpi|droid|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] [seen=HABIT]
+openpi_server.py openpi|droid|libero|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] [seen=HABIT]
                  [key=KEY] [lacks=MODEL] [port=N] [meta=JSON]
 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or
@@ -58,6 +58,7 @@ BROKEN = object()
 METADATA = {
     "openpi": {},
     "droid": {},
+    "libero": {},
     "intact": {},
     "roboarena": {"image_resolution": [224, 224], "needs_wrist_camera": False,
                   "n_external_cameras": 1, "needs_stereo_camera": False, "needs_session_id": True,
@@ -109,7 +110,7 @@ class Policy:
 
     def infer(self, image, prompt="", state=numpy.zeros(8)):
         global kept
-        assert image.dtype == numpy.uint8 and image.ndim == 3 and image.shape[2] == 3, image.shape
+        assert image.dtype == numpy.uint8 and image.ndim >= 3 and image.shape[-1] == 3, image.shape
         if self.recorded:
             return self.recorded.answer(image, chunk)
         if "seen" in options:
@@ -149,6 +150,15 @@ def answer_droid(policy, request):
     assert joints.shape == (7,) and gripper.shape == (1,), (joints.shape, gripper.shape)
     return pack({"actions": policy.infer(image, request["prompt"],
                                          numpy.concatenate([joints, gripper]))})
+
+
+def answer_libero(policy, request):
+    """As openpi's LiberoInputs reads it."""
+    images = [request["observation/" + name] for name in ("image", "wrist_image")]
+    assert all(image.shape == (224, 224, 3) for image in images)
+    assert request["observation/state"].shape == (8,)
+    return pack({"actions": policy.infer(numpy.stack(images), request["prompt"],
+                                         request["observation/state"])})
 
 
 def answer_intact(policy, request):
@@ -193,8 +203,8 @@ def answer_roboarena(policy, request):
     return pack({"actions": actions})
 
 
-ANSWER = {"openpi": answer_openpi, "droid": answer_droid, "intact": answer_intact,
-          "roboarena": answer_roboarena}
+ANSWER = {"openpi": answer_openpi, "droid": answer_droid, "libero": answer_libero,
+          "intact": answer_intact, "roboarena": answer_roboarena}
 
 
 async def handle(socket):

@@ -1,8 +1,8 @@
 """TLS in front of another of these servers, with certificates made here.
 
-tls_front.py ca=FILE [cert=KIND] [fault=NAME] SCRIPT [argument...]
+tls_front.py ca=FILE [cert=KIND] [fault=NAME] [shown=PREFIX] SCRIPT [argument...]
 
-FILE gets the authority's certificate. KIND is good (for localhost and 127.0.0.1), expired, early (not
+FILE gets the authority's certificate; PREFIX.pem and PREFIX.key what is shown, for other servers. KIND is good (for localhost and 127.0.0.1), expired, early (not
 yet valid), elsewhere (for other hosts), purpose (for clients only), stranger (signed by an authority
 that is not in FILE) or self (signed by itself). Faults: `hang` never answers a handshake, `cut` ends
 connections without TLS's own end, `mutual` and `mutual12` want a certificate of the client (TLS 1.3 and
@@ -78,6 +78,9 @@ def context():
     issuer, signer = {"stranger": ("stranger", stranger), "self": ("server", key)}.get(
         kind, ("authority", authority))
     shown = certificate("server", key, issuer, signer, begin, end, extensions)
+    for end, thing in ((".pem", shown), (".key", key)) if "shown" in options else ():
+        with open(options["shown"] + end, "wb") as file:
+            file.write(pem(thing))
     made = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     with tempfile.NamedTemporaryFile() as file:
         file.write(pem(key) + pem(shown))

@@ -103,7 +103,8 @@ int ask_verb(const AskArguments& arguments) {
   auto options = ask_options(arguments);
   if (!options) return report(options.failure());
   // Before the text is compiled, which may take a while.
-  if (auto traits = ask::model_traits(options->model); !traits) return report(traits.failure());
+  if (auto traits = ask::model_traits(options->model, options->accepts_any_certificate); !traits)
+    return report(traits.failure());
   const LoadedPlan loaded = load_asked(arguments, *options);
   if (!loaded.plan) return loaded.exit;
   if (options->accepts_any_certificate) warn_of_insecure(options->model);

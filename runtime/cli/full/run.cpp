@@ -62,7 +62,7 @@ int run_verb(const CallArguments& arguments) {
   if (!shard) return report(shard.failure());
   options->shard = shard->first;
   options->shards = shard->second;
-  if (auto traits = run::policy_traits(options->policy); !traits) return report(traits.failure());
+  if (auto actor = run::choose_actor(*options); !actor) return report(actor.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
 

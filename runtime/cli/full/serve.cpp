@@ -89,8 +89,8 @@ int serve_verb(const ServeArguments& arguments) {
   // The numbers of an address of version 6 have colons of their own.
   const bool six = options.address.find(':') != std::string::npos;
   const std::string address = six ? "[" + options.address + "]" : options.address;
-  fmt::print("{}://{}:{}?{}\n", arguments.protocol, address, (*listener)->port(),
-             servers::options_for_served(*protocol, options));
+  fmt::print("{}\n",
+             servers::address_of_served(*protocol, options, address + ":" + (*listener)->port()));
   std::fflush(stdout);
   ends.wait();
   return kFine;
@@ -117,9 +117,12 @@ void add_serve(Verb app, int& exit) {
   verb.add_option("--chunk", arguments->options.chunk, "actions of an answer, at most")
       .between(1, 1024);
   verb.add_option("--batch", arguments->options.batch,
-                  "questions of one message, at most (openpi, starvla); 1: no batches")
+                  "questions answered together, at most (openpi, starvla, vlaeval); 1: no batches")
       .between(1, 256);
   verb.add_option("--dialect", arguments->options.dialect, "of gr00t and openvla");
+  verb.add_option("--tls-cert", arguments->options.tls.certificate,
+                  "PEM file: wss:// or https:// with this certificate; who asks trusts it by ?ca=");
+  verb.add_option("--tls-key", arguments->options.tls.key, "PEM file: the certificate's key");
   verb.add_option("-o,--out", arguments->run.out, "results folder of the run before");
   verb.add_option("--suite", arguments->run.suite, "as for `run`");
   verb.add_option("--tasks", arguments->run.tasks, "as for `run`");

@@ -18,15 +18,16 @@ struct SweepArguments {
 int sweep_verb(const SweepArguments& arguments) {
   auto options = to_options(arguments.run);
   if (!options) return report(options.failure());
-  const LoadedPlan loaded = load_runnable(arguments.run);
-  if (!loaded.plan) return loaded.exit;
-  if (options->accepts_any_certificate) warn_of_insecure(options->policy);
   options->progress = [](const run::RunProgress& progress) {
     if (progress.row != nullptr && progress.row->invalid) print_invalid(*progress.row);
   };
   run::SweepOptions sweeping;
   sweeping.run = std::move(*options);
   sweeping.checkpoints = arguments.checkpoints;
+  if (auto able = run::check_sweep(sweeping); !able) return report(able.failure());
+  const LoadedPlan loaded = load_runnable(arguments.run);
+  if (!loaded.plan) return loaded.exit;
+  if (sweeping.run.accepts_any_certificate) warn_of_insecure(sweeping.run.policy);
   sweeping.tell = [](const std::string& sentence) { say("{}\n", sentence); };
   const auto swept = run::sweep(*loaded.plan, sweeping);
   if (!swept) return report(swept.failure());

@@ -25,8 +25,8 @@ class Openpi : public Transport {
     return actions_of(answer, request.action_size);
   }
 
-  Result<std::vector<Result<std::vector<RawAction>>>> ask_all(
-      std::span<const Request* const> requests, const Deadlines& deadlines) override {
+  Result<BatchAnswers> ask_all(std::span<const Request* const> requests,
+                               const Deadlines& deadlines) override {
     wire::List items;
     for (const Request* request : requests) {
       items.emplace_back(observation(*request));
@@ -42,7 +42,7 @@ class Openpi : public Transport {
                  " answers; got " + wire::describe(batch == nullptr ? answer : *batch));
     }
     PROBE_TRY(check_batch(answers->size(), requests.size()));
-    std::vector<Result<std::vector<RawAction>>> all;
+    BatchAnswers all;
     for (std::size_t i = 0; i < answers->size(); ++i) {
       auto actions = actions_of((*answers)[i], requests[i]->action_size);
       if (!actions) actions = of_item(actions.failure(), i, answers->size());

@@ -157,8 +157,9 @@ class StarVlaSpeaker final : public OpenpiSpeaker {
 
 template <typename Side>
 Result<std::unique_ptr<wire::Listener>> listen_as(const ServeOptions& options) {
-  return wire::listen_websocket(options.address, options.port,
-                                [options] { return std::make_unique<Side>(options); });
+  return wire::listen_websocket(
+      options.address, options.port, [options] { return std::make_unique<Side>(options); },
+      options.tls);
 }
 
 }  // namespace

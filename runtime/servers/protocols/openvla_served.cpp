@@ -43,8 +43,9 @@ class OpenVlaSpeaker final : public wire::Speaker {
 }  // namespace
 
 Result<std::unique_ptr<wire::Listener>> serve_openvla(const ServeOptions& options) {
-  return wire::listen_http(options.address, options.port,
-                           [options] { return std::make_unique<OpenVlaSpeaker>(options); });
+  return wire::listen_http(
+      options.address, options.port,
+      [options] { return std::make_unique<OpenVlaSpeaker>(options); }, options.tls);
 }
 
 }  // namespace probe::servers

@@ -29,8 +29,8 @@ class StarVla : public Transport {
   }
 
   // predict_action answers as many examples as it is given: [examples, actions, 7].
-  Result<std::vector<Result<std::vector<RawAction>>>> ask_all(
-      std::span<const Request* const> requests, const Deadlines& deadlines) override {
+  Result<BatchAnswers> ask_all(std::span<const Request* const> requests,
+                               const Deadlines& deadlines) override {
     PROBE_ASSIGN(const wire::Value actions, predict(requests, deadlines));
     const auto* array = actions.as<wire::Array>();
     if (array == nullptr || array->shape.size() != 3 || array->shape[0] < 0) {
@@ -40,7 +40,7 @@ class StarVla : public Transport {
     PROBE_TRY(wire::check_fit(*array));
     PROBE_TRY(check_batch(static_cast<std::size_t>(array->shape[0]), requests.size()));
     const std::size_t size = array->bytes.size() / requests.size();
-    std::vector<Result<std::vector<RawAction>>> all;
+    BatchAnswers all;
     for (std::size_t i = 0; i < requests.size(); ++i) {
       wire::Array item{array->dtype, {array->shape[1], array->shape[2]}, {}};
       const auto* begin = array->bytes.data() + i * size;

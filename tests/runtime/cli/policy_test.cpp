@@ -34,4 +34,23 @@ TEST_CASE("a policy test of no server is an error, of an absent one a finding") 
   CHECK(json["checks"][0]["verdict"] == "wrong");
 }
 
+TEST_CASE("who shows no certificate is refused with --insecure, and nothing is warned of") {
+  const Sandbox sandbox;
+  const std::string rest =
+      " " VLAPROBE_SOURCE_DIR "/suite/intact.probe -o " + (sandbox / "a").string() + " --insecure ";
+  for (const std::string& call :
+       {"run" + rest + "--policy expert", "run" + rest + "--policy openpi://127.0.0.1:1",
+        "sweep" + rest + "--policy 'openpi://127.0.0.1:{}' --checkpoints 1,2",
+        "slurm" + rest + "--policy expert --array 2",
+        std::string("policy test openpi://127.0.0.1:1 --insecure"), "ask" + rest + "--model truth",
+        "ask" + rest + "--model 'openai://127.0.0.1:1?model=m'"}) {
+    CAPTURE(call);
+    const Outcome refused = sandbox.vlaprobe(call);
+    CHECK(refused.exit == 1);
+    CHECK(refused.err.find("shows no certificate that could be left unchecked") !=
+          std::string::npos);
+    CHECK(refused.err.find("WARNING") == std::string::npos);
+  }
+}
+
 }  // namespace probe::test

@@ -98,6 +98,31 @@ bool waited_for(const std::function<bool()>& true_at_last) {
   return false;
 }
 
+TEST_CASE("what every task would refuse is refused before a script is written") {
+  const run::TemporaryFolder folder;
+  const plan::Plan plan = run::table_plan(1, 3);
+  const auto refusal = [&](auto&& change) {
+    SlurmOptions options = options_for(folder / "x");
+    options.submit = false;
+    change(options.run);
+    const auto refused = run_on_slurm(plan, options);
+    CHECK_FALSE(fs::exists(folder / "x"));
+    return refused.ok() ? std::string() : refused.failure().message;
+  };
+  CHECK(refusal([](run::RunOptions& run) {
+          run.live.emplace();
+          run.jobs = 4;
+        }).find("the worlds of a live run would wait for one another's answers") == 0);
+  CHECK(refusal([](run::RunOptions& run) {
+          run.live.emplace();
+          run.policy = "openpi://127.0.0.1:{port}?batch=8";
+        }) == "questions of a live run do not wait for others: ask without `batch`");
+  CHECK(refusal([](run::RunOptions& run) {
+          run.policy = "intact://127.0.0.1:{port}?model=/m";
+          run.jobs = 2;
+        }).find("has `worlds = one`") != std::string::npos);
+}
+
 TEST_CASE("four array tasks, one killed and requeued, merged: the rows of a single run") {
   run::TemporaryFolder folder;
   const plan::Plan plan = run::table_plan(16, 40);

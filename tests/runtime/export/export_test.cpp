@@ -74,6 +74,7 @@ TEST_CASE("an HDF5 file has a group an episode with every number of its trace") 
   CHECK(read_text(file, group, "prompt") == "put carrot on plate");
   CHECK(read_text(file, group, "start_id") == to_hex(in.trace.header.start_id));
   CHECK(read_text(file, group, "invalid").empty());
+  CHECK(read_text(file, group, "live").empty());
   std::vector<hsize_t> shape;
   const auto action = read_reals(file, group + "/action", shape);
   CHECK(shape == std::vector<hsize_t>{4, 7});
@@ -113,12 +114,62 @@ TEST_CASE("JSON lines have an episode line and a line a step with exact numbers"
   CHECK(lines[0]["start"]["q"][0] == 0.5);
   CHECK(lines[2]["kind"] == "step");
   CHECK(lines[2]["step"] == 2.0);
+  CHECK(lines[0]["live"].is_null());  // its world waited
+  CHECK(lines[2]["live"].is_null());
   CHECK(lines[2]["tcp_m"][2] == 1.0 / 3);
   CHECK(lines[2]["bodies"]["carrot"]["position_m"][0] ==
         in.trace.steps[1].sample.bodies[0].position.x());
   CHECK(lines[2]["contacts"][0]["b"] == "plate");
   CHECK(lines[2]["image_sha256"] == to_hex(in.trace.steps[1].image_hash));
   CHECK(lines[2]["metrics"]["success"] == false);
+}
+
+// The sample's world did not wait: asked before its first step, answered in its third.
+Recorded recorded_live(const TemporaryFolder& folder) {
+  Recorded out = recorded(folder);
+  out.trace.header.live = policy::LiveTerms{0.4, 0.5};
+  for (store::TraceStep& step : out.trace.steps) step.live.emplace();
+  out.trace.steps[0].live->asks = true;
+  out.trace.steps[2].live = {policy::LiveSource::kAnswer, true, {{0, 0.4}}};
+  out.trace.steps[3].live->source = policy::LiveSource::kLate;
+  return out;
+}
+
+TEST_CASE("a live episode has where its actions are from and how late its answers were") {
+  const TemporaryFolder folder;
+  const Recorded in = recorded_live(folder);
+  auto sink = open_hdf5(folder / "x.h5");
+  REQUIRE(sink.ok());
+  REQUIRE((*sink)->episode(in.row, in.trace).ok());
+  REQUIRE((*sink)->finish().ok());
+  const hid_t file = H5Fopen((folder / "x.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  REQUIRE(file >= 0);
+  const std::string group = "/carrot_on_plate/3-42";
+  CHECK(read_text(file, group, "live") == "live, 400 ms, at most 50 % held");
+  std::vector<hsize_t> shape;
+  CHECK(read_reals(file, group + "/live_source", shape) == std::vector<double>{2, 2, 0, 1});
+  CHECK(read_reals(file, group + "/live_asks", shape) == std::vector<double>{1, 0, 1, 0});
+  CHECK(read_reals(file, group + "/answer_step", shape) ==
+        std::vector<double>{in.trace.steps[2].sample.step});
+  CHECK(read_reals(file, group + "/answer_asked", shape) == std::vector<double>{0});
+  CHECK(read_reals(file, group + "/answer_delay_steps", shape) == std::vector<double>{2});
+  CHECK(read_reals(file, group + "/answer_delay_s", shape) == std::vector<double>{0.4});
+  H5Fclose(file);
+
+  auto lines_sink = open_json_lines(folder / "x.jsonl");
+  REQUIRE(lines_sink.ok());
+  REQUIRE((*lines_sink)->episode(in.row, in.trace).ok());
+  REQUIRE((*lines_sink)->finish().ok());
+  std::ifstream text(folder / "x.jsonl");
+  std::vector<Json> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(Json::parse(line));
+  REQUIRE(lines.size() == 5);
+  CHECK(lines[0]["live"] == Json{{"delay_s", 0.4}, {"most_held", 0.5}});
+  CHECK(lines[1]["live"] == Json{{"source", "held"}, {"asks", true}, {"answers", Json::array()}});
+  CHECK(lines[3]["live"]["source"] == "answer");
+  CHECK(lines[3]["live"]["answers"] ==
+        Json::array({{{"asked", 0}, {"delay_steps", 2}, {"delay_s", 0.4}}}));
+  CHECK(lines[4]["live"]["source"] == "late");
 }
 
 TEST_CASE("what cannot be written is told") {

@@ -40,7 +40,7 @@ class Halves final : public Policy, public Answerer {
   Result<Action> act(const Observation&) override { return Failure{Fault::kPolicy, "never", ""}; }
   Answerer* answerer() override { return this; }
 
-  Status ask(const Observation& seen) override {
+  Status ask(const Observation& seen, LiveClock::time_point) override {
     const std::size_t number = std::min(asked.size(), times.size() - 1);
     asked.push_back(seen.step);
     answer_.actions.clear();

@@ -7,9 +7,16 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
 
+#include "compiler/emit/compile.h"
 #include "runtime/policy/policy.h"
 #include "runtime/run/run.h"
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/questions.h"
+#include "runtime/servers/served.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 #include "tests/runtime/run/table_plan.h"
@@ -64,6 +71,99 @@ TEST_CASE("ten kills at random moments: each episode once, with the undisturbed 
   for (const auto& entry : fs::recursive_directory_iterator(folder / "killed")) {
     CHECK_MESSAGE(entry.path().extension() != ".tmp", entry.path().string());
   }
+}
+
+// INT-ACT's wrapper: the words of the first question since a reset, whoever's, are those of all
+// others. Its question number `kills_at`, of those that a run's episodes ask, is `child`'s last.
+struct Wrapper {
+  std::mutex mutex;
+  std::optional<std::string> kept = std::nullopt;
+  int asked = 0, kills_at = 0;
+  pid_t child = 0;
+};
+
+class Keeping final : public servers::ServedPolicy {
+ public:
+  explicit Keeping(Wrapper& wrapper) : wrapper_(wrapper) {}
+  void reset() override {
+    const std::lock_guard lock(wrapper_.mutex);
+    wrapper_.kept.reset();
+  }
+  Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
+    const std::lock_guard lock(wrapper_.mutex);
+    if (!wrapper_.kept) wrapper_.kept = asked.words;
+    const bool is_known = servers::is_known_question(asked.picture.bytes, asked.words);
+    if (!is_known && ++wrapper_.asked == wrapper_.kills_at) ::kill(wrapper_.child, SIGKILL);
+    return digest_->answer({asked.picture, *wrapper_.kept}, count);
+  }
+
+ private:
+  Wrapper& wrapper_;
+  std::unique_ptr<servers::ServedPolicy> digest_ = servers::serve_digest()();
+};
+
+TEST_CASE("who was killed in an episode leaves no words to the next one at a server that keeps") {
+  TemporaryFolder folder;
+  const std::string files[] = {VLAPROBE_SOURCE_DIR "/suite/intact.probe"};
+  auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
+                                .suite = "",
+                                .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
+  REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
+  const plan::Plan plan = plan::Plan::from_bytes(std::move(compiled->plan)).value();
+  servers::ServeOptions serving;
+  serving.chunk = 4;
+  const auto options_at = [&](const std::string& port, const std::string& out, const char* task) {
+    RunOptions options = options_for(folder / out);
+    options.policy = "intact://127.0.0.1:" + port + "?" +
+                     servers::options_for_served(servers::Protocol::kIntact, serving);
+    options.name = "keeping";
+    options.tasks = task;
+    options.episodes = {0, 0};
+    options.seeds = {42};
+    options.jobs = 1;
+    return options;
+  };
+  const auto must = [&](const RunOptions& options) {
+    const auto ran = run(plan, options);
+    REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
+    const auto rows = rows_of(options.out);
+    REQUIRE(rows.size() == 1);
+    REQUIRE_MESSAGE(!rows[0].invalid, rows[0].invalid.value_or(""));
+    return rows[0].trace_sha256;
+  };
+  Wrapper wrapper;
+  wrapper.kills_at = 8;
+  int pipe[2];
+  REQUIRE(::pipe(pipe) == 0);
+  // Before there are threads; it hears the port when there is a server.
+  wrapper.child = ::fork();
+  REQUIRE(wrapper.child >= 0);
+  if (wrapper.child == 0) {
+    char port[8] = {};
+    if (::read(pipe[0], port, sizeof port - 1) <= 0) ::_exit(2);
+    ::_exit(run(plan, options_at(port, "carrot", "carrot_on_plate")).ok() ? 0 : 1);
+  }
+  serving.policy = [&] { return std::make_unique<Keeping>(wrapper); };
+  const auto server = servers::serve(servers::Protocol::kIntact, serving);
+  REQUIRE_MESSAGE(server.ok(), to_text(server.failure()));
+  const std::string port = (*server)->port();
+  REQUIRE(::write(pipe[1], port.data(), port.size()) == static_cast<ssize_t>(port.size()));
+  int status = 0;
+  REQUIRE(::waitpid(wrapper.child, &status, 0) == wrapper.child);
+  REQUIRE(WIFSIGNALED(status));
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+  wrapper.kills_at = 0;
+  CHECK(wrapper.kept.has_value());  // what the killed one had asked with
+  const std::string spoon = must(options_at(port, "spoon", "spoon_on_towel"));
+  const std::string carrot = must(options_at(port, "carrot", "carrot_on_plate"));
+
+  Wrapper calm;
+  serving.policy = [&] { return std::make_unique<Keeping>(calm); };
+  const auto fresh = servers::serve(servers::Protocol::kIntact, serving);
+  REQUIRE_MESSAGE(fresh.ok(), to_text(fresh.failure()));
+  CHECK(must(options_at((*fresh)->port(), "calm_spoon", "spoon_on_towel")) == spoon);
+  CHECK(must(options_at((*fresh)->port(), "calm_carrot", "carrot_on_plate")) == carrot);
 }
 
 // A file system of its own, as small as wanted.

@@ -6,8 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <filesystem>
+#include <mutex>
 #include <thread>
 
 #include "runtime/run/episode.h"
@@ -15,6 +18,7 @@
 #include "runtime/run/replay.h"
 #include "runtime/run/run.h"
 #include "runtime/servers/protocol.h"
+#include "runtime/servers/questions.h"
 #include "runtime/servers/served.h"
 #include "runtime/show/frame_sink.h"
 #include "runtime/stage/stage.h"
@@ -25,6 +29,7 @@
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/store/sample_run.h"
 
 namespace probe::run {
 using namespace probe::servers;
@@ -116,6 +121,111 @@ TEST_CASE("a given delay of nothing is the run that waits, and others repeat bit
         live_options(folder / ("again" + std::to_string(late)), "expert", 0.2 * late);
     must_run(plan, again);
     CHECK(hashes(again.out) == hashes(dir));
+  }
+}
+
+TEST_CASE("a given delay is counted again: a trace whose answers had another does not repeat") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 8);
+  const std::string dir = folder / "late";
+  must_run(plan, live_options(dir, "expert", 0.4));
+  const auto forged = [&](auto&& change) {
+    Trace trace = trace_of(dir, 0);
+    const std::string path = read_results(dir)->front().trace;
+    change(trace);
+    auto writer = TraceWriter::create(path, trace.header);
+    REQUIRE(writer.ok());
+    REQUIRE((*writer)->start(*trace.start).ok());
+    for (const TraceStep& step : trace.steps) REQUIRE((*writer)->step(step).ok());
+    const auto hash = (*writer)->finish(*trace.end);
+    REQUIRE(hash.ok());
+    change_database(dir, "update episodes set trace_sha256 = '" + to_hex(*hash) + "'");
+    ReplayOptions options;
+    options.assets = VLAPROBE_SOURCE_DIR "/assets";
+    const auto replayed = replay(dir, "carrot_on_plate", 0, 42, options);
+    REQUIRE_MESSAGE(replayed.ok(), to_text(replayed.failure()));
+    CHECK(replayed->identical == replayed->difference.empty());
+    return replayed->difference;
+  };
+  CHECK(forged([](Trace&) {}).empty());
+  CHECK(forged([](Trace& trace) { trace.header.live->delay_s = 0.2; }) ==
+        "step 2: a late action, the answer to step 0, recorded no action");
+  CHECK(forged([](Trace& trace) { trace.header.live->delay_s = 0.6; }) ==
+        "step 3: no action, recorded a late action, a question, the answer to step 0");
+  // Back to what it was, but for a delay in seconds.
+  CHECK(forged([](Trace& trace) {
+          trace.header.live->delay_s = 0.4;
+          trace.steps[2].live->answers[0].answer_s = 0.45;
+        }) ==
+        "step 3: the delay of the answer to step 0 is 0.40000000000000002, recorded "
+        "0.45000000000000001");
+}
+
+TEST_CASE("a question under way at an episode's end holds nobody up, and its answer is nobody's") {
+  // Asks a second apart; the last question of each episode is answered late, or not while we wait.
+  class Hanging final : public ServedPolicy {
+   public:
+    struct Door {
+      std::mutex mutex;
+      std::condition_variable opens;
+      bool is_open = false;
+      std::atomic<int> asked = 0;
+    };
+    Hanging(Door& door, std::chrono::milliseconds time) : door_(door), time_(time) {}
+    void reset() override {}
+    Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
+      auto actions = inner_->answer(asked, count);
+      if (is_known_question(asked.picture.bytes, asked.words) || ++door_.asked % 3 != 0)
+        return actions;
+      std::unique_lock lock(door_.mutex);
+      door_.opens.wait_for(lock, time_, [this] { return door_.is_open; });
+      return actions;
+    }
+
+   private:
+    Door& door_;
+    std::chrono::milliseconds time_;
+    std::unique_ptr<ServedPolicy> inner_ = serve_digest()();
+  };
+  TemporaryFolder folder;
+  auto bytes = TablePlan(VLAPROBE_SOURCE_DIR "/assets").write(2, 3, [](plan::Records& records) {
+    records.robots[0].control_hz = 1;
+  });
+  REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
+  const plan::Plan plan = plan::Plan::from_bytes(std::move(*bytes)).value();
+  for (const auto time : {std::chrono::milliseconds(1500), std::chrono::milliseconds(50'000)}) {
+    CAPTURE(time.count());
+    Hanging::Door door;
+    ServeOptions options;
+    options.policy = [&] { return std::make_unique<Hanging>(door, time); };
+    const auto listener = serve(Protocol::kOpenpi, options);
+    REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+    const std::string address = "openpi://127.0.0.1:" + (*listener)->port() + "?" +
+                                options_for_served(Protocol::kOpenpi, options) +
+                                "&timeout.connect_s=2";
+    const auto begun = std::chrono::steady_clock::now();
+    const std::string dir = folder / std::to_string(time.count());
+    must_run(plan, live_options(dir, address, std::nullopt));
+    const double took =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    CHECK(took < 40);
+    CHECK(door.asked == 6);
+    // Each episode's first action is what its own first picture is answered.
+    const Trace first = trace_of(dir, 0), second = trace_of(dir, 1);
+    CHECK(delays_of(first) == std::vector<int>{0, 0});
+    CHECK(delays_of(second) == std::vector<int>{0, 0});
+    CHECK(first.steps[0].action != second.steps[0].action);
+    check_replays(dir, 2);
+    {
+      const std::lock_guard lock(door.mutex);
+      door.is_open = true;
+    }
+    door.opens.notify_all();
+    RunOptions waits = options_for(folder / (std::to_string(time.count()) + "w"), address);
+    waits.seeds = {42};
+    must_run(plan, waits);
+    CHECK(trace_of(waits.out, 0).steps[0].action == first.steps[0].action);
+    CHECK(trace_of(waits.out, 1).steps[0].action == second.steps[0].action);
   }
 }
 
@@ -308,7 +418,7 @@ TEST_CASE("an episode whose simulation is slower than its clock is invalid, and 
       return policy::Action{0, 0, 0, 0, 0, 0, 1};
     }
     policy::Answerer* answerer() override { return this; }
-    Status ask(const policy::Observation&) override { return {}; }
+    Status ask(const policy::Observation&, policy::LiveClock::time_point) override { return {}; }
     Result<std::optional<Answer>> wait(policy::LiveClock::time_point) override {
       return std::optional(Answer{{Said{0, 0, 0, 0, 0, 0, 1}}, policy::LiveClock::now()});
     }

@@ -26,7 +26,7 @@ TEST_CASE("a misspelt policy names the nearest and the known ones") {
       "unknown policy `exprt`, did you mean `expert`?\nthe policies are:\n  expert "));
   CHECK_FALSE(made.failure().message.ends_with("\n"));
   CHECK(made.failure().message.find("noisy:SIGMA") != std::string::npos);
-  CHECK(policy_traits("zzz").failure().message.find("did you mean") == std::string::npos);
+  CHECK(choose_policy("zzz").failure().message.find("did you mean") == std::string::npos);
 }
 
 TEST_CASE("arguments are asked for, and refused where there are none") {
@@ -41,14 +41,14 @@ TEST_CASE("arguments are asked for, and refused where there are none") {
 }
 
 TEST_CASE("policies say whether seeds matter") {
-  CHECK_FALSE(policy_traits("null")->draws);
-  CHECK_FALSE(policy_traits("expert")->draws);
-  CHECK_FALSE(policy_traits("noisy:0")->draws);
-  CHECK(policy_traits("noisy:0.01")->draws);
-  CHECK(policy_traits("random")->draws);
-  CHECK(policy_traits("wrong")->wants_distractor);
-  CHECK_FALSE(policy_traits("expert")->wants_distractor);
-  CHECK(policy_traits("replay:runs/a:b")->recorded);
+  CHECK_FALSE(choose_policy("null")->traits.draws);
+  CHECK_FALSE(choose_policy("expert")->traits.draws);
+  CHECK_FALSE(choose_policy("noisy:0")->traits.draws);
+  CHECK(choose_policy("noisy:0.01")->traits.draws);
+  CHECK(choose_policy("random")->traits.draws);
+  CHECK(choose_policy("wrong")->traits.wants_distractor);
+  CHECK_FALSE(choose_policy("expert")->traits.wants_distractor);
+  CHECK(choose_policy("replay:runs/a:b")->traits.recorded);
   CHECK(policy_argument("replay:runs/a:b") == "runs/a:b");
 }
 

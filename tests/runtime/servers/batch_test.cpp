@@ -18,6 +18,7 @@
 #include "runtime/servers/served.h"
 #include "runtime/servers/servers.h"
 #include "runtime/servers/transcript.h"
+#include "runtime/wire/http.h"
 #include "runtime/wire/msgpack.h"
 #include "tests/servers/python_server.h"
 
@@ -45,8 +46,8 @@ class Counting final : public Transport {
   Result<std::vector<RawAction>> ask(const Request&, const Deadlines&) override {
     return bad("asked alone");
   }
-  Result<std::vector<Result<std::vector<RawAction>>>> ask_all(
-      std::span<const Request* const> requests, const Deadlines& deadlines) override {
+  Result<BatchAnswers> ask_all(std::span<const Request* const> requests,
+                               const Deadlines& deadlines) override {
     {
       const std::lock_guard lock(told_->mutex);
       told_->sizes.push_back(requests.size());
@@ -57,7 +58,7 @@ class Counting final : public Transport {
     }
     std::this_thread::sleep_for(time_);
     if (!fails_.empty()) return bad(fails_);
-    std::vector<Result<std::vector<RawAction>>> all;
+    BatchAnswers all;
     for (const Request* request : requests)
       all.push_back(
           std::vector<RawAction>{RawAction{static_cast<double>(request->step), 0, 0, 0, 0, 0, 1}});
@@ -278,6 +279,102 @@ TEST_CASE("a batch's answer of another length, or with a failed item, is refused
         }) == "expected a map with `batch`, a list of 3 answers; got a map with keys actions");
 }
 
+TEST_CASE("questions of vla-eval's connections are gathered, and one at fault spoils no other") {
+  // Adds up what it saw; refuses words that it does not know, and with them the whole batch.
+  class Summing final : public ServedPolicy {
+   public:
+    explicit Summing(std::vector<std::size_t>& sizes) : sizes_(sizes) {}
+    void reset() override {}
+    Result<std::vector<policy::Action>> answer(const Asked& asked, int) override {
+      if (asked.words != "put carrot on plate") return bad("cannot read `" + asked.words + "`");
+      return std::vector<policy::Action>{
+          policy::Action{static_cast<double>(asked.picture.bytes.front()), 0, 0, 0, 0, 0, 1}};
+    }
+    Result<std::vector<std::vector<policy::Action>>> answer_all(std::span<const Asked> asked,
+                                                                int count) override {
+      sizes_.push_back(asked.size());  // of the gathering thread alone
+      return ServedPolicy::answer_all(asked, count);
+    }
+
+   private:
+    std::vector<std::size_t>& sizes_;
+  };
+  std::vector<std::size_t> sizes;
+  ServeOptions options;
+  options.batch = 4;
+  options.policy = [&] { return std::make_unique<Summing>(sizes); };
+  auto listener = serve(Protocol::kVlaEval, options);
+  REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+  const auto choice =
+      choose_server(Protocol::kVlaEval, "//127.0.0.1:" + (*listener)->port() + "?" +
+                                            options_for_served(Protocol::kVlaEval, options) +
+                                            "&image=first -> primary&batch_wait_ms=20000");
+  REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+  std::vector<std::unique_ptr<Transport>> worlds;
+  for (int i = 0; i < 4; ++i) {
+    auto transport = make_transport(*choice);
+    REQUIRE(transport.ok());
+    const auto open = (*transport)->open({});
+    REQUIRE_MESSAGE(open.ok(), to_text(open.failure()));
+    policy::EpisodeStart start;
+    start.task = "t";
+    REQUIRE((*transport)->begin_episode(start, {}).ok());
+    worlds.push_back(std::move(*transport));
+  }
+  std::vector<std::string> said(4);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < 4; ++i) {
+    threads.emplace_back([&, i] {
+      Request request = pictured(static_cast<int>(i));
+      request.images.front().key = "primary";
+      if (i == 3) request.prompt = "sing";
+      const auto answer = worlds[i]->ask(request, {.answer = kLong});
+      said[i] =
+          answer ? std::to_string(static_cast<int>(answer->front()[0])) : answer.failure().message;
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  CHECK(said[0] == "0");
+  CHECK(said[1] == "1");
+  CHECK(said[2] == "2");
+  CHECK(said[3].find("cannot read `sing`") != std::string::npos);
+  worlds.clear();
+  const auto page = [&](const std::string& path) {
+    wire::Endpoint server;
+    server.host = "127.0.0.1";
+    server.port = (*listener)->port();
+    wire::HttpRequest asked;
+    asked.path = path;
+    const auto answer = wire::http_exchange(server, asked);
+    REQUIRE_MESSAGE(answer.ok(), to_text(answer.failure()));
+    return std::to_string(answer->status) + " " + answer->body;
+  };
+  CHECK(page("/health") == "200 {\"status\":\"ok\"}");
+  CHECK(page("/config") ==
+        "200 {\"applied\":{},\"config\":{\"max_batch_size\":4,\"max_wait_time\":20.0}}");
+  CHECK(page("/config?max_batch_size=99&max_wait_time=0.5&other=1") ==
+        "200 {\"applied\":{\"max_batch_size\":4,\"max_wait_time\":0.5},"
+        "\"config\":{\"max_batch_size\":4,\"max_wait_time\":0.5}}");
+  CHECK(page("/config?max_batch_size=none").find("400 ") == 0);
+  CHECK(page("/elsewhere").find("404 ") == 0);
+  listener->reset();
+  CHECK(sizes == std::vector<std::size_t>{4});
+
+  // Its own server without batches says so; so does ours.
+  options.batch = 1;
+  listener = serve(Protocol::kVlaEval, options);
+  REQUIRE(listener.ok());
+  const auto alone = choose_server(
+      Protocol::kVlaEval, "//127.0.0.1:" + (*listener)->port() + "?" +
+                              options_for_served(Protocol::kVlaEval, options) + "&batch=4");
+  REQUIRE(alone.ok());
+  const auto transport = make_transport(*alone);
+  REQUIRE(transport.ok());
+  const auto refused = (*transport)->open({});
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().message.find("the server does not gather batches of 4") == 0);
+}
+
 TEST_CASE("batches are refused where a protocol or a profile has none") {
   CHECK(refusal(Protocol::kOpenpi, "batch=8") == "");
   CHECK(refusal(Protocol::kStarVla, "batch=8&batch_wait_ms=5") == "");
@@ -294,7 +391,7 @@ TEST_CASE("batches are refused where a protocol or a profile has none") {
   options.batch = 8;
   const auto listener = serve(Protocol::kIntact, options);
   REQUIRE_FALSE(listener.ok());
-  CHECK(listener.failure().message == "protocol intact has no messages of several questions");
+  CHECK(listener.failure().message == "protocol intact has no batches");
 }
 
 TEST_CASE("a run with batches is the run without") {

@@ -25,8 +25,9 @@ struct Protocol {
   const char* name;
   const char* options;
 };
-constexpr Protocol kProtocols[] = {
-    {"openpi", ""}, {"intact", "&model=/m"}, {"vlaeval", ""}, {"gr00t", ""}, {"openvla", ""}};
+constexpr Protocol kProtocols[] = {{"openpi", ""}, {"intact", "&model=/m"}, {"vlaeval", ""},
+                                   {"gr00t", ""},  {"openvla", ""},         {"roboarena", ""},
+                                   {"starvla", ""}};
 
 std::unique_ptr<Policy> quick_policy(const Protocol& protocol, const std::string& port) {
   auto policy = make_policy(std::string(protocol.name) + "://127.0.0.1:" + port + "?" +
@@ -56,7 +57,7 @@ struct Fault {
   const char* name;
   // What the message holds after "127.0.0.1:PORT: ", in the order of kProtocols; null: the answer
   // is good.
-  const char* says[5];
+  const char* says[std::size(kProtocols)];
 };
 
 constexpr const char* kEarlyEnd =
@@ -65,24 +66,28 @@ constexpr const char* kNoActions =
     "expected actions of 7 numbers, an array 7 or N x 7; got a map with keys detail";
 
 constexpr Fault kFaults[] = {
-    {"slow", {nullptr, nullptr, nullptr, nullptr, nullptr}},
+    {"slow", {nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr}},
     {"never",
      {"no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s",
-      "no answer in 0.3 s"}},
+      "no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s"}},
     {"trickle",
      {"no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s",
-      "no answer in 0.3 s"}},
+      "no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s"}},
     {"gone",
      {"the server went away", "the server went away", "the server went away", kEarlyEnd,
-      "the server closed the connection without an answer"}},
+      "the server closed the connection without an answer", "the server went away",
+      "the server went away"}},
     {"closes",
      {"the server closed the connection (code 1011: out of memory)",
       "the server closed the connection (code 1011: out of memory)",
       "the server closed the connection (code 1011: out of memory)", kEarlyEnd,
-      "the server closed the connection without an answer"}},
+      "the server closed the connection without an answer",
+      "the server closed the connection (code 1011: out of memory)",
+      "the server closed the connection (code 1011: out of memory)"}},
     {"half",
      {"the server went away", "the server went away", "the server went away", kEarlyEnd,
-      "the server closed the connection in the middle of its answer"}},
+      "the server closed the connection in the middle of its answer", "the server went away",
+      "the server went away"}},
     {"traceback",
      {"the server failed: Traceback (most recent call last): | File \"policy.py\", line 3, in "
       "infer | KeyError: 'x'",
@@ -92,73 +97,92 @@ constexpr Fault kFaults[] = {
       "the server failed: Traceback (most recent call last): | File \"policy.py\", line 3, in "
       "infer | KeyError: 'x'",
       "`POST /act` is answered with status 500: Traceback (most recent call last): | File "
-      "\"policy.py\", line 3, in infer | KeyError: 'x'"}},
+      "\"policy.py\", line 3, in infer | KeyError: 'x'",
+      "the server failed: Traceback (most recent call last): | File \"policy.py\", line 3, in "
+      "infer | KeyError: 'x'",
+      "the server failed: Traceback (most recent call last): | File \"policy.py\", line 3, in "
+      "infer | KeyError: 'x'"}},
     {"shape",
      {"expected actions of 7 numbers, an array 7 or N x 7; got an array 6 of <f8",
       "expected actions of 7 numbers, an array 7 or N x 7; got an array 6 of <f8",
       "expected actions of 7 numbers, an array 7 or N x 7; got an array 6 of <f8",
       "expected `action.y` among others, got a map with keys action.x",
+      "expected actions of 7 numbers, an array 7 or N x 7; got an array 6 of <f8",
+      "expected actions of 7 numbers, an array 7 or N x 7; got an array 6 of <f8",
       "expected actions of 7 numbers, an array 7 or N x 7; got an array 6 of <f8"}},
     {"nan",
      {"number 2 of action 1 of 1 is not a number", "number 2 of action 1 of 1 is not a number",
+      "number 2 of action 1 of 1 is not a number", "number 2 of action 1 of 1 is not a number",
       "number 2 of action 1 of 1 is not a number", "number 2 of action 1 of 1 is not a number",
       "number 2 of action 1 of 1 is not a number"}},
     {"far",
      {"an action that shifts by 1000", "an action that shifts by 1000",
       "an action that shifts by 1000", "an action that shifts by 1000",
-      "an action that shifts by 1000"}},
+      "an action that shifts by 1000", nullptr, "an action that shifts by 1000"}},
     {"other",
      {"expected a map with `actions`, got a map with keys values",
       "expected an array, a list of arrays or a map with `actions` or `action`, got a map with "
       "keys values",
       "expected an action with `actions` or `action`, got a map with keys values",
-      "expected `action.x` among others, got a map with keys values", kNoActions}},
+      "expected `action.x` among others, got a map with keys values", kNoActions,
+      "expected actions of 7 numbers, an array 7 or N x 7; got a map with keys values",
+      "expected a map with `data`, a map with `actions`; got a map with keys values"}},
     // One of the many is taken for the answer, or there are too many at once.
     {"flood",
-     {"", "", "", "expected `action.x` among others, got a map with keys values", kNoActions}},
+     {"", "", "", "expected `action.x` among others, got a map with keys values", kNoActions, "",
+      ""}},
     {"huge",
      {"an answer of more than 1 MiB", "an answer of more than 1 MiB",
-      "an answer of more than 1 MiB", kEarlyEnd, "an answer of more than 1 MiB"}},
+      "an answer of more than 1 MiB", kEarlyEnd, "an answer of more than 1 MiB",
+      "an answer of more than 1 MiB", "an answer of more than 1 MiB"}},
     {"claims",
      {"an answer of more than 1 MiB", "an answer of more than 1 MiB",
-      "an answer of more than 1 MiB", kEarlyEnd, "an answer of more than 1 MiB"}},
+      "an answer of more than 1 MiB", kEarlyEnd, "an answer of more than 1 MiB",
+      "an answer of more than 1 MiB", "an answer of more than 1 MiB"}},
     {"garbage",
      {"not one MessagePack message: ", "not one MessagePack message: ",
-      "not one MessagePack message: ", "not one MessagePack message: ", "no JSON but the text "}},
+      "not one MessagePack message: ", "not one MessagePack message: ", "no JSON but the text ",
+      "not one MessagePack message: ", "not one MessagePack message: "}},
     {"raw",
      {"what came is no WebSocket message", "what came is no WebSocket message",
       "what came is no WebSocket message", "no answer in 0.3 s",
-      "the answer is no HTTP (bad version)"}},
+      "the answer is no HTTP (bad version)", "what came is no WebSocket message",
+      "what came is no WebSocket message"}},
     {"empty",
      {"not a MessagePack message: it is empty", "not a MessagePack message: it is empty",
       "not a MessagePack message: it is empty", "not a MessagePack message: it is empty",
-      "no JSON but an empty text"}},
+      "no JSON but an empty text", "not a MessagePack message: it is empty",
+      "not a MessagePack message: it is empty"}},
 };
 
 constexpr Fault kConnectionFaults[] = {
     {"silent",
      {"opening a WebSocket took more than 0.3 s", "opening a WebSocket took more than 0.3 s",
       "opening a WebSocket took more than 0.3 s",
-      "something listens there that does not speak ZeroMQ", "no answer in 0.3 s"}},
+      "something listens there that does not speak ZeroMQ", "no answer in 0.3 s",
+      "opening a WebSocket took more than 0.3 s", "opening a WebSocket took more than 0.3 s"}},
     {"hangs_up",
      {"opening a WebSocket: ", "opening a WebSocket: ", "opening a WebSocket: ",
       "something listens there that does not speak ZeroMQ",
-      "the server closed the connection without an answer"}},
+      "the server closed the connection without an answer",
+      "opening a WebSocket: ", "opening a WebSocket: "}},
     {"babbles",
      {"opening a WebSocket: ", "opening a WebSocket: ", "opening a WebSocket: ", "",
-      "the answer is no HTTP (bad version)"}},
+      "the answer is no HTTP (bad version)", "opening a WebSocket: ", "opening a WebSocket: "}},
     {"unavailable",
      {"opening a WebSocket: answered with HTTP status 503",
       "opening a WebSocket: answered with HTTP status 503",
       "opening a WebSocket: answered with HTTP status 503", "",
-      "`POST /act` is answered with status 503: loading"}},
+      "`POST /act` is answered with status 503: loading",
+      "opening a WebSocket: answered with HTTP status 503",
+      "opening a WebSocket: answered with HTTP status 503"}},
     {"speechless",
      {"no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s",
-      "no answer in 0.3 s"}},
+      "no answer in 0.3 s", "no answer in 0.3 s", "no answer in 0.3 s"}},
     {"complains",
      {"the server failed: Traceback", "the server failed: Traceback",
       "the server failed: observation_failed: KeyError: 'x'", "the server failed: Traceback",
-      nullptr}},
+      nullptr, "the server failed: Traceback", "no answer in 0.3 s"}},
 };
 
 }  // namespace

@@ -17,10 +17,9 @@ struct Secured {
   const char* protocol;
   const char* options;
 };
-constexpr Secured kSecured[] = {{"wss", "openpi", ""},
-                                {"wss", "intact", "&model=/m"},
-                                {"wss", "vlaeval", ""},
-                                {"https", "openvla", ""}};
+constexpr Secured kSecured[] = {{"wss", "openpi", ""},  {"wss", "intact", "&model=/m"},
+                                {"wss", "vlaeval", ""}, {"wss", "roboarena", ""},
+                                {"wss", "starvla", ""}, {"https", "openvla", ""}};
 
 std::string authority_path() {
   return (std::filesystem::temp_directory_path() /
@@ -100,9 +99,7 @@ TEST_CASE("a URL that does not say what is spoken, or says what cannot be, is re
         "`openpi://gpu` shows no certificate that could be left unchecked: it is no wss:// or "
         "https://");
   CHECK(refusal("wss://gpu?protocol=openpi", true).empty());
-  PolicyContext context;
-  context.accepts_any_certificate = true;
-  CHECK_FALSE(make_policy("expert", context).ok());
+  CHECK_FALSE(choose_policy("expert", true).ok());
 }
 
 TEST_CASE("episodes over TLS work and fail as over plain connections, and the next one works") {
@@ -136,9 +133,9 @@ TEST_CASE("a server with the wrong certificate is not asked, unless --insecure s
           "127.0.0.1:" + server.port() +
               ": the certificate is for gpu.example, 10.1.2.3, not for 127.0.0.1; --insecure "
               "accepts any");
-    PolicyContext context;
-    context.accepts_any_certificate = true;
-    const auto unchecked = make_policy(address, context);
+    const auto chosen = choose_policy(address, true);
+    REQUIRE_MESSAGE(chosen.ok(), to_text(chosen.failure()));
+    const auto unchecked = make_policy(*chosen);
     REQUIRE_MESSAGE(unchecked.ok(), to_text(unchecked.failure()));
     CHECK(ask_once(**unchecked, "put carrot on plate") == "");
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -30,44 +31,7 @@ namespace {
 
 using test::PythonServer;
 
-struct Picture {
-  wire::Bytes bytes = wire::Bytes(8 * 6 * 3, 7);
-  Observation observation(int step = 0) {
-    Observation seen;
-    seen.image = {8, 6, bytes};
-    seen.prompt = "put carrot on plate";
-    seen.step = step;
-    return seen;
-  }
-};
-
-std::unique_ptr<Policy> made(const std::string& name, const PythonServer& server,
-                             const std::string& options = "") {
-  REQUIRE_MESSAGE(!server.port().empty(), "python3-websockets and python3-msgpack are installed");
-  auto policy =
-      make_policy(name + "://127.0.0.1:" + server.port() + "?timeout.wait_s=0.05" + options);
-  REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
-  return std::move(policy).value();
-}
-
-EpisodeStart start() {
-  EpisodeStart start;
-  start.task = "carrot_on_plate";
-  start.index = 3;
-  start.seed = 42;
-  return start;
-}
-
-void require_begin(Policy& policy) {
-  const auto begun = policy.begin(start());
-  REQUIRE_MESSAGE(begun.ok(), to_text(begun.failure()));
-}
-
-double first_number(Policy& policy, const Observation& seen) {
-  const auto action = policy.act(seen);
-  REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
-  return (*action)[0];
-}
+double first_number(Policy& policy, const Observation& seen) { return must_act(policy, seen)[0]; }
 
 std::string hex(std::string_view bytes) {
   std::string text;
@@ -84,9 +48,9 @@ std::string hex(std::string_view bytes) {
 TEST_CASE("openpi's request has its keys in order and its arrays with keys of bytes") {
   const ServerRecord record;
   const PythonServer server("openpi_server.py", {"openpi", record.option()});
-  const auto policy = made("openpi", server);
-  require_begin(*policy);
-  Picture picture;
+  const auto policy = policy_at("openpi", server);
+  must_begin(*policy);
+  AskingPicture picture;
   CHECK(first_number(*policy, picture.observation()) == 0);
   const auto lines = record.lines();
   REQUIRE(lines.size() == 1);
@@ -109,11 +73,11 @@ TEST_CASE("openpi's request has its keys in order and its arrays with keys of by
 
 TEST_CASE("a chunk is done without asking again, and the first request is proved") {
   const PythonServer server("openpi_server.py", {"openpi", "chunk=4"});
-  const auto policy = made("openpi", server);
+  const auto policy = policy_at("openpi", server);
   QueryMeter meter;
-  require_begin(*policy);
+  must_begin(*policy);
   CHECK_FALSE(policy->delivery().has_value());
-  Picture picture;
+  AskingPicture picture;
   for (int step = 0; step < 6; ++step) {
     picture.bytes[0] = static_cast<std::uint8_t>(step);
     CHECK(first_number(*policy, picture.observation(step)) == step / 1000.0);
@@ -124,17 +88,41 @@ TEST_CASE("a chunk is done without asking again, and the first request is proved
         to_hex(sha256(std::as_bytes(std::span(picture.bytes)))));
   CHECK(policy->delivery()->prompt_sha256 == to_hex(sha256("put carrot on plate")));
   policy->end({true, true, 6});
-  require_begin(*policy);  // what was left of the chunk is forgotten
+  must_begin(*policy);  // what was left of the chunk is forgotten
   CHECK(first_number(*policy, picture.observation()) == 8 / 1000.0);
+}
+
+TEST_CASE(
+    "openpi's policies for LIBERO get two pictures, and shares of a step are 5 cm and 0.5 rad") {
+  const PythonServer server("openpi_server.py", {"libero", "seen=normalised", "chunk=5"});
+  const auto policy = policy_at("openpi", server, "&profile=openpi_libero");
+  must_begin(*policy);
+  AskingPicture picture, wrist;
+  wrist.bytes[0] = 9;
+  Observation seen = picture.observation();
+  const Image beside = wrist.observation().image;
+  const CameraImage cameras[] = {{"front", seen.image}, {"wrist", beside}};
+  seen.cameras = cameras;
+  seen.proprioception.joints = {1, 2, 3, 4, 5, 6, 0.02, 0.02};
+  seen.proprioception.finger_joints = 2;
+  const Action action = must_act(*policy, seen);
+  double farthest = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double most = i < 3 ? 0.05 : 0.5;
+    CHECK(std::abs(action[i]) <= most);
+    farthest = std::max(farthest, std::abs(action[i]) / most);
+  }
+  CHECK(farthest > 0.3);
+  CHECK(action[6] == -1);  // there +1 is closed
 }
 
 TEST_CASE("INT-ACT hears the model first, infers, and a reset before and after each episode") {
   const ServerRecord record;
   const PythonServer server("openpi_server.py", {"intact", record.option()});
-  const auto policy = made("intact", server, "&model=/m");
-  Picture picture;
+  const auto policy = policy_at("intact", server, "&model=/m");
+  AskingPicture picture;
   for (int episode = 0; episode < 2; ++episode) {
-    require_begin(*policy);
+    must_begin(*policy);
     CHECK(first_number(*policy, picture.observation()) == 0);
     CHECK(first_number(*policy, picture.observation(1)) == 1 / 1000.0);
     policy->end({true, false, 2});
@@ -149,38 +137,35 @@ TEST_CASE("INT-ACT hears the model first, infers, and a reset before and after e
 }
 
 TEST_CASE("an episode after one that was killed is not done with the killed one's instruction") {
-  Picture picture;
+  AskingPicture picture;
   Observation carrot = picture.observation(), spoon = carrot;
   spoon.prompt = "put the spoon on the towel";
   Action fresh{};
   {
     const PythonServer server("openpi_server.py", {"intact", "seen=keeps"});
-    const auto policy = made("intact", server, "&model=/m");
-    require_begin(*policy);
-    const auto action = policy->act(spoon);
-    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
-    fresh = *action;
+    const auto policy = policy_at("intact", server, "&model=/m");
+    must_begin(*policy);
+    const Action action = must_act(*policy, spoon);
+    fresh = action;
   }
   const PythonServer server("openpi_server.py", {"intact", "seen=keeps"});
   {
-    const auto killed = made("intact", server, "&model=/m");
-    require_begin(*killed);
-    const auto action = killed->act(carrot);
-    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
-    CHECK(*action != fresh);
+    const auto killed = policy_at("intact", server, "&model=/m");
+    must_begin(*killed);
+    const Action action = must_act(*killed, carrot);
+    CHECK(action != fresh);
   }  // without an end: the process is gone
-  const auto policy = made("intact", server, "&model=/m");
-  require_begin(*policy);
-  const auto action = policy->act(spoon);
-  REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
-  CHECK(*action == fresh);
+  const auto policy = policy_at("intact", server, "&model=/m");
+  must_begin(*policy);
+  const Action action = must_act(*policy, spoon);
+  CHECK(action == fresh);
 }
 
 TEST_CASE("INT-ACT's chunks are bare arrays") {
   const PythonServer server("openpi_server.py", {"intact", "chunk=4"});
-  const auto policy = made("intact", server, "&model=/m&profile=pi0_bridge");
-  require_begin(*policy);
-  Picture picture;
+  const auto policy = policy_at("intact", server, "&model=/m&profile=pi0_bridge");
+  must_begin(*policy);
+  AskingPicture picture;
   for (int step = 0; step < 5; ++step) {
     CHECK(first_number(*policy, picture.observation(step)) == step / 1000.0);
   }
@@ -192,10 +177,10 @@ TEST_CASE(
     "RoboArena's server says what it wants, and hears a reset before and after each episode") {
   const ServerRecord record;
   const PythonServer server("openpi_server.py", {"roboarena", record.option()});
-  const auto policy = made("roboarena", server);
-  Picture picture;
+  const auto policy = policy_at("roboarena", server);
+  AskingPicture picture;
   for (int episode = 0; episode < 2; ++episode) {
-    require_begin(*policy);
+    must_begin(*policy);
     CHECK(first_number(*policy, picture.observation()) == 0);
     // A share of 0.075 m.
     CHECK(first_number(*policy, picture.observation(1)) == 1 / 1000.0 * 0.075);
@@ -220,31 +205,30 @@ TEST_CASE("what RoboArena's server calls its actions is what is done with them")
            "\"needs_session_id\": true" +
            space + "}";
   };
-  Picture picture;
+  AskingPicture picture;
   Observation seen = picture.observation();
   seen.proprioception.tcp_in_base.position = {0.3, 0.05, 0.14};
-  {
-    const PythonServer server(
-        "openpi_server.py",
-        {"roboarena", "seen=poses", with_space(", \"action_space\": \"cartesian_position\"")});
-    const auto policy = made("roboarena", server);
-    require_begin(*policy);
-    const auto action = policy->act(seen);
-    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
-    // 2 cm around where the tool is, not 33 cm away.
-    for (std::size_t i = 0; i < 3; ++i) CHECK(std::abs((*action)[i]) <= 0.021);
-  }
-  {
-    const PythonServer server(
-        "openpi_server.py",
-        {"roboarena", "seen=normalised", with_space(", \"action_space\": \"cartesian_velocity\"")});
-    const auto policy = made("roboarena", server);
-    require_begin(*policy);
-    const auto action = policy->act(seen);
-    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
-    const double* a = action->data();
-    CHECK(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) <= 0.075 + 1e-9);
-  }
+  const auto act = [&](const std::string& habit, const std::string& space,
+                       const EpisodeStart& start) {
+    const PythonServer server("openpi_server.py",
+                              {"roboarena", "seen=" + habit, with_space(space)});
+    const auto policy = policy_at("roboarena", server);
+    if (start.robot != nullptr) {
+      CHECK(policy->begin(asking_start()).failure().message ==
+            "actions of joints need a robot, and there is none");
+    }
+    const auto begun = policy->begin(start);
+    REQUIRE_MESSAGE(begun.ok(), to_text(begun.failure()));
+    return must_act(*policy, seen);
+  };
+  const auto shift_of = [](const Action& a) {
+    return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+  };
+  const Action posed = act("poses", ", \"action_space\": \"cartesian_position\"", asking_start());
+  // 2 cm around where the tool is, not 33 cm away.
+  for (std::size_t i = 0; i < 3; ++i) CHECK(std::abs(posed[i]) <= 0.021);
+  CHECK(shift_of(act("normalised", ", \"action_space\": \"cartesian_velocity\"", asking_start())) <=
+        0.075 + 1e-9);
   // Joints, which are what a server means that says nothing, go through the robot's kinematics.
   const robot::RobotModel model = robot::test::widowx();
   robot::Robot widowx;
@@ -255,39 +239,33 @@ TEST_CASE("what RoboArena's server calls its actions is what is done with them")
   seen.proprioception.joints = robot::test::kTableStart;
   seen.proprioception.finger_joints = 2;
   seen.proprioception.tcp_in_base = chain->pose(std::span(robot::test::kTableStart).first(6));
-  EpisodeStart with_robot = start();
+  EpisodeStart with_robot = asking_start();
   with_robot.robot = &widowx;
   for (const char* space :
        {"", ", \"action_space\": \"joint_position\"", ", \"action_space\": \"joint_velocity\""}) {
     CAPTURE(std::string(space));
     const bool are_positions = std::string(space).find("velocity") == std::string::npos;
-    const PythonServer server(
-        "openpi_server.py",
-        {"roboarena", are_positions ? "seen=joints" : "seen=normalised", with_space(space)});
-    const auto policy = made("roboarena", server);
-    CHECK(policy->begin(start()).failure().message ==
-          "actions of joints need a robot, and there is none");
-    const auto begun = policy->begin(with_robot);
-    REQUIRE_MESSAGE(begun.ok(), to_text(begun.failure()));
-    const auto action = policy->act(seen);
-    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
     // A hundredth of a radian, or a fifth, in each of six joints of an arm of 70 cm.
     const double farthest = are_positions ? 0.05 : 0.7;
-    const double* a = action->data();
-    const double shift = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    const double shift = shift_of(act(are_positions ? "joints" : "normalised", space, with_robot));
     CHECK(shift > 0);
     CHECK(shift < farthest);
   }
   const PythonServer velocities(
       "openpi_server.py", {"roboarena", with_space(", \"action_space\": \"joint_velocity\"")});
-  CHECK(made("roboarena", velocities, "&action.form=delta")->begin(with_robot).failure().message ==
+  CHECK(policy_at("roboarena", velocities, "&action.form=delta")
+            ->begin(with_robot)
+            .failure()
+            .message ==
         "the server's `action_space` is joint_velocity, and the profile's `action.form` is of "
         "another");
-  CHECK(made("roboarena", velocities, "&action.units=ball")->begin(with_robot).failure().message ==
-        "`action.units = ball` is of shifts and turns, not of joints");
+  CHECK(policy_at("roboarena", velocities, "&action.units=ball")
+            ->begin(with_robot)
+            .failure()
+            .message == "`action.units = ball` is of shifts and turns, not of joints");
   const PythonServer server("openpi_server.py",
                             {"roboarena", with_space(", \"action_space\": \"torque\"")});
-  const auto begun = made("roboarena", server)->begin(start());
+  const auto begun = policy_at("roboarena", server)->begin(asking_start());
   REQUIRE_FALSE(begun.ok());
   CHECK(begun.failure().code == Fault::kUsage);
   CHECK(begun.failure().message.find("\"torque\"") != std::string::npos);
@@ -295,9 +273,9 @@ TEST_CASE("what RoboArena's server calls its actions is what is done with them")
 
 TEST_CASE("a traceback is shown by its last lines, and the next episode connects again") {
   const PythonServer server("openpi_server.py", {"openpi"});
-  const auto policy = made("openpi", server, "&state.layout=none");
-  require_begin(*policy);
-  Picture picture;
+  const auto policy = policy_at("openpi", server, "&state.layout=none");
+  must_begin(*policy);
+  AskingPicture picture;
   const auto action = policy->act(picture.observation());
   REQUIRE_FALSE(action.ok());
   CHECK(action.failure().where == "127.0.0.1:" + server.port());
@@ -305,7 +283,7 @@ TEST_CASE("a traceback is shown by its last lines, and the next episode connects
   CHECK(action.failure().message.find("AssertionError: {'") != std::string::npos);
   CHECK_FALSE(policy->act(picture.observation(1)).ok());
   policy->end({false, false, 0});
-  require_begin(*policy);
+  must_begin(*policy);
 }
 
 TEST_CASE("a server that is not there is tried for as long as the profile says") {
@@ -316,7 +294,7 @@ TEST_CASE("a server that is not there is tried for as long as the profile says")
   }
   auto policy = make_policy("openpi://127.0.0.1:" + port + "?timeout.wait_s=0.4");
   REQUIRE(policy.ok());
-  const auto begun = (*policy)->begin(start());
+  const auto begun = (*policy)->begin(asking_start());
   REQUIRE_FALSE(begun.ok());
   CHECK(begun.failure().message.find("Connection refused") != std::string::npos);
   CHECK(begun.failure().message.find("(tried 3 times)") != std::string::npos);
@@ -330,7 +308,7 @@ TEST_CASE("a server that answers connecting with an error is told at once") {
   REQUIRE_MESSAGE(made_here.ok(), to_text(made_here.failure()));
   const auto policy = std::move(made_here).value();
   const auto before = std::chrono::steady_clock::now();
-  const auto begun = policy->begin(start());
+  const auto begun = policy->begin(asking_start());
   REQUIRE_FALSE(begun.ok());
   CHECK(begun.failure().code == Fault::kPolicy);
   CHECK(begun.failure().message.find("FileNotFoundError: /nowhere") != std::string::npos);
@@ -344,11 +322,11 @@ TEST_CASE("the connections of a run have an INT-ACT server load its model once")
   PolicyContext context;
   context.model = std::make_shared<SharedModel>();
   const std::string address = "intact://127.0.0.1:" + server.port() + "?model=/m";
-  Picture picture;
+  AskingPicture picture;
   for (int world = 0; world < 3; ++world) {
     const auto policy = make_policy(address, context);
     REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
-    require_begin(**policy);
+    must_begin(**policy);
     first_number(**policy, picture.observation());
   }
   int loads = 0;
@@ -365,7 +343,7 @@ TEST_CASE("why an INT-ACT server could not load its model is said with every lat
     const auto policy =
         make_policy("intact://127.0.0.1:" + server.port() + "?model=/nowhere", context);
     REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
-    const auto begun = (*policy)->begin(start());
+    const auto begun = (*policy)->begin(asking_start());
     REQUIRE_FALSE(begun.ok());
     CHECK(begun.failure().message.find("FileNotFoundError: /nowhere") != std::string::npos);
   }
@@ -381,14 +359,14 @@ TEST_CASE("an INT-ACT server that was restarted is told its model again") {
   const std::string port = server->port();
   const auto policy = make_policy("intact://127.0.0.1:" + port + "?model=/m", context);
   REQUIRE_MESSAGE(policy.ok(), to_text(policy.failure()));
-  Picture picture;
-  require_begin(**policy);
+  AskingPicture picture;
+  must_begin(**policy);
   server->stop();
   CHECK_FALSE((*policy)->act(picture.observation()).ok());
   (*policy)->end({false, false, 0});
   server = std::make_unique<PythonServer>(
       "openpi_server.py", std::vector<std::string>{"intact", record.option(), "port=" + port});
-  require_begin(**policy);
+  must_begin(**policy);
   CHECK(first_number(**policy, picture.observation()) == 0);
   std::string said;
   for (const std::string& line : record.lines()) {
@@ -420,40 +398,40 @@ TEST_CASE("a request in which two things have one key is not sent") {
 TEST_CASE("a restarted server is found again at the next episode") {
   auto server =
       std::make_unique<PythonServer>("openpi_server.py", std::vector<std::string>{"openpi"});
-  const auto policy = made("openpi", *server);
-  require_begin(*policy);
-  Picture picture;
+  const auto policy = policy_at("openpi", *server);
+  must_begin(*policy);
+  AskingPicture picture;
   first_number(*policy, picture.observation());
   server->stop();
   CHECK_FALSE(policy->act(picture.observation(1)).ok());
   policy->end({false, false, 1});
-  CHECK_FALSE(policy->begin(start()).ok());
+  CHECK_FALSE(policy->begin(asking_start()).ok());
 }
 
 TEST_CASE("the key comes from the environment and is in no message") {
   const PythonServer server("openpi_server.py", {"openpi", "key=sesame-7"});
   // Long before the time to connect is over: declined is declined.
-  const auto without = made("openpi", server, "&timeout.connect_s=600");
-  const auto refused = without->begin(start());
+  const auto without = policy_at("openpi", server, "&timeout.connect_s=600");
+  const auto refused = without->begin(asking_start());
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.failure().message.find("/healthz says OK") != std::string::npos);
   setenv("VLAPROBE_API_KEY", "wrong-key-9", 1);
-  const auto wrong = made("openpi", server)->begin(start());
+  const auto wrong = policy_at("openpi", server)->begin(asking_start());
   REQUIRE_FALSE(wrong.ok());
   CHECK(to_text(wrong.failure()).find("wrong-key-9") == std::string::npos);
   setenv("VLAPROBE_API_KEY", "sesame-7", 1);
-  const auto policy = made("openpi", server);
-  require_begin(*policy);
-  Picture picture;
+  const auto policy = policy_at("openpi", server);
+  must_begin(*policy);
+  AskingPicture picture;
   first_number(*policy, picture.observation());
   unsetenv("VLAPROBE_API_KEY");
 }
 
 TEST_CASE("a camera that the scene does not have is named with those that it has") {
   const PythonServer server("openpi_server.py", {"openpi"});
-  const auto policy = made("openpi", server, "&image=wrist%20-%3E%20observation/image");
-  require_begin(*policy);
-  Picture picture;
+  const auto policy = policy_at("openpi", server, "&image=wrist%20-%3E%20observation/image");
+  must_begin(*policy);
+  AskingPicture picture;
   Observation seen = picture.observation();
   const CameraImage cameras[] = {{"base", seen.image}, {"side", seen.image}};
   seen.cameras = cameras;
