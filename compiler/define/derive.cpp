@@ -246,7 +246,9 @@ class Derive {
       Task other = base;
       for (std::size_t i = 0; i < declared.size(); ++i) {
         other.say = static_cast<TemplateId>(i);
-        if (!fills_all(base, model.templates[other.say])) continue;
+        if (!fills_all(base, model.templates[other.say]) ||
+            !counts_fit(model, base, model.templates[other.say]))
+          continue;
         if (model.templates[other.say].frame == fold_case(templates->frame.text) &&
             axes_between(model, other, base) != 0)
           values.push_back(declared[i].text);

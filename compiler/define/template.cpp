@@ -186,6 +186,12 @@ Counted count_of(const Model& model, const Task& task, const Template& say, cons
   return {};
 }
 
+bool counts_fit(const Model& model, const Task& task, const Template& say) {
+  return std::all_of(say.parts.begin(), say.parts.end(), [&](const Template::Part& part) {
+    return !part.slot || count_of(model, task, say, *part.slot).fit == CountFit::kYes;
+  });
+}
+
 bool fills_all(const Task& task, const Template& say) {
   return std::all_of(say.parts.begin(), say.parts.end(), [&](const Template::Part& part) {
     return !part.slot || part.slot->role == RoleId::kNone ||

@@ -45,6 +45,9 @@ struct Counted {
 };
 Counted count_of(const Model& model, const Task& task, const Template& say, const SlotRef& slot);
 
+// The same of all of its words.
+bool counts_fit(const Model& model, const Task& task, const Template& say);
+
 // Whether every role that the words speak of is filled in the task.
 bool fills_all(const Task& task, const Template& say);
 

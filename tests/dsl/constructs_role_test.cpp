@@ -139,6 +139,19 @@ TEST_CASE("slot: words that count know how many there are") {
   CHECK(prompt("red, blue", "take {both target}") == "P1104");
 }
 
+TEST_CASE(
+    "binder: templates that speak of roles a task has not, or count otherwise, are no choice") {
+  const auto a = clean(kRoles +
+                       "template heap frame pack \"pack {the goods} onto {the target}\"\n"
+                       "template three frame pack \"pack {all three goods} onto {the target}\"\n"
+                       "template helped frame pack \"pack {the helper} onto {the target}\"\n"
+                       "task t like pile { goods red, blue }\n"
+                       "derive \"{t}_{w}\" for t in { t }, w in templates of pack { say w }\n");
+  CHECK(a->task("t_heap").prompt == "pack the red block and the blue block onto the tray");
+  CHECK(a->task("t_three").name.empty());
+  CHECK(a->task("t_helped").name.empty());
+}
+
 TEST_CASE("layout_st: what a layout places by name is in the scene") {
   const Built built(
       "layout with_pale like pairs { place pale at (0cm, 0cm) }\n"
