@@ -13,6 +13,8 @@ namespace {
 
 // Every construct in a few lines, behind the small suite.
 const char* const kMore = R"(
+object jug like pale { mesh "jug"; name "jug" }
+object lid like tray { mesh "lid"; name "lid" }
 layout close like pairs { drop 5cm }
 role helper
 role goods: set
