@@ -104,6 +104,9 @@ void ask_questions(Context& context) {
   const auto sets = sets_of_tasks(context);
   const ObjectNames names(model);
   Ambiguities ambiguities(context);
+  // What cannot be measured is said where the phrase is used.
+  Diagnostics unsaid;
+  Relations relations(model, context.asset_root, unsaid);
   for (std::size_t t = 0; t < model.tasks.size(); ++t) {
     const TaskId task = model.tasks.id(t);
     if (model.tasks[task].abstract || !model.tasks[task].complete) continue;
@@ -114,7 +117,7 @@ void ask_questions(Context& context) {
       const About about(context.reporter, set.decl_span);
       for (std::uint32_t f = 0; f < set.families.size(); ++f) {
         if (set.families[f].broken) continue;
-        const auto why_not = ask_family(context, ambiguities, scene, id, f);
+        const auto why_not = ask_family(context, ambiguities, relations, scene, id, f);
         if (why_not) model.left_out.push_back({id, f, task, *why_not});
       }
     }

@@ -19,10 +19,11 @@ using plan::OmissionReason;
 // Asks one family of one task.
 class FamilyAsker {
  public:
-  FamilyAsker(Context& context, Ambiguities& ambiguities, const SceneObjects& scene,
-              QuestionSetId set_id, std::uint32_t family)
+  FamilyAsker(Context& context, Ambiguities& ambiguities, Relations& relations,
+              const SceneObjects& scene, QuestionSetId set_id, std::uint32_t family)
       : context_(context),
         ambiguities_(ambiguities),
+        relations_(relations),
         model_(context.model),
         scene_(scene),
         set_id_(set_id),
@@ -110,6 +111,7 @@ class FamilyAsker {
     return {};
   }
   MayOmit check_phrase_of(const Phrase& phrase, ObjectId id, const Span& span) {
+    if (phrase.is_spatial()) return check_places_of(phrase, id, span);
     for (const ObjectId other : objects_) {
       if (other == id) continue;
       const Truth truth = evaluate(phrase.means, model_.objects[other]);
@@ -119,6 +121,17 @@ class FamilyAsker {
       return ambiguous(span, here() + "\"" + phrase.text.text + "\" " +
                                  (truth == Truth::kYes ? "denotes `" : "may denote `") +
                                  model_.objects[other].name + "`, too");
+    }
+    return {};
+  }
+  // Of words that say where things are: they must in every start.
+  MayOmit check_places_of(const Phrase& phrase, ObjectId id, const Span& span) {
+    for (std::size_t i = 0; i < task_.starts.size(); ++i) {
+      if (InStart(relations_, task_, task_.starts[i]).denote(phrase, id).is_clear()) continue;
+      // As of an instruction's second referent.
+      if (scene_.is_slot(id)) return OmissionReason::kAmbiguous;
+      return ambiguous(
+          span, here() + "\"" + phrase.text.text + "\" is not clear in start " + std::to_string(i));
     }
     return {};
   }
@@ -491,6 +504,7 @@ class FamilyAsker {
 
   Context& context_;
   Ambiguities& ambiguities_;
+  Relations& relations_;
   const Model& model_;
   const SceneObjects& scene_;
   QuestionSetId set_id_;
@@ -511,9 +525,9 @@ class FamilyAsker {
 }  // namespace
 
 std::optional<OmissionReason> ask_family(Context& context, Ambiguities& ambiguities,
-                                         const SceneObjects& scene, QuestionSetId set,
-                                         std::uint32_t family) {
-  return FamilyAsker(context, ambiguities, scene, set, family).ask();
+                                         Relations& relations, const SceneObjects& scene,
+                                         QuestionSetId set, std::uint32_t family) {
+  return FamilyAsker(context, ambiguities, relations, scene, set, family).ask();
 }
 
 }  // namespace probe::sema

@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "compiler/define/in_start.h"
 #include "compiler/define/scene_objects.h"
 #include "compiler/names/context.h"
 
@@ -61,7 +62,7 @@ class Ambiguities {
 
 // Adds to Model::asked. Nothing when at least one question came of it.
 std::optional<plan::OmissionReason> ask_family(Context& context, Ambiguities& ambiguities,
-                                               const SceneObjects& scene, QuestionSetId set,
-                                               std::uint32_t family);
+                                               Relations& relations, const SceneObjects& scene,
+                                               QuestionSetId set, std::uint32_t family);
 
 }  // namespace probe::sema

@@ -261,3 +261,24 @@ TEST_CASE("a text without questions has nothing to ask") {
   CHECK(test::analyze_with_suite("")->model.asked.empty());
   CHECK(test::analyze_with_suite("")->model.left_out.empty());
 }
+
+TEST_CASE("a phrase that says where things are is asked for where it is clear in every start") {
+  const auto asked = [](const char* red, const char* blue) {
+    const auto a = test::analyze_with_suite(
+        std::string(
+            "relation ahead(a: object) \"first\" = all o in alike - {a}: x(a) < x(o) - 1cm\n"
+            "object one like red { phrase first spatial \"first toy\" means category toy and ahead "
+            "}\n"
+            "layout row { place one at (") +
+        red + ", 0cm); place blue at (" + blue +
+        ", 0cm); place tray at (0cm, 20cm)\norient by rest; drop 10cm settle 0.5s }\n"
+        "task t like base { layout row; source one; target tray; distractors blue; refer source as "
+        "first }\n"
+        "questions q { choice which \"Which one is the {phrase of source}?\" answer source among "
+        "objects }\n"
+        "suite s { tasks { t }; seeds 1; questions q }\n");
+    return a->model.asked.size();
+  };
+  CHECK(asked("-20cm", "20cm") == 1);
+  CHECK(asked("20cm", "-20cm") == 0);
+}
