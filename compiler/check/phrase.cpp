@@ -128,7 +128,7 @@ struct TaskLanguage {
         !found.unfit.empty() ? std::tuple(Code::P0401, &found.unfit, "does not denote `")
         : !found.ambiguous.empty()
             ? std::tuple(Code::P0402, &found.ambiguous, "does not denote alone `")
-            : std::tuple(Code::P0403, &found.unknown, "is too close to call of `");
+            : std::tuple(Code::P0403, &found.unknown, "cannot be told to denote `");
     const std::string name = model.objects[wanted].name;
     Diagnostic& diagnostic = reporter.report(
         code, place(role),

@@ -29,6 +29,21 @@ bool says(std::string_view text, const Predicate& relation) {
                      [&](const std::string& words) { return says(text, words); });
 }
 
+// Whether words behind the relation's speak of the object: by the last word of its name, or by a
+// phrase of it.
+bool speaks_of(std::string_view text, const Predicate& relation, const Object& object) {
+  std::size_t behind = text.size();
+  for (const std::string& words : relation.words) {
+    const std::size_t at = text.find(words);
+    if (at != text.npos) behind = std::min(behind, at + words.size());
+  }
+  const std::string_view rest = text.substr(behind);
+  const std::string name = fold_case(object.text.text);
+  if (says(rest, std::string_view(name).substr(name.rfind(' ') + 1))) return true;
+  return std::any_of(object.phrases.begin(), object.phrases.end(),
+                     [&](const Phrase& phrase) { return says(rest, fold_case(phrase.text.text)); });
+}
+
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "\"" : ", \"") + word + "\"";
@@ -43,10 +58,23 @@ void check_phrase_words(const Model& model, Reporter& reporter) {
       for (const QueryOp& op : phrase.means) {
         if (op.kind != QueryOp::kRelation) continue;
         const Predicate& relation = model.predicates[static_cast<PredicateId>(op.a)];
-        if (relation.broken || says(text, relation)) continue;
+        if (relation.broken) continue;
         const Span& span = phrase.text.span;
-        if (!said.insert({span.file.value, span.begin}).second) continue;
         const About about(reporter, object.decl_span);
+        if (says(text, relation)) {
+          for (const ObjectId other : op.to) {
+            if (other == ObjectId::kNone || speaks_of(text, relation, model.objects[other]))
+              continue;
+            if (!said.insert({span.file.value, span.begin}).second) continue;
+            reporter
+                .report(Code::P1202, span,
+                        "\"" + phrase.text.text + "\" does not say to which object: `" +
+                            model.objects[other].name + "`")
+                .point("`" + relation.name + "` is to \"" + model.objects[other].text.text + "\"");
+          }
+          continue;
+        }
+        if (!said.insert({span.file.value, span.begin}).second) continue;
         reporter
             .report(Code::P1202, span,
                     "\"" + phrase.text.text + "\" does not say `" + relation.name + "`")

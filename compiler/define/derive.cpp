@@ -217,8 +217,10 @@ class Derive {
     if (!phrase.is_spatial())
       return denote(context_.model, base.objects(), phrase, object).is_clear();
     std::optional<LayoutProblem> problem;
-    const std::vector<Start> starts = enumerate_starts(
-        context_.model, context_.model.layouts[base.layout], base, kMaxEpisodes, problem);
+    const std::vector<Start> starts =
+        clear_starts(relations_, context_.model, base,
+                     enumerate_starts(context_.model, context_.model.layouts[base.layout], base,
+                                      kMaxEpisodes, problem));
     return std::all_of(starts.begin(), starts.end(), [&](const Start& start) {
       return InStart(relations_, base, start).denote(phrase, object).is_clear();
     });

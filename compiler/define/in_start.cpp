@@ -95,6 +95,11 @@ std::optional<std::uint16_t> InStart::body_of(ObjectId object) const {
 }
 
 Truth InStart::holds(const QueryOp& op, std::uint16_t described, const Members& alike) const {
+  // One alone is not the leftmost.
+  const Predicate& relation = relations_.model_.predicates[static_cast<PredicateId>(op.a)];
+  const bool is_alone = std::all_of(alike.all.begin(), alike.all.end(),
+                                    [&](std::uint16_t body) { return body == described; });
+  if (relation.is_comparison && is_alone) return Truth::kNo;
   std::vector<std::uint16_t> of{described};
   for (const ObjectId other : op.to) {
     if (other == ObjectId::kNone) continue;

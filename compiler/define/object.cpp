@@ -9,6 +9,7 @@
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
+#include "runtime/plan/axes.h"
 
 namespace probe::sema {
 namespace {
@@ -127,6 +128,11 @@ struct ObjectReader {
     check_text(context.diagnostics, phrase.text, "a phrase");
     if (!compile_query(context, file, stmt.means, phrase.means)) return;
     phrase.means_text = std::string(context.sources.text(file[stmt.means].span));
+    if (phrase.is_spatial() != (phrase.axis == plan::Axis::kLanguageSpatial) &&
+        plan::find_language_axis(stmt.axis.text) != nullptr)
+      context.report(Situation::kRelationAxis, stmt.axis.span,
+                     phrase.is_spatial() ? "a phrase that says where things are is `spatial`"
+                                         : "a `spatial` phrase means a relation");
     for (Phrase& known : object.phrases) {
       if (known.name != phrase.name) continue;
       known = std::move(phrase);

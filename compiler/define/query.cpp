@@ -19,6 +19,12 @@ Truth has_value(const Object& object, std::uint32_t attribute, std::uint32_t val
   return std::find(values.begin(), values.end(), value) != values.end() ? Truth::kYes : Truth::kNo;
 }
 
+// A relation that need not hold would be words that need not be true.
+bool has_relation(const Query& query, std::size_t from) {
+  return std::any_of(query.begin() + static_cast<std::ptrdiff_t>(from), query.end(),
+                     [](const QueryOp& op) { return op.kind == QueryOp::kRelation; });
+}
+
 }  // namespace
 
 // The relation of that name. Its first object is the one that is described.
@@ -48,6 +54,12 @@ bool compile_relation(Context& context, std::uint32_t relation, const syntax::Na
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const auto object = context.symbols.objects.find(objects[i], context.diagnostics);
     if (!object) return false;
+    if (i > 0 && op.to[0] == static_cast<ObjectId>(*object)) {
+      context.report(
+          Situation::kRelationObjects, objects[i].span,
+          "`" + std::string(name.text) + "` is given `" + std::string(objects[i].text) + "` twice");
+      return false;
+    }
     op.to[i] = static_cast<ObjectId>(*object);
   }
   out.push_back(op);
@@ -56,6 +68,14 @@ bool compile_relation(Context& context, std::uint32_t relation, const syntax::Na
 
 // The depth is bounded by the parser.
 bool compile_query(Context& context, const syntax::File& file, syntax::QueryId id, Query& out) {
+  const std::size_t from = out.size();
+  const auto may_not_hold = [&] {
+    if (!has_relation(out, from)) return false;
+    context.report(Situation::kRelationOpen, file[id].span,
+                   "a relation in a phrase holds: it stands alone or behind `and`, not under "
+                   "`not` or `or`");
+    return true;
+  };
   if (id.value == syntax::QueryId::kNone) return false;  // a syntax error, reported
   const auto& node = file[id].node;
   if (const auto* fact = std::get_if<syntax::QueryFact>(&node)) {
@@ -92,6 +112,7 @@ bool compile_query(Context& context, const syntax::File& file, syntax::QueryId i
   }
   if (const auto* negation = std::get_if<syntax::QueryNot>(&node)) {
     if (!compile_query(context, file, negation->operand, out)) return false;
+    if (may_not_hold()) return false;
     out.push_back({QueryOp::kNot, 0, 0});
     return true;
   }
@@ -104,7 +125,7 @@ bool compile_query(Context& context, const syntax::File& file, syntax::QueryId i
   if (const auto* both = std::get_if<syntax::QueryAnd>(&node))
     return binary(both->left, both->right, QueryOp::kAnd);
   const auto& either = std::get<syntax::QueryOr>(node);
-  return binary(either.left, either.right, QueryOp::kOr);
+  return binary(either.left, either.right, QueryOp::kOr) && !may_not_hold();
 }
 
 Truth evaluate(const Query& query, const Object& object) {

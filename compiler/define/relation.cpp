@@ -21,6 +21,9 @@ class Search {
  public:
   explicit Search(const Model& model) : model_(model) {}
 
+  // Whether what was visited names those alike.
+  bool has_alike() const { return has_alike_; }
+
   std::optional<Fault> in(ExprRef ref) {
     if (ref == kNoExpr || !seen_.insert(ref).second) return std::nullopt;
     const ExprNode& node = model_.exprs.nodes[ref];
@@ -36,7 +39,7 @@ class Search {
     return Fault{node.span, std::string(what) + " is not known before anything moves"};
   }
 
-  std::optional<Fault> own(const ExprNode& node) const {
+  std::optional<Fault> own(const ExprNode& node) {
     switch (node.op) {
       case ExprOp::kMeasure: {
         const MeasureInfo& measure = info(node.measure);
@@ -58,9 +61,12 @@ class Search {
     }
   }
 
-  std::optional<Fault> in_set(SetRef ref) const {
+  std::optional<Fault> in_set(SetRef ref) {
     const SetNode& set = model_.exprs.sets[ref];
     switch (set.op) {
+      case SetOp::kAlike:
+        has_alike_ = true;
+        return std::nullopt;
       case SetOp::kFingers:
       case SetOp::kLinks:
       case SetOp::kBodies:
@@ -78,6 +84,7 @@ class Search {
 
   const Model& model_;
   std::set<ExprRef> seen_;
+  bool has_alike_ = false;
 };
 
 }  // namespace
@@ -116,7 +123,10 @@ void check_relation(Context& context, const syntax::PredicateDecl& node, Predica
                    "expected a condition, found " + type_name(relation.type));
     return;
   }
-  if (const auto fault = Search(context.model).in(relation.body))
+  Search search(context.model);
+  const auto fault = search.in(relation.body);
+  relation.is_comparison = search.has_alike();
+  if (fault)
     context.report(Situation::kRelationMeasure, fault->span, fault->message)
         .label(node.name.span, "in this relation");
 }

@@ -11,6 +11,7 @@
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
 #include "runtime/base/sha256.h"
+#include "runtime/plan/axes.h"
 
 namespace probe::sema {
 namespace {
@@ -283,7 +284,19 @@ std::vector<double> starts_key(const Model& model, const Task& task) {
   return key;
 }
 
-// The starts in which the task's chosen phrases are clear.
+void report_problem(Context& context, const Task& task, const LayoutProblem& problem) {
+  // Where the layout is fine for the task that this one copies, what came in here is to blame.
+  const bool like_is_fine =
+      task.like != TaskId::kNone && !context.model.tasks[task.like].starts.empty();
+  const bool is_newcomer = like_is_fine && is_within(task.distractors_span, task.decl_span);
+  context
+      .report(problem.what, is_newcomer ? task.distractors_span : task.layout_span,
+              problem.message + " in `" + task.name + "`")
+      .label(problem.span, "the layout");
+}
+
+}  // namespace
+
 std::vector<Start> clear_starts(Relations& relations, const Model& model, const Task& task,
                                 std::vector<Start> starts) {
   for (const ClearPhrase& clear : task.clear) {
@@ -296,15 +309,32 @@ std::vector<Start> clear_starts(Relations& relations, const Model& model, const 
   return starts;
 }
 
-void report_problem(Context& context, const Task& task, const LayoutProblem& problem) {
-  // Where the layout is fine for the task that this one copies, what came in here is to blame.
-  const bool like_is_fine =
-      task.like != TaskId::kNone && !context.model.tasks[task.like].starts.empty();
-  const bool is_newcomer = like_is_fine && is_within(task.distractors_span, task.decl_span);
-  context
-      .report(problem.what, is_newcomer ? task.distractors_span : task.layout_span,
-              problem.message + " in `" + task.name + "`")
-      .label(problem.span, "the layout");
+namespace {
+
+// Whether roles that two tasks share start at the same places.
+bool same_places(const Task& a, const Task& b) {
+  return std::equal(
+      a.starts.begin(), a.starts.end(), b.starts.begin(), b.starts.end(),
+      [](const Start& p, const Start& q) {
+        const std::size_t shared = std::min(p.placed.size(), q.placed.size());
+        return std::equal(
+            p.placed.begin(),
+            p.placed.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(shared, 2)),
+            q.placed.begin(), [](const Start::Placed& x, const Start::Placed& y) {
+              return x.x == y.x && x.y == y.y;
+            });
+      });
+}
+
+// A phrase by which starts are chosen is clear in others where the camera or the scene is another:
+// then the places moved, whatever the text calls them.
+void compare_choices(Model& model) {
+  for (Task& task : model.tasks) {
+    if (task.baseline == TaskId::kNone || task.starts.empty()) continue;
+    const Task& baseline = model.tasks[task.baseline];
+    if ((task.clear.empty() && baseline.clear.empty()) || baseline.starts.empty()) continue;
+    if (!same_places(task, baseline)) task.axes |= plan::bit(plan::Axis::kLayout);
+  }
 }
 
 }  // namespace
@@ -350,6 +380,7 @@ void define_starts(Context& context) {
                        task.name + "`");
     return;
   }
+  compare_choices(model);
 }
 
 }  // namespace probe::sema

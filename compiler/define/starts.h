@@ -23,4 +23,9 @@ struct LayoutProblem {
 std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
                                     std::size_t most, std::optional<LayoutProblem>& problem);
 
+class Relations;
+// Of these, the starts in which the task's chosen phrases are clear.
+std::vector<Start> clear_starts(Relations& relations, const Model& model, const Task& task,
+                                std::vector<Start> starts);
+
 }  // namespace probe::sema

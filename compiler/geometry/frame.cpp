@@ -19,6 +19,11 @@ Frame frame_of(const Model& model, const Scene& scene, const Camera& camera) {
   sight.down = pose->rotation * -Vec3::UnitZ();
   const Vec3 middle((scene.area[0] + scene.area[2]) / 2, (scene.area[1] + scene.area[3]) / 2,
                     scene.surface_z);
+  sight.middle = middle;
+  // Towards the camera, also of one that looks straight down or along the ground.
+  sight.near = sight.down - sight.forward;
+  sight.near.z() = 0;
+  sight.near.normalize();
   sight.depth = sight.forward.dot(middle - sight.eye);
   if (sight.depth > 1e-3) frame.sight = sight;
   return frame;

@@ -13,7 +13,9 @@ namespace probe::sema {
 struct Sight {
   Vec3 eye = Vec3::Zero();                                                 // m
   Vec3 right = Vec3::Zero(), down = Vec3::Zero(), forward = Vec3::Zero();  // units
-  double depth = 0;  // how far ahead the middle of the scene's area lies, m; positive
+  Vec3 middle = Vec3::Zero();                                              // of the area, m
+  Vec3 near = Vec3::Zero();  // along the ground towards who looks, unit
+  double depth = 0;          // how far ahead the middle of the scene's area lies, m; positive
 };
 
 struct Frame {

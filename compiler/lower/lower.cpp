@@ -366,15 +366,19 @@ class Lowering {
     return value.kind == Value::kBody ? builder_.emit(Op::kPOS, value.index) : value.index;
   }
 
-  // A point's coordinate along `axis` of the picture, as far away as the middle of the area: points
-  // of one line of sight have one.
-  Value in_view(const ExprNode& node, const Value& of, Vec3 sema::Sight::*axis) {
+  // How far right in the picture, as far away as the middle of the area: points of one line of
+  // sight have one. Or how far along the ground towards who looks.
+  Value in_view(const ExprNode& node, const Value& of, bool is_across) {
     if (!frame_.sight)
       return fail(node.span, "`" + std::string(sema::info(node.measure).name) +
                                  "` needs a first camera that stands still and sees the area");
     const sema::Sight& sight = *frame_.sight;
+    if (!is_across) {
+      const std::uint16_t away = builder_.emit(Op::kVSUB, point(of), vector_of(sight.middle));
+      return Value::of_register(builder_.emit(Op::kVDOT, away, vector_of(sight.near)));
+    }
     const std::uint16_t from_eye = builder_.emit(Op::kVSUB, point(of), vector_of(sight.eye));
-    const Vec3 scaled = sight.*axis * sight.depth;
+    const Vec3 scaled = sight.right * sight.depth;
     const std::uint16_t across = builder_.emit(Op::kVDOT, from_eye, vector_of(scaled));
     const std::uint16_t along = builder_.emit(Op::kVDOT, from_eye, vector_of(sight.forward));
     return Value::of_register(builder_.emit(Op::kRATIO, across, along));
@@ -436,9 +440,9 @@ class Lowering {
       case Measure::kZ:
         return reg(Op::kVZ, point(args[0]));
       case Measure::kViewX:
-        return in_view(node, args[0], &sema::Sight::right);
+        return in_view(node, args[0], true);
       case Measure::kViewY:
-        return in_view(node, args[0], &sema::Sight::down);
+        return in_view(node, args[0], false);
       case Measure::kRobotX:
         return from_robot(args[0], frame_.ahead);
       case Measure::kRobotY:

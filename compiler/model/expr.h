@@ -117,6 +117,7 @@ struct Predicate {
   ExprRef body = kNoExpr;
   Type type;
   bool is_relation = false;        // measures what is known of a start, and phrases may use it
+  bool is_comparison = false;      // a relation to those alike: of one alone it does not hold
   std::uint32_t objects = 0;       // of a relation: its first parameters, which are objects
   std::vector<std::string> words;  // of a relation: what says it, in lower case
 };

@@ -15,7 +15,7 @@ relation between(a: object, b: object, c: object) "between" = distance_xy(a, b) 
 object sided like red {
   phrase side spatial "left block" means category toy and leftmost
   phrase by_tray spatial "block left of the tray" means category toy and left_of tray
-  phrase amid spatial "block between the tray and the pale one" means category toy and between(tray, pale)
+  phrase amid spatial "toy between the tray and the pale block" means category toy and between(tray, pale)
 }
 )";
 
@@ -60,8 +60,9 @@ TEST_CASE("where it does not hold, or of another one too, the start is named and
 }
 
 TEST_CASE("what settling may turn over is too close to call") {
-  CHECK(first_line(said(row("-20cm", "-16cm"), "side")) ==
-        "error[P0403]: \"left block\" is too close to call of `sided` in 1 of the 2 starts of `t`");
+  CHECK(
+      first_line(said(row("-20cm", "-16cm"), "side")) ==
+      "error[P0403]: \"left block\" cannot be told to denote `sided` in 1 of the 2 starts of `t`");
   CHECK(said(row("-20cm", "-12cm"), "side") == "");
 }
 
@@ -170,4 +171,47 @@ TEST_CASE("a layout is cut to the starts in which a phrase is clear, for the bas
   CHECK(first_line(test::analyze_with_suite(
                        two_places + "task t like all { layout any where clear amid of source }")
                        ->said()) == "error[P0402]: none of the 4 starts of `t` has clear phrases");
+}
+
+TEST_CASE(
+    "a relation that need not hold, or is to one object twice, or compares with nobody, is "
+    "refused") {
+  const auto mistake = [](const std::string& text) {
+    return first_line(test::analyze_with_suite(std::string(kRelations) + text)->said());
+  };
+  const std::string open =
+      "error[P1201]: a relation in a phrase holds: it stands alone or behind `and`, not under "
+      "`not` "
+      "or `or`";
+  CHECK(mistake("object o like red { phrase p spatial \"left block\" means not leftmost }") ==
+        open);
+  CHECK(mistake(
+            "object o like red { phrase p spatial \"left block\" means leftmost or color red }") ==
+        open);
+  CHECK(mistake("object o like red { phrase p spatial \"block between the trays\" means "
+                "between(tray, tray) }") == "error[P1201]: `between` is given `tray` twice");
+  CHECK(mistake("object o like red { phrase p appearance \"left block\" means leftmost }") ==
+        "error[P1201]: a phrase that says where things are is `spatial`");
+  CHECK(mistake("object o like red { phrase p spatial \"red block\" means color red }") ==
+        "error[P1201]: a `spatial` phrase means a relation");
+  CHECK(
+      mistake(
+          "object o like red { phrase p spatial \"block left of the tray\" means left_of pale }") ==
+      "error[P1202]: \"block left of the tray\" does not say to which object: `pale`");
+  // One toy alone is not the left one.
+  CHECK(mistake("task t like base { source sided; target tray; refer source as side }") ==
+        "error[P0401]: \"left block\" does not denote `sided` in 24 of the 24 starts of `t`");
+}
+
+TEST_CASE("another camera chooses other starts, which is another layout") {
+  const auto a = test::analyze_with_suite(
+      std::string(kRelations) +
+      "camera opposite like eye { mount arm.base at (100cm, 0cm, 1m) look (-1, 0, -1) }\n"
+      "layout any { cells spots = grid 1 x 2 at (0cm, 0cm) spread (0cm, 20cm)\n"
+      "place source, blue in distinct spots; place tray at (-20cm, 0cm)\n"
+      "orient by rest; drop 10cm settle 0.5s }\n"
+      "task some like base { layout any where clear side of source; source sided; target tray; "
+      "distractors blue; refer source as side }\n"
+      "variant v of some { camera opposite }");
+  CHECK(plan::axis_names(a->task("v").axes) == std::vector<std::string_view>{"layout", "camera"});
 }
