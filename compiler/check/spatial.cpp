@@ -5,28 +5,14 @@
 #include "compiler/check/check.h"
 #include "compiler/define/wording.h"
 #include "runtime/base/utf8.h"
+#include "runtime/base/words.h"
 
 namespace probe::sema {
 namespace {
 
-bool is_in_word(char c) {
-  const auto u = static_cast<unsigned char>(c);
-  return u >= 0x80 || (u >= 'a' && u <= 'z');
-}
-
-// Whether folded words stand in folded text, not as a part of longer ones.
-bool says(std::string_view text, std::string_view words) {
-  for (std::size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) {
-    const std::size_t end = at + words.size();
-    if ((at == 0 || !is_in_word(text[at - 1])) && (end == text.size() || !is_in_word(text[end])))
-      return true;
-  }
-  return false;
-}
-
 bool says(std::string_view text, const Predicate& relation) {
   return std::any_of(relation.words.begin(), relation.words.end(),
-                     [&](const std::string& words) { return says(text, words); });
+                     [&](const std::string& words) { return has_words(text, words); });
 }
 
 // Whether words behind the relation's speak of the object: by the last word of its name, or by a
@@ -39,9 +25,10 @@ bool speaks_of(std::string_view text, const Predicate& relation, const Object& o
   }
   const std::string_view rest = text.substr(behind);
   const std::string name = fold_case(object.text.text);
-  if (says(rest, std::string_view(name).substr(name.rfind(' ') + 1))) return true;
-  return std::any_of(object.phrases.begin(), object.phrases.end(),
-                     [&](const Phrase& phrase) { return says(rest, fold_case(phrase.text.text)); });
+  if (has_words(rest, std::string_view(name).substr(name.rfind(' ') + 1))) return true;
+  return std::any_of(object.phrases.begin(), object.phrases.end(), [&](const Phrase& phrase) {
+    return has_words(rest, fold_case(phrase.text.text));
+  });
 }
 
 std::string listed(const std::vector<std::string>& words) {

@@ -5,6 +5,7 @@
 #include "compiler/define/query.h"
 #include "compiler/define/views.h"
 #include "compiler/geometry/camera_pose.h"
+#include "runtime/base/upright.h"
 
 namespace probe::sema {
 namespace {
@@ -22,17 +23,6 @@ Box around(const Vec3& at, const Vec3& below, const Vec3& above) {
   return box;
 }
 
-// Half extents with the axis nearest the vertical last, as the judge has them.
-Vec3 upright(const Vec3& half, const Mat3& axes) {
-  int up = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    if (std::abs(axes(2, axis)) > std::abs(axes(2, up))) up = axis;
-  }
-  if (up == 0) return {half.y(), half.z(), half.x()};
-  if (up == 1) return {half.x(), half.z(), half.y()};
-  return half;
-}
-
 lower::PlacedBody placed_body(const Scene& scene, const Object& object, const Centre& centre,
                               const Start::Placed& placed) {
   const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
@@ -47,7 +37,7 @@ lower::PlacedBody placed_body(const Scene& scene, const Object& object, const Ce
   lower::PlacedBody body;
   body.origin = around(origin, below, above);
   body.position = around(origin + turn * centre.at, below + unsure, above + unsure);
-  const Vec3 half = upright((high - low) / 2, turn);
+  const Vec3 half = upright_half((high - low) / 2, turn);
   body.half = around(half, Vec3::Zero(), Vec3::Zero());
   for (std::size_t axis = 0; axis < 3; ++axis)
     body.axes[axis] = around(turn.col(static_cast<int>(axis)), Vec3::Zero(), Vec3::Zero());

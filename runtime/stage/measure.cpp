@@ -3,26 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/base/upright.h"
 #include "runtime/stage/robot_of.h"
 
 namespace probe::stage {
-namespace {
-
-// Half extents along the body's own axes, reordered so that z is the one nearest the vertical; x
-// and y keep their order.
-Vec3 upright_half(const Vec3& half, const Quat& rotation) {
-  const Mat3 axes = rotation.toRotationMatrix();
-  int up = 0;
-  for (int axis = 1; axis < 3; ++axis) {
-    if (std::abs(axes(2, axis)) > std::abs(axes(2, up))) up = axis;
-  }
-  if (up == 0) return {half.y(), half.z(), half.x()};
-  if (up == 1) return {half.x(), half.z(), half.y()};
-  return half;
-}
-
-}  // namespace
-
 Instruments::Instruments(const plan::Plan& plan, const plan::TaskRecord& task,
                          const TaskBodies& bodies, std::vector<PlacedTree> trees, int tcp_link)
     : plan_(plan),
@@ -102,7 +86,7 @@ std::vector<vm::BodyStart> Instruments::starts(const vm::StepSample& settled) co
     if (i >= bodies_.objects) continue;
     const plan::ObjectRecord& object = plan_.objects()[bodies[i].index];
     const Vec3 half = (to_vec(object.box_max) - to_vec(object.box_min)) / 2;
-    starts[i].half = upright_half(half, settled.bodies[i].rotation);
+    starts[i].half = upright_half(half, settled.bodies[i].rotation.toRotationMatrix());
   }
   for (std::size_t k = 0; k < robot_.fingers.size(); ++k) {
     if (plan_.text(robot_.fingers[k].link).empty()) continue;
