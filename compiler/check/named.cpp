@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/check/check.h"
+#include "compiler/define/task.h"
 #include "compiler/model/mentioned.h"
 
 namespace probe::sema {
@@ -15,8 +16,6 @@ void check_named(const Model& model, Reporter& reporter) {
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
     const std::vector<ObjectId> objects = task.objects();
-    std::string scene;
-    for (const ObjectId id : objects) scene += (scene.empty() ? "" : ", ") + model.objects[id].name;
     const Mentioned found = mentioned.metrics(task.judged);
     for (const auto& [id, span] : found.objects) {
       if (std::find(objects.begin(), objects.end(), id) != objects.end()) continue;
@@ -25,7 +24,7 @@ void check_named(const Model& model, Reporter& reporter) {
       reporter
           .report(Situation::kNotInScene, span,
                   "object `" + name + "` is not in the scene of `" + task.name + "`")
-          .label(task.span, "judged by this; its scene has " + scene)
+          .label(task.span, "judged by this; its scene has " + objects_text(model, task))
           .help("place it there: `place " + name + " at (..)` in the layout, or `distractors " +
                 name + "`");
     }

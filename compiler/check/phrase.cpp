@@ -253,11 +253,9 @@ struct TaskLanguage {
       }
       return;
     }
-    std::string scene;
     for (const ObjectId id : task.objects()) {
       const Object& object = model.objects[id];
       if (object.name == slot.name.text) return check_category(slot, object);
-      scene += (scene.empty() ? "" : ", ") + object.name;
     }
     const auto& objects = model.objects;
     const auto missing = std::find_if(objects.begin(), objects.end(), [&](const Object& known) {
@@ -274,7 +272,7 @@ struct TaskLanguage {
         "\"" + words + "\" names an object that is not in the scene of `" + task.name + "`");
     const std::string other =
         task_with(objects.id(static_cast<std::size_t>(missing - objects.begin())));
-    diagnostic.point("the scene has " + scene)
+    diagnostic.point("the scene has " + objects_text(model, task))
         .help("add `distractors " + slot.name.text + "`" +
               (other.empty() ? "" : ", or derive from `" + other + "`"));
     // Only a warning can be silenced: a suite that was published like this says so.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/check/check.h"
+#include "compiler/define/task.h"
 
 namespace probe::sema {
 
@@ -18,14 +19,11 @@ void check_poses(const Model& model, Reporter& reporter) {
       if (std::find(objects.begin(), objects.end(), pose.object) != objects.end()) continue;
       if (!said.insert({pose.span.file.value, pose.span.begin}).second) continue;
       const About about(reporter, task.decl_span);
-      std::string scene;
-      for (const ObjectId id : objects)
-        scene += (scene.empty() ? "" : ", ") + model.objects[id].name;
       const std::string& name = model.objects[pose.object].name;
       reporter
           .report(Situation::kAbsentPosed, pose.span,
                   "`" + name + "` is not in the scene of `" + task.name + "`")
-          .point("the scene has " + scene)
+          .point("the scene has " + objects_text(model, task))
           .help("leave the pose out, or add `distractors " + name + "`");
     }
   }

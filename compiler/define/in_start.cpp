@@ -5,6 +5,7 @@
 #include "compiler/define/query.h"
 #include "compiler/define/views.h"
 #include "compiler/geometry/camera_pose.h"
+#include "compiler/geometry/footprint.h"
 #include "runtime/base/upright.h"
 
 namespace probe::sema {
@@ -27,9 +28,7 @@ lower::PlacedBody placed_body(const Scene& scene, const Object& object, const Ce
                               const Start::Placed& placed) {
   const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
   const Vec3 low(object.box_min.data()), high(object.box_max.data());
-  const Vec3 rise = turn.row(2).transpose();
-  const double lowest = rise.cwiseProduct(low).cwiseMin(rise.cwiseProduct(high)).sum();
-  const Vec3 origin(placed.x, placed.y, scene.surface_z - lowest);
+  const Vec3 origin(placed.x, placed.y, scene.surface_z - lowest(object, turn));
   Vec3 below = Vec3::Constant(scene.fixture ? kSettlesOnFixture : kSettlesOnSurface);
   Vec3 above = below;
   if (scene.fixture) below.z() = kFixtureBelow, above.z() = kFixtureAbove;

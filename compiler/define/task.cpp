@@ -380,6 +380,13 @@ RoleId Task::role_of(ObjectId object) const {
   return RoleId::kNone;
 }
 
+std::string objects_text(const Model& model, const Task& task) {
+  std::string text;
+  for (const ObjectId id : task.objects())
+    text += (text.empty() ? "" : ", ") + model.objects[id].name;
+  return text;
+}
+
 std::optional<Span> entry_of(const Task& task, ObjectId object) {
   const auto own = [&](const Span& span) {
     return !span.is_none() && is_within(span, task.decl_span);

@@ -46,6 +46,9 @@ class TaskTable {
 // out and those of the derives above it.
 void expand_derives(Context& context, TaskTable& table);
 
+// Its objects by name, for messages: "carrot, plate".
+std::string objects_text(const Model& model, const Task& task);
+
 // Where an object came into a task: its name in the task's own declaration, when it stands there.
 std::optional<Span> entry_of(const Task& task, ObjectId object);
 

@@ -60,6 +60,13 @@ std::optional<double> growth(const Footprint& a, const Footprint& b, const Vec2&
   return least;
 }
 
+double lowest(const Object& object, const Mat3& turn) {
+  // Along each of the world's axes every side of the box adds its own least: no corner is needed.
+  const Vec3 rise = turn.row(2).transpose();
+  const Vec3 low(object.box_min.data()), high(object.box_max.data());
+  return rise.cwiseProduct(low).cwiseMin(rise.cwiseProduct(high)).sum();
+}
+
 double height(const Object& object, const Turn& turn) {
   const auto& [w, x, y, z] = turn.rotation;
   const double row[3] = {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "compiler/model/model.h"
+#include "runtime/base/geometry.h"
 
 namespace probe::sema {
 
@@ -32,6 +33,8 @@ double overlap(const Footprint& a, const Footprint& b);
 // nothing when they stand on the same cell.
 std::optional<double> growth(const Footprint& a, const Footprint& b, const Vec2& cells);
 
+// How far the lowest corner of a turned box lies above its model's origin (m, mostly negative).
+double lowest(const Object& object, const Mat3& turn);
 // The height of a turned box (m).
 double height(const Object& object, const Turn& turn);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compiler/geometry/camera_pose.h"
+#include "compiler/geometry/footprint.h"
 
 namespace probe::sema {
 std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const Camera& camera) {
@@ -21,14 +22,10 @@ std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const
 std::optional<double> Frustum::outside(const Object& object, const Start::Placed& placed) const {
   const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
   const Vec3 low(object.box_min.data()), high(object.box_max.data());
-  // Along each of the world's axes every side of the box adds its own least: no corner is needed.
-  const Vec3 below = turn.row(2).transpose().cwiseProduct(low);
-  const Vec3 above = turn.row(2).transpose().cwiseProduct(high);
-  const double lowest = below.cwiseMin(above).sum();
   // A corner is the sum of a part of each axis, of which there are two.
   const Mat3 axes = turn_from_world_ * turn;
-  const Vec3 origin =
-      world_in_view_ + turn_from_world_ * Vec3(placed.x, placed.y, surface_z_ - lowest);
+  const Vec3 origin = world_in_view_ + turn_from_world_ * Vec3(placed.x, placed.y,
+                                                               surface_z_ - lowest(object, turn));
   const std::array<Vec3, 2> x{origin + axes.col(0) * low.x(), origin + axes.col(0) * high.x()};
   const std::array<Vec3, 2> y{axes.col(1) * low.y(), axes.col(1) * high.y()};
   const std::array<Vec3, 2> z{axes.col(2) * low.z(), axes.col(2) * high.z()};
