@@ -29,11 +29,12 @@ std::vector<OutputFile> make_towel();
 std::vector<OutputFile> make_wheel();
 std::vector<OutputFile> make_yellow_cube();
 
-std::vector<OutputFile> make_widowx();        // robots/widowx/meshes/
-std::vector<OutputFile> make_panda();         // robots/panda/meshes/
-std::vector<OutputFile> make_table_scene();   // scenes/table/
-std::vector<OutputFile> make_sink_fixture();  // fixtures/sink/
-std::vector<OutputFile> make_sink_scene();    // scenes/sink/
+std::vector<OutputFile> make_widowx();            // robots/widowx/meshes/
+std::vector<OutputFile> make_panda();             // robots/panda/meshes/
+std::vector<OutputFile> make_table_scene();       // scenes/table/
+std::vector<OutputFile> make_sink_fixture();      // fixtures/sink/
+std::vector<OutputFile> make_sink_scene();        // scenes/sink/
+std::vector<OutputFile> make_kitchen_fixtures();  // fixtures/cabinet/, stove/, microwave/
 
 // All of them, without the manifest.
 std::vector<OutputFile> make_all();

@@ -10,7 +10,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_mentions(model, reporter);
   check_poses(model, reporter);
   check_named(model, reporter);
-  check_starts(model, reporter);
+  check_starts(model, checked.asset_root, reporter);
   check_metrics(model, reporter);
   check_expectations(model, reporter);
   check_samples(model, reporter);

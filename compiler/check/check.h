@@ -34,7 +34,8 @@ void check_spatial_words(const Model& model, Reporter& reporter);  // P1202
 void check_poses(const Model& model, Reporter& reporter);          // P0404 of `pose`
 void check_mentions(const Model& model, Reporter& reporter);       // P0404 of words
 void check_named(const Model& model, Reporter& reporter);          // P0201 of metrics
-void check_starts(const Model& model, Reporter& reporter);         // P0501, P0502, P0505
+void check_starts(const Model& model, const std::string& asset_root,
+                  Reporter& reporter);                       // P0501, P0502, P0505, P1302
 void check_metrics(const Model& model, Reporter& reporter);  // P0206, P0304, P0601, P0604, P0605
 void check_expectations(const Model& model, Reporter& reporter);    // P0504, P0211
 void check_samples(const Model& model, Reporter& reporter);         // P0706

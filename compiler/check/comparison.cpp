@@ -36,6 +36,7 @@ const Span* statement_of(const Task& task, plan::Axis axis) {
     case plan::Axis::kLanguageCommonsense:
     case plan::Axis::kLanguageSpatial:
     case plan::Axis::kScene:
+    case plan::Axis::kFixture:
     case plan::Axis::kLight:
     case plan::Axis::kCamera:
     case plan::Axis::kGoal:

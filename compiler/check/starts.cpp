@@ -4,10 +4,12 @@
 
 #include <cstdio>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "compiler/check/check.h"
+#include "compiler/define/fixture.h"
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
 
@@ -31,17 +33,20 @@ std::string at(const Object& object, const Start::Placed& placed) {
   return object.name + " at (" + centimetres(placed.x) + ", " + centimetres(placed.y) + ")";
 }
 
-void check_starts(const Model& model, Reporter& reporter) {
+void check_starts(const Model& model, const std::string& asset_root, Reporter& reporter) {
   // Tasks share lists of starts; what was fine for one in its scene is fine for the next.
-  std::map<const Start*, std::set<std::pair<SceneId, std::vector<CameraId>>>> fine_in;
+  using Where = std::tuple<SceneId, std::vector<CameraId>, std::vector<double>>;
+  std::map<const Start*, std::set<Where>> fine_in;
   std::vector<bool> fine(model.tasks.size(), false);
   Arms arms;
+  Travels travels(model, asset_root);
+  check_fixture_places(model, travels, reporter);
   std::size_t at = 0;
   for (const Task& task : model.tasks) {
     const std::size_t index = at++;
     if (task.starts.empty()) continue;
-    std::pair where{task.scene, std::vector<CameraId>()};
-    for (const View& view : views_of(model, task)) where.second.push_back(view.camera);
+    Where where{task.scene, {}, joint_starts_of(model, task)};
+    for (const View& view : views_of(model, task)) std::get<1>(where).push_back(view.camera);
     auto& known = fine_in[task.starts.data()];
     if (known.contains(where)) {
       fine[index] = true;
@@ -53,6 +58,7 @@ void check_starts(const Model& model, Reporter& reporter) {
     const TaskStarts starts{model, reporter, task, model.layouts[task.layout], like_is_fine};
     const std::size_t before = reporter.diagnostics.size();
     check_overlap(starts);
+    check_travel(starts, travels);
     // What lies beside the table is out of reach and out of view as well.
     if (check_surface(starts) && check_reach(starts, arms)) check_frame(starts);
     fine[index] = reporter.diagnostics.size() == before;

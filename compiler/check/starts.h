@@ -5,8 +5,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "compiler/geometry/reachable.h"
+#include "compiler/geometry/travel.h"
 #include "compiler/model/model.h"
 #include "compiler/names/reporter.h"
 
@@ -28,10 +30,26 @@ struct TaskStarts {
 // Arms by scene; none for a scene whose arm cannot be asked.
 using Arms = std::map<SceneId, std::optional<Arm>>;
 
+// What each fixture with joints fills, worked out once.
+class Travels {
+ public:
+  // The model must live as long.
+  Travels(const Model& model, std::string asset_root)
+      : model_(model), asset_root_(std::move(asset_root)) {}
+  const std::optional<Travel>& of(FixtureId id);
+
+ private:
+  const Model& model_;
+  std::string asset_root_;
+  std::map<FixtureId, std::optional<Travel>> known_;
+};
+
 void check_overlap(const TaskStarts& starts);            // P0501
 bool check_surface(const TaskStarts& starts);            // P0505; false when something was reported
 bool check_reach(const TaskStarts& starts, Arms& arms);  // P0502; as above
 void check_frame(const TaskStarts& starts);              // P0505 as a warning
+void check_travel(const TaskStarts& starts, Travels& travels);                        // P1302
+void check_fixture_places(const Model& model, Travels& travels, Reporter& reporter);  // P1302
 
 std::string centimetres(double metres);  // "7.5cm"
 // "carrot at (7.5cm, -2cm)".

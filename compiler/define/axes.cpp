@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/define/fixture.h"
 #include "compiler/define/role.h"
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
@@ -108,7 +109,7 @@ bool same_cameras(const Model& model, const Task& a, const Task& b) {
 }
 
 // Camera and light are axes of their own.
-bool same_scene(const Scene& a, const Scene& b) {
+bool same_scene(const Model& model, const Scene& a, const Scene& b) {
   const auto joints = [](const Scene& scene) {
     std::vector<double> values;
     for (const Quantity& joint : scene.joints) values.push_back(joint.si());
@@ -119,7 +120,7 @@ bool same_scene(const Scene& a, const Scene& b) {
          text_of(a.fixture) == text_of(b.fixture) && a.fixture_position == b.fixture_position &&
          text_of(a.backdrop) == text_of(b.backdrop) &&
          text_of(main_photo(a)) == text_of(main_photo(b)) && a.physics_hz == b.physics_hz &&
-         a.friction == b.friction;
+         a.friction == b.friction && same_fixtures(model, a, b);
 }
 
 bool same_goal(const Model& model, const Task& a, const Task& b) {
@@ -160,10 +161,11 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
   const Layout& layout = model.layouts[a.layout];
   if (!same_goal(model, a, b) || !same_layout(layout, model.layouts[b.layout]) ||
       !same_choice(a, b) ||
-      (a.scene != b.scene && !same_scene(model.scenes[a.scene], model.scenes[b.scene])) ||
+      (a.scene != b.scene && !same_scene(model, model.scenes[a.scene], model.scenes[b.scene])) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
-      !same_cameras(model, a, b) || a.distractors.size() != b.distractors.size() ||
-      a.objects().size() != b.objects().size() || !same_shape(a, b))
+      !same_cameras(model, a, b) || joint_starts_of(model, a) != joint_starts_of(model, b) ||
+      a.distractors.size() != b.distractors.size() || a.objects().size() != b.objects().size() ||
+      !same_shape(a, b))
     return false;
   // The order of distractors that both have is no difference.
   std::vector<ObjectId> here = a.objects(), there = b.objects();
@@ -201,7 +203,7 @@ class Comparison {
         task_(task),
         baseline_(baseline),
         scene_moves_(task.scene != baseline.scene &&
-                     !same_scene(model.scenes[task.scene], model.scenes[baseline.scene])) {}
+                     !same_scene(model, model.scenes[task.scene], model.scenes[baseline.scene])) {}
 
   bool moves(plan::Axis axis) const {
     const Template& say = model_.templates[task_.say];
@@ -234,6 +236,10 @@ class Comparison {
                !same_choice(task_, baseline_) || !same_poses(model_, task_, baseline_);
       case plan::Axis::kScene:
         return scene_moves_;
+      // Another scene's joints begin where they do.
+      case plan::Axis::kFixture:
+        return !scene_moves_ &&
+               joint_starts_of(model_, task_) != joint_starts_of(model_, baseline_);
       // Another scene comes with its own camera and light; only an override makes them a change of
       // their own.
       case plan::Axis::kLight:
@@ -362,6 +368,7 @@ bool uses(const Model& model, const Task& task, plan::Axis axis) {
     case plan::Axis::kDistractors:
     case plan::Axis::kLayout:
     case plan::Axis::kScene:
+    case plan::Axis::kFixture:
     case plan::Axis::kLight:
     case plan::Axis::kCamera:
     case plan::Axis::kGoal:

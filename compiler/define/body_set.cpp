@@ -10,7 +10,7 @@ namespace {
 constexpr std::pair<std::string_view, SetOp> kSets[] = {
     {"fingers", SetOp::kFingers}, {"links", SetOp::kLinks},   {"bodies", SetOp::kBodies},
     {"objects", SetOp::kObjects}, {"others", SetOp::kOthers}, {"distractors", SetOp::kDistractors},
-    {"alike", SetOp::kAlike},
+    {"alike", SetOp::kAlike},     {"parts", SetOp::kParts},
 };
 
 }  // namespace
@@ -33,6 +33,22 @@ bool ExprReader::only_objects(SetRef ref) {
       return only_objects(set.left) || only_objects(set.right);
     case SetOp::kDifference:
       return only_objects(set.left);
+    default:
+      return false;
+  }
+}
+
+bool ExprReader::only_parts(SetRef ref) {
+  const SetNode& set = arena().sets[ref];
+  switch (set.op) {
+    case SetOp::kParts:
+      return true;
+    case SetOp::kUnion:
+      return only_parts(set.left) && only_parts(set.right);
+    case SetOp::kIntersection:
+      return only_parts(set.left) || only_parts(set.right);
+    case SetOp::kDifference:
+      return only_parts(set.left);
     default:
       return false;
   }

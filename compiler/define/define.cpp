@@ -9,6 +9,7 @@ void define_model(Context& context) {
   define_robots(context);
   define_cameras(context);
   define_lights(context);
+  define_fixtures(context);
   define_scenes(context);
   define_roles(context);
   define_layouts(context);

@@ -8,9 +8,9 @@ namespace probe::sema {
 // In: the symbols of all files. Out: the model, whole; what cannot be read is reported, and its
 // record is marked so that nothing which follows from it is said again. Nothing that was read is
 // judged here: that is check/. The order is that of need, each reads the tables of those above it:
-// attributes, facts -> objects -> datasets robots -> cameras, lights -> scenes roles -> layouts;
-// templates; predicates -> metrics tasks, with what every `derive` makes -> starts -> sets ->
-// questions -> suites -> what is asked
+// attributes, facts -> objects -> datasets robots -> cameras, lights, fixtures -> scenes roles ->
+// layouts; templates; predicates -> metrics tasks, with what every `derive` makes -> starts -> sets
+// -> questions -> suites -> what is asked
 void define_model(Context& context);
 
 void define_attributes(Context& context);
@@ -19,6 +19,7 @@ void define_datasets(Context& context);
 void define_robots(Context& context);
 void define_cameras(Context& context);
 void define_lights(Context& context);
+void define_fixtures(Context& context);
 void define_scenes(Context& context);
 void define_roles(Context& context);
 void define_layouts(Context& context);

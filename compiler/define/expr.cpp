@@ -28,7 +28,11 @@ std::string type_name(const Type& type) {
       return type.dimension == dim::kNumber ? "a direction"
                                             : "a vector of " + name_of(type.dimension).substr(2);
     case TypeKind::kBody:
-      return type.is_object ? "an object" : "a body";
+      return type.is_object ? "an object" : type.is_part ? "a part" : "a body";
+    case TypeKind::kJoint:
+      return "a joint";
+    case TypeKind::kRegion:
+      return "a region";
   }
   return {};
 }
@@ -132,6 +136,8 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprName& name) {
   candidates.push_back("surface");
   for (const syntax::Name& object : context_.symbols.objects.names())
     candidates.push_back(object.text);
+  for (const syntax::Name& known : context_.symbols.fixtures.names())
+    candidates.push_back(known.text);
   for (const Variable& variable : scope_) candidates.push_back(variable.name);
   for (const MeasureInfo& measure : all_measures()) {
     if (measure.params.empty()) candidates.push_back(measure.name);
@@ -168,14 +174,94 @@ std::optional<ExprRef> ExprReader::body_name(const syntax::Name& name) {
     return add(ExprOp::kRole, {TypeKind::kBody, dim::kNumber, true}, name.span, {},
                static_cast<std::uint32_t>(*role));
   }
+  // The fixture itself is the part that its root link is.
+  if (const auto found = context_.symbols.fixtures.peek(name.text)) {
+    const auto id = static_cast<FixtureId>(*found);
+    const Fixture& fixture = context_.model.fixtures[id];
+    if (fixture.broken) return poison(name.span);
+    for (std::size_t i = 0; i < fixture.parts.size(); ++i) {
+      if (fixture.parts[i].index == fixture.model->root)
+        return add_of(ExprOp::kPart, {TypeKind::kBody, dim::kNumber}, name.span, id, i);
+    }
+    context_
+        .report(Situation::kUntouchable, name.span,
+                "the root link of `" + fixture.name + "` has no collision, it is no body")
+        .help("name one of its parts: `" + fixture.name + ".PART`");
+    return poison(name.span);
+  }
   if (name.text == "surface")
     return add(ExprOp::kSurface, {TypeKind::kBody, dim::kNumber, false}, name.span);
   return std::nullopt;
 }
 
+ExprRef ExprReader::add_of(ExprOp op, const Type& type, const Span& span, FixtureId fixture,
+                           std::size_t which) {
+  const ExprRef ref = add(op, type, span, {}, static_cast<std::uint32_t>(fixture));
+  arena().nodes[ref].b = static_cast<std::uint32_t>(which);
+  return ref;
+}
+
+// `cabinet.top`: a part, a joint or a region of a fixture.
+ExprRef ExprReader::of_fixture(const Span& span, FixtureId id, const syntax::Name& name) {
+  const Fixture& fixture = context_.model.fixtures[id];
+  if (fixture.broken) return poison(span);
+  std::vector<std::string_view> known;
+  for (std::size_t i = 0; i < fixture.parts.size(); ++i) {
+    const Fixture::Part& part = fixture.parts[i];
+    if (!part.declared) continue;
+    known.push_back(part.name);
+    if (part.name != name.text) continue;
+    Type type{TypeKind::kBody, dim::kNumber};
+    type.is_part = true;
+    return add_of(ExprOp::kPart, type, span, id, i);
+  }
+  for (std::size_t i = 0; i < fixture.joints.size(); ++i) {
+    known.push_back(fixture.joints[i].name);
+    if (fixture.joints[i].name == name.text)
+      return add_of(ExprOp::kJoint, {TypeKind::kJoint, dim::kNumber}, span, id, i);
+  }
+  for (std::size_t i = 0; i < fixture.regions.size(); ++i) {
+    known.push_back(fixture.regions[i].region.name);
+    if (fixture.regions[i].region.name == name.text)
+      return add_of(ExprOp::kRegion, {TypeKind::kRegion, dim::kNumber}, span, id, i);
+  }
+  report_unknown(context_.diagnostics, "part, joint or region of `" + fixture.name + "`", name,
+                 known)
+      .label(fixture.span, "the fixture");
+  return poison(span);
+}
+
+// Of whatever stands there in the task: its regions are looked up when that is known.
+ExprRef ExprReader::region_of(const Span& span, ExprRef body, const syntax::Name& name) {
+  arena().names.emplace_back(name.text);
+  const auto index = static_cast<std::uint32_t>(arena().names.size() - 1);
+  return add(ExprOp::kRegionOf, {TypeKind::kRegion, dim::kNumber}, span, {body}, index);
+}
+
+ExprRef ExprReader::read_node(const Span& span, const syntax::ExprPath& path) {
+  const std::string_view owner = path.owner.text;
+  const bool is_variable =
+      std::ranges::any_of(scope_, [&](const Variable& variable) { return variable.name == owner; });
+  if (!is_variable) {
+    if (const auto fixture = context_.symbols.fixtures.peek(owner))
+      return of_fixture(span, static_cast<FixtureId>(*fixture), path.name);
+    if (owner == "fixture") {
+      const ExprRef body = add(ExprOp::kStanding, {TypeKind::kBody, dim::kNumber}, span);
+      return region_of(span, body, path.name);
+    }
+  }
+  const ExprRef body =
+      expect(read_node(path.owner.span, syntax::ExprName{path.owner}), TypeKind::kBody, "a body");
+  if (is_poison(body)) return poison(span);
+  return region_of(span, body, path.name);
+}
+
 ExprRef ExprReader::read_node(const Span& span, const syntax::ExprCall& call) {
   for (const MeasureInfo& measure : all_measures()) {
-    if (measure.name == call.callee.text) return read_measure(span, call, measure);
+    // Texts that are older than these have predicates of such names.
+    const bool is_own = measure.measure >= Measure::kTravel &&
+                        context_.symbols.predicates.peek(call.callee.text).has_value();
+    if (measure.name == call.callee.text && !is_own) return read_measure(span, call, measure);
   }
   if (const auto predicate = context_.symbols.predicates.peek(call.callee.text)) {
     return read_predicate(span, call, static_cast<PredicateId>(*predicate));
@@ -233,6 +319,12 @@ bool ExprReader::argument_fits(const MeasureInfo& measure, std::size_t i, ExprRe
     case 'V':
       fits = type.kind == TypeKind::kVector, wanted = "a vector";
       break;
+    case 'J':
+      fits = type.kind == TypeKind::kJoint || type.is_part, wanted = "a joint or a part";
+      break;
+    case 'G':
+      fits = type.kind == TypeKind::kRegion, wanted = "a region";
+      break;
     case 'R':
       fits = type.kind == TypeKind::kReal, wanted = "a number";
       break;
@@ -248,13 +340,30 @@ bool ExprReader::argument_fits(const MeasureInfo& measure, std::size_t i, ExprRe
   return fits;
 }
 
+// A length or an angle where the joint is known; of a parameter neither yet.
+Dimension ExprReader::travel_of(ExprRef ref) const {
+  const ExprNode& at = node(ref);
+  if (at.op != ExprOp::kPart && at.op != ExprOp::kJoint) return dim::kTravel;
+  const Fixture& fixture = context_.model.fixtures[static_cast<FixtureId>(at.a)];
+  std::optional<std::uint32_t> joint = at.b;
+  if (at.op == ExprOp::kPart) joint = fixture.parts[at.b].joint;
+  if (!joint) return dim::kTravel;
+  return fixture.joints[*joint].slides ? dim::kLength : dim::kAngle;
+}
+
 ExprRef ExprReader::add_measure(const Span& span, const MeasureInfo& measure,
                                 std::vector<ExprRef> args) {
   Type type;
-  type.kind = measure.result == 'v' ? TypeKind::kVector : TypeKind::kReal;
+  type.kind = measure.result == 'v'   ? TypeKind::kVector
+              : measure.result == 'b' ? TypeKind::kBool
+                                      : TypeKind::kReal;
   type.dimension =
       measure.params.starts_with("R") ? node(args[0]).type.dimension : measure.dimension;
   type.is_angle_between = measure.result == 'a';
+  if (measure.result == 't' || measure.result == 's') {
+    type.dimension = travel_of(args[0]);
+    if (measure.result == 's') type.dimension = type.dimension / dim::kTime;
+  }
   const ExprRef ref = add(ExprOp::kMeasure, type, span, std::move(args));
   arena().nodes[ref].measure = measure.measure;
   arena().needs_frame = arena().needs_frame || is_of_frame(measure.measure);

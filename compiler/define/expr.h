@@ -60,6 +60,13 @@ class ExprReader {
 
   ExprRef read_node(const Span& span, const syntax::ExprName& name);
 
+  ExprRef read_node(const Span& span, const syntax::ExprPath& path);
+  ExprRef add_of(ExprOp op, const Type& type, const Span& span, FixtureId fixture,
+                 std::size_t which);
+  ExprRef of_fixture(const Span& span, FixtureId id, const syntax::Name& name);
+  ExprRef region_of(const Span& span, ExprRef body, const syntax::Name& name);
+  Dimension travel_of(ExprRef ref) const;
+
   std::optional<ExprRef> body_name(const syntax::Name& name);
   std::optional<ExprRef> named_body(const syntax::Name& name);
 
@@ -94,6 +101,7 @@ class ExprReader {
   ExprRef read_node(const Span& span, const syntax::ExprQuantified& quantified);
 
   bool only_objects(SetRef ref);
+  bool only_parts(SetRef ref);
 
   std::optional<SetRef> read_set(syntax::SetExprId id);
 

@@ -151,7 +151,9 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprQuantified& qu
   const auto set = read_set(quantified.set);
   if (!set) return poison(span);
   const std::uint32_t index = variables_;
-  add_variable(quantified.variable.text, {TypeKind::kBody, dim::kNumber, only_objects(*set)});
+  Type member{TypeKind::kBody, dim::kNumber, only_objects(*set)};
+  member.is_part = only_parts(*set);
+  add_variable(quantified.variable.text, member);
   const ExprRef body = condition(quantified.body);
   scope_.pop_back();
   if (is_poison(body)) return body;

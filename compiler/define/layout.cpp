@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compiler/define/define.h"
+#include "compiler/define/fixture.h"
 #include "compiler/define/record.h"
 #include "compiler/define/role.h"
 #include "compiler/names/quantities.h"
@@ -152,6 +153,7 @@ struct LayoutReader {
     context.report(Situation::kNegative, stmt.value.span, "expected a jitter of 0 or more");
     layout.jitter = 0;
   }
+  void operator()(const syntax::StartStmt& stmt) { read_start(context, stmt, layout.joint_starts); }
   void operator()(const syntax::DropStmt& stmt) {
     layout.has_drop = true;
     layout.drop = read_si(context, stmt.height, dim::kLength,

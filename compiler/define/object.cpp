@@ -4,6 +4,7 @@
 #include "compiler/define/attribute.h"
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
+#include "compiler/define/fixture.h"
 #include "compiler/define/query.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
@@ -107,6 +108,9 @@ struct ObjectReader {
   }
   void operator()(const syntax::RestStmt& stmt) {
     if (const auto turns = read_turns(context, stmt.poses)) object.rest = *turns;
+  }
+  void operator()(const syntax::RegionStmt& stmt) {
+    if (auto region = read_region(context, stmt)) put_region(object.regions, std::move(*region));
   }
   void operator()(const syntax::NameStmt& stmt) {
     object.text = spelled(stmt.text);

@@ -13,6 +13,13 @@ Type type_of(const syntax::Param& param) {
       return {TypeKind::kBody, dim::kNumber, true};
     case syntax::ParamType::kBody:
       return {TypeKind::kBody, dim::kNumber, false};
+    case syntax::ParamType::kPart: {
+      Type type{TypeKind::kBody, dim::kNumber};
+      type.is_part = true;
+      return type;
+    }
+    case syntax::ParamType::kRegion:
+      return {TypeKind::kRegion, dim::kNumber};
     case syntax::ParamType::kLength:
       return real_type(dim::kLength);
     case syntax::ParamType::kAngle:
@@ -119,7 +126,8 @@ ExprRef ExprReader::read_predicate(const Span& span, const syntax::ExprCall& cal
     if (found.kind == TypeKind::kPoison) {
       fits = false;
     } else if (found.kind != wanted.kind ||
-               (wanted.kind == TypeKind::kBody && wanted.is_object && !found.is_object)) {
+               (wanted.kind == TypeKind::kBody &&
+                ((wanted.is_object && !found.is_object) || (wanted.is_part && !found.is_part)))) {
       context_
           .report(Code::P0601, argument.span,
                   "expected " + type_name(wanted) + ", found " + type_name(found))

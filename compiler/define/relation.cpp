@@ -52,6 +52,9 @@ class Search {
         return own(node, "what was");
       case ExprOp::kSurface:
         return Fault{node.span, "a relation is one of objects, the surface is none"};
+      case ExprOp::kPart:
+      case ExprOp::kStanding:
+        return Fault{node.span, "a relation is one of objects, a fixture is none"};
       case ExprOp::kAny:
       case ExprOp::kAll:
       case ExprOp::kNo:
@@ -70,6 +73,7 @@ class Search {
       case SetOp::kFingers:
       case SetOp::kLinks:
       case SetOp::kBodies:
+      case SetOp::kParts:
         return Fault{set.span, "a relation is one of objects, this set has others"};
       case SetOp::kUnion:
       case SetOp::kIntersection:

@@ -1,9 +1,11 @@
 // `scene`: a robot at its place, a surface, what stands and looks around it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "compiler/define/define.h"
+#include "compiler/define/fixture.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
@@ -17,6 +19,7 @@ struct SceneReader {
   Scene& scene;
   bool has_surface = false, has_physics = false, has_backdrop = false, has_cameras = false;
   bool has_joints = false;
+  Span fixture_region = {};
 
   void operator()(const syntax::SceneRobotStmt& stmt) {
     const auto robot = context.symbols.robots.find(stmt.robot, context.diagnostics);
@@ -74,6 +77,37 @@ struct SceneReader {
     assign(scene.fixture_position,
            read_point(context, stmt.at, 3, 3, dim::kLength,
                       {"`fixture ... at` takes lengths", plan::Magnitude::kPlace}));
+  }
+  void operator()(const syntax::SceneFixturesStmt& stmt) {
+    scene.fixtures.clear();
+    for (const syntax::Name& name : stmt.fixtures) {
+      const auto found = context.symbols.fixtures.find(name, context.diagnostics);
+      if (!found) continue;
+      const auto id = static_cast<FixtureId>(*found);
+      if (std::ranges::find(scene.fixtures, id) != scene.fixtures.end()) {
+        context
+            .report(Code::P0203, name.span,
+                    "`" + std::string(name.text) + "` stands twice in scene `" + scene.name + "`")
+            .help("a second one is a declaration of its own: `fixture NAME like " +
+                  std::string(name.text) + " { at (..) }`");
+        continue;
+      }
+      scene.fixtures.push_back(id);
+    }
+  }
+  void operator()(const syntax::RegionStmt& stmt) {
+    auto region = read_region(context, stmt);
+    if (!region) return;
+    if (stmt.of->text == "surface") {
+      put_region(scene.surface_regions, std::move(*region));
+    } else if (stmt.of->text == "fixture") {
+      fixture_region = stmt.of->span;
+      put_region(scene.fixture_regions, std::move(*region));
+    } else {
+      report_unknown(context.diagnostics, "owner of a scene's region", *stmt.of,
+                     {"surface", "fixture"})
+          .help("a region of an object or of a fixture with joints is said in its declaration");
+    }
   }
   void operator()(const syntax::BackdropStmt& stmt) {
     has_backdrop = true;
@@ -227,6 +261,10 @@ void define_scenes(Context& context) {
     if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
     if (reader.has_backdrop) scene.backdrop_z = scene.surface_z;
     if (reader.has_cameras) scene.cameras_z = scene.surface_z;
+    if (!reader.fixture_region.is_none() && !scene.fixture) {
+      context.report(Code::P0201, reader.fixture_region,
+                     "scene `" + scene.name + "` has no `fixture \"...\"` whose region this is");
+    }
     own = {reader.has_joints, reader.has_physics};
     if (context.mistakes() == errors) check_photos(context, scene);
   };
@@ -243,6 +281,8 @@ void define_scenes(Context& context) {
     need(scene.physics_hz != 0, "physics");
     if (scene.robot == RobotId::kNone) return;
     scene.broken = context.model.robots[scene.robot].broken;
+    for (const FixtureId id : scene.fixtures)
+      scene.broken = scene.broken || context.model.fixtures[id].broken;
     if (!scene.broken) check_joints(context, scene, own);
     check_rates(context, scene, own);
   };

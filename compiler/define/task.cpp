@@ -6,6 +6,7 @@
 
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
+#include "compiler/define/fixture.h"
 #include "compiler/define/metrics.h"
 #include "compiler/define/role.h"
 #include "compiler/define/template.h"
@@ -185,6 +186,9 @@ struct TaskReader {
     std::erase_if(task.poses, [&](const PoseOverride& old) { return old.object == pose.object; });
     task.poses.push_back(std::move(pose));
   }
+  void operator()(const syntax::StartStmt& stmt) {
+    poisoned = !read_start(context, stmt, task.joint_starts) || poisoned;
+  }
   void operator()(const syntax::HorizonStmt& stmt) {
     task.horizon_span = stmt.span;
     task.horizon = stmt.steps.value;
@@ -250,6 +254,24 @@ void check_roles(Context& context, const Task& task, bool& poisoned) {
       poisoned = true;
     }
     seen.push_back(id);
+  }
+}
+
+// A joint that begins somewhere is in the scene.
+void check_joint_starts(Context& context, const Task& task, bool& poisoned) {
+  const Scene& scene = context.model.scenes[task.scene];
+  const std::vector<JointStart>* said[] = {&context.model.layouts[task.layout].joint_starts,
+                                           &task.joint_starts};
+  for (const std::vector<JointStart>* starts : said) {
+    for (const JointStart& start : *starts) {
+      if (std::ranges::find(scene.fixtures, start.fixture) != scene.fixtures.end()) continue;
+      context
+          .report(Code::P0201, start.span,
+                  "fixture `" + context.model.fixtures[start.fixture].name + "` is not in scene `" +
+                      scene.name + "` of `" + task.name + "`")
+          .label(scene.span, "the scene");
+      poisoned = true;
+    }
   }
 }
 
@@ -459,6 +481,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   }
   if (task.complete) check_roles(context_, task, poisoned);
   if (task.complete) check_cameras(context_, task, poisoned);
+  if (task.complete) check_joint_starts(context_, task, poisoned);
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
   task.complete = task.complete && !poisoned;
   poison_[index] = poisoned;

@@ -25,7 +25,7 @@ struct Asset {
 
 // What a file is for, so that a missing one can be told with the tasks that need it.
 struct AssetOwner {
-  enum class Kind { kObject, kScene, kRobot } kind = Kind::kObject;
+  enum class Kind { kObject, kScene, kRobot, kFixture } kind = Kind::kObject;
   std::uint32_t id = 0;  // of the model
 };
 

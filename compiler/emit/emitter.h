@@ -59,6 +59,7 @@ class Emitter {
         robots_(model.robots.size()),
         cameras_(model.cameras.size()),
         lights_(model.lights.size()),
+        fixtures_(model.fixtures.size()),
         scenes_(model.scenes.size()),
         tasks_(model.tasks.size()) {}
 
@@ -84,7 +85,12 @@ class Emitter {
   void add_robot(sema::RobotId id);
 
   // Every file the URDF names, each once, in its order.
-  std::vector<std::uint32_t> robot_meshes(const sema::Robot& robot, AssetOwner owner);
+  std::vector<std::uint32_t> urdf_meshes(const robot::RobotModel& model, const sema::Spelled& urdf,
+                                         AssetOwner owner);
+  void add_fixture(sema::FixtureId id);
+  // `owner`: what the names begin with.
+  void add_regions(const std::vector<sema::Region>& regions, const std::string& owner,
+                   plan::BodyKind kind, std::uint32_t index);
   void add_camera(sema::CameraId id);
   void add_light(sema::LightId id);
   std::uint32_t add_photo(const std::optional<sema::Spelled>& overlay, AssetOwner owner);
@@ -117,6 +123,7 @@ class Emitter {
   // Tasks of one scene share them.
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
   void add_task(const sema::Task& task);
+  plan::Slice add_joint_starts(const sema::Task& task);
   void add_assets();
   plan::Slice add_members(const std::vector<TaskId>& members);
   void add_sets();
@@ -141,6 +148,7 @@ class Emitter {
   Used<sema::RobotId> robots_;
   Used<sema::CameraId> cameras_;
   Used<sema::LightId> lights_;
+  Used<sema::FixtureId> fixtures_;
   Used<sema::SceneId> scenes_;
   Used<TaskId> tasks_;
   std::vector<lower::Program> programs_;
@@ -155,6 +163,7 @@ class Emitter {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
   std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
   std::map<std::vector<double>, plan::Slice> placements_;
+  std::map<std::vector<double>, plan::Slice> joint_starts_;
   std::map<std::pair<const sema::Start*, double>, std::vector<plan::Slice>> placement_lists_;
   std::map<std::vector<std::uint32_t>, plan::Slice> views_, roles_;
 };

@@ -25,6 +25,11 @@ bool Emitter::needs(const sema::Task& task, const AssetOwner& owner) const {
     }
     case AssetOwner::Kind::kScene:
       return task.scene == static_cast<sema::SceneId>(owner.id);
+    case AssetOwner::Kind::kFixture: {
+      const auto& fixtures = model_.scenes[task.scene].fixtures;
+      return std::find(fixtures.begin(), fixtures.end(), static_cast<sema::FixtureId>(owner.id)) !=
+             fixtures.end();
+    }
     case AssetOwner::Kind::kRobot:
       return model_.scenes[task.scene].robot == static_cast<sema::RobotId>(owner.id);
   }

@@ -18,6 +18,7 @@ void Emitter::add_object(ObjectId id) {
   record.box_max = object.box_max;
   record.density = object.density;
   record.friction = object.friction;
+  add_regions(object.regions, object.name, plan::BodyKind::kObject, size32(records().objects));
   add_span(plan::SpanKind::kObjects, size32(records().objects), object.span);
   records().objects.push_back(record);
 }

@@ -32,19 +32,20 @@ void Emitter::add_robot(sema::RobotId id) {
                       drive.limit.si()});
   }
   record.drives = plan::append(records().drives, std::span<const plan::DriveRecord>(drives));
-  record.meshes = writer_.list(robot_meshes(robot, owner));
+  record.meshes = writer_.list(urdf_meshes(*robot.model, robot.urdf, owner));
   records().robots.push_back(record);
 }
 
-std::vector<std::uint32_t> Emitter::robot_meshes(const sema::Robot& robot, AssetOwner owner) {
+std::vector<std::uint32_t> Emitter::urdf_meshes(const robot::RobotModel& model,
+                                                const sema::Spelled& urdf, AssetOwner owner) {
   std::vector<std::uint32_t> meshes;
-  const std::filesystem::path folder = std::filesystem::path(robot.urdf.text).parent_path();
+  const std::filesystem::path folder = std::filesystem::path(urdf.text).parent_path();
   const auto add = [&](const robot::MeshRef& mesh, plan::AssetKind kind) {
     const std::string path = (folder / mesh.path).lexically_normal().generic_string();
-    const std::uint32_t index = assets_.add(path, kind, robot.urdf.span, owner);
+    const std::uint32_t index = assets_.add(path, kind, urdf.span, owner);
     if (std::find(meshes.begin(), meshes.end(), index) == meshes.end()) meshes.push_back(index);
   };
-  for (const robot::Link& link : robot.model->links) {
+  for (const robot::Link& link : model.links) {
     for (const robot::MeshRef& mesh : link.visuals) add(mesh, plan::AssetKind::kVisualMesh);
     for (const robot::MeshRef& mesh : link.collisions) add(mesh, plan::AssetKind::kCollisionMesh);
   }

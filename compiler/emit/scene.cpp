@@ -78,6 +78,15 @@ void Emitter::add_scene(sema::SceneId id) {
   record.area = scene.area;
   record.physics_hz = scene.physics_hz;
   record.friction = scene.friction;
+  std::vector<std::uint32_t> fixtures;
+  for (const sema::FixtureId fixture : scene.fixtures) {
+    add_fixture(fixture);
+    fixtures.push_back(fixtures_[fixture]);
+  }
+  if (!fixtures.empty()) record.fixtures = writer_.list(fixtures);
+  const std::uint32_t index = size32(records().scenes);
+  add_regions(scene.surface_regions, "surface", plan::BodyKind::kSurface, index);
+  add_regions(scene.fixture_regions, "fixture", plan::BodyKind::kFixture, index);
   records().scenes.push_back(record);
 }
 

@@ -1,4 +1,5 @@
 // Tasks as records, with their bodies, placements and episodes.
+#include "compiler/define/fixture.h"
 #include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
 #include "runtime/plan/limits.h"
@@ -9,8 +10,11 @@ plan::Slice Emitter::add_bodies(const std::vector<lower::Body>& bodies) {
   std::vector<plan::BodyRecord> rows;
   for (const lower::Body& body : bodies) {
     const bool is_object = body.kind == plan::BodyKind::kObject;
-    const std::uint32_t index =
-        is_object ? objects_[static_cast<ObjectId>(body.index)] : body.index;
+    std::uint32_t index = is_object ? objects_[static_cast<ObjectId>(body.index)] : body.index;
+    if (body.kind == plan::BodyKind::kPart) {
+      const std::uint32_t fixture = fixtures_[static_cast<sema::FixtureId>(body.index)];
+      index = records().fixtures[fixture].parts.first + body.part;
+    }
     rows.push_back({static_cast<std::uint32_t>(body.kind), index, writer_.text(body.name)});
   }
   return plan::append(records().bodies, std::span<const plan::BodyRecord>(rows));
@@ -71,6 +75,21 @@ plan::Slice Emitter::add_roles(const sema::Task& task) {
   return at->second;
 }
 
+// Nothing where all begin as their fixtures say.
+plan::Slice Emitter::add_joint_starts(const sema::Task& task) {
+  const std::vector<double> starts = joint_starts_of(model_, task);
+  std::size_t i = 0;
+  bool moved = false;
+  for (const sema::FixtureId id : model_.scenes[task.scene].fixtures) {
+    for (const sema::Fixture::Joint& joint : model_.fixtures[id].joints)
+      moved = moved || joint.start != starts[i++];
+  }
+  if (!moved) return {};
+  const auto [at, is_new] = joint_starts_.try_emplace(starts, plan::Slice{});
+  if (is_new) at->second = writer_.reals(starts);
+  return at->second;
+}
+
 void Emitter::add_task(const sema::Task& task) {
   const sema::Scene& scene = model_.scenes[task.scene];
   if (!model_.robots[scene.robot].model || model_.robots[scene.robot].fingers.size() != 2) return;
@@ -116,8 +135,10 @@ void Emitter::add_task(const sema::Task& task) {
   record.episodes = {size32(records().episodes), size32(task.starts)};
   const std::vector<plan::Slice>& placements =
       placements_of(task.starts, scene.surface_z + layout.drop);
+  const plan::Slice joints = add_joint_starts(task);
   for (std::size_t e = 0; e < task.starts.size(); ++e) {
     plan::EpisodeRecord episode;
+    episode.joints = joints;
     episode.task = index;
     episode.index = static_cast<std::uint32_t>(e);
     episode.placements = placements[e];

@@ -10,19 +10,21 @@
 #include <vector>
 
 #include "compiler/lower/program.h"
-#include "compiler/model/units.h"
+#include "compiler/model/model.h"
 #include "runtime/plan/isa.h"
 
 namespace probe::lower {
 
 // What an expression is worth while lowering: known now, or in a register.
 struct Value {
-  enum Kind : std::uint8_t { kTruth, kNumber, kRegister, kBody };
+  enum Kind : std::uint8_t { kTruth, kNumber, kRegister, kBody, kJoint, kRegion };
   Kind kind = kTruth;
   bool truth = false;
   double number = 0;
   std::optional<sema::Quantity> angle;  // a literal angle, for its exact cosine
-  std::uint16_t index = 0;              // register, or task-local body
+  std::uint16_t index = 0;              // register, or task-local body, joint, a region's body
+  const sema::Fixture::Joint* joint = nullptr;  // kJoint
+  const sema::Region* region = nullptr;         // kRegion
 
   static Value of_truth(bool value) {
     Value result;
@@ -92,8 +94,8 @@ class Builder {
   bool full_ = false;
   std::map<std::tuple<plan::Op, std::uint16_t, std::uint16_t>, std::uint16_t> known_;
   std::map<std::tuple<plan::Op, std::uint16_t, std::uint16_t>, std::uint16_t> monitors_;
-  std::map<std::uint64_t, std::uint16_t> constants_;  // by bit pattern
-  std::vector<std::uint32_t> makers_;                 // of each register, into the code
+  std::map<std::uint64_t, std::uint16_t> constants_;             // by bit pattern
+  std::vector<std::uint32_t> makers_;                            // of each register, into the code
   std::map<std::pair<std::uint16_t, std::size_t>, Span> asked_;  // by register and metric
 };
 

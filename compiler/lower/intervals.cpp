@@ -141,6 +141,13 @@ class Pass {
     return known;
   }
 
+  // A joint is held at its limits as a contact is: it goes beyond them by less than this (m, rad).
+  Known joint(std::uint16_t index) const {
+    constexpr double kBeyond = 1e-2;
+    if (index >= room_.joints.size()) return {};
+    return number(room_.joints[index].first - kBeyond, room_.joints[index].second + kBeyond);
+  }
+
   // `x - 1cm` stays comparable with `x`.
   void place(Op op, const plan::Instruction& code, Known& result) const {
     result.base = result.instruction;
@@ -189,6 +196,14 @@ class Pass {
       case Op::kAXIS:
         if (code.a < placed_.size()) return vector(placed_[code.a].axes[code.b]);
         return vector(-kUnit, kUnit);
+      // As far as what is measured in the world's frame: both lie in the room.
+      case Op::kLOCAL:
+        return vector(-4 * room_.farthest, 4 * room_.farthest);
+      case Op::kSLIDE:
+      case Op::kTURN:
+        return joint(code.a);
+      case Op::kSLIDING:
+        return number(-kFastest, kFastest);
       case Op::kVEL:
         return vector(-kFastest, kFastest);
       case Op::kVADD:
@@ -269,6 +284,7 @@ class Pass {
       // Contacts and turning have no bound that is worth a message.
       case Op::kPUSH:
       case Op::kSPIN:
+      case Op::kTURNING:
       case Op::kVCROSS:
       // Without a result.
       case Op::kEND:

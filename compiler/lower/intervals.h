@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "compiler/lower/program.h"
@@ -37,6 +38,8 @@ struct ConstantMetric {
 // has a larger half extent (m). Twenty metres are more than an arm throws.
 struct Room {
   double farthest = 20, largest = 10;
+  // Limits of the joints of fixtures (m, rad), in the scene's order; infinite where there are none.
+  std::vector<std::pair<double, double>> joints = {};
   auto operator<=>(const Room&) const = default;
 };
 

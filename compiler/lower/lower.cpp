@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "compiler/lower/builder.h"
@@ -97,6 +98,16 @@ class Lowering {
         return only(node, [](const Body& b) { return b.kind == plan::BodyKind::kFixture; });
       case ExprOp::kSurface:
         return surface();
+      case ExprOp::kPart:
+        return part(node);
+      case ExprOp::kJoint:
+        return joint(node, node.a, node.b);
+      case ExprOp::kRegion:
+        return region(node);
+      case ExprOp::kRegionOf:
+        return region_of(node);
+      case ExprOp::kStanding:
+        return standing(node);
       case ExprOp::kVariable:
         return variables_[node.a];
       case ExprOp::kVector:
@@ -178,6 +189,159 @@ class Lowering {
     return Value::of_body(at);
   }
 
+  Value not_here(const ExprNode& node, const std::string& name) {
+    if (ok_) {
+      diagnostics_.report(Code::P0201, node.span, "`" + name + "` is not in the scene of this task")
+          .help("a scene names its fixtures: `fixture " + name + "`");
+    }
+    ok_ = false;
+    return Value::of_truth(false);
+  }
+
+  // The body that a part of a fixture is.
+  Value part(const ExprNode& node) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Body& body = bodies_[i];
+      if (body.kind == plan::BodyKind::kPart && body.index == node.a && body.part == node.b)
+        return Value::of_body(static_cast<std::uint16_t>(i));
+    }
+    return not_here(node, model_.fixtures[static_cast<sema::FixtureId>(node.a)].name);
+  }
+
+  // Joints are counted over the fixtures of the scene, in the order in which their parts stand.
+  Value joint(const ExprNode& node, std::uint32_t fixture, std::uint32_t which) {
+    std::size_t before = 0;
+    std::uint32_t last = static_cast<std::uint32_t>(sema::FixtureId::kNone);
+    for (const Body& body : bodies_) {
+      if (body.kind != plan::BodyKind::kPart || body.index == last) continue;
+      last = body.index;
+      const auto& joints = model_.fixtures[static_cast<sema::FixtureId>(last)].joints;
+      if (last == fixture) {
+        Value value;
+        value.kind = Value::kJoint;
+        value.index = static_cast<std::uint16_t>(before + which);
+        value.joint = &joints[which];
+        return value;
+      }
+      before += joints.size();
+    }
+    return not_here(node, model_.fixtures[static_cast<sema::FixtureId>(fixture)].name);
+  }
+
+  // What moves a part, or the joint itself.
+  Value joint_of(const ExprNode& node, const Value& value) {
+    if (value.kind == Value::kJoint) return value;
+    const Body& body = bodies_[value.index];
+    const sema::Fixture& fixture = model_.fixtures[static_cast<sema::FixtureId>(body.index)];
+    const auto& mover = fixture.parts[body.part].joint;
+    if (!mover) return fail(node.span, "nothing moves `" + body.name + "`, it has no travel");
+    return joint(node, body.index, *mover);
+  }
+
+  Value of_region(std::uint16_t body, const sema::Region& region) {
+    Value value;
+    value.kind = Value::kRegion;
+    value.index = body;
+    value.region = &region;
+    return value;
+  }
+
+  Value region(const ExprNode& node) {
+    const sema::Fixture& fixture = model_.fixtures[static_cast<sema::FixtureId>(node.a)];
+    const sema::Fixture::OwnRegion& own = fixture.regions[node.b];
+    ExprNode owner = node;
+    owner.b = own.part;
+    const Value body = part(owner);
+    return ok_ ? of_region(body.index, own.region) : body;
+  }
+
+  Value region_of(const ExprNode& node) {
+    const Value body = eval(node.args[0]);
+    if (!ok_) return body;
+    const Body& owner = bodies_[body.index];
+    const std::string& name = model_.exprs.names[node.a];
+    std::string known;
+    if (owner.regions != nullptr) {
+      for (const sema::Region& region : *owner.regions) {
+        if (region.name == name) return of_region(body.index, region);
+        known += (known.empty() ? "" : ", ") + region.name;
+      }
+    }
+    if (ok_) {
+      diagnostics_
+          .report(Code::P0201, node.span, "`" + owner.name + "` has no region `" + name + "`")
+          .point(known.empty() ? "it has none" : "it has " + known);
+    }
+    ok_ = false;
+    return Value::of_truth(false);
+  }
+
+  Value standing(const ExprNode& node) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (bodies_[i].kind == plan::BodyKind::kFixture)
+        return Value::of_body(static_cast<std::uint16_t>(i));
+    }
+    return fail(node.span, "the scene of this task has no `fixture \"...\"`");
+  }
+
+  // From where it is closed: the limit nearest 0.
+  Value travel(const ExprNode& node, const Value& given) {
+    const Value of = joint_of(node, given);
+    if (!ok_) return of;
+    const sema::Fixture::Joint& joint = *of.joint;
+    const Value position =
+        Value::of_register(builder_.emit(joint.slides ? Op::kSLIDE : Op::kTURN, of.index));
+    if (joint.is_endless) return position;
+    if (joint.closes_at_upper()) {
+      if (joint.upper == 0) return builder_.negate(position);
+      return builder_.arithmetic(Op::kSUB, Value::of_number(joint.upper), position);
+    }
+    if (joint.lower == 0) return position;
+    return builder_.arithmetic(Op::kSUB, position, Value::of_number(joint.lower));
+  }
+
+  Value range(const ExprNode& node, const Value& given) {
+    const Value of = joint_of(node, given);
+    if (!ok_) return of;
+    if (of.joint->is_endless)
+      return fail(node.span, "joint `" + of.joint->name + "` turns without end, it has no range");
+    return Value::of_number(of.joint->upper - of.joint->lower);
+  }
+
+  Value rate(const ExprNode& node, const Value& given) {
+    const Value of = joint_of(node, given);
+    if (!ok_) return of;
+    const Value speed =
+        Value::of_register(builder_.emit(of.joint->slides ? Op::kSLIDING : Op::kTURNING, of.index));
+    return of.joint->closes_at_upper() ? builder_.negate(speed) : speed;
+  }
+
+  // The travel of what slides, or of what turns.
+  Value travel_as(const ExprNode& node, const Value& given, bool slides) {
+    const Value of = joint_of(node, given);
+    if (!ok_) return of;
+    if (of.joint->slides != slides) {
+      return fail(node.span, "joint `" + of.joint->name + "` " +
+                                 (of.joint->slides ? "slides, `turn` measures what turns"
+                                                   : "turns, `slide` measures what slides"));
+    }
+    return travel(node, of);
+  }
+
+  // Each axis between its two bounds, which belong to the region.
+  Value within(const Value& where, const Value& of) {
+    const std::uint16_t here = builder_.emit(Op::kLOCAL, of.index, point(where));
+    Value all = Value::of_truth(true);
+    constexpr Op kAxes[] = {Op::kVX, Op::kVY, Op::kVZ};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Value at = Value::of_register(builder_.emit(kAxes[i], here));
+      const Value low = builder_.less(Value::of_number(of.region->low[i]), at, true);
+      const Value high = builder_.less(at, Value::of_number(of.region->high[i]), true);
+      all = builder_.logical_and(all, builder_.logical_and(low, high));
+    }
+    return all;
+  }
+
   Value call(const ExprNode& node) {
     const sema::Predicate& predicate = model_.predicates[node.predicate];
     std::vector<Value> inner(predicate.variables);
@@ -254,6 +418,12 @@ class Lowering {
       case sema::SetOp::kRole:
         return where([&](const Body& b, std::size_t) {
           return b.role == static_cast<std::uint32_t>(set.role);
+        });
+      case sema::SetOp::kParts:
+        return where([&](const Body& b, std::size_t) {
+          if (b.kind != BodyKind::kPart) return false;
+          const auto& parts = model_.fixtures[static_cast<sema::FixtureId>(b.index)].parts;
+          return parts[b.part].declared && parts[b.part].joint.has_value();
         });
       case sema::SetOp::kNames: {
         Bodies result;
@@ -394,6 +564,7 @@ class Lowering {
   Value measure(const ExprNode& node) {
     std::vector<Value> args;
     for (const ExprRef arg : node.args) args.push_back(eval(arg));
+    if (!ok_) return Value::of_truth(false);
     builder_.at(node.span);
     const auto reg = [&](Op op, std::uint16_t a = 0, std::uint16_t b = 0) {
       return Value::of_register(builder_.emit(op, a, b));
@@ -480,6 +651,20 @@ class Lowering {
         return builder_.arithmetic(Op::kMIN, args[0], args[1]);
       case Measure::kMax:
         return builder_.arithmetic(Op::kMAX, args[0], args[1]);
+      case Measure::kTravel:
+        return travel(node, args[0]);
+      case Measure::kRange:
+        return range(node, args[0]);
+      case Measure::kRate:
+        return rate(node, args[0]);
+      case Measure::kSlide:
+        return travel_as(node, args[0], true);
+      case Measure::kTurn:
+        return travel_as(node, args[0], false);
+      case Measure::kWithin:
+        return within(args[0], args[1]);
+      case Measure::kLocal:
+        return reg(Op::kLOCAL, args[1].index, point(args[0]));
     }
     return fail(node.span, "this cannot be measured");
   }
@@ -507,6 +692,12 @@ std::uint32_t role_number(const sema::Task& task, sema::ObjectId object) {
              : static_cast<std::uint32_t>(sema::RoleId::kNone);
 }
 
+void set_regions(Body& body, const std::vector<sema::Region>& regions, std::uint32_t owner) {
+  if (regions.empty()) return;
+  body.regions = &regions;
+  body.owner = owner + 1;
+}
+
 }  // namespace
 
 std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
@@ -517,9 +708,14 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
   for (const sema::ObjectId id : task.objects()) {
     bodies.push_back({plan::BodyKind::kObject, static_cast<std::uint32_t>(id),
                       model.objects[id].name, role_number(task, id)});
+    set_regions(bodies.back(), model.objects[id].regions, static_cast<std::uint32_t>(id));
   }
   bodies.push_back({plan::BodyKind::kSurface, 0, "surface"});
-  if (scene.fixture) bodies.push_back({plan::BodyKind::kFixture, 0, scene.fixture->text});
+  set_regions(bodies.back(), scene.surface_regions, static_cast<std::uint32_t>(task.scene));
+  if (scene.fixture) {
+    bodies.push_back({plan::BodyKind::kFixture, 0, scene.fixture->text});
+    set_regions(bodies.back(), scene.fixture_regions, static_cast<std::uint32_t>(task.scene));
+  }
   std::uint32_t link = 0;
   for (const sema::Finger& finger : robot.fingers)
     bodies.push_back({plan::BodyKind::kLink, link++, finger.link.text});
@@ -529,6 +725,14 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
                     [&](const sema::Finger& finger) { return finger.link.text == known.name; });
     if (is_finger || !known.can_collide()) continue;
     bodies.push_back({plan::BodyKind::kLink, link++, known.name});
+  }
+  for (const sema::FixtureId id : scene.fixtures) {
+    const sema::Fixture& fixture = model.fixtures[id];
+    for (std::uint32_t i = 0; i < fixture.parts.size(); ++i) {
+      bodies.push_back({plan::BodyKind::kPart, static_cast<std::uint32_t>(id),
+                        fixture.body_name(fixture.parts[i]),
+                        static_cast<std::uint32_t>(sema::RoleId::kNone), i});
+    }
   }
   return bodies;
 }
@@ -545,6 +749,8 @@ std::vector<std::uint32_t> shape_of(const sema::Model& model, std::span<const se
     shape.push_back(static_cast<std::uint32_t>(body.kind));
     shape.push_back(is_any ? 0 : body.index);
     shape.push_back(body.role);
+    shape.push_back(body.owner);  // of its regions
+    shape.push_back(body.part);
   }
   for (const sema::Metric& metric : metrics) {
     // A metric's name stands at its span.
@@ -568,6 +774,15 @@ Room room_of(const sema::Model& model, const sema::Task& task) {
   reach(scene.base_position);
   if (scene.fixture) reach(scene.fixture_position);
   Room room;
+  for (const sema::FixtureId id : scene.fixtures) {
+    const sema::Fixture& fixture = model.fixtures[id];
+    reach(fixture.position);
+    for (const sema::Fixture::Joint& joint : fixture.joints) {
+      constexpr double kNone = std::numeric_limits<double>::infinity();
+      room.joints.emplace_back(joint.is_endless ? -kNone : joint.lower,
+                               joint.is_endless ? kNone : joint.upper);
+    }
+  }
   room.farthest += farthest;
   for (const sema::ObjectId id : task.objects()) {
     const sema::Object& object = model.objects[id];

@@ -19,10 +19,16 @@ namespace probe::lower {
 // The task-local bodies in the plan's order (format.h, BodyRecord).
 struct Body {
   plan::BodyKind kind = plan::BodyKind::kObject;
-  std::uint32_t index = 0;  // kObject: sema::ObjectId; kLink: 0, 1 fingers, then on
+  // kObject: sema::ObjectId; kLink: 0, 1 fingers, then on; kPart: sema::FixtureId
+  std::uint32_t index = 0;
   std::string name;
   // Of an object: its sema::RoleId, kDistractor, or kNone for what the layout placed.
   std::uint32_t role = 0xffffffffu;
+  std::uint32_t part = 0;  // kPart: of its fixture's
+  // Its boxes with names, and, where it has some, 1 + the index of the object or scene that says
+  // so.
+  const std::vector<sema::Region>* regions = nullptr;
+  std::uint32_t owner = 0;
 };
 inline constexpr std::uint32_t kDistractorRole = 0xfffffffeu;
 

@@ -38,6 +38,8 @@ struct Printer {
       case plan::Kind::kBody:
       case plan::Kind::kFinger:
         return value < body_names.size() ? body_names[value] : "b" + std::to_string(value);
+      case plan::Kind::kJoint:
+        return "j" + std::to_string(value);
       case plan::Kind::kState:
         return "s" + std::to_string(value);
       case plan::Kind::kTimedState:

@@ -14,12 +14,13 @@
 
 namespace probe::sema {
 
-enum class TypeKind : std::uint8_t { kPoison, kBool, kReal, kVector, kBody };
+enum class TypeKind : std::uint8_t { kPoison, kBool, kReal, kVector, kBody, kJoint, kRegion };
 struct Type {
   TypeKind kind = TypeKind::kPoison;
   Dimension dimension;            // kReal, kVector
   bool is_object = false;         // kBody: certainly one of the task's objects
   bool is_angle_between = false;  // the value of `angle(u, v)`: only to be compared with a constant
+  bool is_part = false;           // kBody: certainly a part of a fixture
 };
 
 enum class Measure : std::uint8_t {
@@ -38,6 +39,11 @@ enum class ExprOp : std::uint8_t {
   kObject,    // a: ObjectId, by its name
   kFixture,   // the scene's fixture, by its name
   kSurface,   // the surface as a body
+  kPart,      // a: fixture; b: part of it
+  kJoint,     // a: fixture; b: joint of it; as a value
+  kRegion,    // a: fixture; b: region of it
+  kRegionOf,  // args[0]: body; a: index into names
+  kStanding,  // the scene's fixture without joints
   kVariable,  // a: parameter or quantifier variable of the enclosing predicate or metric
   kVector,    // args: x, y, z, constants
   kMeasure,   // measure, args
@@ -66,7 +72,7 @@ struct ExprNode {
   Measure measure{};
   Type type;
   Span span;
-  std::uint32_t a = 0;
+  std::uint32_t a = 0, b = 0;
   std::uint32_t height = 1;  // levels below and with it, through the predicates it calls
   PredicateId predicate = PredicateId::kNone;
   SetRef set = 0;
@@ -82,6 +88,7 @@ enum class SetOp : std::uint8_t {
   kDistractors,
   kAlike,  // relations: what the rest of a phrase fits
   kRole,   // role: all that fill it
+  kParts,  // that a joint moves
   kNames,  // bodies: expressions
   kUnion,
   kIntersection,
@@ -99,8 +106,9 @@ struct ExprArena {
   std::vector<ExprNode> nodes;
   std::vector<SetNode> sets;
   std::vector<Quantity> quantities;
-  bool needs_frame = false;  // something is measured from the first camera or the robot's base
+  bool needs_frame = false;    // something is measured from the first camera or the robot's base
   bool names_objects = false;  // some expression names an object or a fixture
+  std::vector<std::string> names;
 };
 
 struct Parameter {

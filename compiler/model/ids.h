@@ -15,6 +15,7 @@ enum class ObjectId : std::uint32_t { kNone = 0xffffffffu };
 enum class RobotId : std::uint32_t { kNone = 0xffffffffu };
 enum class CameraId : std::uint32_t { kNone = 0xffffffffu };
 enum class LightId : std::uint32_t { kNone = 0xffffffffu };
+enum class FixtureId : std::uint32_t { kNone = 0xffffffffu };
 enum class SceneId : std::uint32_t { kNone = 0xffffffffu };
 enum class LayoutId : std::uint32_t { kNone = 0xffffffffu };
 enum class TemplateId : std::uint32_t { kNone = 0xffffffffu };

@@ -79,6 +79,13 @@ struct Turn {
   bool operator==(const Turn&) const = default;
 };
 
+// A box with a name, in the frame of what it belongs to.
+struct Region {
+  std::string name;
+  Span span;
+  std::array<double, 3> low{}, high{};  // m
+};
+
 struct Object {
   std::string name;
   bool broken = false;  // something was reported: what follows from that is not said
@@ -98,6 +105,7 @@ struct Object {
   std::vector<DatasetId> seen_in;
   bool unseen = false;
   std::vector<Turn> rest;
+  std::vector<Region> regions;
   std::vector<Phrase> phrases;
 
   const Phrase* find_phrase(std::string_view phrase) const;
@@ -166,6 +174,71 @@ struct View {
   bool is_named = false;           // by `as`; else the name is that of the scene's camera
 };
 
+// What moves on joints that nobody drives: a cabinet, a door, a knob.
+struct Fixture {
+  // What the text says of a joint.
+  struct Said {
+    Spelled joint;
+    Span span;
+    std::optional<Quantity> friction, damping, stiffness, rest, start;
+    Span start_span;
+    bool stay = false;
+  };
+  // One that moves, with what acts in it. SI per radian or per metre.
+  struct Joint {
+    std::string name;
+    bool slides = false, is_endless = false;
+    double lower = 0, upper = 0;
+    double friction = 0, damping = 0, stiffness = 0, rest = 0, start = 0;
+    // Closed is the limit nearest 0, the lower one of two: travel counts from there.
+    bool closes_at_upper() const {
+      return !is_endless && (upper < 0 ? -upper : upper) < (lower < 0 ? -lower : lower);
+    }
+  };
+  // A link that can be touched; a declared one has a name of its own.
+  struct Part {
+    std::string name;  // "top_drawer"; of the root link, undeclared, empty: the fixture
+    Spelled link;
+    Spelled text;    // in instructions
+    int index = -1;  // of the model's links
+    std::optional<std::uint32_t> joint;
+    bool declared = false;
+    Span span;
+  };
+  struct OwnRegion {
+    Region region;
+    Spelled of;              // a part's name; empty: the fixture
+    std::uint32_t part = 0;  // index of parts
+  };
+  std::string name;
+  bool broken = false;  // as of an object
+  FixtureId like = FixtureId::kNone;
+  Span span;
+  Spelled urdf;
+  bool has_place = false;
+  std::array<double, 3> position{};
+  Turn turn;
+  double friction = 1;
+  std::vector<Said> said;
+  std::vector<Part> named;  // as declared
+  std::vector<OwnRegion> regions;
+  std::optional<robot::RobotModel> model;
+  std::vector<Joint> joints;  // all that move, in the URDF's order
+  std::vector<Part> parts;    // all that can be touched, in the URDF's order
+
+  std::string body_name(const Part& part) const {
+    return part.name.empty() ? name : name + "." + part.name;
+  }
+};
+
+// Where a joint begins, instead of where its fixture says.
+struct JointStart {
+  FixtureId fixture = FixtureId::kNone;
+  std::uint32_t joint = 0;
+  double value = 0;  // m or rad
+  Span span;
+};
+
 struct Scene {
   std::string name;
   Span span;
@@ -184,6 +257,8 @@ struct Scene {
   std::array<double, 4> area{};
   std::optional<Spelled> fixture;
   std::array<double, 3> fixture_position{};
+  std::vector<FixtureId> fixtures;                       // with joints
+  std::vector<Region> surface_regions, fixture_regions;  // about (0, 0, surface_z); in the mesh
   std::optional<Spelled> backdrop;
   std::vector<View> views;  // the first is what a policy with one picture sees
   LightId light = LightId::kNone;
@@ -231,6 +306,7 @@ struct Layout {
   std::vector<Orient> orients;
   double jitter = 0;
   Span jitter_span;
+  std::vector<JointStart> joint_starts;
   bool has_drop = false;
   double drop = 0;
   double settle = 0;
@@ -331,6 +407,7 @@ struct Task {
   TemplateId say = TemplateId::kNone;
   std::map<RoleId, Spelled> refer;  // by which phrase
   std::vector<PoseOverride> poses;
+  std::vector<JointStart> joint_starts;
   std::uint64_t horizon = 0;
   std::vector<Metric> overrides;  // `set`
 
@@ -402,6 +479,7 @@ struct Model {
   Table<RobotId, Robot> robots;
   Table<CameraId, Camera> cameras;
   Table<LightId, Light> lights;
+  Table<FixtureId, Fixture> fixtures;
   Table<SceneId, Scene> scenes;
   Table<LayoutId, Layout> layouts;
   Table<TemplateId, Template> templates;

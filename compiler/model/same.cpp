@@ -41,8 +41,10 @@ struct Comparison {
       case ExprOp::kAll:
       case ExprOp::kNo:
         return a.a == b.a && sets(a.set, b.set);
+      case ExprOp::kRegionOf:
+        return model.exprs.names[a.a] == model.exprs.names[b.a];
       default:
-        return a.a == b.a;
+        return a.a == b.a && a.b == b.b;
     }
   }
 

@@ -54,13 +54,15 @@ std::string digits(Decimal::Wide value) {
 }  // namespace
 
 Dimension operator*(const Dimension& a, const Dimension& b) {
-  return {exponent(a.length + b.length), exponent(a.time + b.time), exponent(a.angle + b.angle),
-          exponent(a.mass + b.mass), exponent(a.pixel + b.pixel)};
+  return {exponent(a.length + b.length), exponent(a.time + b.time),
+          exponent(a.angle + b.angle),   exponent(a.mass + b.mass),
+          exponent(a.pixel + b.pixel),   exponent(a.travel + b.travel)};
 }
 
 Dimension operator/(const Dimension& a, const Dimension& b) {
-  return {exponent(a.length - b.length), exponent(a.time - b.time), exponent(a.angle - b.angle),
-          exponent(a.mass - b.mass), exponent(a.pixel - b.pixel)};
+  return {exponent(a.length - b.length), exponent(a.time - b.time),
+          exponent(a.angle - b.angle),   exponent(a.mass - b.mass),
+          exponent(a.pixel - b.pixel),   exponent(a.travel - b.travel)};
 }
 
 std::string name_of(const Dimension& dimension) {
@@ -85,15 +87,18 @@ std::string name_of(const Dimension& dimension) {
       {dim::kVelocity, "a speed"},
       {dim::kSpin, "an angular speed"},
       {dim::kPixel, "a pixel count"},
+      {dim::kTravel, "a travel, which is a length or an angle"},
+      {dim::kTravelRate, "the speed of a joint that slides or turns"},
   };
   for (const Named& named : kNames) {
     if (named.dimension == dimension) return named.name;
   }
-  const std::array<std::pair<const char*, int>, 5> parts = {{{"m", dimension.length},
+  const std::array<std::pair<const char*, int>, 6> parts = {{{"m", dimension.length},
                                                              {"s", dimension.time},
                                                              {"rad", dimension.angle},
                                                              {"kg", dimension.mass},
-                                                             {"px", dimension.pixel}}};
+                                                             {"px", dimension.pixel},
+                                                             {"travel", dimension.travel}}};
   std::string text = "a quantity in";
   for (const auto& [unit, power] : parts) {
     if (power == 0) continue;

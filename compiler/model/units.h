@@ -19,6 +19,7 @@ struct Dimension {
   std::int8_t angle = 0;
   std::int8_t mass = 0;
   std::int8_t pixel = 0;
+  std::int8_t travel = 0;  // metre or radian, as the joint goes that is not known yet
   bool operator==(const Dimension&) const = default;
 };
 
@@ -39,6 +40,8 @@ inline constexpr Dimension kAngularDamping{.length = 2, .time = -1, .angle = -1,
 inline constexpr Dimension kVelocity{.length = 1, .time = -1};
 inline constexpr Dimension kSpin{.time = -1, .angle = 1};
 inline constexpr Dimension kPixel{.pixel = 1};
+inline constexpr Dimension kTravel{.travel = 1};
+inline constexpr Dimension kTravelRate{.time = -1, .travel = 1};
 }  // namespace dim
 
 Dimension operator*(const Dimension& a, const Dimension& b);

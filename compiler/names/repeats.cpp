@@ -16,12 +16,22 @@ using Key = std::string;  // empty: may stand repeatedly
 // What a statement is about, where keywords.def has `Named`.
 std::string_view name_in(const syntax::PhraseStmt& stmt) { return stmt.name.text; }
 std::string_view name_in(const syntax::CellsStmt& stmt) { return stmt.name.text; }
+std::string_view name_in(const syntax::RegionStmt& stmt) { return stmt.name.text; }
+std::string_view name_in(const syntax::FixtureJointStmt& stmt) { return stmt.joint.text; }
+std::string_view name_in(const syntax::PartStmt& stmt) { return stmt.name.text; }
 std::string_view name_in(const syntax::PoseStmt& stmt) { return stmt.object.text; }
 std::string_view name_in(const syntax::MetricStmt& stmt) { return stmt.name.text; }
 std::string_view name_in(const syntax::ReferStmt& stmt) { return stmt.role.text; }
 
 struct KeyOf {
   const syntax::StatementWord& said;
+
+  // One that stands still, and one list of those with joints.
+  Key operator()(const syntax::FixtureStmt&) const { return "fixture \"...\""; }
+  Key operator()(const syntax::SceneFixturesStmt&) const { return "fixture"; }
+  Key operator()(const syntax::StartStmt& stmt) const {
+    return "start " + std::string(stmt.fixture.text) + "." + std::string(stmt.joint.text);
+  }
 
   Key operator()(const syntax::TaskCameraStmt& stmt) const {
     return stmt.as ? "camera as " + std::string(stmt.as->text) : "camera";
@@ -70,6 +80,7 @@ syntax::Block block_of(const syntax::ObjectDecl&) { return syntax::Block::kObjec
 syntax::Block block_of(const syntax::RobotDecl&) { return syntax::Block::kRobot; }
 syntax::Block block_of(const syntax::CameraDecl&) { return syntax::Block::kCamera; }
 syntax::Block block_of(const syntax::LightDecl&) { return syntax::Block::kLight; }
+syntax::Block block_of(const syntax::FixtureDecl&) { return syntax::Block::kFixture; }
 syntax::Block block_of(const syntax::SceneDecl&) { return syntax::Block::kScene; }
 syntax::Block block_of(const syntax::LayoutDecl&) { return syntax::Block::kLayout; }
 syntax::Block block_of(const syntax::TaskDecl&) { return syntax::Block::kTask; }

@@ -43,6 +43,9 @@ struct Collector {
   void operator()(const syntax::LightDecl& node) const {
     collect(symbols.lights, symbols.light_decls, diagnostics, file, decl, node);
   }
+  void operator()(const syntax::FixtureDecl& node) const {
+    collect(symbols.fixtures, symbols.fixture_decls, diagnostics, file, decl, node);
+  }
   void operator()(const syntax::SceneDecl& node) const {
     collect(symbols.scenes, symbols.scene_decls, diagnostics, file, decl, node);
   }

@@ -40,9 +40,9 @@ struct DeclaredTask {
 
 struct Symbols {
   NameTable datasets{"dataset"}, attributes{"attribute"}, facts{"fact"}, objects{"object"},
-      robots{"robot"}, cameras{"camera"}, lights{"light"}, scenes{"scene"}, layouts{"layout"},
-      templates{"template"}, predicates{"predicate"}, metrics{"metrics"}, tasks{"task"},
-      sets{"set"}, suites{"suite"}, question_sets{"set of questions"},
+      robots{"robot"}, cameras{"camera"}, lights{"light"}, fixtures{"fixture"}, scenes{"scene"},
+      layouts{"layout"}, templates{"template"}, predicates{"predicate"}, metrics{"metrics"},
+      tasks{"task"}, sets{"set"}, suites{"suite"}, question_sets{"set of questions"},
       roles{"role"};  // beside source and target
 
   // Parallel to the names.
@@ -52,6 +52,7 @@ struct Symbols {
   std::vector<Declared<syntax::RobotDecl>> robot_decls;
   std::vector<Declared<syntax::CameraDecl>> camera_decls;
   std::vector<Declared<syntax::LightDecl>> light_decls;
+  std::vector<Declared<syntax::FixtureDecl>> fixture_decls;
   std::vector<Declared<syntax::SceneDecl>> scene_decls;
   std::vector<Declared<syntax::LayoutDecl>> layout_decls;
   std::vector<Declared<syntax::TemplateDecl>> template_decls;

@@ -179,6 +179,9 @@ struct ExprNumber {
 struct ExprName {
   Name name;
 };
+struct ExprPath {  // `cabinet.top_drawer`, `target.inside`
+  Name owner, name;
+};
 struct Argument {
   Span span;
   std::optional<Name> name;  // `clearance: 6cm`
@@ -218,8 +221,8 @@ struct ExprQuantified {  // `no x in bodies - {a, b}: body`
 };
 struct Expr {
   Span span;
-  std::variant<ExprNumber, ExprName, ExprCall, ExprVector, ExprUnary, ExprBinary, ExprHold,
-               ExprBlock, ExprQuantified>
+  std::variant<ExprNumber, ExprName, ExprPath, ExprCall, ExprVector, ExprUnary, ExprBinary,
+               ExprHold, ExprBlock, ExprQuantified>
       node;
 };
 
@@ -387,9 +390,15 @@ struct AttributeStmt {  // `color silver, green`
   Name attribute;
   std::vector<Name> values;
 };
-using ObjectStmt =
-    std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, FrictionStmt, IsStmt,
-                 MaybeStmt, SeenInStmt, UnseenStmt, RestStmt, NameStmt, PhraseStmt, AttributeStmt>;
+struct RegionStmt {  // `region inside of top_drawer box (..) .. (..)`
+  Span span;
+  Name name;
+  std::optional<Name> of;  // of a fixture a part or itself, of a scene `surface` or `fixture`
+  Point low, high;
+};
+using ObjectStmt = std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, FrictionStmt,
+                                IsStmt, MaybeStmt, SeenInStmt, UnseenStmt, RestStmt, RegionStmt,
+                                NameStmt, PhraseStmt, AttributeStmt>;
 struct ObjectDecl {
   Name name;
   std::optional<Name> like;
@@ -482,6 +491,31 @@ struct LightDecl {
   std::vector<LightStmt> body;
 };
 
+struct FixtureAtStmt {  // `at (-10cm, 25cm, 87cm) yaw 180deg`
+  Span span;
+  Point at;
+  std::optional<Pose> turn;
+};
+struct FixtureJointStmt {  // `joint top friction 2N damping 5Ns/m stiffness 30N/m at 0cm start 4cm`
+  Span span;
+  Name joint;
+  std::optional<Quantity> friction, damping, stiffness, rest, start;
+  bool stay = false;
+};
+struct PartStmt {  // `part top_drawer link top name "top drawer"`
+  Span span;
+  Name name;
+  Name link;
+  std::optional<Text> text;
+};
+using FixtureBodyStmt =
+    std::variant<UrdfStmt, FixtureAtStmt, FrictionStmt, FixtureJointStmt, PartStmt, RegionStmt>;
+struct FixtureDecl {
+  Name name;
+  std::optional<Name> like;
+  std::vector<FixtureBodyStmt> body;
+};
+
 struct SceneRobotStmt {
   Span span;
   Name robot;
@@ -501,6 +535,10 @@ struct FixtureStmt {
   Span span;
   Text mesh;
   Point at;
+};
+struct SceneFixturesStmt {  // `fixture cabinet, stove`: with joints
+  Span span;
+  std::vector<Name> fixtures;
 };
 struct BackdropStmt {  // a mesh that is seen and not touched
   Span span;
@@ -525,8 +563,9 @@ struct PhysicsStmt {
   Quantity friction;
   bool window_step = false;
 };
-using SceneStmt = std::variant<SceneRobotStmt, JointsStmt, SurfaceStmt, FixtureStmt, BackdropStmt,
-                               SceneCameraStmt, UseLightStmt, PhysicsStmt>;
+using SceneStmt =
+    std::variant<SceneRobotStmt, JointsStmt, SurfaceStmt, FixtureStmt, SceneFixturesStmt,
+                 RegionStmt, BackdropStmt, SceneCameraStmt, UseLightStmt, PhysicsStmt>;
 struct SceneDecl {
   Name name;
   std::optional<Name> like;
@@ -564,6 +603,11 @@ struct JitterStmt {
   Span span;
   Quantity value;
 };
+struct StartStmt {  // `start cabinet.top 4cm`: where a fixture's joint begins
+  Span span;
+  Name fixture, joint;
+  Quantity value;
+};
 struct DropStmt {
   Span span;
   Quantity height;
@@ -574,7 +618,7 @@ struct ExpectEpisodesStmt {
   Int episodes;
 };
 using LayoutStmt = std::variant<CellsStmt, PlaceAtStmt, PlaceInStmt, OrientByRestStmt, OrientStmt,
-                                JitterStmt, DropStmt, ExpectEpisodesStmt>;
+                                JitterStmt, StartStmt, DropStmt, ExpectEpisodesStmt>;
 struct LayoutDecl {
   Name name;
   std::optional<Name> like;
@@ -590,7 +634,17 @@ struct TemplateDecl {
   TemplateText text;
 };
 
-enum class ParamType : std::uint8_t { kObject, kBody, kLength, kAngle, kTime, kImpulse, kNumber };
+enum class ParamType : std::uint8_t {
+  kObject,
+  kBody,
+  kPart,
+  kRegion,
+  kLength,
+  kAngle,
+  kTime,
+  kImpulse,
+  kNumber
+};
 struct Param {
   Span span;
   Name name;
@@ -673,7 +727,7 @@ struct HorizonStmt {
   Int steps;
 };
 using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
-                              ReferStmt, PoseStmt, HorizonStmt, MetricStmt, RoleStmt>;
+                              ReferStmt, PoseStmt, StartStmt, HorizonStmt, MetricStmt, RoleStmt>;
 
 struct TaskDecl {
   bool abstract = false;
@@ -834,10 +888,11 @@ struct Allow {  // @allow(confounded, "why")
   Text reason;
 };
 
-using DeclNode = std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, RobotDecl,
-                              CameraDecl, LightDecl, SceneDecl, LayoutDecl, TemplateDecl,
-                              PredicateDecl, MetricsDecl, RoleDecl, TaskDecl, VariantDecl,
-                              VariantsDecl, DeriveDecl, SetDecl, QuestionsDecl, SuiteDecl>;
+using DeclNode =
+    std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, RobotDecl, CameraDecl,
+                 LightDecl, FixtureDecl, SceneDecl, LayoutDecl, TemplateDecl, PredicateDecl,
+                 MetricsDecl, RoleDecl, TaskDecl, VariantDecl, VariantsDecl, DeriveDecl, SetDecl,
+                 QuestionsDecl, SuiteDecl>;
 
 struct Decl {
   Span span;  // keyword to the last token

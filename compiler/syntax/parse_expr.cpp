@@ -194,6 +194,10 @@ ExprId Parser::vector_behind(std::uint32_t begin, ExprId x) {
 ExprId Parser::call_or_name() {
   const std::uint32_t begin = mark();
   const Name first = name();
+  if (accept(TokenKind::kDot)) {
+    const Name second = name();
+    return failed_ ? ExprId{} : add(Expr{since(begin), ExprPath{first, second}}, {});
+  }
   if (!at(TokenKind::kLeftParen)) return add(Expr{since(begin), ExprName{first}}, {});
   set_role(TokenRole::kTightParen);
   accept(TokenKind::kLeftParen);

@@ -52,6 +52,8 @@ ObjectStmt Parser::object_unseen() { return UnseenStmt{}; }
 
 ObjectStmt Parser::object_rest() { return RestStmt{{}, poses()}; }
 
+ObjectStmt Parser::object_region() { return region(false); }
+
 ObjectStmt Parser::object_name() {
   NameStmt out{{}, string(), false};
   out.bare = accept_word("bare");

@@ -9,6 +9,7 @@ struct TypeWord {
   ParamType type;
 };
 constexpr TypeWord kTypes[] = {{"object", ParamType::kObject}, {"body", ParamType::kBody},
+                               {"part", ParamType::kPart},     {"region", ParamType::kRegion},
                                {"length", ParamType::kLength}, {"angle", ParamType::kAngle},
                                {"time", ParamType::kTime},     {"impulse", ParamType::kImpulse},
                                {"number", ParamType::kNumber}};

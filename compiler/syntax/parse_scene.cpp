@@ -39,12 +39,15 @@ SceneStmt Parser::scene_surface() {
 }
 
 SceneStmt Parser::scene_fixture() {
+  if (at(TokenKind::kIdent)) return SceneFixturesStmt{{}, names()};
   FixtureStmt out;
   out.mesh = string();
   expect_word("at");
   out.at = point();
   return out;
 }
+
+SceneStmt Parser::scene_region() { return region(true); }
 
 SceneStmt Parser::scene_backdrop() { return BackdropStmt{{}, string()}; }
 

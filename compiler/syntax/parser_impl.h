@@ -141,6 +141,7 @@ class Parser {
   ObjectStmt object_seen();
   ObjectStmt object_unseen();
   ObjectStmt object_rest();
+  ObjectStmt object_region();
   ObjectStmt object_name();
   ObjectStmt object_phrase();
   ObjectStmt object_attribute();
@@ -164,12 +165,24 @@ class Parser {
   LightStmt light_ambient();
   LightStmt light_sun();
 
+  // ---- parse_fixture.cpp ----
+  DeclNode fixture_decl();
+  FixtureBodyStmt fixture_urdf();
+  FixtureBodyStmt fixture_at();
+  FixtureBodyStmt fixture_friction();
+  FixtureBodyStmt fixture_joint();
+  FixtureBodyStmt fixture_part();
+  FixtureBodyStmt fixture_region();
+  RegionStmt region(bool has_owner);
+  StartStmt joint_start();
+
   // ---- parse_scene.cpp ----
   DeclNode scene_decl();
   SceneStmt scene_robot();
   SceneStmt scene_joints();
   SceneStmt scene_surface();
   SceneStmt scene_fixture();
+  SceneStmt scene_region();
   SceneStmt scene_backdrop();
   SceneStmt scene_camera();
   SceneStmt scene_light();
@@ -181,6 +194,7 @@ class Parser {
   LayoutStmt layout_place();
   LayoutStmt layout_orient();
   LayoutStmt layout_jitter();
+  LayoutStmt layout_start();
   LayoutStmt layout_drop();
   LayoutStmt layout_expect();
 
@@ -232,6 +246,7 @@ class Parser {
   TaskStmt task_say();
   TaskStmt task_refer();
   TaskStmt task_pose();
+  TaskStmt task_start();
   TaskStmt task_horizon();
   TaskStmt task_metric();
   TaskStmt task_role();

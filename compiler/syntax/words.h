@@ -16,6 +16,7 @@ enum class Block : std::uint8_t {
   kRobot,
   kCamera,
   kLight,
+  kFixture,
   kScene,
   kLayout,
   kTask,

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/roles.h"
 
@@ -132,6 +133,10 @@ bool same_goal(const plan::Plan& plan, const plan::TaskRecord& a, const plan::Ta
   return true;
 }
 
+std::vector<double> joint_starts(const plan::Plan& plan, const plan::TaskRecord& task) {
+  return plan::joint_starts_of(plan.tables(), plan.scenes()[task.scene], plan.episodes(task)[0]);
+}
+
 }  // namespace
 
 Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t second) {
@@ -165,6 +170,9 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
         return !same_layout(plan, a, b, same_distractors);
       case plan::Axis::kScene:
         return scene_moves;
+      // All starts of a task have one.
+      case plan::Axis::kFixture:
+        return !scene_moves && joint_starts(plan, a) != joint_starts(plan, b);
       // Another scene comes with its own camera and light; whether one was chosen on top of that is
       // not in the records.
       case plan::Axis::kLight:

@@ -12,6 +12,7 @@
 
 #include "runtime/base/trig.h"
 #include "runtime/inspect/axes.h"
+#include "runtime/inspect/fixture_json.h"
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/wrap.h"
@@ -164,6 +165,9 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
     json["ids"]["starts"].push_back(hex(episode.start_id));
     json["ids"]["episodes"].push_back(hex(episode.episode_id));
   }
+  if (plan.scenes()[task.scene].fixtures.count > 0) json["fixtures"] = fixtures_of(plan, index);
+  const Json regions = regions_of(plan, index);
+  if (!regions.empty()) json["regions"] = regions;
   json["questions"] = questions_of(plan, index);
   json["not_asked"] = omissions_of(plan, index);
   return json;
@@ -270,6 +274,8 @@ std::string describe_text(const Json& task) {
   }
   line(task["cameras"].size() == 1 ? "camera" : "cameras", cameras);
   word("light");
+  for (const std::string& fixture : fixture_lines(task)) line("fixture", fixture);
+  if (task.contains("regions")) line("regions", joined(names_of(task["regions"]), "none"));
   line("layout",
        fmt::format("{} starts, dropped from {} cm, settled for {} s", task["starts"].size(),
                    tenth(task["drop_m"].get<double>(), 100), task["settle_s"].get<double>()));

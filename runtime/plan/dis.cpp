@@ -5,6 +5,7 @@
 #include <iterator>
 #include <vector>
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/isa.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/source_line.h"
@@ -19,6 +20,7 @@ class Lister {
       : plan_(plan),
         program_(plan.programs()[program]),
         bodies_(plan.bodies(task)),
+        joints_(joint_names_of(plan.tables(), plan.scenes()[task.scene])),
         constants_(plan.constants(program_)),
         metrics_(plan.metrics(program_)) {}
 
@@ -73,6 +75,8 @@ class Lister {
       case Kind::kBody:
       case Kind::kFinger:
         return std::string(plan_.text(bodies_[value].name));
+      case Kind::kJoint:
+        return joints_[value];
       case Kind::kState:
         return fmt::format("s{}", value);
       case Kind::kTimedState:
@@ -86,6 +90,7 @@ class Lister {
   const Plan& plan_;
   const ProgramRecord& program_;
   std::span<const BodyRecord> bodies_;
+  std::vector<std::string> joints_;
   std::span<const double> constants_;
   std::span<const MetricRecord> metrics_;
   std::uint32_t last_text_ = kNone;

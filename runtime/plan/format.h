@@ -174,9 +174,58 @@ struct SceneRecord {
   std::array<double, 4> area{};  // x min, y min, x max, y max of the surface
   double physics_hz = 0;
   double friction = 0;  // of the surface's own material
-  std::uint64_t zero2[10] = {};
+  Slice fixtures;       // kList of kFixtures, with joints; each once
+  std::uint64_t zero2[9] = {};
 };
 static_assert(sizeof(SceneRecord) == 256);
+
+// What moves on joints that nobody drives.
+struct FixtureRecord {
+  StringRef name;
+  std::uint32_t urdf = kNone;  // kAssets
+  std::uint32_t zero = 0;
+  std::array<double, 3> position{};  // of its root link, world
+  std::array<double, 4> rotation{};  // w x y z
+  double friction = 0;               // of its links' material
+  Slice joints;                      // kFixtureJoints: all that move, in the URDF's order
+  Slice parts;                       // kParts: all links with collision, in the URDF's order
+  Slice meshes;                      // kList of kAssets, as a robot's
+  std::uint64_t zero2[3] = {};
+};
+static_assert(sizeof(FixtureRecord) == 128);
+
+enum class JointMotion : std::uint32_t { kTurns = 1, kSlides = 2 };
+
+// force = stiffness (rest - q) - damping u - friction against the motion. SI per radian or per
+// metre by its motion.
+struct FixtureJointRecord {
+  StringRef joint;           // of the URDF
+  std::uint32_t motion = 0;  // JointMotion
+  std::uint32_t zero = 0;
+  double lower = 0, upper = 0;  // rad or m; both 0: it turns without end
+  double friction = 0, damping = 0, stiffness = 0, rest = 0;
+  double start = 0;  // where episodes begin that do not say otherwise
+};
+static_assert(sizeof(FixtureJointRecord) == 72);
+
+// A link of a fixture that can be touched.
+struct PartRecord {
+  StringRef name;               // as a body: "cabinet.top_drawer"
+  StringRef link;               // of the URDF
+  StringRef text;               // the name in instructions, or empty
+  std::uint32_t joint = kNone;  // of its fixture's: the one that moves it
+  std::uint32_t declared = 0;   // 1: the text names it
+};
+static_assert(sizeof(PartRecord) == 32);
+
+// A box in the frame of what it belongs to.
+struct RegionRecord {
+  StringRef name;                       // "cabinet.inside_top"
+  std::uint32_t kind = 0;               // BodyKind: an object, a scene's surface or fixture, a part
+  std::uint32_t index = kNone;          // of kObjects, kScenes, kParts
+  std::array<double, 3> low{}, high{};  // m
+};
+static_assert(sizeof(RegionRecord) == 64);
 
 // Metric code, see isa.def.
 struct Instruction {
@@ -219,12 +268,20 @@ enum class Readout : std::uint32_t {
 
 // Task-local bodies, in this order: source and target (those that there are), the objects of other
 // roles, distractors, objects that the layout placed, surface, fixture (if any), then links:
-// fingers in the robot's order, then every other link with collision in URDF order. See roles.h.
-enum class BodyKind : std::uint32_t { kObject = 1, kSurface = 2, kFixture = 3, kLink = 4 };
+// fingers in the robot's order, then every other link with collision in URDF order; then the parts
+// of the scene's fixtures with joints, in their order. See roles.h.
+enum class BodyKind : std::uint32_t {
+  kObject = 1,
+  kSurface = 2,
+  kFixture = 3,
+  kLink = 4,
+  kPart = 5
+};
 
 struct BodyRecord {
   std::uint32_t kind = 0;   // BodyKind
-  std::uint32_t index = 0;  // kObject: kObjects; kLink: 0, 1 fingers, then on; else 0
+  std::uint32_t index = 0;  // kObject: kObjects; kLink: 0, 1 fingers, then on; kPart:
+                            // kParts; else 0
   StringRef name;
 };
 static_assert(sizeof(BodyRecord) == 16);
@@ -302,7 +359,9 @@ struct EpisodeRecord {
   Slice placements;         // kPlacements, of the task's objects in the order of its bodies
   std::array<std::uint8_t, 32> start_id{};
   std::array<std::uint8_t, 32> episode_id{};
-  std::uint64_t zero[6] = {};
+  Slice joints;  // kReals: where the joints of the scene's fixtures begin, in their order; empty:
+                 // where the fixtures say
+  std::uint64_t zero[5] = {};
 };
 static_assert(sizeof(EpisodeRecord) == 128);
 

@@ -1,5 +1,6 @@
 #include "runtime/plan/ids.h"
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/questions.h"
 #include "runtime/plan/roles.h"
 
@@ -123,6 +124,19 @@ Sha256 IdHasher::robot(const RobotRecord& r) const {
   return h.finish();
 }
 
+// Where its joints begin is the start's.
+Sha256 IdHasher::fixture(const FixtureRecord& f) const {
+  Hasher h = tagged("vlaprobe.fixture.1");
+  h.hash(asset(f.urdf)).u32(f.meshes.count);
+  for (const std::uint32_t mesh : slice_of(tables_.list, f.meshes)) h.hash(asset(mesh));
+  h.f64s(f.position).f64s(f.rotation).f64(f.friction).u32(f.joints.count);
+  for (const FixtureJointRecord& joint : slice_of(tables_.fixture_joints, f.joints)) {
+    h.text(tables_.text(joint.joint)).u32(joint.motion).f64(joint.lower).f64(joint.upper);
+    h.f64(joint.friction).f64(joint.damping).f64(joint.stiffness).f64(joint.rest);
+  }
+  return h.finish();
+}
+
 // All of a scene but its robot.
 void IdHasher::hash_surroundings(Hasher& h, const SceneRecord& s) const {
   h.hash(asset(s.photo)).hash(asset(s.backdrop));
@@ -130,13 +144,18 @@ void IdHasher::hash_surroundings(Hasher& h, const SceneRecord& s) const {
   h.f64s(s.base_position).f64s(s.base_rotation);
   h.u32(s.joints.count).f64s(slice_of(tables_.reals, s.joints));
   h.f64(s.surface_z).f64s(s.area).f64(s.physics_hz).f64(s.friction);
+  if (s.fixtures.count == 0) return;
+  h.u32(s.fixtures.count);
+  for (const std::uint32_t index : slice_of(tables_.list, s.fixtures))
+    h.hash(fixture(tables_.fixtures[index]));
 }
 
 Sha256 IdHasher::scene(std::uint32_t index) {
   std::optional<Sha256>& known = scenes_[index];
   if (known) return *known;
   const SceneRecord& s = tables_.scenes[index];
-  Hasher h = tagged("vlaprobe.scene.1");
+  // What only some scenes have is part of a second version, so that the others keep their ids.
+  Hasher h = tagged(s.fixtures.count == 0 ? "vlaprobe.scene.1" : "vlaprobe.scene.2");
   h.hash(robot(tables_.robots[s.robot]));
   hash_surroundings(h, s);
   known = h.finish();
@@ -189,11 +208,17 @@ Sha256 IdHasher::judge(const TaskRecord& task) {
 }
 
 Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
-  Hasher h = tagged("vlaprobe.start.1");
+  const SceneRecord& s = tables_.scenes[task.scene];
+  const bool has_joints = s.fixtures.count > 0;
+  Hasher h = tagged(has_joints ? "vlaprobe.start.2" : "vlaprobe.start.1");
   h.hash(scene(task.scene)).hash(cameras(task)).hash(light(task.light));
   h.f64(task.drop).f64(task.settle).u32(episode.placements.count);
   for (const PlacementRecord& p : slice_of(tables_.placements, episode.placements)) {
     h.hash(object(p.object)).f64s(p.position).f64s(p.rotation);
+  }
+  if (has_joints) {
+    const std::vector<double> joints = joint_starts_of(tables_, s, episode);
+    h.u32(static_cast<std::uint32_t>(joints.size())).f64s(joints);
   }
   return h.finish();
 }
@@ -211,6 +236,11 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
                                   {"light", light(task.light)},
                                   {"drop", drop.finish()}};
   const TaskRoles roles = roles_of(tables_, task);
+  if (s.fixtures.count > 0) {
+    Hasher joints = tagged("vlaprobe.joints.1");
+    joints.f64s(joint_starts_of(tables_, s, episode));
+    parts.push_back({"joints of fixtures", joints.finish()});
+  }
   std::uint32_t number = 0;
   for (const PlacementRecord& p : slice_of(tables_.placements, episode.placements)) {
     const std::string role = label_of_body(tables_, roles, number);

@@ -60,6 +60,7 @@ class IdHasher {
   Sha256 scene(std::uint32_t index);
   void hash_surroundings(Hasher& hasher, const SceneRecord& scene) const;
   Sha256 robot(const RobotRecord& robot) const;
+  Sha256 fixture(const FixtureRecord& fixture) const;
   Sha256 camera(std::uint32_t index);
   Sha256 cameras(const TaskRecord& task);  // all of them
   Sha256 light(std::uint32_t index);

@@ -36,7 +36,7 @@ static_assert(ascending_codes(), "isa.def ascends by code and repeats none");
 
 constexpr bool known_letters() {
   for (const OpInfo& op : kOps) {
-    const std::string_view results = "-brv", operands = "-brvkKiBFSHM";
+    const std::string_view results = "-brv", operands = "-brvkKiBFSHMJ";
     if (results.find(static_cast<char>(op.result)) == std::string_view::npos) return false;
     if (operands.find(static_cast<char>(op.a)) == std::string_view::npos) return false;
     if (operands.find(static_cast<char>(op.b)) == std::string_view::npos) return false;

@@ -26,7 +26,8 @@ enum class Kind : char {
   kFinger = 'F',
   kState = 'S',
   kTimedState = 'H',
-  kMetric = 'M'
+  kMetric = 'M',
+  kJoint = 'J'
 };
 
 constexpr bool is_register(Kind kind) {
@@ -42,6 +43,7 @@ enum class Measures : std::uint8_t {
   kAny,
   kNumber,
   kLength,
+  kAngle,
   kImpulse,
   kSpeed,
   kSpin,

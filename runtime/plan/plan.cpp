@@ -114,6 +114,18 @@ std::span<const SunRecord> Plan::suns(const LightRecord& l) const {
 std::span<const double> Plan::joints(const SceneRecord& s) const {
   return slice_of(tables_.reals, s.joints);
 }
+std::span<const std::uint32_t> Plan::fixtures(const SceneRecord& s) const {
+  return slice_of(tables_.list, s.fixtures);
+}
+std::span<const FixtureJointRecord> Plan::joints(const FixtureRecord& f) const {
+  return slice_of(tables_.fixture_joints, f.joints);
+}
+std::span<const PartRecord> Plan::parts(const FixtureRecord& f) const {
+  return slice_of(tables_.parts, f.parts);
+}
+std::span<const std::uint32_t> Plan::meshes(const FixtureRecord& f) const {
+  return slice_of(tables_.list, f.meshes);
+}
 std::span<const double> Plan::constants(const ProgramRecord& p) const {
   return slice_of(tables_.constants, p.constants);
 }

@@ -49,6 +49,10 @@ class Plan {
   std::span<const std::uint32_t> meshes(const RobotRecord& robot) const;  // indices of assets()
   std::span<const SunRecord> suns(const LightRecord& light) const;
   std::span<const double> joints(const SceneRecord& scene) const;
+  std::span<const std::uint32_t> fixtures(const SceneRecord& scene) const;  // indices of fixtures()
+  std::span<const FixtureJointRecord> joints(const FixtureRecord& fixture) const;
+  std::span<const PartRecord> parts(const FixtureRecord& fixture) const;
+  std::span<const std::uint32_t> meshes(const FixtureRecord& fixture) const;
   std::span<const double> constants(const ProgramRecord& program) const;
   std::span<const StateRecord> states(const ProgramRecord& program) const;
   std::span<const Instruction> code(const ProgramRecord& program) const;

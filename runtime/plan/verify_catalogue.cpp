@@ -222,6 +222,9 @@ Status RecordCheck::check(const SceneRecord& s) const {
                             kMaxSubsteps, substeps));
   }
   PROBE_TRY(check_friction(s.friction));
+  PROBE_TRY(check_slice(s.fixtures, t.list.size(), "LIST"));
+  for (const std::uint32_t& fixture : slice_of(t.list, s.fixtures))
+    PROBE_TRY(check_index(fixture, t.fixtures.size(), "FIXT"));
   return check_zero(s.zero2);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/base/check.h"
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/isa.h"
 #include "runtime/plan/verify.h"
 #include "runtime/plan/verify_place.h"
@@ -32,6 +33,7 @@ std::string_view type_name(Kind kind) {
     case Kind::kState:
     case Kind::kTimedState:
     case Kind::kMetric:
+    case Kind::kJoint:
       break;
   }
   return "nothing";
@@ -44,9 +46,10 @@ struct FingerUse {
 
 // What a program asks of the tasks that run it.
 struct Needs {
-  const Instruction* highest = nullptr;  // the one that names the body of highest index
-  std::uint32_t bodies = 0;              // 1 + that index
-  std::vector<FingerUse> fingers;        // one for every body that must be a finger
+  const Instruction* highest = nullptr;    // the one that names the body of highest index
+  std::uint32_t bodies = 0;                // 1 + that index
+  std::vector<FingerUse> fingers;          // one for every body that must be a finger
+  std::vector<const Instruction*> joints;  // those that name one
 };
 
 class ProgramCheck {
@@ -144,6 +147,9 @@ class ProgramCheck {
         return use_state(info, in, value);
       case Kind::kMetric:
         return emit(info, value);
+      case Kind::kJoint:
+        needs.joints.push_back(&in);
+        return {};
     }
     PROBE_CHECK(false, "every kind of operand has a rule");
     return {};
@@ -240,6 +246,22 @@ Status check_task(const Place& place, const Tables& t, const TaskRecord& task, c
                         fmt::format("{} names body {}, which is no finger of task `{}`", op->name,
                                     *operand, t.text(task.name)));
     }
+  }
+  if (needs.joints.empty()) return {};
+  const auto joints = joints_of(t, t.scenes[task.scene]);
+  for (const Instruction* in : needs.joints) {
+    const OpInfo& info = *find_op(in->op);
+    if (in->a >= joints.size()) {
+      return place.fail(Rule::kTaskJoint, &in->a,
+                        fmt::format("names joint {}, but the fixtures of task `{}` have {}", in->a,
+                                    t.text(task.name), joints.size()));
+    }
+    const bool wants_slide = info.op == Op::kSLIDE || info.op == Op::kSLIDING;
+    if (wants_slide == slides(*joints[in->a])) continue;
+    return place.fail(Rule::kTaskJoint, &in->a,
+                      fmt::format("{} names joint `{}` of task `{}`, which {}", info.name,
+                                  t.text(joints[in->a]->joint), t.text(task.name),
+                                  wants_slide ? "turns" : "slides"));
   }
   return {};
 }

@@ -55,6 +55,10 @@ class RecordCheck : FieldCheck {
   Status check(const EpisodeRecord& episode) const;
   Status check(const SetRecord& set) const;
   Status check(const SuiteRecord& suite) const;
+  Status check(const FixtureRecord& fixture) const;
+  Status check(const FixtureJointRecord& joint) const;
+  Status check(const PartRecord& part) const;
+  Status check(const RegionRecord& region) const;
   Status check(const ViewRecord& view) const;
   Status check(const FamilyRecord& family) const;
   Status check(const QuestionRecord& question) const;
@@ -67,6 +71,9 @@ class RecordCheck : FieldCheck {
 
 // What the records of questions say of one another and of tasks; after RecordCheck.
 Status verify_questions(std::span<const std::byte> bytes, const Tables& tables);
+
+// What the records of fixtures say of one another, of scenes and of episodes; after RecordCheck.
+Status verify_fixtures(std::span<const std::byte> bytes, const Tables& tables);
 
 // What records say of one another; after RecordCheck.
 Status verify_relations(std::span<const std::byte> bytes, const Tables& tables);

@@ -145,18 +145,25 @@ class RelationCheck : FieldCheck {
     const bool has_fixture = scene.fixture_collision != kNone;
     const std::uint64_t objects = objects_of(k);
     const std::uint64_t first_link = objects + 1 + (has_fixture ? 1 : 0);
-    const std::uint64_t least = first_link + t.robots[scene.robot].fingers.size();
+    std::vector<std::uint32_t> parts;
+    for (const std::uint32_t fixture : slice_of(t.list, scene.fixtures)) {
+      const Slice& own = t.fixtures[fixture].parts;
+      for (std::uint32_t i = 0; i < own.count; ++i) parts.push_back(own.first + i);
+    }
+    const std::uint64_t least = first_link + t.robots[scene.robot].fingers.size() + parts.size();
     if (k.bodies.count > kMaxBodies || k.bodies.count < least) {
       return fail(Rule::kBodyCount, &k.bodies,
                   fmt::format("task `{}` has {} bodies; with its {} objects it needs {} to {}",
                               t.text(k.name), k.bodies.count, objects, least, kMaxBodies));
     }
     const auto bodies = slice_of(t.bodies, k.bodies);
+    const std::size_t first_part = bodies.size() - parts.size();
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {
       const BodyKind wanted = i < objects      ? BodyKind::kObject
                               : i == objects   ? BodyKind::kSurface
                               : i < first_link ? BodyKind::kFixture
-                                               : BodyKind::kLink;
+                              : i < first_part ? BodyKind::kLink
+                                               : BodyKind::kPart;
       if (bodies[i].kind != static_cast<std::uint32_t>(wanted)) {
         return fail(Rule::kBodyOrder, &bodies[i].kind,
                     fmt::format("body {} of task `{}` has kind {}, wanted is {}", i, t.text(k.name),
@@ -165,6 +172,11 @@ class RelationCheck : FieldCheck {
       if (wanted == BodyKind::kLink && bodies[i].index != i - first_link) {
         return fail(Rule::kLinkOrder, &bodies[i].index,
                     "links are numbered from 0, the fingers first");
+      }
+      if (wanted == BodyKind::kPart && bodies[i].index != parts[i - first_part]) {
+        return fail(Rule::kBodyOrder, &bodies[i].index,
+                    fmt::format("body {} of task `{}` is part {}, wanted is {}", i, t.text(k.name),
+                                bodies[i].index, parts[i - first_part]));
       }
     }
     const TaskRoles roles = roles_of(t, k);
@@ -260,6 +272,8 @@ class RelationCheck : FieldCheck {
 
   Status lists() {
     for (const RobotRecord& r : t.robots) PROBE_TRY(count_list(r.meshes));
+    for (const FixtureRecord& f : t.fixtures) PROBE_TRY(count_list(f.meshes));
+    for (const SceneRecord& s : t.scenes) PROBE_TRY(count_list(s.fixtures));
     for (const SetRecord& s : t.sets) PROBE_TRY(members(s.members));
     for (const SuiteRecord& s : t.suites) {
       PROBE_TRY(members(s.members));

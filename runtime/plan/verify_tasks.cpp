@@ -68,6 +68,8 @@ Status RecordCheck::check(const BodyRecord& b) const {
       return {};
     case BodyKind::kLink:
       return {};
+    case BodyKind::kPart:
+      return check_index(b.index, t.parts.size(), "PART");
   }
   return fail(Rule::kBodyKind, &b.kind, fmt::format("body kind {} is not known", b.kind));
 }
@@ -133,6 +135,7 @@ Status RecordCheck::check(const TaskRecord& k) const {
 
 Status RecordCheck::check(const EpisodeRecord& e) const {
   PROBE_TRY(check_zero(e.zero));
+  PROBE_TRY(check_slice(e.joints, t.reals.size(), "REAL"));
   return check_slice(e.placements, t.placements.size(), "PLAC");
 }
 

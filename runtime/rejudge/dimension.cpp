@@ -34,6 +34,8 @@ Dimension measured(const plan::OpInfo& info, const plan::Instruction& in,
       return Dimension::kAny;
     case plan::Measures::kLength:
       return Dimension::kLength;
+    case plan::Measures::kAngle:
+      return Dimension::kAngle;
     case plan::Measures::kImpulse:
       return Dimension::kImpulse;
     case plan::Measures::kSpeed:
@@ -81,6 +83,8 @@ std::string quantity(double value, Dimension dimension, int digits) {
   switch (dimension) {
     case Dimension::kLength:
       return std::fabs(value) < 1 ? with(100 * value, "cm") : with(value, "m");
+    case Dimension::kAngle:
+      return angle_text(value, digits);
     case Dimension::kImpulse:
       return with(value, "Ns");
     case Dimension::kSpeed:

@@ -15,6 +15,7 @@ enum class Dimension : std::uint8_t {
   kAny,  // a constant, which takes the dimension of what it meets
   kNumber,
   kLength,
+  kAngle,
   kImpulse,
   kSpeed,
   kSpin,

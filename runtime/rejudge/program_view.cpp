@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/source_line.h"
 
 namespace probe::rejudge {
@@ -86,12 +87,16 @@ void ProgramView::locate(std::uint16_t reg, std::uint32_t metric, Condition& con
 
 std::string ProgramView::bodies(std::uint16_t reg, bool swapped) const {
   std::vector<bool> seen(registers());
-  std::vector<std::uint16_t> open = {reg}, named;
+  std::vector<std::uint16_t> open = {reg};
+  std::vector<std::string> named;
   std::string out;
+  const auto add = [&](const std::string& name) {
+    if (std::ranges::find(named, name) != named.end()) return;
+    named.push_back(name);
+    out += (out.empty() ? "" : ", ") + name;
+  };
   const auto name = [&](std::uint16_t body) {
-    if (std::ranges::find(named, body) != named.end()) return;
-    named.push_back(body);
-    out += (out.empty() ? "" : ", ") + std::string(plan_.text(plan_.bodies(task_)[body].name));
+    add(std::string(plan_.text(plan_.bodies(task_)[body].name)));
   };
   while (!open.empty()) {
     const std::uint16_t next = open.back();
@@ -102,6 +107,8 @@ std::string ProgramView::bodies(std::uint16_t reg, bool swapped) const {
     const plan::OpInfo& info = *plan::find_op(in.op);
     if (plan::is_body(info.a)) name(in.a);
     if (plan::is_body(info.b)) name(in.b);
+    if (info.a == Kind::kJoint)
+      add(plan::joint_names_of(plan_.tables(), plan_.scenes()[task_.scene])[in.a]);
     // The operand that is to be looked at first is pushed last.
     const bool is_turned = swapped && next == reg;
     if (is_turned && plan::is_register(info.a)) open.push_back(in.a);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/store/episode_key.h"
 
 namespace probe::rejudge {
@@ -22,11 +23,21 @@ Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::T
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     // Equal starts have equal objects, whatever a catalogue calls them.
-    if (bodies[i].kind != static_cast<std::uint32_t>(plan::BodyKind::kLink)) continue;
+    const auto kind = static_cast<plan::BodyKind>(bodies[i].kind);
+    if (kind != plan::BodyKind::kLink && kind != plan::BodyKind::kPart) continue;
     if (plan.text(bodies[i].name) != header.bodies[i]) {
       return refuse(fmt::format("body {} is `{}`, task `{}` judges `{}`", i, header.bodies[i],
                                 plan.text(record.name), plan.text(bodies[i].name)));
     }
+  }
+  const plan::SceneRecord& scene = plan.scenes()[record.scene];
+  const auto joints = plan::joint_names_of(plan.tables(), scene);
+  const std::size_t drives = plan.robots()[scene.robot].drives.count;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const std::size_t at = drives + i;
+    if (at < header.joints.size() && header.joints[at] == joints[i]) continue;
+    return refuse(fmt::format("joint `{}` was not measured, task `{}` judges it", joints[i],
+                              plan.text(record.name)));
   }
   const double hz = plan.robots()[plan.scenes()[record.scene].robot].control_hz;
   if (hz != header.control_hz) {

@@ -2,6 +2,7 @@
 // them.
 #include "runtime/stage/assets.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -79,12 +80,16 @@ class SharedAssets::Loader {
       if (object.visual != plan::kNone) PROBE_TRY(mesh(object.visual));
       if (object.collision != plan::kNone) PROBE_TRY(shape(object.collision));
     }
+    for (const std::uint32_t index : plan_.fixtures(scene)) PROBE_TRY(planned(index));
+    by_scene(task.scene);
     return robot(plan_.robots()[scene.robot]);
   }
 
   Status fixture(const Fixture& fixture) {
-    for (const LoadedFixture& other : assets_.fixtures_) {
-      if (other.fixture.name != fixture.name) continue;
+    const auto is_it = [&](const auto& other) { return other->fixture.name == fixture.name; };
+    bool known = std::ranges::any_of(assets_.others_, is_it);
+    for (const auto& [index, other] : assets_.planned_) known = known || is_it(other);
+    if (known) {
       return Failure{Fault::kAsset, "two fixtures are called `" + fixture.name + "`", fixture.urdf};
     }
     if (fixture.positions.size() != fixture.joints.size()) {
@@ -97,11 +102,30 @@ class SharedAssets::Loader {
     PROBE_ASSIGN(robot::RobotModel model,
                  robot::load_urdf((fs::path(assets_.root_) / fixture.urdf).string()));
     PROBE_ASSIGN(UrdfParts parts, parts_of(std::move(model), fixture.urdf));
-    assets_.fixtures_.push_back({fixture, std::move(parts)});
+    assets_.others_.push_back(
+        std::make_unique<LoadedFixture>(LoadedFixture{fixture, std::move(parts), false}));
+    for (auto& [scene, all] : assets_.by_scene_) all.push_back(assets_.others_.back().get());
     return {};
   }
 
  private:
+  void by_scene(std::uint32_t scene) {
+    std::vector<const LoadedFixture*>& all = assets_.by_scene_[scene];
+    all.clear();
+    for (const std::uint32_t index : plan_.fixtures(plan_.scenes()[scene]))
+      all.push_back(assets_.planned_.at(index).get());
+  }
+
+  // Of the plan: its files have the plan's bytes, as a robot's.
+  Status planned(std::uint32_t index) {
+    if (assets_.planned_.contains(index)) return {};
+    const plan::FixtureRecord& record = plan_.fixtures()[index];
+    PROBE_ASSIGN(UrdfParts parts, verified_parts(record.urdf, plan_.meshes(record)));
+    assets_.planned_[index] = std::make_unique<LoadedFixture>(
+        LoadedFixture{fixture_of(plan_, record), std::move(parts), true});
+    return {};
+  }
+
   std::string path_of(std::uint32_t asset) const {
     return (fs::path(assets_.root_) / plan_.text(plan_.assets()[asset].path)).string();
   }
@@ -154,14 +178,21 @@ class SharedAssets::Loader {
 
   Status robot(const plan::RobotRecord& record) {
     if (assets_.robots_.contains(record.urdf)) return {};
-    PROBE_TRY(verify(record.urdf));
-    const std::string name(plan_.text(plan_.assets()[record.urdf].path));
+    PROBE_ASSIGN(UrdfParts parts, verified_parts(record.urdf, plan_.meshes(record)));
+    assets_.robots_[record.urdf] = std::make_unique<UrdfParts>(std::move(parts));
+    return {};
+  }
+
+  // Of a URDF and its meshes, all of them assets of the plan.
+  Result<UrdfParts> verified_parts(std::uint32_t urdf, std::span<const std::uint32_t> meshes) {
+    PROBE_TRY(verify(urdf));
+    const std::string name(plan_.text(plan_.assets()[urdf].path));
     std::set<std::string> known;
-    for (const std::uint32_t asset : plan_.meshes(record)) {
+    for (const std::uint32_t asset : meshes) {
       PROBE_TRY(verify(asset));
       known.insert(fs::path(plan_.text(plan_.assets()[asset].path)).lexically_normal().string());
     }
-    PROBE_ASSIGN(robot::RobotModel model, robot::load_urdf(path_of(record.urdf)));
+    PROBE_ASSIGN(robot::RobotModel model, robot::load_urdf(path_of(urdf)));
     for (const robot::Link& link : model.links) {
       for (const auto* refs : {&link.visuals, &link.collisions}) {
         for (const robot::MeshRef& ref : *refs) {
@@ -175,9 +206,7 @@ class SharedAssets::Loader {
         }
       }
     }
-    PROBE_ASSIGN(UrdfParts parts, parts_of(std::move(model), name));
-    assets_.robots_[record.urdf] = std::make_unique<UrdfParts>(std::move(parts));
-    return {};
+    return parts_of(std::move(model), name);
   }
 
   // What the links of a URDF (a path under the root) look like and collide with.
@@ -258,6 +287,12 @@ std::shared_ptr<const scene::Texture> SharedAssets::photo(std::uint32_t asset) c
 const UrdfParts* SharedAssets::robot(std::uint32_t urdf_asset) const {
   const auto found = robots_.find(urdf_asset);
   return found == robots_.end() ? nullptr : found->second.get();
+}
+
+std::span<const LoadedFixture* const> SharedAssets::fixtures(std::uint32_t scene) const {
+  const auto found = by_scene_.find(scene);
+  if (found == by_scene_.end()) return {};
+  return found->second;
 }
 
 Sha256 asset_digest(const plan::Plan& plan) {

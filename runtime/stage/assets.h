@@ -44,14 +44,15 @@ struct UrdfParts {
 struct LoadedFixture {
   Fixture fixture;
   UrdfParts parts;
+  bool is_planned = false;  // else beside the plan
 };
 
 class SharedAssets {
  public:
   // Loads what `tasks` (indices of the plan's tasks) need. Fails (kAsset) naming a file that
   // is absent or has other bytes, and with the loaders' failures.
-  // `fixtures` stand in the scene of every task beside what the plan puts there; no plan knows
-  // fixtures with joints, so their files are taken as they are.
+  // `fixtures` stand in the scene of every task behind those that the plan puts there; their files
+  // are taken as they are.
   static Result<std::shared_ptr<const SharedAssets>> load(const plan::Plan& plan,
                                                           const std::string& root,
                                                           std::span<const std::uint32_t> tasks,
@@ -63,7 +64,9 @@ class SharedAssets {
   std::shared_ptr<const scene::CollisionShape> shape(std::uint32_t asset) const;
   std::shared_ptr<const scene::Texture> photo(std::uint32_t asset) const;
   const UrdfParts* robot(std::uint32_t urdf_asset) const;
-  std::span<const LoadedFixture> fixtures() const { return fixtures_; }
+  // Those with joints in a scene (index of the plan's scenes) of a loaded task: the plan's, then
+  // the others.
+  std::span<const LoadedFixture* const> fixtures(std::uint32_t scene) const;
   // The meshes' ray structures and what stands still, for every world and task; made as they are
   // first drawn.
   const std::shared_ptr<render::SceneStore>& pictures() const { return pictures_; }
@@ -76,7 +79,9 @@ class SharedAssets {
   std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> shapes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::Texture>> photos_;
   std::map<std::uint32_t, std::unique_ptr<const UrdfParts>> robots_;
-  std::vector<LoadedFixture> fixtures_;
+  std::map<std::uint32_t, std::unique_ptr<const LoadedFixture>> planned_;  // by plan's index
+  std::vector<std::unique_ptr<const LoadedFixture>> others_;
+  std::map<std::uint32_t, std::vector<const LoadedFixture*>> by_scene_;
 };
 
 // Of every file the plan names, by path and content: equal digests, equal inputs.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "runtime/base/check.h"
+#include "runtime/plan/fixtures.h"
 #include "runtime/stage/privileged.h"
 #include "runtime/stage/robot_of.h"
 
@@ -76,8 +77,8 @@ Result<std::unique_ptr<EpisodeWorld>> EpisodeWorld::create(
 
 EpisodeWorld::Arrangement EpisodeWorld::arrangement(std::vector<Pose> objects) const {
   Arrangement at{std::move(objects), {}};
-  for (const LoadedFixture& loaded : assets_->fixtures()) {
-    const std::vector<double>& positions = loaded.fixture.positions;
+  for (const LoadedFixture* loaded : assets_->fixtures(task_.scene)) {
+    const std::vector<double>& positions = loaded->fixture.positions;
     at.fixture_joints.insert(at.fixture_joints.end(), positions.begin(), positions.end());
   }
   return at;
@@ -105,9 +106,9 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
                          finger ? record_.finger_patch : 0});
   }
   std::span<const double> left = at.fixture_joints;
-  for (const LoadedFixture& loaded : assets_->fixtures()) {
-    spec.articulations.push_back(passive(loaded, left.first(loaded.fixture.positions.size())));
-    left = left.subspan(loaded.fixture.positions.size());
+  for (const LoadedFixture* loaded : assets_->fixtures(task_.scene)) {
+    spec.articulations.push_back(passive(*loaded, left.first(loaded->fixture.positions.size())));
+    left = left.subspan(loaded->fixture.positions.size());
   }
   const auto records = plan_.bodies(task_);
   for (std::size_t i = 0; i < bodies_.objects; ++i) {
@@ -154,9 +155,9 @@ bool EpisodeWorld::still_moves(const world::World& world) const {
     spin += world.body(i).spin.norm();
   }
   auto rates = world.joint_speeds().subspan(controller_.joint_count());
-  for (const LoadedFixture& loaded : assets_->fixtures()) {
-    const robot::RobotModel& model = loaded.parts.model;
-    for (const world::JointSpec& joint : loaded.fixture.joints) {
+  for (const LoadedFixture* loaded : assets_->fixtures(task_.scene)) {
+    const robot::RobotModel& model = loaded->parts.model;
+    for (const world::JointSpec& joint : loaded->fixture.joints) {
       const auto index = static_cast<std::size_t>(model.find_joint(joint.joint));
       const bool slides = model.joints[index].kind == robot::JointKind::kPrismatic;
       (slides ? speed : spin) += std::abs(rates.front());
@@ -185,7 +186,10 @@ Status EpisodeWorld::reset(std::uint32_t index) {
                    "episode " + std::to_string(index) + " places another number of objects",
                    "task `" + std::string(plan_.text(task_.name)) + "`"};
   }
-  PROBE_ASSIGN(const Arrangement settled, settle(arrangement(std::move(placed))));
+  Arrangement begun = arrangement(std::move(placed));
+  std::ranges::copy(plan::joint_starts_of(plan_.tables(), scene_, episode),
+                    begun.fixture_joints.begin());
+  PROBE_ASSIGN(const Arrangement settled, settle(begun));
   PROBE_TRY(begin_world(settled));
   controller_.reset(robot_q());
   steps_ = 0;
@@ -232,9 +236,9 @@ policy::Proprioception EpisodeWorld::proprioception() const {
 
 std::vector<std::string> EpisodeWorld::joint_names() const {
   std::vector<std::string> names = robot_.joints;
-  for (const LoadedFixture& loaded : assets_->fixtures()) {
-    for (const world::JointSpec& joint : loaded.fixture.joints) {
-      names.push_back(name_in(loaded.fixture, joint.joint));
+  for (const LoadedFixture* loaded : assets_->fixtures(task_.scene)) {
+    for (const world::JointSpec& joint : loaded->fixture.joints) {
+      names.push_back(name_in(loaded->fixture, joint.joint));
     }
   }
   return names;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/base/geometry.h"
+#include "runtime/plan/plan.h"
 #include "runtime/world/spec.h"
 
 namespace probe::stage {
@@ -18,6 +19,9 @@ struct Fixture {
   std::vector<double> positions;         // m and rad, of the joints before objects fall
   double friction = 1;                   // of its links' material
 };
+
+// As a plan's record has it; its springs rest where the record says.
+Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record);
 
 // What a trace calls a joint or a link of a fixture.
 inline std::string name_in(const Fixture& fixture, const std::string& part) {

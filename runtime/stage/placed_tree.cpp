@@ -25,10 +25,10 @@ Result<std::vector<PlacedTree>> placed_trees(const plan::Plan& plan, const plan:
   const UrdfParts* parts = assets.robot(robot.urdf);
   PROBE_CHECK(parts != nullptr, "assets are loaded for the tasks that run");
   PROBE_TRY(add(*parts, drive_joints(plan, robot), base_pose(scene)));
-  for (const LoadedFixture& loaded : assets.fixtures()) {
+  for (const LoadedFixture* loaded : assets.fixtures(task.scene)) {
     std::vector<std::string> joints;
-    for (const world::JointSpec& joint : loaded.fixture.joints) joints.push_back(joint.joint);
-    PROBE_TRY(add(loaded.parts, joints, loaded.fixture.base));
+    for (const world::JointSpec& joint : loaded->fixture.joints) joints.push_back(joint.joint);
+    PROBE_TRY(add(loaded->parts, joints, loaded->fixture.base));
   }
   return trees;
 }

@@ -59,7 +59,7 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
   }
   for (std::size_t k = bodies.robot_links; k < bodies.links.size(); ++k) {
     const auto [tree, link] = bodies.links[k];
-    const auto& shapes = assets.fixtures()[tree - 1].parts.shapes;
+    const auto& shapes = assets.fixtures(task.scene)[tree - 1]->parts.shapes;
     view.fixtures.push_back({bodies.names[bodies.first_link + k],
                              vertices_of(*shapes[static_cast<std::size_t>(link)], Vec3::Zero()),
                              {}});

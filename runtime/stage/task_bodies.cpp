@@ -11,7 +11,7 @@ Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& t
   PROBE_CHECK(robot != nullptr, "assets are loaded for the tasks that run");
   TaskBodies out;
   out.objects = plan::roles_of(plan.tables(), task).objects;
-  std::size_t objects = 0;
+  std::size_t objects = 0, parts = 0;
   for (const plan::BodyRecord& body : plan.bodies(task)) {
     const auto local = static_cast<std::uint16_t>(out.count());
     out.names.emplace_back(plan.text(body.name));
@@ -24,6 +24,9 @@ Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& t
         break;
       case plan::BodyKind::kFixture:
         out.fixture = local;
+        break;
+      case plan::BodyKind::kPart:
+        ++parts;
         break;
       case plan::BodyKind::kLink: {
         const int link = robot->model.find_link(out.names.back());
@@ -39,16 +42,21 @@ Result<TaskBodies> task_bodies(const plan::Plan& plan, const plan::TaskRecord& t
     return Failure{Fault::kPlan, "bodies and roles do not add up",
                    "task `" + std::string(plan.text(task.name)) + "`"};
   }
-  out.first_link = static_cast<std::uint16_t>(out.count() - out.links.size());
+  out.first_link = static_cast<std::uint16_t>(out.count() - out.links.size() - parts);
   out.robot_links = out.links.size();
   std::size_t tree = 0;
-  for (const LoadedFixture& loaded : assets.fixtures()) {
+  for (const LoadedFixture* loaded : assets.fixtures(task.scene)) {
     ++tree;
-    for (std::size_t link = 0; link < loaded.parts.shapes.size(); ++link) {
-      if (loaded.parts.shapes[link] == nullptr) continue;
-      out.names.push_back(name_in(loaded.fixture, loaded.parts.model.links[link].name));
+    for (std::size_t link = 0; link < loaded->parts.shapes.size(); ++link) {
+      if (loaded->parts.shapes[link] == nullptr) continue;
       out.links.push_back({tree, static_cast<int>(link)});
+      if (loaded->is_planned) continue;  // named by the plan
+      out.names.push_back(name_in(loaded->fixture, loaded->parts.model.links[link].name));
     }
+  }
+  if (out.first_link + out.links.size() != out.count()) {
+    return Failure{Fault::kPlan, "its parts are not the links of its fixtures that can be touched",
+                   "task `" + std::string(plan.text(task.name)) + "`"};
   }
   return out;
 }

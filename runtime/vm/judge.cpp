@@ -68,6 +68,16 @@ Vec3 rotated_axis(const Quat& q, std::uint16_t axis) {
   }
 }
 
+// In the frame of a body: its model's origin and axes.
+Vec3 local(const BodySample& body, double x, double y, double z) {
+  const double dx = x - body.origin.x(), dy = y - body.origin.y(), dz = z - body.origin.z();
+  const auto along = [&](std::uint16_t axis) {
+    const Vec3 a = rotated_axis(body.rotation, axis);
+    return (a.x() * dx + a.y() * dy) + a.z() * dz;
+  };
+  return {along(0), along(1), along(2)};
+}
+
 Vec3 rotated(const Quat& q, const Vec3& v) {
   const Vec3 x = rotated_axis(q, 0), y = rotated_axis(q, 1), z = rotated_axis(q, 2);
   return {(x.x() * v.x() + y.x() * v.y()) + z.x() * v.z(),
@@ -86,6 +96,7 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task, std::uint32_t number) {
   const plan::ProgramRecord& program = plan.programs()[number];
   task_name_ = plan.text(record.name);
   bodies_ = record.bodies.count;
+  first_joint_ = plan.robots()[plan.scenes()[record.scene].robot].drives.count;
   const auto constants = plan.constants(program);
   constants_.assign(constants.begin(), constants.end());
   for (const plan::StateRecord& state : plan.states(program)) hold_.push_back(state.n);
@@ -99,6 +110,8 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task, std::uint32_t number) {
     if (op == Op::kPUSH || op == Op::kIMP) {
       pairs_.push_back({std::min(in.a, in.b), std::max(in.a, in.b), Vec3::Zero(), Vec3::Zero()});
     }
+    if (plan::find_op(in.op)->a == Kind::kJoint)
+      joints_ = std::max(joints_, first_joint_ + in.a + std::size_t{1});
   }
   const auto key = [](const Pair& p) { return std::pair(p.a, p.b); };
   std::ranges::sort(pairs_, {}, key);
@@ -176,6 +189,12 @@ Status Judge::check(const StepSample& sample) const {
     return Failure{Fault::kJudge,
                    "a step measures " + std::to_string(sample.bodies.size()) +
                        " bodies, the task has " + std::to_string(bodies_),
+                   task_name_};
+  }
+  if (sample.joints.size() < joints_) {
+    return Failure{Fault::kJudge,
+                   "a step measures " + std::to_string(sample.joints.size()) +
+                       " joints, the task has " + std::to_string(joints_),
                    task_name_};
   }
   for (std::size_t i = 0; i < sample.bodies.size(); ++i) {
@@ -309,6 +328,17 @@ void Judge::run(std::span<const Step> steps, const StepSample& sample) {
         break;
       case Op::kORIGIN:
         put(d, sample.bodies[s.a].origin);
+        break;
+      case Op::kLOCAL:
+        put(d, local(sample.bodies[s.a], b.x, b.y, b.z));
+        break;
+      case Op::kSLIDE:
+      case Op::kTURN:
+        d.x = sample.joints[first_joint_ + s.a].position;
+        break;
+      case Op::kSLIDING:
+      case Op::kTURNING:
+        d.x = sample.joints[first_joint_ + s.a].rate;
         break;
       case Op::kVADD:
         d = {a.x + b.x, a.y + b.y, a.z + b.z};

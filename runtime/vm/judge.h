@@ -95,6 +95,8 @@ class Judge {
 
   std::string task_name_;
   std::size_t bodies_ = 0;
+  std::size_t first_joint_ = 0;  // of fixtures, behind the robot's
+  std::size_t joints_ = 0;       // that a sample must have
   std::vector<double> constants_;
   std::vector<std::uint16_t> hold_;  // per state, HOLD's n
   std::vector<Metric> metrics_;

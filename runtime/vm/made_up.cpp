@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/roles.h"
 #include "runtime/vm/judge.h"
 
@@ -42,6 +43,12 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
   world.starts.resize(bodies.size());
   world.sample.bodies.resize(bodies.size());
   world.sample.tcp = {0, 0, table + kFar};
+  world.sample.joints.resize(robot.drives.count);
+  if (!episodes.empty()) {
+    for (const double position :
+         plan::joint_starts_of(plan.tables(), plan.scenes()[record.scene], episodes[0]))
+      world.sample.joints.push_back({position, 0});
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const auto kind = static_cast<plan::BodyKind>(bodies[i].kind);
     Vec3 at = {0, 0, table + kFar};

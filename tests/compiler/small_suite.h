@@ -45,6 +45,45 @@ inline std::string arm_urdf() {
          joint("t", "fixed", "wrist", "tool") + "</robot>";
 }
 
+// A drawer that slides by 20 cm, a door that opens by 90 degrees and is closed at its upper limit,
+// a lid that is fixed, and a bell that nothing can touch, on a body.
+inline std::string chest_urdf() {
+  const auto link = [](const std::string& name, bool touches) {
+    return "<link name=\"" + name +
+           "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" "
+           "ixz=\"0\" iyz=\"0\"/></inertial>" +
+           (touches ? "<collision><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision>"
+                    : "") +
+           "</link>";
+  };
+  const auto joint = [](const std::string& name, const std::string& type, const std::string& child,
+                        const std::string& limits, const std::string& axis = "1 0 0") {
+    return "<joint name=\"" + name + "\" type=\"" + type +
+           "\"><parent link=\"body\"/><child link=\"" + child + "\"/><axis xyz=\"" + axis +
+           "\"/><limit " + limits + " effort=\"1\" velocity=\"1\"/></joint>";
+  };
+  return "<robot name=\"chest\">" + link("body", true) + link("drawer", true) + link("door", true) +
+         link("lid", true) + link("bell", false) +
+         joint("slide", "prismatic", "drawer", "lower=\"0\" upper=\"0.2\"") +
+         joint("hinge", "revolute", "door", "lower=\"-1.5\" upper=\"0\"", "0 0 1") +
+         joint("glue", "fixed", "lid", "lower=\"0\" upper=\"0\"") +
+         joint("ring", "continuous", "bell", "lower=\"0\" upper=\"0\"") + "</robot>";
+}
+
+// Stands in `room`, which `kSmallSuite` does not have.
+inline const char* const kChest = R"(
+fixture chest {
+  urdf "chest/chest.urdf"; at (0cm, 30cm, 85cm) yaw 90deg
+  joint slide friction 2N damping 5Ns/m start 4cm
+  joint hinge friction 1Nm stiffness 0.5Nm/rad at 0deg stay
+  part drawer link drawer name "drawer"
+  part door link door
+  region inside of drawer box (-4cm, -4cm, -4cm) .. (4cm, 4cm, 4cm)
+  region top of chest box (-5cm, -5cm, 5cm) .. (5cm, 5cm, 15cm)
+}
+scene room like bench { fixture chest }
+)";
+
 // The folder of this process' assets.
 inline std::string asset_root() {
   static const std::string root = [] {
@@ -52,6 +91,7 @@ inline std::string asset_root() {
         std::filesystem::temp_directory_path() / ("probe_assets_" + std::to_string(getpid()));
     write_text(folder / "arm/arm.urdf", arm_urdf());
     write_text(folder / "arm/part.obj", "v 0 0 0\n");
+    write_text(folder / "chest/chest.urdf", chest_urdf());
     for (const char* object : {"block", "tray"}) {
       write_text(folder / "objects" / object / "visual.glb", std::string("visual of ") + object);
       write_text(folder / "objects" / object / "collision.obj",

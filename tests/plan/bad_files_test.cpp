@@ -11,6 +11,7 @@
 
 #include "runtime/plan/plan.h"
 #include "tests/plan/defects.h"
+#include "tests/plan/fixture_defects.h"
 #include "tests/plan/hex.h"
 #include "tests/plan/question_defects.h"
 #include "tests/plan/rule_of.h"
@@ -95,6 +96,8 @@ std::map<std::string, Bytes> bad_plans() {
   }
   for (const Defect& defect : question_defects())
     all.push_back(with_defect(defect.make, question_writer()));
+  for (const Defect& defect : fixture_defects())
+    all.push_back(with_defect(defect.make, fixture_writer()));
   std::map<std::string, Bytes> plans;
   for (Bytes& bytes : all) {
     const Status status = verify(bytes);

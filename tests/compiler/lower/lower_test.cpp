@@ -295,3 +295,82 @@ variant longer of red_on_tray { horizon 70 steps })");
   CHECK(shape("crowded") != shape("red_on_tray"));
   CHECK(shape("judged") != shape("red_on_tray"));
 }
+
+TEST_CASE("joints are measured from where they are closed, regions in the frame of their owner") {
+  const auto in_room = [](const std::string& metrics) {
+    return lowered(metrics, "scene room", test::kChest);
+  };
+  CHECK_MESSAGE(in_room("x = final travel(chest.drawer)").text == R"(
+   0  SLIDE  r0    j0
+   1  EMITR        r0 -> x
+   2  END
+)",
+                in_room("x = final travel(chest.drawer)").said);
+  // Its upper limit is 0: it opens downwards.
+  CHECK(in_room("x = at end turn(chest.door) > 0.5 * range(chest.door)").text == R"(
+   0  TURN   r0    j1
+   1  NEG    r1    r0
+   2  KR     r2    0.75
+   3  LT     r3    r2 r1
+   4  EMITB        r3 -> x
+   5  END
+)");
+  CHECK(in_room("x = max rate(chest.hinge)").text == R"(
+   0  TURNING r0    j1
+   1  NEG    r1    r0
+   2  MAXR   r2    r1 s0
+   3  EMITR        r2 -> x
+   4  END
+)");
+  CHECK(in_room("x = at end within(source, chest.inside)").text == R"(
+   0  POS    r0    red
+   1  LOCAL  r1    chest.drawer r0
+   2  VX     r2    r1
+   3  KR     r3    -0.04
+   4  LE     r4    r3 r2
+   5  KR     r5    0.04
+   6  LE     r6    r2 r5
+   7  AND    r7    r4 r6
+   8  VY     r8    r1
+   9  LE     r9    r3 r8
+  10  LE     r10   r8 r5
+  11  AND    r11   r9 r10
+  12  AND    r12   r7 r11
+  13  VZ     r13   r1
+  14  LE     r14   r3 r13
+  15  LE     r15   r13 r5
+  16  AND    r16   r14 r15
+  17  AND    r17   r12 r16
+  18  EMITB        r17 -> x
+  19  END
+)");
+}
+
+TEST_CASE("what a task's scene does not have is not measured") {
+  const auto refused = [](const std::string& metrics, const std::string& task = "scene room") {
+    return lowered(metrics, task, test::kChest).codes;
+  };
+  CHECK(refused("x = final travel(chest.drawer)", "") == "P0201");
+  CHECK(refused("x = at end slide(chest.door) > 1cm") == "P0601");
+  CHECK(refused("x = at end turn(chest.drawer) > 1deg") == "P0601");
+  CHECK(refused("x = at end within(source, target.inside)") == "P0201");
+  CHECK(refused("x = at end within(source, surface.left)") == "P0201");
+  CHECK(refused("x = at end within(source, fixture.basin)") == "P0601");
+  CHECK(refused("x = final range(chest.ring)") == "P0601");
+}
+
+TEST_CASE("regions are those of what stands there") {
+  const std::string more =
+      std::string(test::kChest) +
+      "object dish like tray { name \"dish\"; region well box (-2cm, -2cm, 0cm) .. "
+      "(2cm, 2cm, 3cm) }\n"
+      "scene marked like room { region left of surface box (0cm, 0cm, 0cm) .. "
+      "(9cm, 9cm, 9cm) }";
+  const Lowered code = lowered(
+      "x = at end within(source, target.well)\n"
+      "y = at end within(source, surface.left)",
+      "scene marked; target dish", more);
+  CHECK_MESSAGE(code.text.find("LOCAL  r1    dish r0") != std::string::npos,
+                (code.text + code.said));
+  CHECK(code.text.find("surface r0") != std::string::npos);
+}

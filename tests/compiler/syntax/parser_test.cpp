@@ -27,6 +27,9 @@ struct Show {
     return std::string(parsed.text(node.value.span));
   }
   std::string operator()(const ExprName& node) const { return std::string(node.name.text); }
+  std::string operator()(const ExprPath& node) const {
+    return joined({node.owner.text, ".", node.name.text});
+  }
   std::string operator()(const ExprCall& node) const {
     std::string arguments;
     for (const Argument& argument : node.arguments) {

@@ -30,6 +30,7 @@ language.commonsense     .      .      .
 language.paraphrase      .      .      .
 language.spatial         .      .      .
 layout                   .      .      .
+fixture                  .      .      .
 scene                    .      .      .
 light                    1      .      1
 camera                   .      .      .
@@ -41,7 +42,7 @@ ood target               .      .      .
 ood relation             .      1      1
 tasks                    7      1      8
 
-25 of 30 cells are empty
+27 of 32 cells are empty
 objects never a source: plate
 objects never a target: carrot, twig
 objects never a distractor: carrot, plate

@@ -21,15 +21,17 @@ using namespace probe::vm;
 
 namespace {
 
+constexpr std::size_t kSmallBodies = 6;  // of the small plan: no fixture with joints
+
 Plan open_small() {
   auto plan = Plan::from_bytes(small_plan());
   REQUIRE(plan.ok());
   return std::move(plan).value();
 }
 
-StepSample resting(double step) {
+StepSample resting(double step, std::size_t bodies = kSmallBodies) {
   StepSample s;
-  s.bodies.resize(kBodies);
+  s.bodies.resize(bodies);
   s.step = step;
   s.tcp = {1, 0, 0};
   return s;
@@ -101,7 +103,7 @@ TEST_CASE("a metric keeps the value last emitted, and monitors start again with 
   Judge judge(plan, 0);
   REQUIRE(judge.find_metric("near") == 0);
   CHECK(!judge.find_metric("far"));
-  const std::vector<BodyStart> starts(kBodies);
+  const std::vector<BodyStart> starts(kSmallBodies);
   REQUIRE(judge.begin(starts).ok());
   CHECK(!judge.truth(0));
   StepSample near = resting(1);
@@ -201,7 +203,7 @@ TEST_CASE("a `once` is decided when it was true, an `always` when it was broken,
     REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
     const Plan plan = Plan::from_bytes(std::move(*bytes)).value();
     Judge judge(plan, 0);
-    REQUIRE(judge.begin(std::vector<BodyStart>(kBodies)).ok());
+    REQUIRE(judge.begin(std::vector<BodyStart>(kSmallBodies)).ok());
     for (int step = 1; step <= 12; ++step) {
       StepSample sample = resting(step);
       sample.tcp = {step == 3 || step > 5 ? 0.01 : 1.0, 0, 0};
@@ -220,7 +222,7 @@ TEST_CASE("a `once` is decided when it was true, an `always` when it was broken,
 TEST_CASE("the state of a judge of other metrics is refused, and no step may follow") {
   const Plan plan = open_small();
   Judge judge(plan, 0);
-  const std::vector<BodyStart> starts(kBodies);
+  const std::vector<BodyStart> starts(kSmallBodies);
   REQUIRE(judge.begin(starts).ok());
   JudgeState state = judge.save();
   state.values.pop_back();
@@ -234,7 +236,7 @@ TEST_CASE("the state of a judge of other metrics is refused, and no step may fol
 TEST_CASE("a condition that must hold for five steps is true at the fifth and breaks at once") {
   const Plan plan = open_small();
   Judge judge(plan, 0);
-  REQUIRE(judge.begin(std::vector<BodyStart>(kBodies)).ok());
+  REQUIRE(judge.begin(std::vector<BodyStart>(kSmallBodies)).ok());
   StepSample touching = resting(1);
   touching.contacts = {{0, 3, Vec3(0, 0.2, 0)}};
   for (int i = 1; i <= 6; ++i) {
@@ -248,7 +250,7 @@ TEST_CASE("a condition that must hold for five steps is true at the fifth and br
 TEST_CASE("a measurement that is not finite makes the episode invalid and changes no value") {
   const Plan plan = open_small();
   Judge judge(plan, 0);
-  std::vector<BodyStart> starts(kBodies);
+  std::vector<BodyStart> starts(kSmallBodies);
   REQUIRE(judge.begin(starts).ok());
   StepSample near = resting(1);
   near.tcp = {0.04, 0, 0};
@@ -292,7 +294,8 @@ TEST_CASE("bodies after the plan's are measured and not judged") {
   REQUIRE(judge.begin(starts).ok());
   starts.resize(kBodies + 2);
   REQUIRE(other.begin(starts).ok());
-  StepSample sample = resting(1);
+  StepSample sample = resting(1, kBodies);
+  sample.joints.resize(16);
   sample.contacts.clear();
   REQUIRE(judge.step(sample).ok());
   sample.bodies.resize(kBodies + 2);

@@ -12,11 +12,12 @@
 #include "runtime/plan/isa.h"
 #include "runtime/plan/plan.h"
 #include "runtime/vm/sample.h"
-#include "tests/runtime/plan/small_plan.h"
+#include "tests/runtime/plan/fixture_plan.h"
 
 namespace probe::vm {
 
 using plan::all_ops;
+using plan::fixture_writer;
 using plan::Kind;
 using plan::kMaxMetrics;
 using plan::make_instruction;
@@ -25,11 +26,10 @@ using plan::Op;
 using plan::OpInfo;
 using plan::Plan;
 using plan::Records;
-using plan::small_writer;
 using plan::Writer;
 
 inline constexpr std::uint32_t kBodies =
-    6;  // of the small plan's tasks: carrot, plate, surface, two fingers, wrist
+    8;  // of the plan's tasks: carrot, plate, surface, two fingers, wrist, two parts
 
 // A random well-typed program over the small plan: every operation of isa.def can occur.
 class RandomProgram {
@@ -37,7 +37,7 @@ class RandomProgram {
   explicit RandomProgram(std::uint64_t seed) : draw_(seed) {}
 
   Plan make(std::size_t instructions) {
-    Writer w = small_writer();
+    Writer w = fixture_writer();
     Records& r = w.records;
     r.spans.clear();
     r.code.clear();
@@ -109,6 +109,9 @@ class RandomProgram {
         case Kind::kBody:
           value = pick(kBodies);
           break;
+        case Kind::kJoint:  // the first slides, the second turns
+          value = op.op == Op::kSLIDE || op.op == Op::kSLIDING ? 0 : 1;
+          break;
         case Kind::kFinger:
           value = 3 + pick(2);
           break;
@@ -158,6 +161,8 @@ class RandomWorld {
         if (draw_() % 3 == 0) s.contacts.push_back({a, b, vector()});
       }
     }
+    std::uniform_real_distribution<double> joint(-2, 2);
+    for (int i = 0; i < kJoints; ++i) s.joints.push_back({joint(joints_), joint(joints_)});
     s.tcp = vector();
     s.grip = number_();
     s.step = number;
@@ -180,7 +185,10 @@ class RandomWorld {
     return q.normalized();
   }
 
+  static constexpr int kJoints = 16;  // as many as any plan of the tests has
+
   std::mt19937_64 draw_;
+  std::mt19937_64 joints_{7};  // of their own: what else is drawn is older than they are
   std::uint32_t bodies_;
   double scale_;
 };

@@ -18,7 +18,11 @@ class Reference {
  public:
   Reference(const plan::Plan& plan, const plan::TaskRecord& task, std::span<const BodyStart> starts,
             std::span<const StepSample> history)
-      : plan_(plan), program_(plan.programs()[task.program]), starts_(starts), history_(history) {
+      : plan_(plan),
+        program_(plan.programs()[task.program]),
+        drives_(plan.robots()[plan.scenes()[task.scene].robot].drives.count),
+        starts_(starts),
+        history_(history) {
     for (const plan::Instruction& in : plan.code(program_)) {
       if (plan::find_op(in.op)->result != plan::Kind::kUnused) defining_.push_back(in);
     }
@@ -35,6 +39,8 @@ class Reference {
 
  private:
   using Value = std::array<double, 3>;
+
+  std::size_t drives() const { return drives_; }  // the joints before those of fixtures
 
   static Value vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
   static Value truth(bool b) { return {b ? 1.0 : 0.0, 0, 0}; }
@@ -106,6 +112,21 @@ class Reference {
         return {s.time, 0, 0};
       case kORIGIN:
         return vector(s.bodies[in.a].origin);
+      case kLOCAL: {
+        // The transposed rotation matrix times what lies between.
+        const auto m = matrix(s.bodies[in.a].rotation);
+        const Value p = x(in.b), o = vector(s.bodies[in.a].origin);
+        Value out{};
+        for (std::size_t i = 0; i < 3; ++i)
+          out[i] = m[0][i] * (p[0] - o[0]) + m[1][i] * (p[1] - o[1]) + m[2][i] * (p[2] - o[2]);
+        return out;
+      }
+      case kSLIDE:
+      case kTURN:
+        return {s.joints[drives() + in.a].position, 0, 0};
+      case kSLIDING:
+      case kTURNING:
+        return {s.joints[drives() + in.a].rate, 0, 0};
       case kVADD: {
         const Value a = x(in.a), b = x(in.b);
         return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
@@ -232,6 +253,7 @@ class Reference {
 
   const plan::Plan& plan_;
   const plan::ProgramRecord& program_;
+  std::size_t drives_;
   std::span<const BodyStart> starts_;
   std::span<const StepSample> history_;
   std::vector<plan::Instruction> defining_;  // by register

@@ -102,6 +102,44 @@ TEST_CASE("a drawer that is let go stops after the distance that its friction ne
   CHECK(free->joints()[0] == rest);
 }
 
+TEST_CASE("a drawer under friction and damping stops where the closed form says") {
+  const robot::RobotModel model = load_text(drawer_text());
+  constexpr double kMass = 2, kFriction = 3, kDamping = 5;  // kg, N, N s/m
+  const ArticulationSpec drawer =
+      passive(model, {.joint = "slide", .damping = kDamping, .friction = kFriction});
+  const auto pulled_world = make(pulled(drawer, 6));
+  run(*pulled_world, 100);
+  const double speed = pulled_world->joint_speeds()[0];
+  CHECK(speed > 0.4);
+  const auto free = make(pulled(drawer, 0));
+  REQUIRE(free->restore(pulled_world->save()).ok());
+  const double from = free->joints()[0];
+  run(*free, 1000);
+  // m u' = -F - d u.
+  const double way = kMass * speed / kDamping - kMass * kFriction / (kDamping * kDamping) *
+                                                    std::log(1 + kDamping * speed / kFriction);
+  CHECK(free->joints()[0] - from == doctest::Approx(way).epsilon(0.01));
+  CHECK(free->joint_speeds()[0] == 0);
+}
+
+TEST_CASE("a latched knob stays where it is left, one that is too weak swings back by the book") {
+  const robot::RobotModel model = load_text(door_text("0 0 1"));
+  constexpr double kSpring = 1, kFriction = 0.4;  // N m/rad, N m
+  const auto left_at = [&](double q) {
+    const auto world = make(pulled(
+        passive(model, {.joint = "hinge", .stiffness = kSpring, .friction = kFriction, .rest = 0.0},
+                q),
+        0));
+    run(*world, 15000);
+    CHECK(world->joint_speeds()[0] == 0);
+    return world->joints()[0];
+  };
+  CHECK(left_at(0.39) == 0.39);
+  CHECK(left_at(-0.39) == -0.39);
+  // Half a swing about where friction and spring balance: it comes to rest within their reach.
+  CHECK(left_at(1) == doctest::Approx(2 * kFriction / kSpring - 1).epsilon(0.02));
+}
+
 TEST_CASE("a drawer does not pass its ends, however hard it is pulled, and does not bounce") {
   const robot::RobotModel model = load_text(drawer_text());
   for (const double pull : {-40.0, 40.0}) {

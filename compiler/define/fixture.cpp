@@ -1,0 +1,489 @@
+// `fixture`: joints and links named here are looked up in the URDF; what acts in a joint has the
+// units of its kind.
+#include "compiler/define/fixture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "compiler/define/define.h"
+#include "compiler/define/record.h"
+#include "compiler/names/quantities.h"
+#include "compiler/names/texts.h"
+#include "runtime/base/utf8.h"
+
+namespace probe::sema {
+namespace {
+
+using Said = Fixture::Said;
+
+// Whether it turns or slides is known only with the URDF; the unit says which is meant.
+std::optional<Quantity> read_either(Context& context,
+                                    const std::optional<syntax::Quantity>& written,
+                                    const Dimension& turning, const Dimension& sliding,
+                                    const Takes& takes) {
+  if (!written) return std::nullopt;
+  const auto unit = make_quantity("0", to_text(written->unit));
+  const bool turns = unit && unit->dimension == turning;
+  return read_quantity(context, *written, turns ? turning : sliding, takes);
+}
+
+struct FixtureReader {
+  Context& context;
+  Fixture& fixture;
+
+  void operator()(const syntax::UrdfStmt& stmt) { fixture.urdf = spelled(stmt.path); }
+  void operator()(const syntax::FixtureAtStmt& stmt) {
+    fixture.has_place = true;
+    assign(fixture.position, read_point(context, stmt.at, 3, 3, dim::kLength,
+                                        {"`at` takes lengths", plan::Magnitude::kPlace}));
+    fixture.turn = {};
+    if (!stmt.turn) return;
+    if (const auto turn = read_turn(context, *stmt.turn)) fixture.turn = *turn;
+  }
+  void operator()(const syntax::FrictionStmt& stmt) {
+    fixture.friction = read_positive(context, stmt.value, dim::kNumber,
+                                     {"`friction` takes a number", plan::Magnitude::kFriction})
+                           .value_or(1);
+  }
+  void not_negative(const std::optional<Quantity>& value, const syntax::Quantity& written) {
+    if (value && value->si() < 0)
+      context.report(Situation::kNegative, written.span, "expected 0 or more");
+  }
+  void operator()(const syntax::FixtureJointStmt& stmt) {
+    Said said;
+    said.joint = spelled(stmt.joint);
+    said.span = stmt.span;
+    said.stay = stmt.stay;
+    said.friction = read_either(context, stmt.friction, dim::kTorque, dim::kForce,
+                                {"`friction` of a joint is in N, or in Nm where it turns",
+                                 plan::Magnitude::kJointFriction});
+    said.damping =
+        read_either(context, stmt.damping, dim::kAngularDamping, dim::kLinearDamping,
+                    {"`damping` is in Ns/m, or in Nms/rad where it turns", plan::Magnitude::kGain});
+    said.stiffness =
+        read_either(context, stmt.stiffness, dim::kAngularStiffness, dim::kLinearStiffness,
+                    {"`stiffness` is in N/m, or in Nm/rad where it turns", plan::Magnitude::kGain});
+    said.rest = read_either(context, stmt.rest, dim::kAngle, dim::kLength,
+                            {"a spring rests at a length, or at an angle where it turns",
+                             plan::Magnitude::kJointPosition});
+    said.start = read_either(context, stmt.start, dim::kAngle, dim::kLength,
+                             {"a joint starts at a length, or at an angle where it turns",
+                              plan::Magnitude::kJointPosition});
+    if (stmt.friction) not_negative(said.friction, *stmt.friction);
+    if (stmt.damping) not_negative(said.damping, *stmt.damping);
+    if (stmt.stiffness) not_negative(said.stiffness, *stmt.stiffness);
+    if (stmt.start) said.start_span = stmt.start->span;
+    std::erase_if(fixture.said, [&](const Said& old) { return old.joint.text == said.joint.text; });
+    fixture.said.push_back(std::move(said));
+  }
+  void operator()(const syntax::PartStmt& stmt) {
+    Fixture::Part part;
+    part.name = std::string(stmt.name.text);
+    part.span = stmt.name.span;
+    part.link = spelled(stmt.link);
+    part.declared = true;
+    if (stmt.text) {
+      part.text = spelled(*stmt.text);
+      if (is_blank(part.text.text))
+        context.report(Situation::kNoWords, part.text.span, "a part's name has no words");
+      check_text(context.diagnostics, part.text, "a part's name");
+    }
+    std::erase_if(fixture.named, [&](const Fixture::Part& old) { return old.name == part.name; });
+    fixture.named.push_back(std::move(part));
+  }
+  void operator()(const syntax::RegionStmt& stmt) {
+    const auto region = read_region(context, stmt);
+    if (!region) return;
+    std::erase_if(fixture.regions,
+                  [&](const Fixture::OwnRegion& old) { return old.region.name == region->name; });
+    Spelled of = spelled(*stmt.of);
+    if (of.text == fixture.name) of.text.clear();  // a copy has another name
+    fixture.regions.push_back({*region, std::move(of), 0});
+  }
+};
+
+Diagnostic& unknown(Context& context, std::string_view kind, const Spelled& name,
+                    const Fixture& fixture, const std::vector<std::string_view>& candidates) {
+  return report_unknown(context.diagnostics, kind, {name.span, name.text}, candidates)
+      .label(fixture.urdf.span, "not in this file");
+}
+
+// Joints, parts and regions share their names: `cabinet.top` is one thing.
+void check_names(Context& context, const Fixture& fixture) {
+  std::vector<std::pair<std::string_view, Span>> known;
+  const auto declare = [&](std::string_view name, const Span& span, const char* kind) {
+    for (const auto& [other, first] : known) {
+      if (other != name) continue;
+      context
+          .report(Code::P0203, span,
+                  std::string(kind) + " `" + std::string(name) +
+                      "` has the name of another thing of `" + fixture.name + "`")
+          .label(first, "called so here");
+      return;
+    }
+    known.emplace_back(name, span);
+  };
+  for (const Said& said : fixture.said) declare(said.joint.text, said.joint.span, "joint");
+  for (const Fixture::Part& part : fixture.named) declare(part.name, part.span, "part");
+  for (const Fixture::OwnRegion& own : fixture.regions)
+    declare(own.region.name, own.region.span, "region");
+}
+
+const Said* said_of(const Fixture& fixture, std::string_view joint) {
+  for (const Said& said : fixture.said) {
+    if (said.joint.text == joint) return &said;
+  }
+  return nullptr;
+}
+
+void wrong_unit(Context& context, const Said& said, const Quantity& found, const Dimension& wanted,
+                bool slides) {
+  context
+      .report(Code::P0302, said.span,
+              "expected " + name_of(wanted) + ", found " + name_of(found.dimension))
+      .point("joint `" + said.joint.text + "` " + (slides ? "slides" : "turns"));
+}
+
+// What acts in a joint, in its units.
+void take(Context& context, const Said& said, Fixture::Joint& joint) {
+  const auto value = [&](const std::optional<Quantity>& given, const Dimension& turning,
+                         const Dimension& sliding, double& to) {
+    if (!given) return;
+    const Dimension& wanted = joint.slides ? sliding : turning;
+    if (given->dimension == wanted) {
+      to = given->si();
+    } else {
+      wrong_unit(context, said, *given, wanted, joint.slides);
+    }
+  };
+  value(said.friction, dim::kTorque, dim::kForce, joint.friction);
+  value(said.damping, dim::kAngularDamping, dim::kLinearDamping, joint.damping);
+  value(said.stiffness, dim::kAngularStiffness, dim::kLinearStiffness, joint.stiffness);
+  value(said.rest, dim::kAngle, dim::kLength, joint.rest);
+  value(said.start, dim::kAngle, dim::kLength, joint.start);
+}
+
+bool is_within(const Fixture::Joint& joint, double position) {
+  return joint.is_endless || (joint.lower <= position && position <= joint.upper);
+}
+
+void outside(Context& context, const Span& span, const Fixture::Joint& joint, double position) {
+  context
+      .report(Situation::kJointLimit, span,
+              fmt::format("joint `{}` starts at {:.6g}, beyond its limits of {:.6g} and {:.6g}",
+                          joint.name, position, joint.lower, joint.upper))
+      .point(joint.slides ? "in m" : "in rad");
+}
+
+// Whether a joint hangs below another on the way to the root.
+bool carries(const robot::RobotModel& model, int joint, int link) {
+  while (true) {
+    const int above = model.links[static_cast<std::size_t>(link)].parent_joint;
+    if (above < 0) return false;
+    if (above == joint) return true;
+    link = model.joints[static_cast<std::size_t>(above)].parent_link;
+  }
+}
+
+// P1303: what would move a joint that is to stay, at most: its spring at the farther limit, and the
+// weight of all that it carries.
+void check_stay(Context& context, const Fixture& fixture, const Said& said,
+                const Fixture::Joint& joint) {
+  const robot::RobotModel& model = *fixture.model;
+  const int index = model.find_joint(joint.name);
+  const robot::Joint& described = model.joints[static_cast<std::size_t>(index)];
+  double force = 0;
+  if (joint.stiffness > 0) {
+    const double far = joint.is_endless ? 3.14159265358979323846
+                                        : std::max(std::abs(joint.lower - joint.rest),
+                                                   std::abs(joint.upper - joint.rest));
+    force += joint.stiffness * far;
+  }
+  // The axis in the world's frame as all joints stand at 0; a lever as long as the links reach.
+  Quat turn(fixture.turn.rotation[0], fixture.turn.rotation[1], fixture.turn.rotation[2],
+            fixture.turn.rotation[3]);
+  std::vector<int> above;
+  for (int link = described.child_link;
+       model.links[static_cast<std::size_t>(link)].parent_joint >= 0;
+       link = model
+                  .joints[static_cast<std::size_t>(
+                      model.links[static_cast<std::size_t>(link)].parent_joint)]
+                  .parent_link)
+    above.push_back(model.links[static_cast<std::size_t>(link)].parent_joint);
+  for (auto it = above.rbegin(); it != above.rend(); ++it)
+    turn = turn * model.joints[static_cast<std::size_t>(*it)].origin.rotation;
+  const Vec3 axis = turn * described.axis;
+  double mass = 0, lever = 0;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (!carries(model, index, static_cast<int>(i))) continue;
+    mass += model.links[i].mass;
+    lever = std::max(lever, model.links[i].center_of_mass.norm());
+  }
+  constexpr double kGravity = 9.81;
+  const double upright = std::min(1.0, std::abs(axis.z()));
+  force += joint.slides ? mass * kGravity * upright
+                        : mass * kGravity * lever * std::sqrt(1 - upright * upright);
+  constexpr double kRounding = 1e-6;
+  if (force <= joint.friction * (1 + kRounding)) return;
+  const char* unit = joint.slides ? "N" : "Nm";
+  context
+      .report(Code::P1303, said.span,
+              fmt::format("joint `{}` is to stay, its friction is {:.3g}{}", joint.name,
+                          joint.friction, unit))
+      .point(fmt::format("spring and weight pull with up to {:.3g}{}", force, unit))
+      .help(fmt::format("write `friction {:.3g}{}`, a weaker spring, or leave out `stay`",
+                        std::ceil(force * 110) / 100, unit));
+}
+
+void build_joints(Context& context, Fixture& fixture) {
+  const robot::RobotModel& model = *fixture.model;
+  std::vector<std::string_view> moving;
+  for (const robot::Joint& known : model.joints) {
+    if (known.kind != robot::JointKind::kFixed && known.mimic < 0) moving.push_back(known.name);
+  }
+  for (const Said& said : fixture.said) {
+    const int index = model.find_joint(said.joint.text);
+    if (index < 0) {
+      unknown(context, "joint", said.joint, fixture, moving);
+      continue;
+    }
+    const robot::Joint& known = model.joints[static_cast<std::size_t>(index)];
+    if (known.kind == robot::JointKind::kFixed || known.mimic >= 0) {
+      context
+          .report(Situation::kFixedJoint, said.joint.span,
+                  "joint `" + said.joint.text + "` " +
+                      (known.mimic >= 0 ? "follows another, what acts is said of that one"
+                                        : "is fixed, nothing moves it"))
+          .label(fixture.urdf.span, "described here");
+    }
+  }
+  for (const robot::Joint& known : model.joints) {
+    if (known.kind == robot::JointKind::kFixed || known.mimic >= 0) continue;
+    Fixture::Joint joint;
+    joint.name = known.name;
+    joint.slides = known.kind == robot::JointKind::kPrismatic;
+    joint.is_endless = known.kind == robot::JointKind::kContinuous;
+    joint.lower = joint.is_endless ? 0 : known.lower;
+    joint.upper = joint.is_endless ? 0 : known.upper;
+    joint.start =
+        joint.is_endless ? 0 : std::clamp(0.0, joint.lower, std::max(joint.lower, joint.upper));
+    if (!joint.is_endless && joint.lower >= joint.upper) {
+      context.report(Situation::kFixedJoint, fixture.urdf.span,
+                     "joint `" + joint.name + "` has no room between its limits");
+    }
+    const auto errors = context.mistakes();
+    if (const Said* said = said_of(fixture, joint.name)) {
+      take(context, *said, joint);
+      if (said->start && !is_within(joint, joint.start))
+        outside(context, said->start_span, joint, joint.start);
+      if (said->stay && context.mistakes() == errors) check_stay(context, fixture, *said, joint);
+    }
+    fixture.joints.push_back(std::move(joint));
+  }
+}
+
+// The joint that moves a link, over fixed ones.
+std::optional<std::uint32_t> mover(const Fixture& fixture, int link) {
+  const robot::RobotModel& model = *fixture.model;
+  while (true) {
+    const int above = model.links[static_cast<std::size_t>(link)].parent_joint;
+    if (above < 0) return std::nullopt;
+    const robot::Joint& joint = model.joints[static_cast<std::size_t>(above)];
+    for (std::uint32_t i = 0; i < fixture.joints.size(); ++i) {
+      if (fixture.joints[i].name == joint.name) return i;
+    }
+    link = joint.parent_link;
+  }
+}
+
+void build_parts(Context& context, Fixture& fixture) {
+  const robot::RobotModel& model = *fixture.model;
+  std::vector<std::string_view> links;
+  for (const robot::Link& known : model.links) {
+    if (known.can_collide()) links.push_back(known.name);
+  }
+  for (Fixture::Part& part : fixture.named) {
+    part.index = model.find_link(part.link.text);
+    if (part.index < 0) {
+      unknown(context, "link", part.link, fixture, links);
+    } else if (!model.links[static_cast<std::size_t>(part.index)].can_collide()) {
+      context
+          .report(Situation::kUntouchable, part.link.span,
+                  "link `" + part.link.text + "` has no collision, nothing can touch it")
+          .label(fixture.urdf.span, "described here");
+    }
+  }
+  for (std::size_t i = 0; i < fixture.named.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (fixture.named[i].index < 0 || fixture.named[i].index != fixture.named[j].index) continue;
+      context
+          .report(Code::P0203, fixture.named[i].link.span,
+                  "link `" + fixture.named[i].link.text + "` is a part already")
+          .label(fixture.named[j].span, "called so here");
+    }
+  }
+  for (int link = 0; link < static_cast<int>(model.links.size()); ++link) {
+    const robot::Link& known = model.links[static_cast<std::size_t>(link)];
+    if (!known.can_collide()) continue;
+    Fixture::Part part;
+    part.name = link == model.root ? "" : known.name;
+    part.link.text = known.name;
+    part.index = link;
+    for (const Fixture::Part& named : fixture.named) {
+      if (named.index == link) part = named;
+    }
+    part.joint = mover(fixture, link);
+    fixture.parts.push_back(std::move(part));
+  }
+  if (fixture.parts.empty()) {
+    context.report(Situation::kUntouchable, fixture.urdf.span,
+                   "no link of `" + fixture.name + "` has collision, nothing can touch it");
+  }
+}
+
+void build_regions(Context& context, Fixture& fixture) {
+  for (Fixture::OwnRegion& own : fixture.regions) {
+    bool found = false;
+    std::vector<std::string_view> candidates = {fixture.name};
+    for (std::uint32_t i = 0; i < fixture.parts.size(); ++i) {
+      const Fixture::Part& part = fixture.parts[i];
+      if (part.declared) candidates.push_back(part.name);
+      const bool is_it = own.of.text.empty() ? part.index == fixture.model->root
+                                             : part.declared && part.name == own.of.text;
+      if (!is_it) continue;
+      own.part = i;
+      found = true;
+    }
+    if (!found)
+      report_unknown(context.diagnostics, "part of `" + fixture.name + "`",
+                     {own.of.span, own.of.text.empty() ? fixture.name : own.of.text}, candidates);
+  }
+}
+
+void load_model(Context& context, Fixture& fixture) {
+  const std::string path = (std::filesystem::path(context.asset_root) / fixture.urdf.text).string();
+  auto model = robot::load_urdf(path);
+  if (!model.ok()) {
+    context
+        .report(Situation::kUrdfUnreadable, fixture.urdf.span,
+                "the fixture's description cannot be read: " + model.failure().message)
+        .note("looked for `" + fixture.urdf.text + "` in the assets folder");
+    return;
+  }
+  fixture.model = std::move(model).value();
+  build_joints(context, fixture);
+  build_parts(context, fixture);
+  build_regions(context, fixture);
+}
+
+}  // namespace
+
+std::optional<Region> read_region(Context& context, const syntax::RegionStmt& stmt) {
+  Region region;
+  region.name = std::string(stmt.name.text);
+  region.span = stmt.name.span;
+  check_name(context.diagnostics, stmt.name);
+  const Takes takes{"a region's box takes lengths", plan::Magnitude::kPlace};
+  const auto low = read_point(context, stmt.low, 3, 3, dim::kLength, takes);
+  const auto high = read_point(context, stmt.high, 3, 3, dim::kLength, takes);
+  if (!low || !high) return std::nullopt;
+  for (std::size_t i = 0; i < 3; ++i) {
+    region.low[i] = (*low)[i].si();
+    region.high[i] = (*high)[i].si();
+    if (region.low[i] < region.high[i]) continue;
+    context.report(Situation::kCornersSwapped, join(stmt.low.span, stmt.high.span),
+                   "the second corner of a region lies above the first on every axis");
+    return std::nullopt;
+  }
+  return region;
+}
+
+void put_region(std::vector<Region>& regions, Region region) {
+  std::erase_if(regions, [&](const Region& old) { return old.name == region.name; });
+  regions.push_back(std::move(region));
+}
+
+bool read_start(Context& context, const syntax::StartStmt& stmt, std::vector<JointStart>& starts) {
+  const auto index = context.symbols.fixtures.find(stmt.fixture, context.diagnostics);
+  if (!index) return false;
+  const auto id = static_cast<FixtureId>(*index);
+  const Fixture& fixture = context.model.fixtures[id];
+  if (fixture.broken) return false;
+  std::vector<std::string_view> names;
+  for (std::uint32_t i = 0; i < fixture.joints.size(); ++i) {
+    const Fixture::Joint& joint = fixture.joints[i];
+    names.push_back(joint.name);
+    if (joint.name != stmt.joint.text) continue;
+    const auto value = read_si(
+        context, stmt.value, joint.slides ? dim::kLength : dim::kAngle,
+        {joint.slides ? "this joint slides" : "this joint turns", plan::Magnitude::kJointPosition});
+    if (!value) return false;
+    if (!is_within(joint, *value)) {
+      outside(context, stmt.value.span, joint, *value);
+      return false;
+    }
+    std::erase_if(starts,
+                  [&](const JointStart& old) { return old.fixture == id && old.joint == i; });
+    starts.push_back({id, i, *value, stmt.span});
+    return true;
+  }
+  report_unknown(context.diagnostics, "joint of `" + fixture.name + "`", stmt.joint, names)
+      .label(fixture.span, "the fixture");
+  return false;
+}
+
+std::vector<double> joint_starts_of(const Model& model, const Task& task) {
+  std::vector<double> all;
+  for (const FixtureId id : model.scenes[task.scene].fixtures) {
+    const Fixture& fixture = model.fixtures[id];
+    for (std::uint32_t i = 0; i < fixture.joints.size(); ++i) {
+      double at = fixture.joints[i].start;
+      for (const auto* starts : {&model.layouts[task.layout].joint_starts, &task.joint_starts}) {
+        for (const JointStart& start : *starts) {
+          if (start.fixture == id && start.joint == i) at = start.value;
+        }
+      }
+      all.push_back(at);
+    }
+  }
+  return all;
+}
+
+bool same_fixture(const Fixture& a, const Fixture& b) {
+  const auto same_joint = [](const Fixture::Joint& x, const Fixture::Joint& y) {
+    return x.name == y.name && x.friction == y.friction && x.damping == y.damping &&
+           x.stiffness == y.stiffness && x.rest == y.rest;
+  };
+  return a.urdf.text == b.urdf.text && a.position == b.position && a.turn == b.turn &&
+         a.friction == b.friction && std::ranges::equal(a.joints, b.joints, same_joint);
+}
+
+bool same_fixtures(const Model& model, const Scene& a, const Scene& b) {
+  return std::ranges::equal(a.fixtures, b.fixtures, [&](FixtureId x, FixtureId y) {
+    return x == y || same_fixture(model.fixtures[x], model.fixtures[y]);
+  });
+}
+
+void define_fixtures(Context& context) {
+  const auto read = [&](const Declared<syntax::FixtureDecl>& declared, Fixture& fixture) {
+    FixtureReader reader{context, fixture};
+    for (const syntax::FixtureBodyStmt& stmt : declared.node->body) std::visit(reader, stmt);
+  };
+  const auto complete = [&](Fixture& fixture, bool is_read) {
+    require(context, !fixture.urdf.span.is_none(), "fixture", fixture.name, fixture.span, "urdf");
+    require(context, fixture.has_place, "fixture", fixture.name, fixture.span, "at");
+    fixture.model.reset();
+    fixture.joints.clear();
+    fixture.parts.clear();
+    if (!is_read || fixture.urdf.span.is_none()) return;
+    check_names(context, fixture);
+    load_model(context, fixture);
+  };
+  define_records(context, context.symbols.fixtures, context.symbols.fixture_decls,
+                 context.model.fixtures, read, complete);
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,27 @@
+// Fixtures with joints: what other constructs ask of them.
+#pragma once
+
+#include <vector>
+
+#include "compiler/names/context.h"
+
+namespace probe::sema {
+
+// A region's box: P0304 unless the second corner lies above the first on every axis. Nothing when
+// something was reported.
+std::optional<Region> read_region(Context& context, const syntax::RegionStmt& stmt);
+// The newer of one name takes the place of the older.
+void put_region(std::vector<Region>& regions, Region region);
+
+// `start cabinet.top 4cm`, over what was said before of the same joint. False when reported.
+bool read_start(Context& context, const syntax::StartStmt& stmt, std::vector<JointStart>& starts);
+
+// Where the joints of the scene's fixtures begin in this task (m, rad), in the scene's order: as
+// the task says, else its layout, else the fixture.
+std::vector<double> joint_starts_of(const Model& model, const Task& task);
+
+// Whether both act, stand and are felt alike.
+bool same_fixture(const Fixture& a, const Fixture& b);
+bool same_fixtures(const Model& model, const Scene& a, const Scene& b);
+
+}  // namespace probe::sema

@@ -1,0 +1,69 @@
+// The boxes that the links of a fixture with joints fill, wherever its joints stand: what is in the
+// way of a drawer is found by them. Each collision shape is bounded along its own axes, as objects
+// are by their boxes: collision hulls are not known to the compiler.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compiler/model/model.h"
+#include "runtime/base/geometry.h"
+#include "runtime/robot/kinematics.h"
+
+namespace probe::sema {
+
+// A box that is turned anyhow (m, world).
+struct Solid {
+  Vec3 centre = Vec3::Zero();
+  std::array<Vec3, 3> axes{};  // half of each side
+
+  Vec3 half_extent() const;  // of the upright box around it
+};
+
+// How deep two boxes stand in one another (m), over their fifteen separating axes; at most 0 when a
+// plane separates them.
+double overlap(const Solid& a, const Solid& b);
+
+// The box of an object, turned, with its model's origin at `origin`.
+Solid solid(const Object& object, const Mat3& turn, const Vec3& origin);
+
+// One box of a part.
+struct PartBox {
+  std::uint32_t part = 0;  // of Fixture::parts
+  double position = 0;     // m or rad, of the joint that moves the part
+  Solid solid;
+  Vec3 half = Vec3::Zero();  // Solid::half_extent()
+};
+
+class Travel {
+ public:
+  // Reads the collision meshes that the URDF names; one that cannot be read, which is reported
+  // where assets are collected, fills nothing. Nothing when the fixture has no description.
+  static std::optional<Travel> of(const Fixture& fixture, const std::string& asset_root);
+
+  // With each joint at these positions.
+  std::vector<PartBox> at(std::span<const double> joints) const;
+  // All that the joints' ways let the parts fill, every joint that carries a part at places so near
+  // that the part moves by about 2 mm from one to the next, the others where they begin.
+  const std::vector<PartBox>& everywhere() const { return everywhere_; }
+
+ private:
+  struct Shape {
+    std::uint32_t part;
+    Solid solid;  // in the link's frame
+  };
+  Travel(const Fixture& fixture, robot::Tree tree);
+  void put(std::span<const double> joints, std::uint32_t part, std::vector<PartBox>* to) const;
+  void sweep(std::uint32_t part);
+
+  const Fixture* fixture_;
+  robot::Tree tree_;
+  Pose base_;
+  std::vector<Shape> shapes_;
+  std::vector<PartBox> everywhere_;
+};
+
+}  // namespace probe::sema

@@ -1,0 +1,116 @@
+#include "runtime/inspect/fixture_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "runtime/plan/fixtures.h"
+
+namespace probe::inspect {
+namespace {
+
+// Centimetres or degrees, to a tenth, without a negative zero.
+double shown(const Json& joint, const char* key) {
+  const bool slides = joint["moves"].get<std::string>() == "slides";
+  const double scale = slides ? 100 : 180 / std::numbers::pi;
+  return std::nearbyint(joint[key].get<double>() * scale * 10) / 10 + 0.0;
+}
+
+bool is_of(const plan::Plan& plan, const plan::TaskRecord& task, const plan::RegionRecord& region) {
+  const auto kind = static_cast<plan::BodyKind>(region.kind);
+  if (kind == plan::BodyKind::kSurface || kind == plan::BodyKind::kFixture)
+    return region.index == task.scene;
+  return std::ranges::any_of(plan.bodies(task), [&](const plan::BodyRecord& body) {
+    return body.kind == region.kind && body.index == region.index;
+  });
+}
+
+}  // namespace
+
+Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
+  const plan::TaskRecord& task = plan.tasks()[index];
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  const std::vector<double> starts =
+      plan::joint_starts_of(plan.tables(), scene, plan.episodes(task)[0]);
+  std::size_t next = 0;
+  Json all = Json::array();
+  for (const std::uint32_t number : plan.fixtures(scene)) {
+    const plan::FixtureRecord& fixture = plan.fixtures()[number];
+    Json json;
+    json["fixture"] = plan.text(fixture.name);
+    json["urdf"] = plan.text(plan.assets()[fixture.urdf].path);
+    json["joints"] = Json::array();
+    for (const plan::FixtureJointRecord& joint : plan.joints(fixture)) {
+      json["joints"].push_back({{"joint", plan.text(joint.joint)},
+                                {"moves", plan::slides(joint) ? "slides" : "turns"},
+                                {"endless", plan::is_endless(joint)},
+                                {"lower", joint.lower},
+                                {"upper", joint.upper},
+                                {"start", starts[next++]},
+                                {"friction", joint.friction},
+                                {"damping", joint.damping},
+                                {"stiffness", joint.stiffness},
+                                {"rest", joint.rest}});
+    }
+    json["parts"] = Json::array();
+    for (const plan::PartRecord& part : plan.parts(fixture)) {
+      if (part.declared == 0) continue;
+      json["parts"].push_back(
+          {{"part", plan.text(part.name)},
+           {"name", part.text.length == 0 ? Json() : Json(plan.text(part.text))},
+           {"joint", part.joint == plan::kNone
+                         ? Json()
+                         : Json(plan.text(plan.joints(fixture)[part.joint].joint))}});
+    }
+    all.push_back(std::move(json));
+  }
+  return all;
+}
+
+Json regions_of(const plan::Plan& plan, std::uint32_t index) {
+  const plan::TaskRecord& task = plan.tasks()[index];
+  Json all = Json::array();
+  for (const plan::RegionRecord& region : plan.regions()) {
+    if (!is_of(plan, task, region)) continue;
+    Json low = Json::array(), high = Json::array();
+    for (const double x : region.low) low.push_back(x);
+    for (const double x : region.high) high.push_back(x);
+    all.push_back({{"region", plan.text(region.name)}, {"low_m", low}, {"high_m", high}});
+  }
+  return all;
+}
+
+Json names_of(const Json& regions) {
+  Json names = Json::array();
+  for (const Json& region : regions) names.push_back(region["region"]);
+  return names;
+}
+
+std::vector<std::string> fixture_lines(const Json& task) {
+  std::vector<std::string> lines;
+  if (!task.contains("fixtures")) return lines;
+  for (const Json& fixture : task["fixtures"]) {
+    std::string text = fixture["fixture"].get<std::string>();
+    const char* before = ": ";
+    for (const Json& joint : fixture["joints"]) {
+      const bool slides = joint["moves"].get<std::string>() == "slides";
+      const char* unit = slides ? "cm" : "deg";
+      text += before + joint["joint"].get<std::string>() + " " + joint["moves"].get<std::string>();
+      text += joint["endless"].get<bool>()
+                  ? std::string(" without end")
+                  : fmt::format(" {} .. {} {}", shown(joint, "lower"), shown(joint, "upper"), unit);
+      text += fmt::format(", starts at {} {}", shown(joint, "start"), unit);
+      before = "; ";
+    }
+    std::string parts;
+    for (const Json& part : fixture["parts"])
+      parts += (parts.empty() ? "" : ", ") + part["part"].get<std::string>();
+    if (!parts.empty()) text += before + ("parts " + parts);
+    lines.push_back(std::move(text));
+  }
+  return lines;
+}
+
+}  // namespace probe::inspect

@@ -1,0 +1,25 @@
+// The fixtures with joints of a task and the regions of its scene, for `show`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/base/json.h"
+#include "runtime/plan/plan.h"
+
+namespace probe::inspect {
+
+// [{fixture, joints: [{joint, moves, lower, upper, start, friction, damping, stiffness, rest}],
+// parts:
+// [{part, name, joint}]}] of the task's scene; m and N, or rad and N m. `start` is where the joint
+// begins in this task. Only parts that the text names.
+Json fixtures_of(const plan::Plan& plan, std::uint32_t task);
+// [{region, of, low, high}]: m, in the frame of what they belong to. Of all bodies of the task.
+Json regions_of(const plan::Plan& plan, std::uint32_t task);
+Json names_of(const Json& regions);
+
+// "cabinet: top slides 0 .. 18 cm, starts at 0; parts top_drawer", a text a fixture.
+std::vector<std::string> fixture_lines(const Json& task);
+
+}  // namespace probe::inspect

@@ -1,0 +1,148 @@
+// Fixtures with joints: read with their URDF, and every mistake at its place.
+#include "compiler/define/fixture.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/compiler/small_suite.h"
+
+using namespace probe;
+using test::analyze_with_suite;
+
+namespace {
+
+std::unique_ptr<test::Analysis> with_chest(const std::string& more) {
+  return analyze_with_suite(test::kChest + more);
+}
+
+// The code and the underlined words of one mistake in a fixture of its own: "P0201 `x`".
+std::string mistake(const std::string& lines, const std::string& more = "") {
+  const auto a = with_chest("fixture box { urdf \"chest/chest.urdf\"; at (0cm, 0cm, 0cm)\n" +
+                            lines + "\n}\n" + more);
+  return a->codes() + (a->codes().empty() ? "" : " `" + a->underlined() + "`");
+}
+
+// The same of a task in the room.
+std::string in_task(const std::string& statement) {
+  const auto a = with_chest("task t like red_on_tray { scene room; " + statement + " }");
+  return a->codes() + (a->codes().empty() ? "" : " `" + a->underlined() + "`");
+}
+
+}  // namespace
+
+TEST_CASE("a fixture has the joints of its URDF with what the text says acts in them") {
+  const auto a = with_chest("");
+  REQUIRE_MESSAGE(a->codes().empty(), a->said());
+  const sema::Fixture& chest = *a->model.fixtures.begin();
+  REQUIRE(chest.joints.size() == 3);
+  CHECK(chest.joints[0].name == "slide");
+  CHECK(chest.joints[0].slides);
+  CHECK(chest.joints[0].friction == 2);
+  CHECK(chest.joints[0].damping == 5);
+  CHECK(chest.joints[0].start == 0.04);
+  CHECK(!chest.joints[0].closes_at_upper());
+  CHECK(chest.joints[1].closes_at_upper());
+  CHECK(chest.joints[1].stiffness == 0.5);
+  CHECK(chest.joints[2].is_endless);
+  REQUIRE(chest.parts.size() == 4);  // what nothing can touch is none
+  CHECK(chest.body_name(chest.parts[0]) == "chest");
+  CHECK(chest.body_name(chest.parts[1]) == "chest.drawer");
+  CHECK(chest.parts[1].joint == 0u);
+  CHECK(!chest.parts[0].joint);
+  CHECK(!chest.parts[3].joint);  // the lid is glued
+  CHECK(chest.regions[1].part == 0);
+}
+
+TEST_CASE("a copy stands elsewhere and keeps the rest") {
+  const auto a = with_chest(
+      "fixture other like chest { at (0cm, -30cm, 85cm) }\n"
+      "scene two like room { fixture chest, other }");
+  REQUIRE_MESSAGE(a->codes().empty(), a->said());
+  const sema::Fixture& other = a->model.fixtures[static_cast<sema::FixtureId>(1)];
+  CHECK(other.position[1] == -0.3);
+  CHECK(other.joints[0].friction == 2);
+  CHECK(other.body_name(other.parts[1]) == "other.drawer");
+}
+
+TEST_CASE("mistakes in a fixture are said at their place") {
+  CHECK(mistake("joint slide friction 2N").empty());
+  CHECK(mistake("joint slyde friction 2N") == "P0201 `slyde`");
+  CHECK(mistake("joint glue friction 2N") == "P1301 `glue`");
+  CHECK(mistake("joint slide friction 2Nm") == "P0302 `joint slide friction 2Nm`");
+  CHECK(mistake("joint slide start 30cm") == "P0304 `30cm`");
+  CHECK(mistake("joint slide start 10deg") == "P0302 `joint slide start 10deg`");
+  CHECK(mistake("joint slide friction -2N") == "P0304 `-2N`");
+  CHECK(mistake("joint hinge friction 0.1Nm stiffness 1Nm/rad at 0deg stay") ==
+        "P1303 `joint hinge friction 0.1Nm stiffness 1Nm/rad at 0deg stay`");
+  CHECK(mistake("part a link drower") == "P0201 `drower`");
+  CHECK(mistake("part a link bell") == "P1301 `bell`");
+  CHECK(mistake("part a link door; part b link door") == "P0203 `door`");
+  CHECK(mistake("joint slide friction 2N; part slide link door") == "P0203 `slide`");
+  CHECK(mistake("region r of door box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1cm)") == "P0201 `door`");
+  CHECK(mistake("region r of box box (0cm, 0cm, 0cm) .. (1cm, 1cm, 0cm)") ==
+        "P0304 `(0cm, 0cm, 0cm) .. (1cm, 1cm, 0cm)`");
+  CHECK(with_chest("fixture f { at (0cm, 0cm, 0cm) }")->codes() == "P0206");
+  CHECK(with_chest("fixture f { urdf \"none.urdf\"; at (0cm, 0cm, 0cm) }")->codes() == "P0202");
+  CHECK(with_chest("scene s like bench { fixture chest, chest }")->codes() == "P0203");
+  CHECK(with_chest("scene s like bench { fixture chair }")->codes() == "P0201");
+  CHECK(with_chest("scene s like bench { region r of fixture box (0cm, 0cm, 0cm) .. (1cm, 1cm, "
+                   "1cm) }")
+            ->codes() == "P0201");
+}
+
+TEST_CASE("joints start as the task says, else its layout, else the fixture") {
+  const auto starts = [](const std::string& more, const char* task) {
+    const auto a = with_chest(more);
+    REQUIRE_MESSAGE(a->codes().empty(), a->said());
+    return sema::joint_starts_of(a->model, a->task(task));
+  };
+  const std::string text =
+      "layout ajar like pairs { start chest.slide 10cm }\n"
+      "task a like red_on_tray { scene room }\n"
+      "task b like a { layout ajar }\n"
+      "task c like b { start chest.slide 1cm; start chest.hinge -10deg }\n";
+  CHECK(starts(text, "a")[0] == 0.04);
+  CHECK(starts(text, "b")[0] == 0.1);
+  CHECK(starts(text, "c")[0] == 0.01);
+  CHECK(starts(text, "c")[1] < -0.1);
+  CHECK(in_task("start chest.slide 1cm").empty());
+  CHECK(in_task("start chest.slide 30cm") == "P0304 `30cm`");
+  CHECK(in_task("start chest.slide 3deg") == "P0302 `3deg`");
+  CHECK(in_task("start chest.glue 3cm") == "P0201 `glue`");
+  CHECK(in_task("start chset.slide 3cm") == "P0201 `chset`");
+  CHECK(with_chest("task t like red_on_tray { start chest.slide 1cm }")->codes() == "P0201");
+}
+
+TEST_CASE("a variant that moves a joint differs on the axis of fixtures alone") {
+  const auto a = with_chest(
+      "task a like red_on_tray { scene room }\nvariant open of a { start chest.slide 19cm }\n"
+      "variant same of a { start chest.slide 4cm }");
+  CHECK(a->codes() == "P0702");
+  CHECK(a->task("open").axes == static_cast<std::uint32_t>(plan::Axis::kFixture));
+}
+
+TEST_CASE("parts, joints and regions are measured for what they are") {
+  const auto judged = [](const std::string& metric) {
+    const auto a = with_chest("metrics m like plain { x = " + metric + " }");
+    return a->codes();
+  };
+  CHECK(judged("at end travel(chest.drawer) > 4cm").empty());
+  CHECK(judged("at end travel(chest.slide) > 0.5 * range(chest.slide)").empty());
+  CHECK(judged("at end travel(chest.drawer) > 4deg") == "P0302");
+  CHECK(judged("at end turn(chest.door) > 4deg").empty());
+  CHECK(judged("max rate(chest.drawer)").empty());
+  CHECK(judged("at end within(position(source), chest.inside)").empty());
+  CHECK(judged("once impulse(chest.door, source) > 0Ns").empty());
+  CHECK(judged("at end height(chest) > 0cm").empty());
+  CHECK(judged("final height(local(position(source), chest.drawer))").empty());
+  CHECK(judged("at end travel(source) > 4cm") == "P0601");
+  CHECK(judged("at end within(source, chest.drawer)") == "P0601");
+  CHECK(judged("at end travel(chest.lid) > 1cm") == "P0201");
+  CHECK(judged("at end any p in parts: travel(p) > 0.5 * range(p)").empty());
+  const std::string is_open = "predicate is_open(p: part) = travel(p) > 0.8 * range(p)\n";
+  CHECK(with_chest(is_open + "metrics m like plain { x = at end is_open(chest.drawer) }")
+            ->codes()
+            .empty());
+  CHECK(with_chest(is_open + "metrics m like plain { x = at end is_open(source) }")->codes() ==
+        "P0601");
+  CHECK(with_chest("predicate p(a: part) = travel(a) > 4cm\n")->codes() == "P0302");
+}

@@ -1,0 +1,72 @@
+// Fixtures with joints, regions, where joints begin. Each case begins with the productions it
+// holds.
+#include <doctest/doctest.h>
+
+#include "runtime/plan/fixtures.h"
+#include "tests/dsl/built.h"
+
+using namespace probe;
+using namespace probe::test;
+
+TEST_CASE("fixture, fixture_st: what a text says of joints, parts and regions is in the plan") {
+  const Built built(
+      std::string(kChest) +
+      "fixture other like chest { at (0cm, -40cm, 110cm) pitch 90deg; friction 0.3 }\n"
+      "scene two like room { fixture chest, other }\n"
+      "task t like red_on_tray { scene two }\n");
+  const plan::Plan& plan = built.plan();
+  const auto fixtures = plan.fixtures();
+  REQUIRE(fixtures.size() == 2);
+  CHECK(plan.text(fixtures[0].name) == "chest");
+  CHECK(plan.text(fixtures[1].name) == "other");
+  CHECK(fixtures[1].friction == 0.3);
+  CHECK(fixtures[1].position[1] == -0.4);
+  CHECK(fixtures[1].rotation[2] == doctest::Approx(std::sqrt(0.5)));
+  const auto joints = plan.joints(fixtures[0]);
+  REQUIRE(joints.size() == 3);
+  CHECK(plan.text(joints[0].joint) == "slide");
+  CHECK(joints[0].friction == 2);
+  CHECK(joints[0].damping == 5);
+  CHECK(joints[0].start == 0.04);
+  CHECK(joints[1].stiffness == 0.5);
+  // As bodies they are called after their fixture; a part has its own name, a link the URDF's.
+  std::string names;
+  for (const plan::BodyRecord& body : plan.bodies(built.task("t"))) {
+    if (body.kind == static_cast<std::uint32_t>(plan::BodyKind::kPart))
+      names += std::string(plan.text(body.name)) + " ";
+  }
+  CHECK(names == "chest chest.drawer chest.door chest.lid other other.drawer other.door other.lid ");
+}
+
+TEST_CASE("box: two corners, the second above the first on every axis") {
+  const auto a = clean(
+      "object tub like tray { region inside box (-2cm, -1cm, 0cm) .. (2cm, 1cm, 30mm); name \"tub\" "
+      "}\n");
+  const auto& regions = named(a->model.objects, "tub").regions;
+  REQUIRE(regions.size() == 1);
+  CHECK(regions[0].low[0] == -0.02);
+  CHECK(regions[0].high[2] == 0.03);
+  const auto flat = analyze_with_suite(
+      "object tub like tray { region inside box (-2cm, -1cm, 0cm) .. (2cm, 1cm, 0cm) }\n");
+  CHECK(flat->codes() == "P0304");
+}
+
+TEST_CASE("scene_st, layout_st, task_st: a joint begins where the task says, else the layout") {
+  const Built built(std::string(kChest) +
+                    "layout ajar like pairs { start chest.slide 10cm; start chest.hinge -45deg }\n"
+                    "task t like red_on_tray { scene room }\n"
+                    "task u like red_on_tray { scene room; layout ajar }\n"
+                    "task v like red_on_tray { scene room; layout ajar; start chest.slide 2cm }\n");
+  const auto starts = [&](const char* name) {
+    const plan::TaskRecord& task = built.task(name);
+    std::string text;
+    for (const double at : plan::joint_starts_of(built.plan().tables(),
+                                                 built.plan().scenes()[task.scene],
+                                                 built.plan().episodes(task)[0]))
+      text += number_text(at) + " ";
+    return text;
+  };
+  CHECK(starts("t") == "0.04 0 0 ");
+  CHECK(starts("u") == "0.1 -0.785398 0 ");
+  CHECK(starts("v") == "0.02 -0.785398 0 ");
+}
