@@ -117,7 +117,7 @@ void ask_questions(Context& context) {
       const About about(context.reporter, set.decl_span);
       for (std::uint32_t f = 0; f < set.families.size(); ++f) {
         if (set.families[f].broken) continue;
-        const auto why_not = ask_family(context, ambiguities, relations, scene, id, f);
+        const auto why_not = ask_family({context, ambiguities, relations, scene, id, f});
         if (why_not) model.left_out.push_back({id, f, task, *why_not});
       }
     }

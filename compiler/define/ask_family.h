@@ -1,68 +1,12 @@
 // One family of questions asked of one task: the words, the options, the right answer and what
-// proves it; or why it is not asked. Objects are told apart by what they are called: two of one
-// name, or a plate beside a small plate, leave open which is meant.
+// proves it; or why it is not asked.
 #pragma once
 
-#include <cstdint>
-#include <map>
-#include <optional>
-#include <string>
-#include <tuple>
-
-#include "compiler/define/in_start.h"
-#include "compiler/define/scene_objects.h"
-#include "compiler/names/context.h"
+#include "compiler/define/family_of_task.h"
 
 namespace probe::sema {
 
-// Questions without a single right answer, or without what they want, said of the first task of
-// each place alone.
-class Ambiguities {
- public:
-  explicit Ambiguities(Context& context) : context_(context) {}
-  ~Ambiguities() {
-    for (const auto& [place, said] : said_) {
-      if (said.count > 1)
-        said.first->note("the same holds for " + std::to_string(said.count - 1) + " more " +
-                         (said.count > 2 ? "questions" : "question"));
-    }
-  }
-  Ambiguities(const Ambiguities&) = delete;
-  Ambiguities& operator=(const Ambiguities&) = delete;
-
-  // Only a warning can be silenced; the question is then left out of such tasks.
-  plan::OmissionReason report(Code code, const Span& span, bool is_allowed,
-                              const std::string& message, const char* slug) {
-    Said& said = said_[{code, span.file.value, span.begin, span.end}];
-    if (said.count++ == 0) {
-      said.first = &context_.report(code, span, message);
-      if (is_allowed) said.first->severity = Severity::kWarning;
-      said.first->help(
-          "keep the question from such tasks by `where`, or leave it out of them with "
-          "`@allow(" +
-          std::string(slug) + ", \"...\")` above the set");
-    }
-    return plan::OmissionReason::kAmbiguous;
-  }
-
-  // What is as good as can be had, and is to be known.
-  void tell(Code code, const Span& span, const std::string& message) {
-    Said& said = said_[{code, span.file.value, span.begin, span.end}];
-    if (said.count++ == 0) said.first = &context_.report(code, span, message);
-  }
-
- private:
-  struct Said {
-    Diagnostic* first = nullptr;
-    std::size_t count = 0;
-  };
-  Context& context_;
-  std::map<std::tuple<Code, std::uint32_t, std::uint32_t, std::uint32_t>, Said> said_;
-};
-
 // Adds to Model::asked. Nothing when at least one question came of it.
-std::optional<plan::OmissionReason> ask_family(Context& context, Ambiguities& ambiguities,
-                                               Relations& relations, const SceneObjects& scene,
-                                               QuestionSetId set, std::uint32_t family);
+MayOmit ask_family(const FamilyOfTask& asked);
 
 }  // namespace probe::sema

@@ -21,9 +21,13 @@ Truth has_value(const Model& model, AttributeId attribute, std::uint32_t value, 
   return std::find(values.begin(), values.end(), value) != values.end() ? Truth::kYes : Truth::kNo;
 }
 
-PoolReader::PoolReader(const Model& model, const SceneObjects& scene, const QuestionSet& set,
-                       const Family& family)
-    : model_(model), scene_(scene), set_(set), family_(family), text_(fold_case(family.text)) {}
+PoolReader::PoolReader(const FamilyOfTask& asked)
+    : asked_(asked),
+      model_(asked.model()),
+      scene_(asked.scene),
+      set_(asked.set()),
+      family_(asked.family()),
+      text_(fold_case(asked.family().text)) {}
 
 bool PoolReader::can_be_absent(ObjectId id, ObjectId bound) const {
   return scene_.is_absent(id) && !has_words(text_, scene_.name(id)) && !fits_description(id, bound);
@@ -90,7 +94,19 @@ std::vector<ObjectId> PoolReader::members(const QuestionPool& pool, ObjectId bou
     });
     if (is_new) out.push_back(id);
   }
+  tell_fewer(pool, out.size() - scene_.all().size());
   return out;
+}
+
+void PoolReader::tell_fewer(const QuestionPool& pool, std::size_t absent) const {
+  // A library wants what a small catalogue may not have.
+  const auto& roots = asked_.context.roots;
+  const bool is_root = std::find(roots.begin(), roots.end(), family_.span.file) != roots.end();
+  if (!is_root || pool.is_catalogue || absent >= pool.absent) return;
+  asked_.ambiguities.tell(Code::P0905, family_.span,
+                          asked_.here() + std::to_string(pool.absent) +
+                              " absent objects are wanted, and there " +
+                              (absent == 1 ? "is " : "are ") + std::to_string(absent));
 }
 
 }  // namespace probe::sema

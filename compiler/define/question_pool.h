@@ -7,22 +7,20 @@
 #include <string_view>
 #include <vector>
 
-#include "compiler/define/scene_objects.h"
-#include "compiler/model/model.h"
+#include "compiler/define/family_of_task.h"
 
 namespace probe::sema {
 
-// Of one family of one task; all outlive it.
 class PoolReader {
  public:
-  PoolReader(const Model& model, const SceneObjects& scene, const QuestionSet& set,
-             const Family& family);
+  explicit PoolReader(const FamilyOfTask& asked);  // which outlives it
 
   // Whether an object is certainly not in the scene, whatever it is called and shown as, nor fits
   // what the question says of its answer. `bound`: what `for` binds.
   bool can_be_absent(ObjectId id, ObjectId bound) const;
 
-  // Those of the scene first, in its order. Fewer than asked for when there are no more.
+  // Those of the scene first, in its order. Fewer than asked for when there are no more, which is
+  // told once of a family.
   std::vector<ObjectId> members(const QuestionPool& pool, ObjectId bound) const;
 
   // In an order of their own, by `what` it is for.
@@ -32,6 +30,9 @@ class PoolReader {
   ObjectId described_by(const Who& who, ObjectId bound) const;
   bool fits_description(ObjectId id, ObjectId bound) const;
 
+  void tell_fewer(const QuestionPool& pool, std::size_t absent) const;
+
+  const FamilyOfTask& asked_;
   const Model& model_;
   const SceneObjects& scene_;
   const QuestionSet& set_;
