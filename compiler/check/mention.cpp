@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "compiler/check/check.h"
+#include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::sema {
@@ -30,25 +31,6 @@ constexpr auto kAfter = std::to_array<std::string_view>(
 
 bool has(const auto& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-// Whether one noun is the other in the plural, or they are the same: "knife", "knives".
-bool is_plural(std::string_view many, std::string_view one) {
-  const auto is = [&](std::size_t cut, std::string_view ending) {
-    return one.size() > cut && many.size() == one.size() - cut + ending.size() &&
-           many.starts_with(one.substr(0, one.size() - cut)) && many.ends_with(ending);
-  };
-  const auto ends = [&](auto... endings) { return (one.ends_with(endings) || ...); };
-  if (ends("s", "x", "z", "ch", "sh")) return is(0, "es");
-  if (ends("ay", "ey", "oy", "uy")) return is(0, "s");
-  if (ends("y")) return is(1, "ies");
-  if (ends("fe")) return is(2, "ves") || is(0, "s");
-  if (ends("f")) return is(1, "ves") || is(0, "s");
-  if (ends("o")) return is(0, "es") || is(0, "s");
-  return is(0, "s");
-}
-bool is_same_noun(std::string_view a, std::string_view b) {
-  return a == b || is_plural(a, b) || is_plural(b, a);
 }
 
 struct Word {

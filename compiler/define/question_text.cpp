@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/define/question_pool.h"
+#include "runtime/base/nouns.h"
 #include "runtime/plan/limits.h"
 
 namespace probe::sema {
@@ -14,8 +15,7 @@ namespace {
 std::string with_article(Placeholder::Article article, bool bare, std::string_view words) {
   if (bare || article == Placeholder::kBare) return std::string(words);
   if (article == Placeholder::kThe) return "the " + std::string(words);
-  const bool vowel = std::string_view("aeiouAEIOU").find(words[0]) != std::string_view::npos;
-  return (vowel ? "an " : "a ") + std::string(words);
+  return with_indefinite_article(words);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "compiler/define/role.h"
 #include "compiler/define/wording.h"
 #include "compiler/names/texts.h"
+#include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::sema {
@@ -89,18 +90,6 @@ std::vector<std::string> words_in(const std::string& text) {
     at = end;
   }
   return words;
-}
-
-std::string plural_of(const std::string& noun) {
-  const auto ends = [&](auto... endings) { return (noun.ends_with(endings) || ...); };
-  const std::string all_but_one = noun.substr(0, noun.size() - 1);
-  if (ends("s", "x", "z", "ch", "sh")) return noun + "es";
-  if (ends("ay", "ey", "oy", "uy")) return noun + "s";
-  if (ends("y")) return all_but_one + "ies";
-  if (ends("fe")) return noun.substr(0, noun.size() - 2) + "ves";
-  if (ends("lf", "af")) return all_but_one + "ves";
-  if (ends("to")) return noun + "es";  // potato, tomato
-  return noun + "s";
 }
 
 constexpr std::array<std::string_view, 13> kNumbers = {"",     "",       "two",   "three", "four",

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::sema {
@@ -73,7 +74,7 @@ std::vector<std::string> literal_words(const std::string& text) {
   for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
     std::string word = text.substr(at, end - at);
-    if (word != "the" && word != "a" && word != "an") words.push_back(std::move(word));
+    if (!is_article(word)) words.push_back(std::move(word));
     at = end;
   }
   return words;
@@ -181,8 +182,7 @@ std::vector<std::string> sentence_of(const Template& say) {
     }
     for (const std::string& written : literal_words(part.literal)) {
       std::string word = plain(written);
-      if (!word.empty() && word != "the" && word != "a" && word != "an")
-        words.push_back(std::move(word));
+      if (!word.empty() && !is_article(word)) words.push_back(std::move(word));
     }
   }
   return words;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::rephrase {
@@ -42,9 +43,7 @@ Words words_of(std::string_view wording) {
       words.emplace_back();
     }
   }
-  std::erase_if(words, [](const std::string& word) {
-    return word.empty() || word == "the" || word == "a" || word == "an";
-  });
+  std::erase_if(words, [](const std::string& word) { return word.empty() || is_article(word); });
   return words;
 }
 

@@ -276,21 +276,6 @@ std::string plain_form(std::string_view text) {
 
 Tokens tokens_of(std::string_view text) { return Tokenizer(text).run(); }
 
-bool is_article(std::string_view word) { return word == "a" || word == "an" || word == "the"; }
-
-bool is_same_noun(std::string_view a, std::string_view b) {
-  if (a == b) return true;
-  if (a.size() > b.size()) std::swap(a, b);
-  // `b` is the longer one.
-  if (b.size() == a.size() + 1) return b.starts_with(a) && b.ends_with('s') && !a.ends_with('s');
-  if (b.size() != a.size() + 2) return false;
-  if (a.ends_with('y')) return b.starts_with(a.substr(0, a.size() - 1)) && b.ends_with("ies");
-  constexpr auto kHissing = std::to_array<std::string_view>({"s", "x", "z", "ch", "sh", "o"});
-  const bool hisses = std::any_of(kHissing.begin(), kHissing.end(),
-                                  [&](std::string_view end) { return a.ends_with(end); });
-  return hisses && b.starts_with(a) && b.ends_with("es");
-}
-
 bool stands_phrase(std::span<const Token> tokens, std::size_t at, std::string_view phrase) {
   while (true) {
     const std::size_t blank = phrase.find(' ');

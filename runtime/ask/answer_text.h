@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/nouns.h"
+
 namespace probe::ask {
 
 // What is left of an answer without its thoughts: blocks between <think> and </think> (also
@@ -49,11 +51,6 @@ using Tokens = std::vector<Token>;
 // Of a text in plain form. Marks of emphasis, quotes, code and formulas, commands of LaTeX and tags
 // of HTML that only format are left out; underscores, and hyphens between letters, part words.
 Tokens tokens_of(std::string_view text);
-
-bool is_article(std::string_view word);  // "a", "an", "the"
-
-// Whether one noun is the other in the plural, or they are the same.
-bool is_same_noun(std::string_view a, std::string_view b);
 
 // Whether the words of a phrase, with blanks between them, stand from `at` on with no sign or break
 // in between.

@@ -60,6 +60,7 @@ TEST_CASE("one noun is the plural of the other, or it is another one") {
   CHECK(is_same_noun("boxes", "box"));
   CHECK(is_same_noun("berry", "berries"));
   CHECK(is_same_noun("potato", "potatoes"));
+  CHECK(is_same_noun("knife", "knives"));
   CHECK_FALSE(is_same_noun("plate", "plated"));
   CHECK_FALSE(is_same_noun("glass", "glas"));
   CHECK_FALSE(is_same_noun("can", "cane"));
