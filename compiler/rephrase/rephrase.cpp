@@ -71,7 +71,7 @@ Rephrased rephrase(const sema::Model& model, std::span<const sema::TaskId> tasks
     if (!task.abstract && task.complete)
       instructions.insert(likeness_without_courtesy(task.prompt));
   }
-  Prover prover(model);
+  Prover prover(model, options.asset_root);
   std::vector<Proved> of_tasks;
   for (const sema::TaskId id : tasks)
     of_tasks.push_back(prover.prove(model.tasks[id], options.seed));

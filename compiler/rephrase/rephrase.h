@@ -27,7 +27,8 @@ struct Options {
   // For readers who look a rewording up by the instruction alone: only what is proved of every task
   // here that has the instruction, and the same of each.
   bool by_instruction = false;
-  bool drop_leaks = false;  // left out and counted; else they are told, and the caller refuses
+  std::string asset_root = {};  // of the meshes whose middles relations measure
+  bool drop_leaks = false;      // left out and counted; else they are told, and the caller refuses
 };
 
 // What INT-ACT's "+rephrase" does: the instruction in one half of all draws, several wordings else,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "compiler/define/denote.h"
 #include "compiler/define/template.h"
@@ -83,15 +84,40 @@ std::vector<std::uint64_t> drawn(std::uint64_t count, std::uint64_t seed, const 
 
 }  // namespace
 
-Prover::Prover(const Model& model) : model_(model), actions_(model), mentions_(model) {}
+namespace {
+
+std::optional<Refusal> why_unclear(const sema::Denotation& meant) {
+  if (!meant.may_fit) return Refusal::kNotMeant;
+  if (!meant.sure.empty()) return Refusal::kAmbiguous;
+  if (!meant.fits || !meant.perhaps.empty()) return Refusal::kUnknown;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Prover::Prover(const Model& model, std::string asset_root)
+    : model_(model),
+      actions_(model),
+      mentions_(model),
+      relations_(model, std::move(asset_root), unsaid_) {}
+
+// Of words that say where things are: the first reason of refusals.def that some start gives.
+std::optional<Refusal> Prover::why_not_there(const Task& task, ObjectId wanted,
+                                             const Phrase& phrase) {
+  std::optional<Refusal> first;
+  for (const sema::Start& start : task.starts) {
+    const auto why = why_unclear(sema::InStart(relations_, task, start).denote(phrase, wanted));
+    if (why && (!first || *why < *first)) first = why;
+  }
+  return first;
+}
 
 std::optional<Refusal> Prover::why_no_phrase(const Task& task, ObjectId wanted,
-                                             const Phrase& phrase) const {
+                                             const Phrase& phrase) {
   const std::vector<ObjectId> objects = task.objects();
-  const sema::Denotation meant = sema::denote(model_, objects, phrase, wanted);
-  if (!meant.fits) return Refusal::kNotMeant;
-  if (!meant.sure.empty()) return Refusal::kAmbiguous;
-  if (!meant.perhaps.empty()) return Refusal::kUnknown;
+  const auto why = phrase.is_spatial() ? why_not_there(task, wanted, phrase)
+                                       : why_unclear(sema::denote(model_, objects, phrase, wanted));
+  if (why) return why;
   // Its words may name an object themselves: "juice squeezed from orange".
   Template alone;
   alone.parts.push_back({"put the " + phrase.text.text + " on it", std::nullopt});
@@ -103,7 +129,7 @@ std::optional<Refusal> Prover::why_no_phrase(const Task& task, ObjectId wanted,
   return std::nullopt;
 }
 
-std::vector<Prover::Choice> Prover::choices(const Task& task, bool is_source, bool is_said) const {
+std::vector<Prover::Choice> Prover::choices(const Task& task, bool is_source, bool is_said) {
   const ObjectId wanted = is_source ? task.source : task.target;
   if (wanted == ObjectId::kNone) return std::vector<Choice>(1);
   const sema::Object& object = model_.objects[wanted];

@@ -1,6 +1,6 @@
 // Every wording of a task that its templates and phrases can make and that is proved to mean the
-// same in each of its starts. All starts of a task have the same objects, and phrases ask for what
-// objects are and never for where they lie: what holds of its objects holds in every start.
+// same in each of its starts. All starts of a task have the same objects: what a phrase says of
+// what they are holds in every start or in none. What it says of where they lie is proved in each.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/check/mention.h"
+#include "compiler/define/in_start.h"
 #include "compiler/model/model.h"
 #include "compiler/rephrase/actions.h"
 #include "compiler/rephrase/refusal.h"
@@ -36,22 +37,27 @@ inline constexpr std::uint64_t kMostEnumerated = 65'536, kMostDrawn = 16'384;
 
 class Prover {
  public:
-  // The model must live as long; it has no errors.
-  explicit Prover(const sema::Model& model);
+  // The model must live as long; it has no errors. `asset_root`: of the meshes whose middles the
+  // relations of phrases measure.
+  explicit Prover(const sema::Model& model, std::string asset_root = {});
 
   // Of a concrete task.
   Proved prove(const sema::Task& task, std::uint64_t seed);
 
  private:
   struct Choice;
-  std::vector<Choice> choices(const sema::Task& task, bool is_source, bool is_said) const;
+  std::vector<Choice> choices(const sema::Task& task, bool is_source, bool is_said);
   std::optional<Refusal> why_no_phrase(const sema::Task& task, sema::ObjectId wanted,
-                                       const sema::Phrase& phrase) const;
+                                       const sema::Phrase& phrase);
+  std::optional<Refusal> why_not_there(const sema::Task& task, sema::ObjectId wanted,
+                                       const sema::Phrase& phrase);
   std::optional<Refusal> why_not(const sema::Task& task, sema::TemplateId say);
 
   const sema::Model& model_;
   Actions actions_;
   sema::Mentions mentions_;
+  Diagnostics unsaid_;  // what cannot be measured is said where a task refers by it
+  sema::Relations relations_;
 };
 
 }  // namespace probe::rephrase

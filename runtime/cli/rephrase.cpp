@@ -163,7 +163,7 @@ bool says_leaks(const sema::Model& model, const rephrase::Rephrased& all) {
 }
 
 int rephrase_verb(const RephraseArguments& arguments) {
-  const auto options = options_of(arguments);
+  auto options = options_of(arguments);
   if (!options) return report(options.failure());
   if (!arguments.file.ends_with(".probe")) {
     return report({Fault::kUsage, "expected .probe text: a plan has no templates and phrases",
@@ -172,6 +172,7 @@ int rephrase_verb(const RephraseArguments& arguments) {
   std::vector<std::string> inputs = arguments.not_in;
   inputs.push_back(arguments.file);
   if (const auto fits = check_output(arguments.out, inputs); !fits) return report(fits.failure());
+  if (const auto root = find_asset_root(arguments.assets.root)) options->asset_root = *root;
   const Analysed analysed = analyse(arguments.file, arguments.assets, arguments.suite);
   if (!analysed.text) return analysed.exit;
   const sema::Model& model = analysed.text->model;

@@ -72,6 +72,31 @@ TEST_CASE("a phrase that means a distractor, too, or perhaps, is refused there a
   CHECK(pale.refused(Refusal::kUnknown) == 2);  // nobody said which color it has
 }
 
+TEST_CASE("a phrase that says where things are is a wording where it is clear in every start") {
+  // Two starts, `spread` before and behind the middle; the blue block stands aside at 0.
+  const auto made = [](const char* middle, const char* spread) {
+    return make(
+        std::string(
+            "relation ahead(a: object) \"first\" = all o in alike - {a}: x(a) < x(o) - 1cm\n"
+            "object one like red {\n"
+            "  phrase first spatial \"first toy\" means category toy and ahead\n}\n"
+            "layout rows {\n  cells row = grid 2 x 1 at (") +
+            middle + ", 0cm) spread (" + spread +
+            ", 0cm)\n  place one in distinct row; place blue at (0cm, -15cm)\n"
+            "  place tray at (0cm, 20cm); orient by rest; drop 10cm settle 0.5s\n}\n"
+            "task t like base { layout rows; source one; target tray; distractors blue }\n",
+        "t");
+  };
+  CHECK(made("-15cm", "5cm").has("put first toy on the tray"));
+  const Made swapped = made("0cm", "20cm");
+  CHECK_FALSE(swapped.has("put first toy on the tray"));
+  CHECK(swapped.refused(Refusal::kNotMeant) > 0);
+  // In its second start so near that settling may decide which is first.
+  const Made near = made("-105.5mm", "94.5mm");
+  CHECK_FALSE(near.has("put first toy on the tray"));
+  CHECK(near.refused(Refusal::kUnknown) > 0);
+}
+
 TEST_CASE("a phrase that an object has from another one and that is not true of it is refused") {
   const Made made =
       make("task blue_on_tray like base { source blue; target tray }\n", "blue_on_tray");
