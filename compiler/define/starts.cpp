@@ -10,6 +10,7 @@
 #include "compiler/define/role.h"
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
+#include "runtime/base/hash_number.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/axes.h"
 
@@ -189,9 +190,7 @@ struct Enumerator {
 
 // A number in [-1, 1) from the first bits of a hash.
 double draw(const Sha256& hash) {
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < 8; ++i) bits = bits << 8 | hash.bytes[i];
-  return static_cast<double>(bits >> 11) * 0x1p-52 - 1.0;
+  return static_cast<double>(big_endian_number(hash) >> 11) * 0x1p-52 - 1.0;
 }
 
 // Every draw has its own key, the number of the start with the object's name and the axis: no other

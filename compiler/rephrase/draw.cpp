@@ -1,6 +1,6 @@
 #include "compiler/rephrase/draw.h"
 
-#include "runtime/base/sha256.h"
+#include "runtime/base/hash_number.h"
 
 namespace probe::rephrase {
 
@@ -8,10 +8,7 @@ std::uint64_t draw(std::string_view what, std::uint64_t seed, std::string_view f
                    std::string_view second) {
   Hasher hasher;
   hasher.text("rephrase").text(what).u64(seed).text(first).text(second);
-  const Sha256 hash = hasher.finish();
-  std::uint64_t number = 0;
-  for (std::size_t i = 0; i < 8; ++i) number = number << 8 | hash.bytes[i];
-  return number;
+  return big_endian_number(hasher.finish());
 }
 
 double draw_share(std::string_view what, std::uint64_t seed, std::string_view first) {

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "runtime/ask/chat.h"
+#include "runtime/base/hash_number.h"
 #include "runtime/base/percent.h"
 #include "runtime/base/spelling.h"
 #include "runtime/plan/questions.h"
@@ -43,8 +44,7 @@ std::string truth_says(const AskedQuery& asked) {
 std::string random_says(const AskedQuery& asked) {
   std::size_t used = 0;
   const auto below = [&](std::size_t bound) {
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < 8; ++i) value = value << 8 | asked.draw.bytes[used++ % 32];
+    const std::uint64_t value = big_endian_number(asked.draw, used++ % kNumbersOfHash);
     return static_cast<std::uint32_t>(value % std::max<std::size_t>(bound, 1));
   };
   const std::size_t options = asked.wording.shown.size();

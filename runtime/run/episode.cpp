@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "runtime/base/clock.h"
+#include "runtime/base/hash_number.h"
 #include "runtime/base/percent.h"
 
 namespace probe::run {
@@ -215,9 +216,7 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
                           .u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(seed)))
                           .hash(episode_id)
                           .finish();
-  std::uint64_t value = 0;
-  for (std::size_t i = 8; i-- > 0;) value = value << 8 | hash.bytes[i];
-  return value;
+  return little_endian_number(hash);
 }
 
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,

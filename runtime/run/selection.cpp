@@ -6,6 +6,7 @@
 #include <set>
 
 #include "runtime/base/glob.h"
+#include "runtime/base/hash_number.h"
 #include "runtime/base/spelling.h"
 #include "runtime/store/episode_key.h"
 
@@ -61,9 +62,7 @@ int shard_of(const Sha256& episode_id, int seed, int shards) {
                           .hash(episode_id)
                           .u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(seed)))
                           .finish();
-  std::uint64_t value = 0;
-  for (std::size_t i = 8; i-- > 0;) value = value << 8 | hash.bytes[i];
-  return 1 + static_cast<int>(value % static_cast<std::uint64_t>(shards));
+  return 1 + static_cast<int>(little_endian_number(hash) % static_cast<std::uint64_t>(shards));
 }
 
 Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/base/hash_number.h"
 #include "runtime/base/sha256.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/protocols/lerobot_messages.h"
@@ -37,10 +38,7 @@ std::int64_t timestep_of(const Request& request) {
     hasher.bytes(std::as_bytes(std::span(image.pixels.bytes)));
   }
   hasher.bytes(std::as_bytes(std::span(request.state)));
-  const Sha256 hash = hasher.finish();
-  std::uint64_t number = 0;
-  for (std::size_t i = 0; i < 8; ++i) number = number << 8 | hash.bytes[i];
-  return static_cast<std::int64_t>(number >> 2);
+  return static_cast<std::int64_t>(big_endian_number(hasher.finish()) >> 2);
 }
 
 // As LeRobot's data sets say what an observation holds.
