@@ -1,4 +1,4 @@
-// The questions of a policy test, and its report.
+// The observations of a policy test, and its report.
 #include "runtime/servers/conformance.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 #include "runtime/base/json.h"
 #include "runtime/policy/reading.h"
 #include "runtime/servers/api_key.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/meaning.h"
-#include "runtime/servers/questions.h"
 
 namespace probe::servers {
 namespace {
@@ -57,7 +57,7 @@ double difference(const Chunk& a, const Chunk& b) {
 class Session {
  public:
   Session(const ServerChoice& choice, Transport& transport, Conformance& result)
-      : questions_(choice.profile, transport, known_arm(choice.profile)),
+      : observations_(choice.profile, transport, known_arm(choice.profile)),
         transport_(transport),
         result_(result),
         most_in_batch_(asks_together(choice) ? choice.batch.most : 1) {}
@@ -74,7 +74,7 @@ class Session {
                               Verdict::kFine,
                               std::to_string(kObservations) + " observations answered with actions",
                               {}});
-    for (Check& check : judge_answers(profile(), chunks, questions_.arm()))
+    for (Check& check : judge_answers(profile(), chunks, observations_.arm()))
       result_.checks.push_back(std::move(check));
     double changes = 0;
     for (const Chunk& chunk : chunks) changes = std::max(changes, difference(chunk, chunks[0]));
@@ -87,7 +87,7 @@ class Session {
  private:
   bool connect() {
     const auto begun = Clock::now();
-    const auto opened = questions_.open();
+    const auto opened = observations_.open();
     result_.connect_s = seconds_since(begun);
     if (!opened) {
       result_.checks.push_back(failed_check("connection", opened.failure()));
@@ -100,12 +100,12 @@ class Session {
     return true;
   }
 
-  const Profile& profile() const { return questions_.profile(); }
+  const Profile& profile() const { return observations_.profile(); }
 
   // On a failure the check is written and the session is over.
-  std::optional<Chunk> ask(const char* name, const Question& question) {
-    auto answer = questions_.ask(question);
-    result_.queries = questions_.asked();
+  std::optional<Chunk> ask(const char* name, const KnownObservation& observation) {
+    auto answer = observations_.ask(observation);
+    result_.queries = observations_.asked();
     if (!answer) {
       result_.checks.push_back(failed_check(name, answer.failure()));
       judge_times();
@@ -165,10 +165,10 @@ class Session {
   // The same pictures once more, in one message.
   void check_together(const std::vector<Chunk>& alone) {
     if (most_in_batch_ <= 1) return;
-    std::vector<Question> questions;
+    std::vector<KnownObservation> observations;
     for (int i = 0; i < std::min(kObservations, most_in_batch_); ++i)
-      questions.push_back({.picture = i});
-    const auto together = questions_.ask_together(questions);
+      observations.push_back({.picture = i});
+    const auto together = observations_.ask_together(observations);
     ++result_.queries;
     if (!together) {
       result_.checks.push_back(failed_check("batch", together.failure()));
@@ -180,14 +180,14 @@ class Session {
       return;
     }
     policy::Reading reading;
-    reading.batch = static_cast<int>(questions.size());
+    reading.batch = static_cast<int>(observations.size());
     reading.batch_difference = finding.difference;
     result_.checks.push_back({"batch", Verdict::kFine, policy::batch_remark(reading), {}});
   }
 
   // What no shape shows: changes or poses, in which units, which rotations.
   void judge_meaning(const std::vector<Chunk>& answers) {
-    KnownAnswers known{answers, {}, questions_.arm()};
+    KnownAnswers known{answers, {}, observations_.arm()};
     if (mirrored_) known.mirrored.push_back(*mirrored_);
     for (const OpenField& open : left_open(profile(), known)) {
       Check check{open.field, Verdict::kWarning, "the profile does not say it; ", {}};
@@ -215,7 +215,7 @@ class Session {
   }
 
   void judge_times() {
-    const std::vector<double>& times = questions_.times();
+    const std::vector<double>& times = observations_.times();
     if (times.empty()) return;
     result_.first_s = times.front();
     std::vector<double> later(times.begin() + (times.size() > 1 ? 1 : 0), times.end());
@@ -235,7 +235,7 @@ class Session {
     result_.checks.push_back(std::move(check));
   }
 
-  Questions questions_;
+  KnownObservations observations_;
   Transport& transport_;
   Conformance& result_;
   int most_in_batch_;

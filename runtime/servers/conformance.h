@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/servers.h"
 
 namespace probe::servers {

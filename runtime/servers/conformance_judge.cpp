@@ -9,7 +9,7 @@
 #include "runtime/robot/rotation.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/conversion.h"
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 
 namespace probe::servers {
 namespace {

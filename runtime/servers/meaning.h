@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 
 namespace probe::servers {
 
@@ -21,7 +21,7 @@ struct OpenField {
 // mean; `adapted` is a profile as the server wants it.
 std::vector<OpenField> open_fields(const Profile& adapted);
 
-// Answers to known questions, those with known_state(false) and those with known_state(true).
+// Answers to known observations, those with known_state(false) and those with known_state(true).
 struct KnownAnswers {
   std::vector<Chunk> here, mirrored;
   KnownArm arm = {};

@@ -4,8 +4,8 @@
 
 #include "runtime/base/sha256.h"
 #include "runtime/servers/connecting.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/meaning.h"
-#include "runtime/servers/questions.h"
 
 namespace probe::servers {
 namespace {
@@ -19,18 +19,19 @@ std::string hash_of(const std::vector<Chunk>& answers) {
   return to_hex(hasher.finish());
 }
 
-// Questions and what each was answered alone, up to the one that was not.
+// Observations and what each was answered alone, up to the one that was not.
 struct AskedAlone {
-  std::vector<Question> questions;
+  std::vector<KnownObservation> observations;
   std::vector<Chunk> answers;
   std::optional<Failure> failure;
 };
 
 // One picture with two instructions, one instruction with two pictures.
-AskedAlone ask_first(Questions& questions) {
-  AskedAlone asked{{Question{}, Question{.words = 1}, Question{.picture = 1}}, {}, {}};
-  for (const Question& question : asked.questions) {
-    auto answer = questions.ask(question);
+AskedAlone ask_first(KnownObservations& observations) {
+  AskedAlone asked{
+      {KnownObservation{}, KnownObservation{.words = 1}, KnownObservation{.picture = 1}}, {}, {}};
+  for (const KnownObservation& observation : asked.observations) {
+    auto answer = observations.ask(observation);
     if (!answer) {
       asked.failure = answer.failure();
       break;
@@ -40,10 +41,10 @@ AskedAlone ask_first(Questions& questions) {
   return asked;
 }
 
-// As many questions as a batch can have, each with a picture of its own, asked alone and once more
-// in one message. Whatever does not answer it as it answers them alone, but for rounding and draws,
-// cannot be asked in batches.
-Status prove_batch(Questions& questions, AskedAlone asked, const ServerChoice& choice,
+// As many observations as a batch can have, each with a picture of its own, asked alone and once
+// more in one message. Whatever does not answer it as it answers them alone, but for rounding and
+// draws, cannot be asked in batches.
+Status prove_batch(KnownObservations& observations, AskedAlone asked, const ServerChoice& choice,
                    policy::Reading* reading) {
   const auto refused = [&](const std::string& why) {
     return Failure{Fault::kUsage, "it cannot be asked in batches: " + why + "; ask without `batch`",
@@ -58,22 +59,22 @@ Status prove_batch(Questions& questions, AskedAlone asked, const ServerChoice& c
   };
   const auto most = static_cast<std::size_t>(choice.batch.most);
   // Of less room those go that differ in their pictures.
-  while (asked.questions.size() > most && asked.questions.size() > 2) {
-    asked.questions.erase(asked.questions.begin() + 1);
+  while (asked.observations.size() > most && asked.observations.size() > 2) {
+    asked.observations.erase(asked.observations.begin() + 1);
     asked.answers.erase(asked.answers.begin() + 1);
   }
-  for (int picture = 2; asked.questions.size() < most; ++picture) {
-    const Question more{.picture = picture};
-    auto answer = questions.ask(more);
+  for (int picture = 2; asked.observations.size() < most; ++picture) {
+    const KnownObservation more{.picture = picture};
+    auto answer = observations.ask(more);
     if (!answer) return not_shown(answer.failure());
-    asked.questions.push_back(more);
+    asked.observations.push_back(more);
     asked.answers.push_back(std::move(*answer));
   }
-  const auto together = questions.ask_together(asked.questions);
+  const auto together = observations.ask_together(asked.observations);
   if (!together) return not_shown(together.failure());
   const TogetherFinding finding = compare_together(asked.answers, *together);
   if (!finding.mixed.empty()) return refused(finding.mixed);
-  reading->batch = static_cast<int>(asked.questions.size());
+  reading->batch = static_cast<int>(asked.observations.size());
   reading->batch_difference = finding.difference;
   return {};
 }
@@ -93,11 +94,11 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   reading.is_unchecked = choice.server.tls.accepts_any;
   Profile adapted;
   PROBE_TRY(open_patiently(*transport, choice.profile, reading.server, &adapted));
-  Questions questions(adapted, *transport, arm);
+  KnownObservations observations(adapted, *transport, arm);
   const auto note_failure = [&](const Failure& failure) {
     reading.failure = to_text(named(failure, reading.server));
   };
-  AskedAlone asked = ask_first(questions);
+  AskedAlone asked = ask_first(observations);
   if (asked.failure) note_failure(*asked.failure);
   reading.answers = static_cast<int>(asked.answers.size());
   if (asks_together(choice)) {
@@ -107,11 +108,11 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
                          reading.failure + "; without `batch` it is asked one at a time",
                      reading.server};
     }
-    PROBE_TRY(prove_batch(questions, asked, choice, &reading));
+    PROBE_TRY(prove_batch(observations, asked, choice, &reading));
   }
   KnownAnswers known{asked.answers, {}, arm};
   if (wants_mirrored(adapted) && reading.failure.empty()) {
-    auto mirrored = questions.ask({.is_mirrored = true});
+    auto mirrored = observations.ask({.is_mirrored = true});
     if (mirrored) {
       known.mirrored.push_back(std::move(*mirrored));
     } else {
@@ -119,7 +120,7 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
     }
   }
   if (reading.failure.empty()) {
-    const auto again = questions.ask(asked.questions.front());
+    const auto again = observations.ask(asked.observations.front());
     if (again) {
       reading.is_steady = *again == asked.answers.front();
     } else {
@@ -134,8 +135,8 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   reading.is_deaf = asked.answers[0] == asked.answers[1];
   reading.is_blind = asked.answers[0] == asked.answers[2];
   reading.answers_sha256 = hash_of(asked.answers);
-  PROBE_ASSIGN(const Sha256 questions_hash, questions.hash_of(asked.questions));
-  reading.questions_sha256 = to_hex(questions_hash);
+  PROBE_ASSIGN(const Sha256 observations_hash, observations.hash_of(asked.observations));
+  reading.questions_sha256 = to_hex(observations_hash);
   return reading;
 }
 
@@ -146,12 +147,12 @@ policy::AtEnd prove_again(const ServerChoice& choice, const std::shared_ptr<Shar
   Profile adapted;
   if (!transport || !open_patiently(**transport, choice.profile, reading.server, &adapted))
     return policy::AtEnd::kUnclear;
-  Questions questions(adapted, **transport, arm);
-  const AskedAlone asked = ask_first(questions);
+  KnownObservations observations(adapted, **transport, arm);
+  const AskedAlone asked = ask_first(observations);
   if (asked.failure) return policy::AtEnd::kUnclear;
   if (hash_of(asked.answers) == reading.answers_sha256) return policy::AtEnd::kSame;
   // One that draws now and then is no other one.
-  const AskedAlone again = ask_first(questions);
+  const AskedAlone again = ask_first(observations);
   if (again.failure || again.answers != asked.answers) return policy::AtEnd::kUnclear;
   return policy::AtEnd::kOther;
 }

@@ -5,7 +5,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/policy/reading.h"
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/servers.h"
 
 namespace probe::servers {

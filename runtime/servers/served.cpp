@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "runtime/base/hash_number.h"
 #include "runtime/base/sha256.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/listening.h"
 #include "runtime/servers/protocol.h"
-#include "runtime/servers/questions.h"
 
 namespace probe::servers {
 namespace {
@@ -28,9 +29,7 @@ class ServedDigest final : public ServedPolicy {
                             .bytes(std::as_bytes(std::span(asked.picture.bytes)))
                             .hash(sha256(asked.words))
                             .finish();
-    std::uint64_t key = 0;
-    for (std::size_t i = 8; i-- > 0;) key = key << 8 | seen.bytes[i];
-    policy::Draws draws(key);
+    policy::Draws draws(little_endian_number(seen));
     std::vector<policy::Action> actions(static_cast<std::size_t>(count));
     for (policy::Action& action : actions) {
       for (std::size_t i = 0; i < 6; ++i)
@@ -44,7 +43,7 @@ class ServedDigest final : public ServedPolicy {
 // Of an observation that no episode has: a question of a proof is answered as a digest does.
 Result<std::vector<policy::Action>> answer_unknown(const Asked& asked, int count,
                                                    const char* refusal) {
-  if (is_known_question(asked.picture.bytes, asked.words))
+  if (is_known_observation(asked.picture.bytes, asked.words))
     return ServedDigest().answer(asked, count);
   return bad(refusal);
 }

@@ -15,7 +15,7 @@
 #include "runtime/policy/policy.h"
 #include "runtime/run/run.h"
 #include "runtime/servers/protocol.h"
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/served.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
@@ -92,7 +92,7 @@ class Keeping final : public servers::ServedPolicy {
   Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
     const std::lock_guard lock(wrapper_.mutex);
     if (!wrapper_.kept) wrapper_.kept = asked.words;
-    const bool is_known = servers::is_known_question(asked.picture.bytes, asked.words);
+    const bool is_known = servers::is_known_observation(asked.picture.bytes, asked.words);
     if (!is_known && ++wrapper_.asked == wrapper_.kills_at) ::kill(wrapper_.child, SIGKILL);
     return digest_->answer({asked.picture, *wrapper_.kept}, count);
   }

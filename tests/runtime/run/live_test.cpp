@@ -18,7 +18,7 @@
 #include "runtime/run/replay.h"
 #include "runtime/run/run.h"
 #include "runtime/servers/protocol.h"
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/served.h"
 #include "runtime/show/frame_sink.h"
 #include "runtime/stage/stage.h"
@@ -175,7 +175,7 @@ TEST_CASE("a question under way at an episode's end holds nobody up, and its ans
     void reset() override {}
     Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
       auto actions = inner_->answer(asked, count);
-      if (is_known_question(asked.picture.bytes, asked.words) || ++door_.asked % 3 != 0)
+      if (is_known_observation(asked.picture.bytes, asked.words) || ++door_.asked % 3 != 0)
         return actions;
       std::unique_lock lock(door_.mutex);
       door_.opens.wait_for(lock, time_, [this] { return door_.is_open; });

@@ -13,7 +13,7 @@
 #include "runtime/policy/reading.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/protocol.h"
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/reading.h"
 #include "runtime/servers/served.h"
 #include "runtime/servers/servers.h"
@@ -515,13 +515,13 @@ TEST_CASE("no two of the known pictures are alike") {
   for (int i = 0; i <= kMostInBatch; ++i) {
     const wire::Bytes picture = known_picture(i);
     seen.insert(sha256(std::as_bytes(std::span(picture))));
-    if (i % 50 == 0) CHECK(is_known_question(picture, "put carrot on plate"));
+    if (i % 50 == 0) CHECK(is_known_observation(picture, "put carrot on plate"));
   }
   CHECK(seen.size() == kMostInBatch + 1);
   wire::Bytes other = known_picture(3);
   other.back() ^= 1;
-  CHECK_FALSE(is_known_question(other, "put carrot on plate"));
-  CHECK_FALSE(is_known_question(known_picture(3), "put carrot on plates"));
+  CHECK_FALSE(is_known_observation(other, "put carrot on plate"));
+  CHECK_FALSE(is_known_observation(known_picture(3), "put carrot on plates"));
 }
 
 TEST_CASE("answers that stand in another order in a batch, or are one for all, are found") {

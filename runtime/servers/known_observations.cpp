@@ -1,4 +1,4 @@
-#include "runtime/servers/questions.h"
+#include "runtime/servers/known_observations.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 namespace probe::servers {
 namespace {
 
-using QuestionClock = std::chrono::steady_clock;
+using ObservationClock = std::chrono::steady_clock;
 
 constexpr int kWidth = 640, kHeight = 480;
 constexpr int kHorizon = 60;
@@ -88,7 +88,7 @@ policy::Proprioception known_state(bool is_mirrored, const KnownArm& arm) {
   return measured;
 }
 
-bool is_known_question(std::span<const std::uint8_t> picture, std::string_view words) {
+bool is_known_observation(std::span<const std::uint8_t> picture, std::string_view words) {
   constexpr std::size_t kRow = std::size_t{kWidth} * 3;
   if (picture.size() != kRow * kHeight) return false;
   if (std::ranges::find(kWords, words) == std::end(kWords)) return false;
@@ -102,7 +102,7 @@ bool is_known_question(std::span<const std::uint8_t> picture, std::string_view w
   return false;
 }
 
-Status Questions::open() {
+Status KnownObservations::open() {
   PROBE_TRY(transport_.open(deadlines()));
   return transport_.adapt(profile_);
 }
@@ -122,8 +122,8 @@ double apart(const Chunk& here, const Chunk& there) {
   return most;
 }
 
-// A pass over several questions may round otherwise than over one: an answer is another question's
-// where it is this many times nearer to that one's.
+// A pass over several observations may round otherwise than over one: an answer is another
+// observation's where it is this many times nearer to that one's.
 constexpr double kNearer = 10;
 
 }  // namespace
@@ -132,25 +132,26 @@ TogetherFinding compare_together(const std::vector<Chunk>& alone,
                                  const std::vector<Chunk>& together) {
   TogetherFinding finding;
   for (std::size_t i = 0; i < std::min(alone.size(), together.size()); ++i) {
-    const std::string question = "in a batch, question " + std::to_string(i + 1) + " has ";
+    const std::string beginning = "in a batch, question " + std::to_string(i + 1) + " has ";
     const double own = apart(together[i], alone[i]);
     if (std::isinf(own)) {
-      finding.mixed = question + std::to_string(together[i].size()) + " actions, alone " +
+      finding.mixed = beginning + std::to_string(together[i].size()) + " actions, alone " +
                       std::to_string(alone[i].size());
       continue;
     }
     finding.difference = std::max(finding.difference, own);
     for (std::size_t k = 0; k < alone.size(); ++k) {
       if (own <= kNearer * apart(together[i], alone[k])) continue;
-      finding.mixed = question + "the answer that question " + std::to_string(k + 1) + " has alone";
+      finding.mixed =
+          beginning + "the answer that question " + std::to_string(k + 1) + " has alone";
     }
   }
   return finding;
 }
 
-Result<Request> Questions::request_of(const Question& question) const {
-  const char* words = kWords[question.words];
-  const wire::Bytes rgb = known_picture(question.picture);
+Result<Request> KnownObservations::request_of(const KnownObservation& observation) const {
+  const char* words = kWords[observation.words];
+  const wire::Bytes rgb = known_picture(observation.picture);
   const policy::Image image{kWidth, kHeight, rgb};
   // One picture stands for every camera that the profile names.
   std::vector<policy::CameraImage> cameras;
@@ -159,15 +160,16 @@ Result<Request> Questions::request_of(const Question& question) const {
   seen.image = image;
   seen.cameras = cameras;
   seen.prompt = words;
-  seen.proprioception = known_state(question.is_mirrored, arm_);
+  seen.proprioception = known_state(observation.is_mirrored, arm_);
   seen.horizon = kHorizon;
   return to_request(profile_, seen);
 }
 
-Result<std::vector<Chunk>> Questions::ask_together(const std::vector<Question>& questions) {
+Result<std::vector<Chunk>> KnownObservations::ask_together(
+    const std::vector<KnownObservation>& observations) {
   std::vector<Request> requests;
-  for (const Question& question : questions) {
-    PROBE_ASSIGN(Request request, request_of(question));
+  for (const KnownObservation& observation : observations) {
+    PROBE_ASSIGN(Request request, request_of(observation));
     requests.push_back(std::move(request));
   }
   std::vector<const Request*> all;
@@ -182,10 +184,10 @@ Result<std::vector<Chunk>> Questions::ask_together(const std::vector<Question>& 
   return chunks;
 }
 
-Result<Sha256> Questions::hash_of(const std::vector<Question>& questions) const {
+Result<Sha256> KnownObservations::hash_of(const std::vector<KnownObservation>& observations) const {
   Hasher hasher;
-  for (const Question& question : questions) {
-    PROBE_ASSIGN(const Request request, request_of(question));
+  for (const KnownObservation& observation : observations) {
+    PROBE_ASSIGN(const Request request, request_of(observation));
     const policy::Delivery delivery = delivery_of(request);
     hasher.hash(sha256(delivery.prompt_sha256 + delivery.image_sha256));
     hasher.bytes(std::as_bytes(std::span(request.state)));
@@ -197,20 +199,20 @@ Result<Sha256> Questions::hash_of(const std::vector<Question>& questions) const 
   return hasher.finish();
 }
 
-Result<Chunk> Questions::ask(const Question& question) {
-  const char* words = kWords[question.words];
+Result<Chunk> KnownObservations::ask(const KnownObservation& observation) {
+  const char* words = kWords[observation.words];
   policy::EpisodeStart start;
   start.task = "policy_test";
   start.prompt = words;
-  start.index = question.picture;
+  start.index = observation.picture;
   start.horizon = kHorizon;
   if (profile_.connection == ConnectionUse::kPerEpisode && asked_ > 0) {
     transport_.close();
     PROBE_TRY(transport_.open(deadlines()));
   }
   PROBE_TRY(transport_.begin_episode(start, deadlines()));
-  PROBE_ASSIGN(const Request request, request_of(question));
-  const auto begun = QuestionClock::now();
+  PROBE_ASSIGN(const Request request, request_of(observation));
+  const auto begun = ObservationClock::now();
   ++asked_;
   PROBE_ASSIGN(Chunk chunk, transport_.ask(request, deadlines()));
   times_.push_back(seconds_since(begun));
@@ -218,7 +220,7 @@ Result<Chunk> Questions::ask(const Question& question) {
   return chunk;
 }
 
-Deadlines Questions::deadlines() const {
+Deadlines KnownObservations::deadlines() const {
   return {to_duration(profile_.connect_s),
           to_duration(times_.empty() ? std::max(profile_.first_s, profile_.answer_s)
                                      : profile_.answer_s)};
