@@ -15,6 +15,7 @@
 #include "runtime/expert/servo.h"
 #include "runtime/expert/shove.h"
 #include "runtime/expert/waypoints.h"
+#include "runtime/robot/grip_command.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::expert {
@@ -392,7 +393,7 @@ class Expert final : public policy::Policy {
     Pose goal = s.tcp;
     goal.rotation = place_.rotation;
     // Openness is over the fingers' travel; the command's range is a little wider.
-    const double gripper = std::clamp(2 * (s.openness + 0.20) - 1, -1.0, 1.0);
+    const double gripper = robot::command_of_openness(s.openness + 0.20);
     return servo_.settle(goal, arm_of(s), gripper);
   }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/check.h"
+#include "runtime/robot/grip_command.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::robot {
@@ -89,8 +90,7 @@ Result<std::span<const double>> EeDeltaPoseController::targets(const Action& act
   reached_ = solve_ik(chain_, target_, std::span(q).first(arm)).converged;
   if (reached_) std::copy_n(q.begin(), arm, joint_targets_.begin());
 
-  const double open = 0.5 * (std::clamp(action[kActionGripper], -1.0, 1.0) + 1.0);
-  const double grip = grip_closed_ + open * (grip_open_ - grip_closed_);
+  const double grip = finger_target(grip_closed_, grip_open_, action[kActionGripper]);
   std::fill(joint_targets_.begin() + std::ptrdiff_t(arm), joint_targets_.end(), grip);
   return std::span<const double>(joint_targets_);
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/check.h"
+#include "runtime/robot/grip_command.h"
 
 namespace probe::robot {
 
@@ -70,8 +71,7 @@ Result<std::span<const double>> JointController::targets(std::span<const double>
     const double step = absolute_ ? action[i] : std::clamp(action[i], -most, most);
     targets_[i] = std::clamp(from + step, lower_[i], upper_[i]);
   }
-  const double open = 0.5 * (std::clamp(action[arm], -1.0, 1.0) + 1.0);
-  const double grip = grip_closed_ + open * (grip_open_ - grip_closed_);
+  const double grip = finger_target(grip_closed_, grip_open_, action[arm]);
   std::fill(targets_.begin() + std::ptrdiff_t(arm), targets_.end(), grip);
   return std::span<const double>(targets_);
 }
