@@ -26,6 +26,59 @@ struct HoldFinder {
   }
 };
 
+// Where a metric asks for fingers or for a gripper: P1003 with a robot that has none.
+struct FingerFinder {
+  const Model& model;
+  const ExprNode* found = nullptr;
+  std::string what = {};
+  std::set<ExprRef> seen = {};
+
+  void take(const ExprNode& node, std::string words) {
+    if (found != nullptr) return;
+    found = &node;
+    what = std::move(words);
+  }
+  void visit_set(SetRef ref, const ExprNode& node) {
+    const SetNode& set = model.exprs.sets[ref];
+    if (set.op == SetOp::kFingers) take(node, "`fingers`");
+    for (const ExprRef body : set.bodies) visit(body);
+    if (set.op != SetOp::kUnion && set.op != SetOp::kIntersection && set.op != SetOp::kDifference)
+      return;
+    visit_set(set.left, node);
+    visit_set(set.right, node);
+  }
+  void visit(ExprRef ref) {
+    if (found != nullptr || !seen.insert(ref).second) return;
+    const ExprNode& node = model.exprs.nodes[ref];
+    if (node.op == ExprOp::kMeasure && node.measure == Measure::kGrip) take(node, "`grip`");
+    if (node.op == ExprOp::kMeasure && node.measure == Measure::kOpening) take(node, "`opening`");
+    if (node.op == ExprOp::kAny || node.op == ExprOp::kAll || node.op == ExprOp::kNo)
+      visit_set(node.set, node);
+    for (const ExprRef arg : node.args) visit(arg);
+    if (node.op == ExprOp::kCall) visit(model.predicates[node.predicate].body);
+  }
+};
+
+void check_fingers(const Model& model, Reporter& reporter, const Task& task,
+                   std::set<std::pair<std::uint32_t, std::uint32_t>>& reported) {
+  const Scene& scene = model.scenes[task.scene];
+  if (scene.robot == RobotId::kNone) return;
+  const Robot& robot = model.robots[scene.robot];
+  if (robot.broken || !robot.fingers.empty()) return;
+  for (const Metric& metric : task.judged) {
+    FingerFinder finder{model};
+    finder.visit(metric.expr);
+    if (finder.found == nullptr) continue;
+    if (!reported.insert({metric.span.file.value, metric.span.begin}).second) continue;
+    Diagnostic& said = reporter.report(
+        Situation::kFingersAskedFor, metric.span,
+        "metric `" + metric.name + "` asks for fingers, which `" + robot.name + "` has not");
+    said.label(finder.found->span, "by " + finder.what).label(task.span, "judged by it");
+    said.help("`links` are all parts of a robot; judge `" + task.name +
+              "` by metrics that need no gripper");
+  }
+}
+
 // P0605: read-outs that mean something else than they seem to.
 struct LatchLint {
   const Model& model;
@@ -144,12 +197,13 @@ void check_metrics(const Model& model, Reporter& reporter) {
     for (const Metric& metric : task.overrides) lint(metric);
   }
   std::set<std::pair<ExprRef, std::uint64_t>> searched, reported;  // with the horizon
-  std::set<std::pair<std::uint32_t, std::uint32_t>> without_success;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> without_success, without_fingers;
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
     check_success(model, reporter, task, without_success);
     check_count(model, reporter, task, without_success);
+    check_fingers(model, reporter, task, without_fingers);
     for (const Metric& metric : task.judged) {
       if (!searched.insert({metric.expr, task.horizon}).second) continue;
       HoldFinder finder{model, task.horizon, {}};

@@ -29,16 +29,21 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
       if (!miss) continue;
       char degrees[32];
       std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / std::numbers::pi);
-      starts.reporter
-          .report(Situation::kNoGrasp, starts.place({placed[i].object, placed[0].object}),
-                  "`" + robot.name + "` cannot " +
-                      (i == 0 ? "grasp `" + starts.object(placed[0]).name + "` from above"
-                              : "place `" + starts.object(placed[0]).name + "` on `" +
-                                    starts.object(placed[1]).name + "`") +
-                      " in `" + starts.task.name + "`: the tool stays " +
-                      centimetres(miss->position) + " and " + degrees + "deg away")
-          .point("episode " + std::to_string(e) + ": " + at(starts.object(placed[i]), placed[i]))
+      Diagnostic& said = starts.reporter.report(
+          Situation::kNoGrasp, starts.place({placed[i].object, placed[0].object}),
+          "`" + robot.name + "` cannot " +
+              (i == 0 ? "grasp `" + starts.object(placed[0]).name + "` from above"
+                      : "place `" + starts.object(placed[0]).name + "` on `" +
+                            starts.object(placed[1]).name + "`") +
+              " in `" + starts.task.name + "`: the tool stays " + centimetres(miss->position) +
+              " and " + degrees + "deg away");
+      said.point("episode " + std::to_string(e) + ": " + at(starts.object(placed[i]), placed[i]))
           .label(starts.layout.span, "the layout");
+      constexpr double kThere = 0.001, kAskew = 0.05;  // m, rad
+      if (miss->position < kThere && miss->rotation > kAskew && robot.points_span.is_none()) {
+        said.help("the tool is taken to point along +x of `" + robot.tcp.text + "`; `tcp " +
+                  robot.tcp.text + " points +z` says otherwise");
+      }
       return false;
     }
   }

@@ -120,7 +120,8 @@ bool same_scene(const Model& model, const Scene& a, const Scene& b) {
          text_of(a.fixture) == text_of(b.fixture) && a.fixture_position == b.fixture_position &&
          text_of(a.backdrop) == text_of(b.backdrop) &&
          text_of(main_photo(a)) == text_of(main_photo(b)) && a.physics_hz == b.physics_hz &&
-         a.friction == b.friction && same_fixtures(model, a, b);
+         a.friction == b.friction && a.air_density == b.air_density &&
+         a.air_viscosity == b.air_viscosity && same_fixtures(model, a, b);
 }
 
 bool same_goal(const Model& model, const Task& a, const Task& b) {

@@ -4,9 +4,12 @@
 
 #include <filesystem>
 #include <set>
+#include <span>
 
+#include "compiler/define/control.h"
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
+#include "compiler/define/robot_fit.h"
 #include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
 
@@ -16,7 +19,16 @@ namespace {
 struct RobotReader {
   Context& context;
   Robot& robot;
-  bool has_control = false, has_grip = false, has_drive = false;
+  bool has_control = false, has_grip = false, has_drive = false, has_fingers = false;
+  Span grip_span = {};
+  std::vector<WrittenDrive> drives = {};
+
+  void check_not_negative(const syntax::Quantity& written, const Quantity& value) {
+    if (value.si() >= 0) return;
+    context.report(
+        Situation::kNegative, written.span,
+        "expected 0 or more, found `" + std::string(context.sources.text(written.span)) + "`");
+  }
 
   void check_above_zero(const syntax::Quantity& written, double value, const char* why) {
     if (value > 0) return;
@@ -28,32 +40,53 @@ struct RobotReader {
   }
 
   void operator()(const syntax::UrdfStmt& stmt) { robot.urdf = spelled(stmt.path); }
-  void operator()(const syntax::TcpStmt& stmt) { robot.tcp = spelled(stmt.link); }
+  // Unit; zero where the axis has another name, which is told.
+  std::array<double, 3> axis_of(const syntax::SignedAxis& written) {
+    std::array<double, 3> out{};
+    const std::string_view axis = written.axis.text;
+    if (axis != "x" && axis != "y" && axis != "z") {
+      report_unknown(context.diagnostics, "axis", written.axis, {"x", "y", "z"});
+    } else {
+      out[static_cast<std::size_t>(axis[0] - 'x')] = written.negative ? -1 : 1;
+    }
+    return out;
+  }
+
+  void operator()(const syntax::TcpStmt& stmt) {
+    robot.tcp = spelled(stmt.link);
+    if (!stmt.points) return;
+    robot.points = axis_of(*stmt.points);
+    robot.points_span = stmt.points->axis.span;
+  }
   void operator()(const syntax::FingersStmt& stmt) {
+    has_fingers = true;
     robot.fingers.clear();
     for (const syntax::Finger& finger : stmt.fingers) {
-      const std::string_view axis = finger.axis.text;
-      Finger record{spelled(finger.link), {}};
-      if (axis != "x" && axis != "y" && axis != "z") {
-        report_unknown(context.diagnostics, "axis", finger.axis, {"x", "y", "z"});
-      } else {
-        record.opens[static_cast<std::size_t>(axis[0] - 'x')] = finger.negative ? -1 : 1;
+      robot.fingers.push_back({spelled(finger.link), axis_of(finger.opens)});
+    }
+    for (std::size_t i = 1; i < robot.fingers.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        if (robot.fingers[i].link.text != robot.fingers[k].link.text) continue;
+        context.report(
+            Situation::kFingerCount, stmt.fingers[i].link.span,
+            "expected different fingers, found `" + robot.fingers[i].link.text + "` twice");
       }
-      robot.fingers.push_back(std::move(record));
     }
-    if (robot.fingers.size() == 2 && robot.fingers[0].link.text == robot.fingers[1].link.text) {
-      context.report(Situation::kFingerCount, stmt.fingers[1].link.span,
-                     "expected two fingers, found `" + robot.fingers[0].link.text + "` twice");
-    }
-    if (robot.fingers.size() != 2) {
+    if (robot.fingers.size() > plan::kMaxFingers) {
       context.report(Situation::kFingerCount, stmt.span,
-                     "expected 2 fingers, found " + std::to_string(robot.fingers.size()));
+                     "expected at most " + std::to_string(plan::kMaxFingers) + " fingers, found " +
+                         std::to_string(robot.fingers.size()));
     }
   }
   void operator()(const syntax::ControlStmt& stmt) {
     has_control = true;
-    if (stmt.law.text != "ee_delta_pose") {
-      report_unknown(context.diagnostics, "control law", stmt.law, {"ee_delta_pose"});
+    read_control(context, stmt, robot);
+    if (robot::row_of(robot.law).per_joint) {
+      context
+          .report(Code::P0101, stmt.law.span,
+                  "`" + std::string(stmt.law.text) + "` is not available yet")
+          .point("policies, servers and traces know actions of a tool and a gripper")
+          .help("a tool is moved by `ee_delta_pose` or `osc_pose`");
     }
     robot.control_hz = read_positive(context, stmt.rate, dim::kRate,
                                      {"`control` takes a frequency", plan::Magnitude::kControlRate})
@@ -73,39 +106,67 @@ struct RobotReader {
   }
   void operator()(const syntax::DriveStmt& stmt) {
     has_drive = true;
-    // Whether the joint turns or slides is known only with the URDF; the stiffness decides what the
-    // others must be.
-    const auto stiffness = make_quantity(stmt.stiffness.digits, to_text(stmt.stiffness.unit));
-    const bool slides = stiffness && stiffness->dimension == dim::kLinearStiffness;
-    Drive drive;
+    // Whether the joint turns or slides is known only with the URDF; the first quantity decides
+    // what the others must be.
+    const auto is_of = [&](const std::optional<syntax::Quantity>& written, const Dimension& of) {
+      if (!written) return false;
+      const auto value = make_quantity(written->digits, to_text(written->unit));
+      return value && value->dimension == of;
+    };
+    const bool slides = stmt.stiffness  ? is_of(stmt.stiffness, dim::kLinearStiffness)
+                        : stmt.damping  ? is_of(stmt.damping, dim::kLinearDamping)
+                        : stmt.limit    ? is_of(stmt.limit, dim::kForce)
+                        : stmt.friction ? is_of(stmt.friction, dim::kForce)
+                                        : is_of(stmt.armature, dim::kMass);
+    WrittenDrive drive;
     drive.span = stmt.span;
-    const auto k = read_quantity(
-        context, stmt.stiffness, slides ? dim::kLinearStiffness : dim::kAngularStiffness,
-        {"a stiffness is in Nm/rad, or in N/m for a sliding joint", plan::Magnitude::kGain});
-    const auto d = read_quantity(
-        context, stmt.damping, slides ? dim::kLinearDamping : dim::kAngularDamping,
-        {slides ? "a sliding joint is damped in Ns/m" : "a turning joint is damped in Nms/rad",
-         plan::Magnitude::kGain});
-    const auto f = read_quantity(
-        context, stmt.limit, slides ? dim::kForce : dim::kTorque,
-        {slides ? "a sliding joint is limited in N" : "a turning joint is limited in Nm",
-         plan::Magnitude::kForce});
-    if (!k || !d || !f) return;
-    check_above_zero(stmt.stiffness, k->si(), "a drive without stiffness holds nothing");
-    check_above_zero(stmt.damping, d->si(), "a drive without damping swings for ever");
-    check_above_zero(stmt.limit, f->si(), "a drive without force moves nothing");
-    drive.stiffness = *k;
-    drive.damping = *d;
-    drive.limit = *f;
+    bool all_read = true;
+    const auto read = [&](const std::optional<syntax::Quantity>& written, const Dimension& of,
+                          const Takes& takes, std::optional<Quantity>* to) {
+      if (!written) return;
+      *to = read_quantity(context, *written, of, takes);
+      all_read = all_read && to->has_value();
+    };
+    read(stmt.stiffness, slides ? dim::kLinearStiffness : dim::kAngularStiffness,
+         {"a stiffness is in Nm/rad, or in N/m for a sliding joint", plan::Magnitude::kGain},
+         &drive.stiffness);
+    read(stmt.damping, slides ? dim::kLinearDamping : dim::kAngularDamping,
+         {slides ? "a sliding joint is damped in Ns/m" : "a turning joint is damped in Nms/rad",
+          plan::Magnitude::kGain},
+         &drive.damping);
+    read(stmt.limit, slides ? dim::kForce : dim::kTorque,
+         {slides ? "a sliding joint is limited in N" : "a turning joint is limited in Nm",
+          plan::Magnitude::kForce},
+         &drive.limit);
+    read(stmt.friction, slides ? dim::kForce : dim::kTorque,
+         slides ? "friction of a sliding joint is in N" : "friction of a turning joint is in Nm",
+         &drive.friction);
+    read(
+        stmt.armature, slides ? dim::kMass : dim::kInertia,
+        {slides ? "armature of a sliding joint is in kg" : "armature of a turning joint is in kgm2",
+         plan::Magnitude::kArmature},
+        &drive.armature);
+    if (!all_read) return;
+    if (drive.stiffness)
+      check_above_zero(*stmt.stiffness, drive.stiffness->si(),
+                       "a drive without stiffness holds nothing");
+    if (drive.damping && !by_efforts(robot))
+      check_above_zero(*stmt.damping, drive.damping->si(),
+                       "a drive without damping swings for ever");
+    if (drive.limit)
+      check_above_zero(*stmt.limit, drive.limit->si(), "a drive without force moves nothing");
+    if (drive.damping && by_efforts(robot)) check_not_negative(*stmt.damping, *drive.damping);
+    if (drive.friction) check_not_negative(*stmt.friction, *drive.friction);
+    if (drive.armature) check_not_negative(*stmt.armature, *drive.armature);
     for (const syntax::Name& joint : stmt.joints) {
-      for (const Drive& known : robot.drives) {
+      for (const WrittenDrive& known : drives) {
         if (known.joint.text != joint.text) continue;
         context.report(Code::P0203, joint.span, "joint `" + known.joint.text + "` is driven twice")
             .label(known.joint.span, "first driven here");
       }
       drive.joint = spelled(joint);
-      robot.drives.push_back(drive);
-      if (robot.drives.size() == plan::kMaxDrives + 1) {
+      drives.push_back(drive);
+      if (drives.size() == plan::kMaxDrives + 1) {
         context.report(
             Situation::kTooManyDrives, joint.span,
             "expected at most " + std::to_string(plan::kMaxDrives) + " drives of a robot");
@@ -114,6 +175,8 @@ struct RobotReader {
   }
   void operator()(const syntax::GripStmt& stmt) {
     has_grip = true;
+    grip_span = stmt.span;
+    read_sign_grip(context, stmt, robot);
     robot.grip_closed = read_si(context, stmt.closed, dim::kLength,
                                 {"`grip` takes lengths", plan::Magnitude::kJointPosition})
                             .value_or(0);
@@ -158,7 +221,7 @@ void check_link(Context& context, const Spelled& link, const Robot& robot) {
 
 namespace {
 
-void check_drive(Context& context, const Drive& drive, const Robot& robot) {
+void check_drive(Context& context, const WrittenDrive& drive, const Robot& robot) {
   const int index = robot.model->find_joint(drive.joint.text);
   if (index < 0) {
     std::vector<std::string_view> candidates;
@@ -173,18 +236,22 @@ void check_drive(Context& context, const Drive& drive, const Robot& robot) {
     return;
   }
   const bool slides = kind == robot::JointKind::kPrismatic;
-  if (slides == (drive.stiffness.dimension == dim::kLinearStiffness)) return;
+  if (!drive.slides().has_value() || slides == *drive.slides()) return;
+  const char* what = drive.stiffness  ? slides ? "stiffness is in N/m" : "stiffness is in Nm/rad"
+                     : drive.damping  ? slides ? "damping is in Ns/m" : "damping is in Nms/rad"
+                     : drive.limit    ? slides ? "limit is in N" : "limit is in Nm"
+                     : drive.friction ? slides ? "friction is in N" : "friction is in Nm"
+                     : slides         ? "armature is in kg"
+                                      : "armature is in kgm2";
   context
       .report(Code::P0302, drive.span,
-              "joint `" + drive.joint.text + "` " + (slides ? "slides" : "turns") +
-                  ", its stiffness is in " + (slides ? "N/m" : "Nm/rad"))
+              "joint `" + drive.joint.text + "` " + (slides ? "slides" : "turns") + ", its " + what)
       .label(drive.joint.span, "this joint");
 }
 
 // A gripper opens as its fingers' joints go up: each must then move the way it is said to open, and
 // two that open in one direction hold nothing.
 void check_fingers(Context& context, const Robot& robot) {
-  if (robot.fingers.size() != 2 || robot.fingers[0].link.text == robot.fingers[1].link.text) return;
   std::vector<Vec3> ways;  // in the frame of the link both hang on
   int parent = -1;
   for (const Finger& finger : robot.fingers) {
@@ -202,6 +269,7 @@ void check_fingers(Context& context, const Robot& robot) {
           .label(robot.urdf.span, "the joint is described here");
       return;
     }
+    if (robot.fingers.size() != 2) continue;
     if (!ways.empty() && joint.parent_link != parent) return;
     parent = joint.parent_link;
     ways.push_back(joint.origin.rotation * opens);
@@ -225,7 +293,7 @@ void check_mesh_count(Context& context, const Robot& robot) {
                      " meshes in a robot description, found " + std::to_string(files.size()));
 }
 
-void load_model(Context& context, Robot& robot) {
+void load_model(Context& context, std::span<const WrittenDrive> drives, Robot& robot) {
   const std::string path = (std::filesystem::path(context.asset_root) / robot.urdf.text).string();
   auto model = robot::load_urdf(path);
   if (!model.ok()) {
@@ -239,11 +307,27 @@ void load_model(Context& context, Robot& robot) {
   check_mesh_count(context, robot);
   check_link(context, robot.tcp, robot);
   for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);
-  for (const Drive& drive : robot.drives) check_drive(context, drive, robot);
+  for (const WrittenDrive& drive : drives) check_drive(context, drive, robot);
   check_fingers(context, robot);
 }
 
 }  // namespace
+
+bool moves_finger(const Robot& robot, std::string_view joint) {
+  if (!robot.model) return false;
+  for (const Finger& finger : robot.fingers) {
+    const int link = robot.model->find_link(finger.link.text);
+    if (link < 0) continue;
+    const int above = robot.model->links[static_cast<std::size_t>(link)].parent_joint;
+    if (above < 0) continue;
+    const robot::Joint& own = robot.model->joints[static_cast<std::size_t>(above)];
+    if (own.name == joint) return true;
+    const bool mimics = own.mimic >= 0;
+    if (mimics && robot.model->joints[static_cast<std::size_t>(own.mimic)].name == joint)
+      return true;
+  }
+  return false;
+}
 
 void define_robots(Context& context) {
   for (const auto& declared : context.symbols.robot_decls) {
@@ -253,6 +337,11 @@ void define_robots(Context& context) {
     robot.span = node.name.span;
     const auto errors = context.mistakes();
     RobotReader reader{context, robot};
+    const syntax::ControlStmt* control = nullptr;
+    for (const syntax::RobotStmt& stmt : node.body) {
+      if (const auto* found = std::get_if<syntax::ControlStmt>(&stmt)) control = found;
+    }
+    if (control != nullptr) choose_law(*control, robot);
     for (const syntax::RobotStmt& stmt : node.body) std::visit(reader, stmt);
     const auto need = [&](bool is_there, std::string_view statement) {
       if (!declared.decl->complete) return;
@@ -260,11 +349,22 @@ void define_robots(Context& context) {
     };
     need(!robot.urdf.span.is_none(), "urdf");
     need(!robot.tcp.span.is_none(), "tcp");
-    need(!robot.fingers.empty(), "fingers");
+    need(reader.has_fingers, "fingers");
     need(reader.has_control, "control");
-    need(reader.has_grip, "grip");
+    const bool bare = reader.has_fingers && robot.fingers.empty();
+    if (!bare) need(reader.has_grip, "grip");
+    if (bare && reader.has_grip) {
+      context.report(Situation::kNoFingers, reader.grip_span,
+                     "`grip` of a robot that has `fingers none`");
+    }
     need(reader.has_drive, "drive");
-    if (!robot.urdf.span.is_none()) load_model(context, robot);
+    if (!robot.urdf.span.is_none()) load_model(context, reader.drives, robot);
+    // What is wrong so far may be why a joint is not the arm's.
+    const bool clean = context.mistakes() == errors;
+    const bool is_law_known = control != nullptr && robot::find_kind(control->law.text) != nullptr;
+    define_drives(context, reader.drives, is_law_known, robot);
+    if (clean && control != nullptr) define_home(context, *control, robot);
+    if (declared.decl->complete && context.mistakes() == errors) check_fit(context, robot);
     robot.broken = !declared.decl->complete || context.mistakes() != errors;
     context.model.robots.add(std::move(robot));
   }

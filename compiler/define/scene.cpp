@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/define/control.h"
 #include "compiler/define/define.h"
 #include "compiler/define/fixture.h"
 #include "compiler/define/record.h"
@@ -160,6 +161,15 @@ struct SceneReader {
     scene.friction = read_positive(context, stmt.friction, dim::kNumber,
                                    {"`friction` takes a number", plan::Magnitude::kFriction})
                          .value_or(1);
+    const auto of_air = [&](const std::optional<syntax::Quantity>& written, const Dimension& of,
+                            const char* takes) {
+      if (!written) return 0.0;
+      return read_positive(context, *written, of, {takes, plan::Magnitude::kAir}).value_or(0);
+    };
+    scene.air_span = stmt.air ? stmt.air->span : stmt.viscosity ? stmt.viscosity->span : Span{};
+    scene.air_density = of_air(stmt.air, dim::kDensity, "`air` takes a density");
+    scene.air_viscosity =
+        of_air(stmt.viscosity, dim::kViscosity, "`viscosity` takes pascal seconds, in `Pas`");
     if (stmt.window_step)
       context.report(Code::P0101, stmt.span, "`window step` is not available yet");
   }
@@ -207,7 +217,7 @@ void check_joints(Context& context, const Scene& scene, Own own) {
     return;
   }
   for (std::size_t i = 0; i < scene.joints.size(); ++i) {
-    const bool slides = robot.drives[i].stiffness.dimension == dim::kLinearStiffness;
+    const bool slides = robot.drives[i].slides;
     const Dimension wanted = slides ? dim::kLength : dim::kAngle;
     if (scene.joints[i].dimension == wanted) continue;
     Diagnostic& said =
@@ -233,6 +243,18 @@ void check_rates(Context& context, const Scene& scene, Own own) {
   name_copy(said, scene, own.physics);
   said.help("the robot is controlled at " + fmt::format("{:.6g}", control_hz) +
             "Hz: write a multiple of that, such as `500Hz` for 5Hz");
+}
+
+// Arms whose drives have targets do not feel air: it would change the plan and nothing else.
+void check_air(Context& context, const Scene& scene, Own own) {
+  if (scene.air_density == 0 && scene.air_viscosity == 0) return;
+  const Robot& robot = context.model.robots[scene.robot];
+  if (by_efforts(robot)) return;
+  Diagnostic& said = context.report(
+      Situation::kLawUnread, scene.air_span,
+      fmt::format("`{}`, under `{}`, feels no air", robot.name, robot::row_of(robot.law).word));
+  name_copy(said, scene, own.physics);
+  said.help("leave `air` and `viscosity` out: laws that give efforts (`osc_pose`) feel it");
 }
 
 // A mesh behind the objects moves with the surface, a photo cannot.
@@ -284,6 +306,7 @@ void define_scenes(Context& context) {
     for (const FixtureId id : scene.fixtures)
       scene.broken = scene.broken || context.model.fixtures[id].broken;
     if (!scene.broken) check_joints(context, scene, own);
+    if (!scene.broken) check_air(context, scene, own);
     check_rates(context, scene, own);
   };
   define_records(context, context.symbols.scenes, context.symbols.scene_decls, context.model.scenes,

@@ -85,6 +85,7 @@ class Emitter {
   void add_robot(sema::RobotId id);
 
   // Every file the URDF names, each once, in its order.
+  void add_law(const sema::Robot& robot, plan::RobotRecord* record);
   std::vector<std::uint32_t> urdf_meshes(const robot::RobotModel& model, const sema::Spelled& urdf,
                                          AssetOwner owner);
   void add_fixture(sema::FixtureId id);

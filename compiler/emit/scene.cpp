@@ -78,6 +78,8 @@ void Emitter::add_scene(sema::SceneId id) {
   record.area = scene.area;
   record.physics_hz = scene.physics_hz;
   record.friction = scene.friction;
+  record.air_density = scene.air_density;
+  record.air_viscosity = scene.air_viscosity;
   std::vector<std::uint32_t> fixtures;
   for (const sema::FixtureId fixture : scene.fixtures) {
     add_fixture(fixture);

@@ -92,7 +92,7 @@ plan::Slice Emitter::add_joint_starts(const sema::Task& task) {
 
 void Emitter::add_task(const sema::Task& task) {
   const sema::Scene& scene = model_.scenes[task.scene];
-  if (!model_.robots[scene.robot].model || model_.robots[scene.robot].fingers.size() != 2) return;
+  if (!model_.robots[scene.robot].model) return;
   for (const ObjectId id : task.objects()) add_object(id);
   add_scene(task.scene);
   const std::vector<sema::View> views = views_of(model_, task);

@@ -25,6 +25,15 @@ Quat heading(double x, double y) {
   return {std::sqrt((1 + c) / 2), 0, 0, y < 0 ? -s : s};
 }
 
+// The least turn that takes x to an axis of the frame; by none where they are one, so that chains
+// of tools that point along x keep their bits.
+Quat from_x(const Vec3& axis) {
+  if (axis.x() > 0) return Quat::Identity();
+  if (axis.x() < 0) return {0, 0, 0, 1};
+  const double half = std::sqrt(0.5);
+  return {half, 0, -half * axis.z(), half * axis.y()};
+}
+
 }  // namespace
 
 std::optional<Arm> Arm::of(const Model& model, const Scene& scene) {
@@ -49,7 +58,9 @@ std::optional<Arm> Arm::of(const Model& model, const Scene& scene) {
   if (joints.size() < kLeastJoints) return std::nullopt;
   std::reverse(joints.begin(), joints.end());
   std::reverse(start.begin(), start.end());
-  auto chain = robot::Chain::create(*robot.model, robot.tcp.text, joints);
+  const Vec3 points(robot.points[0], robot.points[1], robot.points[2]);
+  if (points.isZero()) return std::nullopt;
+  auto chain = robot::Chain::create(*robot.model, robot.tcp.text, joints, from_x(points));
   if (!chain.ok()) return std::nullopt;
   const auto& p = scene.base_position;
   const auto& [w, x, y, z] = scene.base_turn.rotation;
@@ -65,7 +76,7 @@ std::optional<Shortfall> Arm::misses(double x, double y, double z) {
 }
 
 std::optional<Shortfall> Arm::solve(const Vec3& at) const {
-  Mat3 down;  // the tool's x axis is the way it points
+  Mat3 down;  // the chain's x axis is the way the tool points
   down << 0, 0, 1, 0, 1, 0, -1, 0, 0;
   const Quat eighth(std::sqrt((1 + std::sqrt(0.5)) / 2), 0, 0, std::sqrt((1 - std::sqrt(0.5)) / 2));
   constexpr robot::IkOptions kNear = {.position_tolerance = 1e-4, .rotation_tolerance = 1e-3};

@@ -20,6 +20,7 @@
 #include "compiler/syntax/ast.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/format.h"
+#include "runtime/robot/laws.h"
 #include "runtime/robot/urdf.h"
 
 namespace probe::sema {
@@ -120,7 +121,9 @@ struct Finger {
 };
 struct Drive {
   Spelled joint;
-  Quantity stiffness, damping, limit;
+  bool slides = false;  // as its units say, and as its joint does
+  // SI. What is not written stands in the robot's description, if anywhere (see define/robot).
+  double stiffness = 0, damping = 0, limit = 0, friction = 0, armature = 0;
   Span span;
 };
 
@@ -130,8 +133,11 @@ struct Robot {
   Span span;
   Spelled urdf;
   Spelled tcp;
+  std::array<double, 3> points{1, 0, 0};  // the tool, in its link's frame: at what is grasped
+  Span points_span;
   std::vector<Finger> fingers;
   double control_hz = 0;
+  robot::Law law;  // its numbers, but for those of drives and the range of the fingers
   double reach_min = 0, reach_max = 0;
   std::vector<Drive> drives;
   double grip_closed = 0, grip_open = 0;
@@ -262,6 +268,8 @@ struct Scene {
   std::optional<Spelled> backdrop;
   std::vector<View> views;  // the first is what a policy with one picture sees
   LightId light = LightId::kNone;
+  double air_density = 0, air_viscosity = 0;
+  Span air_span;
   double physics_hz = 0;
   Span physics_span;
   double friction = 0;

@@ -130,6 +130,12 @@ void check_repeats(Context& context) {
     using Node = std::decay_t<decltype(node)>;
     if constexpr (std::is_same_v<Node, syntax::PredicateDecl>) check_parameters(context, node);
     if constexpr (std::is_same_v<Node, syntax::ObjectDecl>) check_claims(context, node);
+    if constexpr (std::is_same_v<Node, syntax::RobotDecl>) {
+      for (const syntax::RobotStmt& stmt : node.body) {
+        if (const auto* control = std::get_if<syntax::ControlStmt>(&stmt))
+          check_block(context, syntax::Block::kControl, control->body);
+      }
+    }
     if constexpr (std::is_same_v<Node, syntax::VariantsDecl>) {
       for (const syntax::VariantsMember& member : node.members)
         check_block(context, syntax::Block::kTask, member.body);

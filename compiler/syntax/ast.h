@@ -409,24 +409,69 @@ struct UrdfStmt {
   Span span;
   Text path;
 };
-struct TcpStmt {
+struct SignedAxis {  // `+y`
+  bool negative = false;
+  Name axis;
+};
+struct TcpStmt {  // `tool points +z`
   Span span;
   Name link;
+  std::optional<SignedAxis> points;
 };
 struct Finger {  // `left_finger_link opens +y`
   Span span;
   Name link;
-  bool negative = false;
-  Name axis;
+  SignedAxis opens;
 };
-struct FingersStmt {
+struct FingersStmt {  // none for `fingers none`
   Span span;
   std::vector<Finger> fingers;
 };
-struct ControlStmt {
+
+// The numbers of a control law.
+struct ControlKpStmt {  // one for all six directions, or (shift, turn), or six
+  Span span;
+  Point values;
+};
+struct ControlDampingStmt {
+  Span span;
+  Point values;
+};
+struct ControlOutputStmt {
+  Span span;
+  Point values;
+};
+struct ControlNullStmt {
+  Span span;
+  Quantity value;
+};
+struct ControlUncoupleStmt {
+  Span span;
+};
+struct ControlRampStmt {
+  Span span;
+  Quantity value;
+};
+struct ControlHomeStmt {
+  Span span;
+  Point positions;
+};
+struct ControlFromStmt {
+  Span span;
+  Name what;  // target, measured
+};
+struct ControlMostStmt {
+  Span span;
+  Quantity value;
+};
+using ControlSetting = std::variant<ControlKpStmt, ControlDampingStmt, ControlOutputStmt,
+                                    ControlNullStmt, ControlUncoupleStmt, ControlRampStmt,
+                                    ControlHomeStmt, ControlFromStmt, ControlMostStmt>;
+struct ControlStmt {  // `control osc_pose 20Hz { kp 150; home (..) }`
   Span span;
   Name law;
   Quantity rate;
+  std::vector<ControlSetting> body;
 };
 struct ReachStmt {
   Span span;
@@ -435,13 +480,14 @@ struct ReachStmt {
 struct DriveStmt {  // `drive waist, shoulder stiffness 1200Nm/rad damping 40Nms/rad limit 30Nm`
   Span span;
   std::vector<Name> joints;
-  Quantity stiffness, damping, limit;
+  std::optional<Quantity> stiffness, damping, limit, friction, armature;
 };
 struct GripStmt {  // `grip 1.5cm .. 3.7cm friction 1 patch 4mm`
   Span span;
-  Quantity closed, open;             // finger joint targets
-  std::optional<Quantity> friction;  // of the fingers
-  std::optional<Quantity> patch;     // radius of the torsional contact patch
+  Quantity closed, open;                           // finger joint targets
+  std::optional<Quantity> friction;                // of the fingers
+  std::optional<Quantity> patch;                   // radius of the torsional contact patch
+  std::optional<Quantity> pace, stiffness, limit;  // of a law by efforts
 };
 using RobotStmt =
     std::variant<UrdfStmt, TcpStmt, FingersStmt, ControlStmt, ReachStmt, DriveStmt, GripStmt>;
@@ -561,6 +607,7 @@ struct PhysicsStmt {
   Span span;
   Quantity rate;
   Quantity friction;
+  std::optional<Quantity> air, viscosity;
   bool window_step = false;
 };
 using SceneStmt =

@@ -70,6 +70,8 @@ SceneStmt Parser::scene_physics() {
   out.rate = quantity();
   expect_word("friction");
   out.friction = quantity();
+  if (accept_word("air")) out.air = quantity();
+  if (accept_word("viscosity")) out.viscosity = quantity();
   out.window_step = accept_word("window");
   if (out.window_step) expect_word("step");
   return out;

@@ -149,12 +149,23 @@ class Parser {
   // ---- parse_robot.cpp ----
   DeclNode robot_decl();
   RobotStmt robot_urdf();
+  SignedAxis signed_axis();
   RobotStmt robot_tcp();
   RobotStmt robot_fingers();
   RobotStmt robot_control();
   RobotStmt robot_reach();
   RobotStmt robot_drive();
   RobotStmt robot_grip();
+  ControlSetting control_kp();
+  ControlSetting control_damping();
+  ControlSetting control_output();
+  ControlSetting control_null();
+  ControlSetting control_uncouple();
+  ControlSetting control_ramp();
+  ControlSetting control_home();
+  ControlSetting control_from();
+  ControlSetting control_most();
+  Point numbers();  // a point, or one number as a point of one
 
   // ---- parse_camera.cpp, parse_light.cpp ----
   DeclNode camera_decl();

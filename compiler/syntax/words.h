@@ -14,6 +14,7 @@ enum class Block : std::uint8_t {
   kDataset,
   kObject,
   kRobot,
+  kControl,
   kCamera,
   kLight,
   kFixture,

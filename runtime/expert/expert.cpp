@@ -64,6 +64,9 @@ class Expert final : public policy::Policy {
     PROBE_ASSIGN(Reach reach, Reach::create(*start.robot));
     reach_ = std::move(reach);
     horizon_ = start.horizon;
+    law_ = start.robot->law;
+    rate_ = start.control_hz > 0 ? start.control_hz : 5;
+    until_decision_ = 0;
     started_ = false;
     tries_ = 0;
     failed_.clear();
@@ -77,6 +80,11 @@ class Expert final : public policy::Policy {
 
   Result<policy::Action> act(const policy::Observation& observation) override {
     PROBE_TRY(check(observation));
+    if (started_ && --until_decision_ > 0) {
+      const policy::Proprioception& now = observation.proprioception;
+      const auto q = std::span(now.joints).first(reach_->chain().joint_count());
+      return servo_.next({reach_->chain().pose(q), now.joints, now.openness});
+    }
     const policy::Privileged& view = *observation.privileged;
     Scene scene = look(
         observation,
@@ -86,15 +94,17 @@ class Expert final : public policy::Policy {
     if (!started_) look_for_spot(observation, scene);
     if (spot_) scene = with_spot(std::move(scene), *spot_);
     if (observation.horizon > 0) horizon_ = observation.horizon;
-    steps_left_ = horizon_ - observation.step;
-    const Arm arm{scene.tcp, scene.joints};
+    const Arm arm = arm_of(scene);
     if (!started_) {
-      servo_.begin(reach_->chain(), arm);
+      servo_.begin(reach_->chain(), arm, law_, rate_);
       last_ = scene;
       started_ = true;
       first_seen_ = scene.source.center;
       recent_.assign(Path::kPast, joints_of(scene));
     }
+    // Time passes in decisions.
+    until_decision_ = servo_.interval();
+    steps_left_ = (horizon_ - observation.step) / servo_.interval();
     recent_.erase(recent_.begin());
     recent_.push_back(joints_of(scene));
     // A source in the air hinders the arm no more than an empty hand.
@@ -171,7 +181,7 @@ class Expert final : public policy::Policy {
     return e.position < shift && e.rotation < turn;
   }
 
-  static Arm arm_of(const Scene& s) { return {s.tcp, s.joints}; }
+  static Arm arm_of(const Scene& s) { return {s.tcp, s.joints, s.openness}; }
 
   bool all_fingers(const Scene& s) const {
     const auto on = [](bool touches) { return touches; };
@@ -350,20 +360,20 @@ class Expert final : public policy::Policy {
       case Phase::kLift:
         return servo_.toward(place_, arm_of(s), kClosedGripper, kHeldPace);
       case Phase::kKeep:
-        return servo_.hold(kClosedGripper);
+        return servo_.hold(arm_of(s), kClosedGripper);
       case Phase::kLoosen:
         return command_loosen(s);
       case Phase::kOpen:
-        return servo_.hold(kOpenGripper);
+        return servo_.hold(arm_of(s), kOpenGripper);
       case Phase::kRetreat: {
         Pose goal = release_;
         goal.position.z() += 0.075;
         return servo_.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
       }
       case Phase::kRest:
-        return servo_.hold(kOpenGripper);
+        return servo_.hold(arm_of(s), kOpenGripper);
     }
-    return servo_.hold(kOpenGripper);
+    return servo_.hold(arm_of(s), kOpenGripper);
   }
 
   policy::Action follow_path(const Scene& s, double gripper) {
@@ -373,7 +383,7 @@ class Expert final : public policy::Policy {
 
   // Opens first: a half-held source must not come along.
   policy::Action command_raise(const Scene& s) {
-    if (s.openness < 0.5 && steps_ < 2) return servo_.hold(kOpenGripper);
+    if (s.openness < 0.5 && steps_ < 2) return servo_.hold(arm_of(s), kOpenGripper);
     Pose goal = s.tcp;
     goal.position.z() = std::max(goal.position.z(), travel_height(s, s.hand.tip_below));
     return servo_.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
@@ -399,7 +409,11 @@ class Expert final : public policy::Policy {
 
   ExpertOptions options_;
   std::optional<Reach> reach_;
-  int horizon_ = 0, steps_left_ = 0;
+  robot::Law law_;
+  double rate_ = 5;         // control steps a second
+  int until_decision_ = 0;  // control steps to the next
+  int horizon_ = 0;         // control steps
+  int steps_left_ = 0;      // decisions
 
   bool started_ = false;
   Servo servo_;

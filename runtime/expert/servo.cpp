@@ -32,7 +32,7 @@ Pose stepped(const Pose& from, const Pose& to, double shift, double turn) {
               .normalized()};
 }
 
-void Servo::begin(const robot::Chain& chain, const Arm& arm) {
+void Servo::begin(const robot::Chain& chain, const Arm& arm, const robot::Law& law, double rate) {
   PROBE_CHECK(arm.joints.size() >= chain.joint_count(), "a position for each joint of the chain");
   chain_ = &chain;
   response_.reset();
@@ -40,10 +40,27 @@ void Servo::begin(const robot::Chain& chain, const Arm& arm) {
   knows_target_ = false;
   last_shift_ = 0;
   learnt_ = 0;
+  tracker_.reset();
+  if (const auto* osc = std::get_if<robot::OscPose>(&law)) {
+    tracker_.emplace(*osc, rate);
+    tracker_->begin(arm.tcp);
+  }
+}
+
+policy::Action Servo::next(const Arm& arm) {
+  PROBE_CHECK(tracker_.has_value(), "between decisions there are steps under `osc_pose` alone");
+  tracker_->observe(arm.tcp);
+  return tracker_->act(arm.openness);
+}
+
+policy::Action Servo::aim(const Pose& goal, const Arm& arm, double gripper) {
+  tracker_->aim(goal, gripper);
+  return tracker_->act(arm.openness);
 }
 
 void Servo::observe(const Arm& arm, bool free) {
   const std::size_t n = chain_->joint_count();
+  if (tracker_) return tracker_->observe(arm.tcp);
   if (free && knows_target_) {
     response_.learn(std::span(joints_before_).first(n), std::span(joint_target_).first(n),
                     arm.joints.first(n));
@@ -69,15 +86,20 @@ policy::Action Servo::toward(const Pose& goal, const Arm& arm, double gripper, c
   const double shift = std::min(pace.shift, last_shift_ + pace.gain);
   const Pose next = stepped(arm.tcp, goal, shift, pace.turn);
   last_shift_ = (next.position - arm.tcp.position).norm();
+  if (tracker_) return aim(next, arm, gripper);
   return set_target(pace.lead ? ahead_of(next, arm) : next, arm, gripper);
 }
 
 policy::Action Servo::settle(const Pose& pose, const Arm& arm, double gripper) {
   last_shift_ = 0;
+  if (tracker_) return aim(pose, arm, gripper);
   return set_target(pose, arm, gripper);
 }
 
-policy::Action Servo::hold(double gripper) const { return {0, 0, 0, 0, 0, 0, gripper}; }
+policy::Action Servo::hold(const Arm& arm, double gripper) {
+  if (tracker_) return aim(tracker_->goal(), arm, gripper);
+  return {0, 0, 0, 0, 0, 0, gripper};
+}
 
 // The pose whose joint positions, as targets, bring the joints to those of `next` within the step.
 Pose Servo::ahead_of(const Pose& next, const Arm& arm) const {
@@ -99,6 +121,7 @@ Pose Servo::ahead_of(std::span<const double> next, const Arm& arm) const {
 
 policy::Action Servo::follow(std::span<const double> joints, const Arm& arm, double gripper) {
   last_shift_ = (chain_->pose(joints).position - arm.tcp.position).norm();
+  if (tracker_) return aim(chain_->pose(joints), arm, gripper);
   return set_target(ahead_of(joints, arm), arm, gripper);
 }
 

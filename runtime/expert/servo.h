@@ -5,12 +5,15 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "runtime/base/geometry.h"
 #include "runtime/expert/drive_response.h"
+#include "runtime/expert/tool_tracker.h"
 #include "runtime/policy/policy.h"
 #include "runtime/robot/kinematics.h"
+#include "runtime/robot/laws.h"
 
 namespace probe::expert {
 
@@ -26,13 +29,20 @@ struct Pace {
 struct Arm {
   Pose tcp;
   std::span<const double> joints;  // at least the chain's
+  double openness = 1;             // of the gripper, 0 .. 1
 };
 
 class Servo {
  public:
   // The controller's target at the start of an episode is the tool's pose. The chain must outlive
   // the servo's use.
-  void begin(const robot::Chain& chain, const Arm& arm);
+  void begin(const robot::Chain& chain, const Arm& arm, const robot::Law& law = {},
+             double rate = 5);
+
+  // Control steps between decisions: all that is asked for below is for the end of so many. In
+  // those between, next() gives the action.
+  int interval() const { return tracker_ ? tracker_->interval() : 1; }
+  policy::Action next(const Arm& arm);
 
   // Call once a control step before asking for the action. `free`: nothing was touched, so the
   // joints' moves tell how the drives respond.
@@ -48,7 +58,7 @@ class Servo {
   policy::Action settle(const Pose& pose, const Arm& arm, double gripper);
 
   // Leaves the target where it is.
-  policy::Action hold(double gripper) const;
+  policy::Action hold(const Arm& arm, double gripper);
 
   const Pose& target() const { return target_; }
 
@@ -57,9 +67,11 @@ class Servo {
   Pose ahead_of(const Pose& next, const Arm& arm) const;
   Pose ahead_of(std::span<const double> next, const Arm& arm) const;
   void correct_target(const Arm& arm);
+  policy::Action aim(const Pose& goal, const Arm& arm, double gripper);
   policy::Action set_target(const Pose& wanted, const Arm& arm, double gripper);
 
   const robot::Chain* chain_ = nullptr;
+  std::optional<ToolTracker> tracker_;  // under `osc_pose`
   DriveResponse response_;
   Pose target_;
   Joints joint_target_{}, joints_before_{};

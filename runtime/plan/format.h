@@ -87,7 +87,12 @@ struct ObjectRecord {
 };
 static_assert(sizeof(ObjectRecord) == 128);
 
-enum class Control : std::uint32_t { kEeDeltaPose = 1 };
+enum class Control : std::uint32_t {
+  kEeDeltaPose = 1,
+  kOscPose = 2,
+  kJointDelta = 3,
+  kJointPosition = 4
+};
 
 struct FingerRecord {
   StringRef link;
@@ -99,7 +104,7 @@ struct RobotRecord {
   std::uint32_t urdf = kNone;  // kAssets
   std::uint32_t control = 0;   // Control
   double control_hz = 0;
-  std::array<FingerRecord, 2> fingers{};
+  std::array<FingerRecord, 2> fingers{};  // without a link: there is none; more in `more_fingers`
   double grip_closed = 0;  // finger target for gripper command -1
   double grip_open = 0;    // finger target for gripper command +1
   double finger_friction = 0;
@@ -109,9 +114,41 @@ struct RobotRecord {
   Slice drives;  // kDrives, one per actuated joint
   Slice meshes;  // kList of kAssets: every file the URDF names, in its order; they are part of the
                  // start
-  std::uint64_t zero[3] = {};
+  Slice law;     // kLaws: one, of ee_delta_pose none
+  Slice gears;   // kGears: one per drive, or none
+  Slice more_fingers;  // kFingers: those behind the first two
 };
 static_assert(sizeof(RobotRecord) == 192);
+
+inline constexpr std::uint32_t kLawUncoupled = 1;   // osc_pose: shift and turn each by its inertia
+inline constexpr std::uint32_t kLawFromTarget = 2;  // joint_delta: steps go from the last target
+
+// The numbers of a control law; what its kind does not read is 0. Of six: x y z, about x y z.
+struct LawRecord {
+  // osc_pose
+  std::array<double, 6> kp{};       // 1/s2
+  std::array<double, 6> damping{};  // 1: critical
+  std::array<double, 6> output{};   // m and rad: what an action of 1 asks for
+  double null_kp = 0;               // 1/s2
+  double ramp = 0;                  // share of a control step
+  double grip_pace = 0;             // of half the range, a physics step
+  double grip_stiffness = 0;        // N/m
+  double grip_limit = 0;            // N
+  // joint_delta
+  double most = 0;          // rad or m, a step; 0: any
+  Slice home;               // kReals, osc_pose: one per joint of the arm
+  std::uint32_t flags = 0;  // kLawUncoupled, kLawFromTarget
+  std::uint32_t zero = 0;
+  std::uint64_t zero2[6] = {};
+};
+static_assert(sizeof(LawRecord) == 256);
+
+// N m and kg m2, or N and kg, by the joint's kind.
+struct GearRecord {
+  double friction = 0;  // what it takes to set the joint moving, and what brakes it then
+  double armature = 0;  // inertia of rotor and gears, at the joint
+};
+static_assert(sizeof(GearRecord) == 16);
 
 // tau = stiffness (target - q) - damping u, clamped to +-limit. SI per radian or per metre by the
 // joint's kind.
@@ -175,7 +212,9 @@ struct SceneRecord {
   double physics_hz = 0;
   double friction = 0;  // of the surface's own material
   Slice fixtures;       // kList of kFixtures, with joints; each once
-  std::uint64_t zero2[9] = {};
+  double air_density = 0;    // kg/m3: felt by robots whose law gives efforts
+  double air_viscosity = 0;  // Pa s
+  std::uint64_t zero2[7] = {};
 };
 static_assert(sizeof(SceneRecord) == 256);
 

@@ -110,7 +110,17 @@ Sha256 IdHasher::object(std::uint32_t index) {
 // Link and joint names are references into the URDF's content and so are part of what is simulated.
 // The rate and the control law stand in the judge id; reach is a static check and stands in none.
 Sha256 IdHasher::robot(const RobotRecord& r) const {
-  Hasher h = tagged("vlaprobe.robot.1");
+  // What only some robots have is part of a second version, so that the others keep their ids.
+  const bool more = r.gears.count != 0 || r.more_fingers.count != 0;
+  Hasher h = tagged(more ? "vlaprobe.robot.2" : "vlaprobe.robot.1");
+  if (more) {
+    h.u32(r.gears.count);
+    for (const GearRecord& gear : slice_of(tables_.gears, r.gears))
+      h.f64(gear.friction).f64(gear.armature);
+    h.u32(r.more_fingers.count);
+    for (const FingerRecord& finger : slice_of(tables_.fingers, r.more_fingers))
+      h.text(tables_.text(finger.link)).f64s(finger.opens);
+  }
   h.hash(asset(r.urdf)).text(tables_.text(r.tcp));
   h.u32(r.meshes.count);
   for (std::uint32_t mesh : slice_of(tables_.list, r.meshes)) h.hash(asset(mesh));
@@ -144,10 +154,14 @@ void IdHasher::hash_surroundings(Hasher& h, const SceneRecord& s) const {
   h.f64s(s.base_position).f64s(s.base_rotation);
   h.u32(s.joints.count).f64s(slice_of(tables_.reals, s.joints));
   h.f64(s.surface_z).f64s(s.area).f64(s.physics_hz).f64(s.friction);
-  if (s.fixtures.count == 0) return;
-  h.u32(s.fixtures.count);
-  for (const std::uint32_t index : slice_of(tables_.list, s.fixtures))
-    h.hash(fixture(tables_.fixtures[index]));
+  // Behind all else, so that scenes without them keep their ids.
+  if (s.fixtures.count != 0) {
+    h.u32(s.fixtures.count);
+    for (const std::uint32_t index : slice_of(tables_.list, s.fixtures))
+      h.hash(fixture(tables_.fixtures[index]));
+  }
+  if (s.air_density != 0 || s.air_viscosity != 0)
+    h.text("air").f64(s.air_density).f64(s.air_viscosity);
 }
 
 Sha256 IdHasher::scene(std::uint32_t index) {
@@ -203,7 +217,13 @@ Sha256 IdHasher::light(std::uint32_t index) {
 
 Sha256 IdHasher::judge(const TaskRecord& task) {
   const RobotRecord& r = tables_.robots[tables_.scenes[task.scene].robot];
-  Hasher h = tagged("vlaprobe.judge.1");
+  const LawRecord* law = law_of(tables_, r);
+  Hasher h = tagged(law == nullptr ? "vlaprobe.judge.1" : "vlaprobe.judge.2");
+  if (law != nullptr) {
+    h.f64s(law->kp).f64s(law->damping).f64s(law->output).f64(law->null_kp).f64(law->ramp);
+    h.f64(law->grip_pace).f64(law->grip_stiffness).f64(law->grip_limit).f64(law->most);
+    h.u32(law->flags).u32(law->home.count).f64s(slice_of(tables_.reals, law->home));
+  }
   return h.hash(program(task.program)).u32(task.horizon).u32(r.control).f64(r.control_hz).finish();
 }
 

@@ -12,6 +12,7 @@ inline constexpr std::size_t kMaxBodies = 256;         // of a task
 inline constexpr std::size_t kMaxMetrics = 256;        // of a task
 inline constexpr std::size_t kMaxConstants = 65536;    // of a program
 inline constexpr std::size_t kMaxDrives = 64;          // of a robot
+inline constexpr std::size_t kMaxFingers = 8;          // of a robot
 inline constexpr std::size_t kMaxMeshes = 256;         // that a robot's description names
 inline constexpr std::size_t kMaxSuns = 64;            // of a light
 inline constexpr std::size_t kMaxStringBytes = 4096;

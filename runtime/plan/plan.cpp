@@ -105,6 +105,12 @@ std::span<const std::byte> Plan::bytes() const { return storage_->bytes(); }
 std::span<const DriveRecord> Plan::drives(const RobotRecord& r) const {
   return slice_of(tables_.drives, r.drives);
 }
+std::span<const GearRecord> Plan::gears(const RobotRecord& r) const {
+  return slice_of(tables_.gears, r.gears);
+}
+std::span<const double> Plan::home(const LawRecord& l) const {
+  return slice_of(tables_.reals, l.home);
+}
 std::span<const std::uint32_t> Plan::meshes(const RobotRecord& r) const {
   return slice_of(tables_.list, r.meshes);
 }

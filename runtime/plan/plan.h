@@ -46,6 +46,12 @@ class Plan {
 #include "runtime/plan/sections.def"
 
   std::span<const DriveRecord> drives(const RobotRecord& robot) const;
+  std::span<const GearRecord> gears(const RobotRecord& robot) const;  // one per drive, or none
+  std::vector<FingerRecord> fingers(const RobotRecord& robot) const {
+    return fingers_of(tables_, robot);
+  }
+  const LawRecord* law(const RobotRecord& robot) const { return law_of(tables_, robot); }
+  std::span<const double> home(const LawRecord& law) const;
   std::span<const std::uint32_t> meshes(const RobotRecord& robot) const;  // indices of assets()
   std::span<const SunRecord> suns(const LightRecord& light) const;
   std::span<const double> joints(const SceneRecord& scene) const;

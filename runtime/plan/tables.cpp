@@ -21,6 +21,26 @@ static_assert(ascending_kinds(), "sections.def ascends by kind and repeats none"
 
 }  // namespace
 
+std::size_t finger_count(const RobotRecord& robot) {
+  std::size_t count = robot.more_fingers.count;
+  for (const FingerRecord& finger : robot.fingers) count += finger.link.length == 0 ? 0 : 1;
+  return count;
+}
+
+std::vector<FingerRecord> fingers_of(const Tables& tables, const RobotRecord& robot) {
+  std::vector<FingerRecord> fingers;
+  for (const FingerRecord& finger : robot.fingers) {
+    if (finger.link.length != 0) fingers.push_back(finger);
+  }
+  const auto more = slice_of(tables.fingers, robot.more_fingers);
+  fingers.insert(fingers.end(), more.begin(), more.end());
+  return fingers;
+}
+
+const LawRecord* law_of(const Tables& tables, const RobotRecord& robot) {
+  return robot.law.count == 0 ? nullptr : &tables.laws[robot.law.first];
+}
+
 std::span<const SectionInfo> all_sections() { return kSections; }
 
 const SectionInfo* find_section(std::uint32_t kind) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "runtime/plan/format.h"
 
@@ -36,6 +37,12 @@ template <typename Record>
 std::span<const Record> slice_of(std::span<const Record> table, Slice slice) {
   return table.subspan(slice.first, slice.count);
 }
+
+// Of a robot whose record was verified. All its fingers, in the order of its first links.
+std::size_t finger_count(const RobotRecord& robot);
+std::vector<FingerRecord> fingers_of(const Tables& tables, const RobotRecord& robot);
+// Null for ee_delta_pose, whose numbers are the robot's.
+const LawRecord* law_of(const Tables& tables, const RobotRecord& robot);
 
 // One line a section: what the directory must say of it.
 struct SectionInfo {

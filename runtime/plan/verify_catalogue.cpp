@@ -80,14 +80,18 @@ Status RecordCheck::check(const RobotRecord& r) const {
   PROBE_TRY(check_word(r.name, "the name of a robot"));
   PROBE_TRY(check_name(r.tcp, "the tool centre point"));
   PROBE_TRY(check_asset(r.urdf, AssetKind::kUrdf, false));
-  if (r.control != static_cast<std::uint32_t>(Control::kEeDeltaPose)) {
+  if (r.control < static_cast<std::uint32_t>(Control::kEeDeltaPose) ||
+      r.control > static_cast<std::uint32_t>(Control::kJointPosition)) {
     return fail(Rule::kControl, &r.control, fmt::format("control law {} is not known", r.control));
   }
   PROBE_TRY(check_positive(r.control_hz, "a control rate"));
   PROBE_TRY(check_magnitude(r.control_hz, Magnitude::kControlRate));
   for (const FingerRecord& finger : r.fingers) {
-    PROBE_TRY(check_name(finger.link, "the link of a finger"));
-    PROBE_TRY(check_unit(finger.opens, "the opening axis of a finger"));
+    if (finger.link.length != 0) {
+      PROBE_TRY(check(finger));
+    } else if (finger.link.offset != 0 || finger.opens != std::array<double, 3>{}) {
+      return fail(Rule::kFingerOrder, &finger, "a finger that opens has a link");
+    }
   }
   PROBE_TRY(check_magnitude(r.grip_closed, Magnitude::kJointPosition));
   PROBE_TRY(check_magnitude(r.grip_open, Magnitude::kJointPosition));
@@ -98,8 +102,9 @@ Status RecordCheck::check(const RobotRecord& r) const {
   PROBE_TRY(check_length(r.reach_max, "a reach"));
   if (r.reach_min > r.reach_max)
     return fail(Rule::kReach, &r.reach_min, "the least reach is not more than the greatest");
-  PROBE_TRY(check_zero(r.zero));
-
+  PROBE_TRY(check_slice(r.law, t.laws.size(), "LAWS"));
+  PROBE_TRY(check_slice(r.gears, t.gears.size(), "GEAR"));
+  PROBE_TRY(check_slice(r.more_fingers, t.fingers.size(), "FING"));
   PROBE_TRY(check_slice(r.drives, t.drives.size(), "DRIV"));
   if (r.drives.count == 0 || r.drives.count > kMaxDrives) {
     return fail(Rule::kDriveCount, &r.drives,
@@ -225,6 +230,10 @@ Status RecordCheck::check(const SceneRecord& s) const {
   PROBE_TRY(check_slice(s.fixtures, t.list.size(), "LIST"));
   for (const std::uint32_t& fixture : slice_of(t.list, s.fixtures))
     PROBE_TRY(check_index(fixture, t.fixtures.size(), "FIXT"));
+  for (const double* of_air : {&s.air_density, &s.air_viscosity}) {
+    PROBE_TRY(check_not_negative(*of_air, "a density or viscosity of air"));
+    PROBE_TRY(check_magnitude(*of_air, Magnitude::kAir));
+  }
   return check_zero(s.zero2);
 }
 

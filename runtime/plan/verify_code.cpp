@@ -230,18 +230,16 @@ class ProgramCheck {
   std::vector<bool> states_used_, metrics_emitted_, finger_seen_;
 };
 
-// A robot in a plan has exactly as many as its record has places for.
-constexpr std::size_t kFingerCount = std::tuple_size_v<decltype(RobotRecord::fingers)>;
-
 Status check_task(const Place& place, const Tables& t, const TaskRecord& task, const Needs& needs) {
   if (needs.bodies > task.bodies.count) {
     return place.fail(Rule::kTaskBody, needs.highest,
                       fmt::format("names body {}, but task `{}` has {}", needs.bodies - 1,
                                   t.text(task.name), task.bodies.count));
   }
+  const std::size_t fingers = finger_count(t.robots[t.scenes[task.scene].robot]);
   for (const auto& [op, operand] : needs.fingers) {
     const BodyRecord& body = slice_of(t.bodies, task.bodies)[*operand];
-    if (body.kind != static_cast<std::uint32_t>(BodyKind::kLink) || body.index >= kFingerCount) {
+    if (body.kind != static_cast<std::uint32_t>(BodyKind::kLink) || body.index >= fingers) {
       return place.fail(Rule::kFinger, operand,
                         fmt::format("{} names body {}, which is no finger of task `{}`", op->name,
                                     *operand, t.text(task.name)));

@@ -166,6 +166,7 @@ Status RecordCheck::run() const {
 
 Status verify_tables(std::span<const std::byte> bytes, const Tables& tables) {
   PROBE_TRY(RecordCheck(bytes, tables).run());
+  PROBE_TRY(verify_robots(bytes, tables));
   PROBE_TRY(verify_fixtures(bytes, tables));
   PROBE_TRY(verify_relations(bytes, tables));
   return verify_questions(bytes, tables);

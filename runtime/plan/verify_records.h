@@ -41,6 +41,9 @@ class RecordCheck : FieldCheck {
   Status check(const ObjectRecord& object) const;
   Status check(const RobotRecord& robot) const;
   Status check(const DriveRecord& drive) const;
+  Status check(const LawRecord& law) const;
+  Status check(const GearRecord& gear) const;
+  Status check(const FingerRecord& finger) const;
   Status check(const CameraRecord& camera) const;
   Status check(const LightRecord& light) const;
   Status check(const SunRecord& sun) const;
@@ -71,6 +74,9 @@ class RecordCheck : FieldCheck {
 
 // What the records of questions say of one another and of tasks; after RecordCheck.
 Status verify_questions(std::span<const std::byte> bytes, const Tables& tables);
+
+// What robots and their laws, gears and fingers say of one another; after RecordCheck.
+Status verify_robots(std::span<const std::byte> bytes, const Tables& tables);
 
 // What the records of fixtures say of one another, of scenes and of episodes; after RecordCheck.
 Status verify_fixtures(std::span<const std::byte> bytes, const Tables& tables);

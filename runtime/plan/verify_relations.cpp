@@ -21,7 +21,6 @@ class RelationCheck : FieldCheck {
 
   Status run() {
     PROBE_TRY(check_unique_names(t.objects, "objects"));
-    PROBE_TRY(robots());
     PROBE_TRY(programs());
     PROBE_TRY(tasks());
     PROBE_TRY(lists());
@@ -29,17 +28,6 @@ class RelationCheck : FieldCheck {
   }
 
  private:
-  Status robots() const {
-    for (const RobotRecord& r : t.robots) {
-      std::vector<std::string_view> joints;
-      for (const DriveRecord& d : slice_of(t.drives, r.drives)) joints.push_back(t.text(d.joint));
-      std::ranges::sort(joints);
-      if (std::ranges::adjacent_find(joints) != joints.end())
-        return fail(Rule::kDriveTwice, &r.drives, "a joint has one drive, not two");
-    }
-    return {};
-  }
-
   Status programs() const {
     std::uint64_t code = 0, states = 0;
     for (const ProgramRecord& p : t.programs) {
@@ -150,7 +138,8 @@ class RelationCheck : FieldCheck {
       const Slice& own = t.fixtures[fixture].parts;
       for (std::uint32_t i = 0; i < own.count; ++i) parts.push_back(own.first + i);
     }
-    const std::uint64_t least = first_link + t.robots[scene.robot].fingers.size() + parts.size();
+    const std::vector<FingerRecord> fingers = fingers_of(t, t.robots[scene.robot]);
+    const std::uint64_t least = first_link + fingers.size() + parts.size();
     if (k.bodies.count > kMaxBodies || k.bodies.count < least) {
       return fail(Rule::kBodyCount, &k.bodies,
                   fmt::format("task `{}` has {} bodies; with its {} objects it needs {} to {}",
@@ -185,13 +174,12 @@ class RelationCheck : FieldCheck {
     if (roles.has_target() && bodies[roles.target].index != k.target)
       return fail(Rule::kTargetSecond, &bodies[roles.target].index,
                   "the second body is the target");
-    const RobotRecord& robot = t.robots[scene.robot];
-    for (std::size_t f = 0; f < robot.fingers.size(); ++f) {
+    for (std::size_t f = 0; f < fingers.size(); ++f) {
       const BodyRecord& finger = bodies[first_link + f];
-      if (t.text(finger.name) != t.text(robot.fingers[f].link)) {
+      if (t.text(finger.name) != t.text(fingers[f].link)) {
         return fail(Rule::kFingerName, &finger.name,
-                    fmt::format("link {} is finger `{}`, not `{}`", f,
-                                t.text(robot.fingers[f].link), t.text(finger.name)));
+                    fmt::format("link {} is finger `{}`, not `{}`", f, t.text(fingers[f].link),
+                                t.text(finger.name)));
       }
     }
     return {};

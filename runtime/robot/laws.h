@@ -40,6 +40,8 @@ struct OscPose {
   // rad, of the arm's joints: where the null space draws them, and where the tool's rotation is the
   // first goal.
   std::vector<double> home;
+  // N m, of the arm's joints: torques are clipped to these; empty: to the description's efforts.
+  std::vector<double> limits;
   SignGrip grip;
 };
 

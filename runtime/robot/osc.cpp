@@ -121,6 +121,13 @@ Status check_law(const RobotModel& model, const EeControlSpec& spec, const OscPo
 
 }  // namespace
 
+Action shares_of(const OscPose& law, const Action& action) {
+  Action shares = action;
+  for (size_t i = 0; i < law.output.size(); ++i) shares[i] /= law.output[i];
+  shares[kActionGripper] = -action[kActionGripper];
+  return shares;
+}
+
 Vec3 rotation_error(const Mat3& from, const Mat3& to) {
   return 0.5 * (from.col(0).cross(to.col(0)) + from.col(1).cross(to.col(1)) +
                 from.col(2).cross(to.col(2)));
@@ -140,8 +147,13 @@ Result<OscPoseController> OscPoseController::create(const RobotModel& model,
   OscPoseController made;
   made.arm_ = spec.arm_joints.size();
   made.home_ = chain.pose(law.home);
+  if (!law.limits.empty() && law.limits.size() != spec.arm_joints.size()) {
+    return refuse(model, fmt::format("`osc_pose` has {} limits for {} arm joints",
+                                     law.limits.size(), spec.arm_joints.size()));
+  }
   for (const std::string& name : spec.arm_joints) {
-    const double effort = model.joints[size_t(model.find_joint(name))].effort;
+    const double effort = law.limits.empty() ? model.joints[size_t(model.find_joint(name))].effort
+                                             : law.limits[made.limits_.size()];
     if (!(effort > 0)) {
       return refuse(model, fmt::format("joint `{}` needs an effort above 0: `osc_pose` clips its "
                                        "torque to it",
@@ -150,9 +162,9 @@ Result<OscPoseController> OscPoseController::create(const RobotModel& model,
     made.limits_.push_back(effort);
   }
   PROBE_TRY(finger_range(model, spec.finger_joints));
-  for (const std::string& name : spec.finger_joints) {
-    const Joint& joint = model.joints[size_t(model.find_joint(name))];
-    made.fingers_.push_back({0.5 * (joint.lower + joint.upper), 0.5 * (joint.upper - joint.lower)});
+  for (size_t i = 0; i < spec.finger_joints.size(); ++i) {
+    made.fingers_.push_back(
+        {0.5 * (spec.grip_closed + spec.grip_open), 0.5 * (spec.grip_open - spec.grip_closed)});
   }
   for (size_t i = 0; i < 6; ++i) made.kd_[i] = 2 * std::sqrt(law.kp[i]) * law.damping[i];
   made.law_ = std::move(law);

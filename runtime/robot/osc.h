@@ -16,7 +16,7 @@ namespace probe::robot {
 
 class OscPoseController {
  public:
-  // Torques are clipped to the description's efforts of the arm's joints. Fails (kUrdf) on names
+  // Torques are clipped to the law's limits, or the description's efforts. Fails (kUrdf) on names
   // that are not there, on a law whose numbers no controller can have and on a `home` that has not
   // one position for each arm joint.
   static Result<OscPoseController> create(const RobotModel& model, const EeControlSpec& spec,
@@ -52,7 +52,7 @@ class OscPoseController {
 
  private:
   struct Finger {
-    double middle = 0, half = 0;  // m, of the joint's range
+    double middle = 0, half = 0;  // m, of the way from closed to open
   };
   void set_goal(const Dynamics& now);
   Pose wanted();
@@ -75,6 +75,10 @@ class OscPoseController {
   Pose start_;                     // the goal before this step's
   int ramp_ = 0, ramped_ = 0;      // substeps of the ramp, and those done
 };
+
+// An action in m and rad, gripper -1 closes .. +1 opens (action.h), as begin() wants it: shares of
+// the law's output, and the gripper's sign the other way round.
+Action shares_of(const OscPose& law, const Action& action);
 
 // 0.5 (r1 x g1 + r2 x g2 + r3 x g3) with the columns of both: robosuite's orientation error, world
 // axes; near the goal it is the rotation vector that is left.

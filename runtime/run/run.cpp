@@ -341,12 +341,21 @@ void note_batch(const RunOptions& options, const Actor& actor, RunSummary& summa
                           ": each world asks one question at a time");
 }
 
-// Whose state the questions carry: the first task's robot.
-Result<servers::KnownArm> arm_of(const plan::Plan& plan, std::uint32_t task,
+// Whose state the questions carry: the first task's robot. Of the control laws of all tasks the one
+// that takes the least.
+Result<servers::KnownArm> arm_of(const plan::Plan& plan, const std::vector<EpisodeJob>& jobs,
                                  const stage::SharedAssets& assets) {
-  const plan::RobotRecord& record = plan.robots()[plan.scenes()[plan.tasks()[task].scene].robot];
+  const auto robot_in = [&](std::uint32_t task) -> const plan::RobotRecord& {
+    return plan.robots()[plan.scenes()[plan.tasks()[task].scene].robot];
+  };
+  const plan::RobotRecord& record = robot_in(jobs.front().task);
   PROBE_ASSIGN(const robot::Robot robot, stage::robot_of(plan, record, *assets.robot(record.urdf)));
-  return servers::KnownArm{robot.control.arm_joints.size(), robot.control.finger_joints.size()};
+  servers::KnownArm arm{robot.control.arm_joints.size(), robot.control.finger_joints.size(), {}};
+  for (const EpisodeJob& job : jobs) {
+    if (robot_in(job.task).control == static_cast<std::uint32_t>(plan::Control::kOscPose))
+      arm.control = robot::ControlKind::kOscPose;
+  }
+  return arm;
 }
 
 // A policy server's part of a run: what it is asked before the first episode and after the last.
@@ -497,7 +506,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const auto model = std::make_shared<servers::SharedModel>();
   std::optional<ServerProof> proof;
   if (actor.server) {
-    PROBE_ASSIGN(const servers::KnownArm arm, arm_of(plan, selection.jobs.front().task, *assets));
+    PROBE_ASSIGN(const servers::KnownArm arm, arm_of(plan, selection.jobs, *assets));
     proof = proof_of(*actor.server, summary.call.worlds, arm, model);
     PROBE_ASSIGN(summary.call.reading, servers::prove_reading(proof->choice, model, arm));
     PROBE_TRY(check_as_before(*summary.call.reading, options, summary.notes));

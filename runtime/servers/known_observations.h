@@ -11,6 +11,7 @@
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
 #include "runtime/policy/policy.h"
+#include "runtime/robot/laws.h"
 #include "runtime/servers/profile.h"
 #include "runtime/servers/transport.h"
 #include "runtime/wire/value.h"
@@ -44,6 +45,7 @@ TogetherFinding compare_together(const std::vector<Chunk>& alone,
 struct KnownArm {
   std::size_t joints = 6;
   std::size_t fingers = 2;
+  robot::ControlKind control = robot::ControlKind::kEeDeltaPose;  // what actions go through
 };
 
 // Where an observation's arm is, gripper open, 5 cm to one side so that mirroring it moves it: of

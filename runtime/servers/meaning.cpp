@@ -182,4 +182,18 @@ Status check_said(const Profile& adapted, const std::vector<OpenField>& left,
                  server};
 }
 
+Status check_form(const Profile& profile, ActionForm form, robot::ControlKind control,
+                  const std::string& server) {
+  if (form == ActionForm::kUnsaid || form == ActionForm::kDelta) return {};
+  const robot::KindRow& row = robot::control_kinds()[static_cast<std::size_t>(control)];
+  if (control == robot::ControlKind::kEeDeltaPose) return {};
+  const auto word = std::ranges::find(kActionForms, form, &Word<ActionForm>::value);
+  return Failure{Fault::kUsage,
+                 "actions of profile `" + profile.name + "` are `" + std::string(word->text) +
+                     "` (`action.form`), and a robot of the run is controlled by `" +
+                     std::string(row.word) +
+                     "`, which takes changes of the tool's pose alone (`action.form = delta`)",
+                 server};
+}
+
 }  // namespace probe::servers

@@ -6,6 +6,7 @@
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/known_observations.h"
 #include "runtime/servers/meaning.h"
+#include "runtime/servers/profile_words.h"
 
 namespace probe::servers {
 namespace {
@@ -79,6 +80,18 @@ Status prove_batch(KnownObservations& observations, AskedAlone asked, const Serv
   return {};
 }
 
+// As the profile or the server says it, or as it was measured.
+ActionForm form_of(const Profile& adapted, const policy::Reading& reading) {
+  ActionForm form = adapted.action_form;
+  for (const auto& [field, value] : reading.measured) {
+    if (field != "action.form") continue;
+    for (const auto& word : kActionForms) {
+      if (word.text == value) form = word.value;
+    }
+  }
+  return form;
+}
+
 }  // namespace
 
 Result<policy::Reading> prove_reading(const ServerChoice& choice) {
@@ -131,6 +144,7 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   const std::vector<OpenField> left = left_open(adapted, known);
   reading.measured = measured_of(left);
   PROBE_TRY(check_said(adapted, left, reading.server));
+  PROBE_TRY(check_form(adapted, form_of(adapted, reading), arm.control, reading.server));
   if (asked.failure) return reading;
   reading.is_deaf = asked.answers[0] == asked.answers[1];
   reading.is_blind = asked.answers[0] == asked.answers[2];

@@ -11,6 +11,7 @@
 #include "runtime/servers/api_key.h"
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/conversion.h"
+#include "runtime/servers/meaning.h"
 #include "runtime/servers/resize.h"
 
 namespace probe::servers {
@@ -89,6 +90,10 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   in_episode_ = false;
   if (!is_open_) PROBE_TRY(connect());
   arm_.reset();
+  if (start.robot != nullptr) {
+    PROBE_TRY(
+        check_form(profile_, profile_.action_form, robot::row_of(start.robot->law).kind, server_));
+  }
   if (names_joints(profile_.action_form)) {
     if (auto arm = arm_of(start); arm) {
       arm_ = std::move(*arm);

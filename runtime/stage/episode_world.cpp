@@ -72,6 +72,7 @@ Result<std::unique_ptr<EpisodeWorld>> EpisodeWorld::create(
       new EpisodeWorld(plan, task, std::move(assets), std::move(robot), std::move(controller),
                        std::move(bodies), std::move(trees)));
   made->privileged_ = std::move(view);
+  PROBE_ASSIGN(made->drives_, drives_of(plan, record, parts->model));
   return made;
 }
 
@@ -92,10 +93,7 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
   arm.base = base_pose(scene_);
   // While objects fall nobody drives the arm: it floats.
   arm.by_efforts = with_robot_links && controller_.kind().reads == robot::Reads::kDynamics;
-  for (const plan::DriveRecord& drive : plan_.drives(record_)) {
-    arm.joints.push_back(
-        {std::string(plan_.text(drive.joint)), drive.stiffness, drive.damping, drive.limit});
-  }
+  arm.joints = drives_;
   const auto joints = plan_.joints(scene_);
   arm.positions.assign(joints.begin(), joints.end());
   for (std::size_t k = 0; with_robot_links && k < bodies_.robot_links; ++k) {
@@ -126,6 +124,7 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
   spec.dt = 1 / scene_.physics_hz;
   spec.surface_z = scene_.surface_z;
   spec.surface_friction = scene_.friction;
+  spec.air = {scene_.air_density, scene_.air_viscosity};
   return spec;
 }
 
@@ -199,7 +198,9 @@ Status EpisodeWorld::reset(std::uint32_t index) {
 }
 
 Status EpisodeWorld::act(const policy::Action& action) {
-  PROBE_TRY(loop_->step(action, substeps_, &controller_, world_.get()));
+  const auto* osc = std::get_if<robot::OscPose>(&robot_.law);
+  const policy::Action numbers = osc == nullptr ? action : robot::shares_of(*osc, action);
+  PROBE_TRY(loop_->step(numbers, substeps_, &controller_, world_.get()));
   ++steps_;
   measure();
   return {};

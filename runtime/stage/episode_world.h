@@ -92,7 +92,8 @@ class EpisodeWorld {
   robot::Controller controller_;
   TaskBodies bodies_;
   Instruments instruments_;
-  int substeps_ = 1;  // a control step
+  std::vector<world::JointSpec> drives_;  // what acts in the robot's joints
+  int substeps_ = 1;                      // a control step
 
   // A fresh world and how its robot is driven.
   Status begin_world(const Arrangement& at);

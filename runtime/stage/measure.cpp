@@ -88,10 +88,9 @@ std::vector<vm::BodyStart> Instruments::starts(const vm::StepSample& settled) co
     const Vec3 half = (to_vec(object.box_max) - to_vec(object.box_min)) / 2;
     starts[i].half = upright_half(half, settled.bodies[i].rotation.toRotationMatrix());
   }
-  for (std::size_t k = 0; k < robot_.fingers.size(); ++k) {
-    if (plan_.text(robot_.fingers[k].link).empty()) continue;
-    starts[bodies_.first_link + k].opening = to_vec(robot_.fingers[k].opens).normalized();
-  }
+  const std::vector<plan::FingerRecord> fingers = plan_.fingers(robot_);
+  for (std::size_t k = 0; k < fingers.size(); ++k)
+    starts[bodies_.first_link + k].opening = to_vec(fingers[k].opens).normalized();
   return starts;
 }
 

@@ -5,6 +5,7 @@
 #include "runtime/plan/plan.h"
 #include "runtime/robot/robot.h"
 #include "runtime/stage/assets.h"
+#include "runtime/world/spec.h"
 
 namespace probe::stage {
 
@@ -13,6 +14,13 @@ namespace probe::stage {
 // does not have or a control that this program does not know.
 Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& record,
                               const UrdfParts& parts);
+
+// What acts in the robot's joints, in drive order. Under a law that gives efforts there are no
+// springs: what is left are damping, friction and rotors, as the engine of that law has them.
+// Fails (kWorld) on joints that no tree can have.
+Result<std::vector<world::JointSpec>> drives_of(const plan::Plan& plan,
+                                                const plan::RobotRecord& record,
+                                                const robot::RobotModel& model);
 
 // Names of the driven joints in order, and the robot's base in world.
 std::vector<std::string> drive_joints(const plan::Plan& plan, const plan::RobotRecord& robot);

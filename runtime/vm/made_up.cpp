@@ -33,7 +33,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const double table = plan.scenes()[record.scene].surface_z;
   const plan::RobotRecord& robot = plan.robots()[plan.scenes()[record.scene].robot];
-  const std::size_t fingers = robot.fingers.size();  // the first of the links
+  const std::size_t fingers = plan::finger_count(robot);  // the first of the links
   const auto bodies = plan.bodies(record);
   const auto episodes = plan.episodes(record);
   const plan::TaskRoles roles = plan::roles_of(plan.tables(), record);

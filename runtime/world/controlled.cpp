@@ -62,19 +62,30 @@ Result<std::vector<JointSpec>> effort_joints(const robot::RobotModel& model,
                                              std::span<const std::string> joints,
                                              std::span<const double> armature) {
   PROBE_CHECK(armature.empty() || armature.size() == joints.size(), "an armature a joint");
-  std::vector<int> order;
   std::vector<JointSpec> made;
   for (size_t i = 0; i < joints.size(); ++i) {
     const int j = model.find_joint(joints[i]);
     if (j < 0) {
       return Failure{Fault::kWorld, "no joint `" + joints[i] + "` in `" + model.name + "`", ""};
     }
-    order.push_back(j);
     JointSpec& spec = made.emplace_back();
     spec.joint = joints[i];
     spec.damping = model.joints[static_cast<size_t>(j)].damping;
     spec.friction = model.joints[static_cast<size_t>(j)].friction;
     if (!armature.empty()) spec.armature = armature[i];
+  }
+  PROBE_TRY(give_way_as_engine(model, made));
+  return made;
+}
+
+Status give_way_as_engine(const robot::RobotModel& model, std::span<JointSpec> joints) {
+  std::vector<int> order;
+  for (const JointSpec& joint : joints) {
+    const int j = model.find_joint(joint.joint);
+    if (j < 0) {
+      return Failure{Fault::kWorld, "no joint `" + joint.joint + "` in `" + model.name + "`", ""};
+    }
+    order.push_back(j);
   }
   PROBE_ASSIGN(const auto tree, JointTree::create(model, Pose{}, order));
   tree->update(JointArray{});
@@ -83,17 +94,17 @@ Result<std::vector<JointSpec>> effort_joints(const robot::RobotModel& model,
   for (size_t i = 0; i < joints.size(); ++i) {
     for (size_t k = 0; k < joints.size(); ++k) {
       mass(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
-          tree->mass()[i][k] + (i == k ? made[i].armature : 0);
+          tree->mass()[i][k] + (i == k ? joints[i].armature : 0);
     }
   }
   const Eigen::MatrixXd mobility = mass.inverse();
   for (size_t i = 0; i < joints.size(); ++i) {
-    if (made[i].friction == 0) continue;
+    if (joints[i].friction == 0) continue;
     const Eigen::Index at = static_cast<Eigen::Index>(i);
-    made[i].friction_fade = kEngineFade;
-    made[i].friction_give = (1 - kEngineImpedance) / kEngineImpedance * mobility(at, at);
+    joints[i].friction_fade = kEngineFade;
+    joints[i].friction_give = (1 - kEngineImpedance) / kEngineImpedance * mobility(at, at);
   }
-  return made;
+  return {};
 }
 
 }  // namespace probe::world

@@ -30,12 +30,15 @@ class ControlLoop {
 };
 
 // The joints of an articulation by efforts: friction and damping as the description has them, no
-// drive. `armature` by joint, kg m2 or kg, or empty for none. Friction gives way as MuJoCo's does
-// by its default numbers (solref 0.02 1, solimp 0.9 0.95): it fades speeds at 2 / (0.95 x 0.02 s),
-// and its give is a ninth of the joint's mobility at position 0 of all joints. Fails (kWorld) on
-// joints that no tree can have.
+// drive. `armature` by joint, kg m2 or kg, or empty for none. Friction gives way, see below. Fails
+// (kWorld) on joints that no tree can have.
 Result<std::vector<JointSpec>> effort_joints(const robot::RobotModel& model,
                                              std::span<const std::string> joints,
                                              std::span<const double> armature);
+
+// Lets the joints' friction give way as MuJoCo's does by its default numbers (solref 0.02 1, solimp
+// 0.9 0.95): it fades speeds at 2 / (0.95 x 0.02 s), and its give is a ninth of the joint's
+// mobility at position 0 of all joints. Fails (kWorld) on joints that no tree can have.
+Status give_way_as_engine(const robot::RobotModel& model, std::span<JointSpec> joints);
 
 }  // namespace probe::world

@@ -159,6 +159,57 @@ variant v of red_on_tray { scene other }
   CHECK(plan.drives(robot)[0].limit == 20);
 }
 
+TEST_CASE("control_st: what the plan holds of a control law, of gears and of air") {
+  const Built built(R"(
+robot second {
+  urdf "arm/arm.urdf"; tcp tool; fingers left opens +y, right opens -y
+  control osc_pose 20Hz {
+    kp (150, 100); damping 0.9; output (2cm, 0.1rad); null 8; uncouple; ramp 0.2
+    home (0.5rad)
+  }
+  drive waist damping 2Nms/rad limit 20Nm friction 0.1Nm armature 5kgm2
+  drive l, r limit 60N
+  grip 0cm .. 4cm pace 0.02 stiffness 900N/m limit 15N
+}
+camera second_eye { mount second.base at (0cm, 0cm, 1m) look (1, 0, -1); image 64 x 48; lens 30px, 30px, 32px, 24px }
+scene other like bench {
+  robot second at (50cm, 0cm) yaw 180deg; camera second_eye
+  physics 500Hz friction 1 air 1.2kg/m3 viscosity 2e-5Pas
+}
+variant v of red_on_tray { scene other }
+)");
+  const plan::Plan& plan = built.plan();
+  const plan::SceneRecord& scene = plan.scenes()[built.task("v").scene];
+  const plan::RobotRecord& robot = plan.robots()[scene.robot];
+  CHECK(robot.control == static_cast<std::uint32_t>(plan::Control::kOscPose));
+  const plan::LawRecord* law = plan.law(robot);
+  REQUIRE(law != nullptr);
+  CHECK(law->kp == std::array<double, 6>{150, 150, 150, 100, 100, 100});
+  CHECK(law->damping[5] == 0.9);
+  CHECK(law->output == std::array<double, 6>{0.02, 0.02, 0.02, 0.1, 0.1, 0.1});
+  CHECK(law->null_kp == 8);
+  CHECK(law->ramp == 0.2);
+  CHECK(law->flags == plan::kLawUncoupled);
+  CHECK(law->grip_pace == 0.02);
+  CHECK(law->grip_stiffness == 900);
+  CHECK(law->grip_limit == 15);
+  REQUIRE(plan.home(*law).size() == 1);
+  CHECK(plan.home(*law)[0] == 0.5);
+  CHECK(plan.drives(robot)[0].stiffness == 0);
+  CHECK(plan.drives(robot)[0].damping == 2);
+  REQUIRE(plan.gears(robot).size() == 3);
+  CHECK(plan.gears(robot)[0].friction == 0.1);
+  CHECK(plan.gears(robot)[0].armature == 5);
+  CHECK(plan.gears(robot)[2].armature == 0);
+  CHECK(scene.air_density == 1.2);
+  CHECK(scene.air_viscosity == 2e-5);
+  // The others are as they were.
+  const plan::RobotRecord& first = plan.robots()[plan.scenes()[built.task("red_on_tray").scene].robot];
+  CHECK(plan.law(first) == nullptr);
+  CHECK(plan.gears(first).empty());
+  CHECK(built.task("v").judge_id != built.task("red_on_tray").judge_id);
+}
+
 TEST_CASE("camera, camera_st: a copy with another image is another camera") {
   const Built built(
       "camera wide like eye { image 128 x 96 samples 4; lens 20px, 21px, 64px, 48px }\n"

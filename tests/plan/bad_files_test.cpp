@@ -14,6 +14,7 @@
 #include "tests/plan/fixture_defects.h"
 #include "tests/plan/hex.h"
 #include "tests/plan/question_defects.h"
+#include "tests/plan/robot_defects.h"
 #include "tests/plan/rule_of.h"
 
 using namespace probe;
@@ -98,6 +99,8 @@ std::map<std::string, Bytes> bad_plans() {
     all.push_back(with_defect(defect.make, question_writer()));
   for (const Defect& defect : fixture_defects())
     all.push_back(with_defect(defect.make, fixture_writer()));
+  for (const Defect& defect : robot_defects())
+    all.push_back(with_defect(defect.make, robot_writer()));
   std::map<std::string, Bytes> plans;
   for (Bytes& bytes : all) {
     const Status status = verify(bytes);
@@ -176,4 +179,19 @@ TEST_CASE("a dump gives back the bytes it was made of") {
   CHECK(*again == bytes);
   CHECK(!from_hex_dump(text.substr(0, text.size() / 2)));
   CHECK(text.find("# STRS\n") != std::string::npos);
+}
+
+TEST_CASE("a plan with laws, gears and more fingers is good, and each defect of them is named") {
+  Writer good = robot_writer();
+  const auto bytes = good.finish();
+  REQUIRE_MESSAGE(bytes.ok(), (bytes.ok() ? "" : to_text(bytes.failure())));
+  for (const Defect& defect : robot_defects()) {
+    CAPTURE(std::string(defect.rule));
+    const Status status = verify(with_defect(defect.make, robot_writer()));
+    CHECK(!status.ok());
+    if (status.ok()) continue;
+    CAPTURE(status.failure().message);
+    CHECK(status.failure().message.find(defect.rule) != std::string::npos);
+    CHECK(status.failure().where.find(defect.section) != std::string::npos);
+  }
 }

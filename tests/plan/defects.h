@@ -152,7 +152,7 @@ inline std::vector<Defect> catalogue_defects() {
        [](Records& r, Writer&) {
          r.robots[0].drives = {0, 0};
        }},
-      {"ROBT", "control law", [](Records& r, Writer&) { r.robots[0].control = 3; }},
+      {"ROBT", "control law", [](Records& r, Writer&) { r.robots[0].control = 9; }},
       {"ROBT", "control rate", [](Records& r, Writer&) { r.robots[0].control_hz = -5; }},
       {"ROBT", "opening axis",
        [](Records& r, Writer&) {

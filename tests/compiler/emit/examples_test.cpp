@@ -13,6 +13,8 @@ TEST_CASE("every example compiles without a word") {
   std::size_t seen = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(VLAPROBE_SOURCE_DIR) / "examples")) {
     if (entry.path().extension() != ".probe") continue;
+    // Its robot is the user's own; tests/runtime/stage/my_robot_test.cpp makes one.
+    if (entry.path().stem() == "my_robot") continue;
     ++seen;
     const std::string file = entry.path().string();
     CAPTURE(file);

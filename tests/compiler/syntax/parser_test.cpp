@@ -152,7 +152,7 @@ TEST_CASE("words of the grammar may be names") {
 
 TEST_CASE("a robot has fingers, drives and a grip") {
   const Parsed parsed(R"(robot w {
-  urdf "w.urdf"; tcp ee
+  urdf "w.urdf"; tcp ee points -z
   fingers l opens +y, r opens -y
   control ee_delta_pose 5Hz
   reach 12cm .. 62cm
@@ -165,14 +165,21 @@ TEST_CASE("a robot has fingers, drives and a grip") {
   const auto& body = parsed.get<RobotDecl>().body;
   REQUIRE(body.size() == 9);
   const auto& fingers = as<FingersStmt>(body[2]).fingers;
-  CHECK(!fingers[0].negative);
-  CHECK(fingers[1].negative);
-  CHECK(fingers[1].axis.text == "y");
+  CHECK(!fingers[0].opens.negative);
+  CHECK(fingers[1].opens.negative);
+  CHECK(fingers[1].opens.axis.text == "y");
+  const auto& tcp = as<TcpStmt>(body[1]);
+  REQUIRE(tcp.points.has_value());
+  CHECK(tcp.points->negative);
+  CHECK(tcp.points->axis.text == "z");
   const auto& drive = as<DriveStmt>(body[5]);
   CHECK(drive.joints.size() == 2);
-  CHECK(drive.stiffness.unit == Unit::kNewtonMetrePerRadian);
-  CHECK(drive.damping.unit == Unit::kNewtonMetreSecondPerRadian);
-  CHECK(drive.limit.unit == Unit::kNewtonMetre);
+  REQUIRE(drive.stiffness.has_value());
+  CHECK(drive.stiffness->unit == Unit::kNewtonMetrePerRadian);
+  REQUIRE(drive.damping.has_value());
+  CHECK(drive.damping->unit == Unit::kNewtonMetreSecondPerRadian);
+  REQUIRE(drive.limit.has_value());
+  CHECK(drive.limit->unit == Unit::kNewtonMetre);
   const auto& grip = as<GripStmt>(body[7]);
   CHECK(grip.patch->unit == Unit::kMillimetre);
   CHECK(!as<GripStmt>(body[8]).friction);

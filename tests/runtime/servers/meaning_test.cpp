@@ -105,6 +105,33 @@ TEST_CASE("small numbers that may be changes of the pose or steps of joints are 
   CHECK(read_by("fine", "&action.form=delta").ok());
 }
 
+TEST_CASE("a law without a target of its own takes changes alone, and says so before an episode") {
+  using robot::ControlKind;
+  const Profile profile;
+  CHECK(check_form(profile, ActionForm::kDelta, ControlKind::kOscPose, "s").ok());
+  CHECK(check_form(profile, ActionForm::kUnsaid, ControlKind::kOscPose, "s").ok());
+  for (const ActionForm form :
+       {ActionForm::kAbsolute, ActionForm::kJoints, ActionForm::kJointSteps}) {
+    CHECK(check_form(profile, form, ControlKind::kEeDeltaPose, "s").ok());
+    const Status refused = check_form(profile, form, ControlKind::kOscPose, "s");
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.failure().code == Fault::kUsage);
+    CHECK(refused.failure().message.find("controlled by `osc_pose`") != std::string::npos);
+  }
+  const test::PythonServer server("openpi_server.py", {"openpi", "seen=poses"});
+  REQUIRE_FALSE(server.port().empty());
+  const auto choice =
+      choose_server(Protocol::kOpenpi,
+                    "//127.0.0.1:" + server.port() + "?action.form=unsaid&action.units=unsaid");
+  REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+  KnownArm arm;
+  CHECK(prove_reading(*choice, nullptr, arm).ok());
+  arm.control = ControlKind::kOscPose;
+  const auto read = prove_reading(*choice, nullptr, arm);
+  REQUIRE_FALSE(read.ok());
+  CHECK(read.failure().message.find("are `absolute` (`action.form`)") != std::string::npos);
+}
+
 TEST_CASE("poses and positions of joints show themselves by the arm's other side") {
   const Profile profile;
   const RawAction pose{0.3, 0.05, 0.14, 0, 1.5, 0, 1}, other_pose{0.3, -0.05, 0.14, 0, 1.5, 0, 1};

@@ -1,0 +1,126 @@
+// A second robot from text alone: robosuite's Panda under osc_pose.
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/expert/expert.h"
+#include "runtime/stage/robot_of.h"
+#include "runtime/stage/stage.h"
+#include "tests/parity/published.h"
+#include "tests/runtime/world/panda.h"
+
+namespace probe::stage {
+namespace {
+
+const plan::Plan& panda_plan() {
+  static const plan::Plan plan = test::compile_suite("panda.probe");
+  return plan;
+}
+
+struct Opened {
+  std::shared_ptr<const SharedAssets> assets;
+  std::unique_ptr<Stage> stage;
+};
+
+Opened open(const std::string& name) {
+  const std::uint32_t tasks[] = {panda_plan().find_task(name).value()};
+  auto assets = SharedAssets::load(panda_plan(), VLAPROBE_SOURCE_DIR "/assets", tasks);
+  REQUIRE_MESSAGE(assets.ok(), (assets.ok() ? "" : to_text(assets.failure())));
+  auto stage = Stage::create(panda_plan(), tasks[0], *assets, {{}, false});
+  REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
+  return {*assets, std::move(*stage)};
+}
+
+bool solves(Stage& stage, std::uint32_t start) {
+  const auto expert = expert::make_expert({});
+  REQUIRE(expert.ok());
+  REQUIRE(stage.reset(start).ok());
+  const Status begun = (*expert)->begin(stage.introduction());
+  REQUIRE_MESSAGE(begun.ok(), (begun.ok() ? "" : to_text(begun.failure())));
+  while (!stage.done()) {
+    const auto seen = stage.observe();
+    REQUIRE(seen.ok());
+    const auto action = (*expert)->act(*seen);
+    REQUIRE_MESSAGE(action.ok(), (action.ok() ? "" : to_text(action.failure())));
+    const Status stepped = stage.step(*action);
+    REQUIRE_MESSAGE(stepped.ok(), (stepped.ok() ? "" : to_text(stepped.failure())));
+  }
+  const auto metrics = panda_plan().metrics(panda_plan().tasks()[stage.task()]);
+  for (std::uint32_t m = 0; m < metrics.size(); ++m) {
+    if (panda_plan().text(metrics[m].name) == "success") return stage.judge().truth(m);
+  }
+  return false;
+}
+
+TEST_CASE("the text's Panda is the one that the reference's records were compared with") {
+  const Opened opened = open("panda_carrot_on_plate");
+  const plan::RobotRecord& record = panda_plan().robots()[0];
+  const UrdfParts& parts = *opened.assets->robot(record.urdf);
+  const auto robot = robot_of(panda_plan(), record, parts);
+  REQUIRE_MESSAGE(robot.ok(), (robot.ok() ? "" : to_text(robot.failure())));
+  const auto known = world::load_panda("panda_mounted.urdf");
+  REQUIRE(known.ok());
+  const auto* law = std::get_if<robot::OscPose>(&robot->law);
+  REQUIRE(law != nullptr);
+  const robot::OscPose& wanted = (*known)->law;
+  CHECK(law->kp == wanted.kp);
+  CHECK(law->damping == wanted.damping);
+  CHECK(law->output == wanted.output);
+  CHECK(law->null_kp == wanted.null_kp);
+  CHECK(law->uncouple == wanted.uncouple);
+  CHECK(law->ramp == wanted.ramp);
+  CHECK(law->limits == std::vector<double>{80, 80, 80, 80, 80, 12, 12});
+  CHECK(law->grip.pace == wanted.grip.pace);
+  CHECK(law->grip.stiffness == wanted.grip.stiffness);
+  CHECK(law->grip.limit == wanted.grip.limit);
+  REQUIRE(law->home.size() == wanted.home.size());
+  for (std::size_t i = 0; i < 7; ++i) CHECK(std::abs(law->home[i] - wanted.home[i]) < 1e-15);
+  CHECK(robot->control.arm_joints == (*known)->joints.arm_joints);
+  CHECK(robot->control.finger_joints == (*known)->joints.finger_joints);
+
+  const auto drives = drives_of(panda_plan(), record, parts.model);
+  REQUIRE(drives.ok());
+  const auto& joints = (*known)->spec.joints;
+  REQUIRE(drives->size() == joints.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    CAPTURE(joints[i].joint);
+    CHECK((*drives)[i].joint == joints[i].joint);
+    CHECK((*drives)[i].stiffness == joints[i].stiffness);
+    CHECK((*drives)[i].damping == joints[i].damping);
+    CHECK((*drives)[i].limit == joints[i].limit);
+    CHECK((*drives)[i].friction == joints[i].friction);
+    CHECK((*drives)[i].armature == joints[i].armature);
+    CHECK((*drives)[i].friction_fade == joints[i].friction_fade);
+    CHECK((*drives)[i].friction_give == joints[i].friction_give);
+  }
+}
+
+TEST_CASE("a Panda that is told to stay stays, with its gripper open") {
+  Opened opened = open("panda_carrot_on_plate");
+  Stage& stage = *opened.stage;
+  REQUIRE(stage.reset(0).ok());
+  const Vec3 before = stage.sample().tcp;
+  for (int i = 0; i < 20; ++i) REQUIRE(stage.step({0, 0, 0, 0, 0, 0, 1}).ok());
+  CHECK((stage.sample().tcp - before).norm() < 1e-3);
+  CHECK(stage.sample().grip < 0.02);
+}
+
+TEST_CASE("the expert puts things where they belong with the Panda, too") {
+  for (const char* task : {"panda_carrot_on_plate", "panda_spoon_on_towel", "panda_stack_cube"}) {
+    CAPTURE(task);
+    Opened opened = open(task);
+    int solved = 0;
+    const std::uint32_t starts = panda_plan().tasks()[opened.stage->task()].episodes.count;
+    for (std::uint32_t start = 0; start < starts; ++start) {
+      const bool success = solves(*opened.stage, start);
+      CHECK_MESSAGE(success, task, " start ", start);
+      solved += success ? 1 : 0;
+    }
+    MESSAGE(std::string(task) << ": " << solved << " of " << starts);
+  }
+}
+
+}  // namespace
+}  // namespace probe::stage
