@@ -57,7 +57,7 @@ struct TravelCheck {
         const Object& object = starts.object(placed);
         const auto& [w, x, y, z] = placed.turn.rotation;
         const Mat3 turn = Quat(w, x, y, z).toRotationMatrix();
-        const Solid body =
+        const scene::Solid body =
             solid(object, turn, {placed.x, placed.y, scene.surface_z - lowest(object, turn)});
         const Vec3 half = body.half_extent();
         for (const PartBox& box : boxes) {
@@ -99,8 +99,9 @@ struct TravelCheck {
     if (found.box == nullptr) return;
     Diagnostic& said = report(found, "is in the way of", when(*found.box));
     said.severity = Severity::kWarning;
-    said.help("move the fixture or the cells; if it is to be pushed away, say so: "
-              "`@allow(in_the_way, \"...\")`");
+    said.help(
+        "move the fixture or the cells; if it is to be pushed away, say so: "
+        "`@allow(in_the_way, \"...\")`");
   }
 };
 

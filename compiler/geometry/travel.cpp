@@ -4,39 +4,14 @@
 #include <cmath>
 #include <filesystem>
 
-#include "runtime/scene/collision_mesh.h"
+#include "runtime/scene/link_solids.h"
 
 namespace probe::sema {
 namespace {
 
-constexpr double kStep = 2e-3;              // m between two places of a part
-constexpr std::size_t kMostPlaces = 2048;   // of one part; several joints share them
+constexpr double kStep = 2e-3;             // m between two places of a part
+constexpr std::size_t kMostPositions = 2048;  // of one part; several joints share them
 constexpr double kHalfTurn = 3.14159265358979323846;
-
-Solid moved(const Solid& solid, const Pose& by) {
-  Solid out;
-  out.centre = by.apply(solid.centre);
-  for (std::size_t i = 0; i < 3; ++i) out.axes[i] = by.rotation * solid.axes[i];
-  return out;
-}
-
-Solid upright(const Vec3& low, const Vec3& high) {
-  const Vec3 half = (high - low) / 2;
-  return {(low + high) / 2,
-          {Vec3(half.x(), 0, 0), Vec3(0, half.y(), 0), Vec3(0, 0, half.z())}};
-}
-
-std::optional<Solid> around_mesh(const robot::MeshRef& ref, const std::string& folder) {
-  const auto soup = scene::load_triangles((std::filesystem::path(folder) / ref.path).string(),
-                                          ref.scale);
-  if (!soup.ok() || soup->vertices.empty()) return std::nullopt;
-  Vec3 low = soup->vertices.front(), high = low;
-  for (const Vec3& v : soup->vertices) {
-    low = low.cwiseMin(v);
-    high = high.cwiseMax(v);
-  }
-  return moved(upright(low, high), ref.origin);
-}
 
 // Indices of Fixture::joints on the way from the root to a link.
 std::vector<std::size_t> carriers(const Fixture& fixture, int link) {
@@ -56,31 +31,8 @@ std::vector<std::size_t> carriers(const Fixture& fixture, int link) {
 
 }  // namespace
 
-Vec3 Solid::half_extent() const {
-  return axes[0].cwiseAbs() + axes[1].cwiseAbs() + axes[2].cwiseAbs();
-}
-
-double overlap(const Solid& a, const Solid& b) {
-  const Vec3 between = b.centre - a.centre;
-  double least = 1e9;
-  const auto along = [&](const Vec3& direction) {
-    const double length = direction.norm();
-    if (length < 1e-12) return;  // parallel edges: the faces have said it
-    double reach = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      reach += std::abs(a.axes[i].dot(direction)) + std::abs(b.axes[i].dot(direction));
-    least = std::min(least, (reach - std::abs(between.dot(direction))) / length);
-  };
-  for (std::size_t i = 0; i < 3; ++i) {
-    // A face's normal is its edges' product, which a flat box has too.
-    for (const Solid* box : {&a, &b}) along(box->axes[i].cross(box->axes[(i + 1) % 3]));
-    for (std::size_t j = 0; j < 3; ++j) along(a.axes[i].cross(b.axes[j]));
-  }
-  return least;
-}
-
-Solid solid(const Object& object, const Mat3& turn, const Vec3& origin) {
-  return moved(upright(Vec3(object.box_min.data()), Vec3(object.box_max.data())),
+scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin) {
+  return moved(scene::upright_solid(Vec3(object.box_min.data()), Vec3(object.box_max.data())),
                {origin, Quat(turn)});
 }
 
@@ -101,12 +53,8 @@ std::optional<Travel> Travel::of(const Fixture& fixture, const std::string& asse
       (std::filesystem::path(asset_root) / fixture.urdf.text).parent_path().string();
   for (std::uint32_t i = 0; i < fixture.parts.size(); ++i) {
     const auto& link = fixture.model->links[static_cast<std::size_t>(fixture.parts[i].index)];
-    for (const robot::Primitive& primitive : link.primitives)
-      travel.shapes_.push_back(
-          {i, moved(upright(-primitive.half, primitive.half), primitive.origin)});
-    for (const robot::MeshRef& mesh : link.collisions) {
-      if (const auto box = around_mesh(mesh, folder)) travel.shapes_.push_back({i, *box});
-    }
+    for (const scene::Solid& solid : scene::link_solids(link, folder))
+      travel.shapes_.push_back({i, solid});
   }
   for (std::uint32_t i = 0; i < fixture.parts.size(); ++i) travel.sweep(i);
   return travel;
@@ -149,10 +97,10 @@ void Travel::sweep(std::uint32_t part) {
     const Fixture::Joint& joint = fixture_->joints[i];
     const double way = joint.is_endless ? 2 * kHalfTurn : joint.upper - joint.lower;
     const double length = joint.slides ? way : way * lever;
-    places.push_back(std::min(kMostPlaces, 2 + static_cast<std::size_t>(length / kStep)));
+    places.push_back(std::min(kMostPositions, 2 + static_cast<std::size_t>(length / kStep)));
     all *= places.back();
   }
-  while (all > kMostPlaces) {
+  while (all > kMostPositions) {
     all = 1;
     for (std::size_t& count : places) all *= count = std::max<std::size_t>(2, count * 9 / 10);
     if (std::ranges::all_of(places, [](std::size_t count) { return count == 2; })) break;

@@ -3,7 +3,6 @@
 // are by their boxes: collision hulls are not known to the compiler.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,30 +11,19 @@
 #include "compiler/model/model.h"
 #include "runtime/base/geometry.h"
 #include "runtime/robot/kinematics.h"
+#include "runtime/scene/solid.h"
 
 namespace probe::sema {
 
-// A box that is turned anyhow (m, world).
-struct Solid {
-  Vec3 centre = Vec3::Zero();
-  std::array<Vec3, 3> axes{};  // half of each side
-
-  Vec3 half_extent() const;  // of the upright box around it
-};
-
-// How deep two boxes stand in one another (m), over their fifteen separating axes; at most 0 when a
-// plane separates them.
-double overlap(const Solid& a, const Solid& b);
-
 // The box of an object, turned, with its model's origin at `origin`.
-Solid solid(const Object& object, const Mat3& turn, const Vec3& origin);
+scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin);
 
 // One box of a part.
 struct PartBox {
   std::uint32_t part = 0;  // of Fixture::parts
   double position = 0;     // m or rad, of the joint that moves the part
-  Solid solid;
-  Vec3 half = Vec3::Zero();  // Solid::half_extent()
+  scene::Solid solid;
+  Vec3 half = Vec3::Zero();  // of the upright box around it
 };
 
 class Travel {
@@ -53,7 +41,7 @@ class Travel {
  private:
   struct Shape {
     std::uint32_t part;
-    Solid solid;  // in the link's frame
+    scene::Solid solid;  // in the link's frame
   };
   Travel(const Fixture& fixture, robot::Tree tree);
   void put(std::span<const double> joints, std::uint32_t part, std::vector<PartBox>* to) const;

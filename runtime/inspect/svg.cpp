@@ -20,6 +20,7 @@ constexpr double kTitleLine = 26;
 constexpr double kMargin = 0.05;  // m around everything
 
 constexpr std::string_view kTable = "#efe7da", kReach = "#2a8f57", kCamera = "#7d4aa8";
+constexpr std::string_view kFixture = "#8c6d3f", kRegion = "#b3126e";
 constexpr std::string_view kInk = "#222222", kFaint = "#666666";
 
 std::string_view colour(Role role) {
@@ -114,6 +115,13 @@ class Page {
     for (const Footprint& print : view.footprints) {
       for (const Point& corner : print.outline) window_.include(corner);
     }
+    for (const TopPart& part : view.parts) {
+      for (const auto* outlines : {&part.outlines, &part.open}) {
+        for (const auto& outline : *outlines) {
+          for (const Point& corner : outline) window_.include(corner);
+        }
+      }
+    }
     window_ = {window_.left - kMargin, window_.bottom - kMargin, window_.right + kMargin,
                window_.top + kMargin};
     scale_ = std::min(kPlotWidth / window_.width(), kPlotHeight / window_.height());
@@ -133,6 +141,8 @@ class Page {
     table();
     reach();
     images();
+    parts();
+    regions();
     for (const Role role :
          {Role::kTarget, Role::kPlaced, Role::kDistractor, Role::kOther, Role::kSource})
       footprints(role);
@@ -142,6 +152,7 @@ class Page {
     put("<rect {} fill=\"none\" stroke=\"{}\"/>\n", frame(), kFaint);
     ruler();
     scale_bar();
+    left_and_right();
     legend();
     put("</svg>\n");
     return std::move(out_);
@@ -219,6 +230,28 @@ class Page {
       put("<polygon points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" "
           "stroke-dasharray=\"8 5\"/>\n",
           points(camera.image), kCamera);
+    }
+  }
+
+  // Solid where they begin, dashed where their joint ends.
+  void parts() {
+    for (const TopPart& part : view_.parts) {
+      put("<g stroke=\"{0}\"><title>{1}</title>\n", kFixture, escaped(part.name));
+      for (const auto& outline : part.outlines) {
+        put("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.18\"/>\n", points(outline),
+            kFixture);
+      }
+      for (const auto& outline : part.open)
+        put("<polygon points=\"{}\" fill=\"none\" stroke-dasharray=\"3 3\"/>\n", points(outline));
+      put("</g>\n");
+    }
+  }
+
+  void regions() {
+    for (const TopRegion& region : view_.regions) {
+      put("<g><title>{}</title><polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.06\" "
+          "stroke=\"{}\" stroke-dasharray=\"1 3\" stroke-width=\"2\"/></g>\n",
+          escaped(region.name), points(region.outline), kRegion, kRegion);
     }
   }
 
@@ -303,6 +336,21 @@ class Page {
     text(left + 0.05 * scale_, low - 10, 12, kInk, "10 cm", " text-anchor=\"middle\"");
   }
 
+  // Which way is left and which right in the first picture.
+  void left_and_right() {
+    if (view_.cameras.empty()) return;
+    const Point& right = view_.cameras[0].right;
+    if (right.x == 0 && right.y == 0) return;
+    constexpr double kArm = 26, kWord = 40;
+    const double at_x = kLeft + plot_width_ - 66, at_y = plot_top_ + 56;
+    put("<path d=\"M{} {}L{} {}\" stroke=\"{}\" stroke-width=\"2\"/>\n", px(at_x - kArm * right.x),
+        px(at_y + kArm * right.y), px(at_x + kArm * right.x), px(at_y - kArm * right.y), kCamera);
+    for (const double side : {-1.0, 1.0}) {
+      text(at_x + side * kWord * right.x, at_y - side * kWord * right.y + 4, 12, kCamera,
+           side < 0 ? "left" : "right", " text-anchor=\"middle\"");
+    }
+  }
+
   void legend() {
     const double left = kLeft + plot_width_ + kGap;
     double line = plot_top_ + 14;
@@ -343,11 +391,21 @@ class Page {
     stroke("h24", " stroke-width=\"1.5\"", kReach);
     say(fmt::format("reach of {}: {} to {} cm from its base; shaded: outside", view_.robot,
                     cm(view_.reach_min), cm(view_.reach_max)));
+    if (!view_.parts.empty()) {
+      stroke("h24", " stroke-width=\"1.5\"", kFixture);
+      say("fixtures: where their joints start; dashed, where they end");
+    }
+    for (const TopRegion& region : view_.regions) {
+      stroke("h24", " stroke-width=\"2\" stroke-dasharray=\"1 3\"", kRegion);
+      say("region " + region.name);
+    }
     for (const TopCamera& camera : view_.cameras) {
       if (camera.image.empty()) continue;
       stroke("h24", " stroke-width=\"1.5\" stroke-dasharray=\"8 5\"", kCamera);
       say(fmt::format("what {} sees of the table's plane", camera.name));
     }
+    if (!view_.cameras.empty() && (view_.cameras[0].right.x != 0 || view_.cameras[0].right.y != 0))
+      say("left and right: as " + view_.cameras[0].name + " sees it", kCamera);
     base_mark(left + 12, line - 5);
     say("base of the robot, turned as it stands");
     for (const TopCamera& camera : view_.cameras) {

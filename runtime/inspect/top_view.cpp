@@ -7,12 +7,11 @@
 #include <numbers>
 #include <tuple>
 
-#include "runtime/base/file.h"
 #include "runtime/base/geometry.h"
-#include "runtime/base/sha256.h"
 #include "runtime/base/trig.h"
+#include "runtime/inspect/checked_urdf.h"
 #include "runtime/inspect/ground_image.h"
-#include "runtime/plan/ids.h"
+#include "runtime/inspect/top_fixtures.h"
 #include "runtime/plan/roles.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/robot/urdf.h"
@@ -44,7 +43,8 @@ Footprint footprint_of(const plan::Plan& plan, const plan::PlacementRecord& plac
   print.object = plan.text(object.name);
   print.at = {placement.position[0], placement.position[1]};
   print.yaw_deg = yaw_deg(rotation);
-  print.outline = box_outline({half.x(), half.y(), half.z()}, placement.rotation);
+  print.outline = box_outline({rotation * Vec3(half.x(), 0, 0), rotation * Vec3(0, half.y(), 0),
+                               rotation * Vec3(0, 0, half.z())});
   for (Point& corner : print.outline) {
     corner.x += print.at.x + middle.x();
     corner.y += print.at.y + middle.y();
@@ -102,21 +102,28 @@ Pinhole pinhole_of(const plan::CameraRecord& camera, const Pose& mount) {
                  camera.cy};
 }
 
-Status check_urdf(const plan::AssetRecord& asset, const std::string& path) {
-  PROBE_ASSIGN(const std::string bytes, read_file(path, {.code = Fault::kAsset}));
-  if (sha256(bytes) == plan::to_sha256(asset.sha256)) return {};
-  return Failure{Fault::kAsset, "has other bytes than when the plan was built", path};
+// Whether nothing that moves carries a link.
+bool stands_still(const robot::RobotModel& model, int link) {
+  while (true) {
+    const int above = model.links[static_cast<std::size_t>(link)].parent_joint;
+    if (above < 0) return true;
+    const robot::Joint& joint = model.joints[static_cast<std::size_t>(above)];
+    if (joint.kind != robot::JointKind::kFixed) return false;
+    link = joint.parent_link;
+  }
 }
 
+struct Mounted {
+  Pinhole eye;
+  bool still = false;
+};
+
 // The cameras as they stand when the robot is in its initial position.
-Result<std::vector<Pinhole>> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task,
+Result<std::vector<Mounted>> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task,
                                         const std::string& asset_root) {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const plan::RobotRecord& record = plan.robots()[scene.robot];
-  const plan::AssetRecord& urdf = plan.assets()[record.urdf];
-  const std::string path = asset_root + "/" + std::string(plan.text(urdf.path));
-  PROBE_TRY(check_urdf(urdf, path));
-  PROBE_ASSIGN(const robot::RobotModel model, robot::load_urdf(path));
+  PROBE_ASSIGN(const robot::RobotModel model, checked_urdf(plan, record.urdf, asset_root));
   std::vector<std::string> joints;
   for (const plan::DriveRecord& drive : plan.drives(record))
     joints.emplace_back(plan.text(drive.joint));
@@ -124,7 +131,7 @@ Result<std::vector<Pinhole>> cameras_of(const plan::Plan& plan, const plan::Task
   std::vector<Pose> links(tree.link_count());
   tree.link_poses(plan.joints(scene), links);
   const Pose base{to_vec(scene.base_position), to_quat(scene.base_rotation)};
-  std::vector<Pinhole> cameras;
+  std::vector<Mounted> cameras;
   for (const plan::ViewRecord& view : plan.views(task)) {
     const plan::CameraRecord& camera = plan.cameras()[view.camera];
     const std::string mount(plan.text(camera.mount_link));
@@ -132,24 +139,24 @@ Result<std::vector<Pinhole>> cameras_of(const plan::Plan& plan, const plan::Task
     if (link < 0) {
       return Failure{
           Fault::kUrdf,
-          "no link `" + mount + "` for camera `" + std::string(plan.text(camera.name)) + "`", path};
+          "no link `" + mount + "` for camera `" + std::string(plan.text(camera.name)) + "`",
+          model.path};
     }
-    cameras.push_back(pinhole_of(camera, base * links[static_cast<std::size_t>(link)]));
+    cameras.push_back({pinhole_of(camera, base * links[static_cast<std::size_t>(link)]),
+                       stands_still(model, link)});
   }
   return cameras;
 }
 
 }  // namespace
 
-std::vector<Point> box_outline(const std::array<double, 3>& half,
-                               const std::array<double, 4>& rotation) {
+std::vector<Point> box_outline(const std::array<Vec3, 3>& axes) {
   // The shadow of a box is the sum of the shadows of its three edges: walk along them by direction,
   // up one side and down the other.
-  const Quat turn = to_quat(rotation);
   std::vector<Point> edges;
   Point low;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 edge = turn * (Vec3::Unit(axis) * (2 * half[static_cast<std::size_t>(axis)]));
+  for (const Vec3& axis : axes) {
+    const Vec3 edge = 2 * axis;
     if (std::abs(edge.x()) + std::abs(edge.y()) < 1e-9) continue;
     const bool up = edge.y() > 0 || (edge.y() == 0 && edge.x() > 0);
     edges.push_back(up ? Point{edge.x(), edge.y()} : Point{-edge.x(), -edge.y()});
@@ -198,15 +205,20 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
   view.base_yaw_deg = yaw_deg(to_quat(scene.base_rotation));
   view.reach_min = robot.reach_min;
   view.reach_max = robot.reach_max;
-  PROBE_ASSIGN(const std::vector<Pinhole> cameras, cameras_of(plan, task, asset_root));
+  PROBE_ASSIGN(const std::vector<Mounted> cameras, cameras_of(plan, task, asset_root));
   const auto names = plan.views(task);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     TopCamera& camera = view.cameras.emplace_back();
     camera.name = plan.text(plan.cameras()[names[i].camera].name);
-    camera.eye = {cameras[i].eye.x(), cameras[i].eye.y()};
-    for (const Vec3& corner : frame_on_plane(cameras[i], scene.surface_z, kFar))
+    const Pinhole& pinhole = cameras[i].eye;
+    camera.eye = {pinhole.eye.x(), pinhole.eye.y()};
+    const Vec2 right = -pinhole.axes.col(1).head<2>();
+    if (cameras[i].still && right.norm() > 1e-6)
+      camera.right = {right.x() / right.norm(), right.y() / right.norm()};
+    for (const Vec3& corner : frame_on_plane(pinhole, scene.surface_z, kFar))
       camera.image.push_back({corner.x(), corner.y()});
   }
+  PROBE_TRY(add_fixtures(plan, task, asset_root, &view));
   return view;
 }
 

@@ -1,6 +1,7 @@
 // A task seen from above, as data: where things may stand, what the robot reaches and what the
-// cameras see of the table. Metres in world, x and y. Needs no simulator and no meshes; of the
-// assets it reads only the URDF, for the links that carry the cameras.
+// cameras see of the table. Metres in world, x and y. Needs no simulator; of the assets it reads
+// the URDFs, for the links that carry the cameras and for fixtures with joints, and the meshes that
+// a fixture is felt by.
 #pragma once
 
 #include <array>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/geometry.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 
@@ -35,6 +37,18 @@ struct TopCamera {
   std::string name;
   Point eye;
   std::vector<Point> image;  // the picture's frame on the surface; empty: it shows none of it
+  Point right;               // the picture's right along the ground, unit; 0: it moves with the arm
+};
+
+// A link of a fixture with joints, by the boxes around its collision shapes.
+struct TopPart {
+  std::string name;                          // "cabinet.top_drawer"
+  std::vector<std::vector<Point>> outlines;  // as the first episode begins
+  std::vector<std::vector<Point>> open;      // its joint at the end of its way; empty: it has none
+};
+struct TopRegion {
+  std::string name;  // "cabinet.inside_top"
+  std::vector<Point> outline;
 };
 
 struct TopView {
@@ -54,15 +68,16 @@ struct TopView {
   double reach_min = 0, reach_max = 0;
   std::string robot;
   std::vector<TopCamera> cameras;  // in the scene's order
+  std::vector<TopPart> parts;
+  std::vector<TopRegion> regions;
 };
 
 // `asset_root` as the plan's paths are relative to. Fails (kAsset) when the URDF is not the
 // one the plan was built with, (kUrdf) when it cannot be used.
 Result<TopView> top_view(const plan::Plan& plan, std::uint32_t task, const std::string& asset_root);
 
-// A box seen from above after a turn: its outline around (0, 0) without edges shorter than a
-// nanometre. `half` are half extents along the box's axes, `rotation` is (w, x, y, z).
-std::vector<Point> box_outline(const std::array<double, 3>& half,
-                               const std::array<double, 4>& rotation);
+// A box seen from above: its outline around (0, 0) without edges shorter than a nanometre. `axes`
+// are half of each side, in world.
+std::vector<Point> box_outline(const std::array<Vec3, 3>& axes);
 
 }  // namespace probe::inspect

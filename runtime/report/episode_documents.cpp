@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 #include <unordered_map>
 
 #include "runtime/base/json.h"
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/roles.h"
 #include "runtime/rejudge/explain.h"
 #include "runtime/run/workers.h"
@@ -20,6 +23,8 @@ namespace {
 constexpr std::size_t kEvery = 2;
 // Of the way from open to shut: what is held keeps the fingers apart.
 constexpr double kClosed = 0.2;
+// A joint that moves by less in an episode is not told of: cm or degrees.
+constexpr double kStill = 0.1;
 // Notes of traces that could not be read; the rest is one number.
 constexpr std::size_t kNotes = 5;
 
@@ -122,9 +127,34 @@ std::vector<char> chosen_whys(std::span<const EpisodeTrace> episodes, std::size_
 struct Reading {
   std::string timeline;
   std::vector<std::string> bodies;
+  std::vector<TimelineJoint> joints;
   std::vector<rejudge::MetricWhy> why;
   std::string problem;
 };
+
+double shown(const TimelineJoint& joint, double position) {
+  const double value = position * (joint.slides ? 100 : 180 / std::numbers::pi);
+  return std::nearbyint(value * 10) / 10 + 0.0;  // never a negative zero
+}
+
+std::vector<TimelineJoint> joints_of(const plan::Plan& plan, const plan::TaskRecord& task) {
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  std::vector<TimelineJoint> joints;
+  for (const plan::FixtureJointRecord* joint : plan::joints_of(plan.tables(), scene))
+    joints.push_back({"", plan::slides(*joint), joint->lower, joint->upper});
+  const auto names = plan::joint_names_of(plan.tables(), scene);
+  for (std::size_t i = 0; i < joints.size(); ++i) joints[i].name = names[i];
+  return joints;
+}
+
+Json joints_json(const std::vector<TimelineJoint>& joints) {
+  Json list = Json::array();
+  for (const TimelineJoint& joint : joints) {
+    list.push_back({joint.name, joint.slides ? "cm" : "deg", shown(joint, joint.lower),
+                    shown(joint, joint.upper)});
+  }
+  return list;
+}
 
 Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> metrics,
                      bool explained) {
@@ -140,8 +170,9 @@ Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> m
     const plan::TaskRoles roles =
         plan::roles_of(episode.plan->tables(), episode.plan->tasks()[*task]);
     ends = {roles.source, roles.target};
+    reading.joints = joints_of(*episode.plan, episode.plan->tasks()[*task]);
   }
-  reading.timeline = encode_timeline(*trace, metrics, ends);
+  reading.timeline = encode_timeline(*trace, metrics, ends, reading.joints);
   reading.bodies = trace->header.bodies;
   if (!explained) return reading;
   if (!task || trace->header.plan_root != episode.plan->root()) return reading;
@@ -157,7 +188,7 @@ Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> m
 }  // namespace
 
 std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics,
-                            Ends ends) {
+                            Ends ends, std::span<const TimelineJoint> joints) {
   std::string text;
   for (std::size_t m = 0; m < trace.header.metrics.size(); ++m) {
     const auto& metric = trace.header.metrics[m];
@@ -192,6 +223,19 @@ std::string encode_timeline(const store::Trace& trace, std::span<const std::stri
     distances += fmt::format("{}{:.1f}", distances.empty() ? "" : ",", cm);
   }
   if (!distances.empty()) text += fmt::format("{}d:{}", text.empty() ? "" : ";", distances);
+  const std::size_t all = trace.header.joints.size();
+  for (std::size_t j = 0; j < joints.size() && joints.size() <= all; ++j) {
+    std::string values;
+    double low = 0, high = 0;
+    for (std::size_t i = 0; i < trace.steps.size(); i += kEvery) {
+      const double at =
+          shown(joints[j], trace.steps[i].sample.joints[all - joints.size() + j].position);
+      low = i == 0 ? at : std::min(low, at);
+      high = i == 0 ? at : std::max(high, at);
+      values += fmt::format("{}{:.1f}", values.empty() ? "" : ",", at);
+    }
+    if (high - low >= kStill) text += fmt::format("{}j{}:{}", text.empty() ? "" : ";", j, values);
+  }
   return text;
 }
 
@@ -212,6 +256,8 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
                       [&]() -> Result<run::Worker> { return run::Worker(work); });
 
   std::vector<std::vector<std::string>> bodies(task_count);
+  std::vector<Json> joints(task_count, Json::array());
+  bool has_joints = false;
   Json lines = Json::array(), whys = Json::object();
   TextTable texts;
   std::size_t problems = 0;
@@ -222,13 +268,20 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
     lines.push_back(reading.timeline.empty() ? Json(0) : Json(std::move(reading.timeline)));
     const auto task = static_cast<std::size_t>(episodes[i].task);
     if (task < task_count && bodies[task].empty()) bodies[task] = std::move(reading.bodies);
+    if (task < task_count && joints[task].empty() && !reading.joints.empty()) {
+      joints[task] = joints_json(reading.joints);
+      has_joints = true;
+    }
     if (!reading.why.empty()) whys[std::to_string(i)] = why_json(reading.why, texts);
   }
   if (problems > kNotes)
     documents.notes.push_back(
         fmt::format("{} further episodes without a timeline", problems - kNotes));
   const auto dumped = [](const Json& json) { return json.dump(); };
-  documents.timelines = dumped({{"every", kEvery}, {"bodies", bodies}, {"e", std::move(lines)}});
+  Json timelines = {{"every", kEvery}, {"bodies", bodies}};
+  if (has_joints) timelines["joints"] = joints;
+  timelines["e"] = std::move(lines);
+  documents.timelines = dumped(timelines);
   documents.whys = dumped({{"strings", texts.texts()}, {"e", std::move(whys)}});
   return documents;
 }

@@ -41,7 +41,13 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
 struct Ends {
   std::uint32_t source = 0, target = 1;  // bodies whose distance is told; plan::kNone: it is not
 };
+// A joint of a fixture, behind the robot's in the trace.
+struct TimelineJoint {
+  std::string name;             // "cabinet.top"
+  bool slides = true;           // told in cm, else in degrees
+  double lower = 0, upper = 0;  // m or rad; both 0: without end
+};
 std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics,
-                            Ends ends = {});
+                            Ends ends = {}, std::span<const TimelineJoint> joints = {});
 
 }  // namespace probe::report

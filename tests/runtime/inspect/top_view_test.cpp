@@ -31,13 +31,14 @@ double area(const std::vector<Point>& outline) {
 }  // namespace
 
 TEST_CASE("the outline of a lying box is its rectangle, counter-clockwise") {
-  const auto outline = box_outline({0.3, 0.2, 0.1}, {1, 0, 0, 0});
+  const auto outline = box_outline({Vec3(0.3, 0, 0), Vec3(0, 0.2, 0), Vec3(0, 0, 0.1)});
   CHECK(outline == std::vector<Point>{{-0.3, -0.2}, {0.3, -0.2}, {0.3, 0.2}, {-0.3, 0.2}});
 }
 
 TEST_CASE("the outline of a box on its corner is a hexagon") {
   const Quat turn = Quat::FromTwoVectors(Vec3(1, 1, 1), Vec3::UnitZ());
-  const auto outline = box_outline({1, 1, 1}, {turn.w(), turn.x(), turn.y(), turn.z()});
+  const auto outline =
+      box_outline({turn * Vec3::UnitX(), turn * Vec3::UnitY(), turn * Vec3::UnitZ()});
   CHECK(outline.size() == 6);
   CHECK(area(outline) == doctest::Approx(4 * std::sqrt(3.0)));
 }
@@ -86,6 +87,9 @@ TEST_CASE("a top view has every way in which things stand once, with its starts"
   CHECK(view->cameras[0].eye.x == doctest::Approx(0.147));
   CHECK(view->cameras[0].eye.y == doctest::Approx(0.188));
   CHECK(view->cameras[0].image.size() == 4);
+  // It looks along (1, 0.553, ..) of that base: its right is to the left of -x, along +y.
+  CHECK(view->cameras[0].right.x == doctest::Approx(-0.553 / std::sqrt(1 + 0.553 * 0.553)));
+  CHECK(view->cameras[0].right.y == doctest::Approx(1 / std::sqrt(1 + 0.553 * 0.553)));
 }
 
 TEST_CASE("the picture is the same every time, needs no other file and says what it shows") {

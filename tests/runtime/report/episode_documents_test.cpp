@@ -39,6 +39,20 @@ TEST_CASE("metrics that the page does not know are left out of a timeline") {
   CHECK(encode_timeline(store::Trace{}, {}).empty());
 }
 
+TEST_CASE("a timeline has the joints of fixtures that moved, in centimetres and degrees") {
+  store::Trace trace = small_trace();
+  trace.header.joints = {"waist", "cabinet.top", "cabinet.middle", "door.hinge"};
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    const double on = static_cast<double>(i);
+    trace.steps[i].sample.joints = {{on, 0}, {0.02 * on, 0}, {0.03, 0}, {-0.1 * on, 0}};
+  }
+  const std::vector<TimelineJoint> joints = {{"cabinet.top", true, 0, 0.14},
+                                             {"cabinet.middle", true, 0, 0.14},
+                                             {"door.hinge", false, -1.5, 0}};
+  const std::string text = encode_timeline(trace, {}, {}, joints);
+  CHECK(text == "g:3-5;c0.3:2-2,4-5;d:1.0,3.0,5.0;j0:0.0,4.0,8.0;j2:0.0,-11.5,-22.9");
+}
+
 TEST_CASE("an episode whose trace is gone has no timeline, and a note says so") {
   store::ResultRow row;
   row.task = "t";

@@ -78,7 +78,8 @@ export interface Data {
   prompts: string[]; reasons: string[]; strings: string[];
   models?: Model[]; policies: Policy[]; tasks: Task[]; episodes: Episodes; tables: Tables; empty?: Record<string, string>;
 }
-export interface Timelines { every?: number; bodies?: string[][]; e?: (string | 0)[] }
+export type TimelineJoint = [name: string, unit: string, lower: number, upper: number];
+export interface Timelines { every?: number; bodies?: string[][]; joints?: TimelineJoint[][]; e?: (string | 0)[] }
 export type WhyCondition = [line: number, text: number, bodies: number, measured: number, truth: number, decides: number, alike: number];
 export type WhyMetric = [name: string, shown: string, when: string, file: number, line: number, conditions: WhyCondition[]];
 export interface Whys { strings?: string[]; e?: Record<string, WhyMetric[]> }

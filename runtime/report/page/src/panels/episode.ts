@@ -1,40 +1,55 @@
 // One episode: where things stood, what was said, what happened when, and why it was judged so.
 import { type Child, h, s } from "../dom";
 import { safeLink, shellWord } from "../format";
-import { bodiesOf, type Data, isTrue, objectName, readTimelines, readWhys, taskName, type WhyMetric } from "../model";
+import { bodiesOf, type Data, isTrue, objectName, readTimelines, readWhys, taskName, type TimelineJoint, type WhyMetric } from "../model";
 import { policyLabel } from "../parts";
 import type { State } from "../state";
 
 type Spans = [first: number, last: number][];
-interface Timeline { metrics: [number, Spans][]; contacts: [number, number, Spans][]; gripper: Spans; distance: number[] }
+interface Timeline { metrics: [number, Spans][]; contacts: [number, number, Spans][]; gripper: Spans; distance: number[]; joints: [number, number[]][] }
 
 const spansOf = (text: string): Spans => text.split(",").filter(Boolean).map((part) => { const [a, b] = part.split("-").map(Number); return [a!, b ?? a!]; });
 
 function decode(text: string): Timeline {
-  const timeline: Timeline = { metrics: [], contacts: [], gripper: [], distance: [] };
+  const timeline: Timeline = { metrics: [], contacts: [], gripper: [], distance: [], joints: [] };
   for (const record of text.split(";")) {
     const colon = record.indexOf(":"), key = record.slice(0, colon), rest = record.slice(colon + 1);
     if (key[0] === "m") timeline.metrics.push([Number(key.slice(1)), spansOf(rest)]);
     else if (key[0] === "c") { const [a, b] = key.slice(1).split(".").map(Number); timeline.contacts.push([a!, b!, spansOf(rest)]); }
     else if (key === "g") timeline.gripper = spansOf(rest);
     else if (key === "d") timeline.distance = rest.split(",").map(Number);
+    else if (key[0] === "j") timeline.joints.push([Number(key.slice(1)), rest.split(",").map(Number)]);
   }
   return timeline;
 }
 
-const kLeft = 190, kWide = 620, kLine = 20;
+const kLeft = 190, kWide = 620, kLine = 20, kCurve = 64;
 
-// Lines of spans over control steps, the distance below, and a cursor that set() moves.
-function drawing(data: Data, timeline: Timeline, bodies: string[], steps: number, every: number): { element: SVGElement; set: (step: number) => void } {
+interface Curve { name: string; low: number; high: number; values: number[] }
+
+// The distance, and joints of fixtures: each over its own range, a joint without end over what it went.
+function curvesOf(timeline: Timeline, joints: TimelineJoint[]): Curve[] {
+  const curves: Curve[] = [];
+  if (timeline.distance.length > 1) curves.push({ name: "source to target, cm", low: 0, high: Math.max(5, ...timeline.distance), values: timeline.distance });
+  for (const [number, values] of timeline.joints) {
+    const joint = joints[number];
+    if (!joint || values.length < 2) continue;
+    const [name, unit, lower, upper] = joint, endless = lower === upper;
+    curves.push({ name: `${name}, ${unit}`, low: endless ? Math.min(...values) : lower, high: endless ? Math.max(...values) : upper, values });
+  }
+  return curves;
+}
+
+// Lines of spans over control steps, curves below, and a cursor that set() moves.
+function drawing(data: Data, timeline: Timeline, bodies: string[], joints: TimelineJoint[], steps: number, every: number): { element: SVGElement; set: (step: number) => void } {
   const x = (step: number) => kLeft + (kWide * step) / Math.max(steps, 1);
   const lines: [string, string, Spans][] = [
     ...timeline.metrics.map(([m, spans]): [string, string, Spans] => [data.metrics[m]?.label ?? "", data.metrics[m]?.name === "wrong" ? "bad" : "metric", spans]),
     ...(timeline.gripper.length ? [["gripper closing", "gripper", timeline.gripper] as [string, string, Spans]] : []),
     ...timeline.contacts.map(([a, b, spans]): [string, string, Spans] => [`${bodies[a] || "?"} \u2013 ${bodies[b] || "?"}`, "contact", spans]),
   ];
-  const curve = timeline.distance.length > 1;
-  const top = 4, bottom = top + lines.length * kLine, height = bottom + (curve ? 64 : 0) + 24;
-  const most = Math.max(5, ...timeline.distance);
+  const curves = curvesOf(timeline, joints);
+  const top = 4, bottom = top + lines.length * kLine, height = bottom + curves.length * kCurve + 24;
   const cursor = s("line", { class: "cursor", y1: top, y2: height - 20, x1: kLeft, x2: kLeft });
   const ticks: number[] = [];
   const stride = [1, 2, 5, 10, 20, 50, 100, 200, 500].find((d) => steps / d <= 8) ?? 1000;
@@ -45,8 +60,11 @@ function drawing(data: Data, timeline: Timeline, bodies: string[], steps: number
     lines.map(([name, kind, spans], i) => [
       s("text", { class: "line", x: kLeft - 10, y: top + i * kLine + 14, "text-anchor": "end" }, name.length > 26 ? name.slice(0, 25) + "\u2026" : name),
       spans.map(([a, b]) => s("rect", { class: kind, x: x(a - 1), width: Math.max(2, x(b) - x(a - 1)), y: top + i * kLine + 4, height: kLine - 8, rx: 2 }))]),
-    curve ? [s("text", { class: "line", x: kLeft - 10, y: bottom + 34, "text-anchor": "end" }, "source to target, cm"), s("text", { class: "axis", x: kLeft - 10, y: bottom + 50, "text-anchor": "end" }, `0 to ${most.toFixed(0)}`),
-      s("polyline", { class: "curve", points: timeline.distance.map((d, i) => `${x(Math.min(steps, i * every)).toFixed(1)},${(bottom + 58 - (50 * d) / most).toFixed(1)}`).join(" ") })] : null, cursor);
+    curves.map(({ name, low, high, values }, k) => {
+      const from = bottom + k * kCurve;
+      return [s("text", { class: "line", x: kLeft - 10, y: from + 34, "text-anchor": "end" }, name), s("text", { class: "axis", x: kLeft - 10, y: from + 50, "text-anchor": "end" }, `${low.toFixed(0)} to ${high.toFixed(0)}`),
+        s("polyline", { class: "curve", points: values.map((v, i) => `${x(Math.min(steps, i * every)).toFixed(1)},${(from + 58 - (50 * (v - low)) / Math.max(high - low, 1e-9)).toFixed(1)}`).join(" ") })];
+    }), cursor);
   return { element, set: (step) => { cursor.setAttribute("x1", String(x(step))); cursor.setAttribute("x2", String(x(step))); } };
 }
 
@@ -106,7 +124,7 @@ export function episodeView(state: State, row: number): Child {
   const holds = (m: number) => isTrue(e, row, m);
 
   const timelines = readTimelines(), encoded = timelines.e?.[row];
-  const timeline = encoded ? drawing(data, decode(encoded), timelines.bodies?.[t] ?? [], steps, timelines.every ?? 1) : null;
+  const timeline = encoded ? drawing(data, decode(encoded), timelines.bodies?.[t] ?? [], timelines.joints?.[t] ?? [], steps, timelines.every ?? 1) : null;
   const link = safeLink(data.strings[e.video?.[row] ?? -1] ?? "");
   const video = link ? h("video", { src: link, controls: true, preload: "metadata", playsinline: true, muted: true, "aria-label": `Video of ${task.name}, start ${start}` }) : null;
   // A video has a frame before the first step and one after each.

@@ -1,0 +1,67 @@
+#include "runtime/inspect/top_fixtures.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "compiler/emit/compile.h"
+#include "runtime/inspect/svg.h"
+
+using namespace probe;
+using namespace probe::inspect;
+
+namespace {
+
+const std::string kRoot = VLAPROBE_SOURCE_DIR;
+
+TopView view_of(const char* task) {
+  const std::vector<std::string> files = {kRoot + "/examples/drawer.probe"};
+  auto built = build(
+      files,
+      {.asset_root = kRoot + "/assets", .suite = "", .library_folders = {kRoot + "/dsl", kRoot}});
+  REQUIRE(built.ok());
+  REQUIRE(built->ok);
+  const auto plan = plan::Plan::from_bytes(std::move(built->plan));
+  REQUIRE(plan.ok());
+  const auto index = plan->find_task(task);
+  REQUIRE(index);
+  auto view = top_view(*plan, *index, kRoot + "/assets");
+  REQUIRE_MESSAGE(view.ok(), (view.ok() ? "" : to_text(view.failure())));
+  return std::move(*view);
+}
+
+const TopPart& part(const TopView& view, const std::string& name) {
+  const auto found = std::ranges::find(view.parts, name, &TopPart::name);
+  REQUIRE(found != view.parts.end());
+  return *found;
+}
+
+double low_x(const std::vector<Point>& outline) { return std::ranges::min(outline).x; }
+
+}  // namespace
+
+TEST_CASE("parts are seen where their joints begin and where they end, regions with their part") {
+  const TopView shut = view_of("open_drawer"), ajar = view_of("drawer_ajar");
+  CHECK(shut.parts.size() == 4);
+  CHECK(part(shut, "cabinet").open.empty());
+  const TopPart& drawer = part(shut, "cabinet.top_drawer");
+  REQUIRE(drawer.outlines.size() == 6);
+  REQUIRE(drawer.open.size() == 6);
+  // The cabinet stands at x = -27 cm; the drawer's floor reaches from -9 cm on, and slides 14 cm.
+  CHECK(low_x(drawer.outlines[0]) == doctest::Approx(-0.36));
+  CHECK(low_x(drawer.open[0]) == doctest::Approx(-0.22));
+  CHECK(low_x(part(ajar, "cabinet.top_drawer").outlines[0]) == doctest::Approx(-0.31));
+  CHECK(low_x(part(ajar, "cabinet.top_drawer").open[0]) == doctest::Approx(-0.22));
+  REQUIRE(shut.regions.size() == 1);
+  CHECK(shut.regions[0].name == "cabinet.inside_top");
+  CHECK(low_x(shut.regions[0].outline) == doctest::Approx(-0.35));
+  CHECK(low_x(ajar.regions[0].outline) == doctest::Approx(-0.30));
+}
+
+TEST_CASE("the picture names parts and regions and says which way is left") {
+  const std::string svg = to_svg(view_of("open_drawer"));
+  CHECK(svg.find("<title>cabinet.top_drawer</title>") != std::string::npos);
+  CHECK(svg.find("region cabinet.inside_top") != std::string::npos);
+  CHECK(svg.find(">left</text>") != std::string::npos);
+  CHECK(svg.find("nan") == std::string::npos);
+}
