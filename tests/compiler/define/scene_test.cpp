@@ -47,7 +47,18 @@ TEST_CASE("a scene that copies joints or a rate which do not fit its robot is sh
   REQUIRE(a->codes() == "P0304");
   CHECK(a->underlined() == "500Hz");
   CHECK_MESSAGE(a->said().find("copied by `s`") != std::string::npos, a->said());
-  const auto joints = analyze_with_suite(robot("single", "5", ""));
+  test::write_text(
+      std::filesystem::path(test::asset_root()) / "arm/single.urdf",
+      "<robot name=\"single\"><link name=\"base\"/><link name=\"tool\"><inertial><mass "
+      "value=\"1\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" ixz=\"0\" "
+      "iyz=\"0\"/></inertial></link><joint name=\"waist\" type=\"revolute\"><parent "
+      "link=\"base\"/><child link=\"tool\"/><axis xyz=\"0 0 1\"/><limit lower=\"-3\" "
+      "upper=\"3\" effort=\"1\" velocity=\"1\"/></joint></robot>");
+  const auto joints = analyze_with_suite(
+      "robot single { urdf \"arm/single.urdf\"; tcp tool; fingers none; control ee_delta_pose 5Hz\n"
+      "drive waist stiffness 100Nm/rad damping 10Nms/rad limit 20Nm }\n"
+      "camera c like eye { mount single.base at (0cm, 0cm, 1m) look (1, 0, -1) }\n"
+      "scene s like bench { robot single at (50cm, 0cm) yaw 180deg; camera c }");
   CHECK_MESSAGE(joints->said().find("expected 1 joints, one per drive of `single`, found 3") !=
                     std::string::npos,
                 joints->said());

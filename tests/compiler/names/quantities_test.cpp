@@ -64,8 +64,10 @@ TEST_CASE("drives have the units of the joint they move") {
         "P0302");
   CHECK(analyze_with_suite(head + "drive elbow stiffness 1N/m damping 1Ns/m limit 1N }")->codes() ==
         "P0201");
-  CHECK(analyze_with_suite(head + "drive l, r stiffness 1N/m damping 1Ns/m limit 1N }")->codes() ==
-        "");
+  CHECK(analyze_with_suite(head +
+                           "drive waist stiffness 1Nm/rad damping 1Nms/rad limit 1Nm\n"
+                           "drive l, r stiffness 1N/m damping 1Ns/m limit 1N }")
+            ->codes() == "");
 }
 
 TEST_CASE("values that cannot be are out of range") {
