@@ -104,6 +104,19 @@ Result<SentPicture> to_sent(const View& view, const PictureRule& rule) {
   return sent;
 }
 
+View sent_part(const View& view, const PictureRule& rule) {
+  const servers::SentPart part = servers::sent_part(view.width, view.height, image_rule(rule));
+  View sent{part.width, part.height, {}, {}, {}};
+  for (int y = part.top; y < part.top + part.height; ++y) {
+    const std::ptrdiff_t begin = std::ptrdiff_t{y} * view.width + part.left;
+    const auto depth = view.depth.begin() + begin;
+    const auto bodies = view.segmentation.begin() + begin;
+    sent.depth.insert(sent.depth.end(), depth, depth + part.width);
+    sent.segmentation.insert(sent.segmentation.end(), bodies, bodies + part.width);
+  }
+  return sent;
+}
+
 std::vector<bool> sent_mask(const View& view, const PictureRule& rule, std::uint32_t body) {
   std::vector<bool> mask;
   if (as_rendered(view, rule)) {

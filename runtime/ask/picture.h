@@ -74,6 +74,9 @@ std::string data_uri_of(std::string_view png);
 // In the size that is sent.
 std::pair<int, int> sent_size(const View& view, const PictureRule& rule);
 Result<SentPicture> to_sent(const View& view, const PictureRule& rule);
+// The depth and the bodies of what is sent, before it is resized: all of the view, unless the rule
+// crops it. Without colours.
+View sent_part(const View& view, const PictureRule& rule);
 // Which pixels of the picture that is sent show `body`: at least half of each, by the very
 // function that makes the picture's size.
 std::vector<bool> sent_mask(const View& view, const PictureRule& rule, std::uint32_t body);

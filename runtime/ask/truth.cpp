@@ -116,11 +116,15 @@ std::optional<Truth> known_truth(const plan::Plan& plan, const plan::QuestionRec
 
 Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, const View& view,
                  const PictureRule& rule, std::optional<bool> recorded) {
+  // What a crop leaves out is not seen.
+  const bool is_cropped = rule.width > 0 && rule.resize == servers::Resize::kCrop;
+  const View cropped = is_cropped ? sent_part(view, rule) : View{};
+  const View& sent = is_cropped ? cropped : view;
   const auto options = options_of(plan, question);
   const plan::FamilyRecord& family = plan.families()[question.family];
   for (const plan::OptionRecord& option : options) {
     if ((option.flags & plan::kMustBeSeen) == 0) continue;
-    const std::uint32_t pixels = seen_of(view, option.body).pixels;
+    const std::uint32_t pixels = seen_of(sent, option.body).pixels;
     if (pixels >= family.pixels && pixels > 0) continue;
     return left_out("hidden: `" + std::string(plan.text(option.text)) + "` shows " +
                     std::to_string(pixels) + " of " + std::to_string(family.pixels) + " pixels");
@@ -140,13 +144,13 @@ Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, c
     case plan::QuestionTruth::kNearerThan:
       break;
   }
-  const Seen a = seen_of(view, options[question.a].body);
-  const Seen b = seen_of(view, options[question.b].body);
+  const Seen a = seen_of(sent, options[question.a].body);
+  const Seen b = seen_of(sent, options[question.b].body);
   for (const auto& [seen, option] : {std::pair(a, question.a), std::pair(b, question.b)}) {
     if (seen.pixels == 0) return left_out("hidden: " + name(option) + " is not in the picture");
   }
   if (plan::truth_of(question) == plan::QuestionTruth::kLeftOf) {
-    if (std::abs(a.x - b.x) < kLeastSideways * view.width) {
+    if (std::abs(a.x - b.x) < kLeastSideways * sent.width) {
       return left_out("the middles of " + name(question.a) + " and " + name(question.b) +
                       " are too close to say which is further left");
     }

@@ -126,16 +126,10 @@ wire::Bytes pad(const policy::Image& image, int width, int height) {
   return whole;
 }
 
-wire::Bytes crop(const policy::Image& image, int width, int height) {
-  // The largest part of the size's shape; integers, so that every machine cuts the same.
-  const std::int64_t wide = std::int64_t{image.width} * height;
-  const std::int64_t high = std::int64_t{image.height} * width;
-  int part_width = image.width, part_height = image.height;
-  if (wide > high) part_width = std::max(1, static_cast<int>(high / height));
-  if (wide < high) part_height = std::max(1, static_cast<int>(wide / width));
-  const wire::Bytes part = cut(image, (image.width - part_width) / 2,
-                               (image.height - part_height) / 2, part_width, part_height);
-  return resize_bilinear({part_width, part_height, part}, width, height);
+wire::Bytes crop(const policy::Image& image, const ImageRule& rule) {
+  const SentPart part = sent_part(image.width, image.height, rule);
+  const wire::Bytes rgb = cut(image, part.left, part.top, part.width, part.height);
+  return resize_bilinear({part.width, part.height, rgb}, rule.width, rule.height);
 }
 
 wire::Array to_chw_f32(const wire::Bytes& rgb, int width, int height) {
@@ -170,6 +164,19 @@ wire::Bytes resampled(const policy::Image& image, int width, int height, const F
 
 }  // namespace
 
+SentPart sent_part(int width, int height, const ImageRule& rule) {
+  SentPart part{0, 0, width, height};
+  if (rule.resize != Resize::kCrop || rule.width == 0) return part;
+  // The largest part of the size's shape; integers, so that every machine cuts the same.
+  const std::int64_t wide = std::int64_t{width} * rule.height;
+  const std::int64_t high = std::int64_t{height} * rule.width;
+  if (wide > high) part.width = std::max(1, static_cast<int>(high / rule.height));
+  if (wide < high) part.height = std::max(1, static_cast<int>(wide / rule.width));
+  part.left = (width - part.width) / 2;
+  part.top = (height - part.height) / 2;
+  return part;
+}
+
 wire::Bytes resize_bilinear(const policy::Image& image, int width, int height) {
   return resampled(image, width, height, kTriangle);
 }
@@ -189,7 +196,7 @@ wire::Array to_pixels(const policy::Image& image, const ImageRule& rule) {
   } else if (rule.resize == Resize::kPad) {
     rgb = pad(image, width, height);
   } else if (rule.resize == Resize::kCrop) {
-    rgb = crop(image, width, height);
+    rgb = crop(image, rule);
   } else if (rule.resize == Resize::kLanczos) {
     rgb = resize_lanczos(image, width, height);
   } else if (rule.resize == Resize::kCv2Linear) {

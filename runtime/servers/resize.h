@@ -12,6 +12,12 @@ namespace probe::servers {
 // The picture as the rule asks: u8 [h, w, 3] or f32 [3, h, w]. The image's bytes fit its size.
 wire::Array to_pixels(const policy::Image& image, const ImageRule& rule);
 
+// What of a picture is sent, before it is resized: all of it, unless the rule crops.
+struct SentPart {
+  int left = 0, top = 0, width = 0, height = 0;
+};
+SentPart sent_part(int width, int height, const ImageRule& rule);
+
 // width x height x 3 bytes, both sides resampled.
 wire::Bytes resize_bilinear(const policy::Image& image, int width, int height);
 wire::Bytes resize_lanczos(const policy::Image& image, int width, int height);
