@@ -21,18 +21,25 @@ std::string text_or_empty(const Json* json) {
   return json != nullptr && json->is_string() ? json->text() : std::string();
 }
 
-// A text, or a list of parts of which some are texts.
-std::string content_text(const Json& message) {
+// A text, or a list of parts of which some are texts; null and nothing at all are no words. None of
+// anything else, which says nothing of what the model answered.
+std::optional<std::string> content_text(const Json& message) {
   const Json* content = message.find("content");
-  if (content == nullptr || !content->is_array()) return text_or_empty(content);
+  if (content == nullptr || content->is_null()) return std::string();
+  if (content->is_string()) return content->text();
+  if (!content->is_array()) return std::nullopt;
   std::string text;
-  for (const Json& part : *content) text += text_or_empty(part.find("text"));
+  for (const Json& part : *content) {
+    if (!part.is_object()) return std::nullopt;
+    text += text_or_empty(part.find("text"));
+  }
   return text;
 }
 
-std::optional<std::int64_t> whole(const Json* json) {
+std::optional<std::int64_t> count_of(const Json* json) {
   if (json == nullptr || !json->is_number_integer()) return std::nullopt;
-  return json->get<std::int64_t>();
+  const auto count = json->get<std::int64_t>();
+  return count >= 0 ? std::optional(count) : std::nullopt;
 }
 
 // A token that is a letter alone, whatever blanks or marks of blanks stand around it: its place.
@@ -132,7 +139,10 @@ Result<Said> read_chat_answer(const ChatTerms& terms, std::string_view body,
                         "`, not of `" + wanted +
                         "`; if that is the same, say answers_as= in the address");
   }
-  said.raw = content_text(*message);
+  auto words = content_text(*message);
+  if (!words)
+    return broken("the answer's `content` is neither text nor null: " + servers::last_lines(body));
+  said.raw = std::move(*words);
   said.reasoning = text_or_empty(message->find("reasoning"));
   if (said.reasoning.empty()) said.reasoning = text_or_empty(message->find("reasoning_content"));
   if (said.raw.size() + said.reasoning.size() > kMostWords) {
@@ -143,8 +153,8 @@ Result<Said> read_chat_answer(const ChatTerms& terms, std::string_view body,
   said.usage.fingerprint = text_or_empty(json.find("system_fingerprint"));
   said.usage.finish = text_or_empty(choice.find("finish_reason"));
   if (const Json* usage = json.find("usage"); usage != nullptr) {
-    said.usage.prompt_tokens = whole(usage->find("prompt_tokens"));
-    said.usage.completion_tokens = whole(usage->find("completion_tokens"));
+    said.usage.prompt_tokens = count_of(usage->find("prompt_tokens"));
+    said.usage.completion_tokens = count_of(usage->find("completion_tokens"));
   }
   said.usage.letter_logprobs = letter_logprobs(choice, letters);
   return said;

@@ -1,12 +1,15 @@
 #include "runtime/ask/vouch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "runtime/ask/plan_reading.h"
+#include "runtime/ask/prepared.h"
 #include "runtime/ask/queries.h"
 #include "runtime/ask/wording.h"
 #include "runtime/base/sha256.h"
+#include "runtime/plan/family_name.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/questions.h"
 
@@ -60,6 +63,8 @@ std::optional<bool> told_yes(const std::string& expected) {
 Voucher::Voucher(const plan::Plan& plan) : plan_(plan) {
   for (std::uint32_t q = 0; q < plan.questions().size(); ++q)
     questions_[to_hex(plan::to_sha256(plan.questions()[q].question_id))].push_back(q);
+  for (std::uint32_t e = 0; e < plan.episodes().size(); ++e)
+    episodes_[start_id_of(plan, e)].push_back(e);
 }
 
 void Voucher::vouch(AnswerRow& row) {
@@ -78,8 +83,8 @@ std::string Voucher::reason(AnswerRow& row) {
     if (is_named_so(plan_, row, q)) question = q;
   }
   if (question == plan::kNone) {
-    return "the plan asks " + row.question_id + " not as " + row.set + "." + row.family + " of " +
-           row.task;
+    return "the plan asks " + row.question_id + " not as " +
+           plan::family_name(row.set, row.family) + " of " + row.task;
   }
   if (!is_about(plan_, row, question)) {
     return row.task + " has no start " + row.start_id + " at " + std::to_string(row.episode);
@@ -93,7 +98,28 @@ std::string Voucher::reason(AnswerRow& row) {
                   : "it is asked of starts alone";
   if (row.invalid) return {};
   if (!row.right) return "it is neither right nor wrong";
+  if (std::string why = check_shown(row, question); !why.empty()) return why;
   return read_again(row, question);
+}
+
+// What was shown with the words is what its arm shows. Of models in this process no picture is
+// sent.
+std::string Voucher::check_shown(const AnswerRow& row, std::uint32_t question) const {
+  const bool was_sent = !row.request_sha256.empty(), has_picture = !row.image_sha256.empty();
+  const bool wants_picture = row.arm != Arm::kBlind && was_sent;
+  if (has_picture && row.arm == Arm::kBlind) return does_not_follow("image_sha256", "its `arm`");
+  if (wants_picture && !has_picture) return does_not_follow("image_sha256", "its `arm`");
+  if (row.arm != Arm::kPrior) {
+    const bool has_other = !row.shown_start_id.empty() || row.shown_has_answer;
+    return has_other ? does_not_follow("shown_start_id", "its `arm`") : "";
+  }
+  const auto shown = episodes_.find(row.shown_start_id);
+  if (shown == episodes_.end() || row.shown_start_id == row.start_id)
+    return "its `shown_start_id` is no other start of the plan";
+  const bool fits = std::ranges::any_of(shown->second, [&](std::uint32_t episode) {
+    return has_answer(plan_, plan_.questions()[question], episode) == row.shown_has_answer;
+  });
+  return fits ? "" : does_not_follow("shown_has_answer", "the plan");
 }
 
 // Nothing where the words of a question for a point tell no size.

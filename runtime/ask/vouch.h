@@ -34,12 +34,15 @@ class Voucher {
     std::unique_ptr<AnswerReader> reader;  // of all but free answers
   };
   std::string reason(AnswerRow& row);
+  std::string check_shown(const AnswerRow& row, std::uint32_t question) const;
   std::string read_again(AnswerRow& row, std::uint32_t question);
   std::string judge_again(AnswerRow& row, std::uint32_t question, const Reading& today);
   const Order* order_of(const AnswerRow& row, std::uint32_t question);
 
   const plan::Plan& plan_;
-  std::map<std::string, std::vector<std::uint32_t>, std::less<>> questions_;  // by id
+  using ById = std::map<std::string, std::vector<std::uint32_t>, std::less<>>;
+  ById questions_;  // by id
+  ById episodes_;   // that begin so, by the start's id
   std::map<std::pair<std::uint32_t, std::uint32_t>, Order> orders_;  // by question, rotation
 };
 

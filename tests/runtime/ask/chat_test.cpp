@@ -8,6 +8,7 @@
 
 #include "runtime/ask/answers.h"
 #include "runtime/ask/ask.h"
+#include "runtime/store/database.h"
 #include "tests/runtime/ask/asking_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/servers/python_server.h"
@@ -110,6 +111,16 @@ TEST_CASE("the prior arm shows the picture of another start, and the row says wh
     CHECK(row.shown_start_id != row.start_id);
     CHECK(row.image_sha256 == pictures[row.shown_start_id]);
     CHECK(row.shown_has_answer == true);  // the plan has one task alone
+  }
+  // What the plan does not bear counts neither way.
+  auto database = store::Database::open(folder / "answers" + "/answers.sqlite",
+                                        store::Database::Access::kWrite);
+  REQUIRE(database.ok());
+  REQUIRE(database->execute("update answers set shown_has_answer = 0 where arm = 'prior'").ok());
+  for (const AnswerRow& row : answers_in(folder / "answers")) {
+    CHECK(row.invalid.has_value() == (row.arm == Arm::kPrior));
+    if (row.invalid)
+      CHECK(*row.invalid == "store: its `shown_has_answer` does not follow from the plan");
   }
 }
 
@@ -223,6 +234,29 @@ TEST_CASE("log-probabilities of a letter are those of all its tokens, of the fir
   CHECK(letters[0] == doctest::Approx(-3));
   CHECK(letters[1] == doctest::Approx(-1 + 0.6931471805599453));
   CHECK(!letters[2].has_value());
+}
+
+TEST_CASE("content that is no words is a server's failure, and counts below nothing are none") {
+  ChatTerms terms;
+  terms.model = "m";
+  const auto said = [&](const std::string& content) {
+    return read_chat_answer(terms,
+                            R"({"model": "m", "choices": [{"message": {"content": )" + content +
+                                R"(}}], "usage": {"prompt_tokens": -3, "completion_tokens": 1}})",
+                            "application/json", 0);
+  };
+  for (const char* content : {"5", "true", "{\"text\": \"B\"}", "[5]", "[\"B\"]"}) {
+    CAPTURE(content);
+    const auto failed = said(content);
+    REQUIRE(!failed.ok());
+    CHECK(failed.failure().code == Fault::kPolicy);
+    CHECK(failed.failure().message.starts_with("the answer's `content` is neither text nor null"));
+  }
+  CHECK(said("null")->raw.empty());
+  CHECK(said("\"B\"")->raw == "B");
+  CHECK(said(R"([{"type": "text", "text": "B"}, {"type": "refusal"}])")->raw == "B");
+  CHECK(!said("\"B\"")->usage.prompt_tokens.has_value());
+  CHECK(said("\"B\"")->usage.completion_tokens == 1);
 }
 
 }  // namespace

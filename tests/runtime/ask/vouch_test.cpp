@@ -84,6 +84,17 @@ TEST_CASE("a row that does not follow from its words or from the plan is invalid
       {"set rotation = 5" + where + "'many'", "rotation 5 is none of its options"},
       {"set seed = 3" + where + "'many'", "it is asked of starts alone"},
       {"set \"right\" = null" + where + "'many'", "it is neither right nor wrong"},
+      // What was shown: a row of one arm is none of another.
+      {"set arm = 'prior'" + where + "'many'",
+       "its `shown_start_id` is no other start of the plan"},
+      {"set arm = 'prior', shown_start_id = start_id" + where + "'many'",
+       "its `shown_start_id` is no other start of the plan"},
+      {"set arm = 'blind', image_sha256 = start_id" + where + "'many'",
+       "its `image_sha256` does not follow from its `arm`"},
+      {"set request_sha256 = start_id" + where + "'many'",
+       "its `image_sha256` does not follow from its `arm`"},
+      {"set shown_start_id = start_id" + where + "'many'",
+       "its `shown_start_id` does not follow from its `arm`"},
   };
   const plan::Plan plan = asking_plan(1);
   TemporaryFolder folder;
