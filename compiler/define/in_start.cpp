@@ -77,28 +77,48 @@ InStart::InStart(Relations& relations, const Task& task, const Start& start)
   }
 }
 
-std::optional<std::uint16_t> InStart::body_of(ObjectId object) const {
-  const auto at = std::find(objects_.begin(), objects_.end(), object);
-  if (at == objects_.end()) return std::nullopt;
-  return static_cast<std::uint16_t>(at - objects_.begin());
+Alike alike_of(const Model& model, std::span<const ObjectId> objects, const Phrase& phrase) {
+  Alike alike;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Object& object = model.objects[objects[i]];
+    // What an object is when nothing is said of its place.
+    const auto with = [&](Truth relation) {
+      return evaluate(phrase.means, object, [&](const QueryOp&) { return relation; });
+    };
+    const Truth rest = std::max(with(Truth::kYes), with(Truth::kNo));
+    const auto body = static_cast<std::uint16_t>(i);
+    if (rest == Truth::kYes) alike.sure.push_back(body);
+    if (rest != Truth::kNo) alike.all.push_back(body);
+  }
+  return alike;
 }
 
-Truth InStart::holds(const QueryOp& op, std::uint16_t described, const Members& alike) const {
+std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model,
+                                                         std::span<const ObjectId> objects,
+                                                         const QueryOp& op, std::uint16_t described,
+                                                         const Alike& alike) {
   // One alone is not the leftmost.
-  const Predicate& relation = relations_.model_.predicates[static_cast<PredicateId>(op.a)];
+  const Predicate& relation = model.predicates[static_cast<PredicateId>(op.a)];
   const bool is_alone = std::all_of(alike.all.begin(), alike.all.end(),
                                     [&](std::uint16_t body) { return body == described; });
-  if (relation.is_comparison && is_alone) return Truth::kNo;
+  if (relation.is_comparison && is_alone) return std::nullopt;
   std::vector<std::uint16_t> of{described};
   for (const ObjectId other : op.to) {
     if (other == ObjectId::kNone) continue;
-    const auto body = body_of(other);
+    const auto at = std::find(objects.begin(), objects.end(), other);
+    const auto body = static_cast<std::uint16_t>(at - objects.begin());
     // Nothing is left of what is not there, nor of itself.
-    if (!body || *body == described) return Truth::kNo;
-    of.push_back(*body);
+    if (at == objects.end() || body == described) return std::nullopt;
+    of.push_back(body);
   }
+  return of;
+}
+
+Truth InStart::holds(const QueryOp& op, std::uint16_t described, const Alike& alike) const {
+  const auto of = related_bodies(relations_.model_, objects_, op, described, alike);
+  if (!of) return Truth::kNo;
   const auto among = [&](const std::vector<std::uint16_t>& members) {
-    const lower::Program* program = relations_.program(task_, op.a, of, members);
+    const lower::Program* program = relations_.program(task_, op.a, *of, members);
     if (program == nullptr) return Truth::kUnknown;
     const auto truth = lower::holds(*program, placed_);
     return !truth ? Truth::kUnknown : *truth ? Truth::kYes : Truth::kNo;
@@ -110,18 +130,7 @@ Truth InStart::holds(const QueryOp& op, std::uint16_t described, const Members& 
 
 Denotation InStart::denote(const Phrase& phrase, ObjectId wanted) const {
   const Model& model = relations_.model_;
-  Members alike;
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    const Object& object = model.objects[objects_[i]];
-    // What an object is when nothing is said of its place.
-    const auto with = [&](Truth relation) {
-      return evaluate(phrase.means, object, [&](const QueryOp&) { return relation; });
-    };
-    const Truth rest = std::max(with(Truth::kYes), with(Truth::kNo));
-    const auto body = static_cast<std::uint16_t>(i);
-    if (rest == Truth::kYes) alike.sure.push_back(body);
-    if (rest != Truth::kNo) alike.all.push_back(body);
-  }
+  const Alike alike = alike_of(model, objects_, phrase);
   Denotation found;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const auto body = static_cast<std::uint16_t>(i);

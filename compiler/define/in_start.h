@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -14,10 +15,24 @@
 
 namespace probe::sema {
 
-// Objects come to rest at most so far from where they are put down, along each axis (m): on the flat
-// surface, and where a fixture may turn them aside. Over the suites that are shipped 0.01 mm and
-// 2.8 mm (the basket in the sink) were measured.
+// Objects come to rest at most so far from where they are put down, along each axis (m): on the
+// flat surface, and where a fixture may turn them aside. Over the suites that are shipped 0.01 mm
+// and 2.8 mm (the basket in the sink) were measured.
 inline constexpr double kSettlesOnSurface = 0.002, kSettlesOnFixture = 0.005;
+
+// Of the objects of a task, by their place among them: those that the rest of a phrase fits, when
+// nothing is said of where they are.
+struct Alike {
+  std::vector<std::uint16_t> sure, all;  // for certain, and with those that may be
+};
+Alike alike_of(const Model& model, std::span<const ObjectId> objects, const Phrase& phrase);
+
+// The objects of a relation of a phrase, `described` first; nothing where it holds of none: to an
+// object that is not there, to itself, or among those alike of which it is the only one.
+std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model,
+                                                         std::span<const ObjectId> objects,
+                                                         const QueryOp& op, std::uint16_t described,
+                                                         const Alike& alike);
 
 // Relations as programs, made once for all tasks that see them from one camera in one scene.
 class Relations {
@@ -49,12 +64,7 @@ class InStart {
   Denotation denote(const Phrase& phrase, ObjectId wanted) const;
 
  private:
-  struct Members {
-    std::vector<std::uint16_t> sure, all;  // of `alike`: for certain, and with those that may be
-  };
-
-  std::optional<std::uint16_t> body_of(ObjectId object) const;
-  Truth holds(const QueryOp& op, std::uint16_t described, const Members& alike) const;
+  Truth holds(const QueryOp& op, std::uint16_t described, const Alike& alike) const;
 
   Relations& relations_;
   const Task& task_;

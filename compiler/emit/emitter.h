@@ -125,6 +125,9 @@ class Emitter {
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
   void add_task(const sema::Task& task);
   plan::Slice add_joint_starts(const sema::Task& task);
+  // What its words say of places; `index` is the task's. Shapes that are alike share programs.
+  void add_claims(const sema::Task& task, const std::vector<lower::Body>& bodies,
+                  std::uint32_t index);
   void add_assets();
   plan::Slice add_members(const std::vector<TaskId>& members);
   void add_sets();
@@ -167,6 +170,7 @@ class Emitter {
   std::map<std::vector<double>, plan::Slice> joint_starts_;
   std::map<std::pair<const sema::Start*, double>, std::vector<plan::Slice>> placement_lists_;
   std::map<std::vector<std::uint32_t>, plan::Slice> views_, roles_;
+  std::map<std::vector<std::uint32_t>, std::uint32_t> claim_programs_;  // by shape
 };
 
 }  // namespace probe::emit

@@ -9,6 +9,7 @@
 #include "compiler/model/measures.h"
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"
+#include "runtime/plan/claims.h"
 #include "runtime/plan/readouts.h"
 
 namespace probe::lower {
@@ -51,21 +52,46 @@ class Lowering {
   // The same of a relation of bodies, as the one metric of a program.
   bool relation(const sema::Predicate& relation, std::span<const std::uint16_t> of,
                 const Bodies& alike) {
-    variables_.assign(relation.variables, Value{});
-    for (std::size_t i = 0; i < relation.parameters.size(); ++i)
-      variables_[i] =
-          i < of.size() ? Value::of_body(of[i]) : eval(relation.parameters[i].default_value);
-    alike_ = alike;
-    const Value value = eval(relation.body);
+    const Value value = related(relation, of, alike);
     builder_.at(relation.span);
     builder_.emit_metric(
         value, {relation.name, plan::MetricType::kBool, plan::Readout::kAtEnd, relation.span});
     return ok_ && !builder_.is_full();
   }
 
+  bool claimed(const ClaimedBody& claimed) {
+    Value all = Value::of_truth(true);
+    Span span;
+    for (const ClaimedBody::Relation& one : claimed.relations) {
+      span = one.relation->span;
+      Value holds = Value::of_truth(claimed.is_meant);
+      for (const Bodies& alike : one.alike) {
+        const Value here = related(*one.relation, one.of, alike);
+        builder_.at(span);
+        holds =
+            claimed.is_meant ? builder_.logical_and(holds, here) : builder_.logical_or(holds, here);
+      }
+      all = builder_.logical_and(all, holds);
+    }
+    builder_.at(span);
+    builder_.emit_metric(all, {plan::claim_metric(claimed.body), plan::MetricType::kBool,
+                               plan::Readout::kAtEnd, span});
+    return ok_ && !builder_.is_full();
+  }
+
   Program finish() { return builder_.finish(); }
 
  private:
+  Value related(const sema::Predicate& relation, std::span<const std::uint16_t> of,
+                const Bodies& alike) {
+    variables_.assign(relation.variables, Value{});
+    for (std::size_t i = 0; i < relation.parameters.size(); ++i)
+      variables_[i] =
+          i < of.size() ? Value::of_body(of[i]) : eval(relation.parameters[i].default_value);
+    alike_ = alike;
+    return eval(relation.body);
+  }
+
   // Predicates that call others twice double at each level, also where the instructions are shared.
   static constexpr std::size_t kMostVisited = std::size_t{1} << 22u;
   std::size_t visited_ = 0;
@@ -814,6 +840,16 @@ std::optional<Program> lower_relation(const sema::Model& model, const sema::Pred
                                       Diagnostics& diagnostics) {
   Lowering lowering(model, bodies, frame, diagnostics);
   if (!lowering.relation(relation, of, alike)) return std::nullopt;
+  return lowering.finish();
+}
+
+std::optional<Program> lower_claim(const sema::Model& model, std::span<const ClaimedBody> claimed,
+                                   const std::vector<Body>& bodies, const sema::Frame& frame,
+                                   Diagnostics& diagnostics) {
+  Lowering lowering(model, bodies, frame, diagnostics);
+  for (const ClaimedBody& body : claimed) {
+    if (!lowering.claimed(body)) return std::nullopt;
+  }
   return lowering.finish();
 }
 

@@ -58,4 +58,23 @@ std::optional<Program> lower_relation(const sema::Model& model, const sema::Pred
                                       const std::vector<Body>& bodies, const sema::Frame& frame,
                                       Diagnostics& diagnostics);
 
+// A body that words may denote: all of its relations must hold.
+struct ClaimedBody {
+  std::uint16_t body = 0;
+  // The one that the words mean. A relation to those alike is asked of each list of them: of this
+  // body it must hold of all lists, any other may be denoted where it holds of one.
+  bool is_meant = false;
+  struct Relation {
+    const sema::Predicate* relation = nullptr;
+    std::vector<std::uint16_t> of;                  // its objects, `body` first
+    std::vector<std::vector<std::uint16_t>> alike;  // one list, or those for certain and all
+  };
+  std::vector<Relation> relations;
+};
+
+// The program of a claim: a truth for each of the bodies, called as plan::claim_metric says.
+std::optional<Program> lower_claim(const sema::Model& model, std::span<const ClaimedBody> claimed,
+                                   const std::vector<Body>& bodies, const sema::Frame& frame,
+                                   Diagnostics& diagnostics);
+
 }  // namespace probe::lower

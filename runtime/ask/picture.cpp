@@ -5,6 +5,7 @@
 #include "runtime/base/sha256.h"
 #include "runtime/scene/image.h"
 #include "runtime/servers/resize.h"
+#include "runtime/vm/claims.h"
 #include "runtime/wire/base64.h"
 
 namespace probe::ask {
@@ -63,6 +64,7 @@ Result<View> Viewer::start(std::uint32_t episode) {
   const plan::EpisodeRecord& record = plan_.episodes()[episode];
   PROBE_ASSIGN(stage::Stage * stage, stage_of(record.task));
   PROBE_TRY(stage->reset(record.index));
+  PROBE_TRY(vm::check_claims(plan_, record.task, stage->body_starts(), stage->sample()));
   return look(*stage);
 }
 

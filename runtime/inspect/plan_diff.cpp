@@ -7,21 +7,24 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "runtime/inspect/claims_json.h"
 #include "runtime/inspect/question_json.h"
 
 namespace probe::inspect {
 namespace {
 
 struct Changes {
-  bool prompt = false, judge = false;  // equal
+  bool prompt = false, judge = false, claims = false;  // equal
   std::size_t starts = 0, episodes = 0, of_a = 0, of_b = 0;
 
   bool none() const { return of_a == of_b && episodes == of_a && starts == of_a; }
 };
 
-Changes compare(const plan::Plan& a, const plan::TaskRecord& ours, const plan::Plan& b,
-                const plan::TaskRecord& theirs) {
+Changes compare(const plan::Plan& a, std::uint32_t our_task, const plan::Plan& b,
+                std::uint32_t their_task) {
+  const plan::TaskRecord &ours = a.tasks()[our_task], &theirs = b.tasks()[their_task];
   Changes found;
+  found.claims = same_claims(a, our_task, b, their_task);
   found.prompt = a.text(ours.prompt) == b.text(theirs.prompt);
   found.judge = ours.judge_id == theirs.judge_id;
   const auto here = a.episodes(ours);
@@ -42,15 +45,16 @@ Json diff_plans(const plan::Plan& a, const plan::Plan& b) {
   for (std::uint32_t t = 0; t < b.tasks().size(); ++t) by_name[b.text(b.tasks()[t].name)] = t;
   Json only_a = Json::array(), only_b = Json::array(), changed = Json::array();
   std::size_t equal = 0;
-  for (const plan::TaskRecord& task : a.tasks()) {
+  for (std::uint32_t t = 0; t < a.tasks().size(); ++t) {
+    const plan::TaskRecord& task = a.tasks()[t];
     const auto match = by_name.find(a.text(task.name));
     if (match == by_name.end()) {
       only_a.push_back(a.text(task.name));
       continue;
     }
-    const Changes found = compare(a, task, b, b.tasks()[match->second]);
+    const Changes found = compare(a, t, b, match->second);
     by_name.erase(match);
-    if (found.none() && found.prompt && found.judge) {
+    if (found.none() && found.prompt && found.judge && found.claims) {
       ++equal;
       continue;
     }
@@ -61,6 +65,7 @@ Json diff_plans(const plan::Plan& a, const plan::Plan& b) {
                        {"episodes", found.episodes},
                        {"of_a", found.of_a},
                        {"of_b", found.of_b}});
+    if (!found.claims) changed.back()["claims"] = false;
   }
   for (const plan::TaskRecord& task : b.tasks()) {
     if (by_name.contains(b.text(task.name))) only_b.push_back(b.text(task.name));
@@ -86,6 +91,7 @@ std::string plan_diff_text(const Json& diff) {
       fmt::format_to(out, " {} -> {} episodes;", number("of_a"), number("of_b"));
     if (!task["prompt"].get<bool>()) text += " prompt;";
     if (!task["judge"].get<bool>()) text += " judge;";
+    if (task.contains("claims")) text += " what its words say of places;";
     const std::size_t of = std::max(number("of_a"), number("of_b"));
     if (number("starts") != of) fmt::format_to(out, " {} of {} starts;", of - number("starts"), of);
     fmt::format_to(out, " {} of {} episodes are others\n", of - number("episodes"), of);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/inspect/axes.h"
+#include "runtime/inspect/claims_json.h"
 #include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/words.h"
 #include "runtime/inspect/wrap.h"
@@ -15,7 +16,14 @@
 namespace probe::inspect {
 namespace {
 
-Json side(const plan::Plan& plan, const plan::TaskRecord& task) {
+// What only some tasks have; it stands below what all of them have.
+constexpr const char* kOfSome[] = {"placed", "claims"};
+bool is_of_some(const std::string& key) {
+  return std::ranges::find(kOfSome, key) != std::end(kOfSome);
+}
+
+Json side(const plan::Plan& plan, std::uint32_t index) {
+  const plan::TaskRecord& task = plan.tasks()[index];
   Json json;
   json["prompt"] = plan.text(task.prompt);
   add_roles(plan, task, json);
@@ -31,6 +39,9 @@ Json side(const plan::Plan& plan, const plan::TaskRecord& task) {
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
     json["metrics"].push_back(plan.text(metric.name));
+  Json said;
+  add_claims(plan, index, said);
+  if (said.contains("claims")) json["claims"] = claims_text(said["claims"]);
   json["instructions"] = plan.code(plan.programs()[task.program]).size();
   json["episodes"] = task.episodes.count;
   return json;
@@ -98,8 +109,8 @@ Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t secon
                           : b_varies ? Json(plan::moved_axes(plan.tables(), b))
                                      : Json();
   json["equal"] = equal_ids(plan, a, b);
-  json["left"] = side(plan, a);
-  json["right"] = side(plan, b);
+  json["left"] = side(plan, first);
+  json["right"] = side(plan, second);
   json["words_a"] = to_json(words.a);
   json["words_b"] = to_json(words.b);
   return json;
@@ -116,7 +127,7 @@ std::string diff_text(const Json& diff) {
   };
   const Json sides[] = {diff["left"], diff["right"]};
   for (const auto& [key, left] : sides[0].items()) {
-    if (key == "roles" || key == "placed") continue;
+    if (key == "roles" || is_of_some(key)) continue;
     add(key, left, sides[1][key]);
     if (key != "target") continue;
     // Other roles of either side stand below the two that most tasks have.
@@ -130,8 +141,10 @@ std::string diff_text(const Json& diff) {
       }
     }
   }
-  if (sides[0].contains("placed") || sides[1].contains("placed"))
-    add("placed", sides[0].value("placed", Json()), sides[1].value("placed", Json()));
+  for (const char* key : kOfSome) {
+    if (sides[0].contains(key) || sides[1].contains(key))
+      add(key, sides[0].value(key, Json()), sides[1].value(key, Json()));
+  }
   rows[1].a = marked(to_words(diff["words_a"]));
   rows[1].b = marked(to_words(diff["words_b"]));
   // Two columns side by side within a screen of 100; longer cells go on below themselves.

@@ -12,6 +12,7 @@
 
 #include "runtime/base/trig.h"
 #include "runtime/inspect/axes.h"
+#include "runtime/inspect/claims_json.h"
 #include "runtime/inspect/fixture_json.h"
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/roles_json.h"
@@ -132,6 +133,7 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   Json json = summarise(plan, index, categories_of(plan)[index]);
   add_roles(plan, task, json);
   json["horizon"] = task.horizon;
+  add_claims(plan, index, json);
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
     json["metrics"].push_back(plan.text(metric.name));
@@ -281,6 +283,7 @@ std::string describe_text(const Json& task) {
                    tenth(task["drop_m"].get<double>(), 100), task["settle_s"].get<double>()));
   line("metrics", joined(task["metrics"], "none"));
   line("horizon", fmt::format("{} steps", task["horizon"].get<std::uint32_t>()));
+  if (task.contains("claims")) line("claims", joined(claims_text(task["claims"]), "none"));
   const Json& ids = task["ids"];
   line("prompt id", short_id(ids["prompt"]));
   line("judge id", short_id(ids["judge"]));

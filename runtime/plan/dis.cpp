@@ -121,6 +121,20 @@ void list_program(std::string& out, const Plan& plan, const TaskRecord& task, st
   Lister(plan, task, index).list(out);
 }
 
+// Programs of claims, the same way.
+void list_claim_programs(std::string& out, const Plan& plan, std::uint32_t task) {
+  std::vector<bool> listed(plan.programs().size(), false);
+  for (const ClaimRecord& claim : plan.claims()) {
+    if (listed[claim.program] || (task != kNone && claim.task != task)) continue;
+    listed[claim.program] = true;
+    const TaskRecord& of = plan.tasks()[claim.task];
+    out += "\n";
+    list_program(out, plan, of, claim.program,
+                 fmt::format("claim \"{}\" is body {} of {}", plan.text(claim.text), claim.body,
+                             plan.text(of.name)));
+  }
+}
+
 // Programs of which a question has its right answer, below those of tasks: of one task, or of all.
 void list_question_programs(std::string& out, const Plan& plan, std::uint32_t task) {
   std::vector<bool> listed(plan.programs().size(), false);
@@ -143,6 +157,7 @@ std::string disassemble(const Plan& plan, std::uint32_t task) {
   std::string out;
   const TaskRecord& record = plan.tasks()[task];
   list_program(out, plan, record, record.program, plan.text(record.name));
+  list_claim_programs(out, plan, task);
   list_question_programs(out, plan, task);
   return out;
 }
@@ -164,6 +179,7 @@ std::string disassemble(const Plan& plan) {
     out += "\n";
     list_program(out, plan, first, first.program, names);
   }
+  list_claim_programs(out, plan, kNone);
   list_question_programs(out, plan, kNone);
   return out;
 }

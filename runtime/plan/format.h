@@ -387,6 +387,18 @@ static_assert(sizeof(ViewRecord) == 16);
 
 inline constexpr std::uint32_t kMaxViews = 16;
 
+// What an instruction says of places: its words denote one body alone. Proved of every start where
+// things are put down, and judged once more where they have come to rest. See claims.h.
+struct ClaimRecord {
+  std::uint32_t task = kNone;     // kTasks
+  std::uint32_t body = kNone;     // task-local: the object that the words mean
+  std::uint32_t program = kNone;  // kPrograms: a truth for every body that they may denote
+  std::uint32_t zero = 0;
+  StringRef text;  // the words
+  std::uint64_t zero2 = 0;
+};
+static_assert(sizeof(ClaimRecord) == 32);
+
 enum class Axis : std::uint32_t {
 #define PROBE_AXIS(bit, name, text, in, is_phrase) k##name = 1u << bit,
 #include "runtime/plan/axes.def"

@@ -55,6 +55,7 @@ class RecordCheck : FieldCheck {
   Status check(const PlacementRecord& placement) const;
   Status check(const RoleRecord& role) const;
   Status check(const TaskRecord& task) const;
+  Status check(const ClaimRecord& claim) const;
   Status check(const EpisodeRecord& episode) const;
   Status check(const SetRecord& set) const;
   Status check(const SuiteRecord& suite) const;
@@ -80,6 +81,9 @@ Status verify_robots(std::span<const std::byte> bytes, const Tables& tables);
 
 // What the records of fixtures say of one another, of scenes and of episodes; after RecordCheck.
 Status verify_fixtures(std::span<const std::byte> bytes, const Tables& tables);
+
+// What claims say of their tasks and programs; after verify_relations.
+Status verify_claims(std::span<const std::byte> bytes, const Tables& tables);
 
 // What records say of one another; after RecordCheck.
 Status verify_relations(std::span<const std::byte> bytes, const Tables& tables);

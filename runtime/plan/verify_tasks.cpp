@@ -133,6 +133,14 @@ Status RecordCheck::check(const TaskRecord& k) const {
   return check_zero(k.zero2);
 }
 
+Status RecordCheck::check(const ClaimRecord& c) const {
+  PROBE_TRY(check_index(c.task, t.tasks.size(), "TASK"));
+  PROBE_TRY(check_index(c.program, t.programs.size(), "PROG"));
+  PROBE_TRY(check_zero(c.zero));
+  PROBE_TRY(check_name(c.text, "the words of a claim"));
+  return check_zero({&c.zero2, 1});
+}
+
 Status RecordCheck::check(const EpisodeRecord& e) const {
   PROBE_TRY(check_zero(e.zero));
   PROBE_TRY(check_slice(e.joints, t.reals.size(), "REAL"));

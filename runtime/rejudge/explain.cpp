@@ -14,6 +14,7 @@
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
+#include "runtime/vm/claims.h"
 
 namespace probe::rejudge {
 namespace {
@@ -313,6 +314,25 @@ Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t tas
   return Explainer(plan, task).run(trace, chosen, score.steps.size());
 }
 
+namespace {
+
+Result<std::vector<ClaimWhy>> explain_claims(const plan::Plan& plan, std::uint32_t task,
+                                             const store::TraceStart& start) {
+  PROBE_ASSIGN(const auto verdicts, vm::judge_claims(plan, task, start.starts, start.sample));
+  const auto bodies = plan.bodies(plan.tasks()[task]);
+  std::vector<ClaimWhy> out;
+  for (const vm::ClaimVerdict& claim : verdicts) {
+    ClaimWhy why{
+        std::string(claim.text), std::string(plan.text(bodies[claim.body].name)), {}, claim.holds};
+    for (const std::uint32_t body : claim.denoted)
+      why.denoted.emplace_back(plan.text(bodies[body].name));
+    out.push_back(std::move(why));
+  }
+  return out;
+}
+
+}  // namespace
+
 Result<EpisodeWhy> why(const std::string& dir, const std::string& task, int episode,
                        std::optional<int> seed, const std::string& metric) {
   PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
@@ -328,7 +348,11 @@ Result<EpisodeWhy> why(const std::string& dir, const std::string& task, int epis
                  .seed = stored.row.seed,
                  .steps = static_cast<int>(stored.trace.steps.size()),
                  .invalid = stored.row.invalid,
+                 .claims = {},
                  .metrics = {}};
+  if (stored.trace.start) {
+    PROBE_ASSIGN(out.claims, explain_claims(plan, *index, *stored.trace.start));
+  }
   PROBE_ASSIGN(out.metrics, explain(plan, *index, stored.trace, metric));
   return out;
 }

@@ -46,10 +46,18 @@ struct MetricWhy {
 Result<std::vector<MetricWhy>> explain(const plan::Plan& plan, std::uint32_t task,
                                        const store::Trace& trace, const std::string& metric = {});
 
+// What the instruction says of places, at the settled start.
+struct ClaimWhy {
+  std::string text, object;          // the words and what they mean
+  std::vector<std::string> denoted;  // what they denote there
+  bool holds = false;                // `object` alone
+};
+
 struct EpisodeWhy {
   std::string task;
   int episode = 0, seed = 0, steps = 0;
   std::optional<std::string> invalid;
+  std::vector<ClaimWhy> claims;
   std::vector<MetricWhy> metrics;
 };
 

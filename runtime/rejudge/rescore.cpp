@@ -6,6 +6,7 @@
 
 #include "runtime/plan/fixtures.h"
 #include "runtime/store/episode_key.h"
+#include "runtime/vm/claims.h"
 
 namespace probe::rejudge {
 
@@ -71,6 +72,10 @@ Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const store
     return out;
   };
   if (auto begun = judge.begin(trace.start->starts); !begun) return fail(begun.failure());
+  if (auto so = vm::check_claims(plan, task, trace.start->starts, trace.start->sample); !so) {
+    if (!out.invalid) out.invalid = "start: " + to_text(so.failure());
+    return out;
+  }
   const std::size_t steps = std::min<std::size_t>(trace.steps.size(), plan.tasks()[task].horizon);
   for (std::size_t i = 0; i < steps; ++i) {
     if (auto judged = judge.step(trace.steps[i].sample); !judged) return fail(judged.failure());

@@ -8,6 +8,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/hash_number.h"
 #include "runtime/base/percent.h"
+#include "runtime/vm/claims.h"
 
 namespace probe::run {
 namespace {
@@ -46,6 +47,7 @@ class Loop {
   Loop(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
        store::TraceWriter& trace, show::FrameSink* frames, store::ResultRow& row)
       : stage_(stage),
+        plan_(plan),
         task_(plan.tasks()[job.task]),
         episode_(plan.episodes(task_)[job.index]),
         job_(job),
@@ -101,6 +103,9 @@ class Loop {
     start.sample = stage_.sample();
     start.state_hash = stage_.state_hash();
     if (auto written = trace_.start(start); !written) return {{}, written.failure()};
+    // An instruction that is not so where things have come to rest is never said to a policy.
+    if (auto so = vm::check_claims(plan_, job_.task, start.starts, start.sample); !so)
+      return {reason("start", so.failure()), {}};
 
     policy::EpisodeStart first = stage_.introduction();
     first.seed = job_.seed;
@@ -172,6 +177,7 @@ class Loop {
   }
 
   stage::Stage& stage_;
+  const plan::Plan& plan_;
   const plan::TaskRecord& task_;
   const plan::EpisodeRecord& episode_;
   const EpisodeJob& job_;

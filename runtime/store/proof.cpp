@@ -10,6 +10,7 @@
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
+#include "runtime/vm/claims.h"
 #include "runtime/vm/judge.h"
 
 namespace probe::store {
@@ -20,6 +21,10 @@ bool is_judged_so(const plan::Plan& plan, std::uint32_t task, const Trace& trace
   if (!trace.start) return trace.steps.empty();
   vm::Judge judge(plan, task);
   if (!judge.begin(trace.start->starts)) return false;
+  // Where the words of the task are not so no episode is valid.
+  if (!trace.end->invalid &&
+      !vm::check_claims(plan, task, trace.start->starts, trace.start->sample))
+    return false;
   for (const TraceStep& step : trace.steps) {
     if (!judge.step(step.sample)) return false;
     if (!std::ranges::equal(judge.values(), step.metrics)) return false;

@@ -229,8 +229,46 @@ inline void give_roles(Records& r, const RoleRecord& first, const RoleRecord& se
   r.tasks[0].roles = {0, 2};
 }
 
+// Claims that the words mean the first object, and not the second.
+inline void give_claims(Records& r, Writer& w, std::uint32_t count) {
+  ProgramRecord program;
+  const std::vector<Instruction> code = {
+      make_instruction(Op::kKB, 0, 1), make_instruction(Op::kKB, 1, 0),
+      make_instruction(Op::kEMITB, 2, 0, 0), make_instruction(Op::kEMITB, 2, 1, 1),
+      make_instruction(Op::kEND, 2)};
+  const auto truth = static_cast<std::uint32_t>(MetricType::kBool);
+  const auto at_end = static_cast<std::uint32_t>(Readout::kAtEnd);
+  const std::vector<MetricRecord> metrics = {{w.text("body_0"), truth, at_end},
+                                             {w.text("body_1"), truth, at_end}};
+  program.code = append<Instruction>(r.code, code);
+  program.metrics = append<MetricRecord>(r.metrics, metrics);
+  program.hash = program_hash(r.tables(), program).bytes;
+  r.programs.push_back(program);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    ClaimRecord claim;
+    claim.task = i;
+    claim.body = 0;
+    claim.program = static_cast<std::uint32_t>(r.programs.size() - 1);
+    claim.text = w.text("carrot on the left");
+    r.claims.push_back(claim);
+  }
+}
+
 inline std::vector<Defect> task_defects() {
   return {
+      {"CLAM", "stands behind one of task 1",
+       [](Records& r, Writer& w) { give_claims(r, w, 2), std::swap(r.claims[0], r.claims[1]); }},
+      {"CLAM", "is no object of task",
+       [](Records& r, Writer& w) { give_claims(r, w, 1), r.claims[0].body = 2; }},
+      {"CLAM", "remembers nothing",
+       [](Records& r, Writer& w) { give_claims(r, w, 1), r.claims[0].program = 0; }},
+      {"CLAM", "is no truth of an object",
+       [](Records& r, Writer& w) { give_claims(r, w, 1), r.metrics[3].name = w.text("body_2"); }},
+      {"CLAM", "does not say whether body 0",
+       [](Records& r, Writer& w) {
+         give_claims(r, w, 1), r.metrics[3].name = w.text("body_1");
+         r.programs[1].metrics.count = 1;
+       }},
       {"ROLE", "role kind",
        [](Records& r, Writer& w) {
          r.roles.push_back({w.text("helper"), 4, 2, 1});

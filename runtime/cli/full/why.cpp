@@ -23,6 +23,12 @@ void print_json(const rejudge::EpisodeWhy& why) {
   Json json = {
       {"task", why.task}, {"episode", why.episode}, {"seed", why.seed}, {"steps", why.steps}};
   json["invalid"] = why.invalid ? Json(*why.invalid) : nullptr;
+  for (const rejudge::ClaimWhy& claim : why.claims) {
+    json["claims"].push_back({{"text", claim.text},
+                              {"object", claim.object},
+                              {"denoted", claim.denoted},
+                              {"holds", claim.holds}});
+  }
   json["metrics"] = Json::array();
   for (const rejudge::MetricWhy& metric : why.metrics) {
     Json entry = {{"metric", metric.name},     {"value", metric.value}, {"shown", metric.shown},
@@ -171,6 +177,13 @@ int why_verb(const WhyArguments& arguments) {
   }
   put("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
   if (why->invalid) put("invalid: {}\n", *why->invalid);
+  for (const rejudge::ClaimWhy& claim : why->claims) {
+    std::string denoted;
+    for (const std::string& object : claim.denoted)
+      denoted += (denoted.empty() ? "" : " and ") + object;
+    put("\"{}\" is {}: in the settled start it denotes {}\n", claim.text, claim.object,
+        denoted.empty() ? "nothing" : denoted);
+  }
   for (const rejudge::MetricWhy& metric : why->metrics) {
     put("\n");
     print_metric(metric);

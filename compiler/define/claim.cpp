@@ -1,0 +1,69 @@
+#include "compiler/define/claim.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "compiler/define/in_start.h"
+#include "compiler/define/query.h"
+#include "compiler/define/template.h"
+
+namespace probe::sema {
+namespace {
+
+// What one object would have to be for the phrase to denote it; nothing where it never does.
+std::optional<lower::ClaimedBody> claimed_body(const Model& model, const Task& task,
+                                               const Phrase& phrase, std::uint16_t body,
+                                               const Alike& alike) {
+  const std::vector<ObjectId> objects = task.objects();
+  if (std::find(alike.all.begin(), alike.all.end(), body) == alike.all.end()) return std::nullopt;
+  lower::ClaimedBody claimed;
+  claimed.body = body;
+  for (const QueryOp& op : phrase.means) {
+    if (op.kind != QueryOp::kRelation) continue;
+    const std::optional<std::vector<std::uint16_t>> of =
+        related_bodies(model, objects, op, body, alike);
+    if (!of) return std::nullopt;
+    lower::ClaimedBody::Relation relation;
+    relation.relation = &model.predicates[static_cast<PredicateId>(op.a)];
+    relation.of = *of;
+    relation.alike.push_back(alike.sure);
+    if (alike.all != alike.sure) relation.alike.push_back(alike.all);
+    claimed.relations.push_back(std::move(relation));
+  }
+  return claimed;
+}
+
+Claim claim_of(const Model& model, const Task& task, const Phrase& phrase, ObjectId wanted) {
+  const std::vector<ObjectId> objects = task.objects();
+  const Alike alike = alike_of(model, objects, phrase);
+  Claim claim{&phrase, wanted, {}};
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    auto claimed = claimed_body(model, task, phrase, static_cast<std::uint16_t>(i), alike);
+    if (!claimed) continue;
+    claimed->is_meant = objects[i] == wanted;
+    claim.claimed.push_back(std::move(*claimed));
+  }
+  return claim;
+}
+
+}  // namespace
+
+std::vector<Claim> claims_of(const Model& model, const Task& task) {
+  std::vector<Claim> claims;
+  std::set<ObjectId> known;
+  const Template& say = model.templates[task.say];
+  for (const Template::Part& part : say.parts) {
+    if (!part.slot || part.slot->role == RoleId::kNone) continue;
+    for (const ObjectId object : meant_by(model, task, say, *part.slot)) {
+      const Referring words = referring(model, task, object);
+      if (words.phrase == nullptr || !words.phrase->is_spatial()) continue;
+      if (known.insert(object).second)
+        claims.push_back(claim_of(model, task, *words.phrase, object));
+    }
+  }
+  return claims;
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,57 @@
+// A plan of two tasks in the same words: a lying spoon stays left of the cube, one that is put down
+// on its end falls over.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "compiler/diag/text.h"
+#include "compiler/emit/compile.h"
+#include "runtime/plan/plan.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::run {
+
+inline const char* const kClaimsText = R"(use "suite/intact.probe"
+relation on_left(a: object, b: object, by: length = 2cm) "left" = y(a) > y(b) + by
+
+object lying like spoon { phrase side spatial "spoon left of the green cube" means on_left green_cube }
+object standing like lying { rest pitch 80deg yaw 90deg }
+
+layout row {
+  place source at (-22cm, 8cm); place target at (-12cm, -8cm); place distractors at (-11cm, 4.5cm)
+  orient by rest; drop 1cm settle 0.5s
+}
+task stays like on_table {
+  source lying; target towel; distractors green_cube; layout row; say put_the; metrics put_loose
+  horizon 6 steps; refer source as side
+}
+task falls like stays { source standing; refer source as side }
+suite mine trained on bridge_v2 { tasks { stays, falls }; seeds 42 }
+)";
+
+inline const plan::Plan& claims_plan() {
+  static const plan::Plan plan = [] {
+    const TemporaryFolder folder;
+    const std::string root = VLAPROBE_SOURCE_DIR;
+    const std::string file = folder / "claims.probe";
+    std::ofstream(file) << kClaimsText;
+    CompileOptions options;
+    options.asset_root = root + "/assets";
+    options.library_folders = {root + "/dsl", root};
+    options.suite = "mine";
+    auto built = build(std::span<const std::string>(&file, 1), options);
+    REQUIRE_MESSAGE(built.ok(), to_text(built.failure()));
+    REQUIRE_MESSAGE(built->ok, render_text(built->diagnostics, built->sources));
+    auto made = plan::Plan::from_bytes(std::move(built->plan));
+    REQUIRE_MESSAGE(made.ok(), to_text(made.failure()));
+    return std::move(made).value();
+  }();
+  return plan;
+}
+
+}  // namespace probe::run
