@@ -41,9 +41,10 @@ bool same_words(const std::vector<Spelled>& a, const std::vector<Spelled>& b) {
                     [](const Spelled& p, const Spelled& q) { return p.text == q.text; });
 }
 
-// Whether they take the same of a layout's starts, as far as that is said.
+// Whether they take the same of a layout's starts, as far as that is said, and begin as long after.
 bool same_choice(const Task& a, const Task& b) {
-  return std::equal(a.clear.begin(), a.clear.end(), b.clear.begin(), b.clear.end(),
+  return a.idle == b.idle &&
+         std::equal(a.clear.begin(), a.clear.end(), b.clear.begin(), b.clear.end(),
                     [](const ClearPhrase& p, const ClearPhrase& q) {
                       return p.role == q.role && p.phrase.text == q.phrase.text;
                     });

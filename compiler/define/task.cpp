@@ -198,6 +198,15 @@ struct TaskReader {
         "expected a horizon between 1 and " + std::to_string(plan::kMaxHorizon) + " steps");
     poisoned = true;
   }
+  void operator()(const syntax::IdleStmt& stmt) {
+    task.idle =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(stmt.steps.value, plan::kMaxIdle));
+    if (stmt.steps.value <= plan::kMaxIdle) return;
+    context.report(
+        Situation::kIdleTooLong, stmt.steps.span,
+        "expected at most " + std::to_string(plan::kMaxIdle) + " steps of standing still");
+    poisoned = true;
+  }
   void operator()(const syntax::MetricStmt& stmt) {
     Metric metric = read_metric(context, *declared.file, stmt);
     poisoned = poisoned || metric.type.kind == TypeKind::kPoison;

@@ -125,6 +125,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.roles = add_roles(task);
   record.distractors = size32(task.distractors);
   record.horizon = static_cast<std::uint32_t>(task.horizon);
+  record.idle = task.idle;
   record.baseline = tasks_[task.baseline];
   record.axes = record.baseline == plan::kNone ? 0 : task.axes;
   record.ood = task.ood;

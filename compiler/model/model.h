@@ -417,6 +417,7 @@ struct Task {
   std::vector<PoseOverride> poses;
   std::vector<JointStart> joint_starts;
   std::uint64_t horizon = 0;
+  std::uint32_t idle = 0;         // steps of standing still before the first of the horizon
   std::vector<Metric> overrides;  // `set`
 
   Span layout_span, say_span, distractors_span, horizon_span;

@@ -773,8 +773,13 @@ struct HorizonStmt {
   Span span;
   Int steps;
 };
+struct IdleStmt {
+  Span span;
+  Int steps;
+};
 using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
-                              ReferStmt, PoseStmt, StartStmt, HorizonStmt, MetricStmt, RoleStmt>;
+                              ReferStmt, PoseStmt, StartStmt, HorizonStmt, IdleStmt, MetricStmt,
+                              RoleStmt>;
 
 struct TaskDecl {
   bool abstract = false;

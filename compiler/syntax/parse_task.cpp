@@ -119,6 +119,13 @@ TaskStmt Parser::task_horizon() {
   return out;
 }
 
+TaskStmt Parser::task_idle() {
+  IdleStmt out;
+  out.steps = integer();
+  expect_word("steps");
+  return out;
+}
+
 DeclNode Parser::role_decl() {
   advance();
   RoleDecl out;

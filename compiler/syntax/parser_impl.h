@@ -221,6 +221,7 @@ class Parser {
   Param param();
   DeclNode metrics_decl();
   MetricStmt metric();
+  MetricStmt ends();
   Readout readout();
 
   // ---- parse_expr.cpp ----
@@ -259,6 +260,7 @@ class Parser {
   TaskStmt task_pose();
   TaskStmt task_start();
   TaskStmt task_horizon();
+  TaskStmt task_idle();
   TaskStmt task_metric();
   TaskStmt task_role();
   DeclNode role_decl();

@@ -83,7 +83,8 @@ bool same_layout(const plan::Plan& plan, const plan::TaskRecord& a, const plan::
                  bool same_distractors) {
   const auto ours = plan.episodes(a);
   const auto theirs = plan.episodes(b);
-  if (a.drop != b.drop || a.settle != b.settle || ours.size() != theirs.size()) return false;
+  if (a.drop != b.drop || a.settle != b.settle || a.idle != b.idle || ours.size() != theirs.size())
+    return false;
   const plan::TaskRoles ours_by_role = plan::roles_of(plan.tables(), a);
   const plan::TaskRoles theirs_by_role = plan::roles_of(plan.tables(), b);
   // Of tasks with other roles those bodies are compared that have a role in both.

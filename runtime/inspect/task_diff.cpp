@@ -17,7 +17,7 @@ namespace probe::inspect {
 namespace {
 
 // What only some tasks have; it stands below what all of them have.
-constexpr const char* kOfSome[] = {"placed", "claims"};
+constexpr const char* kOfSome[] = {"placed", "idle", "claims"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -39,6 +39,7 @@ Json side(const plan::Plan& plan, std::uint32_t index) {
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
     json["metrics"].push_back(plan.text(metric.name));
+  if (task.idle != 0) json["idle"] = task.idle;
   Json said;
   add_claims(plan, index, said);
   if (said.contains("claims")) json["claims"] = claims_text(said["claims"]);

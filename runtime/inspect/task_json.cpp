@@ -133,6 +133,7 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   Json json = summarise(plan, index, categories_of(plan)[index]);
   add_roles(plan, task, json);
   json["horizon"] = task.horizon;
+  if (task.idle != 0) json["idle"] = task.idle;
   add_claims(plan, index, json);
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
@@ -282,7 +283,10 @@ std::string describe_text(const Json& task) {
        fmt::format("{} starts, dropped from {} cm, settled for {} s", task["starts"].size(),
                    tenth(task["drop_m"].get<double>(), 100), task["settle_s"].get<double>()));
   line("metrics", joined(task["metrics"], "none"));
-  line("horizon", fmt::format("{} steps", task["horizon"].get<std::uint32_t>()));
+  const std::string idle = task.contains("idle") ? fmt::format(", behind {} of standing still",
+                                                               task["idle"].get<std::uint32_t>())
+                                                 : "";
+  line("horizon", fmt::format("{} steps{}", task["horizon"].get<std::uint32_t>(), idle));
   if (task.contains("claims")) line("claims", joined(claims_text(task["claims"]), "none"));
   const Json& ids = task["ids"];
   line("prompt id", short_id(ids["prompt"]));

@@ -365,11 +365,11 @@ struct TaskRecord {
   std::uint32_t baseline = kNone;  // kTasks
   std::uint32_t axes = 0;          // bit mask of Axis: what differs from the baseline
   std::uint32_t ood = 0;           // bit mask: 1 source, 2 target, 4 relation
-  std::uint32_t zero = 0;
-  StringRef allow;    // reason of an allowed confounded comparison, or empty
-  Slice episodes;     // kEpisodes
-  double drop = 0;    // m above the surface; placements contain it
-  double settle = 0;  // s, per phase of the drop
+  std::uint32_t idle = 0;          // control steps between settling and the first that is judged
+  StringRef allow;                 // reason of an allowed confounded comparison, or empty
+  Slice episodes;                  // kEpisodes
+  double drop = 0;                 // m above the surface; placements contain it
+  double settle = 0;               // s, per phase of the drop
   std::array<std::uint8_t, 32> judge_id{};
   Slice views;  // kViews, the first shows `camera`; empty: that camera alone, under its own name
   Slice roles;  // kRoles, in the order of their bodies

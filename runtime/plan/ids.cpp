@@ -215,15 +215,17 @@ Sha256 IdHasher::light(std::uint32_t index) {
   return *known;
 }
 
+void IdHasher::hash_law(Hasher& h, const LawRecord& law) const {
+  h.f64s(law.kp).f64s(law.damping).f64s(law.output).f64(law.null_kp).f64(law.ramp);
+  h.f64(law.grip_pace).f64(law.grip_stiffness).f64(law.grip_limit).f64(law.most);
+  h.u32(law.flags).u32(law.home.count).f64s(slice_of(tables_.reals, law.home));
+}
+
 Sha256 IdHasher::judge(const TaskRecord& task) {
   const RobotRecord& r = tables_.robots[tables_.scenes[task.scene].robot];
   const LawRecord* law = law_of(tables_, r);
   Hasher h = tagged(law == nullptr ? "vlaprobe.judge.1" : "vlaprobe.judge.2");
-  if (law != nullptr) {
-    h.f64s(law->kp).f64s(law->damping).f64s(law->output).f64(law->null_kp).f64(law->ramp);
-    h.f64(law->grip_pace).f64(law->grip_stiffness).f64(law->grip_limit).f64(law->most);
-    h.u32(law->flags).u32(law->home.count).f64s(slice_of(tables_.reals, law->home));
-  }
+  if (law != nullptr) hash_law(h, *law);
   return h.hash(program(task.program)).u32(task.horizon).u32(r.control).f64(r.control_hz).finish();
 }
 
@@ -240,7 +242,15 @@ Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
     const std::vector<double> joints = joint_starts_of(tables_, s, episode);
     h.u32(static_cast<std::uint32_t>(joints.size())).f64s(joints);
   }
+  if (task.idle != 0) hash_idle(h, task);
   return h.finish();
+}
+
+// While it idles the robot is controlled, so its law and rate are part of where things are then.
+void IdHasher::hash_idle(Hasher& h, const TaskRecord& task) const {
+  const RobotRecord& r = tables_.robots[tables_.scenes[task.scene].robot];
+  h.text("idle").u32(task.idle).u32(r.control).f64(r.control_hz);
+  if (const LawRecord* law = law_of(tables_, r)) hash_law(h, *law);
 }
 
 std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
@@ -255,6 +265,11 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
                                   {"camera", cameras(task)},
                                   {"light", light(task.light)},
                                   {"drop", drop.finish()}};
+  if (task.idle != 0) {
+    Hasher idle;
+    hash_idle(idle, task);
+    parts.push_back({"idle steps", idle.finish()});
+  }
   const TaskRoles roles = roles_of(tables_, task);
   if (s.fixtures.count > 0) {
     Hasher joints = tagged("vlaprobe.joints.1");

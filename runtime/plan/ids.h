@@ -59,6 +59,8 @@ class IdHasher {
   Sha256 object(std::uint32_t index);
   Sha256 scene(std::uint32_t index);
   void hash_surroundings(Hasher& hasher, const SceneRecord& scene) const;
+  void hash_law(Hasher& hasher, const LawRecord& law) const;
+  void hash_idle(Hasher& hasher, const TaskRecord& task) const;
   Sha256 robot(const RobotRecord& robot) const;
   Sha256 fixture(const FixtureRecord& fixture) const;
   Sha256 camera(std::uint32_t index);

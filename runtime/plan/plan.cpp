@@ -189,6 +189,14 @@ std::optional<std::uint32_t> Plan::find_suite(std::string_view name) const {
 std::optional<std::uint32_t> Plan::find_set(std::string_view name) const {
   return find_name(tables_, tables_.sets, name);
 }
+std::optional<std::uint32_t> Plan::ends_metric(const TaskRecord& task) const {
+  const auto all = metrics(task);
+  const auto at =
+      std::ranges::find(all, static_cast<std::uint32_t>(Readout::kEnds), &MetricRecord::readout);
+  if (at == all.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(at - all.begin());
+}
+
 std::optional<std::uint32_t> Plan::find_metric(const TaskRecord& task,
                                                std::string_view name) const {
   return find_name(tables_, metrics(task), name);

@@ -81,6 +81,9 @@ class Plan {
   // Index among metrics(task).
   std::optional<std::uint32_t> find_metric(const TaskRecord& task, std::string_view name) const;
 
+  // Index among metrics(task) of the one at which episodes end; none where they last the horizon.
+  std::optional<std::uint32_t> ends_metric(const TaskRecord& task) const;
+
   // Where something was written; none when unknown or stripped.
   std::span<const SpanRecord> spans_of(SpanKind what, std::uint32_t index) const;
   // The first of these, or null.

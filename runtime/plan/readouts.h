@@ -41,6 +41,9 @@ inline constexpr std::array kReadoutTable = {
 #include "runtime/plan/readouts.def"
 };
 
+// What `ends when` is called among the metrics of a task: it stands behind no name of its own.
+inline constexpr std::string_view kEndsMetric = "ended";
+
 // Null when no read-out has this number.
 constexpr const ReadoutInfo* find_readout(std::uint32_t id) {
   for (const ReadoutInfo& info : kReadoutTable) {

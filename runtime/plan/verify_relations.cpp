@@ -42,7 +42,14 @@ class RelationCheck : FieldCheck {
       states += p.states.count;
       const auto metrics = slice_of(t.metrics, p.metrics);
       std::vector<std::string_view> names;
-      for (const MetricRecord& m : metrics) names.push_back(t.text(m.name));
+      int ends = 0;
+      for (const MetricRecord& m : metrics) {
+        names.push_back(t.text(m.name));
+        if (m.readout != static_cast<std::uint32_t>(Readout::kEnds)) continue;
+        if (m.type != static_cast<std::uint32_t>(MetricType::kBool) || ++ends > 1)
+          return fail(Rule::kEndsOnce, &m.readout,
+                      "at most one metric of a program ends an episode, and it is a truth");
+      }
       std::ranges::sort(names);
       if (std::ranges::adjacent_find(names) != names.end()) {
         return fail(Rule::kMetricName, &p.metrics, "two metrics of a program have one name");

@@ -119,7 +119,6 @@ Status RecordCheck::check(const TaskRecord& k) const {
     return fail(Rule::kAxesBaseline, &k.axes, "a task without a baseline differs on no axis");
   if ((k.ood & ~kAllOod) != 0)
     return fail(Rule::kOod, &k.ood, fmt::format("ood bits {:#x} are not all known", k.ood));
-  PROBE_TRY(check_zero(k.zero));
   PROBE_TRY(check_text(k.allow));
   PROBE_TRY(check_length(k.drop, "a drop"));
   PROBE_TRY(check_not_negative(k.settle, "a settling time"));
@@ -130,6 +129,9 @@ Status RecordCheck::check(const TaskRecord& k) const {
   PROBE_TRY(check_slice(k.episodes, t.episodes.size(), "EPIS"));
   PROBE_TRY(check_slice(k.views, t.views.size(), "VIEW"));
   PROBE_TRY(check_slice(k.roles, t.roles.size(), "ROLE"));
+  if (k.idle > kMaxIdle)
+    return fail(Rule::kIdle, &k.idle,
+                fmt::format("a task idles for at most {} steps, not {}", kMaxIdle, k.idle));
   return check_zero(k.zero2);
 }
 

@@ -103,6 +103,7 @@ std::pair<int, std::string> decision(const History& h, int last) {
       return {h.best, fmt::format("at step {}", h.best)};
     case plan::Readout::kAtEnd:
     case plan::Readout::kFinal:
+    case plan::Readout::kEnds:
       break;
   }
   if (!h.is_truth || h.changed == last) return {last, fmt::format("at step {}", last)};

@@ -9,6 +9,19 @@
 #include "runtime/vm/claims.h"
 
 namespace probe::rejudge {
+namespace {
+
+// Whether the task's episode is over with the steps that there are.
+bool ends_within(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace) {
+  if (!trace.start || !plan.ends_metric(plan.tasks()[task])) return false;
+  vm::Judge judge(plan, task);
+  if (!judge.begin(trace.start->starts)) return false;
+  return std::ranges::any_of(trace.steps, [&](const store::TraceStep& step) {
+    return judge.step(step.sample).ok() && judge.ended();
+  });
+}
+
+}  // namespace
 
 Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::Trace& trace) {
   const plan::TaskRecord& record = plan.tasks()[task];
@@ -50,7 +63,7 @@ Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::T
                               plan.text(record.name), plan.text(record.prompt)));
   }
   const bool is_invalid = trace.end && trace.end->invalid;
-  if (trace.steps.size() < record.horizon && !is_invalid) {
+  if (trace.steps.size() < record.horizon && !is_invalid && !ends_within(plan, task, trace)) {
     return refuse(fmt::format("it has {} steps, task `{}` judges {}", trace.steps.size(),
                               plan.text(record.name), record.horizon));
   }
@@ -77,7 +90,7 @@ Result<Rescored> rescore(const plan::Plan& plan, std::uint32_t task, const store
     return out;
   }
   const std::size_t steps = std::min<std::size_t>(trace.steps.size(), plan.tasks()[task].horizon);
-  for (std::size_t i = 0; i < steps; ++i) {
+  for (std::size_t i = 0; i < steps && !judge.ended(); ++i) {
     if (auto judged = judge.step(trace.steps[i].sample); !judged) return fail(judged.failure());
     const auto values = judge.values();
     out.steps.emplace_back(values.begin(), values.end());

@@ -67,10 +67,11 @@ class Loop {
   Outcome run(int steps, double most_held) {
     Outcome outcome = begin();
     for (int step = 0; step < steps && !outcome.invalid && !outcome.broken; ++step) {
+      if (stage_.judge().ended()) break;
       outcome = this->step(step);
     }
     if (!outcome.invalid && !outcome.broken) outcome = check_held(most_held);
-    if (!outcome.invalid && !outcome.broken && frames_ != nullptr) outcome = last_frame(steps);
+    if (!outcome.invalid && !outcome.broken && frames_ != nullptr) outcome = last_frame(row_.steps);
     if (row_.steps > 0) row_.frames_sha256 = to_hex(frames_hash_.finish());
     return outcome;
   }

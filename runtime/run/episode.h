@@ -43,7 +43,8 @@ struct Played {
 // stage is reset and the trace begun; the policy hears of the episode; then, step by step, look,
 // ask, act, judge, record; a last frame for the video; the policy hears of the end.
 // A policy with a live_step() (policy/live.h) has more of its steps held than `most_held` allows:
-// the row is invalid. Runs the full horizon (`steps` of them if not negative). What goes wrong with
+// the row is invalid. Runs the full horizon (`steps` of them if not negative), or to the
+// step at which what ends the task holds. What goes wrong with
 // the world, the picture or the policy, exceptions included, makes the row invalid; a Failure is
 // only what the trace or the sink could not write.
 Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job,

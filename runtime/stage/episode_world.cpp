@@ -191,9 +191,19 @@ Status EpisodeWorld::reset(std::uint32_t index) {
   PROBE_ASSIGN(const Arrangement settled, settle(begun));
   PROBE_TRY(begin_world(settled));
   controller_.reset(robot_q());
+  PROBE_TRY(idle());
   steps_ = 0;
   measure();
   starts_ = instruments_.starts(sample_);
+  return {};
+}
+
+// The arm is told to stay and the gripper to be open.
+Status EpisodeWorld::idle() {
+  policy::Action stay{};
+  stay.back() = 1;
+  for (std::uint32_t i = 0; i < task_.idle; ++i)
+    PROBE_TRY(loop_->step(stay, substeps_, &controller_, world_.get()));
   return {};
 }
 

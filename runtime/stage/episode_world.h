@@ -38,7 +38,8 @@ class EpisodeWorld {
                                                       std::shared_ptr<const SharedAssets> assets);
 
   // Drops the objects of the task's episode `index` and lets them settle with the arm out of the
-  // way, then starts a fresh world from where they lie, the arm in its initial position.
+  // way, then starts a fresh world from where they lie, the arm in its initial position, and lets
+  // it stand still for the steps that the task idles: an episode begins behind them.
   Status reset(std::uint32_t index);
 
   // One control step. The world must not be used after a failure, until the next reset.
@@ -79,6 +80,7 @@ class EpisodeWorld {
   Arrangement arrangement(std::vector<Pose> objects) const;  // fixtures' joints as they begin
   world::WorldSpec spec_at(const Arrangement& at, bool with_robot_links) const;
   Result<Arrangement> settle(const Arrangement& placed);
+  Status idle();
   bool still_moves(const world::World& world) const;
   std::span<const double> robot_q() const { return q().first(controller_.joint_count()); }
   void measure();

@@ -50,7 +50,8 @@ Status Stage::step(const policy::Action& action) {
 }
 
 bool Stage::done() const {
-  return judge_.decided() || steps() >= static_cast<int>(plan_.tasks()[task_].horizon);
+  return judge_.ended() || judge_.decided() ||
+         steps() >= static_cast<int>(plan_.tasks()[task_].horizon);
 }
 
 StageState Stage::save() const {

@@ -55,8 +55,8 @@ class Stage {
   StageState save() const;
   Status restore(const StageState& state);
 
-  // The episode is over: the horizon is reached, or no verdict can change any more, whatever
-  // happens. Nothing keeps one from stepping on.
+  // The episode is over: what ends it holds, the horizon is reached, or no verdict can change any
+  // more, whatever happens. Nothing keeps one from stepping on.
   bool done() const;
 
   // What a policy is told at the beginning of an episode, but for what the run draws (its seeds).

@@ -26,6 +26,7 @@ bool is_judged_so(const plan::Plan& plan, std::uint32_t task, const Trace& trace
       !vm::check_claims(plan, task, trace.start->starts, trace.start->sample))
     return false;
   for (const TraceStep& step : trace.steps) {
+    if (judge.ended()) return false;  // nothing comes behind the end
     if (!judge.step(step.sample)) return false;
     if (!std::ranges::equal(judge.values(), step.metrics)) return false;
   }
@@ -53,7 +54,11 @@ std::string difference(const plan::Plan& plan, const ResultRow& row, const Trace
     return "this trace has " + std::to_string(steps) + " steps, its result row says " +
            std::to_string(row.steps);
   }
-  if (!row.invalid && steps != record.horizon) {
+  const auto ends = plan.ends_metric(record);
+  const bool has_ended = ends && steps > 0 && steps < record.horizon &&
+                         *ends < trace.steps.back().metrics.size() &&
+                         trace.steps.back().metrics[*ends] != 0;
+  if (!row.invalid && steps != record.horizon && !has_ended) {
     return "this trace has " + std::to_string(steps) + " of the task's " +
            std::to_string(record.horizon) + " steps and gives no reason";
   }

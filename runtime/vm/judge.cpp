@@ -101,6 +101,8 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task, std::uint32_t number) {
   constants_.assign(constants.begin(), constants.end());
   for (const plan::StateRecord& state : plan.states(program)) hold_.push_back(state.n);
   for (const plan::MetricRecord& metric : plan.metrics(program)) {
+    if (metric.readout == static_cast<std::uint32_t>(plan::Readout::kEnds))
+      ends_ = static_cast<std::uint32_t>(metrics_.size());
     metrics_.push_back(
         {std::string(plan.text(metric.name)), static_cast<plan::MetricType>(metric.type)});
   }

@@ -60,6 +60,10 @@ class Judge {
   // `always` that was broken, and what hangs on such alone. False before the first step.
   bool decided() const;
 
+  // That the task's `ends when` holds after this step: the episode is over. False of a task that
+  // has none, and before the first step.
+  bool ended() const { return ends_ && truth(*ends_); }
+
   std::size_t metric_count() const { return metrics_.size(); }
   const std::string& metric_name(std::uint32_t metric) const { return metrics_[metric].name; }
   plan::MetricType metric_type(std::uint32_t metric) const { return metrics_[metric].type; }
@@ -100,7 +104,8 @@ class Judge {
   std::vector<double> constants_;
   std::vector<std::uint16_t> hold_;  // per state, HOLD's n
   std::vector<Metric> metrics_;
-  std::vector<Step> once_;  // depend on constants and the start alone
+  std::optional<std::uint32_t> ends_;  // the metric that ends an episode
+  std::vector<Step> once_;             // depend on constants and the start alone
   std::vector<Step> each_;
   std::vector<Pair> pairs_;  // ascending
   std::vector<BodyStart> starts_;

@@ -269,6 +269,11 @@ inline std::vector<Defect> task_defects() {
          give_claims(r, w, 1), r.metrics[3].name = w.text("body_1");
          r.programs[1].metrics.count = 1;
        }},
+      {"TASK", "idles for at most", [](Records& r, Writer&) { r.tasks[0].idle = 1001; }},
+      {"METR", "at most one metric of a program ends",
+       [](Records& r, Writer&) { r.metrics[0].readout = r.metrics[2].readout = 9; }},
+      {"METR", "at most one metric of a program ends",
+       [](Records& r, Writer&) { r.metrics[1].readout = 9; }},
       {"ROLE", "role kind",
        [](Records& r, Writer& w) {
          r.roles.push_back({w.text("helper"), 4, 2, 1});
@@ -297,7 +302,7 @@ inline std::vector<Defect> task_defects() {
        [](Records& r, Writer&) { r.states.push_back(r.states[0]); }},
       {"CODE", "belongs to a program", [](Records& r, Writer&) { r.code.push_back(r.code[0]); }},
       {"METR", "metric type", [](Records& r, Writer&) { r.metrics[0].type = 0; }},
-      {"METR", "readout", [](Records& r, Writer&) { r.metrics[0].readout = 9; }},
+      {"METR", "readout", [](Records& r, Writer&) { r.metrics[0].readout = 99; }},
       {"PROG", "have one name", [](Records& r, Writer&) { r.metrics[0].name = r.metrics[1].name; }},
       {"PROG", "of CNST", [](Records& r, Writer&) { r.programs[0].constants.first = 1; }},
       {"PROG", "must begin",

@@ -202,7 +202,7 @@ const std::map<std::string, std::vector<Field>>& in_code() {
                 PROBE_FIELD(TaskRecord, bodies),   PROBE_FIELD(TaskRecord, distractors),
                 PROBE_FIELD(TaskRecord, horizon),  PROBE_FIELD(TaskRecord, baseline),
                 PROBE_FIELD(TaskRecord, axes),     PROBE_FIELD(TaskRecord, ood),
-                PROBE_FIELD(TaskRecord, zero),     PROBE_FIELD(TaskRecord, allow),
+                PROBE_FIELD(TaskRecord, idle),     PROBE_FIELD(TaskRecord, allow),
                 PROBE_FIELD(TaskRecord, episodes), PROBE_FIELD(TaskRecord, drop),
                 PROBE_FIELD(TaskRecord, settle),   PROBE_FIELD(TaskRecord, judge_id),
                 PROBE_FIELD(TaskRecord, views),    PROBE_FIELD(TaskRecord, roles),

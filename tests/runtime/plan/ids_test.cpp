@@ -51,6 +51,29 @@ TEST_CASE("names, reach and sources are in no id") {
   CHECK(same([](Writer& w) { w.records.spans.clear(); }));
 }
 
+TEST_CASE("steps of standing still are part of the start, with the law and rate of the robot") {
+  const Ids base = ids_after([](Writer&) {});
+  const auto idle = [](std::uint32_t steps, double hz) {
+    return ids_after([&](Writer& w) {
+      w.records.tasks[0].idle = steps;
+      w.records.robots[0].control_hz = hz;
+    });
+  };
+  CHECK(idle(0, 10).start == base.start);
+  CHECK(idle(10, 5).start != base.start);
+  CHECK(idle(10, 5).start != idle(11, 5).start);
+  CHECK(idle(10, 5).start != idle(10, 10).start);
+  CHECK(idle(10, 5).judge == base.judge);
+}
+
+TEST_CASE("what ends an episode is judged: it is part of the judge's id") {
+  const Ids base = ids_after([](Writer&) {});
+  const Ids ends = ids_after(
+      [](Writer& w) { w.records.metrics[2].readout = static_cast<std::uint32_t>(Readout::kEnds); });
+  CHECK(ends.judge != base.judge);
+  CHECK(ends.start == base.start);
+}
+
 TEST_CASE("among several cameras names count; alone the camera does") {
   const Ids base = ids_after([](Writer&) {});
   const auto seen = [](const char* first, const char* second, bool photo) {

@@ -39,6 +39,30 @@ StepSample resting(double step, std::size_t bodies = kSmallBodies) {
 
 }  // namespace
 
+TEST_CASE(
+    "an episode is over with the step at which what ends it holds, and not before the first") {
+  Writer w = small_writer();
+  w.records.metrics[0].readout = static_cast<std::uint32_t>(Readout::kEnds);
+  auto bytes = w.finish();
+  REQUIRE(bytes.ok());
+  auto plan = Plan::from_bytes(std::move(*bytes));
+  REQUIRE(plan.ok());
+  CHECK(plan->ends_metric(plan->tasks()[0]) == 0);
+  CHECK(!open_small().ends_metric(open_small().tasks()[0]));
+  Judge judge(*plan, 0);
+  CHECK(!judge.ended());
+  REQUIRE(judge.begin(std::vector<BodyStart>(kBodies)).ok());
+  StepSample far = resting(1), near = resting(2);
+  near.tcp = Vec3::Zero();
+  REQUIRE(judge.step(far).ok());
+  CHECK(!judge.ended());
+  REQUIRE(judge.step(near).ok());
+  CHECK(judge.truth(0));
+  CHECK(judge.ended());
+  REQUIRE(judge.begin(std::vector<BodyStart>(kBodies)).ok());
+  CHECK(!judge.ended());
+}
+
 TEST_CASE("the judge and the naive evaluator agree bit for bit on random programs and worlds") {
   std::set<std::uint8_t> ops_seen;
   std::size_t compared = 0;

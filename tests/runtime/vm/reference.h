@@ -246,6 +246,7 @@ class Reference {
       }
       case plan::Readout::kAtEnd:
       case plan::Readout::kFinal:
+      case plan::Readout::kEnds:
         break;  // nothing remembers for them
     }
     return {NAN, NAN, NAN};
