@@ -4,6 +4,7 @@
 #include <map>
 
 #include "compiler/check/starts.h"
+#include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
 
 namespace probe::sema {
@@ -63,6 +64,21 @@ bool advise_spread(const TaskStarts& starts, Diagnostic& said) {
   return true;
 }
 
+// How deep two objects stand in one another; where heights are given one may stand over the other.
+double overlap_of(const TaskStarts& starts, const Start::Placed& a, const Start::Placed& b) {
+  if (a.z && b.z) {
+    const auto bottom = [&](const Start::Placed& placed) {
+      const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+      return *placed.z + lowest(starts.object(placed), turn);
+    };
+    const double low = bottom(a), high = bottom(b);
+    const double top_of_lower = low < high ? low + height(starts.object(a), a.turn)
+                                           : high + height(starts.object(b), b.turn);
+    if (top_of_lower <= std::max(low, high)) return 0;
+  }
+  return overlap(footprint(starts.object(a), a), footprint(starts.object(b), b));
+}
+
 }  // namespace
 
 void check_overlap(const TaskStarts& starts) {
@@ -75,8 +91,7 @@ void check_overlap(const TaskStarts& starts) {
       for (std::size_t j = i + 1; j < placed.size(); ++j) {
         ++pairs;
         // Boxes may touch: less than a micrometre is rounding.
-        const double now = overlap(footprint(starts.object(placed[i]), placed[i]),
-                                   footprint(starts.object(placed[j]), placed[j]));
+        const double now = overlap_of(starts, placed[i], placed[j]);
         if (now <= 1e-6) continue;
         if (bad++ != 0) continue;
         depth = now;

@@ -4,6 +4,7 @@
 
 #include "compiler/define/fixture.h"
 #include "compiler/define/role.h"
+#include "compiler/define/task.h"
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
 #include "compiler/define/wording.h"
@@ -62,19 +63,19 @@ bool same_layout(const Layout& a, const Layout& b) {
                             : !same_cells(a, p.cells, b, q.cells))
       return false;
   }
+  const bool same_given = std::equal(
+      a.given.begin(), a.given.end(), b.given.begin(), b.given.end(),
+      [](const std::vector<GivenPlace>& p, const std::vector<GivenPlace>& q) {
+        return std::equal(p.begin(), p.end(), q.begin(), q.end(),
+                          [](const GivenPlace& x, const GivenPlace& y) { return x.is_same(y); });
+      });
+  if (!same_given) return false;
   for (std::size_t i = 0; i < a.orients.size(); ++i) {
     if (a.orients[i].what.text != b.orients[i].what.text ||
         a.orients[i].turns != b.orients[i].turns)
       return false;
   }
   return true;
-}
-
-std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object) {
-  for (const PoseOverride& pose : task.poses) {
-    if (pose.object == object) return pose.turns;
-  }
-  return model.objects[object].rest;
 }
 
 // A pose of an object that only one of the two has comes with that object and is no change of its
@@ -182,7 +183,10 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
                                      return std::any_of(p.what.begin(), p.what.end(), is_name);
                                    }) ||
                        std::any_of(layout.orients.begin(), layout.orients.end(),
-                                   [&](const Orient& o) { return is_name(o.what); });
+                                   [&](const Orient& o) { return is_name(o.what); }) ||
+                       (!layout.given.empty() &&
+                        std::any_of(layout.given.front().begin(), layout.given.front().end(),
+                                    [&](const GivenPlace& p) { return is_name(p.what); }));
   for (std::size_t i = 0; i < here.size(); ++i) {
     if (rest_of(model, a, here[i]) != rest_of(model, b, there[i])) return false;
     // A layout that jitters, or that names objects, puts a twin elsewhere.

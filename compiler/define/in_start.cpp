@@ -32,6 +32,8 @@ lower::PlacedBody placed_body(const Scene& scene, const Object& object, const Ce
   Vec3 below = Vec3::Constant(scene.fixture ? kSettlesOnFixture : kSettlesOnSurface);
   Vec3 above = below;
   if (scene.fixture) below.z() = kFixtureBelow, above.z() = kFixtureAbove;
+  // What is put down higher may come to rest on something.
+  if (placed.z) above.z() += std::max(0.0, *placed.z - origin.z());
   const Vec3 unsure = turn.cwiseAbs() * centre.within;
   lower::PlacedBody body;
   body.origin = around(origin, below, above);

@@ -7,6 +7,7 @@
 #include "compiler/define/fixture.h"
 #include "compiler/define/record.h"
 #include "compiler/define/role.h"
+#include "compiler/define/start_table.h"
 #include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
 
@@ -39,8 +40,25 @@ struct LayoutReader {
   Context& context;
   Layout& layout;
   bool has_orient = false;
+  std::optional<Span> placing = {};  // the first statement here that says where something stands
+
+  // Places and a file of starts say the same twice; in a copy the later takes the other's place.
+  void note_placing(const Span& span) {
+    if (!placing) placing = span;
+    layout.given.clear();
+    layout.given_span = {};
+  }
+  void operator()(const syntax::StartsStmt& stmt) {
+    layout.cells.clear();
+    layout.places.clear();
+    layout.orients.clear();
+    layout.by_rest = false;
+    layout.given_span = stmt.span;
+    layout.given = read_start_table(context, stmt);
+  }
 
   void operator()(const syntax::CellsStmt& stmt) {
+    note_placing(stmt.span);
     Cells cells{std::string(stmt.name.text), stmt.span, {}, {}};
     const auto at = read_point(context, stmt.at, 2, 2, dim::kLength,
                                Takes::places("`grid ... at` takes lengths"));
@@ -102,6 +120,7 @@ struct LayoutReader {
     return result;
   }
   void operator()(const syntax::PlaceAtStmt& stmt) {
+    note_placing(stmt.span);
     Place record;
     record.span = stmt.span;
     record.what = placed_names(stmt.names);
@@ -112,6 +131,7 @@ struct LayoutReader {
     place(std::move(record));
   }
   void operator()(const syntax::PlaceInStmt& stmt) {
+    note_placing(stmt.span);
     Place record;
     record.span = stmt.span;
     record.how = stmt.how == syntax::PlaceHow::kDistinct ? Place::kDistinct : Place::kRemaining;
@@ -131,11 +151,13 @@ struct LayoutReader {
     layout.by_rest = false;
     layout.orients.clear();
   }
-  void operator()(const syntax::OrientByRestStmt&) {
+  void operator()(const syntax::OrientByRestStmt& stmt) {
+    note_placing(stmt.span);
     begin_orient();
     layout.by_rest = true;
   }
   void operator()(const syntax::OrientStmt& stmt) {
+    note_placing(stmt.span);
     begin_orient();
     if (stmt.what.text != "distractors" && !find_role(context, stmt.what.text) &&
         !context.symbols.objects.find(stmt.what, context.diagnostics)) {
@@ -199,7 +221,22 @@ void require_rest(Context& context, const Layout& layout) {
 void define_layouts(Context& context) {
   const auto read = [&](const Declared<syntax::LayoutDecl>& declared, Layout& layout) {
     LayoutReader reader{context, layout};
-    for (const syntax::LayoutStmt& stmt : declared.node->body) std::visit(reader, stmt);
+    const syntax::StartsStmt* starts = nullptr;
+    for (const syntax::LayoutStmt& stmt : declared.node->body) {
+      if (const auto* given = std::get_if<syntax::StartsStmt>(&stmt)) {
+        starts = given;
+      } else {
+        std::visit(reader, stmt);
+      }
+    }
+    if (starts != nullptr && reader.placing) {
+      context
+          .report(Code::P1503, *reader.placing,
+                  "`starts` says where everything stands, and this says it again")
+          .label(starts->span, "the file");
+    } else if (starts != nullptr) {
+      reader(*starts);
+    }
     // A grid that could not be read has been reported; one cell keeps the enumeration going.
     for (Cells& cells : layout.cells) {
       if (!cells.grids.empty()) continue;

@@ -79,16 +79,9 @@ struct Enumerator {
     return std::nullopt;
   }
 
-  std::vector<Turn> rest_of(ObjectId object) const {
-    for (const PoseOverride& pose : task.poses) {
-      if (pose.object == object) return pose.turns;
-    }
-    return model.objects[object].rest;
-  }
-
   std::optional<LayoutProblem> plan_turns() {
     for (const ObjectId object : objects) {
-      std::vector<Turn> rest = rest_of(object);
+      std::vector<Turn> rest = rest_of(model, task, object);
       if (!layout.by_rest && rest.size() > 1) rest.resize(1);
       turns.push_back(std::move(rest));
     }
@@ -188,6 +181,59 @@ struct Enumerator {
   }
 };
 
+// The starts of a file, for the objects of one task: by name, or by the role that they fill.
+std::vector<Start> given_starts(const Model& model, const Layout& layout, const Task& task,
+                                std::optional<LayoutProblem>& problem) {
+  const std::vector<ObjectId> objects = task.objects();
+  std::vector<Start> starts;
+  for (const std::vector<GivenPlace>& given : layout.given) {
+    Start start;
+    for (const ObjectId id : objects) {
+      const Object& object = model.objects[id];
+      const std::string in_start =
+          "start " + std::to_string(starts.size()) + " of layout `" + layout.name + "` ";
+      const GivenPlace* found = nullptr;
+      for (const GivenPlace& place : given) {
+        const auto role = find_role(model, place.what.text);
+        if (role ? task.role_of(id) != *role : place.what.text != object.name) continue;
+        if (found != nullptr) {
+          problem = LayoutProblem{Situation::kStartTwice,
+                                  in_start + "has `" + object.name + "` twice, as `" +
+                                      found->what.text + "` and `" + place.what.text + "`,",
+                                  place.what.span, "the second"};
+          return {};
+        }
+        found = &place;
+      }
+      if (found == nullptr) {
+        problem =
+            LayoutProblem{Situation::kStartLacks, in_start + "has no `" + object.name + "`",
+                          given.empty() ? layout.given_span : given.front().what.span, "the start"};
+        return {};
+      }
+      const std::vector<Turn> rest = rest_of(model, task, id);
+      const bool is_posed = std::any_of(task.poses.begin(), task.poses.end(),
+                                        [&](const PoseOverride& p) { return p.object == id; });
+      if (is_posed && rest.size() > 1) {
+        problem = LayoutProblem{Situation::kTurnsOutOfStep,
+                                "`" + object.name + "` has " + std::to_string(rest.size()) +
+                                    " turns and a start of layout `" + layout.name + "` one",
+                                layout.given_span};
+        return {};
+      }
+      Start::Placed placed{id, found->x, found->y, {}, found->z};
+      if (found->rotation && !is_posed) {
+        placed.turn.rotation = *found->rotation;
+      } else if (!rest.empty()) {
+        placed.turn = rest.front();
+      }
+      start.placed.push_back(placed);
+    }
+    starts.push_back(std::move(start));
+  }
+  return starts;
+}
+
 // A number in [-1, 1) from the first bits of a hash.
 double draw(const Sha256& hash) {
   return static_cast<double>(big_endian_number(hash) >> 11) * 0x1p-52 - 1.0;
@@ -206,10 +252,9 @@ void jitter(const Model& model, double most, std::size_t index, Start& start) {
   }
 }
 
-}  // namespace
-
-std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
-                                    std::size_t most, std::optional<LayoutProblem>& problem) {
+// All that cells, places and turns give.
+std::vector<Start> all_ways(const Model& model, const Layout& layout, const Task& task,
+                            std::size_t most, std::optional<LayoutProblem>& problem) {
   Enumerator enumerator{model, layout, task, task.objects(), {}, {}, 1};
   problem = enumerator.plan_items();
   if (!problem) problem = enumerator.plan_turns();
@@ -245,6 +290,16 @@ std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, co
                                 std::to_string(cells) + " cells",
                             span};
   }
+  return starts;
+}
+
+}  // namespace
+
+std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
+                                    std::size_t most, std::optional<LayoutProblem>& problem) {
+  std::vector<Start> starts = layout.given_span.is_none()
+                                  ? all_ways(model, layout, task, most, problem)
+                                  : given_starts(model, layout, task, problem);
   if (layout.jitter > 0) {
     for (std::size_t i = 0; i < starts.size(); ++i) jitter(model, layout.jitter, i, starts[i]);
   }
@@ -291,7 +346,7 @@ void report_problem(Context& context, const Task& task, const LayoutProblem& pro
   context
       .report(problem.what, is_newcomer ? task.distractors_span : task.layout_span,
               problem.message + " in `" + task.name + "`")
-      .label(problem.span, "the layout");
+      .label(problem.span, std::string(problem.label));
 }
 
 }  // namespace
@@ -353,6 +408,8 @@ void define_starts(Context& context) {
       std::optional<LayoutProblem> problem;
       std::vector<Start> found =
           enumerate_starts(model, layout, task, kMaxEpisodes - episodes, problem);
+      // A file that could not be read has been reported.
+      if (!layout.given_span.is_none() && layout.given.empty()) continue;
       if (problem) {
         // What a layout lacks, its copies lack.
         const bool is_known = incomplete_layouts.contains(layout.like);

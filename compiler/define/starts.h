@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
@@ -17,6 +18,7 @@ struct LayoutProblem {
   Situation what = Situation::kNotPlaced;
   std::string message;
   Span span;  // within the layout
+  std::string_view label = "the layout";
 };
 
 // Starts in episode order, at most `most`. On a problem the list is empty and `problem` is set.

@@ -332,15 +332,18 @@ std::string missing_statements(const Task& task) {
 void place_by_name(Context& context, Task& task) {
   task.placed.clear();
   if (task.layout == LayoutId::kNone) return;
-  for (const Place& line : context.model.layouts[task.layout].places) {
-    for (const Spelled& word : line.what) {
-      const auto object = context.symbols.objects.peek(word.text);
-      if (word.text == "distractors" || find_role(context, word.text) || !object) continue;
-      const auto id = static_cast<ObjectId>(*object);
-      const std::vector<ObjectId> known = task.objects();
-      if (std::find(known.begin(), known.end(), id) == known.end()) task.placed.push_back(id);
-    }
-  }
+  const auto add = [&](const Spelled& word) {
+    const auto object = context.symbols.objects.peek(word.text);
+    if (word.text == "distractors" || find_role(context, word.text) || !object) return;
+    const auto id = static_cast<ObjectId>(*object);
+    const std::vector<ObjectId> known = task.objects();
+    if (std::find(known.begin(), known.end(), id) == known.end()) task.placed.push_back(id);
+  };
+  const Layout& layout = context.model.layouts[task.layout];
+  for (const Place& line : layout.places) std::for_each(line.what.begin(), line.what.end(), add);
+  // Every start of a file has the same objects.
+  if (layout.given.empty()) return;
+  for (const GivenPlace& place : layout.given.front()) add(place.what);
 }
 
 std::vector<Metric> judged_metrics(const Model& model, const Task& task) {
@@ -409,6 +412,13 @@ RoleId Task::role_of(ObjectId object) const {
       return filled.role;
   }
   return RoleId::kNone;
+}
+
+std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object) {
+  for (const PoseOverride& pose : task.poses) {
+    if (pose.object == object) return pose.turns;
+  }
+  return model.objects[object].rest;
 }
 
 std::string objects_text(const Model& model, const Task& task) {

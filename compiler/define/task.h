@@ -46,6 +46,9 @@ class TaskTable {
 // out and those of the derives above it.
 void expand_derives(Context& context, TaskTable& table);
 
+// How an object of a task is put down: the turns that the task gives it, or its own.
+std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object);
+
 // Its objects by name, for messages: "carrot, plate".
 std::string objects_text(const Model& model, const Task& task);
 

@@ -28,7 +28,7 @@ plan::Slice Emitter::add_placements(const sema::Start& start, double z) {
   for (const sema::Start::Placed& placed : start.placed) {
     plan::PlacementRecord row;
     row.object = objects_[placed.object];
-    row.position = {placed.x, placed.y, z};
+    row.position = {placed.x, placed.y, placed.z.value_or(z)};
     row.rotation = placed.turn.rotation;
     key.push_back(static_cast<double>(row.object));
     key.insert(key.end(), row.position.begin(), row.position.end());

@@ -303,6 +303,18 @@ struct Orient {
   Spelled what;
   std::vector<Turn> turns;
 };
+// One object of a start that a file gives.
+struct GivenPlace {
+  Spelled what;  // a role that one object fills, or an object
+  double x = 0, y = 0;
+  std::optional<double> z;                        // of the model's origin; none: it is dropped
+  std::optional<std::array<double, 4>> rotation;  // unit (w, x, y, z); none: its first rest
+  bool is_same(const GivenPlace& other) const {
+    return what.text == other.what.text && x == other.x && y == other.y && z == other.z &&
+           rotation == other.rotation;
+  }
+};
+
 struct Layout {
   std::string name;
   LayoutId like = LayoutId::kNone;
@@ -312,6 +324,9 @@ struct Layout {
   std::vector<Place> places;
   bool by_rest = false;
   std::vector<Orient> orients;
+  // The starts of a file, in place of cells, places and turns.
+  std::vector<std::vector<GivenPlace>> given;
+  Span given_span;  // of the statement; none where there is no file
   double jitter = 0;
   Span jitter_span;
   std::vector<JointStart> joint_starts;
@@ -371,6 +386,7 @@ struct Start {
     ObjectId object = ObjectId::kNone;
     double x = 0, y = 0;
     Turn turn;
+    std::optional<double> z = {};  // of the model's origin; none: dropped from the layout's height
   };
   std::vector<Placed> placed;  // in the order of Task::objects()
 };

@@ -660,12 +660,17 @@ struct DropStmt {
   Quantity height;
   std::optional<Quantity> settle;
 };
+struct StartsStmt {
+  Span span;
+  Text path;    // beside the file that names it
+  FileId file;  // what it names; none: it cannot be read
+};
 struct ExpectEpisodesStmt {
   Span span;
   Int episodes;
 };
 using LayoutStmt = std::variant<CellsStmt, PlaceAtStmt, PlaceInStmt, OrientByRestStmt, OrientStmt,
-                                JitterStmt, StartStmt, DropStmt, ExpectEpisodesStmt>;
+                                StartsStmt, JitterStmt, StartStmt, DropStmt, ExpectEpisodesStmt>;
 struct LayoutDecl {
   Name name;
   std::optional<Name> like;

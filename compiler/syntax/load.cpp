@@ -39,7 +39,34 @@ class Loader {
       return;
     }
     Decl& decl = top.parsed.file.decls[top.next_decl++];
+    if (auto* layout = std::get_if<LayoutDecl>(&decl.node)) find_starts(*layout);
     if (auto* use = std::get_if<UseDecl>(&decl.node)) follow(*use);
+  }
+
+  // Tables of starts lie beside the text that names them.
+  void find_starts(LayoutDecl& layout) {
+    for (LayoutStmt& stmt : layout.body) {
+      auto* starts = std::get_if<StartsStmt>(&stmt);
+      if (starts == nullptr) continue;
+      const std::filesystem::path text(sources_.file(starts->path.span.file).name());
+      const std::string path =
+          (text.parent_path() / starts->path.value).lexically_normal().string();
+      if (starts->path.value.empty()) {
+        diagnostics_.report(Situation::kStartsMissing, starts->path.span,
+                            "the name of a file of starts is empty");
+        continue;
+      }
+      const Result<FileId> loaded = sources_.load(path);
+      if (loaded.ok()) {
+        starts->file = *loaded;
+      } else {
+        diagnostics_
+            .report(Situation::kStartsMissing, starts->path.span,
+                    "cannot read the starts of `" + starts->path.value + "`")
+            .point(loaded.failure().message)
+            .help("looked for `" + path + "`");
+      }
+    }
   }
 
   // The stack may move under `use` when a file is opened: nothing is done with it after that.

@@ -63,6 +63,8 @@ LayoutStmt Parser::layout_orient() {
   return out;
 }
 
+LayoutStmt Parser::layout_starts() { return StartsStmt{{}, string(), {}}; }
+
 LayoutStmt Parser::layout_jitter() { return JitterStmt{{}, quantity()}; }
 
 LayoutStmt Parser::layout_drop() {

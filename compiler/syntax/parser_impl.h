@@ -204,6 +204,7 @@ class Parser {
   LayoutStmt layout_cells();
   LayoutStmt layout_place();
   LayoutStmt layout_orient();
+  LayoutStmt layout_starts();
   LayoutStmt layout_jitter();
   LayoutStmt layout_start();
   LayoutStmt layout_drop();
