@@ -6,6 +6,7 @@
 
 #include "compiler/check/starts.h"
 #include "compiler/define/fixture.h"
+#include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
 #include "compiler/geometry/travel.h"
 
@@ -23,6 +24,26 @@ bool may_overlap(const PartBox& box, const Vec3& centre, const Vec3& half) {
 std::string stands(const Fixture::Joint& joint, double position) {
   return joint.slides ? centimetres(position)
                       : fmt::format("{:.4g}deg", position * 180 / 3.14159265358979323846);
+}
+
+// The upright box around each part as a task begins.
+struct Around {
+  Vec3 low, high;
+
+  bool holds(const Vec3& point) const {
+    return (low.array() <= point.array()).all() && (point.array() <= high.array()).all();
+  }
+};
+std::map<std::uint32_t, Around> around_parts(const std::vector<PartBox>& boxes) {
+  std::map<std::uint32_t, Around> parts;
+  for (const PartBox& box : boxes) {
+    const Vec3 low = box.solid.centre - box.half, high = box.solid.centre + box.half;
+    const auto [known, is_new] = parts.try_emplace(box.part, Around{low, high});
+    if (is_new) continue;
+    known->second.low = known->second.low.cwiseMin(low);
+    known->second.high = known->second.high.cwiseMax(high);
+  }
+  return parts;
 }
 
 // The deepest of what was found for one thing and one fixture.
@@ -47,21 +68,24 @@ struct TravelCheck {
     return " when `" + fixture.name + "." + by.name + "` stands at " + stands(by, box.position);
   }
 
-  // The deepest overlap of each start with any of the boxes.
-  Found deepest(const std::vector<PartBox>& boxes) const {
+  // The deepest overlap of each start with any of the boxes. What is put into a part, at a height
+  // of its own, goes where the part goes: `carriers`, of a look at the whole way.
+  Found deepest(const std::vector<PartBox>& boxes,
+                const std::map<std::uint32_t, Around>& carriers) const {
     Found found;
     const Scene& scene = starts.model.scenes[starts.task.scene];
     for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
       bool here = false;
       for (const Start::Placed& placed : starts.task.starts[e].placed) {
         const Object& object = starts.object(placed);
-        const auto& [w, x, y, z] = placed.turn.rotation;
-        const Mat3 turn = Quat(w, x, y, z).toRotationMatrix();
-        const scene::Solid body =
-            solid(object, turn, {placed.x, placed.y, scene.surface_z - lowest(object, turn)});
+        const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+        const double z = placed.z.value_or(scene.surface_z - lowest(object, turn));
+        const scene::Solid body = solid(object, turn, {placed.x, placed.y, z});
         const Vec3 half = body.half_extent();
         for (const PartBox& box : boxes) {
           if (!may_overlap(box, body.centre, half)) continue;
+          const auto carrier = carriers.find(box.part);
+          if (placed.z && carrier != carriers.end() && carrier->second.holds(body.centre)) continue;
           const double depth = overlap(box.solid, body);
           if (depth <= kRounding) continue;
           here = true;
@@ -91,11 +115,11 @@ struct TravelCheck {
 
   void check(const Travel& travel, std::span<const double> joints) const {
     const std::vector<PartBox> begun = travel.at(joints);
-    if (const Found found = deepest(begun); found.box != nullptr) {
+    if (const Found found = deepest(begun, {}); found.box != nullptr) {
       report(found, "stands in", "");
       return;
     }
-    const Found found = deepest(travel.everywhere());
+    const Found found = deepest(travel.everywhere(), around_parts(begun));
     if (found.box == nullptr) return;
     Diagnostic& said = report(found, "is in the way of", when(*found.box));
     said.severity = Severity::kWarning;

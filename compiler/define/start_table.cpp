@@ -26,7 +26,7 @@ constexpr double kUnitWithin = 1e-5;
 // A table that is wrong in one row is often wrong in all.
 constexpr std::size_t kMostMistakes = 5;
 
-struct Cell {
+struct TableCell {
   std::string_view text;
   Span span;
 };
@@ -72,8 +72,8 @@ class StartTable {
   }
 
   // Between commas, without blanks and without quotes around it.
-  std::vector<Cell> cells_of(std::uint32_t line) const {
-    std::vector<Cell> cells;
+  std::vector<TableCell> cells_of(std::uint32_t line) const {
+    std::vector<TableCell> cells;
     const std::string_view text = file_.line(line);
     std::size_t from = line == 1 && text.starts_with("\xef\xbb\xbf") ? 3 : 0;
     while (true) {
@@ -94,7 +94,7 @@ class StartTable {
 
   bool read_header(std::uint32_t line) {
     header_ = whole(line);
-    const std::vector<Cell> cells = cells_of(line);
+    const std::vector<TableCell> cells = cells_of(line);
     width_ = cells.size();
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto known = std::find(kColumns.begin(), kColumns.end(), cells[i].text);
@@ -128,7 +128,7 @@ class StartTable {
   }
 
   // Nothing when it was reported.
-  std::optional<double> number(const Cell& cell, Column column) {
+  std::optional<double> number(const TableCell& cell, Column column) {
     double value = 0;
     const char* const end = cell.text.data() + cell.text.size();
     const auto [at, error] = std::from_chars(cell.text.data(), end, value);
@@ -143,7 +143,7 @@ class StartTable {
     return value;
   }
 
-  std::optional<std::array<double, 4>> rotation(const std::vector<Cell>& cells) {
+  std::optional<std::array<double, 4>> rotation(const std::vector<TableCell>& cells) {
     std::array<double, 4> q{};
     double squares = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -188,7 +188,7 @@ class StartTable {
   }
 
   // The start that a row belongs to: the last one or the next.
-  bool find_start(const Cell& cell) {
+  bool find_start(const TableCell& cell) {
     std::uint64_t index = 0;
     const char* const end = cell.text.data() + cell.text.size();
     const auto [at, error] = std::from_chars(cell.text.data(), end, index);
@@ -209,14 +209,14 @@ class StartTable {
   }
 
   // A role that one object fills, or an object.
-  bool find_object(const Cell& cell) {
+  bool find_object(const TableCell& cell) {
     const syntax::Name name{cell.span, cell.text};
     if (find_role(context_, cell.text)) return find_single_role(context_, name).has_value();
     return context_.symbols.objects.find(name, context_.diagnostics).has_value();
   }
 
   void read_row(std::uint32_t line) {
-    const std::vector<Cell> cells = cells_of(line);
+    const std::vector<TableCell> cells = cells_of(line);
     if (cells.size() != width_) {
       context_
           .report(Situation::kStartsCells, whole(line),
@@ -226,7 +226,7 @@ class StartTable {
       return;
     }
     if (!find_start(cells[*at_[kStart]])) return;
-    const Cell& object = cells[*at_[kObject]];
+    const TableCell& object = cells[*at_[kObject]];
     if (!find_object(object)) return;
     std::vector<GivenPlace>& start = starts_.back();
     for (const GivenPlace& known : start) {

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <filesystem>
 
+#include "compiler/geometry/camera_pose.h"
 #include "runtime/scene/link_solids.h"
 
 namespace probe::sema {
 namespace {
 
-constexpr double kStep = 2e-3;             // m between two places of a part
+constexpr double kStep = 2e-3;                // m between two places of a part
 constexpr std::size_t kMostPositions = 2048;  // of one part; several joints share them
 constexpr double kHalfTurn = 3.14159265358979323846;
 
@@ -38,8 +39,7 @@ scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin) {
 
 Travel::Travel(const Fixture& fixture, robot::Tree tree)
     : fixture_(&fixture), tree_(std::move(tree)) {
-  const auto& [w, x, y, z] = fixture.turn.rotation;
-  base_ = {Vec3(fixture.position.data()), Quat(w, x, y, z)};
+  base_ = pose_of(fixture.position, fixture.turn.rotation);
 }
 
 std::optional<Travel> Travel::of(const Fixture& fixture, const std::string& asset_root) {

@@ -6,6 +6,7 @@
 
 #include "runtime/base/glob.h"
 #include "runtime/base/spelling.h"
+#include "runtime/plan/family_name.h"
 #include "runtime/plan/questions.h"
 #include "runtime/run/selection.h"
 
@@ -94,10 +95,6 @@ Result<run::Selection> select_starts(const plan::Plan& plan, const QueryChoice& 
 }
 
 }  // namespace
-
-std::string family_name(const plan::Plan& plan, const plan::FamilyRecord& family) {
-  return std::string(plan.text(family.set)) + "." + std::string(plan.text(family.name));
-}
 
 std::uint32_t rotations_of(const plan::Plan& plan, const plan::QuestionRecord& question) {
   return plan::form_of(plan.families()[question.family]) == plan::QuestionForm::kChoice

@@ -76,9 +76,6 @@ class Queries {
   std::int64_t count_ = 0;
 };
 
-// "understanding.source"
-std::string family_name(const plan::Plan& plan, const plan::FamilyRecord& family);
-
 // Letters of a choice's options, or 1: in how many orders a question is asked.
 std::uint32_t rotations_of(const plan::Plan& plan, const plan::QuestionRecord& question);
 

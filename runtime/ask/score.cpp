@@ -6,6 +6,7 @@
 
 #include "runtime/ask/queries.h"
 #include "runtime/base/sha256.h"
+#include "runtime/plan/family_name.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/places.h"
 #include "runtime/plan/questions.h"
@@ -361,7 +362,7 @@ Result<std::vector<Known>> knows(const plan::Plan& plan, std::span<const Asked> 
   std::vector<std::uint32_t> named;
   for (std::uint32_t f = 0; f < plan.families().size(); ++f) {
     const plan::FamilyRecord& record = plan.families()[f];
-    if (family == plan.text(record.name) || family == family_name(plan, record)) named.push_back(f);
+    if (plan::is_called(plan, record, family)) named.push_back(f);
   }
   if (named.empty())
     return Failure{Fault::kUsage, "no questions are called `" + std::string(family) + "`", ""};

@@ -8,6 +8,7 @@
 #include "runtime/ask/answers.h"
 #include "runtime/ask/queries.h"
 #include "runtime/ask/wording.h"
+#include "runtime/plan/family_name.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/questions.h"
 #include "runtime/plan/source_line.h"
@@ -38,7 +39,7 @@ std::optional<Written> right_object(const plan::Plan& plan, const plan::TaskReco
 
 bool is_asked(const plan::Plan& plan, std::uint32_t family, const std::string& name) {
   const plan::FamilyRecord& record = plan.families()[family];
-  return name.empty() || name == plan.text(record.name) || name == family_name(plan, record);
+  return name.empty() || plan::is_called(plan, record, name);
 }
 
 }  // namespace

@@ -8,13 +8,14 @@
 #include "runtime/ask/answers.h"
 #include "runtime/ask/queries.h"
 #include "runtime/ask/vouch.h"
+#include "runtime/plan/family_name.h"
 #include "runtime/plan/questions.h"
 #include "runtime/plan/roles.h"
 
 namespace probe::report {
 
 std::string family_name(const plan::Plan& plan, std::uint32_t family) {
-  return ask::family_name(plan, plan.families()[family]);
+  return plan::family_name(plan, plan.families()[family]);
 }
 
 bool asks_for_source(const plan::Plan& plan, std::uint32_t family) {
