@@ -361,7 +361,10 @@ void define_robots(Context& context) {
     if (!robot.urdf.span.is_none()) load_model(context, reader.drives, robot);
     // What is wrong so far may be why a joint is not the arm's.
     const bool clean = context.mistakes() == errors;
-    const bool is_law_known = control != nullptr && robot::find_kind(control->law.text) != nullptr;
+    // Of a law that is refused nothing is lacking.
+    const bool is_law_known = control != nullptr &&
+                              robot::find_kind(control->law.text) != nullptr &&
+                              !robot::row_of(robot.law).per_joint;
     define_drives(context, reader.drives, is_law_known, robot);
     if (clean && control != nullptr) define_home(context, *control, robot);
     if (declared.decl->complete && context.mistakes() == errors) check_fit(context, robot);

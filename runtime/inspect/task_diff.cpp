@@ -8,6 +8,7 @@
 
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/claims_json.h"
+#include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/words.h"
 #include "runtime/inspect/wrap.h"
@@ -17,7 +18,7 @@ namespace probe::inspect {
 namespace {
 
 // What only some tasks have; it stands below what all of them have.
-constexpr const char* kOfSome[] = {"placed", "idle", "claims"};
+constexpr const char* kOfSome[] = {"law", "placed", "idle", "claims"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -30,6 +31,9 @@ Json side(const plan::Plan& plan, std::uint32_t index) {
   json["baseline"] =
       task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
   json["scene"] = plan.text(plan.scenes()[task.scene].name);
+  const Json robot = robot_of(plan, task);
+  json["robot"] = robot_text(robot);
+  if (const std::string law = law_text(robot); !law.empty()) json["law"] = law;
   std::string cameras;
   for (const plan::ViewRecord& view : plan.views(task))
     cameras.append(cameras.empty() ? "" : ", ").append(plan.text(plan.cameras()[view.camera].name));

@@ -15,6 +15,7 @@
 #include "runtime/inspect/claims_json.h"
 #include "runtime/inspect/fixture_json.h"
 #include "runtime/inspect/question_json.h"
+#include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/wrap.h"
 #include "runtime/plan/ids.h"
@@ -140,6 +141,7 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
     json["metrics"].push_back(plan.text(metric.name));
   json["starts"] = Json::array();
   json["scene"] = plan.text(plan.scenes()[task.scene].name);
+  json["robot"] = robot_of(plan, task);
   json["camera"] = plan.text(plan.cameras()[task.camera].name);
   json["cameras"] = Json::array();
   for (const plan::ViewRecord& view : plan.views(task)) {
@@ -270,6 +272,8 @@ std::string describe_text(const Json& task) {
   line("unseen", joined(task["ood"], "nothing"));
   line("categories", joined(task["categories"], "none"));
   word("scene");
+  line("robot", robot_text(task["robot"]));
+  if (const std::string law = law_text(task["robot"]); !law.empty()) line("law", law);
   std::string cameras;
   for (const Json& view : task["cameras"]) {
     const auto name = view["name"].get<std::string>(), camera = view["camera"].get<std::string>();

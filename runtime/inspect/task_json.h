@@ -19,9 +19,9 @@ Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
 // An array of {task, baseline, axes[], categories[], prompt, episodes}.
 Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
 // One task: the same and {source, target (null: none), roles {}, distractors[], placed[], horizon,
-// metrics[], starts[][], scene, camera, cameras[]{name, camera}, light, ood[], drop_m, settle_s,
+// metrics[], starts[][], scene, robot {}, camera, cameras[]{name, camera}, light, ood[], drop_m, settle_s,
 // allow, distances_m[], ids{prompt, judge, starts[], episodes[]}, questions[], not_asked[]}.
-// `camera` is the first of `cameras`, whose `name` is what policies know it by. A distance is from
+// `robot` is robot_json.h's. `camera` is the first of `cameras`, whose `name` is what policies know it by. A distance is from
 // source to target, horizontal, in the order of the starts. `questions` and `not_asked` are those
 // of question_json.h.
 Json describe(const plan::Plan& plan, std::uint32_t task);

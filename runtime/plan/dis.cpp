@@ -151,6 +151,41 @@ void list_question_programs(std::string& out, const Plan& plan, std::uint32_t ta
   }
 }
 
+std::string numbers_text(std::span<const double> numbers) {
+  std::string text;
+  for (const double number : numbers) text += fmt::format(" {}", number);
+  return text;
+}
+
+// Robots of which more than their record is in the plan: numbers of the law, gears, fingers.
+void list_robots(std::string& out, const Plan& plan) {
+  const auto to = std::back_inserter(out);
+  for (std::uint32_t i = 0; i < plan.robots().size(); ++i) {
+    const RobotRecord& robot = plan.robots()[i];
+    const LawRecord* law = plan.law(robot);
+    const auto gears = plan.gears(robot);
+    if (law == nullptr && gears.empty() && robot.more_fingers.count == 0) continue;
+    fmt::format_to(to, "\nrobot {} {}: control {} at {} Hz\n", i, plan.text(robot.name),
+                   robot.control, robot.control_hz);
+    if (law != nullptr) {
+      fmt::format_to(to, "  kp{}, damping{}, output{}\n", numbers_text(law->kp),
+                     numbers_text(law->damping), numbers_text(law->output));
+      fmt::format_to(to, "  null {}, ramp {}, flags {}, most {}, home{}\n", law->null_kp, law->ramp,
+                     law->flags, law->most, numbers_text(plan.home(*law)));
+      fmt::format_to(to, "  grip pace {}, stiffness {}, limit {}\n", law->grip_pace,
+                     law->grip_stiffness, law->grip_limit);
+    }
+    for (std::size_t g = 0; g < gears.size(); ++g) {
+      fmt::format_to(to, "  {}: friction {}, armature {}\n", plan.text(plan.drives(robot)[g].joint),
+                     gears[g].friction, gears[g].armature);
+    }
+    for (const FingerRecord& finger : slice_of(plan.tables().fingers, robot.more_fingers)) {
+      fmt::format_to(to, "  finger {} opens{}\n", plan.text(finger.link),
+                     numbers_text(finger.opens));
+    }
+  }
+}
+
 }  // namespace
 
 std::string disassemble(const Plan& plan, std::uint32_t task) {
@@ -168,6 +203,7 @@ std::string disassemble(const Plan& plan) {
       std::back_inserter(out), "  {} tasks, {} episodes, {} programs, {} objects, {} bytes{}\n",
       plan.tasks().size(), plan.episodes().size(), plan.programs().size(), plan.objects().size(),
       plan.bytes().size(), plan.has_sources() ? "" : ", without sources");
+  list_robots(out, plan);
   std::vector<std::vector<std::uint32_t>> users(plan.programs().size());
   for (std::uint32_t i = 0; i < plan.tasks().size(); ++i)
     users[plan.tasks()[i].program].push_back(i);

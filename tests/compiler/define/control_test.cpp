@@ -130,6 +130,8 @@ TEST_CASE("laws whose actions no policy can send yet are refused by name") {
   CHECK(said(arm("control joint_delta 10Hz { from target; most 0.1rad }\n" + kDriven)) ==
         "P0101 joint_delta");
   CHECK(said(arm("control joint_position 10Hz\n" + kDriven)) == "P0101 joint_position");
+  CHECK(said(arm("control joint_position 10Hz\n" + with(kDriven, "stiffness 100Nm/rad", ""))) ==
+        "P0101 joint_position");
 }
 
 TEST_CASE("what a law lacks is named") {
