@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDepthUnit = 1e-6;  // m
+constexpr double kDepthUnit = 1e-6;        // m
 constexpr double kDepthTolerance = 1e-5;   // m
 constexpr double kSettleTolerance = 1e-4;  // m
 
@@ -113,9 +113,13 @@ bool shown_in_golden(const std::string& asset_root) {
   return here && own && *here == *own;
 }
 
-std::string golden_suite() {
-  const std::string text = std::string(VLAPROBE_BUILT_FROM) + "/suite/intact.probe";
-  return fs::is_regular_file(text) ? text : std::string();
+std::vector<std::string> golden_suites() {
+  std::vector<std::string> texts;
+  for (const char* name : {"panda", "intact"}) {
+    texts.push_back(std::string(VLAPROBE_BUILT_FROM) + "/suite/" + name + ".probe");
+    if (!fs::is_regular_file(texts.back())) return {};
+  }
+  return texts;
 }
 
 const char* to_text(GoldenState state) {

@@ -16,8 +16,8 @@ namespace probe::doctor {
 std::string golden_folder();
 // Whether these are the assets that the golden pictures show: the manifest is that source tree's.
 bool shown_in_golden(const std::string& asset_root);
-// The text of the suite whose first frames are among them, of the same source tree.
-std::string golden_suite();
+// The texts whose scenes' first frames are among them, of the same source tree; none if not there.
+std::vector<std::string> golden_suites();
 
 enum class GoldenState : std::uint8_t {
   kIdentical,  // byte for byte

@@ -14,15 +14,15 @@ struct DoctorArguments {
   AssetOptions assets;
 };
 
-// The shipped suite with the assets at hand.
+// The shipped suites with the assets at hand.
 Result<plan::Plan> compile_suite(const std::string& asset_root) {
-  const std::string file = doctor::golden_suite();
-  if (file.empty()) return Failure{Fault::kUsage, "the suite's text is not here", ""};
+  const std::vector<std::string> files = doctor::golden_suites();
+  if (files.empty()) return Failure{Fault::kUsage, "the suite's text is not here", ""};
   AssetOptions assets;
   assets.root = asset_root;
-  CompiledText text = compile_quietly({file}, assets, {}, true);
+  CompiledText text = compile_quietly(files, assets, {}, true);
   if (text.plan.empty())
-    return Failure{Fault::kAsset, "the suite does not compile with these assets", file};
+    return Failure{Fault::kAsset, "the suite does not compile with these assets", files.front()};
   return plan::Plan::from_bytes(std::move(text.plan));
 }
 

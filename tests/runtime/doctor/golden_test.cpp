@@ -20,9 +20,10 @@ const std::string kAssets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
 const std::string kGolden = std::string(VLAPROBE_SOURCE_DIR) + "/tests/golden_frames";
 
 plan::Plan suite_plan() {
-  const std::string file = VLAPROBE_SOURCE_DIR "/suite/intact.probe";
-  auto built = build(std::span(&file, 1),
-                     {.asset_root = kAssets, .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
+  const auto files = golden_suites();
+  REQUIRE(files.size() == 2);
+  auto built =
+      build(files, {.asset_root = kAssets, .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
   REQUIRE_MESSAGE(built.ok(), (built.ok() ? "" : to_text(built.failure())));
   REQUIRE(built->ok);
   auto plan = plan::Plan::from_bytes(std::move(built->plan));
@@ -42,7 +43,7 @@ Drawn draw_all() {
   REQUIRE_MESSAGE(settle.ok(), (settle.ok() ? "" : to_text(settle.failure())));
   auto starts = draw_first_frames(suite_plan(), kAssets);
   REQUIRE_MESSAGE(starts.ok(), (starts.ok() ? "" : to_text(starts.failure())));
-  CHECK(starts->size() == 2);  // the suite's table and its sink
+  CHECK(starts->size() == 4);  // the suite's table and its sink, the Panda's table by two cameras
   for (GoldenFrame& frame : *starts) frames->push_back(std::move(frame));
   return {std::move(*frames), std::move(*settle)};
 }
