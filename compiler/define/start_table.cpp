@@ -17,7 +17,7 @@ namespace probe::sema {
 namespace {
 
 // In the order of kColumns; the first kNeeded have to be there, and of a rotation all or none.
-enum Column : std::size_t { kStart, kObject, kX, kY, kZ, kQw, kQx, kQy, kQz };
+enum TableColumn : std::size_t { kStart, kObject, kX, kY, kZ, kQw, kQx, kQy, kQz };
 constexpr std::array<std::string_view, 9> kColumns = {"start", "object", "x_m", "y_m", "z_m",
                                                       "qw",    "qx",     "qy",  "qz"};
 constexpr std::size_t kNeeded = kZ;
@@ -128,7 +128,7 @@ class StartTable {
   }
 
   // Nothing when it was reported.
-  std::optional<double> number(const TableCell& cell, Column column) {
+  std::optional<double> number(const TableCell& cell, TableColumn column) {
     double value = 0;
     const char* const end = cell.text.data() + cell.text.size();
     const auto [at, error] = std::from_chars(cell.text.data(), end, value);
@@ -147,7 +147,7 @@ class StartTable {
     std::array<double, 4> q{};
     double squares = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const auto column = static_cast<Column>(kQw + i);
+      const auto column = static_cast<TableColumn>(kQw + i);
       const auto value = number(cells[*at_[column]], column);
       if (!value) return std::nullopt;
       q[i] = *value;
