@@ -4,6 +4,7 @@
 #include "runtime/ask/vouch.h"
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
+#include "runtime/store/folder_kind.h"
 #include "runtime/store/store.h"
 
 namespace probe::ask {
@@ -18,7 +19,11 @@ Failure failed(const std::string& message, const std::string& where) {
 }
 
 Result<Database> open_to_read(const std::string& dir) {
-  if (!holds_answers(dir)) return failed("no answers here: answers.sqlite is absent", dir);
+  if (!holds_answers(dir)) {
+    return failed(store::holds_run(dir) ? "holds a run, not a model's answers"
+                                        : "no answers here: answers.sqlite is absent",
+                  dir);
+  }
   PROBE_ASSIGN(Database database, Database::open(answers_path(dir), Access::kRead, kAnswersAdvice));
   PROBE_ASSIGN(const auto record, load_record(database));
   if (!record) return failed("no answers here: answers.sqlite is empty", dir);
@@ -27,7 +32,7 @@ Result<Database> open_to_read(const std::string& dir) {
 
 }  // namespace
 
-bool holds_answers(const std::string& dir) { return is_there(answers_path(dir)); }
+bool holds_answers(const std::string& dir) { return store::holds_answers(dir); }
 
 Result<std::optional<AskRecord>> find_ask_record(const std::string& dir) {
   if (!holds_answers(dir)) return std::optional<AskRecord>();

@@ -14,6 +14,7 @@
 #include "runtime/base/paths.h"
 #include "runtime/store/calls_table.h"
 #include "runtime/store/database.h"
+#include "runtime/store/folder_kind.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"
@@ -66,8 +67,8 @@ std::string column_defined(std::size_t column) {
 std::string episode_schema() {
   return "create table if not exists run (name text primary key, value text not null) "
          "without rowid; create table if not exists episodes (" +
-         each_column(column_defined) +
-         ", primary key (task, episode, seed)) without rowid; " + std::string(kCallsSchema);
+         each_column(column_defined) + ", primary key (task, episode, seed)) without rowid; " +
+         std::string(kCallsSchema);
 }
 
 // From version 1.
@@ -104,8 +105,12 @@ Failure failed(const std::string& message, const std::string& where) {
 
 using Access = Database::Access;
 
-std::string database_path(const std::string& dir) {
-  return (fs::path(dir) / "results.sqlite").string();
+std::string database_path(const std::string& dir) { return path_in(dir, kRunDatabase); }
+
+Failure no_run(const std::string& dir) {
+  return failed(holds_answers(dir) ? "holds a model's answers, not a run"
+                                   : "no run here: results.sqlite is absent",
+                dir);
 }
 
 std::string relative_trace(const EpisodeKey& key) { return "traces/" + file_stem(key) + ".trace"; }
@@ -382,6 +387,8 @@ std::string video_path(const std::string& dir, const EpisodeKey& key) {
 Result<std::unique_ptr<Store>> Store::open(const std::string& dir, const RunRecord& record,
                                            std::span<const std::byte> plan_bytes) {
   if (dir.empty()) return failed("no folder to write into", "-o");
+  if (holds_answers(dir))
+    return failed("holds a model's answers; take another folder for a run", dir);
   if (auto made = make_lasting_folders(dir); !made) return failed(made.failure().message, dir);
   PROBE_ASSIGN(FolderLock lock, FolderLock::take(dir));
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kWrite));
@@ -397,7 +404,7 @@ Result<std::optional<RunRecord>> find_run_record(const std::string& dir) {
 }
 
 Result<RunRecord> read_run_record(const std::string& dir) {
-  if (!is_there(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
+  if (!is_there(database_path(dir))) return no_run(dir);
   PROBE_ASSIGN(auto record, find_run_record(dir));
   if (!record) return failed("no run here: results.sqlite is empty", dir);
   return std::move(*record);
@@ -418,7 +425,7 @@ Result<std::vector<RunCall>> read_run_calls(const std::string& dir) {
 }
 
 Result<std::vector<ResultRow>> read_results(const std::string& dir) {
-  if (!is_there(database_path(dir))) return failed("no run here: results.sqlite is absent", dir);
+  if (!is_there(database_path(dir))) return no_run(dir);
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
   return load_rows(database, dir);
 }

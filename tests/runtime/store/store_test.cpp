@@ -158,6 +158,21 @@ TEST_CASE("another plan or policy is refused, and so is a second writer") {
   CHECK(Store::open(dir, record_of(), plan_bytes()).ok());
 }
 
+TEST_CASE("a folder of answers is no run's, neither to write into nor to read") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "answers";
+  std::filesystem::create_directories(dir);
+  std::ofstream(dir + "/answers.sqlite") << "x";
+  std::ofstream(dir + "/suite.plan") << "the plan of the questions";
+  const auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE_FALSE(store.ok());
+  CHECK(store.failure().message == "holds a model's answers; take another folder for a run");
+  CHECK(store.failure().where == dir);
+  CHECK(std::filesystem::file_size(dir + "/suite.plan") == 25);
+  CHECK(read_results(dir).failure().message == "holds a model's answers, not a run");
+  CHECK(read_run_record(dir).failure().message == "holds a model's answers, not a run");
+}
+
 TEST_CASE("a folder of the first schema is read, and raised when it is written") {
   TemporaryFolder folder;
   const std::string dir = folder / "run";
