@@ -48,7 +48,8 @@ Analysed analyse(const std::string& file, const AssetOptions& assets,
   if (!text) return {std::nullopt, report(text.failure())};
   say("{}", render_text(text->compilation.diagnostics, text->compilation.sources));
   if (!text->compilation.ok) return {std::nullopt, kUser};
-  return {*std::move(text), kFine};
+  // Moved, not copied: the tasks' starts are views into the model.
+  return {std::move(text).value(), kFine};
 }
 
 // The concrete tasks of a text, or the members of one of its suites, that the pattern names.

@@ -48,6 +48,17 @@ TEST_CASE("the published suite has as many proved wordings of each task as were 
   CHECK(made.err.empty());
 }
 
+TEST_CASE("a phrase that says where things are is a wording of tasks whose starts it is clear in") {
+  Sandbox box;
+  const std::string spatial = std::string(VLAPROBE_SOURCE_DIR) + "/examples/spatial.probe";
+  const Outcome made = box.vlaprobe("rephrase '" + spatial + "' -o words.csv");
+  REQUIRE_MESSAGE(made.exit == 0, made.err);
+  const std::string words = read_file(box / "words.csv");
+  CHECK(contains(words,
+                 "\nleft_can_named,put coke can on plate,put the can on the left on the plate,"));
+  CHECK(contains(made.err + made.out, "left_can_on_the_left"));
+}
+
 TEST_CASE("every wording, fed back as words on the spot, compiles without a finding") {
   Sandbox box;
   REQUIRE(box.vlaprobe("rephrase " + kText + "-o words.jsonl").exit == 0);
