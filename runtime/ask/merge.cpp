@@ -8,6 +8,7 @@
 #include "runtime/ask/answer_fields.h"
 #include "runtime/ask/answers.h"
 #include "runtime/ask/vouch.h"
+#include "runtime/plan/family_name.h"
 
 namespace probe::ask {
 namespace {
@@ -43,8 +44,8 @@ Sha256 content_hash(const AnswerRow& row) {
 std::string named(const AnswerRow& row) {
   std::string text = row.task + " episode " + std::to_string(row.episode);
   if (row.seed >= 0) text += " seed " + std::to_string(row.seed);
-  return text + ", " + row.set + "." + row.family + ", rotation " + std::to_string(row.rotation) +
-         ", " + std::string(word_of(row.arm));
+  return text + ", " + plan::family_name(row.set, row.family) + ", rotation " +
+         std::to_string(row.rotation) + ", " + std::string(word_of(row.arm));
 }
 
 std::vector<std::string> folders(const store::MergeOptions& options, bool with_out) {

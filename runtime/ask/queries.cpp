@@ -5,6 +5,7 @@
 #include <set>
 
 #include "runtime/base/glob.h"
+#include "runtime/base/hash_number.h"
 #include "runtime/base/spelling.h"
 #include "runtime/plan/family_name.h"
 #include "runtime/plan/questions.h"
@@ -25,7 +26,7 @@ Result<std::vector<bool>> choose_families(const plan::Plan& plan,
     for (std::size_t i = 0; i < chosen.size(); ++i) {
       const plan::FamilyRecord& family = plan.families()[i];
       names.emplace_back(plan.text(family.set));
-      names.push_back(family_name(plan, family));
+      names.push_back(plan::family_name(plan, family));
       if (!matches_glob(glob, names.back()) && !matches_glob(glob, plan.text(family.set))) continue;
       any = chosen[i] = true;
     }
@@ -51,12 +52,6 @@ std::string asked_suite(const plan::Plan& plan) {
       return std::string(plan.text(suite.name));
   }
   return {};
-}
-
-std::uint64_t number_of(const Sha256& hash) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 8; i-- > 0;) value = value << 8 | hash.bytes[i];
-  return value;
 }
 
 // The objects of a task, ascending: its bodies before the first surface.
@@ -121,12 +116,13 @@ std::optional<std::uint32_t> prior_of(const plan::Plan& plan, std::uint32_t epis
   if (best.empty()) return std::nullopt;
   // The task is drawn by the own task's first start, so that neighbours look at one other task.
   const Sha256 first{plan.episodes(plan.tasks()[own.task]).front().start_id};
-  const std::uint64_t draw = number_of(Hasher().text("prior task").hash(first).finish());
+  const std::uint64_t draw = little_endian_number(Hasher().text("prior task").hash(first).finish());
   const std::uint32_t task = best[draw % best.size()];
   const std::uint32_t begin = plan.tasks()[task].episodes.first;
   const std::uint32_t count = plan.tasks()[task].episodes.count;
   const Sha256 start{own.start_id};
-  const std::uint64_t from = number_of(Hasher().text("prior start").hash(start).finish()) % count;
+  const std::uint64_t from =
+      little_endian_number(Hasher().text("prior start").hash(start).finish()) % count;
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t at = begin + static_cast<std::uint32_t>((from + i) % count);
     if (plan.episodes()[at].start_id != own.start_id) return at;

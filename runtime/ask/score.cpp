@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "runtime/ask/queries.h"
+#include "runtime/base/numbering.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/family_name.h"
 #include "runtime/plan/ids.h"
@@ -120,16 +121,13 @@ class RateMaker {
 
   Rate make() const {
     Rate rate{{}, {0, 1}};
-    std::map<std::uint32_t, std::uint32_t> tasks;
-    std::map<std::string, std::uint32_t> places;
+    Numbering<std::uint32_t> tasks;
+    Numbering<std::string> places;
     std::vector<stats::StartCount> rows;
-    const auto id_in = [](auto& ids, const auto& key) {
-      return ids.try_emplace(key, static_cast<std::uint32_t>(ids.size())).first->second;
-    };
     for (const auto& [where, count] : counts_) {
       const plan::TaskRecord& task = plan_.tasks()[where.first];
       const std::string place = plan::place_key(plan_, task, plan_.episodes()[where.second]);
-      rows.push_back({count, id_in(tasks, where.first), id_in(places, place)});
+      rows.push_back({count, tasks(where.first), places(place)});
       rate.count.k += count.k;
       rate.count.n += count.n;
     }
@@ -361,8 +359,7 @@ Result<std::vector<Known>> knows(const plan::Plan& plan, std::span<const Asked> 
                                  std::string_view family, Arm arm) {
   std::vector<std::uint32_t> named;
   for (std::uint32_t f = 0; f < plan.families().size(); ++f) {
-    const plan::FamilyRecord& record = plan.families()[f];
-    if (plan::is_called(plan, record, family)) named.push_back(f);
+    if (plan::is_called(plan, plan.families()[f], family)) named.push_back(f);
   }
   if (named.empty())
     return Failure{Fault::kUsage, "no questions are called `" + std::string(family) + "`", ""};

@@ -70,7 +70,7 @@ Result<StartWhy> why_answers(const std::string& dir, const std::string& task, in
     if (question.task != *found || !is_asked(plan, question.family, family)) continue;
     const plan::FamilyRecord& of = plan.families()[question.family];
     ids.push_back(to_hex(plan::to_sha256(question.question_id)));
-    why.questions.push_back({family_name(plan, of),
+    why.questions.push_back({plan::family_name(plan, of),
                              std::string(plan.text(question.text)),
                              std::string(plan::find_truth(question.truth)->says),
                              written(plan, plan::SpanKind::kFamilies, question.family),

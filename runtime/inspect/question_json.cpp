@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/inspect/wrap.h"
+#include "runtime/plan/family_name.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/questions.h"
 
@@ -103,7 +104,7 @@ Json list_questions(const plan::Plan& plan, std::span<const std::uint32_t> tasks
 std::string question_list_text(const Json& list) {
   std::size_t width = 0;
   const auto name_of = [](const Json& family) {
-    return family["set"].get<std::string>() + "." + family["name"].get<std::string>();
+    return plan::family_name(family["set"].text(), family["name"].text());
   };
   for (const Json& family : list["families"]) width = std::max(width, name_of(family).size());
   std::string text;
@@ -199,10 +200,10 @@ std::string questions_text(const Json& questions, const Json& omissions) {
 namespace {
 
 using Key = std::tuple<std::string_view, std::string_view, std::string_view>;  // set, family, task
-using Ids = std::map<Key, std::multiset<std::string>>;
+using QuestionIds = std::map<Key, std::multiset<std::string>>;
 
-Ids ids_of(const plan::Plan& plan) {
-  Ids ids;
+QuestionIds ids_of(const plan::Plan& plan) {
+  QuestionIds ids;
   for (const plan::QuestionRecord& question : plan.questions()) {
     const plan::FamilyRecord& family = plan.families()[question.family];
     ids[{plan.text(family.set), plan.text(family.name),
@@ -215,7 +216,7 @@ Ids ids_of(const plan::Plan& plan) {
 }  // namespace
 
 Json diff_questions(const plan::Plan& a, const plan::Plan& b) {
-  const Ids ours = ids_of(a), theirs = ids_of(b);
+  const QuestionIds ours = ids_of(a), theirs = ids_of(b);
   if (ours.empty() && theirs.empty()) return {};
   struct Counts {
     std::size_t only_a = 0, only_b = 0, changed = 0;
@@ -263,8 +264,8 @@ std::string question_diff_text(const Json& diff) {
     return json[key].get<std::size_t>();
   };
   for (const Json& family : diff["changed_families"]) {
-    fmt::format_to(out, "? {}.{}: {} only in the first, {} only in the second, {} changed\n",
-                   family["set"].get<std::string>(), family["name"].get<std::string>(),
+    fmt::format_to(out, "? {}: {} only in the first, {} only in the second, {} changed\n",
+                   plan::family_name(family["set"].text(), family["name"].text()),
                    number(family, "only_a"), number(family, "only_b"), number(family, "changed"));
   }
   fmt::format_to(out,

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "runtime/base/numbering.h"
 #include "runtime/plan/questions.h"
 #include "runtime/report/page_data.h"
 
@@ -132,7 +133,7 @@ class Pairing {
  public:
   int number(const plan::Plan& plan, const AskedModel::Known& known) {
     const auto key = std::pair(words(plan, known.question), known.seed);
-    return numbers_.try_emplace(key, static_cast<int>(numbers_.size())).first->second;
+    return static_cast<int>(numbers_(key));
   }
 
  private:
@@ -151,7 +152,7 @@ class Pairing {
     return text;
   }
 
-  std::map<std::pair<std::string, int>, int> numbers_;
+  Numbering<std::pair<std::string, int>> numbers_;
 };
 
 Json rate_json(const ask::Rate& rate) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "runtime/base/numbering.h"
 #include "runtime/inspect/axes.h"
 #include "runtime/plan/axes.h"
 #include "runtime/report/tables.h"
@@ -162,19 +163,15 @@ stats::MixedData data_of(const Benchmark& benchmark, const std::vector<Row>& row
   data.successes.resize(n);
   data.trials.resize(n);
   data.groups.resize(kFactors.size());
-  std::map<int, std::uint32_t> tasks, objects;
-  std::map<std::pair<int, int>, std::uint32_t> starts;
-  const auto id = [](auto& ids, const auto& key) {
-    return ids.try_emplace(key, static_cast<std::uint32_t>(ids.size())).first->second;
-  };
+  Numbering<int> tasks, objects;
+  Numbering<std::pair<int, int>> starts;
   for (Eigen::Index i = 0; i < n; ++i) {
     const Row& row = rows[static_cast<std::size_t>(i)];
     data.successes(i) = row.successes;
     data.trials(i) = row.trials;
-    data.groups[0].push_back(id(tasks, row.task));
-    data.groups[1].push_back(
-        id(objects, benchmark.tasks[static_cast<std::size_t>(row.task)].source));
-    data.groups[2].push_back(id(starts, std::pair(row.task, row.start)));
+    data.groups[0].push_back(tasks(row.task));
+    data.groups[1].push_back(objects(benchmark.tasks[static_cast<std::size_t>(row.task)].source));
+    data.groups[2].push_back(starts(std::pair(row.task, row.start)));
     for (std::size_t c = 0; c < columns.size(); ++c)
       data.fixed(i, static_cast<Eigen::Index>(c) + 1) =
           columns[c].values[static_cast<std::size_t>(i)];

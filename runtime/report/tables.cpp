@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "runtime/base/numbering.h"
 #include "runtime/inspect/axes.h"
 
 namespace probe::report {
@@ -42,8 +43,8 @@ class Fresh {
 std::vector<StartCount> counts_of(const Benchmark& benchmark, int policy, int metric,
                                   const std::vector<int>& tasks) {
   std::vector<StartCount> rows;
-  Ids<int> task_ids;
-  Ids<std::uint32_t> clusters;
+  Numbering<int> task_ids;
+  Numbering<std::uint32_t> clusters;
   Fresh is_fresh;
   for (const int task : tasks) {
     if (!has(benchmark, task, metric)) continue;
