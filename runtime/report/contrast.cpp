@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "runtime/stats/design.h"
 #include "runtime/stats/multiplicity.h"
@@ -9,7 +10,7 @@
 namespace probe::report {
 namespace {
 
-Answer answer_of(stats::Answer&& answered) {
+Answer answer_of(stats::Finding&& answered) {
   Answer answer;
   answer.interval = answered.interval;
   answer.p = answered.p;
@@ -38,7 +39,7 @@ Contrast PairRows::contrast() const {
   contrast.first = {all.both + all.only_a, all.pairs()};
   contrast.second = {all.both + all.only_b, all.pairs()};
   contrast.starts = static_cast<std::int64_t>(rows_.size());
-  stats::Answers answers = stats::ask(by_place());
+  stats::HereAndAnew answers = stats::compare_here_and_anew(by_place());
   contrast.difference = answers.difference;
   contrast.here = answer_of(std::move(answers.here));
   contrast.anew = answer_of(std::move(answers.anew));

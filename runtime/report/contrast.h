@@ -3,20 +3,20 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "runtime/base/numbering.h"
 #include "runtime/stats/clustered.h"
-#include "runtime/stats/questions.h"
+#include "runtime/stats/here_and_anew.h"
 
 namespace probe::report {
 
 // A difference is real where its adjusted p is at most this.
 inline constexpr double kAlpha = 0.05;
 
-// What the data answer to one of the two questions of a difference (runtime/stats/questions.h).
+// What the data answer to one of the two questions of a difference (runtime/stats/here_and_anew.h).
 struct Answer {
   stats::Interval interval;          // 95 %
   double p = 1;                      // exact: sign flips, or dealing out unpaired starts
@@ -43,18 +43,6 @@ struct Contrast {
   Answer anew;            // for starts never tried; places in the order of tasks and starts
 };
 
-// Small numbers for whatever must be told apart.
-template <typename Key>
-class Ids {
- public:
-  std::uint32_t operator()(const Key& key) {
-    return ids_.try_emplace(key, static_cast<std::uint32_t>(ids_.size())).first->second;
-  }
-
- private:
-  std::map<Key, std::uint32_t> ids_;
-};
-
 // Adds one pair: what was true of the first and of the second.
 void count_pair(stats::PairTable& table, bool a, bool b);
 
@@ -72,8 +60,8 @@ class PairRows {
 
   std::vector<stats::PlacedPairs> rows_;
   std::vector<int> groups_;  // by row
-  Ids<std::uint32_t> places_;
-  Ids<int> tasks_;
+  Numbering<std::uint32_t> places_;
+  Numbering<int> tasks_;
 };
 
 // A paired contrast as one of its tests sees it: one outcome a unit. `discordance` is the share of

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "runtime/stats/clustered.h"
-#include "runtime/stats/questions.h"
+#include "runtime/stats/here_and_anew.h"
 #include "tests/runtime/stats/fake_benchmark.h"
 
 namespace probe::stats {
@@ -31,7 +31,8 @@ struct Tally {
   std::map<std::string, Share> found;    // p at most 5 %
   std::map<std::string, Share> covered;  // the truth of the question
 
-  void add(const std::string& what, const Answers& answers, double truth_here, double truth_anew) {
+  void add(const std::string& what, const HereAndAnew& answers, double truth_here,
+           double truth_anew) {
     const auto covers = [](const Interval& interval, double truth) {
       return interval.low <= truth && truth <= interval.high;
     };
@@ -57,7 +58,7 @@ void add_policies(const FakeRun& run, Tally& tally) {
     }
     void ask_both(const std::string& what, Tally& tally) const {
       const double n = static_cast<double>(pairs.size());
-      tally.add(what, ask(pairs), here / n, anew / n);
+      tally.add(what, compare_here_and_anew(pairs), here / n, anew / n);
     }
   };
   Scope all;
@@ -96,7 +97,8 @@ void add_variants(const FakeRun& run, Tally& tally) {
     std::vector<StartArms> starts;
     for (const auto& [place, of_start] : arms[c]) starts.push_back(of_start);
     tally.found["variants, on these starts"].add(shared_baseline_exact(starts) <= kAlpha);
-    tally.found["variants, for starts never tried"].add(ask(pairs[c]).anew.p <= kAlpha);
+    tally.found["variants, for starts never tried"].add(compare_here_and_anew(pairs[c]).anew.p <=
+                                                        kAlpha);
   }
 }
 

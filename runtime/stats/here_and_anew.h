@@ -10,7 +10,8 @@
 // what is odd about the place is odd for all of them: 6 places won of 6 are 2^-5, for however many
 // tasks. Tasks are strata: they stay, and what they have in common is not learnt from their places.
 //
-// Where every start lies in a place of its own, as those of a single task do, both have one answer.
+// Where every start lies in a place of its own, as those of a single task do, both have one
+// finding.
 #pragma once
 
 #include <cstdint>
@@ -28,21 +29,21 @@ struct PlacedPairs {
   std::uint32_t task = 0, start = 0, place = 0;
 };
 
-struct Answer {
+struct Finding {
   Interval interval;               // of the difference
   double p = 1;                    // two-sided and exact: sign flips of the units' nets
   std::vector<std::int64_t> nets;  // by unit, a start or a place: successes of A less those of B
 };
 
-struct Answers {
+struct HereAndAnew {
   double difference = 0;  // rate(A) - rate(B) over all pairs
-  Answer here;            // on these starts
-  Answer anew;            // for starts never tried
+  Finding here;           // on these starts
+  Finding anew;           // for starts never tried
 };
 
 // Intervals are clustered_difference's, by start and by place: an interval of these starts takes
 // what differs from start to start for chance, since one episode a start cannot tell the two apart,
 // and so covers no less than it says.
-Answers ask(std::span<const PlacedPairs> pairs, double confidence = 0.95);
+HereAndAnew compare_here_and_anew(std::span<const PlacedPairs> pairs, double confidence = 0.95);
 
 }  // namespace probe::stats

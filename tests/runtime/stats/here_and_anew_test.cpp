@@ -1,4 +1,4 @@
-#include "runtime/stats/questions.h"
+#include "runtime/stats/here_and_anew.h"
 
 #include <doctest/doctest.h>
 
@@ -22,7 +22,7 @@ std::vector<PlacedPairs> crossed(std::uint32_t tasks, std::uint32_t places,
 }  // namespace
 
 TEST_CASE("24 tasks in 6 places, all won: certain on these starts, not for starts never tried") {
-  const Answers won = ask(crossed(24, 6, {.only_a = 1}));
+  const HereAndAnew won = compare_here_and_anew(crossed(24, 6, {.only_a = 1}));
   CHECK(won.difference == 1);
   CHECK(std::log2(won.here.p) == doctest::Approx(-143));
   CHECK(won.anew.p == doctest::Approx(2.0 / 64));
@@ -34,7 +34,7 @@ TEST_CASE("24 tasks in 6 places, all won: certain on these starts, not for start
 }
 
 TEST_CASE("seeds that repeat a start are one finding for both questions") {
-  const Answers won = ask(crossed(2, 3, {.only_a = 5}));
+  const HereAndAnew won = compare_here_and_anew(crossed(2, 3, {.only_a = 5}));
   CHECK(won.here.p == doctest::Approx(2.0 / 64));
   CHECK(won.anew.p == doctest::Approx(2.0 / 8));
 }
@@ -47,7 +47,7 @@ TEST_CASE("one task's starts are places, so both questions have one answer") {
                              : PairTable{.both = 2},
                     0, i, i});
   }
-  const Answers answers = ask(rows);
+  const HereAndAnew answers = compare_here_and_anew(rows);
   CHECK(answers.here.p == answers.anew.p);
   CHECK(answers.here.interval.low == answers.anew.interval.low);
   CHECK(answers.here.interval.high == answers.anew.interval.high);
@@ -63,7 +63,7 @@ TEST_CASE("places that favour one side each say nothing of starts never tried") 
                       task * 7 + place, place});
     }
   }
-  const Answers answers = ask(rows);
+  const HereAndAnew answers = compare_here_and_anew(rows);
   CHECK(answers.here.p < 0.2);
   CHECK(answers.anew.p == 1);
   CHECK(answers.anew.interval.high - answers.anew.interval.low >
@@ -71,7 +71,7 @@ TEST_CASE("places that favour one side each say nothing of starts never tried") 
 }
 
 TEST_CASE("no pairs answer nothing") {
-  const Answers answers = ask({});
+  const HereAndAnew answers = compare_here_and_anew({});
   CHECK(answers.here.p == 1);
   CHECK(answers.anew.interval.low == -1);
   CHECK(answers.anew.interval.high == 1);
