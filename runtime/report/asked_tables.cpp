@@ -22,6 +22,8 @@ std::optional<RateCell> rate_cell(const ask::ScoreRow& score, const RateKind& ki
                                               : ask::Arm::kPicture;
   const auto& of_arm = score.of(arm);
   if (!of_arm) return std::nullopt;
+  if (kind.name == "letters")
+    return of_arm->likely_circular ? counted(*of_arm->likely_circular) : std::nullopt;
   return counted(kind.name == "plain" ? of_arm->plain : of_arm->circular);
 }
 

@@ -19,7 +19,8 @@ struct RateKind {
   std::string_view head;  // in tables for people
   bool is_computed;       // not asked: it has no count
 };
-inline constexpr std::array<RateKind, 4> kRateKinds = {{{"plain", "in one order", false},
+inline constexpr std::array<RateKind, 5> kRateKinds = {{{"plain", "in one order", false},
+                                                        {"letters", "by likeliest letters", false},
                                                         {"blind", "without the picture", false},
                                                         {"prior", "with another picture", false},
                                                         {"luck", "by chance", true}}};

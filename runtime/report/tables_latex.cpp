@@ -240,8 +240,9 @@ std::string tex_rates(const Benchmark& benchmark, const AskedTables& asked) {
   return "\\begin{longtable}{ll" + std::string(kRateKinds.size(), 'r') +
          "}\n\\toprule\nmodel & question" + heads + " \\\\\n\\midrule\n\\endhead\n" + rows +
          " \\\\\n\\bottomrule\n\\caption{Beside the answers that are right in every order of the "
-         "options: those to one order, by which right letters are balanced; those in every order "
-         "without the picture and with that of another start; and what any answer, each as likely, "
+         "options: those to one order, by which right letters are balanced; in every order the "
+         "letters to which the server gives the largest probability; those in every order without "
+         "the picture and with that of another start; and what any answer, each as likely, "
          "gets in every order. Percent, the count and the 95\\,\\% interval; what is computed has "
          "no count.}\n\\end{longtable}\n";
 }

@@ -12,6 +12,7 @@
 #include "runtime/base/percent.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/plan/family_name.h"
 
 namespace probe::cli {
 namespace {
@@ -52,13 +53,16 @@ Status print_table(const std::string& dir) {
       "right in one order", "");
   for (const ask::ScoreRow& row : ask::score(plan, tally.asked())) {
     const plan::FamilyRecord& family = plan.families()[row.family];
-    const std::string name =
-        std::string(plan.text(family.set)) + "." + std::string(plan.text(family.name));
+    const std::string name = plan::family_name(plan, family);
     for (const ask::Arm arm : {ask::Arm::kPicture, ask::Arm::kBlind, ask::Arm::kPrior}) {
       const auto& score = row.of(arm);
       if (!score) continue;
       put("{:<28} {:<8} {:<28} {:<28} {}\n", name, ask::word_of(arm), rate_text(score->circular),
           rate_text(score->plain), rest_text(*score));
+      if (score->likely_circular && score->likely_plain) {
+        put("{:<28} {:<8} {:<28} {:<28} by the likeliest letters\n", "", "",
+            rate_text(*score->likely_circular), rate_text(*score->likely_plain));
+      }
     }
     if (row.floors.random_circular && row.floors.random_plain) {
       put("{:<28} {:<8} {:<28} {:<28}\n", "", "luck",
@@ -68,7 +72,7 @@ Status print_table(const std::string& dir) {
   }
   std::map<std::string, std::int64_t> left_out;
   PROBE_TRY(ask::for_each_left_out(dir, [&](const ask::LeftOut& out, std::uint32_t) -> Status {
-    ++left_out[out.set + "." + out.family + ": " + out.why];
+    ++left_out[plan::family_name(out.set, out.family) + ": " + out.why];
     return {};
   }));
   for (const std::string& sentence : rows.sentences()) put("{}\n", sentence);

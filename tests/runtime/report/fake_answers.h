@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "runtime/ask/answers.h"
 #include "runtime/ask/plan_reading.h"
@@ -58,12 +60,29 @@ inline std::string fake_words(const plan::Plan& plan, const plan::QuestionRecord
   return {};
 }
 
+// How probable the server says each letter of a choice is; the words are chosen without them.
+enum class Letters { kUntold, kRight, kTied };
+inline std::vector<std::optional<double>> fake_letters(const plan::Plan& plan,
+                                                       const plan::QuestionRecord& question,
+                                                       const ask::Wording& wording,
+                                                       Letters letters) {
+  const bool is_choice =
+      plan::form_of(plan.families()[question.family]) == plan::QuestionForm::kChoice;
+  if (letters == Letters::kUntold || !is_choice) return {};
+  const ask::Truth truth = fake_truth(plan, question);
+  std::vector<std::optional<double>> logprobs;
+  for (const std::uint32_t option : wording.shown)
+    logprobs.emplace_back(letters == Letters::kTied || option == *truth.option ? -0.1 : -5.0);
+  return logprobs;
+}
+
 // As asking would store it.
 inline void fake_answer(const plan::Plan& plan, const plan::QuestionRecord& question, Said said,
-                        ask::AnswerRow& row) {
+                        ask::AnswerRow& row, Letters letters = Letters::kUntold) {
   const ask::Wording wording = ask::word(plan, question, row.rotation, 640, 480);
   row.text = wording.text;
   row.prompt_sha256 = to_hex(sha256(row.text));
+  row.usage.letter_logprobs = fake_letters(plan, question, wording, letters);
   const ask::Truth truth = fake_truth(plan, question);
   row.expected = truth.expected;
   if (said == Said::kInvalid) {
@@ -87,7 +106,8 @@ inline void fake_answer(const plan::Plan& plan, const plan::QuestionRecord& ques
 // Makes DIR, or goes on with it under another arm, with an answer to every question about the start
 // of every task in every order.
 inline void fake_answers(const std::string& dir, const plan::Plan& plan, const std::string& model,
-                         const AnswerScript& script, ask::Arm arm = ask::Arm::kPicture) {
+                         const AnswerScript& script, ask::Arm arm = ask::Arm::kPicture,
+                         Letters letters = Letters::kUntold) {
   ask::AskRecord record;
   record.identity.plan_root = to_hex(plan.root());
   record.identity.model = model;
@@ -113,7 +133,7 @@ inline void fake_answers(const std::string& dir, const plan::Plan& plan, const s
       const Said said = script(row.family, row.task, row.episode);
       if (said == Said::kNotAsked) continue;
       for (row.rotation = 0; row.rotation < ask::rotations_of(plan, question); ++row.rotation) {
-        fake_answer(plan, question, said, row);
+        fake_answer(plan, question, said, row, letters);
         REQUIRE((*answers)->commit(row, q).ok());
       }
     }

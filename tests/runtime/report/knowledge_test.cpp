@@ -158,14 +158,48 @@ TEST_CASE("tables of models have what stands beside: one order, no picture, anot
         doctest::Approx(rates["luck"]["percent"].get<double>()).epsilon(0.01));
 
   const std::string latex = table_text(benchmark, tables, {}, TableFormat::kLatex);
-  const std::size_t heads = latex.find("in one order & without the picture & with another picture");
+  const std::size_t heads =
+      latex.find("in one order & by likeliest letters & without the picture & with ");
   REQUIRE(heads != std::string::npos);
   const std::size_t row = latex.find("pali\\_gemma & understanding.source & ", heads);
   REQUIRE(row != std::string::npos);
   const std::string cells = latex.substr(row, latex.find("\\\\\n", row) - row);
   CHECK(cells.find("{18/" + n + "}") != std::string::npos);
   CHECK(cells.find("{6/" + n + "}") != std::string::npos);
-  CHECK(std::count(cells.begin(), cells.end(), '&') == 5);
+  CHECK(std::count(cells.begin(), cells.end(), '&') == 6);
+}
+
+TEST_CASE("where a server tells probabilities, every table has what the likeliest letters get") {
+  RunsFolder folder;
+  const plan::Plan asked = suite_plan("questions.probe");
+  // The words know 18 starts; the probabilities know all, or nothing where all letters are alike.
+  fake_answers(folder / "right", asked, "told", knows_carrots, ask::Arm::kPicture, Letters::kRight);
+  fake_answers(folder / "tied", asked, "tied", knows_carrots, ask::Arm::kPicture, Letters::kTied);
+  const Benchmark benchmark = loaded({folder / "right", folder / "tied"});
+  const Tables tables = make_tables(benchmark);
+  const std::string n = std::to_string(51 * 24);
+
+  const std::string csv = table_text(benchmark, tables, {}, TableFormat::kCsv);
+  CHECK(csv.find("\ntold,understanding.source (letters),100.0,") != csv.npos);
+  CHECK(csv.find("\ntied,understanding.source (letters),0.0,") != csv.npos);
+  CHECK(csv.find("understanding.there (letters)") == csv.npos);
+  const Json json = Json::parse(table_text(benchmark, tables, {}, TableFormat::kJson));
+  std::map<std::string, Json> rates;
+  for (const Json& row : json["models"]["rates"]) {
+    if (row["metric"] == "understanding.source" && row["rate"] == "letters")
+      rates[row["policy"].text()] = row["columns"]["avg"];
+  }
+  REQUIRE(rates.size() == 2);
+  CHECK(rates["told"]["k"] == 51 * 24);
+  CHECK(rates["told"]["n"] == 51 * 24);
+  CHECK(rates["tied"]["k"] == 0);
+  const std::string latex = table_text(benchmark, tables, {}, TableFormat::kLatex);
+  const std::size_t row = latex.find("told & understanding.source & ", latex.find("likeliest"));
+  REQUIRE(row != latex.npos);
+  CHECK(latex.substr(row, latex.find("\\\\\n", row) - row).find("{" + n + "/" + n + "}") !=
+        latex.npos);
+  const Json page = page_data(benchmark, tables, {.title = "", .models = false});
+  CHECK(page["tables"]["accuracy"][0]["picture"]["likely_circular"][0] == 51 * 24);
 }
 
 TEST_CASE("two models are compared on the same questions") {

@@ -223,7 +223,7 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
     families: [["understanding.source", "choice", "A robot is told: \"{instruction}\". Which object must it pick up?"], ["understanding.restate", "free", "Say in one short sentence what the robot has to do."]]
       .map(([name, form, text]) => ({ name, form, moment: "at start", text })) }));
   const accuracy = models.flatMap((_, model) => [-1, ...categories.keys()].flatMap((category) => [
-    { model, family: 0, category, picture: arm(980 - 300 * model, 1200), blind: arm(400, 1200), prior: arm(410, 1200), random: 0.0741, first: 0 },
+    { model, family: 0, category, picture: arm(980 - 300 * model, 1200, model ? {} : { likely_circular: [1004, 1200, 0.81, 0.86], likely_plain: [1090, 1200, 0.89, 0.92] }), blind: arm(400, 1200), prior: arm(410, 1200), random: 0.0741, first: 0 },
     { model, family: 1, category, picture: arm(310, 1200, { copied: 0.84, copies: 702 }) }]));
   const knows = models.flatMap((_, model) => [-1, ...categories.keys()].flatMap((category) => list.slice(0, 2).map((_, policy) => ({ model, policy, family: 0, category, counts: [20, 5, 30, 65, 71, 2, 200, 807], starts: 1200, diff: 0.148, low: 0.09, high: 0.2,
     says: `of the 98 episodes in which ${list[policy].label} did not go for the right object, ${models[model].label} named it in 73`, ...answers(0.09, 0.2, 0.001, 1200, 0.01) }))));

@@ -18,7 +18,8 @@ function unread(score: ArmScore | undefined): string {
 }
 
 function accuracyTable(data: Data, rows: Accuracy[]): HTMLElement {
-  const head = ["Model", "Question", "Right in every order", "In one order", "Without the picture", "With another picture", "By chance", "Not read"];
+  const likely = rows.some((r) => r.picture?.likely_circular);
+  const head = ["Model", "Question", "Right in every order", "In one order", ...(likely ? ["By the likeliest letters"] : []), "Without the picture", "With another picture", "By chance", "Not read"];
   return scroller("Right answers", h("table", { class: "plain" }, h("caption", {}, "Questions and starts answered right, percent"),
     h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),
     h("tbody", {}, rows.map((r) => {
@@ -26,6 +27,7 @@ function accuracyTable(data: Data, rows: Accuracy[]): HTMLElement {
       return h("tr", {}, h("th", { scope: "row" }, label(data, r.model)),
         h("td", {}, h("b", {}, of?.name ?? "?"), h("span", { class: "sub" }, of?.text ?? "")),
         h("td", { title: spoken(r.picture?.circular ?? null) }, shortCell(r.picture?.circular ?? null)), h("td", {}, shortCell(r.picture?.plain ?? null)),
+        likely ? h("td", { title: spoken(r.picture?.likely_circular ?? null) }, shortCell(r.picture?.likely_circular ?? null)) : null,
         h("td", {}, shortCell(r.blind?.circular ?? null)), h("td", {}, shortCell(r.prior?.circular ?? null)),
         h("td", { class: "number" }, r.random === undefined ? "\u2013" : percent(r.random)),
         h("td", {}, unread(r.picture), r.picture?.copied === undefined ? null : h("small", {}, ` ${percent(r.picture.copied)} % of the instruction's words repeated, ${count(r.picture.copies ?? 0)} mere copies`)));
@@ -70,7 +72,7 @@ export function knows(state: State): Panel {
       accuracyTable(data, accuracy.filter((r) => r.category === category)),
       beside.length ? [h("ul", {}, beside.map((r) => h("li", {}, r.says.charAt(0).toUpperCase() + r.says.slice(1) + (r.counts.reduce((a, b) => a + b, 0) ? ` (${family(data, r.model, r.family)?.name ?? "?"}).` : ".")))), knowsTable(state, beside), differenceTable(state, beside)] : null,
       details("How to read these tables",
-        h("p", {}, "A choice is asked once for every order of its options and counts as right only if all answers are; \u201cin one order\u201d is the plain rate, with right letters balanced over starts. Without the picture, and with that of another start, a model gets what words alone give away."),
+        h("p", {}, "A choice is asked once for every order of its options and counts as right only if all answers are; \u201cin one order\u201d is the plain rate, with right letters balanced over starts. Where a server tells how probable each letter was, the likeliest ones are scored, too, in every order. Without the picture, and with that of another start, a model gets what words alone give away."),
         h("p", {}, "An episode stands beside the answers about its own start and words. Knows \u2212 goes is the difference of the two rates on the same starts, tested as policies in pairs are.")));
   };
   state.watch(draw);
