@@ -123,10 +123,10 @@ int ask_verb(const AskArguments& arguments) {
 void add_ask(Verb app, int& exit) {
   auto arguments = std::make_shared<AskArguments>();
   Verb verb = app.add_subcommand("ask", "put a plan's questions to a model that sees and reads");
-  verb.footer(std::string(kMoreAskOptions) +
+  verb.footer(more_ask_options(SharedWords::kAsk) +
               "example: vlaprobe ask suite/questions.probe -o answers/qwen --jobs 32 \\\n"
               "           --model 'openai://127.0.0.1:8000?model=Qwen2.5-VL-7B&size=448x336'");
-  add_ask_options(verb, *arguments);
+  add_ask_options(verb, *arguments, SharedWords::kAsk);
   verb.add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them");
   verb.add_flag("--json", arguments->json, "counts of this call as JSON");
   verb.refuse_empty_values();

@@ -19,19 +19,19 @@ Result<ask::Arm> arm_of(const std::string& word) {
 
 Result<ask::AskOptions> ask_options(const AskArguments& arguments) {
   ask::AskOptions options;
-  PROBE_TRY(check_name(arguments.run.name));
+  PROBE_TRY(check_name(arguments.name));
   options.model = arguments.model;
-  options.name = arguments.run.name;
-  options.out = arguments.run.out;
+  options.name = arguments.name;
+  options.out = arguments.out;
   options.frames = arguments.frames;
-  options.jobs = arguments.run.jobs;
-  options.retries = arguments.run.retries;
-  options.give_up_after = arguments.run.give_up_after;
-  options.accepts_any_certificate = arguments.run.insecure;
-  options.if_changed = if_changed_of(arguments.run.if_changed);
-  options.assets = arguments.run.assets.root;
-  options.choice.suite = arguments.run.suite;
-  options.choice.tasks = arguments.run.tasks;
+  options.jobs = arguments.jobs;
+  options.retries = arguments.retries;
+  options.give_up_after = arguments.give_up_after;
+  options.accepts_any_certificate = arguments.insecure;
+  options.if_changed = if_changed_of(arguments.if_changed);
+  options.assets = arguments.assets.root;
+  options.choice.suite = arguments.suite;
+  options.choice.tasks = arguments.tasks;
   options.choice.questions = arguments.questions;
   options.choice.arms.clear();
   for (const std::string& word : arguments.arms) {
@@ -40,8 +40,8 @@ Result<ask::AskOptions> ask_options(const AskArguments& arguments) {
       options.choice.arms.push_back(arm);
   }
   std::ranges::sort(options.choice.arms);
-  if (!arguments.run.episodes.empty()) {
-    PROBE_ASSIGN(options.choice.episodes, parse_range(arguments.run.episodes));
+  if (!arguments.episodes.empty()) {
+    PROBE_ASSIGN(options.choice.episodes, parse_range(arguments.episodes));
   }
   PROBE_ASSIGN(const auto shard, parse_shard(arguments.shard));
   options.choice.shard = shard.first;
@@ -50,41 +50,36 @@ Result<ask::AskOptions> ask_options(const AskArguments& arguments) {
 }
 
 LoadedPlan load_asked(const AskArguments& arguments, ask::AskOptions& options) {
-  AssetOptions assets = arguments.run.assets;
-  assets.tasks = arguments.run.tasks;
-  LoadedPlan loaded = load_plan(arguments.run.file, assets);
-  options.choice.whole_plan = loaded.only_used_suites && arguments.run.suite.empty();
+  AssetOptions assets = arguments.assets;
+  assets.tasks = arguments.tasks;
+  LoadedPlan loaded = load_plan(arguments.file, assets);
+  options.choice.whole_plan = loaded.only_used_suites && arguments.suite.empty();
   return loaded;
 }
 
-void add_ask_options(Verb verb, AskArguments& arguments) {
-  RunArguments& run = arguments.run;
-  verb.add_option("F", run.file, ".probe text or .plan file").required();
+void add_ask_options(Verb verb, AskArguments& arguments, SharedWords words) {
+  const auto about = [&](const char* said) { return words == SharedWords::kAsk ? said : ""; };
+  verb.add_option("F", arguments.file, ".probe text or .plan file").required();
   verb.add_option("--model", arguments.model,
                   "openai://HOST:PORT?model=NAME, also https://...; or truth, random, first")
       .required();
-  verb.add_option("-o,--out", run.out, "folder of answers").required();
-  verb.add_option("--questions", arguments.questions, "SET or SET.FAMILY, with * and ? (all)")
+  add_shared_options(verb, arguments, words);
+  verb.add_option("--questions", arguments.questions,
+                  about("SET or SET.FAMILY, with * and ? (all)"))
       .delimiter(',')
       .no_extra_values();
   verb.add_option("--arms", arguments.arms,
-                  "picture, blind (none) and prior (another start's) (picture)")
+                  about("picture, blind (none) and prior (another start's) (picture)"))
       .delimiter(',')
       .no_extra_values();
   verb.add_option("--frames", arguments.frames,
-                  "folder of a run: its ends are what questions at the end are about");
-  verb.add_option("--tasks", run.tasks, "glob over task names");
-  verb.add_option("--episodes", run.episodes, "A-B, first and last start of each task");
-  verb.add_option("--jobs", run.jobs, "questions at the server at a time (1)").between(1, 1024);
-  // On the verb's page, so that the help fits a screen: kMoreAskOptions.
-  verb.add_option("--name", run.name, "");
-  verb.add_option("--suite", run.suite, "");
-  verb.add_option("--retries", run.retries, "").between(0, 1000);
-  verb.add_option("--give-up-after", run.give_up_after, "").between(0, 1000000);
-  verb.add_flag("--insecure", run.insecure, "");
-  verb.add_option("--if-changed", run.if_changed, "").one_of({"refuse", "fork", "continue"});
-  verb.add_option("--assets", run.assets.root, "");
-  verb.add_option("--std", run.assets.library, "");
+                  about("folder of a run: its ends are what questions at the end are about"));
+}
+
+std::string more_ask_options(SharedWords words) {
+  if (words == SharedWords::kAsk)
+    return "more, in runtime/ask/README.md: " + unsaid_options(words) + "\n";
+  return "more, as `ask` has them: --questions --arms --frames " + unsaid_options(words) + "\n";
 }
 
 }  // namespace probe::cli

@@ -9,18 +9,16 @@
 
 namespace probe::cli {
 
-struct AskArguments {
-  RunArguments run;  // file, out, name, suite, tasks, episodes, if_changed, jobs, retries, ...
+struct AskArguments : SharedArguments {
   std::string model, frames, shard = "1/1";
   std::vector<std::string> questions, arms = {"picture"};
   bool json = false;
 };
 
-void add_ask_options(Verb verb, AskArguments& arguments);
-// Of these the help has no words of their own.
-inline constexpr const char* kMoreAskOptions =
-    "more, in runtime/ask/README.md: --name --suite --retries --give-up-after --insecure "
-    "--if-changed --assets --std\n";
+// In the words of `ask`, or of `slurm-ask`, whose help leaves out what `ask --help` has.
+void add_ask_options(Verb verb, AskArguments& arguments, SharedWords words);
+// A line or two that name the options of which that help has no words.
+std::string more_ask_options(SharedWords words);
 
 // All but progress.
 Result<ask::AskOptions> ask_options(const AskArguments& arguments);

@@ -184,28 +184,8 @@ void print_summary(const run::RunSummary& summary) {
 void add_run_options(Verb verb, RunArguments& arguments) {
   verb.add_option("F", arguments.file, ".probe text or .plan file").required();
   verb.add_option("--policy", arguments.policy, "who acts").required();
-  verb.add_option("--name", arguments.name,
-                  "what the rows call the policy (default: P); stays when its server moves");
-  verb.add_option("-o,--out", arguments.out, "results folder").required();
-  verb.add_option("--suite", arguments.suite,
-                  "which suite (default: the first that F itself declares)");
-  verb.add_option("--tasks", arguments.tasks, "glob over task names");
-  verb.add_option("--episodes", arguments.episodes, "A-B, first and last start of each task");
+  add_shared_options(verb, arguments, SharedWords::kRun);
   verb.add_option("--seeds", arguments.seeds, "A,B,... instead of the suite's");
-  verb.add_option("--jobs", arguments.jobs,
-                  "worlds in parallel; more than cores if the policy takes its time (1)")
-      .between(1, 1024);
-  verb.add_option("--retries", arguments.retries,
-                  "how often an episode that the server failed is tried again at once (2)")
-      .between(0, 1000);
-  verb.add_option("--give-up-after", arguments.give_up_after,
-                  "stop when the server failed that many episodes in a row; 0: never (5)")
-      .between(0, 1000000);
-  verb.add_flag("--insecure", arguments.insecure,
-                "accept any certificate of a wss:// or https:// server; stored and reported");
-  verb.add_option("--if-changed", arguments.if_changed,
-                  "refuse, fork (into DIR-2) or continue over another build or profile")
-      .one_of({"refuse", "fork", "continue"});
   verb.add_flag("--live", arguments.live,
                 "the world does not wait for answers: each takes effect as late as it came");
   verb.add_option("--live-delay", arguments.live_delay,
@@ -215,7 +195,6 @@ void add_run_options(Verb verb, RunArguments& arguments) {
       .between(0, 100);
   verb.add_option("--video", arguments.video, "none, failures or all")
       .one_of({"none", "failures", "all"});
-  add_asset_option(verb, arguments.assets);
 }
 
 }  // namespace probe::cli

@@ -5,21 +5,17 @@
 #include <string>
 #include <utility>
 
+#include "runtime/cli/full/shared_options.h"
 #include "runtime/cli/load.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/run/run.h"
 
 namespace probe::cli {
 
-struct RunArguments {
-  std::string file;
-  std::string policy, name, out, suite, tasks = "*", episodes, seeds;
-  std::string video = "none", if_changed = "refuse", live_delay;
+struct RunArguments : SharedArguments {
+  std::string policy, seeds, video = "none", live_delay;
   bool live = false;
   std::optional<int> live_most_held;  // %
-  int jobs = 1, retries = 2, give_up_after = 5;
-  bool insecure = false;
-  AssetOptions assets;
 };
 
 void add_run_options(Verb verb, RunArguments& arguments);

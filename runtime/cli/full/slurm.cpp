@@ -82,7 +82,7 @@ int slurm_ask_verb(const SlurmAskArguments& arguments) {
   const LoadedPlan loaded = load_asked(arguments.ask, *options);
   if (!loaded.plan) return loaded.exit;
   // The jobs read a plan, which does not say whose suites its suites are.
-  if (options->choice.whole_plan) return report(no_own_suite(*loaded.plan, arguments.ask.run.file));
+  if (options->choice.whole_plan) return report(no_own_suite(*loaded.plan, arguments.ask.file));
   return tell(ask::ask_on_slurm(*loaded.plan, *options, *array), *array, "answers", options->out);
 }
 
@@ -120,12 +120,12 @@ void add_slurm_ask(Verb app, int& exit) {
   auto arguments = std::make_shared<SlurmAskArguments>();
   Verb verb = app.add_subcommand("slurm-ask", "`ask` as an array job of Slurm, merged at the end");
   verb.footer(
-      std::string(kMoreAskOptions) +
-      "-o holds shards/, slurm/job.sh, its logs and, at the end, the merged answers.\n"
-      "example: vlaprobe slurm-ask suite/questions.probe --array 8 --jobs 32 -o answers/qwen \\\n"
-      "           --submit --model 'openai://127.0.0.1:{port}?model=qwen' \\\n"
-      "           --server-command 'vllm serve ... --served-model-name qwen --port {port}'");
-  add_ask_options(verb, arguments->ask);
+      more_ask_options(SharedWords::kSlurmAsk) +
+      "example: vlaprobe slurm-ask suite/questions.probe --array 8 --jobs 32 -o answers/qwen "
+      "--submit \\\n"
+      "           --model 'openai://127.0.0.1:{port}?model=qwen' --server-command 'vllm serve qwen "
+      "--port {port}'");
+  add_ask_options(verb, arguments->ask, SharedWords::kSlurmAsk);
   add_array_options(verb, *arguments);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = slurm_ask_verb(*arguments); });
