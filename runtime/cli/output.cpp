@@ -14,6 +14,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/plan/format.h"
+#include "runtime/store/folder_kind.h"
 
 namespace probe::cli {
 namespace {
@@ -36,9 +37,10 @@ bool is_plan(const std::string& path) {
          });
 }
 
-bool is_part_of_a_run(std::string_view name) {
-  return name.starts_with("results.sqlite") || name == "suite.plan" || name == "lock" ||
-         name == "traces" || name == "videos";
+// Of a folder that has this database.
+bool is_part_of_results(std::string_view name, const char* database) {
+  return name.starts_with(database) || name == "suite.plan" || name == "lock" || name == "traces" ||
+         name == "videos";
 }
 
 }  // namespace
@@ -71,11 +73,14 @@ Status check_output(const std::string& out, std::span<const std::string> inputs,
                         dir.string()));
       }
     }
-    if (!is_there((dir / "results.sqlite").string())) continue;
-    if (is_part_of_a_run(below.substr(0, below.find('/')))) {
+    for (const char* database : {store::kRunDatabase, store::kAnswersDatabase}) {
+      if (!is_there(store::path_in(dir.string(), database)) ||
+          !is_part_of_results(below.substr(0, below.find('/')), database))
+        continue;
+      const bool is_run = database == store::kRunDatabase;
       return refuse(
-          fmt::format("belongs to the run in `{}` and is not written over; give -o another name",
-                      dir.string()));
+          fmt::format("belongs to the {} in `{}` and is not written over; give -o another name",
+                      is_run ? "run" : "answers", dir.string()));
     }
   }
   if (writes != Writes::kPlan && is_plan(path.string())) {

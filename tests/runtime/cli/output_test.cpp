@@ -60,6 +60,18 @@ TEST_CASE("what a run is made of is not written over, also through links") {
   }
 }
 
+TEST_CASE("what a folder of answers is made of is not written over") {
+  const test::Sandbox box;
+  test::write_file(box / "answers/answers.sqlite", "x");
+  test::write_file(box / "answers/suite.plan", "x");
+  for (const char* out : {"answers/answers.sqlite", "answers/answers.sqlite-wal",
+                          "answers/suite.plan", "answers/lock"}) {
+    CAPTURE(out);
+    CHECK(refusal(box / out).starts_with("belongs to the answers in `"));
+  }
+  CHECK(refusal(box / "answers/report.html").empty());
+}
+
 TEST_CASE("what assets are made of is not written over, also through links") {
   const test::Sandbox box;
   test::write_file(box / "own/cup.GLB", "x");
