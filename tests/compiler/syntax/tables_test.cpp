@@ -103,13 +103,17 @@ TEST_CASE("each block of the grammar has the statements of its block in the tabl
 }
 
 TEST_CASE("the read-outs of the grammar are those of the table") {
-  const std::string rule = rule_of(read(kDsl / "grammar.ebnf"), "readout");
+  // `ends when` stands in the table and reads nothing out: it is a statement of its own.
+  const std::string grammar = read(kDsl / "grammar.ebnf");
+  const std::string rule = rule_of(grammar, "metric") + rule_of(grammar, "readout");
   std::set<std::string> words;
   for (const plan::ReadoutInfo& readout : plan::kReadoutTable) {
     std::istringstream text{std::string(readout.words)};
     for (std::string word; text >> word;) words.insert(word);
   }
-  CHECK(quoted_words(rule) == words);
+  std::set<std::string> written = quoted_words(rule);
+  written.erase("=");
+  CHECK(written == words);
 }
 
 TEST_CASE("the units of the grammar are those of the table") {
