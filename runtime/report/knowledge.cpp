@@ -32,9 +32,9 @@ int category_of(const Benchmark& benchmark, const plan::Plan& plan, std::uint32_
   return kAbsent;
 }
 
-class Maker {
+class KnowledgeMaker {
  public:
-  explicit Maker(const Benchmark& benchmark) : benchmark_(benchmark) {}
+  explicit KnowledgeMaker(const Benchmark& benchmark) : benchmark_(benchmark) {}
 
   Knowledge make() {
     for (std::size_t m = 0; m < benchmark_.models.size(); ++m) accuracy(static_cast<int>(m));
@@ -266,7 +266,7 @@ Benchmark models_as_policies(const Benchmark& benchmark) {
   return out;
 }
 
-Knowledge make_knowledge(const Benchmark& benchmark) { return Maker(benchmark).make(); }
+Knowledge make_knowledge(const Benchmark& benchmark) { return KnowledgeMaker(benchmark).make(); }
 
 std::string question_name(const Benchmark& benchmark, const KnowsRow& row) {
   return family_name(plan_of(benchmark, model_at(benchmark, row.model)), row.family);
