@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "compiler/geometry/reachable.h"
 #include "compiler/geometry/travel.h"
@@ -30,18 +31,26 @@ struct TaskStarts {
 // Arms by scene; none for a scene whose arm cannot be asked.
 using Arms = std::map<SceneId, std::optional<Arm>>;
 
-// What each fixture with joints fills, worked out once.
+// A collision shape of the robot as a scene's episodes begin, by the box around it.
+struct ArmLink {
+  std::string name;
+  scene::Solid solid;  // world
+};
+
+// What each fixture with joints fills, and each scene's arm at the start, worked out once.
 class Travels {
  public:
   // The model must live as long.
   Travels(const Model& model, std::string asset_root)
       : model_(model), asset_root_(std::move(asset_root)) {}
   const std::optional<Travel>& of(FixtureId id);
+  const std::vector<ArmLink>& arm(SceneId id);
 
  private:
   const Model& model_;
   std::string asset_root_;
   std::map<FixtureId, std::optional<Travel>> known_;
+  std::map<SceneId, std::vector<ArmLink>> arms_;
 };
 
 void check_overlap(const TaskStarts& starts);            // P0501

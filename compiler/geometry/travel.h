@@ -20,8 +20,8 @@ scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin);
 
 // One box of a part.
 struct PartBox {
-  std::uint32_t part = 0;  // of Fixture::parts
-  double position = 0;     // m or rad, of the joint that moves the part
+  std::uint32_t part = 0;    // of Fixture::parts
+  std::uint32_t sample = 0;  // of Travel::joints_of(): where the joints stand
   scene::Solid solid;
   Vec3 half = Vec3::Zero();  // of the upright box around it
 };
@@ -34,9 +34,15 @@ class Travel {
 
   // With each joint at these positions.
   std::vector<PartBox> at(std::span<const double> joints) const;
-  // All that the joints' ways let the parts fill, every joint that carries a part at places so near
-  // that the part moves by about 2 mm from one to the next, the others where they begin.
+  // All that the joints' ways let the parts fill: a part that one joint carries at places about
+  // 2 mm apart; of one that several carry the whole way of each, the others where they begin, and
+  // kSampled places of all of them together.
   const std::vector<PartBox>& everywhere() const { return everywhere_; }
+  // The positions of all joints for a box of everywhere().
+  std::span<const double> joints_of(const PartBox& box) const { return samples_[box.sample]; }
+  // Indices of Fixture::joints that carry a part, from the root on; of a joint that follows
+  // another, the other.
+  const std::vector<std::size_t>& carriers(std::uint32_t part) const { return carriers_[part]; }
 
  private:
   struct Shape {
@@ -45,12 +51,16 @@ class Travel {
   };
   Travel(const Fixture& fixture, robot::Tree tree);
   void put(std::span<const double> joints, std::uint32_t part, std::vector<PartBox>* to) const;
+  void add(const std::vector<double>& joints, std::uint32_t part);
   void sweep(std::uint32_t part);
+  void sweep_joint(std::uint32_t part, std::size_t joint, double lever);
 
   const Fixture* fixture_;
   robot::Tree tree_;
   Pose base_;
   std::vector<Shape> shapes_;
+  std::vector<std::vector<std::size_t>> carriers_;  // by part
+  std::vector<std::vector<double>> samples_;
   std::vector<PartBox> everywhere_;
 };
 

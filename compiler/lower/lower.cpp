@@ -109,6 +109,28 @@ class Lowering {
     const ExprNode& node = model_.exprs.nodes[ref];
     if (++visited_ > kMostVisited)
       return fail(node.span, "the predicates of this task call one another too often to unroll");
+    if (!joins_travels(node)) return value_of(node);
+    // Of a parameter it is known only here whether a part slides or turns.
+    const unsigned before = std::exchange(motions_, 0U);
+    const Value value = value_of(node);
+    const unsigned met = motions_;
+    motions_ = before | (is_travel(node) ? met : 0U);
+    if (met == (kSlidesMet | kTurnsMet))
+      return fail(node.span, "a length and an angle: one of these parts slides, another turns");
+    return value;
+  }
+
+  static constexpr unsigned kSlidesMet = 1, kTurnsMet = 2;
+
+  bool is_travel(const ExprNode& node) const { return node.type.dimension.travel != 0; }
+  // Whether it compares, adds or divides what parts have travelled.
+  bool joins_travels(const ExprNode& node) const {
+    if (node.args.size() < 2 || node.op == ExprOp::kCall) return false;
+    return std::ranges::all_of(node.args,
+                               [&](ExprRef arg) { return is_travel(model_.exprs.nodes[arg]); });
+  }
+
+  Value value_of(const ExprNode& node) {
     switch (node.op) {
       case ExprOp::kPoison:
         return fail(node.span, "this has no value");
@@ -314,6 +336,7 @@ class Lowering {
   Value travel(const ExprNode& node, const Value& given) {
     const Value of = joint_of(node, given);
     if (!ok_) return of;
+    motions_ |= of.joint->slides ? kSlidesMet : kTurnsMet;
     const sema::Fixture::Joint& joint = *of.joint;
     const Value position =
         Value::of_register(builder_.emit(joint.slides ? Op::kSLIDE : Op::kTURN, of.index));
@@ -329,6 +352,7 @@ class Lowering {
   Value range(const ExprNode& node, const Value& given) {
     const Value of = joint_of(node, given);
     if (!ok_) return of;
+    motions_ |= of.joint->slides ? kSlidesMet : kTurnsMet;
     if (of.joint->is_endless)
       return fail(node.span, "joint `" + of.joint->name + "` turns without end, it has no range");
     return Value::of_number(of.joint->upper - of.joint->lower);
@@ -337,6 +361,7 @@ class Lowering {
   Value rate(const ExprNode& node, const Value& given) {
     const Value of = joint_of(node, given);
     if (!ok_) return of;
+    motions_ |= of.joint->slides ? kSlidesMet : kTurnsMet;
     const Value speed =
         Value::of_register(builder_.emit(of.joint->slides ? Op::kSLIDING : Op::kTURNING, of.index));
     return of.joint->closes_at_upper() ? builder_.negate(speed) : speed;
@@ -702,6 +727,7 @@ class Lowering {
   Builder builder_;
   std::vector<Value> variables_;
   std::optional<Bodies> alike_;
+  unsigned motions_ = 0;  // kSlidesMet, kTurnsMet: of the travels in what is being lowered
   bool ok_ = true;
 };
 

@@ -4,7 +4,7 @@
 
 #include "runtime/ask/answer_fields.h"
 #include "runtime/store/calls_table.h"
-#include "runtime/store/folder_kind.h"
+#include "runtime/base/folder_kind.h"
 
 namespace probe::ask {
 namespace {
@@ -86,7 +86,7 @@ bool set_stored_cell(AnswerRow& row, std::size_t field, const Json& cell) {
 }  // namespace
 
 std::string answers_path(const std::string& dir) {
-  return store::path_in(dir, store::kAnswersDatabase);
+  return probe::path_in(dir, probe::kAnswersDatabase);
 }
 
 std::string answers_schema() {

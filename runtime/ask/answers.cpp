@@ -4,7 +4,7 @@
 #include "runtime/ask/vouch.h"
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
-#include "runtime/store/folder_kind.h"
+#include "runtime/base/folder_kind.h"
 #include "runtime/store/store.h"
 
 namespace probe::ask {
@@ -20,7 +20,7 @@ Failure failed(const std::string& message, const std::string& where) {
 
 Result<Database> open_to_read(const std::string& dir) {
   if (!holds_answers(dir)) {
-    return failed(store::holds_run(dir) ? "holds a run, not a model's answers"
+    return failed(probe::holds_run(dir) ? "holds a run, not a model's answers"
                                         : "no answers here: answers.sqlite is absent",
                   dir);
   }
@@ -32,7 +32,7 @@ Result<Database> open_to_read(const std::string& dir) {
 
 }  // namespace
 
-bool holds_answers(const std::string& dir) { return store::holds_answers(dir); }
+bool holds_answers(const std::string& dir) { return probe::holds_answers(dir); }
 
 Result<std::optional<AskRecord>> find_ask_record(const std::string& dir) {
   if (!holds_answers(dir)) return std::optional<AskRecord>();

@@ -12,7 +12,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/store/calls_table.h"
-#include "runtime/store/folder_kind.h"
+#include "runtime/base/folder_kind.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/store.h"
 
@@ -224,7 +224,7 @@ bool Answers::Stored::has(const AnswerKey& key) const {
 Result<std::unique_ptr<Answers>> Answers::open(const std::string& dir, const AskRecord& record,
                                                std::span<const std::byte> plan_bytes) {
   if (dir.empty()) return Failure{Fault::kStore, "no folder to write into", "-o"};
-  if (store::holds_run(dir))
+  if (probe::holds_run(dir))
     return Failure{Fault::kStore, "holds a run; take another folder for answers", dir};
   if (auto made = make_lasting_folders(dir); !made)
     return Failure{Fault::kStore, made.failure().message, dir};

@@ -14,7 +14,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/plan/format.h"
-#include "runtime/store/folder_kind.h"
+#include "runtime/base/folder_kind.h"
 
 namespace probe::cli {
 namespace {
@@ -73,11 +73,11 @@ Status check_output(const std::string& out, std::span<const std::string> inputs,
                         dir.string()));
       }
     }
-    for (const char* database : {store::kRunDatabase, store::kAnswersDatabase}) {
-      if (!is_there(store::path_in(dir.string(), database)) ||
+    for (const char* database : {probe::kRunDatabase, probe::kAnswersDatabase}) {
+      if (!is_there(probe::path_in(dir.string(), database)) ||
           !is_part_of_results(below.substr(0, below.find('/')), database))
         continue;
-      const bool is_run = database == store::kRunDatabase;
+      const bool is_run = database == probe::kRunDatabase;
       return refuse(
           fmt::format("belongs to the {} in `{}` and is not written over; give -o another name",
                       is_run ? "run" : "answers", dir.string()));

@@ -14,7 +14,7 @@
 #include "runtime/base/paths.h"
 #include "runtime/store/calls_table.h"
 #include "runtime/store/database.h"
-#include "runtime/store/folder_kind.h"
+#include "runtime/base/folder_kind.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"

@@ -35,12 +35,14 @@ TEST_CASE("fixture, fixture_st: what a text says of joints, parts and regions is
     if (body.kind == static_cast<std::uint32_t>(plan::BodyKind::kPart))
       names += std::string(plan.text(body.name)) + " ";
   }
-  CHECK(names == "chest chest.drawer chest.door chest.lid other other.drawer other.door other.lid ");
+  CHECK(names ==
+        "chest chest.drawer chest.door chest.lid other other.drawer other.door other.lid ");
 }
 
 TEST_CASE("box: two corners, the second above the first on every axis") {
   const auto a = clean(
-      "object tub like tray { region inside box (-2cm, -1cm, 0cm) .. (2cm, 1cm, 30mm); name \"tub\" "
+      "object tub like tray { region inside box (-2cm, -1cm, 0cm) .. (2cm, 1cm, 30mm); name "
+      "\"tub\" "
       "}\n");
   const auto& regions = named(a->model.objects, "tub").regions;
   REQUIRE(regions.size() == 1);
@@ -60,13 +62,27 @@ TEST_CASE("scene_st, layout_st, task_st: a joint begins where the task says, els
   const auto starts = [&](const char* name) {
     const plan::TaskRecord& task = built.task(name);
     std::string text;
-    for (const double at : plan::joint_starts_of(built.plan().tables(),
-                                                 built.plan().scenes()[task.scene],
-                                                 built.plan().episodes(task)[0]))
+    for (const double at :
+         plan::joint_starts_of(built.plan().tables(), built.plan().scenes()[task.scene],
+                               built.plan().episodes(task)[0]))
       text += number_text(at) + " ";
     return text;
   };
   CHECK(starts("t") == "0.04 0 0 ");
   CHECK(starts("u") == "0.1 -0.785398 0 ");
   CHECK(starts("v") == "0.02 -0.785398 0 ");
+}
+
+TEST_CASE("predicate: travels of parameters are compared only where both slide or both turn") {
+  const auto said = [](const char* success) {
+    return failed_build(std::string(kChest) +
+                        "predicate more(p: part, q: part) = travel(p) >= travel(q)\n"
+                        "predicate fuller(p: part, q: part) = travel(p) / range(p) >= travel(q) / "
+                        "range(q)\n"
+                        "metrics m { success = at end " +
+                        success + " }\ntask t like red_on_tray { scene room; metrics m }\n");
+  };
+  CHECK(said("more(chest.drawer, chest.drawer)") == "");
+  CHECK(said("fuller(chest.drawer, chest.door)") == "");
+  CHECK(said("more(chest.drawer, chest.door)").find("error[P0601]") != std::string::npos);
 }

@@ -37,9 +37,11 @@ class TreeCopy {
     for (const char* part : {"suite", "examples", "dsl/std"}) {
       fs::create_directories(folder_ / part);
       for (const auto& entry : fs::directory_iterator(fs::path(VLAPROBE_SOURCE_DIR) / part)) {
-        if (entry.path().extension() != ".probe") continue;
-        files_.push_back(folder_ / part / entry.path().filename());
-        fs::copy_file(entry.path(), files_.back());
+        const fs::path copy = folder_ / part / entry.path().filename();
+        const fs::path kind = entry.path().extension();
+        if (kind == ".probe" || kind == ".csv")
+          fs::copy_file(entry.path(), copy);  // tables of starts
+        if (kind == ".probe") files_.push_back(copy);
       }
     }
     std::sort(files_.begin(), files_.end());

@@ -51,3 +51,31 @@ TEST_CASE("a part that would run into the surface is an error wherever its joint
   CHECK(a->diagnostics.items().front().message ==
         "`box.drawer` runs 0.5cm into the surface of `hall` when `box.slide` stands at 0cm");
 }
+
+TEST_CASE("what would fall onto a fixture is a warning that says how to mean it") {
+  // The chest hangs 5 cm above the blocks, which fall from 10 cm.
+  const auto a = at("(10cm, 10cm, 93cm)");
+  REQUIRE_MESSAGE(a->codes() == "P1302", a->said());
+  const Diagnostic& said = a->diagnostics.items().front();
+  CHECK(said.severity == Severity::kWarning);
+  CHECK_MESSAGE(said.message.find(" falls onto `box") != std::string::npos, said.message);
+}
+
+TEST_CASE("two fixtures that stand in one another are an error, that meet on the way a warning") {
+  const auto two = [](const char* place) {
+    return analyze_with_suite(std::string(test::kChest) + "fixture twin like chest { at " + place +
+                              " }\nscene hall like bench { fixture chest, twin }\n");
+  };
+  const auto inside = two("(4cm, 30cm, 85cm) yaw 90deg");
+  REQUIRE_MESSAGE(!inside->diagnostics.items().empty(), inside->said());
+  CHECK(inside->diagnostics.items().front().severity == Severity::kError);
+  CHECK_MESSAGE(inside->said().find("stand in one another by ") != std::string::npos,
+                inside->said());
+  // It stands 15 cm before the drawer, which opens by 20 cm.
+  const auto before = two("(0cm, 50cm, 85cm) yaw 90deg");
+  REQUIRE_MESSAGE(before->codes() == "P1302", before->said());
+  CHECK(before->diagnostics.items().front().severity == Severity::kWarning);
+  CHECK_MESSAGE(before->said().find("when `chest.slide` stands at ") != std::string::npos,
+                before->said());
+  CHECK(two("(30cm, 30cm, 85cm) yaw 90deg")->codes().empty());
+}

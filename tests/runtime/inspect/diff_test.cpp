@@ -20,6 +20,7 @@ TEST_CASE("a reworded task has the same starts and the same judge") {
   distractors   none                                       none
 * baseline      none                                       base
   scene         table                                      table
+  robot         widowx, ee_delta_pose at 5 Hz              widowx, ee_delta_pose at 5 Hz
   camera        third_view                                 third_view
   light         studio                                     studio
   horizon       60                                         60

@@ -7,7 +7,7 @@
 
 #include "runtime/base/paths.h"
 
-namespace probe::store {
+namespace probe {
 
 inline constexpr const char* kRunDatabase = "results.sqlite";
 inline constexpr const char* kAnswersDatabase = "answers.sqlite";
@@ -20,4 +20,4 @@ inline bool holds_answers(const std::string& dir) {
   return is_there(path_in(dir, kAnswersDatabase));
 }
 
-}  // namespace probe::store
+}  // namespace probe
