@@ -175,8 +175,10 @@ class StartTable {
       const std::vector<GivenPlace>&first = starts_.front(), &here = starts_[i];
       for (const auto& [from, in, number, other] : {std::tuple(&first, &here, i, std::size_t{0}),
                                                     std::tuple(&here, &first, std::size_t{0}, i)}) {
-        const auto missing = std::find_if(
-            from->begin(), from->end(), [&](const GivenPlace& place) { return lacks(*in, place); });
+        const std::vector<GivenPlace>& compared = *in;  // clang 14 captures no binding
+        const auto missing = std::find_if(from->begin(), from->end(), [&](const GivenPlace& place) {
+          return lacks(compared, place);
+        });
         if (missing == from->end()) continue;
         context_
             .report(Situation::kStartLacks, in->front().what.span,
