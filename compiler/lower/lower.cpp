@@ -122,10 +122,11 @@ class Lowering {
 
   static constexpr unsigned kSlidesMet = 1, kTurnsMet = 2;
 
-  bool is_travel(const ExprNode& node) const { return node.type.dimension.travel != 0; }
-  // Whether it compares, adds or divides what parts have travelled.
+  bool is_travel(const ExprNode& node) const { return node.type.dimension.travel == 1; }
+  // Whether it compares or adds what parts have travelled.
   bool joins_travels(const ExprNode& node) const {
-    if (node.args.size() < 2 || node.op == ExprOp::kCall) return false;
+    const bool multiplies = node.op == ExprOp::kMultiply || node.op == ExprOp::kDivide;
+    if (node.args.size() < 2 || node.op == ExprOp::kCall || multiplies) return false;
     return std::ranges::all_of(node.args,
                                [&](ExprRef arg) { return is_travel(model_.exprs.nodes[arg]); });
   }

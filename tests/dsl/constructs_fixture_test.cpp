@@ -76,9 +76,9 @@ TEST_CASE("scene_st, layout_st, task_st: a joint begins where the task says, els
 TEST_CASE("predicate: travels of parameters are compared only where both slide or both turn") {
   const auto said = [](const char* success) {
     return failed_build(std::string(kChest) +
-                        "predicate more(p: part, q: part) = travel(p) >= travel(q)\n"
-                        "predicate fuller(p: part, q: part) = travel(p) / range(p) >= travel(q) / "
-                        "range(q)\n"
+                        "predicate more(p: part, q: part) = travel(p) >= 0.5 * range(q)\n"
+                        "predicate fuller(p: part, q: part) = travel(p) * range(q) >= 0.5 * "
+                        "range(p) * range(q)\n"
                         "metrics m { success = at end " +
                         success + " }\ntask t like red_on_tray { scene room; metrics m }\n");
   };
