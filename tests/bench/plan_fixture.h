@@ -23,7 +23,9 @@ struct Fixture {
 inline Fixture make_fixture(const std::string& file, const std::string& suite,
                             std::string_view task) {
   const std::string files[] = {file};
-  Compilation compiled = need(build(files, {.asset_root = asset_root(), .suite = ""}));
+  Compilation compiled = need(build(
+      files,
+      {.asset_root = asset_root(), .suite = "", .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}}));
   Fixture out{need(plan::Plan::from_bytes(std::move(compiled.plan))), suite, 0, nullptr};
   out.task = out.plan.find_task(task).value();
   const std::uint32_t tasks[] = {out.task};
