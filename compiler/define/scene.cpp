@@ -241,8 +241,10 @@ void check_rates(Context& context, const Scene& scene, Own own) {
                      "expected a whole number of physics steps in a control step, found " +
                          fmt::format("{:.6g}", substeps));
   name_copy(said, scene, own.physics);
-  said.help("the robot is controlled at " + fmt::format("{:.6g}", control_hz) +
-            "Hz: write a multiple of that, such as `500Hz` for 5Hz");
+  const double near = control_hz * std::clamp(std::nearbyint(substeps), 1.0,
+                                              static_cast<double>(plan::kMaxSubsteps));
+  said.help(fmt::format("the robot is controlled at {:.6g}Hz: `{:.6g}Hz` is a multiple of that",
+                        control_hz, near));
 }
 
 // Arms whose drives have targets do not feel air: it would change the plan and nothing else.

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
 
 #include "runtime/base/trig.h"
 #include "runtime/plan/readouts.h"
@@ -35,7 +38,8 @@ struct History {
   int changed = 0;  // since when the core is what it is
   int nearest = 0;  // at which it came nearest to being true, the last of these
   std::uint32_t distance = 0;
-  int best = 0;  // at which the emitted value became what it is
+  double gap = 0;  // by how much the one comparison that it then lacked was missed
+  int best = 0;    // at which the emitted value became what it is
   double core_value = 0, value = 0;
 };
 
@@ -50,7 +54,7 @@ History history_of(const ProgramView& view, std::uint32_t metric) {
   return h;
 }
 
-void note(History& h, int step, double core, double value, std::uint32_t distance) {
+void note(History& h, int step, double core, double value, std::uint32_t distance, double gap) {
   if (core != 0) {
     if (h.first_true == 0) h.first_true = step;
     h.last_true = step;
@@ -59,9 +63,10 @@ void note(History& h, int step, double core, double value, std::uint32_t distanc
   }
   if (step == 1 || core != h.core_value) h.changed = step;
   if (step == 1 || value != h.value) h.best = step;
-  if (step == 1 || distance <= h.distance) {
+  if (step == 1 || std::pair(distance, gap) <= std::pair(h.distance, h.gap)) {
     h.nearest = step;
     h.distance = distance;
+    h.gap = gap;
   }
   h.core_value = core;
   h.value = value;
@@ -124,7 +129,11 @@ class Explainer {
   Result<std::vector<MetricWhy>> run(const store::Trace& trace,
                                      std::span<const std::uint32_t> chosen, std::size_t steps) {
     std::vector<History> histories;
-    for (const std::uint32_t m : chosen) histories.push_back(history_of(view_, m));
+    std::vector<std::vector<std::uint16_t>> conditions;
+    for (const std::uint32_t m : chosen) {
+      histories.push_back(history_of(view_, m));
+      conditions.push_back(view_.conditions(histories.back().core));
+    }
     PROBE_TRY(judge_.begin(trace.start->starts));
     for (std::size_t i = 0; i < steps; ++i) {
       PROBE_TRY(judge_.step(trace.steps[i].sample));
@@ -133,7 +142,7 @@ class Explainer {
       for (std::size_t k = 0; k < chosen.size(); ++k) {
         History& h = histories[k];
         note(h, static_cast<int>(i) + 1, judge_.register_value(h.core).x(), judge_.value(chosen[k]),
-             distances[h.core]);
+             distances[h.core], missed_by(conditions[k]));
       }
     }
     std::vector<MetricWhy> out;
@@ -174,6 +183,20 @@ class Explainer {
       why.statement = statement_at(plan_.tables().source(text), span->begin);
     }
     return why;
+  }
+
+  // How far the only comparison that does not hold is from holding; infinite where there are more,
+  // or none.
+  double missed_by(std::span<const std::uint16_t> conditions) const {
+    double gap = std::numeric_limits<double>::infinity();
+    for (const std::uint16_t reg : conditions) {
+      const bool compares = view_.op(reg) == Op::kLT || view_.op(reg) == Op::kLE;
+      if (!compares || judge_.register_value(reg).x() != 0) continue;
+      if (std::isfinite(gap)) return std::numeric_limits<double>::infinity();
+      const plan::Instruction& in = view_.at(reg);
+      gap = std::fabs(judge_.register_value(in.a).x() - judge_.register_value(in.b).x());
+    }
+    return gap;
   }
 
   // For how many steps the operand of each HOLD has been true.

@@ -46,6 +46,8 @@ TEST_CASE("a scene that copies joints or a rate which do not fit its robot is sh
       robot("stiff", "7", "drive l, r stiffness 1000N/m damping 200Ns/m limit 60N\n"));
   REQUIRE(a->codes() == "P0304");
   CHECK(a->underlined() == "500Hz");
+  CHECK_MESSAGE(a->said().find("controlled at 7Hz: `497Hz` is a multiple") != std::string::npos,
+                a->said());
   CHECK_MESSAGE(a->said().find("copied by `s`") != std::string::npos, a->said());
   test::write_text(
       std::filesystem::path(test::asset_root()) / "arm/single.urdf",
