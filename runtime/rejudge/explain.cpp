@@ -124,7 +124,9 @@ class Explainer {
         view_(plan, task_),
         dimensions_(dimensions_of(plan, program_)),
         judge_(plan, task),
-        run_lengths_(view_.registers()) {}
+        run_lengths_(view_.registers()),
+        since_(view_.registers()),
+        was_(view_.registers()) {}
 
   Result<std::vector<MetricWhy>> run(const store::Trace& trace,
                                      std::span<const std::uint32_t> chosen, std::size_t steps) {
@@ -137,7 +139,7 @@ class Explainer {
     PROBE_TRY(judge_.begin(trace.start->starts));
     for (std::size_t i = 0; i < steps; ++i) {
       PROBE_TRY(judge_.step(trace.steps[i].sample));
-      count_runs();
+      count_runs(static_cast<int>(i) + 1);
       const auto distances = view_.distances(judge_, run_lengths_);
       for (std::size_t k = 0; k < chosen.size(); ++k) {
         History& h = histories[k];
@@ -154,7 +156,7 @@ class Explainer {
     std::ranges::fill(run_lengths_, 0);
     for (std::size_t i = 0; i < steps; ++i) {
       PROBE_TRY(judge_.step(trace.steps[i].sample));
-      count_runs();
+      count_runs(static_cast<int>(i) + 1);
       for (std::size_t k = 0; k < chosen.size(); ++k) {
         if (out[k].step == static_cast<int>(i) + 1) describe(chosen[k], histories[k], out[k]);
       }
@@ -199,10 +201,15 @@ class Explainer {
     return gap;
   }
 
-  // For how many steps the operand of each HOLD has been true.
-  void count_runs() {
+  // For how many steps the operand of each HOLD has been true, and since when what is kept is so.
+  void count_runs(int step) {
     for (std::size_t r = 0; r < run_lengths_.size(); ++r) {
       const auto reg = static_cast<std::uint16_t>(r);
+      if (view_.is_kept(reg)) {
+        const bool now = judge_.register_value(reg).x() != 0;
+        if (step == 1 || now != was_[r]) since_[r] = step;
+        was_[r] = now;
+      }
       if (view_.op(reg) != Op::kHOLD) continue;
       const bool truth = judge_.register_value(view_.at(reg).a).x() != 0;
       run_lengths_[r] = truth ? run_lengths_[r] + 1 : 0;
@@ -266,6 +273,13 @@ class Explainer {
                                view_.hold(reg));
       return c;
     }
+    if (view_.is_kept(reg)) {
+      const bool once = view_.op(reg) == Op::kONCE;
+      c.measured = once == c.truth
+                       ? fmt::format("{} step {}", once ? "since" : "broken at", since_[reg])
+                       : (once ? "never" : "at each step");
+      return c;
+    }
     if (const auto angle = angle_condition(in)) {
       c.measured = *angle;
       return c;
@@ -314,6 +328,8 @@ class Explainer {
   std::vector<Dimension> dimensions_;
   vm::Judge judge_;
   std::vector<int> run_lengths_;
+  std::vector<int> since_;  // of `once` and `always` inside conditions
+  std::vector<bool> was_;
 };
 
 }  // namespace

@@ -119,7 +119,11 @@ std::string ProgramView::bodies(std::uint16_t reg, bool swapped) const {
 }
 
 bool ProgramView::is_condition(std::uint16_t reg) const {
-  return op(reg) == Op::kLT || op(reg) == Op::kLE || op(reg) == Op::kHOLD;
+  return op(reg) == Op::kLT || op(reg) == Op::kLE || op(reg) == Op::kHOLD || is_kept(reg);
+}
+
+bool ProgramView::is_kept(std::uint16_t reg) const {
+  return op(reg) == Op::kONCE || op(reg) == Op::kALWAYS;
 }
 
 std::vector<std::uint16_t> ProgramView::conditions(std::uint16_t reg) const {
@@ -132,6 +136,7 @@ std::vector<std::uint16_t> ProgramView::conditions(std::uint16_t reg) const {
     const plan::OpInfo& info = *plan::find_op(in.op);
     if (!below[i] || info.result == Kind::kVector) continue;
     if (is_condition(at_reg)) found.push_back(at_reg);
+    if (is_kept(at_reg)) continue;  // what was once so is no more to be seen in what is so now
     if (info.a == Kind::kBool) below[in.a] = true;
     if (info.b == Kind::kBool) below[in.b] = true;
   }

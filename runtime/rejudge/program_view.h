@@ -33,7 +33,10 @@ class ProgramView {
   // what pushes. `swapped`: the right operand was written first.
   std::string bodies(std::uint16_t reg, bool swapped) const;
 
-  // Conditions below a truth: comparisons and HOLD, in the order of the code, each once.
+  // Whether a register remembers: `once` or `always` within a condition.
+  bool is_kept(std::uint16_t reg) const;
+  // Conditions below a truth: comparisons, HOLD and what is kept, in the order of the code, each
+  // once. What something kept is made of is not looked at: it may be otherwise by now.
   std::vector<std::uint16_t> conditions(std::uint16_t reg) const;
 
   // How many conditions must change until each truth is `true`, after the judge's last step: 0 for

@@ -173,6 +173,31 @@ TEST_CASE("a number stands at the line that declares its metric, and is neither 
   CHECK(number.text == "spread = final y");
 }
 
+TEST_CASE("what was once so is told by when it was, not by what it is made of at the end") {
+  using plan::make_instruction;
+  plan::Writer w = plan::small_writer();
+  plan::Records& r = w.records;
+  r.spans.clear();
+  r.constants = {0.05};
+  r.states = {{static_cast<std::uint16_t>(plan::Op::kONCE), 0}};
+  r.metrics = {{w.text("kept_away"), static_cast<std::uint32_t>(plan::MetricType::kBool), 1}};
+  r.code = {make_instruction(plan::Op::kKR, 0, 0),       make_instruction(plan::Op::kTCP, 1),
+            make_instruction(plan::Op::kVLEN, 2, 1),     make_instruction(plan::Op::kLT, 3, 2, 0),
+            make_instruction(plan::Op::kONCE, 4, 3, 0),  make_instruction(plan::Op::kNOT, 5, 4),
+            make_instruction(plan::Op::kEMITB, 6, 5, 0), make_instruction(plan::Op::kEND, 6)};
+  r.programs[0].constants = r.programs[0].states = r.programs[0].metrics = {0, 1};
+  r.programs[0].code = {0, static_cast<std::uint32_t>(r.code.size())};
+  const plan::Plan plan = opened(w);
+  const auto why = explain(plan, 0, made_trace(plan, 0));
+  REQUIRE_MESSAGE(why.ok(), to_text(why.failure()));
+  REQUIRE(why->size() == 1);
+  CHECK((*why)[0].shown == "false");
+  REQUIRE((*why)[0].conditions.size() == 1);
+  CHECK((*why)[0].conditions[0].measured == "since step 3");
+  CHECK((*why)[0].conditions[0].truth);
+  CHECK((*why)[0].conditions[0].decides);
+}
+
 TEST_CASE("what must be held is nearer to true the longer it has been held") {
   const plan::Plan plan = small();
   const ProgramView view(plan, plan.tasks()[0]);
