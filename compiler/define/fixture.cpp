@@ -111,7 +111,9 @@ Diagnostic& unknown(Context& context, std::string_view kind, const Spelled& name
       .label(fixture.urdf.span, "not in this file");
 }
 
-// Joints, parts and regions share their names: `cabinet.top` is one thing.
+// Joints, parts and regions share their names: `cabinet.top` is one thing. The joints are those
+// that move in the URDF, said or not; a link that can be touched and is not declared has its link's
+// name.
 void check_names(Context& context, const Fixture& fixture) {
   std::vector<std::pair<std::string_view, Span>> known;
   const auto declare = [&](std::string_view name, const Span& span, const char* kind) {
@@ -129,11 +131,36 @@ void check_names(Context& context, const Fixture& fixture) {
   for (const Said& said : fixture.said) declare(said.joint.text, said.joint.span, "joint");
   for (const Fixture::Part& part : fixture.named) declare(part.name, part.span, "part");
   for (const Fixture::OwnRegion& own : fixture.regions)
+  if (fixture.model) {
+    for (const robot::Joint& joint : fixture.model->joints) {
+      const bool is_said = std::ranges::any_of(
+          fixture.said, [&](const Said& s) { return s.joint.text == joint.name; });
+      if (joint.kind != robot::JointKind::kFixed && !is_said)
+        known.emplace_back(joint.name, fixture.urdf.span);
+    }
+  }
     declare(own.region.name, own.region.span, "region");
 }
 
 const Said* said_of(const Fixture& fixture, std::string_view joint) {
   for (const Said& said : fixture.said) {
+// Every link that can be touched is a part, by its own name where none is declared for it.
+void check_link_names(Context& context, const Fixture& fixture) {
+  const robot::RobotModel& model = *fixture.model;
+  for (const Fixture::Part& part : fixture.named) {
+    const int other = model.find_link(part.name);
+    if (other < 0 || other == model.root || part.link.text == part.name) continue;
+    if (!model.links[static_cast<std::size_t>(other)].can_collide()) continue;
+    const auto names_it = [&](const Fixture::Part& named) { return named.link.text == part.name; };
+    if (std::ranges::any_of(fixture.named, names_it)) continue;
+    context
+        .report(Code::P0203, part.span,
+                "part `" + part.name + "` has the name of another link of `" + fixture.name + "`")
+        .label(fixture.urdf.span, "a link here is called so")
+        .help("choose another name, or declare that link as a part, too");
+  }
+}
+
     if (said.joint.text == joint) return &said;
   }
   return nullptr;
@@ -353,6 +380,7 @@ void build_regions(Context& context, Fixture& fixture) {
       if (part.declared) candidates.push_back(part.name);
       const bool is_it = own.of.text.empty() ? part.index == fixture.model->root
                                              : part.declared && part.name == own.of.text;
+    check_names(context, fixture);
       if (!is_it) continue;
       own.part = i;
       found = true;
@@ -360,6 +388,8 @@ void build_regions(Context& context, Fixture& fixture) {
     if (!found)
       report_unknown(context.diagnostics, "part of `" + fixture.name + "`",
                      {own.of.span, own.of.text.empty() ? fixture.name : own.of.text}, candidates);
+  check_names(context, fixture);
+  check_link_names(context, fixture);
   }
 }
 
@@ -479,7 +509,6 @@ void define_fixtures(Context& context) {
     fixture.joints.clear();
     fixture.parts.clear();
     if (!is_read || fixture.urdf.span.is_none()) return;
-    check_names(context, fixture);
     load_model(context, fixture);
   };
   define_records(context, context.symbols.fixtures, context.symbols.fixture_decls,

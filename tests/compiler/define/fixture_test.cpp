@@ -146,3 +146,10 @@ TEST_CASE("parts, joints and regions are measured for what they are") {
         "P0601");
   CHECK(with_chest("predicate p(a: part) = travel(a) > 4cm\n")->codes() == "P0302");
 }
+
+TEST_CASE("a part or region has no name of a joint of the URDF, said or not") {
+  CHECK(mistake("part hinge link drawer") == "P0203 `hinge`");
+  CHECK(mistake("region slide of box box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1cm)") == "P0203 `slide`");
+  CHECK(mistake("part glue link drawer").empty());  // what is fixed is named nowhere
+  CHECK(mistake("joint slide friction 2N; joint hinge friction 1Nm").empty());
+}
