@@ -348,6 +348,16 @@ void build_parts(Context& context, Fixture& fixture) {
       if (fixture.named[i].index < 0 || fixture.named[i].index != fixture.named[j].index) continue;
       context
           .report(Code::P0203, fixture.named[i].link.span,
+    const robot::RobotModel& model = *fixture.model;
+    const bool is_body = model.links[static_cast<std::size_t>(model.root)].can_collide();
+    if (own.of.text.empty() && !is_body) {
+      context
+          .report(Situation::kUntouchable, own.of.span,
+                  "the root link of `" + fixture.name + "` has no collision, it is no body")
+          .label(fixture.urdf.span, "described here")
+          .help("say the region of a part");
+      continue;
+    }
                   "link `" + fixture.named[i].link.text + "` is a part already")
           .label(fixture.named[j].span, "called so here");
     }
@@ -374,22 +384,20 @@ void build_parts(Context& context, Fixture& fixture) {
 void build_regions(Context& context, Fixture& fixture) {
   for (Fixture::OwnRegion& own : fixture.regions) {
     bool found = false;
-    std::vector<std::string_view> candidates = {fixture.name};
+    std::vector<std::string_view> candidates;
+    if (is_body) candidates.push_back(fixture.name);
     for (std::uint32_t i = 0; i < fixture.parts.size(); ++i) {
       const Fixture::Part& part = fixture.parts[i];
       if (part.declared) candidates.push_back(part.name);
-      const bool is_it = own.of.text.empty() ? part.index == fixture.model->root
+      const bool is_it = own.of.text.empty() ? part.index == model.root
                                              : part.declared && part.name == own.of.text;
-    check_names(context, fixture);
       if (!is_it) continue;
       own.part = i;
       found = true;
     }
     if (!found)
       report_unknown(context.diagnostics, "part of `" + fixture.name + "`",
-                     {own.of.span, own.of.text.empty() ? fixture.name : own.of.text}, candidates);
-  check_names(context, fixture);
-  check_link_names(context, fixture);
+                     {own.of.span, own.of.text}, candidates);
   }
 }
 

@@ -27,6 +27,44 @@ std::string in_task(const std::string& statement) {
   return a->codes() + (a->codes().empty() ? "" : " `" + a->underlined() + "`");
 }
 
+// A description of links and joints, in which only what differs is written.
+std::string odd_link(const std::string& name, const std::string& mass = "1",
+                     const std::string& com = "0 0 0", bool touches = true) {
+  return "<link name=\"" + name + "\"><inertial><origin xyz=\"" + com + "\"/><mass value=\"" +
+         mass +
+         "\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" ixz=\"0\" "
+         "iyz=\"0\"/></inertial>" +
+         (touches ? "<collision><geometry><box size=\"0.1 0.1 0.1\"/></geometry></collision>"
+                  : "") +
+         "</link>";
+}
+std::string odd_joint(const std::string& name, const std::string& type, const std::string& parent,
+                      const std::string& child, const std::string& axis, const std::string& origin,
+                      const std::string& limits = "lower=\"-1\" upper=\"1\"",
+                      const std::string& more = "") {
+  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent +
+         "\"/><child link=\"" + child + "\"/><origin xyz=\"" + origin + "\"/><axis xyz=\"" + axis +
+         "\"/><limit " + limits + " effort=\"1\" velocity=\"1\"/>" + more + "</joint>";
+}
+
+// A fixture `f` of that description in a room of its own.
+std::unique_ptr<test::Analysis> with_odd(const std::string& described, const std::string& lines,
+                                         const std::string& more = "") {
+  static int count = 0;
+  const std::string file = "odd/" + std::to_string(count++) + ".urdf";
+  test::write_text(std::filesystem::path(test::asset_root()) / file,
+                   "<robot name=\"odd\">" + described + "</robot>");
+  return analyze_with_suite("fixture f { urdf \"" + file + "\"; at (0cm, 30cm, 185cm)\n" + lines +
+                            "\n}\nscene room like bench { fixture f }\n" + more);
+}
+// Its code, what is underlined, and the message of the first mistake.
+std::string odd(const std::string& described, const std::string& lines,
+                const std::string& more = "") {
+  const auto a = with_odd(described, lines, more);
+  if (a->codes().empty()) return "";
+  return a->codes() + " `" + a->underlined() + "` " + a->diagnostics.items().front().message;
+}
+
 }  // namespace
 
 TEST_CASE("a fixture has the joints of its URDF with what the text says acts in them") {
@@ -152,4 +190,16 @@ TEST_CASE("a part or region has no name of a joint of the URDF, said or not") {
   CHECK(mistake("region slide of box box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1cm)") == "P0203 `slide`");
   CHECK(mistake("part glue link drawer").empty());  // what is fixed is named nowhere
   CHECK(mistake("joint slide friction 2N; joint hinge friction 1Nm").empty());
+}
+
+TEST_CASE("limits of a joint that no plan holds are refused with its name") {
+  const auto limits = [](const std::string& written) {
+    return odd(odd_link("base") + odd_link("drawer") +
+                   odd_joint("j", "prismatic", "base", "drawer", "1 0 0", "0 0 0", written),
+               "");
+  };
+  CHECK(limits("lower=\"-1000\" upper=\"1000\"").empty());
+  CHECK(limits("lower=\"0\" upper=\"1001\"")
+            .ends_with("joint `j` has limits of 0 and 1001, a joint's position is at most 1000 m"));
+  CHECK(limits("lower=\"-1e300\" upper=\"0\"").starts_with("P0304 `\"odd/"));
 }
