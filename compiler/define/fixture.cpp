@@ -272,6 +272,13 @@ void build_joints(Context& context, Fixture& fixture) {
     if (known.kind != robot::JointKind::kFixed && known.mimic < 0) moving.push_back(known.name);
   }
   for (const Said& said : fixture.said) {
+    const plan::MagnitudeInfo& held = plan::info(plan::Magnitude::kJointPosition);
+    if (!held.fits(joint.lower) || !held.fits(joint.upper)) {
+      context.report(
+          Situation::kMagnitude, fixture.urdf.span,
+          fmt::format("joint `{}` has limits of {:g} and {:g}, {} is at most {:g} {}", joint.name,
+                      joint.lower, joint.upper, held.what, held.most, joint.slides ? "m" : "rad"));
+    }
     const int index = model.find_joint(said.joint.text);
     if (index < 0) {
       unknown(context, "joint", said.joint, fixture, moving);

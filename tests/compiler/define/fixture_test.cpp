@@ -192,6 +192,48 @@ TEST_CASE("a part or region has no name of a joint of the URDF, said or not") {
   CHECK(mistake("joint slide friction 2N; joint hinge friction 1Nm").empty());
 }
 
+TEST_CASE("what stays is held against all that it carries, wherever the joints stand") {
+  const auto stay = [](const std::string& described, const std::string& lines) {
+    return odd(described, lines).substr(0, 5);
+  };
+  // 2 kg at 0.2 m from the hinge: 3.92 Nm, and the flap's own mass is at the hinge.
+  const std::string flap = odd_link("base") + odd_link("flap") + odd_link("weight", "2") +
+                           odd_joint("h", "revolute", "base", "flap", "0 1 0", "0 0 0.4") +
+                           odd_joint("fx", "fixed", "flap", "weight", "1 0 0", "0.2 0 0");
+  CHECK(stay(flap, "joint h friction 0.1Nm stay") == "P1303");
+  CHECK(stay(flap, "joint h friction 3.92Nm stay") == "P1303");
+  CHECK(stay(flap, "joint h friction 3.93Nm stay").empty());
+  // Upright, a hinge carries nothing; along the axis there is no lever.
+  const std::string door = odd_link("base") + odd_link("door", "2", "0.2 0 0") +
+                           odd_joint("h", "revolute", "base", "door", "0 0 1", "0 0 0.4");
+  CHECK(stay(door, "joint h friction 0.01Nm stay").empty());
+  const std::string knob = odd_link("base") + odd_link("knob", "2", "0.2 0 0.01") +
+                           odd_joint("h", "revolute", "base", "knob", "1 0 0", "0 0 0.4");
+  CHECK(stay(knob, "joint h friction 0.19Nm stay") == "P1303");
+  CHECK(stay(knob, "joint h friction 0.2Nm stay").empty());
+  // A slide on an arm that turns may stand upright: 2 kg are 19.62 N. On a slide it stays level.
+  const auto arm = [](const std::string& above) {
+    return odd_link("base") + odd_link("arm") + odd_link("sl", "2") +
+           odd_joint("t", above, "base", "arm", "0 1 0", "0 0 0.4") +
+           odd_joint("s", "prismatic", "arm", "sl", "1 0 0", "0 0 0",
+                     "lower=\"-0.2\" upper=\"0.3\"");
+  };
+  CHECK(stay(arm("revolute"), "joint s friction 1N stay") == "P1303");
+  CHECK(stay(arm("revolute"), "joint s friction 19.63N stay").empty());
+  CHECK(stay(arm("prismatic"), "joint s friction 0.01N stay").empty());
+  // The arm's hinge carries the slide at its farthest: 2 kg at 0.3 m are 5.886 Nm.
+  CHECK(stay(arm("revolute"), "joint t friction 5.88Nm stay") == "P1303");
+  CHECK(stay(arm("revolute"), "joint t friction 5.89Nm stay").empty());
+  // What follows a joint hangs on it as well: 1 kg and twice 2 kg are 49.05 N.
+  const std::string lift =
+      odd_link("base") + odd_link("lead") + odd_link("fol", "2") +
+      odd_joint("a", "prismatic", "base", "lead", "0 0 1", "0 0 0", "lower=\"0\" upper=\"0.1\"") +
+      odd_joint("b", "prismatic", "base", "fol", "0 0 1", "0.1 0 0", "lower=\"-2\" upper=\"2\"",
+                "<mimic joint=\"a\" multiplier=\"-2\"/>");
+  CHECK(stay(lift, "joint a friction 49N stay") == "P1303");
+  CHECK(stay(lift, "joint a friction 49.1N stay").empty());
+}
+
 TEST_CASE("limits of a joint that no plan holds are refused with its name") {
   const auto limits = [](const std::string& written) {
     return odd(odd_link("base") + odd_link("drawer") +
