@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/define/role.h"
+#include "compiler/model/moving_joint.h"
 
 namespace probe::sema {
 
@@ -353,6 +354,15 @@ Dimension ExprReader::travel_of(ExprRef ref) const {
 
 ExprRef ExprReader::add_measure(const Span& span, const MeasureInfo& measure,
                                 std::vector<ExprRef> args) {
+  // A parameter's part is known where the predicate is unrolled.
+  if (measure.params.starts_with("J") && node(args[0]).op == ExprOp::kPart) {
+    const ExprNode& at = node(args[0]);
+    const Fixture& fixture = context_.model.fixtures[static_cast<FixtureId>(at.a)];
+    if (const Fixture::Part& part = fixture.parts[at.b]; !part.joint) {
+      context_.report(Code::P0601, span, no_travel(fixture, part));
+      return poison(span);
+    }
+  }
   Type type;
   type.kind = measure.result == 'v'   ? TypeKind::kVector
               : measure.result == 'b' ? TypeKind::kBool

@@ -10,6 +10,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
+#include "compiler/model/moving_joint.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
@@ -298,6 +299,7 @@ void build_joints(Context& context, Fixture& fixture) {
     if (known.kind == robot::JointKind::kFixed || known.mimic >= 0) continue;
     Fixture::Joint joint;
     joint.name = known.name;
+  return std::nullopt;
     joint.slides = known.kind == robot::JointKind::kPrismatic;
     joint.is_endless = known.kind == robot::JointKind::kContinuous;
     joint.lower = joint.is_endless ? 0 : known.lower;
@@ -319,17 +321,13 @@ void build_joints(Context& context, Fixture& fixture) {
   }
 }
 
-// The joint that moves a link, over fixed ones.
+// The joint that moves a link, over fixed ones; one that follows another has no position of its
+// own.
 std::optional<std::uint32_t> mover(const Fixture& fixture, int link) {
-  const robot::RobotModel& model = *fixture.model;
-  while (true) {
-    const int above = model.links[static_cast<std::size_t>(link)].parent_joint;
-    if (above < 0) return std::nullopt;
-    const robot::Joint& joint = model.joints[static_cast<std::size_t>(above)];
-    for (std::uint32_t i = 0; i < fixture.joints.size(); ++i) {
-      if (fixture.joints[i].name == joint.name) return i;
-    }
-    link = joint.parent_link;
+  const robot::Joint* joint = moving_joint(*fixture.model, link);
+  if (joint == nullptr) return std::nullopt;
+  for (std::uint32_t i = 0; i < fixture.joints.size(); ++i) {
+    if (fixture.joints[i].name == joint->name) return i;
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "compiler/lower/builder.h"
 #include "compiler/model/measures.h"
+#include "compiler/model/moving_joint.h"
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"
 #include "runtime/plan/claims.h"
@@ -282,9 +283,9 @@ class Lowering {
     if (value.kind == Value::kJoint) return value;
     const Body& body = bodies_[value.index];
     const sema::Fixture& fixture = model_.fixtures[static_cast<sema::FixtureId>(body.index)];
-    const auto& mover = fixture.parts[body.part].joint;
-    if (!mover) return fail(node.span, "nothing moves `" + body.name + "`, it has no travel");
-    return joint(node, body.index, *mover);
+    const sema::Fixture::Part& part = fixture.parts[body.part];
+    if (!part.joint) return fail(node.span, sema::no_travel(fixture, part));
+    return joint(node, body.index, *part.joint);
   }
 
   Value of_region(std::uint16_t body, const sema::Region& region) {

@@ -192,6 +192,42 @@ TEST_CASE("a part or region has no name of a joint of the URDF, said or not") {
   CHECK(mistake("joint slide friction 2N; joint hinge friction 1Nm").empty());
 }
 
+TEST_CASE("a part has no name of another link that can be touched, which is a part of that name") {
+  CHECK(mistake("part door link drawer") == "P0203 `door`");
+  CHECK(mistake("part door link drawer; part drawer link door").empty());
+  CHECK(mistake("part bell link drawer").empty());  // nothing can touch that one
+}
+
+TEST_CASE("a part that follows another by mimic has no travel of its own") {
+  const std::string described = odd_link("base") + odd_link("lead") + odd_link("fol") +
+                                odd_link("tip") + odd_link("child") +
+                                odd_joint("a", "prismatic", "base", "lead", "1 0 0", "0 0 0") +
+                                odd_joint("b", "prismatic", "lead", "fol", "1 0 0", "0 0 0",
+                                          "lower=\"0\" upper=\"1\"", "<mimic joint=\"a\"/>") +
+                                odd_joint("g", "fixed", "fol", "tip", "1 0 0", "0 0 0") +
+                                odd_joint("c", "prismatic", "tip", "child", "1 0 0", "0 0 0");
+  const std::string parts =
+      "part d link tip; part own link child; part first link lead; region in of d box (0cm, 0cm, "
+      "0cm) .. (1cm, 1cm, 1cm)";
+  const auto judged = [&](const std::string& metric) {
+    return odd(described, parts,
+               "metrics m like plain { x = " + metric +
+                   " }\ntask t like red_on_tray { scene room; metrics m }");
+  };
+  const std::string follows = "`f.d` follows `f.a` and has no travel of its own: measure `f.a`";
+  CHECK(judged("at end slide(f.d) > 4cm") == "P0601 `slide(f.d)` " + follows);
+  CHECK(judged("at end travel(f.d) > 4cm") == "P0601 `travel(f.d)` " + follows);
+  CHECK(judged("max rate(f.d)") == "P0601 `rate(f.d)` " + follows);
+  CHECK(judged("at end slide(f.own) > 4cm").empty());
+  CHECK(judged("at end slide(f.first) > 4cm").empty());
+  CHECK(judged("at end within(source, f.in)").empty());
+  CHECK(judged("once impulse(f.d, source) > 0Ns").empty());
+  CHECK(judged("at end any p in parts: travel(p) > 0.5 * range(p)").empty());
+  CHECK(odd(described, "part still link base",
+            "metrics m like plain { x = at end travel(f.still) > 4cm }") ==
+        "P0601 `travel(f.still)` nothing moves `f.still`, it has no travel");
+}
+
 TEST_CASE("what stays is held against all that it carries, wherever the joints stand") {
   const auto stay = [](const std::string& described, const std::string& lines) {
     return odd(described, lines).substr(0, 5);

@@ -374,3 +374,31 @@ TEST_CASE("regions are those of what stands there") {
                 (code.text + code.said));
   CHECK(code.text.find("surface r0") != std::string::npos);
 }
+
+TEST_CASE("a predicate of a part that follows another names the joint to measure") {
+  const auto sliding = [](const std::string& name, const std::string& more) {
+    return "<link name=\"" + name +
+           "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" "
+           "ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><box size=\"0.1 0.1 0.1\"/>"
+           "</geometry></collision></link><joint name=\"to_" +
+           name + "\" type=\"prismatic\"><parent link=\"body\"/><child link=\"" + name +
+           "\"/><axis xyz=\"1 0 0\"/><limit lower=\"0\" upper=\"0.1\" effort=\"1\" "
+           "velocity=\"1\"/>" +
+           more + "</joint>";
+  };
+  test::write_text(std::filesystem::path(test::asset_root()) / "pair/pair.urdf",
+                   "<robot name=\"pair\"><link name=\"body\"/>" + sliding("lead", "") +
+                       sliding("other", "<mimic joint=\"to_lead\"/>") + "</robot>");
+  const auto moved = [](const std::string& part) {
+    return lowered("x = at end moved(pair." + part + ")", "scene room",
+                   "fixture pair { urdf \"pair/pair.urdf\"; at (0cm, 30cm, 185cm); part first link "
+                   "lead; part second link other }\nscene room like bench { fixture pair }\n"
+                   "predicate moved(p: part) = slide(p) > 4cm\n");
+  };
+  CHECK_MESSAGE(moved("first").codes.empty(), moved("first").said);
+  CHECK(moved("second").codes == "P0601");
+  CHECK_MESSAGE(
+      moved("second").said.find("`pair.second` follows `pair.to_lead` and has no travel of "
+                                "its own: measure `pair.to_lead`") != std::string::npos,
+      moved("second").said);
+}

@@ -126,12 +126,12 @@ TEST_CASE(
   for (int i = 0; i < 30; ++i) made->efforts(now, out);
   CHECK(made->grip_command() == doctest::Approx(0.3));
   CHECK(made->believed().empty());
-  // Halfway and three tenths of the half towards open, from where the fingers are (0): at the
-  // limit.
+  // Halfway of the grip, 14 to 38 mm, and three tenths of the half towards open, from where the
+  // fingers are (0): at the limit.
   CHECK(out[6] == 20);
-  now.all_q[6] = now.all_q[7] = 0.026 + 0.3 * 0.011 + 0.004;
+  now.all_q[6] = now.all_q[7] = 0.026 + 0.3 * 0.012 + 0.004;
   made->efforts(now, out);
-  CHECK(out[6] == doctest::Approx(-1000 * (0.004 - 0.01 * 0.011)));
+  CHECK(out[6] == doctest::Approx(-1000 * (0.004 - 0.01 * 0.012)));
   const ControlState state = made->save();
   auto other = OscPoseController::create(test::widowx(), widowx_joints(), osc_at_home());
   REQUIRE(other.ok());
