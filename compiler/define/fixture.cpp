@@ -10,6 +10,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
+#include "compiler/define/weight.h"
 #include "compiler/model/moving_joint.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
@@ -206,23 +207,10 @@ void outside(Context& context, const Span& span, const Fixture::Joint& joint, do
       .point(joint.slides ? "in m" : "in rad");
 }
 
-// Whether a joint hangs below another on the way to the root.
-bool carries(const robot::RobotModel& model, int joint, int link) {
-  while (true) {
-    const int above = model.links[static_cast<std::size_t>(link)].parent_joint;
-    if (above < 0) return false;
-    if (above == joint) return true;
-    link = model.joints[static_cast<std::size_t>(above)].parent_link;
-  }
-}
-
 // P1303: what would move a joint that is to stay, at most: its spring at the farther limit, and the
-// weight of all that it carries.
+// weight of all that it carries and that the joints that follow it carry.
 void check_stay(Context& context, const Fixture& fixture, const Said& said,
                 const Fixture::Joint& joint) {
-  const robot::RobotModel& model = *fixture.model;
-  const int index = model.find_joint(joint.name);
-  const robot::Joint& described = model.joints[static_cast<std::size_t>(index)];
   double force = 0;
   if (joint.stiffness > 0) {
     const double far = joint.is_endless ? 3.14159265358979323846
@@ -230,40 +218,22 @@ void check_stay(Context& context, const Fixture& fixture, const Said& said,
                                                    std::abs(joint.upper - joint.rest));
     force += joint.stiffness * far;
   }
-  // The axis in the world's frame as all joints stand at 0; a lever as long as the links reach.
-  Quat turn(fixture.turn.rotation[0], fixture.turn.rotation[1], fixture.turn.rotation[2],
-            fixture.turn.rotation[3]);
-  std::vector<int> above;
-  for (int link = described.child_link;
-       model.links[static_cast<std::size_t>(link)].parent_joint >= 0;
-       link = model
-                  .joints[static_cast<std::size_t>(
-                      model.links[static_cast<std::size_t>(link)].parent_joint)]
-                  .parent_link)
-    above.push_back(model.links[static_cast<std::size_t>(link)].parent_joint);
-  for (auto it = above.rbegin(); it != above.rend(); ++it)
-    turn = turn * model.joints[static_cast<std::size_t>(*it)].origin.rotation;
-  const Vec3 axis = turn * described.axis;
-  double mass = 0, lever = 0;
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    if (!carries(model, index, static_cast<int>(i))) continue;
-    mass += model.links[i].mass;
-    lever = std::max(lever, model.links[i].center_of_mass.norm());
-  }
-  constexpr double kGravity = 9.81;
-  const double upright = std::min(1.0, std::abs(axis.z()));
-  force += joint.slides ? mass * kGravity * upright
-                        : mass * kGravity * lever * std::sqrt(1 - upright * upright);
+  force += weight_on(fixture, fixture.model->find_joint(joint.name));
   constexpr double kRounding = 1e-6;
   if (force <= joint.friction * (1 + kRounding)) return;
   const char* unit = joint.slides ? "N" : "Nm";
-  context
-      .report(Code::P1303, said.span,
-              fmt::format("joint `{}` is to stay, its friction is {:.3g}{}", joint.name,
-                          joint.friction, unit))
-      .point(fmt::format("spring and weight pull with up to {:.3g}{}", force, unit))
-      .help(fmt::format("write `friction {:.3g}{}`, a weaker spring, or leave out `stay`",
-                        std::ceil(force * 110) / 100, unit));
+  Diagnostic& found =
+      context
+          .report(Code::P1303, said.span,
+                  fmt::format("joint `{}` is to stay, its friction is {:.3g}{}", joint.name,
+                              joint.friction, unit))
+          .point(fmt::format("spring and weight pull with up to {:.3g}{}", force, unit));
+  if (!std::isfinite(force)) {
+    found.help("leave out `stay`: what it carries slides without end");
+    return;
+  }
+  found.help(fmt::format("write `friction {:.3g}{}`, a weaker spring, or leave out `stay`",
+                         std::ceil(force * 110) / 100, unit));
 }
 
 void build_joints(Context& context, Fixture& fixture) {
@@ -299,7 +269,6 @@ void build_joints(Context& context, Fixture& fixture) {
     if (known.kind == robot::JointKind::kFixed || known.mimic >= 0) continue;
     Fixture::Joint joint;
     joint.name = known.name;
-  return std::nullopt;
     joint.slides = known.kind == robot::JointKind::kPrismatic;
     joint.is_endless = known.kind == robot::JointKind::kContinuous;
     joint.lower = joint.is_endless ? 0 : known.lower;
@@ -353,16 +322,6 @@ void build_parts(Context& context, Fixture& fixture) {
       if (fixture.named[i].index < 0 || fixture.named[i].index != fixture.named[j].index) continue;
       context
           .report(Code::P0203, fixture.named[i].link.span,
-    const robot::RobotModel& model = *fixture.model;
-    const bool is_body = model.links[static_cast<std::size_t>(model.root)].can_collide();
-    if (own.of.text.empty() && !is_body) {
-      context
-          .report(Situation::kUntouchable, own.of.span,
-                  "the root link of `" + fixture.name + "` has no collision, it is no body")
-          .label(fixture.urdf.span, "described here")
-          .help("say the region of a part");
-      continue;
-    }
                   "link `" + fixture.named[i].link.text + "` is a part already")
           .label(fixture.named[j].span, "called so here");
     }

@@ -228,6 +228,16 @@ TEST_CASE("a part that follows another by mimic has no travel of its own") {
         "P0601 `travel(f.still)` nothing moves `f.still`, it has no travel");
 }
 
+TEST_CASE("a part that follows another runs into the surface where its leader takes it") {
+  const std::string seesaw =
+      odd_link("base") + odd_link("lead") + odd_link("fol") +
+      odd_joint("a", "prismatic", "base", "lead", "0 0 1", "0 0 0", "lower=\"0\" upper=\"1\"") +
+      odd_joint("b", "prismatic", "base", "fol", "0 0 1", "0.3 0 0", "lower=\"-2\" upper=\"2\"",
+                "<mimic joint=\"a\" multiplier=\"-1.5\"/>");
+  CHECK(odd(seesaw, "") ==
+        "P1302 `f` `f.fol` runs 50cm into the surface of `room` when `f.a` stands at 100cm");
+}
+
 TEST_CASE("what stays is held against all that it carries, wherever the joints stand") {
   const auto stay = [](const std::string& described, const std::string& lines) {
     return odd(described, lines).substr(0, 5);
