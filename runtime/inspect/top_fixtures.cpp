@@ -75,8 +75,14 @@ Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
   const auto parts = plan.parts(record);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const plan::PartRecord& part = parts[i];
-    const auto link =
-        static_cast<std::size_t>(posed.model().find_link(std::string(plan.text(part.link))));
+    const int found = posed.model().find_link(plan.text(part.link));
+    if (found < 0) {
+      return Failure{Fault::kUrdf,
+                     "no link `" + std::string(plan.text(part.link)) + "` for part `" +
+                         std::string(plan.text(part.name)) + "`",
+                     posed.model().path};
+    }
+    const auto link = static_cast<std::size_t>(found);
     frames->emplace(record.parts.first + static_cast<std::uint32_t>(i), begun[link]);
     TopPart& seen = view->parts.emplace_back();
     seen.name = plan.text(part.name);

@@ -121,6 +121,7 @@ class SharedAssets::Loader {
     if (assets_.planned_.contains(index)) return {};
     const plan::FixtureRecord& record = plan_.fixtures()[index];
     PROBE_ASSIGN(UrdfParts parts, verified_parts(record.urdf, plan_.meshes(record)));
+    PROBE_TRY(check_parts(plan_, record, parts.model));
     assets_.planned_[index] = std::make_unique<LoadedFixture>(
         LoadedFixture{fixture_of(plan_, record), std::move(parts), true});
     return {};

@@ -1,5 +1,7 @@
 #include "runtime/stage/fixture.h"
 
+#include <map>
+
 namespace probe::stage {
 
 Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record) {
@@ -20,6 +22,34 @@ Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record) {
     fixture.positions.push_back(joint.start);
   }
   return fixture;
+}
+
+Status check_parts(const plan::Plan& plan, const plan::FixtureRecord& record,
+                   const robot::RobotModel& model) {
+  const std::string urdf(plan.text(plan.assets()[record.urdf].path));
+  const auto quoted = [&plan](plan::StringRef text) {
+    return "`" + std::string(plan.text(text)) + "`";
+  };
+  std::map<int, const plan::PartRecord*> by_link;
+  for (const plan::PartRecord& part : plan.parts(record)) {
+    const int link = model.find_link(plan.text(part.link));
+    const std::string what = "link " + quoted(part.link) + " for part " + quoted(part.name);
+    if (link < 0) return Failure{Fault::kUrdf, "no " + what, urdf};
+    if (!model.links[static_cast<std::size_t>(link)].can_collide())
+      return Failure{Fault::kUrdf, what + " has no collision, nothing can touch it", urdf};
+    const auto [known, is_new] = by_link.emplace(link, &part);
+    if (!is_new)
+      return Failure{Fault::kUrdf, what + " is part " + quoted(known->second->name), urdf};
+    if (by_link.rbegin()->first != link)
+      return Failure{Fault::kUrdf, what + " is not in the description's order", urdf};
+  }
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (!model.links[i].can_collide() || by_link.contains(static_cast<int>(i))) continue;
+    return Failure{
+        Fault::kUrdf,
+        "link `" + model.links[i].name + "` is no part of fixture " + quoted(record.name), urdf};
+  }
+  return {};
 }
 
 }  // namespace probe::stage

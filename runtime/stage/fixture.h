@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "runtime/base/geometry.h"
+#include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
+#include "runtime/robot/urdf.h"
 #include "runtime/world/spec.h"
 
 namespace probe::stage {
@@ -22,6 +24,11 @@ struct Fixture {
 
 // As a plan's record has it; its springs rest where the record says.
 Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record);
+
+// Whether the record's parts are the links of its description that can be touched, in their order:
+// by that order contacts find the part. Fails (kUrdf) naming part, link and description.
+Status check_parts(const plan::Plan& plan, const plan::FixtureRecord& record,
+                   const robot::RobotModel& model);
 
 // What a trace calls a joint or a link of a fixture.
 inline std::string name_in(const Fixture& fixture, const std::string& part) {

@@ -6,6 +6,7 @@
 
 #include "compiler/emit/compile.h"
 #include "runtime/inspect/svg.h"
+#include "tests/plan/other_link.h"
 
 using namespace probe;
 using namespace probe::inspect;
@@ -14,14 +15,18 @@ namespace {
 
 const std::string kRoot = VLAPROBE_SOURCE_DIR;
 
-TopView view_of(const char* task) {
+std::vector<std::byte> drawers() {
   const std::vector<std::string> files = {kRoot + "/examples/drawer.probe"};
   auto built = build(
       files,
       {.asset_root = kRoot + "/assets", .suite = "", .library_folders = {kRoot + "/dsl", kRoot}});
   REQUIRE(built.ok());
   REQUIRE(built->ok);
-  const auto plan = plan::Plan::from_bytes(std::move(built->plan));
+  return std::move(built->plan);
+}
+
+TopView view_of(const char* task) {
+  const auto plan = plan::Plan::from_bytes(drawers());
   REQUIRE(plan.ok());
   const auto index = plan->find_task(task);
   REQUIRE(index);
@@ -64,4 +69,16 @@ TEST_CASE("the picture names parts and regions and says which way is left") {
   CHECK(svg.find("region cabinet.inside_top") != std::string::npos);
   CHECK(svg.find(">left</text>") != std::string::npos);
   CHECK(svg.find("nan") == std::string::npos);
+}
+
+TEST_CASE("a part whose link the description lacks is refused by name") {
+  const auto whole = plan::Plan::from_bytes(drawers());
+  REQUIRE(whole.ok());
+  const auto parts = whole->parts(whole->fixtures()[0]);
+  REQUIRE(whole->text(parts[1].name) == "cabinet.top_drawer");
+  const plan::Plan plan = plan::with_link(drawers(), 1, parts[1].name);
+  const auto view = top_view(plan, *plan.find_task("open_drawer"), kRoot + "/assets");
+  REQUIRE(!view.ok());
+  CHECK(view.failure().message == "no link `cabinet.top_drawer` for part `cabinet.top_drawer`");
+  CHECK(view.failure().where.ends_with("fixtures/cabinet/cabinet.urdf"));
 }

@@ -10,13 +10,14 @@
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/stage/stage.h"
+#include "tests/plan/other_link.h"
 
 namespace probe::stage {
 namespace {
 
 const std::string kRoot = VLAPROBE_SOURCE_DIR;
 
-plan::Plan compiled(const std::string& text) {
+std::vector<std::byte> bytes_of(const std::string& text) {
   const auto file = std::filesystem::temp_directory_path() /
                     ("probe_planned_fixture_" + std::to_string(getpid()) + ".probe");
   std::ofstream(file) << text;
@@ -27,7 +28,11 @@ plan::Plan compiled(const std::string& text) {
   std::filesystem::remove(file);
   REQUIRE_MESSAGE(made.ok(), (made.ok() ? "" : to_text(made.failure())));
   REQUIRE_MESSAGE(!made->diagnostics.has_errors(), render_text(made->diagnostics, made->sources));
-  auto plan = plan::Plan::from_bytes(std::move(made->plan));
+  return std::move(made->plan);
+}
+
+plan::Plan compiled(const std::string& text) {
+  auto plan = plan::Plan::from_bytes(bytes_of(text));
   REQUIRE_MESSAGE(plan.ok(), (plan.ok() ? "" : to_text(plan.failure())));
   return std::move(*plan);
 }
@@ -108,6 +113,26 @@ TEST_CASE("starts with other joints are other starts") {
   CHECK(second.axes == static_cast<std::uint32_t>(plan::Axis::kFixture));
   CHECK(plan.episodes(first)[0].start_id != plan.episodes(second)[0].start_id);
   CHECK(first.judge_id == second.judge_id);
+}
+
+TEST_CASE("a plan whose parts are not the description's links is refused before an episode") {
+  const plan::Plan whole = compiled(kText);
+  const auto parts = whole.parts(whole.fixtures()[0]);
+  REQUIRE(whole.text(parts[1].name) == "cabinet.top_drawer");
+  const std::uint32_t tasks[] = {*whole.find_task("open_drawer")};
+  const auto refusal = [&](plan::StringRef link) {
+    const plan::Plan plan = plan::with_link(bytes_of(kText), 1, link);
+    const auto assets = SharedAssets::load(plan, kRoot + "/assets", tasks);
+    return assets.ok() ? std::string() : to_text(assets.failure());
+  };
+  const std::string lacking = refusal(parts[1].name);
+  CHECK_MESSAGE(lacking.find("no link `cabinet.top_drawer` for part `cabinet.top_drawer`") !=
+                    std::string::npos,
+                lacking);
+  CHECK(lacking.find("fixtures/cabinet/cabinet.urdf") != std::string::npos);
+  const std::string twice = refusal(parts[0].link);
+  CHECK_MESSAGE(twice.find("for part `cabinet.top_drawer` is part `cabinet`") != std::string::npos,
+                twice);
 }
 
 }  // namespace
