@@ -131,8 +131,6 @@ void check_names(Context& context, const Fixture& fixture) {
     known.emplace_back(name, span);
   };
   for (const Said& said : fixture.said) declare(said.joint.text, said.joint.span, "joint");
-  for (const Fixture::Part& part : fixture.named) declare(part.name, part.span, "part");
-  for (const Fixture::OwnRegion& own : fixture.regions)
   if (fixture.model) {
     for (const robot::Joint& joint : fixture.model->joints) {
       const bool is_said = std::ranges::any_of(
@@ -141,11 +139,11 @@ void check_names(Context& context, const Fixture& fixture) {
         known.emplace_back(joint.name, fixture.urdf.span);
     }
   }
+  for (const Fixture::Part& part : fixture.named) declare(part.name, part.span, "part");
+  for (const Fixture::OwnRegion& own : fixture.regions)
     declare(own.region.name, own.region.span, "region");
 }
 
-const Said* said_of(const Fixture& fixture, std::string_view joint) {
-  for (const Said& said : fixture.said) {
 // Every link that can be touched is a part, by its own name where none is declared for it.
 void check_link_names(Context& context, const Fixture& fixture) {
   const robot::RobotModel& model = *fixture.model;
@@ -163,6 +161,8 @@ void check_link_names(Context& context, const Fixture& fixture) {
   }
 }
 
+const Said* said_of(const Fixture& fixture, std::string_view joint) {
+  for (const Said& said : fixture.said) {
     if (said.joint.text == joint) return &said;
   }
   return nullptr;
@@ -243,13 +243,6 @@ void build_joints(Context& context, Fixture& fixture) {
     if (known.kind != robot::JointKind::kFixed && known.mimic < 0) moving.push_back(known.name);
   }
   for (const Said& said : fixture.said) {
-    const plan::MagnitudeInfo& held = plan::info(plan::Magnitude::kJointPosition);
-    if (!held.fits(joint.lower) || !held.fits(joint.upper)) {
-      context.report(
-          Situation::kMagnitude, fixture.urdf.span,
-          fmt::format("joint `{}` has limits of {:g} and {:g}, {} is at most {:g} {}", joint.name,
-                      joint.lower, joint.upper, held.what, held.most, joint.slides ? "m" : "rad"));
-    }
     const int index = model.find_joint(said.joint.text);
     if (index < 0) {
       unknown(context, "joint", said.joint, fixture, moving);
@@ -279,6 +272,13 @@ void build_joints(Context& context, Fixture& fixture) {
       context.report(Situation::kFixedJoint, fixture.urdf.span,
                      "joint `" + joint.name + "` has no room between its limits");
     }
+    const plan::MagnitudeInfo& held = plan::info(plan::Magnitude::kJointPosition);
+    if (!held.fits(joint.lower) || !held.fits(joint.upper)) {
+      context.report(
+          Situation::kMagnitude, fixture.urdf.span,
+          fmt::format("joint `{}` has limits of {:g} and {:g}, {} is at most {:g} {}", joint.name,
+                      joint.lower, joint.upper, held.what, held.most, joint.slides ? "m" : "rad"));
+    }
     const auto errors = context.mistakes();
     if (const Said* said = said_of(fixture, joint.name)) {
       take(context, *said, joint);
@@ -298,6 +298,7 @@ std::optional<std::uint32_t> mover(const Fixture& fixture, int link) {
   for (std::uint32_t i = 0; i < fixture.joints.size(); ++i) {
     if (fixture.joints[i].name == joint->name) return i;
   }
+  return std::nullopt;
 }
 
 void build_parts(Context& context, Fixture& fixture) {
@@ -347,6 +348,16 @@ void build_parts(Context& context, Fixture& fixture) {
 
 void build_regions(Context& context, Fixture& fixture) {
   for (Fixture::OwnRegion& own : fixture.regions) {
+    const robot::RobotModel& model = *fixture.model;
+    const bool is_body = model.links[static_cast<std::size_t>(model.root)].can_collide();
+    if (own.of.text.empty() && !is_body) {
+      context
+          .report(Situation::kUntouchable, own.of.span,
+                  "the root link of `" + fixture.name + "` has no collision, it is no body")
+          .label(fixture.urdf.span, "described here")
+          .help("say the region of a part");
+      continue;
+    }
     bool found = false;
     std::vector<std::string_view> candidates;
     if (is_body) candidates.push_back(fixture.name);
@@ -369,6 +380,7 @@ void load_model(Context& context, Fixture& fixture) {
   const std::string path = (std::filesystem::path(context.asset_root) / fixture.urdf.text).string();
   auto model = robot::load_urdf(path);
   if (!model.ok()) {
+    check_names(context, fixture);
     context
         .report(Situation::kUrdfUnreadable, fixture.urdf.span,
                 "the fixture's description cannot be read: " + model.failure().message)
@@ -376,6 +388,8 @@ void load_model(Context& context, Fixture& fixture) {
     return;
   }
   fixture.model = std::move(model).value();
+  check_names(context, fixture);
+  check_link_names(context, fixture);
   build_joints(context, fixture);
   build_parts(context, fixture);
   build_regions(context, fixture);

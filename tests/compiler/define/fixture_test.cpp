@@ -291,3 +291,12 @@ TEST_CASE("limits of a joint that no plan holds are refused with its name") {
             .ends_with("joint `j` has limits of 0 and 1001, a joint's position is at most 1000 m"));
   CHECK(limits("lower=\"-1e300\" upper=\"0\"").starts_with("P0304 `\"odd/"));
 }
+
+TEST_CASE("a region of a fixture whose root link nothing can touch says so") {
+  const std::string described = odd_link("base", "1", "0 0 0", false) + odd_link("lid") +
+                                odd_joint("j", "revolute", "base", "lid", "0 0 1", "0 0 1");
+  const std::string box = " box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1cm)";
+  CHECK(odd(described, "region r of f" + box) ==
+        "P1301 `f` the root link of `f` has no collision, it is no body");
+  CHECK(odd(described, "part lid link lid; region r of lid" + box).empty());
+}
