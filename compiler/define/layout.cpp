@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
 
 #include "compiler/define/define.h"
 #include "compiler/define/fixture.h"
@@ -40,6 +42,7 @@ struct LayoutReader {
   Context& context;
   Layout& layout;
   bool has_orient = false;
+  std::map<std::string, Span, std::less<>> placed = {};  // here, not in what is copied
   std::optional<Span> placing = {};  // the first statement here that says where something stands
 
   // Places and a file of starts say the same twice; in a copy the later takes the other's place.
@@ -115,6 +118,12 @@ struct LayoutReader {
     for (const syntax::Name& name : names) {
       const bool is_role = name.text == "distractors" || find_role(context, name.text);
       if (!is_role && !context.symbols.objects.find(name, context.diagnostics)) continue;
+      const auto [first, is_new] = placed.emplace(name.text, name.span);
+      if (!is_new) {
+        context.report(Code::P0203, name.span, "`" + std::string(name.text) + "` is placed twice")
+            .label(first->second, "first here");
+        continue;
+      }
       result.push_back(spelled(name));
     }
     return result;

@@ -44,6 +44,15 @@ struct Enumerator {
            task.distractors.end();
   }
 
+  // Whether a line places the object by its own name, wherever its role is placed.
+  bool has_own_place(ObjectId object) const {
+    return std::ranges::any_of(layout.places, [&](const Place& place) {
+      return std::ranges::any_of(place.what, [&](const Spelled& word) {
+        return word.text == model.objects[object].name && !find_role(model, word.text);
+      });
+    });
+  }
+
   // The task's objects that a line's word means; an object that is not in the task is nothing.
   std::vector<std::size_t> meant(const Spelled& word) const {
     std::vector<std::size_t> result;
@@ -63,7 +72,8 @@ struct Enumerator {
       while (cells < layout.cells.size() && layout.cells[cells].name != place.cells) ++cells;
       for (const Spelled& word : place.what) {
         for (const std::size_t object : meant(word)) {
-          if (placed[object]) continue;
+          const bool by_name = model.objects[objects[object]].name == word.text;
+          if (placed[object] || (!by_name && has_own_place(objects[object]))) continue;
           placed[object] = true;
           items.push_back({object, &place, cells});
         }

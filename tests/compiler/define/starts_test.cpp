@@ -49,6 +49,44 @@ TEST_CASE("distractors fill the remaining cells in the order of their declaratio
   CHECK(task.starts[0].placed[3].y == 0.1);
 }
 
+TEST_CASE("a place by an object's own name wins over that of its role, whichever is said first") {
+  const auto a = analyze_with_suite(
+      "layout filled like pairs { place blue at (-27cm, 15cm) }\n"
+      "layout held like pairs { place red at (-27cm, 15cm) }\n"
+      "variant v of red_on_tray { distractors blue, pale }\n"
+      "variant named of v { layout filled }\nvariant source_too of v { layout held }");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  const sema::Task& named = a->task("named");
+  CHECK(named.axes == static_cast<std::uint32_t>(plan::Axis::kLayout));
+  REQUIRE(named.starts.size() == 24);
+  for (const sema::Start& start : named.starts) {
+    REQUIRE(start.placed.size() == 4);
+    CHECK(start.placed[2].x == -0.27);
+    CHECK(start.placed[2].y == 0.15);
+  }
+  // The other distractor has the first of the cells that are left.
+  CHECK(named.starts[0].placed[3].x == 0.1);
+  CHECK(named.starts[0].placed[3].y == -0.1);
+  // The target alone has a cell of its own: four places, two turns.
+  const sema::Task& held = a->task("source_too");
+  REQUIRE(held.starts.size() == 8);
+  CHECK(held.starts[0].placed[0].x == -0.27);
+}
+
+TEST_CASE("what a layout places twice is told at the second place") {
+  for (const char* lines :
+       {"place red at (-16cm, 0cm); place red at (0cm, 0cm)", "place red, red at (0cm, 0cm)",
+        "place source at (-16cm, 0cm); place source at (0cm, 0cm)",
+        "place distractors at (-16cm, 0cm); place distractors at (0cm, 0cm)"}) {
+    const auto a = analyze_with_suite("layout l like pairs { " + std::string(lines) + " }");
+    CHECK_MESSAGE(a->codes() == "P0203", std::string(lines), ": ", a->said());
+    CHECK(a->said().find("is placed twice") != std::string::npos);
+  }
+  // A copy's line takes the place of the one that it copied.
+  CHECK(analyze_with_suite("layout l like pairs { place source, target at (0cm, 0cm) }")->codes() ==
+        "");
+}
+
 TEST_CASE("two spreads are two grids in turn that never mix") {
   const auto a = analyze_with_suite(
       "layout l like pairs { cells spots = grid 2 x 2 at (-16cm, 0cm) spread (5cm, 5cm), (10cm, "
