@@ -62,7 +62,7 @@ class Detector {
     for (const store::ResultRow& row : rows) {
       const auto found = tasks.find(row.task);
       if (found == tasks.end()) continue;
-      ++(row.invalid ? invalid_ : valid_);
+      ++(store::is_not_attempted(row) ? not_attempted_ : row.invalid ? invalid_ : valid_);
       // Before the first request nothing was sent, and a row without a picture never got so far.
       if (row.image_sha256.empty()) continue;
       rows_[found->second].push_back(&row);
@@ -71,10 +71,12 @@ class Detector {
 
   std::vector<DeliveryFinding> find() {
     if (valid_ == 0) {
+      std::string counts;
+      if (invalid_ > 0) counts += ", " + count_of(invalid_, "episode") + " invalid";
+      if (not_attempted_ > 0)
+        counts += ", " + count_of(not_attempted_, "episode") + " not attempted";
       add({DeliveryFinding::Kind::kNothing, "", "", "", 0, invalid_,
-           "no episode is valid" +
-               (invalid_ == 0 ? std::string() : ", " + count_of(invalid_, "episode") + " invalid") +
-               ": what reached the policy cannot be said"});
+           "no episode is valid" + counts + ": what reached the policy cannot be said"});
     }
     for (const auto& [task, rows] : rows_) {
       check_prompt(task, rows);
@@ -138,7 +140,7 @@ class Detector {
   void add(DeliveryFinding finding) { findings_.push_back(std::move(finding)); }
 
   const plan::Plan& plan_;
-  int valid_ = 0, invalid_ = 0;
+  int valid_ = 0, invalid_ = 0, not_attempted_ = 0;
   std::map<std::uint32_t, std::vector<const store::ResultRow*>> rows_;  // by task
   std::map<std::string_view, std::uint32_t> first_with_;  // a sent text: its first task
   std::vector<DeliveryFinding> findings_;

@@ -112,6 +112,11 @@ TEST_CASE("with no valid episode nothing is said of what reached the policy") {
   CHECK(invalid[0].sentence ==
         "no episode is valid, 9 episodes invalid: what reached the policy cannot be said");
   CHECK(to_json(invalid).find("\"kind\": \"nothing\"") != std::string::npos);
+  for (std::size_t i = 0; i < 6; ++i)
+    rows[i].invalid = std::string(store::kNotAttempted) + "no solution in skills for this goal";
+  CHECK(check_delivery(plan, rows)[0].sentence ==
+        "no episode is valid, 3 episodes invalid, 6 episodes not attempted: what reached the "
+        "policy cannot be said");
   rows[4].invalid.reset();
   CHECK(check_delivery(plan, rows).empty());
 }
