@@ -108,12 +108,20 @@ bool same_layout(const plan::Plan& plan, const plan::TaskRecord& a, const plan::
   return true;
 }
 
+// Whether the two would be judged alike with the robot's law and rate of one: those are the
+// scene's.
+bool same_judge(plan::IdHasher& hasher, const plan::TaskRecord& a, plan::TaskRecord b) {
+  b.scene = a.scene;
+  return hasher.judge(a) == hasher.judge(b);
+}
+
 // A quantifier over objects unrolls with their number, so equal metrics may be unequal programs
 // when the scenes hold different bodies; then the compiler's word for a task and its baseline
 // decides, or the words they were written with, as far as the plan has them.
-bool same_goal(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+bool same_goal(const plan::Plan& plan, plan::IdHasher& hasher, const plan::TaskRecord& a,
+               const plan::TaskRecord& b) {
   if (a.horizon != b.horizon) return false;
-  if (a.judge_id == b.judge_id) return true;
+  if (same_judge(hasher, a, b)) return true;
   const auto ours = plan.metrics(a);
   const auto theirs = plan.metrics(b);
   if (a.bodies.count == b.bodies.count || ours.size() != theirs.size()) return false;
@@ -144,19 +152,19 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   const plan::TaskRecord& a = plan.tasks()[first];
   const plan::TaskRecord& b = plan.tasks()[second];
   const bool same_distractors = distractors(plan, a) == distractors(plan, b);
-  // Scenes, cameras and lights are compared by content: as the starts of a task without objects.
+  // Scenes, cameras and lights are compared by content: by those parts of starts without objects.
   plan::IdHasher hasher(plan.tables());
-  const auto content = [&hasher](std::uint32_t scene, const plan::TaskRecord& cameras,
-                                 std::uint32_t light) {
-    plan::TaskRecord task;
-    task.scene = scene;
-    task.camera = cameras.camera;
-    task.views = cameras.views;
-    task.light = light;
-    return hasher.start(task, {});
+  const auto ours = hasher.start_parts(a, {}), theirs = hasher.start_parts(b, {});
+  const auto is_same = [&](std::string_view name) {
+    const auto part = [name](const auto& parts) {
+      return std::ranges::find(parts, name, &plan::IdHasher::StartPart::name)->hash;
+    };
+    return part(ours) == part(theirs);
   };
-  const Sha256 ours = content(a.scene, a, a.light);
-  const bool scene_moves = ours != content(b.scene, a, a.light);
+  plan::TaskRecord elsewhere = a;
+  elsewhere.scene = b.scene;
+  const bool scene_moves = !is_same("robot") || !is_same("scene") ||
+                           hasher.judge(a) != hasher.judge(elsewhere);  // another law or rate
   const auto moves = [&](plan::Axis axis) {
     switch (axis) {
       case plan::Axis::kObjectSource:
@@ -177,11 +185,11 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
       // Another scene comes with its own camera and light; whether one was chosen on top of that is
       // not in the records.
       case plan::Axis::kLight:
-        return !scene_moves && ours != content(a.scene, a, b.light);
+        return !scene_moves && !is_same("light");
       case plan::Axis::kCamera:
-        return !scene_moves && ours != content(a.scene, b, a.light);
+        return !scene_moves && !is_same("camera");
       case plan::Axis::kGoal:
-        return !same_goal(plan, a, b);
+        return !same_goal(plan, hasher, a, b);
       // Frames and phrases are not in a plan.
       case plan::Axis::kLanguageAction:
       case plan::Axis::kLanguageNegation:

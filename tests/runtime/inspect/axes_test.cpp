@@ -1,5 +1,7 @@
 #include "runtime/inspect/axes.h"
 
+#include "runtime/base/file.h"
+
 #include "tests/runtime/inspect/small_plan.h"
 
 using namespace probe;
@@ -16,6 +18,25 @@ Names between(const char* a, const char* b) {
 Names stored(std::uint32_t axes) {
   const auto names = probe::plan::axis_names(axes);
   return {names.begin(), names.end()};
+}
+
+// The plan of a text that uses the suites and the standard library.
+plan::Plan compiled(const std::string& text) {
+  const std::string root = VLAPROBE_SOURCE_DIR;
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("probe_axes_" + std::to_string(getpid()) + ".probe");
+  std::ofstream(file) << text;
+  const std::string files[] = {file.string()};
+  auto built = build(
+      files,
+      {.asset_root = test::asset_root(), .suite = "", .library_folders = {root + "/dsl", root}});
+  std::filesystem::remove(file);
+  REQUIRE(built.ok());
+  INFO(render_text(built->diagnostics, built->sources));
+  REQUIRE(built->ok);
+  auto plan = plan::Plan::from_bytes(std::move(built->plan));
+  REQUIRE(plan.ok());
+  return std::move(*plan);
 }
 
 }  // namespace
@@ -75,4 +96,45 @@ variants of carrots { spoons { source spoon }; covered { distractors towel }; st
     const plan::TaskRecord& task = shaken.tasks()[*shaken.find_task(name)];
     CHECK(axes_between(shaken, *shaken.find_task(name), base) == stored(task.axes));
   }
+}
+
+TEST_CASE("a robot whose law differs in a number is another scene, not another goal") {
+  const auto text = read_file(VLAPROBE_SOURCE_DIR "/suite/panda.probe", {});
+  REQUIRE(text.ok());
+  const std::size_t begin = text->find("robot panda {"), end = text->find("\n}", begin);
+  REQUIRE(end != std::string::npos);
+  std::string other = text->substr(begin, end + 2 - begin);
+  other.replace(other.find("panda {"), 5, "stiffer");
+  REQUIRE(other.find("kp 150") != std::string::npos);
+  other.replace(other.find("kp 150"), 6, "kp 151");
+  const plan::Plan plan = compiled("use \"suite/panda.probe\"\n" + other + R"(
+camera front like agentview { mount stiffer.link0 at (131.86131746834771cm, 0cm, 69.83500240372423cm) look (-0.7779, 0, -0.6284) }
+camera hand like eye_in_hand { mount stiffer.right_hand at (5cm, 0cm, 0cm) quat (0, 0.70710678118654757, 0, 0.70710678118654757) }
+scene stiffer_table like panda_table {
+  robot stiffer at (-66cm, 0cm, 91.2cm) yaw 0deg
+  camera front as agentview, hand as wrist
+}
+variant stiff of panda_carrot_on_plate { scene stiffer_table }
+suite laws { tasks { panda_carrot_on_plate, stiff }; seeds 1 }
+)");
+  const std::uint32_t base = *plan.find_task("panda_carrot_on_plate");
+  const std::uint32_t stiff = *plan.find_task("stiff");
+  CHECK(stored(plan.tasks()[stiff].axes) == Names{"scene"});
+  CHECK(axes_between(plan, base, stiff) == Names{"scene"});
+  CHECK(axes_between(plan, stiff, base) == Names{"scene"});
+}
+
+TEST_CASE("a copy of a fixture whose joint starts elsewhere differs by the fixture alone") {
+  const plan::Plan plan = compiled(R"(
+use "examples/drawer.probe"
+fixture ajar like cabinet { joint top friction 1N damping 5Ns/m start 2cm }
+scene shut_scene like table { fixture cabinet }
+scene ajar_scene like table { fixture ajar }
+task shut like carrot_on_plate { scene shut_scene }
+variant begun of shut { scene ajar_scene }
+suite begun_suite { tasks { shut, begun }; seeds 1 }
+)");
+  const std::uint32_t base = *plan.find_task("shut"), begun = *plan.find_task("begun");
+  CHECK(stored(plan.tasks()[begun].axes) == Names{"fixture"});
+  CHECK(axes_between(plan, base, begun) == Names{"fixture"});
 }
