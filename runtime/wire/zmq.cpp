@@ -18,6 +18,7 @@ using Clock = std::chrono::steady_clock;
 
 // How often what comes in is held against its limit while an answer is waited for.
 constexpr Duration kLook{20};
+constexpr Duration kSilence{100};  // ms in which a socket that connects has told so
 
 Duration left_until(Clock::time_point deadline) {
   const auto left = std::chrono::ceil<Duration>(deadline - Clock::now());
@@ -70,7 +71,7 @@ class ZmqRequester::Sockets {
     const Address& address = v4 == addresses.end() ? addresses.front() : *v4;
     const bool is_ipv6 = !is_v4(address);
     reached_ = Reached::kNothing;
-    lost_ = has_answered_ = false;
+    lost_ = has_answered_ = has_begun_ = false;
     request_.emplace(context_, zmq::socket_type::req);
     request_->set(zmq::sockopt::linger, 0);
     // Messages wait for a connection here, where it is noticed, and not in a queue.
@@ -92,7 +93,8 @@ class ZmqRequester::Sockets {
   }
 
   Result<Bytes> exchange(std::span<const std::uint8_t> message, Duration timeout) {
-    if (!wait(ZMQ_POLLOUT, Clock::now() + options_.connect_timeout)) return failed(unconnected());
+    PROBE_ASSIGN(const bool connects, connect(Clock::now() + options_.connect_timeout));
+    if (!connects) return failed(unconnected());
     // What happened to earlier connections is no news of this one.
     while (has_news()) note_event();
     lost_ = is_flooded_ = false;
@@ -118,6 +120,19 @@ class ZmqRequester::Sockets {
     has_answered_ = true;
     const auto* data = answer.data<std::uint8_t>();
     return Bytes(data, data + answer.size());
+  }
+
+  // ZeroMQ tells at once that it begins to connect. Now and then (4.3.4) a new socket begins
+  // nothing and tells nothing: then another is made.
+  Result<bool> connect(Clock::time_point deadline) {
+    while (true) {
+      if (wait(ZMQ_POLLOUT, std::min(deadline, Clock::now() + kSilence))) return true;
+      if (lost_) return false;
+      if (has_begun_) return wait(ZMQ_POLLOUT, deadline);
+      if (Clock::now() >= deadline) return false;
+      close();
+      PROBE_TRY(open());
+    }
   }
 
   // Until the socket is ready for `events`; false when it cannot be any more, or at the deadline.
@@ -157,6 +172,7 @@ class ZmqRequester::Sockets {
   void note_event() {
     zmq::message_t event, address;
     if (!monitor_->recv(event) || !monitor_->recv(address)) return;
+    has_begun_ = true;
     std::uint16_t kind = 0;
     if (event.size() < sizeof kind) return;
     std::memcpy(&kind, event.data(), sizeof kind);
@@ -208,7 +224,8 @@ class ZmqRequester::Sockets {
   bool is_flooded_ = false;     // more came since than an answer may have
   Reached reached_ = Reached::kNothing;
   bool has_answered_ = false;
-  bool lost_ = false;  // the connection ended since the last send
+  bool lost_ = false;       // the connection ended since the last send
+  bool has_begun_ = false;  // something was told of the socket
 };
 
 ZmqRequester::ZmqRequester(std::unique_ptr<Sockets> sockets) : sockets_(std::move(sockets)) {}
