@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <numbers>
 
 #include "compiler/check/starts.h"
 #include "compiler/define/fixture.h"
@@ -26,7 +27,7 @@ bool may_overlap(const PartBox& box, const Vec3& centre, const Vec3& half) {
 
 std::string stands(const Fixture::Joint& joint, double position) {
   return joint.slides ? centimetres(position)
-                      : fmt::format("{:.4g}deg", position * 180 / 3.14159265358979323846);
+                      : fmt::format("{:.4g}deg", position * 180 / std::numbers::pi);
 }
 
 // The upright box around each part as a task begins.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
@@ -213,7 +214,7 @@ void check_stay(Context& context, const Fixture& fixture, const Said& said,
                 const Fixture::Joint& joint) {
   double force = 0;
   if (joint.stiffness > 0) {
-    const double far = joint.is_endless ? 3.14159265358979323846
+    const double far = joint.is_endless ? std::numbers::pi
                                         : std::max(std::abs(joint.lower - joint.rest),
                                                    std::abs(joint.upper - joint.rest));
     force += joint.stiffness * far;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <numbers>
 
 #include "compiler/geometry/camera_pose.h"
 #include "runtime/scene/link_solids.h"
@@ -14,7 +15,7 @@ namespace {
 constexpr double kStep = 2e-3;                // m between two places of a part
 constexpr std::size_t kMostPositions = 2048;  // of one joint
 constexpr std::uint32_t kSampled = 2048;      // of several joints together
-constexpr double kHalfTurn = 3.14159265358979323846;
+constexpr double kHalfTurn = std::numbers::pi;
 
 // Fractions that fill a cube of as many dimensions as there are bases evenly: van der Corput's.
 double radical_inverse(std::uint32_t n, std::uint32_t base) {

@@ -19,6 +19,7 @@
 #include "compiler/source/source.h"
 #include "compiler/syntax/ast.h"
 #include "runtime/base/result.h"
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/format.h"
 #include "runtime/robot/laws.h"
 #include "runtime/robot/urdf.h"
@@ -196,10 +197,8 @@ struct Fixture {
     bool slides = false, is_endless = false;
     double lower = 0, upper = 0;
     double friction = 0, damping = 0, stiffness = 0, rest = 0, start = 0;
-    // Closed is the limit nearest 0, the lower one of two: travel counts from there.
-    bool closes_at_upper() const {
-      return !is_endless && (upper < 0 ? -upper : upper) < (lower < 0 ? -lower : lower);
-    }
+    // Travel counts from where it is closed.
+    bool closes_at_upper() const { return !is_endless && plan::closes_at_upper(lower, upper); }
   };
   // A link that can be touched; a declared one has a name of its own.
   struct Part {

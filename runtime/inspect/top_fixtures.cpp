@@ -27,9 +27,8 @@ scene::Solid box_of(const plan::RegionRecord& region) {
   return scene::upright_solid(Vec3(region.low.data()), Vec3(region.high.data()));
 }
 
-// Where a joint is open: the limit that is farther from 0, as the closed one is the nearer.
 double open_end(const plan::FixtureJointRecord& joint) {
-  return std::abs(joint.upper) >= std::abs(joint.lower) ? joint.upper : joint.lower;
+  return plan::closes_at_upper(joint.lower, joint.upper) ? joint.lower : joint.upper;
 }
 
 // Frames of a fixture's links, in world.

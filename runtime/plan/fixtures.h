@@ -1,6 +1,7 @@
 // What the records of fixtures with joints say together.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,11 @@ inline bool is_within(const FixtureJointRecord& joint, double position) {
 }
 inline bool slides(const FixtureJointRecord& joint) {
   return joint.motion == static_cast<std::uint32_t>(JointMotion::kSlides);
+}
+
+// A joint is closed at the limit nearest 0, the lower one of two; it is open at the other.
+inline bool closes_at_upper(double lower, double upper) {
+  return std::abs(upper) < std::abs(lower);
 }
 
 // All joints of a scene's fixtures, in the order in which programs, starts and traces count them.

@@ -2,17 +2,7 @@
 // on its end falls over.
 #pragma once
 
-#include <doctest/doctest.h>
-
-#include <fstream>
-#include <string>
-#include <string_view>
-#include <utility>
-
-#include "compiler/diag/text.h"
-#include "compiler/emit/compile.h"
-#include "runtime/plan/plan.h"
-#include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/run/plan_of_text.h"
 
 namespace probe::run {
 
@@ -35,22 +25,7 @@ suite mine trained on bridge_v2 { tasks { stays, falls }; seeds 42 }
 )";
 
 inline const plan::Plan& claims_plan() {
-  static const plan::Plan plan = [] {
-    const TemporaryFolder folder;
-    const std::string root = VLAPROBE_SOURCE_DIR;
-    const std::string file = folder / "claims.probe";
-    std::ofstream(file) << kClaimsText;
-    CompileOptions options;
-    options.asset_root = root + "/assets";
-    options.library_folders = {root + "/dsl", root};
-    options.suite = "mine";
-    auto built = build(std::span<const std::string>(&file, 1), options);
-    REQUIRE_MESSAGE(built.ok(), to_text(built.failure()));
-    REQUIRE_MESSAGE(built->ok, render_text(built->diagnostics, built->sources));
-    auto made = plan::Plan::from_bytes(std::move(built->plan));
-    REQUIRE_MESSAGE(made.ok(), to_text(made.failure()));
-    return std::move(made).value();
-  }();
+  static const plan::Plan plan = plan_of_text(kClaimsText);
   return plan;
 }
 

@@ -2,17 +2,15 @@
 // their text to results, replay and judging again.
 #include <doctest/doctest.h>
 
-#include <fstream>
 #include <string>
 
-#include "compiler/diag/text.h"
-#include "compiler/emit/compile.h"
 #include "runtime/rejudge/explain.h"
 #include "runtime/rejudge/rejudge.h"
 #include "runtime/run/replay.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
+#include "tests/runtime/run/plan_of_text.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -28,21 +26,8 @@ task at_once like still { idle 0 steps }
 )";
 
 plan::Plan plan_of(const std::string& task) {
-  const TemporaryFolder folder;
-  const std::string root = VLAPROBE_SOURCE_DIR;
-  const std::string file = folder / "ends.probe";
-  std::ofstream(file) << kText << "suite mine trained on bridge_v2 { tasks { " << task
-                      << " }; seeds 42 }\n";
-  CompileOptions options;
-  options.asset_root = root + "/assets";
-  options.library_folders = {root + "/dsl", root};
-  options.suite = "mine";
-  auto built = build(std::span<const std::string>(&file, 1), options);
-  REQUIRE_MESSAGE(built.ok(), to_text(built.failure()));
-  REQUIRE_MESSAGE(built->ok, render_text(built->diagnostics, built->sources));
-  auto made = plan::Plan::from_bytes(std::move(built->plan));
-  REQUIRE_MESSAGE(made.ok(), to_text(made.failure()));
-  return std::move(made).value();
+  return plan_of_text(std::string(kText) + "suite mine trained on bridge_v2 { tasks { " + task +
+                      " }; seeds 42 }\n");
 }
 
 ResultRow row_of(const plan::Plan& plan, const std::string& out, const std::string& policy) {

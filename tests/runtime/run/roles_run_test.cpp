@@ -4,12 +4,11 @@
 
 #include <array>
 
-#include "compiler/diag/text.h"
-#include "compiler/emit/compile.h"
 #include "runtime/plan/roles.h"
 #include "runtime/rejudge/tally.h"
 #include "runtime/run/replay.h"
 #include "runtime/stage/goal.h"
+#include "tests/runtime/run/plan_of_text.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -17,19 +16,8 @@ namespace probe::run {
 namespace {
 
 const plan::Plan& roles_plan() {
-  static const plan::Plan plan = [] {
-    const std::string root = VLAPROBE_SOURCE_DIR;
-    const std::string file = root + "/examples/roles.probe";
-    CompileOptions options;
-    options.asset_root = root + "/assets";
-    options.library_folders = {root + "/dsl", root};
-    auto built = build(std::span<const std::string>(&file, 1), options);
-    REQUIRE_MESSAGE(built.ok(), to_text(built.failure()));
-    REQUIRE_MESSAGE(built->ok, render_text(built->diagnostics, built->sources));
-    auto made = plan::Plan::from_bytes(std::move(built->plan));
-    REQUIRE_MESSAGE(made.ok(), to_text(made.failure()));
-    return std::move(made).value();
-  }();
+  static const plan::Plan plan =
+      plan_of_file(std::string(VLAPROBE_SOURCE_DIR) + "/examples/roles.probe");
   return plan;
 }
 
