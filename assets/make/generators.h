@@ -9,12 +9,15 @@ namespace probe::make {
 
 // objects/<name>/visual.glb and collision.obj, each.
 std::vector<OutputFile> make_basket();
+std::vector<OutputFile> make_bottle();
+std::vector<OutputFile> make_bowl();
 std::vector<OutputFile> make_carrot();
 std::vector<OutputFile> make_coke_can();
 std::vector<OutputFile> make_eggplant();
 std::vector<OutputFile> make_green_cube();
 std::vector<OutputFile> make_half_sponge();
 std::vector<OutputFile> make_keyboard();
+std::vector<OutputFile> make_mug();
 std::vector<OutputFile> make_nut();
 std::vector<OutputFile> make_orange();
 std::vector<OutputFile> make_orange_juice();
@@ -26,6 +29,7 @@ std::vector<OutputFile> make_small_plate();
 std::vector<OutputFile> make_sponge();
 std::vector<OutputFile> make_spoon();
 std::vector<OutputFile> make_towel();
+std::vector<OutputFile> make_tray();
 std::vector<OutputFile> make_wheel();
 std::vector<OutputFile> make_yellow_cube();
 

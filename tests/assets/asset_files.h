@@ -172,11 +172,22 @@ inline const std::vector<std::string>& link_names() {
   return names;
 }
 
-inline const std::vector<std::string>& object_names() {
+// Those that fill a published box.
+inline const std::vector<std::string>& published_names() {
   static const std::vector<std::string> names{
       "basket",      "carrot", "coke_can",     "eggplant",  "green_cube", "half_sponge", "keyboard",
       "nut",         "orange", "orange_juice", "pepsi_can", "plate",      "rabbit",      "ramekin",
       "small_plate", "sponge", "spoon",        "towel",     "wheel",      "yellow_cube"};
+  return names;
+}
+
+// All of them.
+inline const std::vector<std::string>& object_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = published_names();
+    for (const char* name : {"bottle", "bowl", "mug", "tray"}) all.emplace_back(name);
+    return all;
+  }();
   return names;
 }
 
