@@ -201,7 +201,7 @@ TEST_CASE("ramekin, bowl and mug are hollow, the nut has a hole and the sink has
   CHECK(!open_above(ramekin, 0.05, 0, -0.019));
   const auto bowl = test::read_collision(test::object_file("bowl", "collision.obj"));
   for (const double x : {-0.034, 0.0, 0.034}) CHECK(open_above(bowl, x, 0, -0.0215));
-  CHECK(!open_above(bowl, 0.05, 0, -0.0215));
+  CHECK(!open_above(bowl, 0.05, 0.003, -0.0215));
   const auto mug = test::read_collision(test::object_file("mug", "collision.obj"));
   for (const double x : {-0.026, 0.0, 0.026, 0.04})
     CHECK(open_above(mug, x, x > 0.03 ? 0.01 : 0, -0.0375));
