@@ -38,6 +38,7 @@ std::vector<OutputFile> make_panda();             // robots/panda/meshes/
 std::vector<OutputFile> make_table_scene();       // scenes/table/
 std::vector<OutputFile> make_sink_fixture();      // fixtures/sink/
 std::vector<OutputFile> make_sink_scene();        // scenes/sink/
+std::vector<OutputFile> make_kitchen_scene();     // scenes/kitchen/
 std::vector<OutputFile> make_kitchen_fixtures();  // fixtures/cabinet/, stove/, microwave/
 
 // All of them, without the manifest.

@@ -161,6 +161,16 @@ Surface tapered_rod(std::span<const Vec3> path, std::span<const double> radii, i
   return skin(tube_rows(path, radii, corners, false), true, around_and_along);
 }
 
+Surface sheet(const Vec3& origin, const Vec3& a, const Vec3& b, const Vec2& repeat) {
+  Surface surface;
+  add_grid(surface, {.rows = 2,
+                     .columns = 2,
+                     .closed = false,
+                     .points = {origin, origin + b, origin + a, origin + a + b},
+                     .uv = {{0, 0}, {0, repeat.y()}, {repeat.x(), 0}, {repeat.x(), repeat.y()}}});
+  return surface;
+}
+
 void append(Surface& surface, const Surface& more) {
   surface.insert(surface.end(), more.begin(), more.end());
 }

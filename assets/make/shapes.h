@@ -72,6 +72,9 @@ double smooth_union(double a, double b, double radius);
 double ellipsoid_distance(const Vec3& p, const Vec3& centre, const Vec3& radii);
 double capsule_distance(const Vec3& p, const Vec3& a, const Vec3& b, double radius);
 
+// A flat rectangle, origin + s a + t b, with uv over `repeat` textures. It shows along a x b.
+Surface sheet(const Vec3& origin, const Vec3& a, const Vec3& b, const Vec2& repeat);
+
 void append(Surface& surface, const Surface& more);
 void move_points(Surface& surface, const std::function<Vec3(const Vec3&)>& to);
 // Turned so that z shows along +x or +y (the axis), a proper rotation.

@@ -230,17 +230,6 @@ std::vector<Polyhedron> collision_parts() {
   return parts;
 }
 
-// World coordinates: a rectangle with the texture repeated.
-Surface sheet(const Vec3& origin, const Vec3& a, const Vec3& b, const Vec2& repeat) {
-  Surface surface;
-  add_grid(surface, {.rows = 2,
-                     .columns = 2,
-                     .closed = false,
-                     .points = {origin, origin + b, origin + a, origin + a + b},
-                     .uv = {{0, 0}, {0, repeat.y()}, {repeat.x(), 0}, {repeat.x(), repeat.y()}}});
-  return surface;
-}
-
 Image bench_texture() {
   constexpr int kSize = 256;
   const Colour middle = texel_for({134, 97, 54}, kUp, kShine);

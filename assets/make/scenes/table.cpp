@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "assets/make/generators.h"
+#include "assets/make/shapes.h"
 #include "runtime/base/trig.h"
 
 namespace probe::make {
@@ -14,17 +15,6 @@ constexpr double kTop = 0.87;
 constexpr double kBack = -0.345, kFront = 0.03;  // x
 constexpr double kLeft = -0.295, kRight = 0.45;  // y
 constexpr double kThickness = 0.030, kRound = 0.015;
-
-// A flat rectangle, origin + s a + t b, with uv running over `repeat` textures.
-void add_rectangle(Surface& surface, const Vec3& origin, const Vec3& a, const Vec3& b,
-                   const Vec2& repeat) {
-  const Grid grid{.rows = 2,
-                  .columns = 2,
-                  .closed = false,
-                  .points = {origin, origin + b, origin + a, origin + a + b},
-                  .uv = {{0, 0}, {0, repeat.y()}, {repeat.x(), 0}, {repeat.x(), repeat.y()}}};
-  add_grid(surface, grid);
-}
 
 // The board's outline from the back over the top and round the front edge down to the underside,
 // swept along y.
@@ -137,13 +127,10 @@ std::vector<OutputFile> make_table_scene() {
   Surface behind, left, cloth, seam, stand;
   // Behind: the plane x = -0.36 turned to +x. Left: the plane y = -0.31 turned to +y. They meet in
   // a corner.
-  add_rectangle(behind, {-0.36, -0.31, 0.55}, {0, 2.0, 0}, {0, 0, 1.25},
-                {2.0 / kTile, 1.25 / kTile});
-  add_rectangle(left, {1.2, -0.31, 0.55}, {-1.56, 0, 0}, {0, 0, 1.25},
-                {1.56 / kTile, 1.25 / kTile});
-  add_rectangle(seam, {-0.3585, -0.310, 0.55}, {0, 0.006, 0}, {0, 0, 1.25}, {1, 1});
-  add_rectangle(cloth, {-0.36, -0.31, 0.72}, {1.56, 0, 0}, {0, 2.0, 0},
-                {1.56 / kTile, 2.0 / kTile});
+  behind = sheet({-0.36, -0.31, 0.55}, {0, 2.0, 0}, {0, 0, 1.25}, {2.0 / kTile, 1.25 / kTile});
+  left = sheet({1.2, -0.31, 0.55}, {-1.56, 0, 0}, {0, 0, 1.25}, {1.56 / kTile, 1.25 / kTile});
+  seam = sheet({-0.3585, -0.310, 0.55}, {0, 0.006, 0}, {0, 0, 1.25}, {1, 1});
+  cloth = sheet({-0.36, -0.31, 0.72}, {1.56, 0, 0}, {0, 2.0, 0}, {1.56 / kTile, 2.0 / kTile});
   // Under the robot's base, outside the bench camera's picture: without it other views show the arm
   // in mid-air.
   add_faces(stand, convex_hull(box_points({0.085, -0.02, 0.72}, {0.295, 0.076, kTop}, 0), "stand"));
