@@ -20,6 +20,7 @@
 #include "runtime/ask/ask.h"
 #include "runtime/ask/picture.h"
 #include "runtime/ask/plan_reading.h"
+#include "runtime/ask/prepared.h"
 #include "runtime/ask/truth.h"
 #include "runtime/ask/wording.h"
 #include "runtime/base/sha256.h"
@@ -208,13 +209,24 @@ void make_rows(const plan::Plan& plan, const Visit& visit) {
       places.push_back(q);
     }
   }
-  for (const plan::EpisodeRecord& episode : plan.episodes()) {
+  const auto starts = plan.episodes();
+  for (std::uint32_t at = 0; at < starts.size(); ++at) {
+    const plan::EpisodeRecord& episode = starts[at];
+    const std::uint32_t other = at == 0 ? static_cast<std::uint32_t>(starts.size() - 1) : at - 1;
     for (const ask::Arm arm : {ask::Arm::kPicture, ask::Arm::kBlind, ask::Arm::kPrior}) {
       for (std::size_t i = 0; i < of_start.size(); ++i) {
         ask::AnswerRow& row = of_start[i];
         row.start_id = to_hex(plan::to_sha256(episode.start_id));
         row.episode = static_cast<int>(episode.index);
         row.arm = arm;
+        // No picture, the start's own, another start's.
+        row.image_sha256 = arm == ask::Arm::kBlind ? "" : row.request_sha256;
+        row.shown_start_id.clear();
+        row.shown_has_answer.reset();
+        if (arm == ask::Arm::kPrior) {
+          row.shown_start_id = to_hex(plan::to_sha256(starts[other].start_id));
+          row.shown_has_answer = ask::has_answer(plan, plan.questions()[places[i]], other);
+        }
         visit(row, places[i]);
       }
     }
