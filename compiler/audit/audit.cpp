@@ -19,7 +19,7 @@ struct KindName {
   Kind kind;
   std::string_view name, title;
 };
-constexpr std::array<KindName, 21> kKinds = {{
+constexpr std::array<KindName, 22> kKinds = {{
     {Kind::kConfounded, "confounded", "comparisons that move more than one axis"},
     {Kind::kAcrossScenes, "across_scenes", "comparisons across scenes"},
     {Kind::kAcrossLayouts, "across_layouts", "comparisons across layouts"},
@@ -38,6 +38,7 @@ constexpr std::array<KindName, 21> kKinds = {{
     {Kind::kOnFixture, "on_fixture",
      "success of an object that lies on a fixture beside the target"},
     {Kind::kHeld, "held", "success of an object that is still held above the target"},
+    {Kind::kHoldsAtStart, "holds_at_start", "success that holds before anything moves"},
     {Kind::kNamesAnswer, "names_answer", "questions whose words name the answer"},
     {Kind::kOneAnswer, "one_answer", "questions with one answer throughout"},
     {Kind::kOneLetter, "one_letter", "questions whose right option stands at one place"},
@@ -278,6 +279,8 @@ class Auditor {
     constexpr Rule kHeld = {Kind::kHeld, "success",
                             "`success` is true of a source that both fingers hold above the "
                             "target and nothing else touches"};
+    constexpr Rule kBegun = {Kind::kHoldsAtStart, "success",
+                             "`success` is true before anything has moved: the joints begin so"};
     std::map<std::uint32_t, bool> counts_target;  // by program
     for (const std::uint32_t index : scope_) {
       const plan::TaskRecord& task = plan_.tasks()[index];
@@ -305,6 +308,8 @@ class Auditor {
         if (on_fixture) add_rule(kOnFixture, index);
         PROBE_ASSIGN(const bool held, passes_held(plan_, index, *success));
         if (held) add_rule(kHeld, index);
+        PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success));
+        if (begun) add_rule(kBegun, index);
       }
     }
     return {};

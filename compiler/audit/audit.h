@@ -32,6 +32,7 @@ enum class Kind : std::uint8_t {
   kBeside,
   kOnFixture,
   kHeld,
+  kHoldsAtStart,
   kNamesAnswer,
   kOneAnswer,
   kOneLetter,

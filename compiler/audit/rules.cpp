@@ -78,6 +78,16 @@ Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32
   return vm::judge_world(plan, task, success, std::move(world));
 }
 
+Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  const auto code = plan.code(plan.programs()[plan.tasks()[task].program]);
+  const bool reads_joints = std::ranges::any_of(code, [](const plan::Instruction& in) {
+    const auto op = static_cast<plan::Op>(in.op);
+    return op == plan::Op::kSLIDE || op == plan::Op::kTURN;
+  });
+  if (!reads_joints) return false;
+  return vm::judge_world(plan, task, success, vm::make_up_world(plan, task));
+}
+
 bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const auto bodies = plan.bodies(record);

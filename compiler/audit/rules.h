@@ -25,6 +25,9 @@ Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::
 // Whether metric `success` is true of a source that was brought over the target and is still held
 // there: both fingers press it, half a millimetre above the target, and nothing else touches it.
 Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+// The same of a world in which nothing has moved and objects lie far apart, of a task that measures
+// joints of fixtures: a drawer that is to be opened begins open.
+Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 
 // Whether metric `success` is false unless fingers touch for some steps on end, the last one
 // included: a condition held over steps that nothing latches.

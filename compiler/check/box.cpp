@@ -60,6 +60,7 @@ std::string box_statement(const Bounds& bounds) {
 
 void check_boxes(const Model& model, const std::string& asset_root, Reporter& reporter) {
   for (const Object& object : model.objects) {
+    if (object.of) continue;
     const Span& decl = object.decl_span;
     const bool own_box = !object.box_span.is_none() && is_within(object.box_span, decl);
     const bool own_mesh = !object.mesh.span.is_none() && is_within(object.mesh.span, decl);

@@ -118,6 +118,7 @@ bool is_there(const Model& model, const Task& task, const std::vector<std::strin
 Mentions::Mentions(const Model& model) : model_(model) {
   for (std::size_t i = 0; i < model.objects.size(); ++i) {
     const auto id = model.objects.id(i);
+    if (model.objects[id].of) continue;
     const std::vector<std::string> name = split(fold_case(model.objects[id].text.text));
     if (!name.empty()) called_[name].push_back(id);
   }

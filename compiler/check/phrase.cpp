@@ -9,6 +9,7 @@
 #include "compiler/define/in_start.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
+#include "compiler/define/thing.h"
 #include "compiler/define/wording.h"
 #include "compiler/names/texts.h"
 #include "runtime/plan/axes.h"
@@ -59,7 +60,7 @@ struct TaskLanguage {
     if (phrase.is_spatial()) return check_places(role, phrase, wanted_id);
     const Object& wanted = model.objects[wanted_id];
     const std::string quoted = "\"" + phrase.text.text + "\"";
-    const std::vector<ObjectId> objects = rivals_of(role, wanted_id);
+    const std::vector<ObjectId> objects = rivals_of(role, wanted_id, denotable(model, task));
     const Denotation meant = denote(model, objects, phrase, wanted_id);
     if (!meant.fits) {
       if (!unfit.insert({&phrase, wanted_id}).second) return;
@@ -120,6 +121,28 @@ struct TaskLanguage {
     return "start " + std::to_string(start) + ": " + text;
   }
 
+  // What the words lack in a start, or what else they denote there.
+  void tell_why(const Phrase& phrase, ObjectId wanted, std::size_t start,
+                Diagnostic& diagnostic) const {
+    const std::vector<ObjectId> here = denotable(model, task);
+    for (const QueryOp& op : phrase.means) {
+      if (op.kind != QueryOp::kRelation) continue;
+      for (const ObjectId other : op.to) {
+        if (other == ObjectId::kNone || std::ranges::find(here, other) != here.end()) continue;
+        diagnostic.note("`" + model.objects[other].name + "` is not in the scene of `" + task.name +
+                        "`: nothing is `" + model.predicates[static_cast<PredicateId>(op.a)].name +
+                        "` to it");
+        return;
+      }
+    }
+    const Denotation meant = InStart(relations, task, task.starts[start]).denote(phrase, wanted);
+    std::string names;
+    for (const ObjectId id : meant.sure)
+      names += (names.empty() ? "`" : ", `") + model.objects[id].name + "`";
+    if (names.empty()) return;
+    diagnostic.note("there it denotes " + (meant.fits ? names + ", too" : names));
+  }
+
   void check_places(RoleId role, const Phrase& phrase, ObjectId wanted) const {
     const std::size_t mistakes = reporter.diagnostics.error_count();
     const Unclear found = unclear_starts(phrase, wanted);
@@ -136,6 +159,7 @@ struct TaskLanguage {
             " of the " + std::to_string(task.starts.size()) + " starts of `" + task.name + "`");
     diagnostic.point(drawn(starts->front()))
         .label(phrase.text.span, "means `" + phrase.means_text + "`");
+    tell_why(phrase, wanted, starts->front(), diagnostic);
     diagnostic.severity = Severity::kError;  // `where clear` is how such starts are left out
     const std::size_t clear = task.starts.size() - found.count();
     if (clear > 0)
@@ -146,18 +170,26 @@ struct TaskLanguage {
 
   // With `wanted`, the objects that it has to be told apart from: those that are said in one breath
   // with it have not.
-  std::vector<ObjectId> rivals_of(RoleId role, ObjectId wanted) const {
-    std::vector<ObjectId> objects = task.objects();
+  std::vector<ObjectId> rivals_of(RoleId role, ObjectId wanted,
+                                  std::vector<ObjectId> objects) const {
     std::erase_if(objects, [&](ObjectId id) {
       return id != wanted && model.roles[role].is_set && task.role_of(id) == role;
     });
     return objects;
   }
 
+  // A region is called as the part that it belongs to.
+  static bool is_of(const Object& region, const Object& part) {
+    return region.of && part.of && region.of->fixture == part.of->fixture &&
+           region.of->part == part.of->part;
+  }
+
   void check_name(RoleId role, ObjectId wanted_id) const {
     const Object& wanted = model.objects[wanted_id];
-    for (const ObjectId id : rivals_of(role, wanted_id)) {
-      if (id == wanted_id) continue;
+    std::vector<ObjectId> objects = task.objects();
+    for (const ObjectId part : parts_in_scene(model, task)) objects.push_back(part);
+    for (const ObjectId id : rivals_of(role, wanted_id, std::move(objects))) {
+      if (id == wanted_id || is_of(wanted, model.objects[id])) continue;
       const std::string& other = model.objects[id].text.text;
       const std::string& name = wanted.text.text;
       const NameClash found = clash(name, other);
@@ -264,6 +296,18 @@ struct TaskLanguage {
     if (missing == objects.end()) return;  // no object at all, which was reported
     if (task.keeps_absent && !task.allow_absent) return;
     const Object& object = *missing;
+    if (object.of) {
+      const auto& here = model.scenes[task.scene].fixtures;
+      if (std::ranges::find(here, object.of->fixture) != here.end())
+        return check_category(slot, object);
+      const std::string& fixture = model.fixtures[object.of->fixture].name;
+      reporter
+          .report(Situation::kAbsentSlot, slot.span,
+                  "\"" + object.text.text + "\" names a part of `" + fixture +
+                      "`, which is not in the scene of `" + task.name + "`")
+          .help("a scene names its fixtures: `fixture " + fixture + "`");
+      return;
+    }
     const std::string words = (slot.avoid ? "not " : "") +
                               std::string(slot.the && !object.bare ? "the " : "") +
                               object.text.text;

@@ -86,7 +86,30 @@ void collect_relations(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
   }
 }
 
-// An instruction that says the opposite of what success is.
+// What an instruction says beside its slots.
+std::string literal_text(const Model& model, const Task& task) {
+  std::string text;
+  for (const Template::Part& part : model.templates[task.say].parts) text += part.literal + " ";
+  return text;
+}
+
+// The first words of a relation between things that are said where none that is judged is; empty
+// where there are none.
+std::string other_relation(const Model& model, const std::set<PredicateId>& judged,
+                           std::string_view text) {
+  for (const PredicateId id : judged) {
+    if (says(text, model.predicates[id])) return {};
+  }
+  for (const Predicate& relation : model.predicates) {
+    if (!relation.is_relation || relation.objects < 2) continue;
+    for (const std::string& words : relation.words) {
+      if (has_words(text, words)) return words;
+    }
+  }
+  return {};
+}
+
+// An instruction that says the opposite of what success is, or another relation alone.
 void check_goal_words(const Model& model, Reporter& reporter) {
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
@@ -96,13 +119,13 @@ void check_goal_words(const Model& model, Reporter& reporter) {
       if (metric.name == "success") collect_relations(model, metric.expr, seen, judged);
     }
     if (judged.empty()) continue;
-    std::string text;
-    for (const Template::Part& part : model.templates[task.say].parts) text += part.literal + " ";
-    text = fold_case(text);
+    const std::string text = fold_case(literal_text(model, task));
+    const std::string elsewhere = other_relation(model, judged, text);
     for (const PredicateId id : judged) {
       const Predicate& relation = model.predicates[id];
       if (says(text, relation)) continue;
-      const std::string other = opposite_in(text, relation.words);
+      std::string other = opposite_in(text, relation.words);
+      if (other.empty()) other = elsewhere;
       if (other.empty()) continue;
       const About about(reporter, task.decl_span);
       reporter
@@ -115,11 +138,66 @@ void check_goal_words(const Model& model, Reporter& reporter) {
   }
 }
 
+// Which way success goes: a joint's travel at least so much, or at most.
+struct JointGoal {
+  const Model& model;
+  bool opens = false, closes = false, is_open_ended = false;
+  std::set<ExprRef> seen = {};
+
+  bool has_travel(ExprRef ref) const {
+    const ExprNode& node = model.exprs.nodes[ref];
+    if (node.op == ExprOp::kMeasure &&
+        (node.measure == Measure::kTravel || node.measure == Measure::kSlide ||
+         node.measure == Measure::kTurn))
+      return true;
+    return std::ranges::any_of(node.args, [&](ExprRef arg) { return has_travel(arg); });
+  }
+  void look(ExprRef ref) {
+    if (ref == kNoExpr || !seen.insert(ref).second) return;
+    const ExprNode& node = model.exprs.nodes[ref];
+    // What is denied, latched or one of several ways says nothing for certain.
+    is_open_ended = is_open_ended || node.op == ExprOp::kNot || node.op == ExprOp::kOr ||
+                    node.op == ExprOp::kOnce || node.op == ExprOp::kNo;
+    if (node.op == ExprOp::kLess || node.op == ExprOp::kLessEqual) {
+      const bool less = has_travel(node.args[0]), more = has_travel(node.args[1]);
+      closes = closes || (less && !more);
+      opens = opens || (more && !less);
+      return;
+    }
+    for (const ExprRef arg : node.args) look(arg);
+    if (node.op == ExprOp::kCall) look(model.predicates[node.predicate].body);
+  }
+};
+
+// "close the drawer" of which success is that it is open.
+void check_joint_words(const Model& model, Reporter& reporter) {
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    JointGoal travels{model};
+    for (const Metric& metric : task.judged) {
+      if (metric.name == "success") travels.look(metric.expr);
+    }
+    if (travels.opens == travels.closes || travels.is_open_ended) continue;
+    const std::string text = fold_case(literal_text(model, task));
+    const bool says_open = has_words(text, "open"),
+               says_close = has_words(text, "close") || has_words(text, "shut");
+    if (says_open == says_close || says_open == travels.opens) continue;
+    const About about(reporter, task.decl_span);
+    reporter
+        .report(Code::P1202, task.say_span.is_none() ? task.span : task.say_span,
+                "`" + task.name + "` says \"" + (says_open ? "open" : "close") +
+                    "\" and succeeds when a joint's travel is " +
+                    (travels.opens ? "at least so much" : "at most so much"))
+        .label(model.metrics[task.metrics].span, "judged by these");
+  }
+}
+
 }  // namespace
 
 void check_spatial_words(const Model& model, Reporter& reporter) {
   check_phrase_words(model, reporter);
   check_goal_words(model, reporter);
+  check_joint_words(model, reporter);
 }
 
 }  // namespace probe::sema

@@ -1,13 +1,19 @@
 // P0505 as an error: an object over the edge of the surface.
+#include <algorithm>
+
 #include "compiler/check/starts.h"
+#include "compiler/define/support.h"
 #include "compiler/geometry/footprint.h"
 
 namespace probe::sema {
 
 bool check_surface(const TaskStarts& starts) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
+  // What is put into a fixture or onto another object stands on that.
+  const std::vector<Put> puts = puts_of(starts.model, starts.task);
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
+      if (std::ranges::find(puts, placed.object, &Put::object) != puts.end()) continue;
       const Footprint shape = footprint(starts.object(placed), placed);
       const double rx = shape.reach_along({1, 0});
       const double ry = shape.reach_along({0, 1});

@@ -59,6 +59,8 @@ bool same_layout(const Layout& a, const Layout& b) {
     const Place& p = a.places[i];
     const Place& q = b.places[i];
     if (p.how != q.how || !same_words(p.what, q.what)) return false;
+    if (p.is_put() && p.where.text != q.where.text) return false;
+    if (p.is_put()) continue;
     if (p.how == Place::kAt ? (p.at.x != q.at.x || p.at.y != q.at.y)
                             : !same_cells(a, p.cells, b, q.cells))
       return false;
@@ -168,7 +170,7 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) || joint_starts_of(model, a) != joint_starts_of(model, b) ||
       a.distractors.size() != b.distractors.size() || a.objects().size() != b.objects().size() ||
-      !same_shape(a, b))
+      !same_shape(a, b) || a.things() != b.things())
     return false;
   // The order of distractors that both have is no difference.
   std::vector<ObjectId> here = a.objects(), there = b.objects();
@@ -322,7 +324,7 @@ std::optional<plan::Axis> phrase_axis(Diagnostics& diagnostics, const syntax::Na
 std::uint32_t out_of_distribution(const Model& model, const Task& task) {
   if (model.datasets.size() == 0) return 0;
   const auto is_new = [&](ObjectId id) {
-    return id != ObjectId::kNone && !is_seen(model.objects[id]);
+    return id != ObjectId::kNone && task.is_object(id) && !is_seen(model.objects[id]);
   };
   const std::uint32_t mask = (is_new(task.source) ? 1u : 0u) | (is_new(task.target) ? 2u : 0u);
   if (mask != 0 || !task.has_both()) return mask;

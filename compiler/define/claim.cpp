@@ -13,17 +13,16 @@ namespace probe::sema {
 namespace {
 
 // What one object would have to be for the phrase to denote it; nothing where it never does.
-std::optional<lower::ClaimedBody> claimed_body(const Model& model, const Task& task,
+std::optional<lower::ClaimedBody> claimed_body(const Model& model, const Scenery& scenery,
                                                const Phrase& phrase, std::uint16_t body,
                                                const Alike& alike) {
-  const std::vector<ObjectId> objects = task.objects();
   if (std::find(alike.all.begin(), alike.all.end(), body) == alike.all.end()) return std::nullopt;
   lower::ClaimedBody claimed;
   claimed.body = body;
   for (const QueryOp& op : phrase.means) {
     if (op.kind != QueryOp::kRelation) continue;
     const std::optional<std::vector<std::uint16_t>> of =
-        related_bodies(model, objects, op, body, alike);
+        related_bodies(model, scenery, op, body, alike);
     if (!of) return std::nullopt;
     lower::ClaimedBody::Relation relation;
     relation.relation = &model.predicates[static_cast<PredicateId>(op.a)];
@@ -36,13 +35,14 @@ std::optional<lower::ClaimedBody> claimed_body(const Model& model, const Task& t
 }
 
 Claim claim_of(const Model& model, const Task& task, const Phrase& phrase, ObjectId wanted) {
-  const std::vector<ObjectId> objects = task.objects();
-  const Alike alike = alike_of(model, objects, phrase);
-  Claim claim{&phrase, wanted, {}};
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    auto claimed = claimed_body(model, task, phrase, static_cast<std::uint16_t>(i), alike);
+  const Scenery scenery = scenery_of(model, task);
+  const Alike alike = alike_of(model, scenery, phrase);
+  Claim claim{&phrase, wanted, 0, {}};
+  for (std::size_t i = 0; i < scenery.things.size(); ++i) {
+    if (scenery.things[i] == wanted) claim.body = scenery.bodies[i];
+    auto claimed = claimed_body(model, scenery, phrase, scenery.bodies[i], alike);
     if (!claimed) continue;
-    claimed->is_meant = objects[i] == wanted;
+    claimed->is_meant = scenery.things[i] == wanted;
     claim.claimed.push_back(std::move(*claimed));
   }
   return claim;

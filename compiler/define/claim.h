@@ -12,6 +12,7 @@ namespace probe::sema {
 struct Claim {
   const Phrase* phrase = nullptr;
   ObjectId object = ObjectId::kNone;        // that the phrase means
+  std::uint16_t body = 0;                   // which it is
   std::vector<lower::ClaimedBody> claimed;  // it, and those that the phrase may denote as well
 };
 

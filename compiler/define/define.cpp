@@ -1,5 +1,7 @@
 #include "compiler/define/define.h"
 
+#include "compiler/define/thing.h"
+
 namespace probe::sema {
 
 void define_model(Context& context) {
@@ -10,6 +12,7 @@ void define_model(Context& context) {
   define_cameras(context);
   define_lights(context);
   define_fixtures(context);
+  define_things(context);
   define_scenes(context);
   define_roles(context);
   define_layouts(context);

@@ -7,8 +7,10 @@
 #include "compiler/define/role.h"
 #include "compiler/define/set.h"
 #include "compiler/define/starts.h"
+#include "compiler/define/support.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
+#include "compiler/define/thing.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::sema {
@@ -72,14 +74,20 @@ class Derive {
         fits = check_frame(templates->frame) && fits;
       } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
         for (const syntax::Name& object : objects->objects)
-          fits = context_.symbols.objects.find(object, context_.diagnostics).has_value() && fits;
+          fits = find_thing(context_, object).has_value() && fits;
       } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
+        if (others->role.text == "parts") {
+          const auto fixture = context_.symbols.fixtures.find(others->task, context_.diagnostics);
+          fits =
+              fixture && !context_.model.fixtures[static_cast<FixtureId>(*fixture)].broken && fits;
+          continue;
+        }
         if (others->role.text == "distractors" || find_role(context_, others->role.text)) {
           of_task_.push_back(&others->task);
           continue;
         }
         std::vector<std::string_view> known = role_names(context_);
-        known.insert(known.end(), {"distractors", "templates", "phrases", "variants"});
+        known.insert(known.end(), {"distractors", "templates", "parts", "phrases", "variants"});
         report_unknown(context_.diagnostics, "role", others->role, known);
         fits = false;
       } else if (tasks_ == nullptr) {
@@ -215,12 +223,12 @@ class Derive {
   // are must in every start.
   bool is_clear(const Task& base, const Phrase& phrase, ObjectId object) {
     if (!phrase.is_spatial())
-      return denote(context_.model, base.objects(), phrase, object).is_clear();
+      return denote(context_.model, denotable(context_.model, base), phrase, object).is_clear();
     std::optional<LayoutProblem> problem;
-    const std::vector<Start> starts =
-        clear_starts(relations_, context_.model, base,
-                     enumerate_starts(context_.model, context_.model.layouts[base.layout], base,
-                                      kMaxEpisodes, problem));
+    const std::vector<Start> starts = clear_starts(
+        relations_, context_.model, base,
+        enumerate_starts(supports_, context_.model, context_.model.layouts[base.layout], base,
+                         kMaxEpisodes, problem));
     return std::all_of(starts.begin(), starts.end(), [&](const Start& start) {
       return InStart(relations_, base, start).denote(phrase, object).is_clear();
     });
@@ -231,7 +239,8 @@ class Derive {
   std::vector<std::string_view> choices(const syntax::Binder& binder, const Task& base,
                                         std::string_view name) {
     const Model& model = context_.model;
-    const std::vector<ObjectId> present = base.objects();
+    std::vector<ObjectId> present = base.objects();
+    for (const auto& [role, id] : base.things()) present.push_back(id);
     std::vector<std::string_view> values;
     if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
       const std::vector<ObjectId> filled =
@@ -257,16 +266,29 @@ class Derive {
       }
     } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
       for (const syntax::Name& object : objects->objects) {
-        const auto id = static_cast<ObjectId>(*context_.symbols.objects.peek(object.text));
+        const ObjectId id = *peek_thing(context_, object.text);
         if (std::find(present.begin(), present.end(), id) == present.end())
           values.push_back(object.text);
       }
     } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
+      if (others->role.text == "parts") return parts_of(others->task.text, present);
       const auto role = find_role(context_, others->role.text);
       for (const ObjectId id : role ? base.objects_in(*role) : base.distractors)
         values.push_back(model.objects[id].name);
     } else {
       values.push_back(name);
+    }
+    return values;
+  }
+
+  // Those of a fixture that a joint moves and that no role of the task has.
+  std::vector<std::string_view> parts_of(std::string_view fixture,
+                                         const std::vector<ObjectId>& present) {
+    std::vector<std::string_view> values;
+    const auto id = static_cast<FixtureId>(*context_.symbols.fixtures.peek(fixture));
+    for (const Fixture::Part& part : context_.model.fixtures[id].parts) {
+      if (part.declared && part.joint && std::ranges::find(present, part.thing) == present.end())
+        values.push_back(context_.model.objects[part.thing].name);
     }
     return values;
   }
@@ -280,7 +302,9 @@ class Derive {
       const auto* slot = std::get_if<syntax::Slot>(&part);
       if (slot == nullptr) continue;
       for (const Binding& binding : bindings) {
-        if (binding.name == slot->name.text) name += binding.value;
+        if (binding.name != slot->name.text) continue;
+        // Of a part its own name: `cabinet.top_drawer` gives `top_drawer`.
+        name += binding.value.substr(binding.value.rfind('.') + 1);
       }
     }
     const Span& span = node_.name.text.span;
@@ -324,6 +348,7 @@ class Derive {
   // What cannot be measured is said where the phrase is used.
   Diagnostics unsaid_ = {};
   Relations relations_{context_.model, context_.asset_root, unsaid_};
+  Supports supports_{context_.model, context_.asset_root};
   TaskTable& table_;
   const Declared<syntax::DeriveDecl>& declared_;
   const syntax::DeriveDecl& node_;

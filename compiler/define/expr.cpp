@@ -172,8 +172,9 @@ std::optional<ExprRef> ExprReader::body_name(const syntax::Name& name) {
           .help("ask of each: `all o in " + std::string(name.text) + ": ...`");
       return poison(name.span);
     }
-    return add(ExprOp::kRole, {TypeKind::kBody, dim::kNumber, true}, name.span, {},
-               static_cast<std::uint32_t>(*role));
+    Type type{TypeKind::kBody, dim::kNumber, true};
+    type.is_open = context_.model.roles[*role].takes_things;
+    return add(ExprOp::kRole, type, name.span, {}, static_cast<std::uint32_t>(*role));
   }
   // The fixture itself is the part that its root link is.
   if (const auto found = context_.symbols.fixtures.peek(name.text)) {
@@ -321,10 +322,11 @@ bool ExprReader::argument_fits(const MeasureInfo& measure, std::size_t i, ExprRe
       fits = type.kind == TypeKind::kVector, wanted = "a vector";
       break;
     case 'J':
-      fits = type.kind == TypeKind::kJoint || type.is_part, wanted = "a joint or a part";
+      fits = type.kind == TypeKind::kJoint || type.is_part || type.is_open;
+      wanted = "a joint or a part";
       break;
     case 'G':
-      fits = type.kind == TypeKind::kRegion, wanted = "a region";
+      fits = type.kind == TypeKind::kRegion || type.is_open, wanted = "a region";
       break;
     case 'R':
       fits = type.kind == TypeKind::kReal, wanted = "a number";

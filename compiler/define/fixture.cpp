@@ -35,6 +35,7 @@ std::optional<Quantity> read_either(Context& context,
 
 struct FixtureReader {
   Context& context;
+  const syntax::File& file;
   Fixture& fixture;
 
   void operator()(const syntax::UrdfStmt& stmt) { fixture.urdf = spelled(stmt.path); }
@@ -88,6 +89,8 @@ struct FixtureReader {
     part.span = stmt.name.span;
     part.link = spelled(stmt.link);
     part.declared = true;
+    part.said = &stmt;
+    part.file = &file;
     if (stmt.text) {
       part.text = spelled(*stmt.text);
       if (is_blank(part.text.text))
@@ -104,7 +107,14 @@ struct FixtureReader {
                   [&](const Fixture::OwnRegion& old) { return old.region.name == region->name; });
     Spelled of = spelled(*stmt.of);
     if (of.text == fixture.name) of.text.clear();  // a copy has another name
-    fixture.regions.push_back({*region, std::move(of), 0});
+    Fixture::OwnRegion own{*region, std::move(of), 0, {}, ObjectId::kNone};
+    if (stmt.text) {
+      own.text = spelled(*stmt.text);
+      if (is_blank(own.text.text))
+        context.report(Situation::kNoWords, own.text.span, "a region's name has no words");
+      check_text(context.diagnostics, own.text, "a region's name");
+    }
+    fixture.regions.push_back(std::move(own));
   }
 };
 
@@ -486,7 +496,7 @@ bool same_fixtures(const Model& model, const Scene& a, const Scene& b) {
 
 void define_fixtures(Context& context) {
   const auto read = [&](const Declared<syntax::FixtureDecl>& declared, Fixture& fixture) {
-    FixtureReader reader{context, fixture};
+    FixtureReader reader{context, *declared.file, fixture};
     for (const syntax::FixtureBodyStmt& stmt : declared.node->body) std::visit(reader, stmt);
   };
   const auto complete = [&](Fixture& fixture, bool is_read) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "compiler/define/fixture.h"
 #include "compiler/define/query.h"
+#include "compiler/define/thing.h"
 #include "compiler/define/views.h"
 #include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
 #include "runtime/base/upright.h"
+#include "runtime/robot/kinematics.h"
 
 namespace probe::sema {
 namespace {
@@ -45,6 +48,35 @@ lower::PlacedBody placed_body(const Scene& scene, const Object& object, const Ce
   return body;
 }
 
+// A part where its joints begin: what it stands for in expressions is its centre of mass.
+lower::PlacedBody placed_part(const Model& model, const Task& task, const OfFixture& of,
+                              std::span<const double> all_joints) {
+  const Fixture& fixture = model.fixtures[of.fixture];
+  std::vector<std::string> names;
+  std::vector<double> joints;
+  for (const FixtureId id : model.scenes[task.scene].fixtures) {
+    const std::size_t count = model.fixtures[id].joints.size();
+    if (id == of.fixture)
+      joints.assign(all_joints.begin(), all_joints.begin() + static_cast<std::ptrdiff_t>(count));
+    all_joints = all_joints.subspan(count);
+  }
+  for (const Fixture::Joint& joint : fixture.joints) names.push_back(joint.name);
+  lower::PlacedBody body;
+  const Vec3 slack = Vec3::Constant(kSettlesOnFixture);
+  const auto tree = robot::Tree::create(*fixture.model, names);
+  if (!tree.ok()) return body;  // reported where its travel is looked at
+  std::vector<Pose> poses(tree->link_count());
+  tree->link_poses(joints, poses);
+  const auto link = static_cast<std::size_t>(fixture.parts[of.part].index);
+  const Pose pose = pose_of(fixture.position, fixture.turn.rotation) * poses[link];
+  body.origin = around(pose.position, slack, slack);
+  body.position = around(pose.apply(fixture.model->links[link].center_of_mass), slack, slack);
+  const Mat3 turn = pose.rotation.toRotationMatrix();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    body.axes[axis] = around(turn.col(static_cast<int>(axis)), Vec3::Zero(), Vec3::Zero());
+  return body;
+}
+
 }  // namespace
 
 const lower::Program* Relations::program(const Task& task, std::uint32_t relation,
@@ -56,6 +88,10 @@ const lower::Program* Relations::program(const Task& task, std::uint32_t relatio
   for (const ObjectId id : task.objects()) {
     key.second.push_back(static_cast<std::uint32_t>(task.role_of(id)));
     if (model_.exprs.names_objects) key.second.push_back(static_cast<std::uint32_t>(id));
+  }
+  for (const auto& [role, id] : task.things()) {
+    key.second.push_back(static_cast<std::uint32_t>(role));
+    key.second.push_back(static_cast<std::uint32_t>(id));
   }
   key.second.push_back(static_cast<std::uint32_t>(of.size()));
   key.second.insert(key.second.end(), of.begin(), of.end());
@@ -70,33 +106,59 @@ const lower::Program* Relations::program(const Task& task, std::uint32_t relatio
 }
 
 InStart::InStart(Relations& relations, const Task& task, const Start& start)
-    : relations_(relations), task_(task), objects_(task.objects()) {
+    : relations_(relations), task_(task), scenery_(scenery_of(relations.model_, task)) {
   const Model& model = relations.model_;
   for (const Start::Placed& placed : start.placed) {
     const Object& object = model.objects[placed.object];
     placed_.push_back(
         placed_body(model.scenes[task.scene], object, relations.centres_.of(object), placed));
   }
+  if (scenery_.body_count <= placed_.size()) return;
+  placed_.resize(scenery_.body_count);
+  const std::vector<double> joints = joint_starts_of(model, task);
+  for (std::size_t i = 0; i < scenery_.things.size(); ++i) {
+    const Object& object = model.objects[scenery_.things[i]];
+    if (object.of) placed_[scenery_.bodies[i]] = placed_part(model, task, *object.of, joints);
+  }
 }
 
-Alike alike_of(const Model& model, std::span<const ObjectId> objects, const Phrase& phrase) {
+Scenery scenery_of(const Model& model, const Task& task) {
+  Scenery scenery{denotable(model, task), {}, 0};
+  scenery.body_count = task.objects().size();
+  std::vector<lower::Body> bodies;
+  for (std::size_t i = 0; i < scenery.things.size(); ++i) {
+    const Object& object = model.objects[scenery.things[i]];
+    if (!object.of) {
+      scenery.bodies.push_back(static_cast<std::uint16_t>(i));
+      continue;
+    }
+    if (bodies.empty()) bodies = lower::bodies_of(model, task);
+    scenery.body_count = bodies.size();
+    const auto at = std::ranges::find_if(bodies, [&](const lower::Body& body) {
+      return body.kind == plan::BodyKind::kPart && body.part == object.of->part &&
+             body.index == static_cast<std::uint32_t>(object.of->fixture);
+    });
+    scenery.bodies.push_back(static_cast<std::uint16_t>(at - bodies.begin()));
+  }
+  return scenery;
+}
+
+Alike alike_of(const Model& model, const Scenery& scenery, const Phrase& phrase) {
   Alike alike;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const Object& object = model.objects[objects[i]];
+  for (std::size_t i = 0; i < scenery.things.size(); ++i) {
+    const Object& object = model.objects[scenery.things[i]];
     // What an object is when nothing is said of its place.
     const auto with = [&](Truth relation) {
       return evaluate(phrase.means, object, [&](const QueryOp&) { return relation; });
     };
     const Truth rest = std::max(with(Truth::kYes), with(Truth::kNo));
-    const auto body = static_cast<std::uint16_t>(i);
-    if (rest == Truth::kYes) alike.sure.push_back(body);
-    if (rest != Truth::kNo) alike.all.push_back(body);
+    if (rest == Truth::kYes) alike.sure.push_back(scenery.bodies[i]);
+    if (rest != Truth::kNo) alike.all.push_back(scenery.bodies[i]);
   }
   return alike;
 }
 
-std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model,
-                                                         std::span<const ObjectId> objects,
+std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model, const Scenery& scenery,
                                                          const QueryOp& op, std::uint16_t described,
                                                          const Alike& alike) {
   // One alone is not the leftmost.
@@ -107,17 +169,19 @@ std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model,
   std::vector<std::uint16_t> of{described};
   for (const ObjectId other : op.to) {
     if (other == ObjectId::kNone) continue;
-    const auto at = std::find(objects.begin(), objects.end(), other);
-    const auto body = static_cast<std::uint16_t>(at - objects.begin());
+    const auto at = std::ranges::find(scenery.things, other);
     // Nothing is left of what is not there, nor of itself.
-    if (at == objects.end() || body == described) return std::nullopt;
+    if (at == scenery.things.end()) return std::nullopt;
+    const std::uint16_t body =
+        scenery.bodies[static_cast<std::size_t>(at - scenery.things.begin())];
+    if (body == described) return std::nullopt;
     of.push_back(body);
   }
   return of;
 }
 
 Truth InStart::holds(const QueryOp& op, std::uint16_t described, const Alike& alike) const {
-  const auto of = related_bodies(relations_.model_, objects_, op, described, alike);
+  const auto of = related_bodies(relations_.model_, scenery_, op, described, alike);
   if (!of) return Truth::kNo;
   const auto among = [&](const std::vector<std::uint16_t>& members) {
     const lower::Program* program = relations_.program(task_, op.a, *of, members);
@@ -132,19 +196,22 @@ Truth InStart::holds(const QueryOp& op, std::uint16_t described, const Alike& al
 
 Denotation InStart::denote(const Phrase& phrase, ObjectId wanted) const {
   const Model& model = relations_.model_;
-  const Alike alike = alike_of(model, objects_, phrase);
+  const Alike alike = alike_of(model, scenery_, phrase);
   Denotation found;
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    const auto body = static_cast<std::uint16_t>(i);
-    const Truth truth = evaluate(phrase.means, model.objects[objects_[i]],
-                                 [&](const QueryOp& op) { return holds(op, body, alike); });
-    if (objects_[i] == wanted) {
+  for (std::size_t i = 0; i < scenery_.things.size(); ++i) {
+    const std::uint16_t body = scenery_.bodies[i];
+    const bool may_be = std::ranges::find(alike.all, body) != alike.all.end();
+    const ObjectId id = scenery_.things[i];
+    const Truth truth = may_be ? evaluate(phrase.means, model.objects[id],
+                                          [&](const QueryOp& op) { return holds(op, body, alike); })
+                               : Truth::kNo;
+    if (id == wanted) {
       found.fits = truth == Truth::kYes;
       found.may_fit = truth != Truth::kNo;
     } else if (truth == Truth::kYes) {
-      found.sure.push_back(objects_[i]);
+      found.sure.push_back(id);
     } else if (truth == Truth::kUnknown) {
-      found.perhaps.push_back(objects_[i]);
+      found.perhaps.push_back(id);
     }
   }
   return found;

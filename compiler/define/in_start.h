@@ -20,17 +20,24 @@ namespace probe::sema {
 // and 2.8 mm (the basket in the sink) were measured.
 inline constexpr double kSettlesOnSurface = 0.002, kSettlesOnFixture = 0.005;
 
-// Of the objects of a task, by their place among them: those that the rest of a phrase fits, when
-// nothing is said of where they are.
+// What words may denote in a task, objects and parts of fixtures, each with the body that it is.
+struct Scenery {
+  std::vector<ObjectId> things;
+  std::vector<std::uint16_t> bodies;  // by thing
+  std::size_t body_count = 0;         // of the task, where there are parts; else its objects
+};
+Scenery scenery_of(const Model& model, const Task& task);
+
+// Of those, by their bodies: what the rest of a phrase fits, when nothing is said of where they
+// are.
 struct Alike {
   std::vector<std::uint16_t> sure, all;  // for certain, and with those that may be
 };
-Alike alike_of(const Model& model, std::span<const ObjectId> objects, const Phrase& phrase);
+Alike alike_of(const Model& model, const Scenery& scenery, const Phrase& phrase);
 
-// The objects of a relation of a phrase, `described` first; nothing where it holds of none: to an
+// The bodies of a relation of a phrase, `described` first; nothing where it holds of none: to an
 // object that is not there, to itself, or among those alike of which it is the only one.
-std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model,
-                                                         std::span<const ObjectId> objects,
+std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model, const Scenery& scenery,
                                                          const QueryOp& op, std::uint16_t described,
                                                          const Alike& alike);
 
@@ -68,8 +75,8 @@ class InStart {
 
   Relations& relations_;
   const Task& task_;
-  std::vector<ObjectId> objects_;
-  std::vector<lower::PlacedBody> placed_;
+  Scenery scenery_;
+  std::vector<lower::PlacedBody> placed_;  // by body; of those that no phrase denotes nothing
 };
 
 }  // namespace probe::sema

@@ -10,6 +10,7 @@
 #include "compiler/define/record.h"
 #include "compiler/define/role.h"
 #include "compiler/define/start_table.h"
+#include "compiler/define/thing.h"
 #include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
 
@@ -152,6 +153,24 @@ struct LayoutReader {
       report_unknown(context.diagnostics, "cells", stmt.cells, known);
       return;
     }
+    place(std::move(record));
+  }
+  void operator()(const syntax::PlaceOnStmt& stmt) {
+    note_placing(stmt.span);
+    Place record;
+    record.span = stmt.span;
+    record.how = stmt.in ? Place::kIn : Place::kOn;
+    record.what = placed_names(stmt.names);
+    record.where = spelled(stmt.where);
+    const auto role = find_role(context, stmt.where.text);
+    if (role && context.model.roles[*role].is_set) {
+      context
+          .report(Code::P1105, stmt.where.span,
+                  "`" + record.where.text + "` is a set, and one thing is wanted here")
+          .label(context.model.roles[*role].span, "declared as a set");
+      return;
+    }
+    if (!role && !find_thing(context, stmt.where)) return;
     place(std::move(record));
   }
   void begin_orient() {

@@ -7,6 +7,7 @@
 #include "compiler/define/fixture.h"
 #include "compiler/define/query.h"
 #include "compiler/define/record.h"
+#include "compiler/define/thing.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
@@ -157,6 +158,12 @@ struct ObjectReader {
 };
 
 }  // namespace
+
+void read_look(Context& context, const syntax::File& file,
+               const std::vector<syntax::ObjectStmt>& body, Object& object) {
+  ObjectReader reader{context, file, object};
+  for (const syntax::ObjectStmt& stmt : body) std::visit(reader, stmt);
+}
 
 bool Phrase::is_spatial() const {
   return std::any_of(means.begin(), means.end(),

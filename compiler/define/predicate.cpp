@@ -34,6 +34,15 @@ Type type_of(const syntax::Param& param) {
   return Type{};
 }
 
+// What fills an open role is known of each task alone: there it is looked at again.
+bool is_taken(const Type& wanted, const Type& found) {
+  const bool is_thing = wanted.kind == TypeKind::kBody || wanted.kind == TypeKind::kRegion;
+  if (found.is_open && is_thing) return true;
+  return found.kind == wanted.kind &&
+         !(wanted.kind == TypeKind::kBody &&
+           ((wanted.is_object && !found.is_object) || (wanted.is_part && !found.is_part)));
+}
+
 // Predicates are read when first called, so their order in the text does not matter. A span that is
 // set and a body that is not: being read right now.
 void read_body(Context& context, PredicateId id) {
@@ -125,9 +134,7 @@ ExprRef ExprReader::read_predicate(const Span& span, const syntax::ExprCall& cal
     args[at] = value;
     if (found.kind == TypeKind::kPoison) {
       fits = false;
-    } else if (found.kind != wanted.kind ||
-               (wanted.kind == TypeKind::kBody &&
-                ((wanted.is_object && !found.is_object) || (wanted.is_part && !found.is_part)))) {
+    } else if (!is_taken(wanted, found)) {
       context_
           .report(Code::P0601, argument.span,
                   "expected " + type_name(wanted) + ", found " + type_name(found))

@@ -25,9 +25,20 @@ MayOmit QuestionText::say(const Placeholder& placeholder, std::string& out) {
     out = asked_.task().prompt;
     return {};
   }
+  // What a recorded episode answers may be asked of a part of a fixture.
+  const QuestionAnswer::Kind answer = asked_.family().answer.kind;
+  const bool is_recorded =
+      answer == QuestionAnswer::kMetric || answer == QuestionAnswer::kCondition;
   ObjectId id = ObjectId::kNone;
-  if (auto why_not = referents_.resolve(placeholder.who, id)) return why_not;
+  if (auto why_not = is_recorded && placeholder.kind == Placeholder::kName
+                         ? referents_.resolve_any(placeholder.who, id)
+                         : referents_.resolve(placeholder.who, id))
+    return why_not;
   const Object& object = asked_.model().objects[id];
+  if (object.of) {
+    out = with_article(placeholder.article, object.bare, object.text.text);
+    return referents_.check_name_of(id, placeholder.span);
+  }
   if (placeholder.kind == Placeholder::kPhrase) {
     const Phrase* phrase = asked_.scene.phrase_for(id);
     if (phrase == nullptr) return OmissionReason::kPhraseIsName;

@@ -18,6 +18,13 @@ bool Referents::asks_for_more() const {
 }
 
 MayOmit Referents::resolve(const Who& who, ObjectId& out) const {
+  const MayOmit why_not = resolve_any(who, out);
+  // A part is in the scene as what it belongs to is: questions about objects pass it over.
+  if (!why_not && out != ObjectId::kNone && !task_.is_object(out)) return OmissionReason::kNoMember;
+  return why_not;
+}
+
+MayOmit Referents::resolve_any(const Who& who, ObjectId& out) const {
   switch (who.kind) {
     case Who::kSource:
       out = task_.source;

@@ -25,6 +25,8 @@ class Referents {
 
   // Who is meant in this task.
   MayOmit resolve(const Who& who, ObjectId& out) const;
+  // The same of parts and regions of fixtures, too.
+  MayOmit resolve_any(const Who& who, ObjectId& out) const;
   // The same for what has to be in the scene.
   MayOmit resolve_there(const Who& who, ObjectId& out) const;
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "compiler/define/query.h"
+#include "compiler/define/views.h"
+#include "compiler/lower/lower.h"
 #include "compiler/model/mentioned.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
@@ -189,8 +191,21 @@ class RightAnswer {
       if (!scene_.body_of(id)) return OmissionReason::kNoMember;
     }
     if (measured.fixture && !model_.scenes[task_.scene].fixture) return OmissionReason::kNoMember;
+    if (model_.fixtures.size() > 0 && !can_be_measured()) return OmissionReason::kNoMember;
     for (const ObjectId id : text_.mentioned()) add_option(id, true);
     return {};
+  }
+
+  // Parts and joints that are asked about are in the scene, and a role is filled with what is
+  // measured of it.
+  bool can_be_measured() const {
+    Diagnostics unsaid;
+    const Scene& scene = model_.scenes[task_.scene];
+    const CameraId camera = views_of(model_, task_).front().camera;
+    return lower::lower_metrics(model_, {&*question_.recorded, 1},
+                                lower::bodies_of(model_, task_),
+                                frame_of(model_, scene, model_.cameras[camera]), unsaid)
+        .has_value();
   }
 
   const FamilyOfTask& asked_;

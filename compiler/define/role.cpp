@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "compiler/define/define.h"
 #include "compiler/syntax/words.h"
@@ -14,6 +15,42 @@ namespace {
 constexpr std::array<std::string_view, 16> kTaken = {
     "source",  "target", "distractors", "distractor", "surface", "objects", "others", "bodies",
     "fingers", "links",  "none",        "avoided",    "placed",  "the",     "all",    "both"};
+
+// The roles that some task fills with a part or a region, and those that a `derive` fills with what
+// it binds to parts: of those only each task knows what they stand for.
+std::set<std::string_view> roles_of_things(const Context& context) {
+  std::set<std::string_view> roles;
+  std::vector<std::string_view> bound;
+  const auto is_thing = [&](const syntax::Name& name) {
+    return name.text.find('.') != name.text.npos ||
+           std::ranges::find(bound, name.text) != bound.end();
+  };
+  const auto look = [&](const std::vector<syntax::TaskStmt>& body) {
+    for (const syntax::TaskStmt& stmt : body) {
+      if (const auto* field = std::get_if<syntax::FieldStmt>(&stmt)) {
+        if (field->field == syntax::TaskField::kSource && is_thing(field->value))
+          roles.insert("source");
+        if (field->field == syntax::TaskField::kTarget && is_thing(field->value))
+          roles.insert("target");
+      } else if (const auto* role = std::get_if<syntax::RoleStmt>(&stmt)) {
+        if (std::ranges::any_of(role->objects, is_thing)) roles.insert(role->role.text);
+      }
+    }
+  };
+  for (const DeclaredTask& task : context.symbols.task_decls) look(*task.body);
+  for (const auto& derive : context.symbols.derive_decls) {
+    bound.clear();
+    for (const syntax::Binder& binder : derive.node->binders) {
+      const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over);
+      const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over);
+      if ((objects != nullptr && std::ranges::any_of(objects->objects, is_thing)) ||
+          (others != nullptr && others->role.text == "parts"))
+        bound.push_back(binder.name.text);
+    }
+    look(derive.node->body);
+  }
+  return roles;
+}
 
 }  // namespace
 
@@ -61,11 +98,13 @@ std::string list_of(const std::vector<std::string>& words) {
 }
 
 void define_roles(Context& context) {
-  context.model.roles.add({"source", {}, false});
-  context.model.roles.add({"target", {}, false});
+  const std::set<std::string_view> things = roles_of_things(context);
+  context.model.roles.add({"source", {}, false, things.contains("source")});
+  context.model.roles.add({"target", {}, false, things.contains("target")});
   for (const auto& declared : context.symbols.role_decls) {
     const syntax::RoleDecl& node = *declared.node;
-    context.model.roles.add({std::string(node.name.text), node.name.span, node.is_set});
+    context.model.roles.add({std::string(node.name.text), node.name.span, node.is_set,
+                             things.contains(node.name.text)});
     if (node.name.text.empty()) continue;  // a syntax error, reported
     const std::string_view name = node.name.text;
     const bool is_taken = std::find(kTaken.begin(), kTaken.end(), name) != kTaken.end();

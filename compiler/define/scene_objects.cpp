@@ -81,7 +81,7 @@ const Phrase* SceneObjects::phrase_for(ObjectId id) const {
 
 bool SceneObjects::find_absent(ObjectId id, const std::string& fixture) const {
   const Object& object = model_.objects[id];
-  if (object.broken || is_blank(object.text.text) || body_of(id)) return false;
+  if (object.of || object.broken || is_blank(object.text.text) || body_of(id)) return false;
   for (const ObjectId other : objects_) {
     if (names_.are_alike(id, other) || model_.objects[other].mesh.text == object.mesh.text)
       return false;

@@ -6,8 +6,10 @@
 #include <set>
 
 #include "compiler/define/define.h"
+#include "compiler/define/fixture.h"
 #include "compiler/define/in_start.h"
 #include "compiler/define/role.h"
+#include "compiler/define/support.h"
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
 #include "runtime/base/hash_number.h"
@@ -22,6 +24,9 @@ struct Item {
   std::size_t object = 0;  // index into the task's objects
   const Place* place = nullptr;
   std::size_t cells = 0;  // index into layout.cells
+  bool has_cells() const {
+    return place->how == Place::kDistinct || place->how == Place::kRemaining;
+  }
 };
 
 struct Enumerator {
@@ -120,7 +125,7 @@ struct Enumerator {
     double ways = static_cast<double>(turn_count);
     std::vector<std::size_t> used(layout.cells.size(), 0);
     for (const Item& item : items) {
-      if (item.place->how == Place::kAt) continue;
+      if (!item.has_cells()) continue;
       const std::size_t size = layout.cells[item.cells].grids[grids[item.cells]].size();
       const std::size_t left = size - std::min(size, used[item.cells]++);
       ways *= item.place->how == Place::kDistinct ? static_cast<double>(left) : left > 0 ? 1 : 0;
@@ -144,7 +149,7 @@ struct Enumerator {
         continue;
       }
       const Item& item = items[depth];
-      const bool has_cells = item.place->how != Place::kAt;
+      const bool has_cells = item.has_cells();
       const std::size_t count =
           has_cells ? layout.cells[item.cells].grids[grids[item.cells]].size() : 1;
       std::size_t next = fresh ? 0 : digit[depth] + 1;
@@ -164,8 +169,7 @@ struct Enumerator {
 
   bool is_taken(const std::vector<std::size_t>& digit, std::size_t depth, std::size_t cell) const {
     for (std::size_t i = 0; i < depth; ++i) {
-      if (items[i].place->how != Place::kAt && items[i].cells == items[depth].cells &&
-          digit[i] == cell)
+      if (items[i].has_cells() && items[i].cells == items[depth].cells && digit[i] == cell)
         return true;
     }
     return false;
@@ -177,7 +181,8 @@ struct Enumerator {
     start.placed.resize(objects.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
       const Item& item = items[i];
-      const Cell cell = item.place->how == Place::kAt
+      // What is put in or on something gets its place when that has one.
+      const Cell cell = !item.has_cells()
                             ? item.place->at
                             : layout.cells[item.cells].grids[grids[item.cells]][digit[i]];
       start.placed[item.object] = {objects[item.object], cell.x, cell.y, {}};
@@ -251,8 +256,12 @@ double draw(const Sha256& hash) {
 
 // Every draw has its own key, the number of the start with the object's name and the axis: no other
 // task or object shifts it, whatever else stands in the scene.
-void jitter(const Model& model, double most, std::size_t index, Start& start) {
+// What is put in or on something goes with it.
+void jitter(const Model& model, double most, std::size_t index, const std::vector<Put>& puts,
+            Start& start) {
   for (Start::Placed& placed : start.placed) {
+    const auto is_put = [&](const Put& put) { return put.object == placed.object; };
+    if (std::ranges::any_of(puts, is_put)) continue;
     double* const axes[] = {&placed.x, &placed.y};
     for (std::uint8_t axis = 0; axis < 2; ++axis) {
       Hasher hasher;
@@ -264,11 +273,15 @@ void jitter(const Model& model, double most, std::size_t index, Start& start) {
 
 // All that cells, places and turns give.
 std::vector<Start> all_ways(const Model& model, const Layout& layout, const Task& task,
-                            std::size_t most, std::optional<LayoutProblem>& problem) {
+                            std::size_t most, std::vector<Put>& puts,
+                            std::optional<LayoutProblem>& problem) {
   Enumerator enumerator{model, layout, task, task.objects(), {}, {}, 1};
   problem = enumerator.plan_items();
   if (!problem) problem = enumerator.plan_turns();
   if (problem) return {};
+  for (const Item& item : enumerator.items) {
+    if (item.place->is_put()) puts.push_back({enumerator.objects[item.object], item.place});
+  }
   std::vector<Start> starts;
   std::vector<std::size_t> grids(layout.cells.size(), 0);
   double count = 0;
@@ -291,7 +304,7 @@ std::vector<Start> all_ways(const Model& model, const Layout& layout, const Task
     std::size_t cells = 0;
     Span span = layout.span;
     for (const Item& item : enumerator.items) {
-      if (item.place->how == Place::kAt) continue;
+      if (!item.has_cells()) continue;
       cells = layout.cells[item.cells].grids.front().size();
       span = item.place->span;
     }
@@ -305,13 +318,21 @@ std::vector<Start> all_ways(const Model& model, const Layout& layout, const Task
 
 }  // namespace
 
-std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
-                                    std::size_t most, std::optional<LayoutProblem>& problem) {
+std::vector<Start> enumerate_starts(Supports& supports, const Model& model, const Layout& layout,
+                                    const Task& task, std::size_t most,
+                                    std::optional<LayoutProblem>& problem) {
+  std::vector<Put> puts;
   std::vector<Start> starts = layout.given_span.is_none()
-                                  ? all_ways(model, layout, task, most, problem)
+                                  ? all_ways(model, layout, task, most, puts, problem)
                                   : given_starts(model, layout, task, problem);
   if (layout.jitter > 0) {
-    for (std::size_t i = 0; i < starts.size(); ++i) jitter(model, layout.jitter, i, starts[i]);
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      jitter(model, layout.jitter, i, puts, starts[i]);
+  }
+  if (puts.empty()) return starts;
+  for (Start& start : starts) {
+    problem = supports.stack(layout, task, puts, start);
+    if (problem) return {};
   }
   return starts;
 }
@@ -331,6 +352,18 @@ std::vector<double> starts_key(const Model& model, const Task& task) {
     key.push_back(static_cast<double>(pose.object));
     for (const Turn& turn : pose.turns)
       key.insert(key.end(), turn.rotation.begin(), turn.rotation.end());
+  }
+  // What is put into something depends on where that is and on what fills its role.
+  const Layout& layout = model.layouts[task.layout];
+  if (std::ranges::any_of(layout.places, [](const Place& place) { return place.is_put(); })) {
+    key.push_back(-3);
+    key.push_back(static_cast<double>(task.scene));
+    for (const auto& [role, thing] : task.things()) {
+      key.push_back(static_cast<double>(role));
+      key.push_back(static_cast<double>(thing));
+    }
+    const std::vector<double> joints = joint_starts_of(model, task);
+    key.insert(key.end(), joints.begin(), joints.end());
   }
   // What a phrase denotes depends on the camera, too.
   if (!task.clear.empty()) {
@@ -408,6 +441,7 @@ void define_starts(Context& context) {
   std::map<std::vector<double>, const std::vector<Start>*> known;
   std::set<LayoutId> incomplete_layouts;  // that lack a place: said once
   Relations relations(model, context.asset_root, context.diagnostics);
+  Supports supports(model, context.asset_root);
   std::size_t episodes = 0;
   for (Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
@@ -417,7 +451,7 @@ void define_starts(Context& context) {
       const Layout& layout = model.layouts[task.layout];
       std::optional<LayoutProblem> problem;
       std::vector<Start> found =
-          enumerate_starts(model, layout, task, kMaxEpisodes - episodes, problem);
+          enumerate_starts(supports, model, layout, task, kMaxEpisodes - episodes, problem);
       // A file that could not be read has been reported.
       if (!layout.given_span.is_none() && layout.given.empty()) continue;
       if (problem) {

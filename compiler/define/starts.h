@@ -21,9 +21,11 @@ struct LayoutProblem {
   std::string_view label = "the layout";
 };
 
+class Supports;
 // Starts in episode order, at most `most`. On a problem the list is empty and `problem` is set.
-std::vector<Start> enumerate_starts(const Model& model, const Layout& layout, const Task& task,
-                                    std::size_t most, std::optional<LayoutProblem>& problem);
+std::vector<Start> enumerate_starts(Supports& supports, const Model& model, const Layout& layout,
+                                    const Task& task, std::size_t most,
+                                    std::optional<LayoutProblem>& problem);
 
 class Relations;
 // Of these, the starts in which the task's chosen phrases are clear.

@@ -10,6 +10,7 @@
 #include "compiler/define/metrics.h"
 #include "compiler/define/role.h"
 #include "compiler/define/template.h"
+#include "compiler/define/thing.h"
 #include "compiler/define/views.h"
 #include "compiler/define/wording.h"
 #include "compiler/names/like.h"
@@ -35,6 +36,14 @@ struct TaskReader {
       poisoned = true;
     }
   }
+  // An object, or a part or region of a fixture.
+  void thing(ObjectId& to, const syntax::Name& name) {
+    const auto mistakes = context.mistakes();
+    const auto found = find_thing(context, name);
+    if (found) to = *found;
+    // Of a broken fixture nothing more is said.
+    poisoned = poisoned || !found || context.mistakes() != mistakes;
+  }
   // A name that a `derive` binds stands for what it is bound to.
   syntax::Name bound(const syntax::Name& name) const {
     for (const Binding& binding : declared.bindings) {
@@ -48,7 +57,7 @@ struct TaskReader {
     if (name.text == "none" && !context.symbols.objects.peek(name.text)) {
       object = ObjectId::kNone;
     } else {
-      field(object, context.symbols.objects, bound(name));
+      thing(object, bound(name));
     }
     task.refer.erase(role);
     task.role_span[static_cast<std::size_t>(role)] = name.span;
@@ -71,8 +80,20 @@ struct TaskReader {
     Task::Filled filled{*role, {}, {}, stmt.span};
     for (const syntax::Name& name : stmt.objects) {
       ObjectId object = ObjectId::kNone;
-      field(object, context.symbols.objects, bound(name));
+      thing(object, bound(name));
       if (object == ObjectId::kNone) continue;
+      if (context.model.roles[*role].is_set && !task.is_object(object)) {
+        context
+            .report(Code::P1105, name.span,
+                    "`" + std::string(name.text) + "` is " +
+                        kind_of(context.model.objects[object]) +
+                        " of a fixture, and a set is "
+                        "filled with objects")
+            .label(context.model.roles[*role].span, "declared as a set")
+            .help("declare a role for each: `role NAME`");
+        poisoned = true;
+        continue;
+      }
       if (std::find(filled.objects.begin(), filled.objects.end(), object) != filled.objects.end()) {
         context.report(Code::P0203, name.span, "`" + std::string(name.text) + "` is listed twice");
         poisoned = true;
@@ -266,6 +287,37 @@ void check_roles(Context& context, const Task& task, bool& poisoned) {
   }
 }
 
+// What a part or a region that fills a role belongs to is in the scene, and fills one role.
+void check_things(Context& context, const Task& task, bool& poisoned) {
+  const Model& model = context.model;
+  const Scene& scene = model.scenes[task.scene];
+  std::vector<ObjectId> seen;
+  for (const auto& [role, id] : task.things()) {
+    const Object& object = model.objects[id];
+    poisoned = poisoned || object.broken;
+    if (std::ranges::find(seen, id) != seen.end()) {
+      context.report(Code::P0203, task.span,
+                     "`" + object.name + "` fills two roles of `" + task.name + "`");
+      poisoned = true;
+    }
+    seen.push_back(id);
+    if (std::ranges::find(scene.fixtures, object.of->fixture) != scene.fixtures.end()) continue;
+    const Fixture& fixture = model.fixtures[object.of->fixture];
+    const std::size_t of_two = static_cast<std::size_t>(role);
+    Span span = of_two < 2 ? task.role_span[of_two] : task.span;
+    for (const Task::Filled& filled : task.others) {
+      if (filled.role == role) span = filled.spans.front();
+    }
+    context
+        .report(Situation::kNotInScene, span,
+                "fixture `" + fixture.name + "` is not in scene `" + scene.name + "` of `" +
+                    task.name + "`")
+        .label(scene.span, "the scene")
+        .help("a scene names its fixtures: `fixture " + fixture.name + "`");
+    poisoned = true;
+  }
+}
+
 // A joint that begins somewhere is in the scene.
 void check_joint_starts(Context& context, const Task& task, bool& poisoned) {
   const Scene& scene = context.model.scenes[task.scene];
@@ -384,11 +436,28 @@ void read_allows(const syntax::Decl& decl, const std::vector<syntax::TaskStmt>& 
 std::vector<ObjectId> Task::objects() const {
   std::vector<ObjectId> all;
   for (const ObjectId id : {source, target}) {
-    if (id != ObjectId::kNone) all.push_back(id);
+    if (id != ObjectId::kNone && is_object(id)) all.push_back(id);
   }
-  for (const Filled& role : others) all.insert(all.end(), role.objects.begin(), role.objects.end());
+  for (const Filled& role : others) {
+    for (const ObjectId id : role.objects) {
+      if (is_object(id)) all.push_back(id);
+    }
+  }
   all.insert(all.end(), distractors.begin(), distractors.end());
   all.insert(all.end(), placed.begin(), placed.end());
+  return all;
+}
+
+std::vector<std::pair<RoleId, ObjectId>> Task::things() const {
+  std::vector<std::pair<RoleId, ObjectId>> all;
+  const auto add = [&](RoleId role, ObjectId id) {
+    if (id != ObjectId::kNone && !is_object(id)) all.emplace_back(role, id);
+  };
+  add(RoleId::kSource, source);
+  add(RoleId::kTarget, target);
+  for (const Filled& filled : others) {
+    for (const ObjectId id : filled.objects) add(filled.role, id);
+  }
   return all;
 }
 
@@ -474,6 +543,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   task.like = parent ? static_cast<TaskId>(*parent) : TaskId::kNone;
   task.baseline = TaskId::kNone;
   task.axes = 0;
+  task.declared_objects = static_cast<std::uint32_t>(context_.symbols.objects.names().size());
   const About about(context_.reporter, task.decl_span);
   read_allows(*declared.decl, *declared.body, task);
   TaskReader reader{context_, declared, task, poisoned};
@@ -499,6 +569,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
     task.complete = task.abstract || check_filled(task, poisoned);
   }
   if (task.complete) check_roles(context_, task, poisoned);
+  if (task.complete) check_things(context_, task, poisoned);
   if (task.complete) check_cameras(context_, task, poisoned);
   if (task.complete) check_joint_starts(context_, task, poisoned);
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
@@ -530,7 +601,10 @@ bool TaskTable::check_filled(const Task& task, bool& poisoned) {
       spoken.try_emplace(*role, word.span, "its layout places it");
   };
   const Layout& layout = model.layouts[task.layout];
-  for (const Place& line : layout.places) std::for_each(line.what.begin(), line.what.end(), place);
+  for (const Place& line : layout.places) {
+    std::for_each(line.what.begin(), line.what.end(), place);
+    if (line.is_put()) place(line.where);
+  }
   for (const Orient& line : layout.orients) place(line.what);
   for (const ClearPhrase& clear : task.clear)
     spoken.try_emplace(clear.role, clear.phrase.span, "its starts are chosen by it");
@@ -556,6 +630,27 @@ bool TaskTable::check_filled(const Task& task, bool& poisoned) {
         said->label(where->second.first, where->second.second);
     }
   }
+  // A layout puts objects somewhere; a part is where its fixture is.
+  const auto moves = [&](const Spelled& word) {
+    const auto role = find_role(model, word.text);
+    for (const ObjectId id : role ? task.objects_in(*role) : std::vector<ObjectId>()) {
+      if (task.is_object(id)) continue;
+      poisoned = true;
+      context_
+          .report(Code::P1106,
+                  *role < RoleId{2} ? task.role_span[static_cast<std::size_t>(*role)] : task.span,
+                  "layout `" + layout.name + "` places `" + word.text + "`, which is `" +
+                      model.objects[id].name + "` in `" + task.name + "`")
+          .label(word.span, std::string("placed here; ") + kind_of(model.objects[id]) +
+                                " of a fixture stands where that does")
+          .help("write a layout that places the others alone");
+    }
+  };
+  for (const Place& line : layout.places) std::for_each(line.what.begin(), line.what.end(), moves);
+  for (const Orient& line : layout.orients) moves(line.what);
+  if (!layout.given.empty()) {
+    for (const GivenPlace& given : layout.given.front()) moves(given.what);
+  }
   for (const Task::Filled& filled : task.others) {
     if (in_words.contains(filled.role) || !is_within(filled.span, task.decl_span)) continue;
     poisoned = true;
@@ -563,8 +658,10 @@ bool TaskTable::check_filled(const Task& task, bool& poisoned) {
         .report(Code::P1103, filled.span,
                 "neither the words nor the metrics of task `" + task.name + "` speak of `" +
                     model.roles[filled.role].name + "`")
-        .help("what only lies there is a distractor: `distractors " +
-              model.objects[filled.objects.front()].name + "`");
+        .help(task.is_object(filled.objects.front())
+                  ? "what only lies there is a distractor: `distractors " +
+                        model.objects[filled.objects.front()].name + "`"
+                  : std::string("leave it out: a fixture's parts are there without a role"));
   }
   return is_complete && !poisoned;
 }

@@ -6,6 +6,7 @@
 
 #include "compiler/define/define.h"
 #include "compiler/define/role.h"
+#include "compiler/define/thing.h"
 #include "compiler/define/wording.h"
 #include "compiler/names/texts.h"
 #include "runtime/base/nouns.h"
@@ -25,8 +26,7 @@ TemplateId add_template(Context& context, const syntax::TemplateText& text, std:
     }
     const auto& slot = std::get<syntax::Slot>(part);
     const auto role = find_role(context, slot.name.text);
-    if (!role && !context.symbols.objects.find(slot.name, context.diagnostics))
-      record.broken = true;
+    if (!role && !find_thing(context, slot.name)) record.broken = true;
     SlotRef ref{.avoid = slot.avoid,
                 .the = slot.the,
                 .count = slot.count,

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/define/support.h"
 #include "compiler/emit/assets.h"
 #include "compiler/emit/emit.h"
 #include "compiler/lower/lower.h"
@@ -120,7 +121,8 @@ class Emitter {
   const std::vector<plan::Slice>& placements_of(std::span<const sema::Start> starts, double z);
 
   // Tasks of one shape share them.
-  plan::Slice add_roles(const sema::Task& task);
+  plan::Slice add_roles(const sema::Task& task, const std::vector<lower::Body>& bodies);
+  std::uint32_t region_index(const sema::Object& region);
   // Tasks of one scene share them.
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
   void add_task(const sema::Task& task);
@@ -128,6 +130,8 @@ class Emitter {
   // What its words say of places; `index` is the task's. Shapes that are alike share programs.
   void add_claims(const sema::Task& task, const std::vector<lower::Body>& bodies,
                   std::uint32_t index);
+  void add_put(const sema::Task& task, const sema::Put& put, ObjectId where,
+               const std::vector<lower::Body>& bodies, std::uint32_t index);
   void add_assets();
   plan::Slice add_members(const std::vector<TaskId>& members);
   void add_sets();

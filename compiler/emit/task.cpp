@@ -1,8 +1,11 @@
 // Tasks as records, with their bodies, placements and episodes.
+#include <algorithm>
+
 #include "compiler/define/fixture.h"
 #include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
 #include "runtime/plan/limits.h"
+#include "runtime/plan/roles.h"
 
 namespace probe::emit {
 
@@ -51,11 +54,34 @@ const std::vector<plan::Slice>& Emitter::placements_of(std::span<const sema::Sta
   return at->second;
 }
 
-plan::Slice Emitter::add_roles(const sema::Task& task) {
+namespace {
+
+std::uint32_t body_in_role(const std::vector<lower::Body>& bodies, sema::RoleId role) {
+  const auto at = std::ranges::find_if(bodies, [&](const lower::Body& body) {
+    return body.kind == plan::BodyKind::kPart && body.role == static_cast<std::uint32_t>(role);
+  });
+  return static_cast<std::uint32_t>(at - bodies.begin());
+}
+
+}  // namespace
+
+// Those of a fixture stand together, in their order.
+std::uint32_t Emitter::region_index(const sema::Object& region) {
+  const plan::StringRef name = writer_.text(region.name);
+  const auto& rows = records().regions;
+  const auto at = std::ranges::find_if(rows, [&](const plan::RegionRecord& row) {
+    return row.kind == static_cast<std::uint32_t>(plan::BodyKind::kPart) &&
+           row.name.offset == name.offset && row.name.length == name.length;
+  });
+  return static_cast<std::uint32_t>(at - rows.begin());
+}
+
+plan::Slice Emitter::add_roles(const sema::Task& task, const std::vector<lower::Body>& bodies) {
   std::vector<plan::RoleRecord> rows;
   std::vector<std::uint32_t> key;
-  std::uint32_t next = task.source == ObjectId::kNone ? 0 : 1;
-  if (task.target != ObjectId::kNone) ++next;
+  const auto is_body = [&](ObjectId id) { return id != ObjectId::kNone && task.is_object(id); };
+  std::uint32_t next = is_body(task.source) ? 1 : 0;
+  if (is_body(task.target)) ++next;
   const auto add = [&](plan::StringRef name, plan::RoleKind kind, std::size_t count) {
     rows.push_back(
         {name, static_cast<std::uint32_t>(kind), next, static_cast<std::uint32_t>(count), 0, 0});
@@ -63,12 +89,23 @@ plan::Slice Emitter::add_roles(const sema::Task& task) {
     next += rows.back().count;
   };
   for (const sema::Task::Filled& filled : task.others) {
+    if (!is_body(filled.objects.front())) continue;
     const sema::Role& role = model_.roles[filled.role];
     add(writer_.text(role.name), role.is_set ? plan::RoleKind::kSet : plan::RoleKind::kOne,
         filled.objects.size());
   }
   next += size32(task.distractors);
   if (!task.placed.empty()) add({}, plan::RoleKind::kPlaced, task.placed.size());
+  // Roles that parts and regions of fixtures fill stand last and take no bodies of their own.
+  for (std::size_t i = 0; i < model_.roles.size(); ++i) {
+    const sema::RoleId id = model_.roles.id(i);
+    for (const auto& [role, thing] : task.things()) {
+      if (role != id) continue;
+      const bool is_part = model_.objects[thing].of->is_part();
+      next = is_part ? body_in_role(bodies, role) : region_index(model_.objects[thing]);
+      add(writer_.text(model_.roles[id].name), is_part ? plan::kPartRole : plan::kRegionRole, 1);
+    }
+  }
   if (rows.empty()) return {};
   const auto [at, is_new] = roles_.try_emplace(std::move(key), plan::Slice{});
   if (is_new) at->second = plan::append(records().roles, std::span<const plan::RoleRecord>(rows));
@@ -122,7 +159,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.source = objects_[task.source];
   record.target = objects_[task.target];
   record.bodies = add_bodies(bodies);
-  record.roles = add_roles(task);
+  record.roles = add_roles(task, bodies);
   record.distractors = size32(task.distractors);
   record.horizon = static_cast<std::uint32_t>(task.horizon);
   record.idle = task.idle;

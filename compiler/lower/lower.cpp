@@ -80,6 +80,42 @@ class Lowering {
     return ok_ && !builder_.is_full();
   }
 
+  // It is over or in what carries it: of a region between its sides and above its floor, for what
+  // is high reaches out of it.
+  bool put(const PutBody& put, const Span& span) {
+    builder_.at(span);
+    Value holds = Value::of_truth(true);
+    const std::uint16_t own = builder_.emit(Op::kPOS, put.body);
+    if (put.region != nullptr) {
+      const std::uint16_t here = builder_.emit(Op::kLOCAL, put.carrier, own);
+      constexpr Op kAxes[] = {Op::kVX, Op::kVY, Op::kVZ};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Value at = Value::of_register(builder_.emit(kAxes[i], here));
+        const Value low = builder_.less(Value::of_number(put.region->low[i]), at, true);
+        holds = builder_.logical_and(holds, low);
+        if (i == 2) break;
+        const Value high = builder_.less(at, Value::of_number(put.region->high[i]), true);
+        holds = builder_.logical_and(holds, high);
+      }
+    } else {
+      const std::uint16_t other = builder_.emit(Op::kPOS, put.carrier);
+      const Value apart =
+          Value::of_register(builder_.emit(Op::kVLENXY, builder_.emit(Op::kVSUB, own, other)));
+      const Value reach =
+          Value::of_register(builder_.emit(Op::kVLENXY, builder_.emit(Op::kHALF, put.carrier)));
+      holds = builder_.less(apart, reach, true);
+      if (!put.in) {
+        const Value low = Value::of_register(builder_.emit(Op::kVZ, other));
+        const Value high = Value::of_register(builder_.emit(Op::kVZ, own));
+        const Value above = builder_.less(low, high, false);
+        holds = builder_.logical_and(holds, above);
+      }
+    }
+    builder_.emit_metric(holds, {plan::claim_metric(put.body), plan::MetricType::kBool,
+                                 plan::Readout::kAtEnd, span});
+    return ok_ && !builder_.is_full();
+  }
+
   Program finish() { return builder_.finish(); }
 
  private:
@@ -139,7 +175,7 @@ class Lowering {
       case ExprOp::kConstant:
         return constant(node);
       case ExprOp::kRole:
-        return only(node, [&](const Body& b) { return b.role == node.a; });
+        return in_role(node);
       case ExprOp::kObject:
         return only(node, [&](const Body& b) {
           return b.kind == plan::BodyKind::kObject && b.index == node.a;
@@ -233,6 +269,55 @@ class Lowering {
     return Value::of_body(static_cast<std::uint16_t>(at - bodies_.begin()));
   }
 
+  Value in_role(const ExprNode& node) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      for (const Body::Filled& filled : bodies_[i].filled) {
+        if (filled.role == node.a) return of_region(static_cast<std::uint16_t>(i), *filled.region);
+      }
+    }
+    return only(node, [&](const Body& b) { return b.role == node.a; });
+  }
+
+  // What an open role stands for fits what is measured, or what a predicate takes; else it is
+  // reported where that is asked.
+  bool fits(const Span& span, const Value& value, char wanted, std::string_view what) {
+    const bool is_body = value.kind == Value::kBody;
+    const auto is = [&](plan::BodyKind kind) {
+      return is_body && bodies_[value.index].kind == kind;
+    };
+    const bool is_region = value.kind == Value::kRegion;
+    const char* name = "";
+    bool fits = true;
+    switch (wanted) {
+      case 'B':
+        fits = is_body, name = "a body";
+        break;
+      case 'O':
+        fits = is(plan::BodyKind::kObject), name = "an object";
+        break;
+      case 'P':
+        fits = !is_region, name = "a body or a point";
+        break;
+      case 'J':
+        fits = value.kind == Value::kJoint || is(plan::BodyKind::kPart), name = "a joint or a part";
+        break;
+      case 'A':
+        fits = is(plan::BodyKind::kPart), name = "a part";
+        break;
+      case 'G':
+        fits = is_region, name = "a region";
+        break;
+      default:
+        break;
+    }
+    if (fits || !ok_) return fits;
+    const Body& body = bodies_[value.index];
+    std::string found = "`" + body.name + "`";
+    if (is_region) found = "region `" + value.region->name + "` of `" + body.name + "`";
+    fail(span, std::string(what) + " takes " + name + ", found " + found);
+    return false;
+  }
+
   Value surface() const {
     std::uint16_t at = 0;
     while (bodies_[at].kind != plan::BodyKind::kSurface) ++at;
@@ -307,7 +392,7 @@ class Lowering {
 
   Value region_of(const ExprNode& node) {
     const Value body = eval(node.args[0]);
-    if (!ok_) return body;
+    if (!ok_ || !fits(node.span, body, 'B', "`." + model_.exprs.names[node.a] + "`")) return body;
     const Body& owner = bodies_[body.index];
     const std::string& name = model_.exprs.names[node.a];
     std::string known;
@@ -398,7 +483,20 @@ class Lowering {
   Value call(const ExprNode& node) {
     const sema::Predicate& predicate = model_.predicates[node.predicate];
     std::vector<Value> inner(predicate.variables);
-    for (std::size_t i = 0; i < node.args.size(); ++i) inner[i] = eval(node.args[i]);
+    for (std::size_t i = 0; i < node.args.size(); ++i) {
+      inner[i] = eval(node.args[i]);
+      const sema::Type& wanted = predicate.parameters[i].type;
+      const char kind = wanted.kind == sema::TypeKind::kRegion ? 'G'
+                        : wanted.kind != sema::TypeKind::kBody ? ' '
+                        : wanted.is_object                     ? 'O'
+                        : wanted.is_part                       ? 'A'
+                                                               : 'B';
+      // What a parameter stands for was looked at where it was given.
+      if (ok_ && model_.exprs.nodes[node.args[i]].type.is_open)
+        fits(model_.exprs.nodes[node.args[i]].span, inner[i], kind,
+             "`" + predicate.parameters[i].name + "` of `" + predicate.name + "`");
+    }
+    if (!ok_) return Value::of_truth(false);
     std::swap(inner, variables_);
     const Value value = eval(predicate.body);
     std::swap(inner, variables_);
@@ -480,7 +578,11 @@ class Lowering {
         });
       case sema::SetOp::kNames: {
         Bodies result;
-        for (const ExprRef body : set.bodies) result.push_back(eval(body).index);
+        for (const ExprRef body : set.bodies) {
+          const Value member = eval(body);
+          if (ok_) fits(model_.exprs.nodes[body].span, member, 'B', "a set");
+          result.push_back(member.index);
+        }
         std::sort(result.begin(), result.end());
         result.erase(std::unique(result.begin(), result.end()), result.end());
         return result;
@@ -597,10 +699,13 @@ class Lowering {
                                  "` needs a first camera that stands still and sees the area");
     const sema::Sight& sight = *frame_.sight;
     if (!is_across) {
-      const std::uint16_t away = builder_.emit(Op::kVSUB, point(of), vector_of(sight.middle));
+      // One order of instructions, whatever order a C++ compiler gives to arguments.
+      const std::uint16_t middle = vector_of(sight.middle);
+      const std::uint16_t away = builder_.emit(Op::kVSUB, point(of), middle);
       return Value::of_register(builder_.emit(Op::kVDOT, away, vector_of(sight.near)));
     }
-    const std::uint16_t from_eye = builder_.emit(Op::kVSUB, point(of), vector_of(sight.eye));
+    const std::uint16_t eye = vector_of(sight.eye);
+    const std::uint16_t from_eye = builder_.emit(Op::kVSUB, point(of), eye);
     const Vec3 scaled = sight.right * sight.depth;
     const std::uint16_t across = builder_.emit(Op::kVDOT, from_eye, vector_of(scaled));
     const std::uint16_t along = builder_.emit(Op::kVDOT, from_eye, vector_of(sight.forward));
@@ -608,7 +713,8 @@ class Lowering {
   }
 
   Value from_robot(const Value& of, const Vec3& axis) {
-    const std::uint16_t from_base = builder_.emit(Op::kVSUB, point(of), vector_of(frame_.base));
+    const std::uint16_t base = vector_of(frame_.base);
+    const std::uint16_t from_base = builder_.emit(Op::kVSUB, point(of), base);
     return Value::of_register(builder_.emit(Op::kVDOT, from_base, vector_of(axis)));
   }
 
@@ -616,7 +722,12 @@ class Lowering {
 
   Value measure(const ExprNode& node) {
     std::vector<Value> args;
-    for (const ExprRef arg : node.args) args.push_back(eval(arg));
+    const sema::MeasureInfo& info = sema::info(node.measure);
+    for (std::size_t i = 0; i < node.args.size(); ++i) {
+      args.push_back(eval(node.args[i]));
+      // Relations of phrases are asked of parts as of objects.
+      if (ok_) fits(node.span, args[i], info.params[i], "`" + std::string(info.name) + "`");
+    }
     if (!ok_) return Value::of_truth(false);
     builder_.at(node.span);
     const auto reg = [&](Op op, std::uint16_t a = 0, std::uint16_t b = 0) {
@@ -752,6 +863,25 @@ void set_regions(Body& body, const std::vector<sema::Region>& regions, std::uint
   body.owner = owner + 1;
 }
 
+// The part that a thing is, or that has it, gets its role.
+void fill_role(const sema::Model& model, sema::RoleId role, sema::ObjectId thing,
+               std::vector<Body>& bodies) {
+  const sema::Object& object = model.objects[thing];
+  for (Body& body : bodies) {
+    if (body.kind != plan::BodyKind::kPart ||
+        body.index != static_cast<std::uint32_t>(object.of->fixture) ||
+        body.part != object.of->part)
+      continue;
+    if (object.of->is_part()) {
+      body.role = static_cast<std::uint32_t>(role);
+      continue;
+    }
+    const sema::Fixture& fixture = model.fixtures[object.of->fixture];
+    body.filled.push_back({static_cast<std::uint32_t>(role), *object.of->region,
+                           &fixture.regions[*object.of->region].region, object.name});
+  }
+}
+
 }  // namespace
 
 std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
@@ -788,6 +918,7 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
                         static_cast<std::uint32_t>(sema::RoleId::kNone), i});
     }
   }
+  for (const auto& [role, thing] : task.things()) fill_role(model, role, thing, bodies);
   return bodies;
 }
 
@@ -805,6 +936,8 @@ std::vector<std::uint32_t> shape_of(const sema::Model& model, std::span<const se
     shape.push_back(body.role);
     shape.push_back(body.owner);  // of its regions
     shape.push_back(body.part);
+    for (const Body::Filled& filled : body.filled)
+      shape.insert(shape.end(), {0xfffffffdu, filled.role, filled.number});
   }
   for (const sema::Metric& metric : metrics) {
     // A metric's name stands at its span.
@@ -868,6 +1001,14 @@ std::optional<Program> lower_relation(const sema::Model& model, const sema::Pred
                                       Diagnostics& diagnostics) {
   Lowering lowering(model, bodies, frame, diagnostics);
   if (!lowering.relation(relation, of, alike)) return std::nullopt;
+  return lowering.finish();
+}
+
+std::optional<Program> lower_put(const sema::Model& model, const PutBody& put, const Span& span,
+                                 const std::vector<Body>& bodies, const sema::Frame& frame,
+                                 Diagnostics& diagnostics) {
+  Lowering lowering(model, bodies, frame, diagnostics);
+  if (!lowering.put(put, span)) return std::nullopt;
   return lowering.finish();
 }
 

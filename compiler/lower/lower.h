@@ -22,13 +22,21 @@ struct Body {
   // kObject: sema::ObjectId; kLink: 0, 1 fingers, then on; kPart: sema::FixtureId
   std::uint32_t index = 0;
   std::string name;
-  // Of an object: its sema::RoleId, kDistractor, or kNone for what the layout placed.
+  // Of an object: its sema::RoleId, kDistractor, or kNone for what the layout placed; of a part the
+  // role that it fills, or kNone.
   std::uint32_t role = 0xffffffffu;
   std::uint32_t part = 0;  // kPart: of its fixture's
   // Its boxes with names, and, where it has some, 1 + the index of the object or scene that says
   // so.
   const std::vector<sema::Region>* regions = nullptr;
   std::uint32_t owner = 0;
+  // Of its regions those that fill roles: with the role and the region's number in its fixture.
+  struct Filled {
+    std::uint32_t role = 0, number = 0;
+    const sema::Region* region = nullptr;
+    std::string name;
+  };
+  std::vector<Filled> filled = {};
 };
 inline constexpr std::uint32_t kDistractorRole = 0xfffffffeu;
 
@@ -71,6 +79,18 @@ struct ClaimedBody {
   };
   std::vector<Relation> relations;
 };
+
+// An object that a layout puts on another or into a region of a part.
+struct PutBody {
+  std::uint16_t body = 0, carrier = 0;
+  const sema::Region* region = nullptr;
+  bool in = false;  // else on
+};
+
+// Whether it lies there, as the program of a claim.
+std::optional<Program> lower_put(const sema::Model& model, const PutBody& put, const Span& span,
+                                 const std::vector<Body>& bodies, const sema::Frame& frame,
+                                 Diagnostics& diagnostics);
 
 // The program of a claim: a truth for each of the bodies, called as plan::claim_metric says.
 std::optional<Program> lower_claim(const sema::Model& model, std::span<const ClaimedBody> claimed,

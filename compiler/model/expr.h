@@ -21,6 +21,7 @@ struct Type {
   bool is_object = false;         // kBody: certainly one of the task's objects
   bool is_angle_between = false;  // the value of `angle(u, v)`: only to be compared with a constant
   bool is_part = false;           // kBody: certainly a part of a fixture
+  bool is_open = false;           // a role that a part or a region may fill: each task knows
 };
 
 enum class Measure : std::uint8_t {

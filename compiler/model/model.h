@@ -88,6 +88,15 @@ struct Region {
   std::array<double, 3> low{}, high{};  // m
 };
 
+// What a row of the objects is that is a part or a region of a fixture: it has words and facts, may
+// fill a role and is nowhere placed.
+struct OfFixture {
+  FixtureId fixture = FixtureId::kNone;
+  std::uint32_t part = 0;               // of Fixture::parts; of a region the one that it belongs to
+  std::optional<std::uint32_t> region;  // of Fixture::regions
+  bool is_part() const { return !region.has_value(); }
+};
+
 struct Object {
   std::string name;
   bool broken = false;  // something was reported: what follows from that is not said
@@ -109,6 +118,7 @@ struct Object {
   std::vector<Turn> rest;
   std::vector<Region> regions;
   std::vector<Phrase> phrases;
+  std::optional<OfFixture> of;  // behind all that are declared as objects
 
   const Phrase* find_phrase(std::string_view phrase) const;
 };
@@ -209,11 +219,16 @@ struct Fixture {
     std::optional<std::uint32_t> joint;
     bool declared = false;
     Span span;
+    const syntax::PartStmt* said = nullptr;  // what is said of it, in `file`
+    const syntax::File* file = nullptr;
+    ObjectId thing = ObjectId::kNone;  // what fills a role; of a declared part
   };
   struct OwnRegion {
     Region region;
     Spelled of;              // a part's name; empty: the fixture
     std::uint32_t part = 0;  // index of parts
+    Spelled text;            // in instructions; not said: as its part
+    ObjectId thing = ObjectId::kNone;
   };
   std::string name;
   bool broken = false;  // as of an object
@@ -291,12 +306,14 @@ struct Cells {
   std::vector<Spread> spreads;  // by grid
 };
 struct Place {
-  enum How : std::uint8_t { kAt, kDistinct, kRemaining };
+  enum How : std::uint8_t { kAt, kDistinct, kRemaining, kOn, kIn };
   How how = kAt;
   std::vector<Spelled> what;  // a role, `distractors` or an object
   Cell at;                    // kAt
-  std::string cells;          // else
+  std::string cells;          // kDistinct, kRemaining
+  Spelled where = {};         // kOn, kIn: a role, an object or a region of a fixture
   Span span;
+  bool is_put() const { return how == kOn || how == kIn; }
 };
 struct Orient {
   Spelled what;
@@ -343,6 +360,7 @@ struct Role {
   std::string name;
   Span span;
   bool is_set = false;
+  bool takes_things = false;  // some task fills it with a part or a region
 };
 
 // ---- language
@@ -450,14 +468,23 @@ struct Task {
   std::vector<Metric> judged;     // the metrics it is judged by, in order
   std::span<const Start> starts;  // in Model::start_lists; equal tasks share one
 
+  // Rows of Model::objects below this are objects, the others parts and regions of fixtures.
+  std::uint32_t declared_objects = 0xffffffffu;
+  bool is_object(ObjectId id) const { return static_cast<std::uint32_t>(id) < declared_objects; }
+
   // In the order of the plan's bodies: source and target if there are any, other roles,
-  // distractors, what the layout placed.
+  // distractors, what the layout placed. Without parts and regions.
   std::vector<ObjectId> objects() const;
-  // What fills a role; none for one that nothing fills.
+  // Parts and regions that fill roles, with those, in their order.
+  std::vector<std::pair<RoleId, ObjectId>> things() const;
+  // What fills a role, a part or a region, too; none for one that nothing fills.
   std::vector<ObjectId> objects_in(RoleId role) const;
   // kNone for an object that fills none: a distractor, or one that was placed.
   RoleId role_of(ObjectId object) const;
-  bool has_both() const { return source != ObjectId::kNone && target != ObjectId::kNone; }
+  bool has_both() const {
+    return source != ObjectId::kNone && target != ObjectId::kNone && is_object(source) &&
+           is_object(target);
+  }
   const Spelled* refer_of(RoleId role) const {
     const auto at = refer.find(role);
     return at == refer.end() ? nullptr : &at->second;

@@ -1,10 +1,38 @@
 #include "compiler/names/name_table.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "compiler/names/texts.h"
+#include "runtime/base/spelling.h"
 
 namespace probe::sema {
+namespace {
+
+// Of these a text cannot be searched for what there is: they stand in other files, or in none.
+bool tells_all(std::string_view kind) {
+  constexpr std::string_view kKinds[] = {"link", "object", "scene", "fixture", "joint"};
+  return std::ranges::find(kKinds, kind) != std::end(kKinds) || kind.starts_with("part ") ||
+         kind.starts_with("joint of ");
+}
+
+// "there are `top`, `middle`, `bottom`": at most eight, the nearest spelling first.
+std::string nearest_few(std::string_view name, std::vector<std::string_view> candidates) {
+  constexpr std::size_t kMost = 8, kLongest = 128;
+  if (name.size() <= kLongest) {
+    std::ranges::stable_sort(candidates, {}, [&](std::string_view known) {
+      return spelling_edits(name, known.substr(0, kLongest));
+    });
+  }
+  std::string text = candidates.size() == 1 ? "there is " : "there are ";
+  for (std::size_t i = 0; i < std::min(kMost, candidates.size()); ++i)
+    text += (i == 0 ? "`" : ", `") + std::string(candidates[i]) + "`";
+  if (candidates.size() > kMost)
+    text += " and " + std::to_string(candidates.size() - kMost) + " more";
+  return text;
+}
+
+}  // namespace
 
 std::optional<std::uint32_t> NameTable::declare(const syntax::Name& name,
                                                 Diagnostics& diagnostics) {
@@ -56,6 +84,8 @@ Diagnostic& report_unknown(Diagnostics& diagnostics, std::string_view kind,
     if (std::count_if(candidates.begin(), candidates.end(), begins) == 1)
       near = *std::find_if(candidates.begin(), candidates.end(), begins);
   }
+  if (!near && tells_all(kind) && !candidates.empty())
+    diagnostic.point(nearest_few(name.text, candidates));
   if (near) {
     const std::string text(*near);
     diagnostic.point("did you mean `" + text + "`?")

@@ -136,6 +136,12 @@ void check_repeats(Context& context) {
           check_block(context, syntax::Block::kControl, control->body);
       }
     }
+    if constexpr (std::is_same_v<Node, syntax::FixtureDecl>) {
+      for (const syntax::FixtureBodyStmt& stmt : node.body) {
+        if (const auto* part = std::get_if<syntax::PartStmt>(&stmt))
+          check_block(context, syntax::Block::kPart, part->body);
+      }
+    }
     if constexpr (std::is_same_v<Node, syntax::VariantsDecl>) {
       for (const syntax::VariantsMember& member : node.members)
         check_block(context, syntax::Block::kTask, member.body);

@@ -6,6 +6,7 @@
 
 #include "compiler/define/denote.h"
 #include "compiler/define/template.h"
+#include "compiler/define/thing.h"
 #include "compiler/define/wording.h"
 #include "compiler/rephrase/draw.h"
 #include "runtime/base/utf8.h"
@@ -62,6 +63,7 @@ Task words_alone(const Task& task) {
   words.source = task.source;
   words.target = task.target;
   words.others = task.others;
+  words.declared_objects = task.declared_objects;
   words.distractors = task.distractors;
   words.placed = task.placed;
   words.say = task.say;
@@ -114,7 +116,7 @@ std::optional<Refusal> Prover::why_not_there(const Task& task, ObjectId wanted,
 
 std::optional<Refusal> Prover::why_no_phrase(const Task& task, ObjectId wanted,
                                              const Phrase& phrase) {
-  const std::vector<ObjectId> objects = task.objects();
+  const std::vector<ObjectId> objects = sema::denotable(model_, task);
   const auto why = phrase.is_spatial() ? why_not_there(task, wanted, phrase)
                                        : why_unclear(sema::denote(model_, objects, phrase, wanted));
   if (why) return why;

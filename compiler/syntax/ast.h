@@ -395,6 +395,7 @@ struct RegionStmt {  // `region inside of top_drawer box (..) .. (..)`
   Name name;
   std::optional<Name> of;  // of a fixture a part or itself, of a scene `surface` or `fixture`
   Point low, high;
+  std::optional<Text> text;  // of a fixture's: in instructions
 };
 using ObjectStmt = std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, FrictionStmt,
                                 IsStmt, MaybeStmt, SeenInStmt, UnseenStmt, RestStmt, RegionStmt,
@@ -553,6 +554,8 @@ struct PartStmt {  // `part top_drawer link top name "top drawer"`
   Name name;
   Name link;
   std::optional<Text> text;
+  std::vector<ObjectStmt>
+      body;  // `{ category drawer; phrase upper spatial "upper drawer" means .. }`
 };
 using FixtureBodyStmt =
     std::variant<UrdfStmt, FixtureAtStmt, FrictionStmt, FixtureJointStmt, PartStmt, RegionStmt>;
@@ -638,6 +641,12 @@ struct PlaceInStmt {
   PlaceHow how = PlaceHow::kDistinct;
   Name cells;
 };
+struct PlaceOnStmt {  // `place source on target`, `place spoon in cabinet.inside_top`
+  Span span;
+  std::vector<Name> names;
+  bool in = false;  // else on
+  Name where;
+};
 struct OrientByRestStmt {
   Span span;
 };
@@ -669,8 +678,9 @@ struct ExpectEpisodesStmt {
   Span span;
   Int episodes;
 };
-using LayoutStmt = std::variant<CellsStmt, PlaceAtStmt, PlaceInStmt, OrientByRestStmt, OrientStmt,
-                                StartsStmt, JitterStmt, StartStmt, DropStmt, ExpectEpisodesStmt>;
+using LayoutStmt =
+    std::variant<CellsStmt, PlaceAtStmt, PlaceInStmt, PlaceOnStmt, OrientByRestStmt, OrientStmt,
+                 StartsStmt, JitterStmt, StartStmt, DropStmt, ExpectEpisodesStmt>;
 struct LayoutDecl {
   Name name;
   std::optional<Name> like;
@@ -734,7 +744,7 @@ enum class TaskField : std::uint8_t { kScene, kSource, kTarget, kMetrics, kLight
 struct FieldStmt {  // `scene table`
   Span span;
   TaskField field = TaskField::kScene;
-  Name value;
+  Name value;  // of a role also `cabinet.top_drawer`
 };
 struct ClearPhrase {  // `side of source`
   Name phrase;
@@ -782,9 +792,9 @@ struct IdleStmt {
   Span span;
   Int steps;
 };
-using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
-                              ReferStmt, PoseStmt, StartStmt, HorizonStmt, IdleStmt, MetricStmt,
-                              RoleStmt>;
+using TaskStmt =
+    std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt, ReferStmt,
+                 PoseStmt, StartStmt, HorizonStmt, IdleStmt, MetricStmt, RoleStmt>;
 
 struct TaskDecl {
   bool abstract = false;
@@ -817,10 +827,10 @@ struct BinderPhrases {  // `p in clear phrases appearance of source`
 struct BinderTemplates {  // `w in templates of put`
   Name frame;
 };
-struct BinderObjects {  // `o in objects (carrot, spoon)`
+struct BinderObjects {  // `o in objects (carrot, spoon)`, `p in parts (cabinet.top_drawer)`
   std::vector<Name> objects;
 };
-struct BinderDistractors {  // `o in distractors of t`, `o in goods of t`
+struct BinderDistractors {  // `o in distractors of t`, `o in goods of t`, `p in parts of cabinet`
   Name role;
   Name task;
 };

@@ -16,6 +16,20 @@ Name Parser::name() {
   return out;
 }
 
+Name Parser::thing() {
+  const std::uint32_t begin = mark();
+  Name out = name();
+  // Not in the list of what was expected: a dot is not what is usually missing.
+  if (out.text.empty() || kind() != TokenKind::kDot) return out;
+  advance();
+  const Name part = name();
+  if (part.text.empty()) return part;
+  out.span = since(begin);
+  out.text = {out.text.data(),
+              static_cast<std::size_t>(part.text.data() + part.text.size() - out.text.data())};
+  return out;
+}
+
 std::vector<Name> Parser::names() {
   return comma_list([this] { return name(); });
 }

@@ -40,10 +40,10 @@ Binder Parser::binder() {
     expect_word("of");
     others.task = name();
     out.over = others;
-  } else if (at_word("objects") && kind_ahead(1) == TokenKind::kLeftParen) {
+  } else if ((at_word("objects") || at_word("parts")) && kind_ahead(1) == TokenKind::kLeftParen) {
     advance();
     advance();
-    out.over = BinderObjects{names()};
+    out.over = BinderObjects{comma_list([this] { return thing(); })};
     expect(TokenKind::kRightParen);
   } else {
     out.over = BinderTasks{task_set_without_where()};

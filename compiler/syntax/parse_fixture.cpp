@@ -48,10 +48,20 @@ FixtureBodyStmt Parser::fixture_part() {
   expect_word("link");
   out.link = name();
   if (accept_word("name")) out.text = string();
+  static constexpr Rule<ObjectStmt> kRules[] = {
+#define PROBE_IN_PART(word, parse, repeat) {#word, &Parser::parse},
+#include "compiler/syntax/keywords.def"
+  };
+  if (at(TokenKind::kLeftBrace))
+    out.body = body<ObjectStmt>(kRules, "a statement of `part`", &Parser::object_attribute);
   return out;
 }
 
-FixtureBodyStmt Parser::fixture_region() { return region(true); }
+FixtureBodyStmt Parser::fixture_region() {
+  RegionStmt out = region(true);
+  if (accept_word("name")) out.text = string();
+  return out;
+}
 
 RegionStmt Parser::region(bool has_owner) {
   RegionStmt out;

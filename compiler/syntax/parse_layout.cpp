@@ -39,15 +39,20 @@ LayoutStmt Parser::layout_place() {
     out.at = point();
     return out;
   }
-  PlaceInStmt out;
-  out.names = std::move(what);
-  expect_word("in");
-  if (accept_word("remaining")) {
-    out.how = PlaceHow::kRemaining;
-  } else {
-    expect_word("distinct");
+  const bool on = accept_word("on");
+  if (!on) expect_word("in");
+  if (!on && kind_ahead(1) == TokenKind::kIdent && at_any_word({"distinct", "remaining"})) {
+    PlaceInStmt out;
+    out.names = std::move(what);
+    out.how = accept_word("remaining") ? PlaceHow::kRemaining : PlaceHow::kDistinct;
+    accept_word("distinct");
+    out.cells = name();
+    return out;
   }
-  out.cells = name();
+  PlaceOnStmt out;
+  out.names = std::move(what);
+  out.in = !on;
+  out.where = thing();
   return out;
 }
 

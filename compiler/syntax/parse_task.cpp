@@ -46,7 +46,8 @@ DeclNode Parser::variants_decl() {
 
 template <TaskField field>
 TaskStmt Parser::task_field() {
-  return FieldStmt{{}, field, name()};
+  constexpr bool kIsRole = field == TaskField::kSource || field == TaskField::kTarget;
+  return FieldStmt{{}, field, kIsRole ? thing() : name()};
 }
 
 std::vector<TaskStmt> Parser::task_body() {
@@ -164,7 +165,7 @@ TaskStmt Parser::task_role() {
   expected_count_ = 0;
   RoleStmt out;
   out.role = name();
-  out.objects = names();
+  out.objects = comma_list([this] { return thing(); });
   if (out.objects.size() == 1 && out.objects.front().text == "none") out.objects.clear();
   return out;
 }

@@ -40,6 +40,13 @@ std::string read_slot(BraceWords& words, Slot& slot) {
     words.take_word(word);
   }
   slot.name = word;
+  if (Name part; words.take('.')) {  // of a fixture, as one name
+    if (!words.take_word(part)) return "a part";
+    slot.name.span = join(word.span, part.span);
+    slot.name.text = {
+        word.text.data(),
+        static_cast<std::size_t>(part.text.data() + part.text.size() - word.text.data())};
+  }
   if (words.take(':')) {
     Name category;
     if (!words.take_word(category)) return "a category after `:`";
@@ -62,9 +69,11 @@ DeclNode Parser::template_decl() {
 TemplateText Parser::template_text() {
   TemplateText out;
   out.text = string();
-  braced_text<Slot>(
-      out.text, out.parts, "a slot",
-      "a slot is `{source}`, `{the target}`, `{avoid the plate}` or `{source: drink}`", read_slot);
+  braced_text<Slot>(out.text, out.parts, "a slot",
+                    "a slot is `{source}`, `{the target}`, `{both goods}`, `{all three goods}`, "
+                    "`{avoid the plate}` or "
+                    "`{source: drink}`",
+                    read_slot);
   return out;
 }
 

@@ -100,6 +100,7 @@ class Parser {
   Name name();
   Name keyword_name(std::string_view what);
   std::vector<Name> names();
+  Name thing();  // an object, or `fixture.part`, as one name
   std::vector<Name> braced_names();
   Path path();
   Quantity quantity();

@@ -18,6 +18,7 @@ enum class Block : std::uint8_t {
   kCamera,
   kLight,
   kFixture,
+  kPart,
   kScene,
   kLayout,
   kTask,

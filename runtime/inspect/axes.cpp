@@ -34,9 +34,29 @@ std::vector<std::uint32_t> distractors(const plan::Plan& plan, const plan::TaskR
   return objects;
 }
 
+// Declared roles that parts and regions fill, ascending.
+std::vector<std::pair<std::string_view, std::string_view>> others_of_things(
+    const plan::Plan& plan, const plan::TaskRecord& task) {
+  std::vector<std::pair<std::string_view, std::string_view>> all;
+  for (const plan::RoleRecord& role : plan::roles_of(plan.tables(), task).things) {
+    const std::string_view name = plan.text(role.name);
+    if (name != "source" && name != "target")
+      all.emplace_back(name, plan::thing_in(plan.tables(), task, role));
+  }
+  std::ranges::sort(all);
+  return all;
+}
+
 // Whether the declared roles are filled by the same objects; those of a set in any order.
 bool same_others(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
-  return objects_by_role(plan, a) == objects_by_role(plan, b);
+  return objects_by_role(plan, a) == objects_by_role(plan, b) &&
+         others_of_things(plan, a) == others_of_things(plan, b);
+}
+
+// The part or region that is source or target; empty where none is.
+bool same_thing(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b,
+                std::string_view role) {
+  return plan::thing_in(plan.tables(), a, role) == plan::thing_in(plan.tables(), b, role);
 }
 
 void replace_all(std::string& text, std::string_view what, std::string_view by) {
@@ -116,15 +136,19 @@ bool same_judge(plan::IdHasher& hasher, const plan::TaskRecord& a, plan::TaskRec
 }
 
 // A quantifier over objects unrolls with their number, so equal metrics may be unequal programs
-// when the scenes hold different bodies; then the compiler's word for a task and its baseline
-// decides, or the words they were written with, as far as the plan has them.
+// when the scenes hold different bodies, and so may metrics of a role that another part fills; then
+// the compiler's word for a task and its baseline decides, or the words they were written with, as
+// far as the plan has them.
 bool same_goal(const plan::Plan& plan, plan::IdHasher& hasher, const plan::TaskRecord& a,
                const plan::TaskRecord& b) {
   if (a.horizon != b.horizon) return false;
   if (same_judge(hasher, a, b)) return true;
   const auto ours = plan.metrics(a);
   const auto theirs = plan.metrics(b);
-  if (a.bodies.count == b.bodies.count || ours.size() != theirs.size()) return false;
+  const bool same_things = same_thing(plan, a, b, "source") && same_thing(plan, a, b, "target") &&
+                           others_of_things(plan, a) == others_of_things(plan, b);
+  if ((a.bodies.count == b.bodies.count && same_things) || ours.size() != theirs.size())
+    return false;
   if (is_kept(plan, a, b, plan::Axis::kGoal)) return true;
   const plan::MetricRecord* const table = plan.metrics().data();
   for (std::size_t m = 0; m < ours.size(); ++m) {
@@ -168,9 +192,9 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   const auto moves = [&](plan::Axis axis) {
     switch (axis) {
       case plan::Axis::kObjectSource:
-        return a.source != b.source;
+        return a.source != b.source || !same_thing(plan, a, b, "source");
       case plan::Axis::kObjectTarget:
-        return a.target != b.target;
+        return a.target != b.target || !same_thing(plan, a, b, "target");
       case plan::Axis::kObjectOther:
         return !same_others(plan, a, b);
       case plan::Axis::kDistractors:

@@ -24,8 +24,10 @@ void add_claims(const plan::Plan& plan, std::uint32_t task, Json& json) {
 Json claims_text(const Json& claims) {
   Json lines = Json::array();
   for (const Json& claim : claims) {
-    std::string line =
-        "\"" + claim["text"].get<std::string>() + "\" is " + claim["object"].get<std::string>();
+    std::string line = "\"" + claim["text"].get<std::string>() + "\"";
+    // What was put somewhere: there is no other that it could be.
+    const std::string object = claim["object"].get<std::string>();
+    if (!claim["text"].get<std::string>().starts_with(object + " ")) line += " is " + object;
     const char* between = ", not ";
     for (const Json& other : claim["among"]) {
       line += between + other.get<std::string>();

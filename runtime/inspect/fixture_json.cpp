@@ -88,6 +88,19 @@ Json names_of(const Json& regions) {
   return names;
 }
 
+Json joint_starts_text(const Json& fixtures) {
+  Json texts = Json::array();
+  for (const Json& fixture : fixtures) {
+    for (const Json& joint : fixture["joints"]) {
+      const bool slides = joint["moves"].get<std::string>() == "slides";
+      texts.push_back(fmt::format("{}.{} {} {}", fixture["fixture"].get<std::string>(),
+                                  joint["joint"].get<std::string>(), shown(joint, "start"),
+                                  slides ? "cm" : "deg"));
+    }
+  }
+  return texts;
+}
+
 std::vector<std::string> fixture_lines(const Json& task) {
   std::vector<std::string> lines;
   if (!task.contains("fixtures")) return lines;

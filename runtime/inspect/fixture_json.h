@@ -19,6 +19,9 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t task);
 Json regions_of(const plan::Plan& plan, std::uint32_t task);
 Json names_of(const Json& regions);
 
+// ["cabinet.top 4 cm", "cabinet.bottom 0 cm"]: where joints begin, of fixtures_of().
+Json joint_starts_text(const Json& fixtures);
+
 // "cabinet: top slides 0 .. 18 cm, starts at 0; parts top_drawer", a text a fixture.
 std::vector<std::string> fixture_lines(const Json& task);
 

@@ -20,6 +20,15 @@ void add_roles(const plan::Plan& plan, const plan::TaskRecord& task, Json& json)
   };
   json["source"] = name_of(task.source);
   json["target"] = name_of(task.target);
+  for (const plan::RoleRecord& role : roles.things) {
+    const std::string name(plan.text(role.name));
+    const Json thing(plan::thing_in(plan.tables(), task, role));
+    if (name == "source" || name == "target") {
+      json[name] = thing;
+    } else {
+      json["roles"][name] = thing;
+    }
+  }
   for (const plan::RoleRecord& role : roles.others) {
     const auto kind = static_cast<plan::RoleKind>(role.kind);
     if (kind == plan::RoleKind::kPlaced) continue;

@@ -8,6 +8,7 @@
 
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/claims_json.h"
+#include "runtime/inspect/fixture_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/words.h"
@@ -18,7 +19,7 @@ namespace probe::inspect {
 namespace {
 
 // What only some tasks have; it stands below what all of them have.
-constexpr const char* kOfSome[] = {"law", "placed", "idle", "claims"};
+constexpr const char* kOfSome[] = {"law", "placed", "joints", "idle", "claims"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -43,6 +44,8 @@ Json side(const plan::Plan& plan, std::uint32_t index) {
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
     json["metrics"].push_back(plan.text(metric.name));
+  if (plan.scenes()[task.scene].fixtures.count > 0)
+    json["joints"] = joint_starts_text(fixtures_of(plan, index));
   if (task.idle != 0) json["idle"] = task.idle;
   Json said;
   add_claims(plan, index, said);

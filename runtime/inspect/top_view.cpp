@@ -198,6 +198,17 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
   if (roles.has_target()) view.targets = names_of(roles.target, 1);
   for (const plan::RoleRecord& role : roles.others)
     view.others.push_back({std::string(plan.text(role.name)), names_of(role.first, role.count)});
+  for (const plan::RoleRecord& role : roles.things) {
+    const std::string name(plan.text(role.name));
+    const std::string thing(plan::thing_in(plan.tables(), task, role));
+    if (name == "source") {
+      view.sources = {thing};
+    } else if (name == "target") {
+      view.targets = {thing};
+    } else {
+      view.others.push_back({name, {thing}});
+    }
+  }
   view.distractors = names_of(roles.distractors.first, roles.distractors.count);
   add_starts(plan, task, view);
   view.robot = plan.text(robot.name);

@@ -100,10 +100,15 @@ class Lister {
 // Of a task that has others than source, target and distractors: the bodies that instructions name.
 void list_roles(std::string& out, const Plan& plan, const TaskRecord& task) {
   const TaskRoles roles = roles_of(plan.tables(), task);
-  if (roles.has_both() && roles.others.empty()) return;
+  if (roles.has_both() && roles.others.empty() && roles.things.empty()) return;
   for (std::uint32_t i = 0; i < roles.objects; ++i) {
     fmt::format_to(std::back_inserter(out), "  body {} {}: {}\n", i,
                    label_of_body(plan.tables(), roles, i), plan.text(plan.bodies(task)[i].name));
+  }
+  for (const RoleRecord& role : roles.things) {
+    const bool is_part = role.kind == static_cast<std::uint32_t>(kPartRole);
+    fmt::format_to(std::back_inserter(out), "  {} {}: {} {}\n", is_part ? "body" : "region",
+                   role.first, plan.text(role.name), thing_in(plan.tables(), task, role));
   }
   out += "\n";
 }

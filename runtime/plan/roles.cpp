@@ -34,12 +34,34 @@ const RoleRecord* role_with(const TaskRoles& roles, std::uint32_t body) {
 
 }  // namespace
 
+bool is_of_thing(const RoleRecord& role) {
+  return role.kind == static_cast<std::uint32_t>(kPartRole) ||
+         role.kind == static_cast<std::uint32_t>(kRegionRole);
+}
+
+std::string_view thing_in(const Tables& tables, const TaskRecord& task, const RoleRecord& role) {
+  if (role.kind == static_cast<std::uint32_t>(kRegionRole))
+    return tables.text(tables.regions[role.first].name);
+  return tables.text(slice_of(tables.bodies, task.bodies)[role.first].name);
+}
+
+std::string_view thing_in(const Tables& tables, const TaskRecord& task, std::string_view name) {
+  for (const RoleRecord& role : roles_of(tables, task).things) {
+    if (tables.text(role.name) == name) return thing_in(tables, task, role);
+  }
+  return {};
+}
+
 TaskRoles roles_of(const Tables& tables, const TaskRecord& task) {
   TaskRoles roles;
   std::uint32_t next = 0, placed = 0;
   if (task.source != kNone) roles.source = next++;
   if (task.target != kNone) roles.target = next++;
-  roles.others = slice_of(tables.roles, task.roles);
+  const std::span<const RoleRecord> all = slice_of(tables.roles, task.roles);
+  std::size_t own = all.size();
+  while (own > 0 && is_of_thing(all[own - 1])) --own;
+  roles.others = all.first(own);
+  roles.things = all.subspan(own);
   for (const RoleRecord& role : roles.others) {
     if (is_placed(role)) placed += role.count;
     if (!is_placed(role)) next += role.count;
@@ -87,7 +109,18 @@ std::vector<std::string> axis_names_between(const Tables& tables, std::uint32_t 
         const std::string_view name = tables.text(role.name);
         if (is_placed(role) || std::find(known.begin(), known.end(), name) != known.end()) continue;
         known.push_back(name);
-        if (objects_in(tables, a, name) != objects_in(tables, b, name))
+        if (objects_in(tables, a, name) != objects_in(tables, b, name) ||
+            thing_in(tables, a, name) != thing_in(tables, b, name))
+          names.push_back("object." + std::string(name));
+      }
+      for (const RoleRecord& role : roles_of(tables, *task).things) {
+        const std::string_view name = tables.text(role.name);
+        if (name == "source" || name == "target" ||
+            std::find(known.begin(), known.end(), name) != known.end())
+          continue;
+        known.push_back(name);
+        if (!objects_in(tables, a, name).empty() || !objects_in(tables, b, name).empty() ||
+            thing_in(tables, a, name) != thing_in(tables, b, name))
           names.push_back("object." + std::string(name));
       }
     }

@@ -11,11 +11,17 @@
 
 namespace probe::plan {
 
+// Kinds of role records of which a part of a fixture is what fills the role, as that body of the
+// task, or a region, of which `first` is the index among all. Source and target stand among these
+// records where no object fills them.
+inline constexpr RoleKind kPartRole{4}, kRegionRole{5};
+
 // Bodies of a task. Those below `objects` are its objects, and the placements of its episodes are
 // in their order.
 struct TaskRoles {
   std::uint32_t source = kNone, target = kNone;  // a body, or none
   std::span<const RoleRecord> others;  // declared roles and, last, what the layout placed by name
+  std::span<const RoleRecord> things;  // roles, `source` and `target`, too, of parts and regions
   Slice distractors;
   std::uint32_t objects = 0;
 
@@ -24,6 +30,9 @@ struct TaskRoles {
   // What most of the field's tasks are: one thing goes to another.
   bool has_both() const { return has_source() && has_target(); }
 };
+
+// Filled with a part or a region of a fixture.
+bool is_of_thing(const RoleRecord& role);
 
 // The references of the task are verified, or are those of a writer.
 TaskRoles roles_of(const Tables& tables, const TaskRecord& task);
@@ -34,6 +43,11 @@ std::string_view role_of_body(const Tables& tables, const TaskRoles& roles, std:
 // The same, told apart where several have it: "distractor 2", "goods 1"; "placed 1" for one in
 // none.
 std::string label_of_body(const Tables& tables, const TaskRoles& roles, std::uint32_t body);
+
+// The part or region that fills a role: "cabinet.inside_top". One of the task's `things`.
+std::string_view thing_in(const Tables& tables, const TaskRecord& task, const RoleRecord& role);
+// The same by the role's name; empty where an object fills it or nothing.
+std::string_view thing_in(const Tables& tables, const TaskRecord& task, std::string_view role);
 
 // The declared role of that name; null where the task has none.
 const RoleRecord* find_role(const Tables& tables, const TaskRoles& roles, std::string_view name);

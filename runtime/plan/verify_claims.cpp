@@ -31,10 +31,16 @@ class ClaimCheck : FieldCheck {
  private:
   Status one(const ClaimRecord& claim) const {
     const TaskRecord& task = t.tasks[claim.task];
-    const std::uint32_t objects = roles_of(t, task).objects;
-    if (claim.body >= objects)
-      return fail(Rule::kClaimBody, &claim.body,
-                  fmt::format("body {} is no object of task `{}`", claim.body, t.text(task.name)));
+    const auto bodies = slice_of(t.bodies, task.bodies);
+    const auto can_be_meant = [&](std::uint32_t body) {
+      return body < bodies.size() &&
+             (bodies[body].kind == static_cast<std::uint32_t>(BodyKind::kObject) ||
+              bodies[body].kind == static_cast<std::uint32_t>(BodyKind::kPart));
+    };
+    if (!can_be_meant(claim.body))
+      return fail(
+          Rule::kClaimBody, &claim.body,
+          fmt::format("body {} is no object or part of task `{}`", claim.body, t.text(task.name)));
     const ProgramRecord& program = t.programs[claim.program];
     if (program.states.count > 0)
       return fail(Rule::kClaimProgram, &claim.program,
@@ -42,7 +48,8 @@ class ClaimCheck : FieldCheck {
     bool is_told = false;
     for (const MetricRecord& metric : slice_of(t.metrics, program.metrics)) {
       const std::optional<std::uint32_t> body = claimed_body(t.text(metric.name));
-      if (!body || *body >= objects || metric.type != static_cast<std::uint32_t>(MetricType::kBool))
+      if (!body || !can_be_meant(*body) ||
+          metric.type != static_cast<std::uint32_t>(MetricType::kBool))
         return fail(Rule::kClaimProgram, &claim.program,
                     fmt::format("`{}` is no truth of an object of task `{}`", t.text(metric.name),
                                 t.text(task.name)));

@@ -68,6 +68,7 @@ class RelationCheck : FieldCheck {
       PROBE_TRY(task_views(t.tasks[i]));
       PROBE_TRY(task_roles(t.tasks[i]));
       PROBE_TRY(task_bodies(t.tasks[i]));
+      PROBE_TRY(task_things(t.tasks[i]));
       PROBE_TRY(task_episodes(i));
       episodes += t.tasks[i].episodes.count;
     }
@@ -109,7 +110,17 @@ class RelationCheck : FieldCheck {
     std::uint64_t next = (k.source == kNone ? 0 : 1) + (k.target == kNone ? 0 : 1);
     bool is_last = false;
     std::vector<std::string_view> names;
+    bool is_thing = false;
     for (const RoleRecord& role : slice_of(t.roles, k.roles)) {
+      names.push_back(t.text(role.name));
+      if (is_of_thing(role)) {
+        is_thing = true;
+        continue;
+      }
+      if (is_thing)
+        return fail(Rule::kRoleOrder, &k.roles,
+                    fmt::format("role `{}` of task `{}` stands behind one of a part or region",
+                                t.text(role.name), t.text(k.name)));
       const bool is_placed = role.kind == static_cast<std::uint32_t>(RoleKind::kPlaced);
       if (is_placed) next += k.distractors;
       if (is_last || role.first != next)
@@ -118,7 +129,6 @@ class RelationCheck : FieldCheck {
                                 t.text(role.name), t.text(k.name), role.first, next));
       next += role.count;
       is_last = is_placed;
-      names.push_back(t.text(role.name));
     }
     std::ranges::sort(names);
     if (std::ranges::adjacent_find(names) != names.end())
@@ -131,7 +141,8 @@ class RelationCheck : FieldCheck {
   std::uint64_t objects_of(const TaskRecord& k) const {
     std::uint64_t objects =
         std::uint64_t{k.distractors} + (k.source == kNone ? 0 : 1) + (k.target == kNone ? 0 : 1);
-    for (const RoleRecord& role : slice_of(t.roles, k.roles)) objects += role.count;
+    for (const RoleRecord& role : slice_of(t.roles, k.roles))
+      objects += is_of_thing(role) ? 0 : role.count;
     return objects;
   }
 
@@ -188,6 +199,36 @@ class RelationCheck : FieldCheck {
                     fmt::format("link {} is finger `{}`, not `{}`", f, t.text(fingers[f].link),
                                 t.text(finger.name)));
       }
+    }
+    return {};
+  }
+
+  // Parts and regions that fill roles are of fixtures in the scene; source and target are filled
+  // once.
+  Status task_things(const TaskRecord& k) const {
+    const auto bodies = slice_of(t.bodies, k.bodies);
+    const auto is_part = [&](const BodyRecord& body) {
+      return body.kind == static_cast<std::uint32_t>(BodyKind::kPart);
+    };
+    for (const RoleRecord& role : roles_of(t, k).things) {
+      bool is_there = false;
+      if (role.kind == static_cast<std::uint32_t>(kPartRole)) {
+        is_there = role.first < bodies.size() && is_part(bodies[role.first]);
+      } else if (role.first < t.regions.size()) {
+        const RegionRecord& region = t.regions[role.first];
+        is_there = region.kind == static_cast<std::uint32_t>(BodyKind::kPart) &&
+                   std::ranges::any_of(bodies, [&](const BodyRecord& body) {
+                     return is_part(body) && body.index == region.index;
+                   });
+      }
+      const std::string_view name = t.text(role.name);
+      const bool is_twice =
+          (name == "source" && k.source != kNone) || (name == "target" && k.target != kNone);
+      if (is_there && !is_twice) continue;
+      return fail(Rule::kRoleThing, &k.roles,
+                  fmt::format("role `{}` of task `{}` {}", name, t.text(k.name),
+                              is_twice ? "is filled with an object, too"
+                                       : "has no part or region of its scene"));
     }
     return {};
   }

@@ -8,6 +8,7 @@
 #include "runtime/plan/axes.h"
 #include "runtime/plan/isa.h"
 #include "runtime/plan/readouts.h"
+#include "runtime/plan/roles.h"
 #include "runtime/plan/verify.h"
 #include "runtime/plan/verify_records.h"
 
@@ -83,16 +84,17 @@ Status RecordCheck::check(const PlacementRecord& p) const {
 
 Status RecordCheck::check(const RoleRecord& r) const {
   if (r.kind < static_cast<std::uint32_t>(RoleKind::kOne) ||
-      r.kind > static_cast<std::uint32_t>(RoleKind::kPlaced))
+      r.kind > static_cast<std::uint32_t>(kRegionRole))
     return fail(Rule::kRoleKind, &r.kind, fmt::format("role kind {} is not known", r.kind));
   const bool is_placed = r.kind == static_cast<std::uint32_t>(RoleKind::kPlaced);
   if (!is_placed) PROBE_TRY(check_word(r.name, "the name of a role"));
   const std::string_view name = is_placed ? "" : t.text(r.name);
-  if ((is_placed && r.name.length != 0) || name == "source" || name == "target" ||
-      name == "distractors" || name == "distractor")
+  const bool is_end = name == "source" || name == "target";
+  if ((is_placed && r.name.length != 0) || (is_end && !is_of_thing(r)) || name == "distractors" ||
+      name == "distractor")
     return fail(Rule::kRoleName, &r.name,
                 "a role has a name of its own, and what a layout places has none");
-  const bool is_one = r.kind == static_cast<std::uint32_t>(RoleKind::kOne);
+  const bool is_one = r.kind == static_cast<std::uint32_t>(RoleKind::kOne) || is_of_thing(r);
   if (r.count == 0 || r.count > kMaxBodies || (is_one && r.count != 1))
     return fail(Rule::kRoleCount, &r.count, fmt::format("{} bodies fill a role", r.count));
   PROBE_TRY(check_zero(r.zero));

@@ -134,9 +134,9 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
       strings.push_back(from(options.relative_to, e.video));
     }
     columns["sha"].push_back(e.row.trace_sha256.substr(0, 12));
-    for (auto& [name, values] : numbers.items()) {
-      const auto at = std::find_if(e.row.metrics.begin(), e.row.metrics.end(),
-                                   [&](const store::MetricValue& v) { return v.name == name; });
+    for (auto& [key, values] : numbers.items()) {
+      const std::string& name = key;
+      const auto at = std::ranges::find(e.row.metrics, name, &store::MetricValue::name);
       const bool known = e.valid() && at != e.row.metrics.end() && std::isfinite(at->value);
       values.push_back(known ? Json(rounded(at->value)) : Json());
     }

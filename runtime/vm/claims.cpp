@@ -27,7 +27,11 @@ std::string what_is_so(const plan::Plan& plan, std::uint32_t task, const ClaimVe
     denoted += (denoted.empty() ? "" : " and ") + name_of(plan, task, body);
     is_meant = is_meant || body == claim.body;
   }
-  std::string text = "it denotes " + (denoted.empty() ? "nothing" : denoted);
+  // What a layout put somewhere is called by its own name: "carrot in cabinet.inside_top".
+  const std::string_view own = plan.text(plan.bodies(plan.tasks()[task])[claim.body].name);
+  std::string text = claim.text.starts_with(std::string(own) + " ") && denoted.empty()
+                         ? std::string("it has moved")
+                         : "it denotes " + (denoted.empty() ? "nothing" : denoted);
   if (!is_meant && !denoted.empty()) text += ", not " + name_of(plan, task, claim.body);
   std::vector<std::uint32_t> shown = claim.denoted;
   if (!is_meant) shown.insert(shown.begin(), claim.body);

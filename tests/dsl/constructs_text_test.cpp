@@ -45,7 +45,8 @@ TEST_CASE("number, unit, quantity: the decimal is converted exactly and rounded 
       {"1kg/m3", "a density"},  {"1Ns", "an impulse"}, {"1deg", "an angle"},
       {"1rad", "an angle"},     {"1N", "a force"},     {"1Nm", "a torque"},
       {"1px", "a pixel count"}, {"1", "a number"}};
-  for (const auto& [text, name] : units) {
+  for (const auto& unit : units) {
+    const auto text = unit.first, name = unit.second;
     const auto wrong =
         analyze_with_suite("object o like red { density " + std::string(text) + "; name \"o\" }\n");
     if (std::string(name) == "a density") {

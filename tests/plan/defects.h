@@ -258,7 +258,7 @@ inline std::vector<Defect> task_defects() {
   return {
       {"CLAM", "stands behind one of task 1",
        [](Records& r, Writer& w) { give_claims(r, w, 2), std::swap(r.claims[0], r.claims[1]); }},
-      {"CLAM", "is no object of task",
+      {"CLAM", "is no object or part of task",
        [](Records& r, Writer& w) { give_claims(r, w, 1), r.claims[0].body = 2; }},
       {"CLAM", "remembers nothing",
        [](Records& r, Writer& w) { give_claims(r, w, 1), r.claims[0].program = 0; }},
@@ -276,7 +276,7 @@ inline std::vector<Defect> task_defects() {
        [](Records& r, Writer&) { r.metrics[1].readout = 9; }},
       {"ROLE", "role kind",
        [](Records& r, Writer& w) {
-         r.roles.push_back({w.text("helper"), 4, 2, 1});
+         r.roles.push_back({w.text("helper"), 7, 2, 1});
        }},
       {"ROLE", "a name of its own",
        [](Records& r, Writer& w) {

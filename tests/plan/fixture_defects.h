@@ -41,6 +41,21 @@ inline std::vector<Defect> fixture_defects() {
          r.episodes[0].joints = w.reals(std::vector<double>{0.5, 0});
        }},
       {"BODY", "is part 0, wanted is 1", [](Records& r, Writer&) { r.bodies[7].index = 0; }},
+      {"TASK", "role `helper` of task `carrot_on_plate` has no part or region of its scene",
+       [](Records& r, Writer& w) {
+         r.roles = {{w.text("helper"), 4, 2, 1, 0, 0}};
+         r.tasks[0].roles = {0, 1};
+       }},
+      {"TASK", "role `target` of task `carrot_on_plate` is filled with an object, too",
+       [](Records& r, Writer& w) {
+         r.roles = {{w.text("target"), 4, kDrawerBody, 1, 0, 0}};
+         r.tasks[0].roles = {0, 1};
+       }},
+      {"TASK", "stands behind one of a part or region",
+       [](Records& r, Writer& w) {
+         r.roles = {{w.text("place"), 5, 0, 1, 0, 0}, {w.text("helper"), 1, 2, 1, 0, 0}};
+         r.tasks[0].roles = {0, 2};
+       }},
       {"CODE", "names joint 5", [](Records& r, Writer&) { r.code[18].a = 5; }},
       {"CODE", "which turns", [](Records& r, Writer&) { r.code[18].a = 1; }},
   };

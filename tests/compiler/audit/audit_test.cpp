@@ -186,6 +186,19 @@ TEST_CASE("the same task twice is found") {
   CHECK(own.find(Kind::kDuplicate, "copied") != nullptr);
 }
 
+TEST_CASE("a drawer that is to be opened and begins open is found") {
+  const Audited own = audit_text(
+      "fixture cabinet { urdf \"fixtures/cabinet/cabinet.urdf\"; at (-27cm, 30cm, 87cm) }\n"
+      "scene furnished like table { fixture cabinet }\n"
+      "metrics opening { success = at end travel(cabinet.top) >= 10cm }\n"
+      "task shut like carrot_on_plate { scene furnished; metrics opening; say \"open the drawer\" "
+      "}\n"
+      "variant begun of shut { start cabinet.top 13cm }\n"
+      "suite own { tasks { shut, begun }; seeds 1 }\n");
+  CHECK(own.find(Kind::kHoldsAtStart, "begun") != nullptr);
+  CHECK(own.find(Kind::kHoldsAtStart, "shut") == nullptr);
+}
+
 TEST_CASE("a warning about a task of another suite is no finding of this one") {
   const std::string text =
       "@allow(absent, \"a test\")\nvariant odd of carrot_on_plate {\n"
