@@ -2,12 +2,12 @@
 // the kind of its joint.
 #include "compiler/define/robot.h"
 
-#include <filesystem>
 #include <set>
 #include <span>
 
 #include "compiler/define/control.h"
 #include "compiler/define/define.h"
+#include "compiler/define/described.h"
 #include "compiler/define/record.h"
 #include "compiler/define/robot_fit.h"
 #include "compiler/names/quantities.h"
@@ -294,16 +294,8 @@ void check_mesh_count(Context& context, const Robot& robot) {
 }
 
 void load_model(Context& context, std::span<const WrittenDrive> drives, Robot& robot) {
-  const std::string path = (std::filesystem::path(context.asset_root) / robot.urdf.text).string();
-  auto model = robot::load_urdf(path);
-  if (!model.ok()) {
-    context
-        .report(Situation::kUrdfUnreadable, robot.urdf.span,
-                "the robot description cannot be read: " + model.failure().message)
-        .note("looked for `" + robot.urdf.text + "` in the assets folder");
-    return;
-  }
-  robot.model = std::move(model).value();
+  robot.model = described_by(context, robot.urdf, "the robot description");
+  if (!robot.model) return;
   check_mesh_count(context, robot);
   check_link(context, robot.tcp, robot);
   for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);

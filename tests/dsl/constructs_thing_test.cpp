@@ -73,6 +73,32 @@ task t like base { scene room; layout empty; metrics opening; say "open {the tar
   CHECK(built.plan().text(built.plan().bodies(built.task("t"))[claim.body].name) == "chest.drawer");
 }
 
+TEST_CASE("thing: a question at the end is asked of a part, and of no task whose target is none") {
+  const Built built(kThings + R"(
+metrics opening { success = at end slide(target) > 5cm }
+questions seen { yesno open "Is {the target} open?" at end answer slide(target) > 5cm }
+task open_drawer like base { scene room; layout empty; metrics opening; say "open {the target}"
+  target chest.drawer }
+suite s { tasks { red_on_tray, open_drawer }; seeds 1; questions seen }
+)");
+  const auto& questions = built.plan().tables().questions;
+  REQUIRE(questions.size() == 1);
+  CHECK(questions[0].task == built.index("open_drawer"));
+  CHECK(built.plan().text(questions[0].text) == "Is the lower drawer open?");
+  CHECK(built.plan().tables().omissions.size() == 1);
+}
+
+TEST_CASE("thing: a derive goes over the parts of a fixture that a joint moves") {
+  const auto a = clean(kThings + R"(
+metrics opening { success = at end travel(target) >= 0.5 * range(target) }
+task open_drawer like base { scene room; layout empty; metrics opening; say "open {the target}"
+  target chest.drawer }
+derive "{t}_{p}" for t in { open_drawer }, p in parts of chest { target p }
+)");
+  CHECK(a->task("open_drawer_door").prompt == "open the door");
+  CHECK(axes_text(*a, "open_drawer_door") == "object.target");
+}
+
 TEST_CASE("thing: what does not fit a role is said") {
   const std::string stored =
       "metrics stored { success = at end within(position(source), target) }\n";
