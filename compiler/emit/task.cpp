@@ -103,7 +103,8 @@ plan::Slice Emitter::add_roles(const sema::Task& task, const std::vector<lower::
       if (role != id) continue;
       const bool is_part = model_.objects[thing].of->is_part();
       next = is_part ? body_in_role(bodies, role) : region_index(model_.objects[thing]);
-      add(writer_.text(model_.roles[id].name), is_part ? plan::kPartRole : plan::kRegionRole, 1);
+      add(writer_.text(model_.roles[id].name),
+          is_part ? plan::RoleKind::kPart : plan::RoleKind::kRegion, 1);
     }
   }
   if (rows.empty()) return {};

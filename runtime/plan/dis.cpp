@@ -106,7 +106,7 @@ void list_roles(std::string& out, const Plan& plan, const TaskRecord& task) {
                    label_of_body(plan.tables(), roles, i), plan.text(plan.bodies(task)[i].name));
   }
   for (const RoleRecord& role : roles.things) {
-    const bool is_part = role.kind == static_cast<std::uint32_t>(kPartRole);
+    const bool is_part = role.kind == static_cast<std::uint32_t>(RoleKind::kPart);
     fmt::format_to(std::back_inserter(out), "  {} {}: {} {}\n", is_part ? "body" : "region",
                    role.first, plan.text(role.name), thing_in(plan.tables(), task, role));
   }

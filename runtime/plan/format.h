@@ -337,9 +337,12 @@ enum class RoleKind : std::uint32_t {
   kOne = 1,     // one object
   kSet = 2,     // one or more
   kPlaced = 3,  // in no role: what the layout puts into the scene by name
+  kPart = 4,    // a part of a fixture: that body of the task
+  kRegion = 5,  // `first` is of kRegions
 };
 
 // What fills a role beside source, target and distractors: bodies [first, first + count) of a task.
+// Source and target stand here, too, where a part or a region fills them.
 struct RoleRecord {
   StringRef name;          // as declared; empty: kPlaced
   std::uint32_t kind = 0;  // RoleKind

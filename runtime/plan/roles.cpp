@@ -35,12 +35,12 @@ const RoleRecord* role_with(const TaskRoles& roles, std::uint32_t body) {
 }  // namespace
 
 bool is_of_thing(const RoleRecord& role) {
-  return role.kind == static_cast<std::uint32_t>(kPartRole) ||
-         role.kind == static_cast<std::uint32_t>(kRegionRole);
+  return role.kind == static_cast<std::uint32_t>(RoleKind::kPart) ||
+         role.kind == static_cast<std::uint32_t>(RoleKind::kRegion);
 }
 
 std::string_view thing_in(const Tables& tables, const TaskRecord& task, const RoleRecord& role) {
-  if (role.kind == static_cast<std::uint32_t>(kRegionRole))
+  if (role.kind == static_cast<std::uint32_t>(RoleKind::kRegion))
     return tables.text(tables.regions[role.first].name);
   return tables.text(slice_of(tables.bodies, task.bodies)[role.first].name);
 }

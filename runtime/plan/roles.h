@@ -11,11 +11,6 @@
 
 namespace probe::plan {
 
-// Kinds of role records of which a part of a fixture is what fills the role, as that body of the
-// task, or a region, of which `first` is the index among all. Source and target stand among these
-// records where no object fills them.
-inline constexpr RoleKind kPartRole{4}, kRegionRole{5};
-
 // Bodies of a task. Those below `objects` are its objects, and the placements of its episodes are
 // in their order.
 struct TaskRoles {

@@ -212,7 +212,7 @@ class RelationCheck : FieldCheck {
     };
     for (const RoleRecord& role : roles_of(t, k).things) {
       bool is_there = false;
-      if (role.kind == static_cast<std::uint32_t>(kPartRole)) {
+      if (role.kind == static_cast<std::uint32_t>(RoleKind::kPart)) {
         is_there = role.first < bodies.size() && is_part(bodies[role.first]);
       } else if (role.first < t.regions.size()) {
         const RegionRecord& region = t.regions[role.first];

@@ -84,7 +84,7 @@ Status RecordCheck::check(const PlacementRecord& p) const {
 
 Status RecordCheck::check(const RoleRecord& r) const {
   if (r.kind < static_cast<std::uint32_t>(RoleKind::kOne) ||
-      r.kind > static_cast<std::uint32_t>(kRegionRole))
+      r.kind > static_cast<std::uint32_t>(RoleKind::kRegion))
     return fail(Rule::kRoleKind, &r.kind, fmt::format("role kind {} is not known", r.kind));
   const bool is_placed = r.kind == static_cast<std::uint32_t>(RoleKind::kPlaced);
   if (!is_placed) PROBE_TRY(check_word(r.name, "the name of a role"));
