@@ -48,6 +48,29 @@ TEST_CASE("a phrase of places is clear where the relation holds of its object al
   CHECK(said(row("10cm", "-20cm", "0cm", "20cm"), "amid", "blue, pale") == "");
 }
 
+TEST_CASE("what the words denote in that start is said, and what they lack in the scene") {
+  CHECK(said(row("20cm", "-20cm"), "side").find("note: there it denotes `blue`\n") !=
+        std::string::npos);
+  CHECK(said(row("-20cm", "-10cm"), "by_tray").find("note: there it denotes `blue`, too\n") !=
+        std::string::npos);
+  CHECK(said(row("10cm", "-20cm"), "amid")
+            .find("note: `pale` is not in the scene of `t`: nothing is `between` to it\n") !=
+        std::string::npos);
+}
+
+TEST_CASE("words for a joint go the way that success goes") {
+  const auto told = [](const std::string& words) {
+    return test::analyze_with_suite(std::string(test::kChest) +
+                                    "metrics far { success = at end travel(chest.slide) > 10cm }\n"
+                                    "task t like red_on_tray { scene room; metrics far; say \"" +
+                                    words + " with {the source}, before {the target}\" }\n")
+        ->codes();
+  };
+  CHECK(told("open the drawer") == "");
+  CHECK(told("close the drawer") == "P1202");
+  CHECK(told("close the door and open the drawer") == "");
+}
+
 TEST_CASE("where it does not hold, or of another one too, the start is named and drawn") {
   const std::string wrong = said(row("20cm", "-20cm"), "side");
   CHECK(first_line(wrong) ==

@@ -29,6 +29,17 @@ TEST_CASE("a name of another kind is no suggestion") {
   CHECK_FALSE(a->diagnostics.items().front().fix.has_value());
 }
 
+TEST_CASE("where nothing is near, what there is is told: at most eight, the nearest first") {
+  const auto scene = analyze_with_suite("variant v of red_on_tray { scene day }");
+  CHECK(scene->said().find("there is `bench`") != std::string::npos);
+  std::string objects;
+  for (int i = 0; i < 6; ++i)
+    objects += "object extra" + std::to_string(i) + " like red { name \"extra\" }\n";
+  const auto object = analyze_with_suite(objects + "variant v of red_on_tray { source xtr }");
+  CHECK(object->said().find("there are `red`, `tray`, `extra0`, `extra1`, `extra2`, `extra3`, "
+                            "`extra4`, `extra5` and 2 more") != std::string::npos);
+}
+
 TEST_CASE("every kind of reference is checked") {
   const std::pair<const char*, const char*> cases[] = {
       {"task t like bse { }", "bse"},
