@@ -34,7 +34,8 @@ std::vector<OutputFile> make_all() {
                      make_sink_fixture,
                      make_sink_scene,
                      make_kitchen_scene,
-                     make_kitchen_fixtures}) {
+                     make_kitchen_fixtures,
+                     make_textures}) {
     for (OutputFile& file : make()) all.push_back(std::move(file));
   }
   return all;

@@ -40,6 +40,7 @@ std::vector<OutputFile> make_sink_fixture();      // fixtures/sink/
 std::vector<OutputFile> make_sink_scene();        // scenes/sink/
 std::vector<OutputFile> make_kitchen_scene();     // scenes/kitchen/
 std::vector<OutputFile> make_kitchen_fixtures();  // fixtures/cabinet/, stove/, microwave/
+std::vector<OutputFile> make_textures();          // textures/<name>.png
 
 // All of them, without the manifest.
 std::vector<OutputFile> make_all();

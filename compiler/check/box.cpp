@@ -24,10 +24,10 @@ std::string exact_centimetres(double metres) {
 
 bool differs(const Object& object, const Bounds& mesh) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const double low = std::abs(object.box_min[i] - mesh.low[i]);
-    const double high = std::abs(object.box_max[i] - mesh.high[i]);
+    const double low = std::abs(object.unscaled.box_min[i] - mesh.low[i]);
+    const double high = std::abs(object.unscaled.box_max[i] - mesh.high[i]);
     const double side = mesh.high[i] - mesh.low[i];
-    const double longer = std::abs(object.box_max[i] - object.box_min[i] - side);
+    const double longer = std::abs(object.unscaled.box_max[i] - object.unscaled.box_min[i] - side);
     if (std::max(low, high) > kMostOff + 1e-9) return true;
     if (longer > kMostPart * side + 1e-9 && longer > kLeastCounted) return true;
   }
@@ -71,7 +71,8 @@ void check_boxes(const Model& model, const std::string& asset_root, Reporter& re
     const std::string box = box_statement(*mesh);
     Diagnostic& found = reporter.report(Code::P0506, own_box ? object.box_span : object.mesh.span,
                                         "the box of `" + object.name + "` is not that of its mesh");
-    const std::string declared = "declared " + sides(object.box_min, object.box_max);
+    const std::string declared =
+        "declared " + sides(object.unscaled.box_min, object.unscaled.box_max);
     const std::string measured = "the mesh measures " + sides(mesh->low, mesh->high);
     if (own_box) {
       found.point(declared).label(object.mesh.span, measured);

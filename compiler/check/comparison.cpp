@@ -31,7 +31,10 @@ const Span* statement_of(const Task& task, plan::Axis axis) {
     case plan::Axis::kLanguageParaphrase:
       return &task.say_span;
     case plan::Axis::kLayout:
+    case plan::Axis::kRobot:
       return &task.layout_span;
+    case plan::Axis::kLatency:
+      return &task.delay_span;
     case plan::Axis::kLanguageAppearance:
     case plan::Axis::kLanguageCommonsense:
     case plan::Axis::kLanguageSpatial:
@@ -39,6 +42,9 @@ const Span* statement_of(const Task& task, plan::Axis axis) {
     case plan::Axis::kFixture:
     case plan::Axis::kLight:
     case plan::Axis::kCamera:
+    case plan::Axis::kSceneTexture:
+    case plan::Axis::kSceneGeometry:
+    case plan::Axis::kSensor:
     case plan::Axis::kGoal:
       break;
   }

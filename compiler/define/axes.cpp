@@ -1,6 +1,7 @@
 #include "compiler/define/axes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "compiler/define/fixture.h"
 #include "compiler/define/role.h"
@@ -112,20 +113,52 @@ bool same_cameras(const Model& model, const Task& a, const Task& b) {
   return has_names(here) == has_names(there);
 }
 
-// Camera and light are axes of their own.
+// What the cameras do to their pictures; of other views it is no question.
+bool same_sensors(const Model& model, const Task& a, const Task& b) {
+  const std::vector<View> here = views_of(model, a), there = views_of(model, b);
+  if (here.size() != there.size()) return true;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    if (!(model.cameras[here[i].camera].sensor == model.cameras[there[i].camera].sensor))
+      return false;
+  }
+  return true;
+}
+
+bool same_covers(const Scene& a, const Scene& b) {
+  return std::equal(a.covers.begin(), a.covers.end(), b.covers.begin(), b.covers.end(),
+                    [](const auto& p, const auto& q) {
+                      return p.first == q.first && p.second.is_same(q.second);
+                    });
+}
+
+// At the same place, or as high above another surface.
+bool stands_alike(const std::array<double, 3>& a, double surface_a, const std::array<double, 3>& b,
+                  double surface_b) {
+  constexpr double kRounding = 1e-9;  // m
+  return a[0] == b[0] && a[1] == b[1] &&
+         (a[2] == b[2] || std::abs((a[2] - surface_a) - (b[2] - surface_b)) <= kRounding);
+}
+
+// Camera, light, textures and the surface's height are axes of their own.
 bool same_scene(const Model& model, const Scene& a, const Scene& b) {
   const auto joints = [](const Scene& scene) {
     std::vector<double> values;
     for (const Quantity& joint : scene.joints) values.push_back(joint.si());
     return values;
   };
-  return a.robot == b.robot && a.base_position == b.base_position && a.base_turn == b.base_turn &&
-         joints(a) == joints(b) && a.surface_z == b.surface_z && a.area == b.area &&
-         text_of(a.fixture) == text_of(b.fixture) && a.fixture_position == b.fixture_position &&
+  return a.robot == b.robot &&
+         stands_alike(a.base_position, a.surface_z, b.base_position, b.surface_z) &&
+         a.base_turn == b.base_turn && joints(a) == joints(b) && a.area == b.area &&
+         text_of(a.fixture) == text_of(b.fixture) &&
+         stands_alike(a.fixture_position, a.surface_z, b.fixture_position, b.surface_z) &&
          text_of(a.backdrop) == text_of(b.backdrop) &&
          text_of(main_photo(a)) == text_of(main_photo(b)) && a.physics_hz == b.physics_hz &&
          a.friction == b.friction && a.air_density == b.air_density &&
          a.air_viscosity == b.air_viscosity && same_fixtures(model, a, b);
+}
+
+bool is_same_place(const Model& model, const Scene& a, const Scene& b) {
+  return same_scene(model, a, b) && same_covers(a, b) && a.surface_z == b.surface_z;
 }
 
 bool same_goal(const Model& model, const Task& a, const Task& b) {
@@ -141,6 +174,13 @@ bool is_seen(const Object& object) { return !object.seen_in.empty(); }
 
 // Nothing but words and tags tells the two apart.
 bool is_same_body(const Object& a, const Object& b) {
+  const auto paint = [](const Object& object) {
+    return object.paint ? std::optional(object.paint->rgb) : std::nullopt;
+  };
+  if (a.scale != b.scale || paint(a) != paint(b) ||
+      a.texture.has_value() != b.texture.has_value() ||
+      (a.texture && !a.texture->is_same(*b.texture)))
+    return false;
   return a.mesh.text == b.mesh.text && a.box_min == b.box_min && a.box_max == b.box_max &&
          a.density == b.density && a.friction == b.friction;
 }
@@ -166,7 +206,9 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
   const Layout& layout = model.layouts[a.layout];
   if (!same_goal(model, a, b) || !same_layout(layout, model.layouts[b.layout]) ||
       !same_choice(a, b) ||
-      (a.scene != b.scene && !same_scene(model, model.scenes[a.scene], model.scenes[b.scene])) ||
+      (a.scene != b.scene && !is_same_place(model, model.scenes[a.scene], model.scenes[b.scene])) ||
+      layout.joints_jitter != model.layouts[b.layout].joints_jitter || a.delay != b.delay ||
+      !same_sensors(model, a, b) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) || joint_starts_of(model, a) != joint_starts_of(model, b) ||
       a.distractors.size() != b.distractors.size() || a.objects().size() != b.objects().size() ||
@@ -244,6 +286,10 @@ class Comparison {
                !same_choice(task_, baseline_) || !same_poses(model_, task_, baseline_);
       case plan::Axis::kScene:
         return scene_moves_;
+      case plan::Axis::kSceneTexture:
+        return !scene_moves_ && !same_covers(scene(task_), scene(baseline_));
+      case plan::Axis::kSceneGeometry:
+        return !scene_moves_ && scene(task_).surface_z != scene(baseline_).surface_z;
       // Another scene's joints begin where they do.
       case plan::Axis::kFixture:
         return !scene_moves_ &&
@@ -258,6 +304,13 @@ class Comparison {
       case plan::Axis::kCamera:
         return (!scene_moves_ || !task_.cameras.empty() || !baseline_.cameras.empty()) &&
                !same_cameras(model_, task_, baseline_);
+      case plan::Axis::kSensor:
+        return !same_sensors(model_, task_, baseline_);
+      case plan::Axis::kRobot:
+        return model_.layouts[task_.layout].joints_jitter !=
+               model_.layouts[baseline_.layout].joints_jitter;
+      case plan::Axis::kLatency:
+        return task_.delay != baseline_.delay;
       case plan::Axis::kGoal:
         return !same_goal(model_, task_, baseline_);
     }
@@ -265,6 +318,7 @@ class Comparison {
   }
 
  private:
+  const Scene& scene(const Task& task) const { return model_.scenes[task.scene]; }
   static std::vector<ObjectId> sorted(std::vector<ObjectId> objects) {
     std::sort(objects.begin(), objects.end());
     return objects;
@@ -379,6 +433,11 @@ bool uses(const Model& model, const Task& task, plan::Axis axis) {
     case plan::Axis::kFixture:
     case plan::Axis::kLight:
     case plan::Axis::kCamera:
+    case plan::Axis::kSceneTexture:
+    case plan::Axis::kSceneGeometry:
+    case plan::Axis::kSensor:
+    case plan::Axis::kRobot:
+    case plan::Axis::kLatency:
     case plan::Axis::kGoal:
       break;
   }

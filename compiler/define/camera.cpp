@@ -1,4 +1,6 @@
 // `camera`: where it is mounted, where it looks, what its picture is.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -104,6 +106,60 @@ struct CameraReader {
               .value_or(1);
     }
   }
+  // What a copy had is replaced whole.
+  void operator()(const syntax::SensorStmt& stmt) {
+    plan::SensorRecord& sensor = camera.sensor = {};
+    const auto share = [&](const std::optional<syntax::Quantity>& written, double most,
+                           double& to) {
+      if (!written) return;
+      const auto value =
+          read_si(context, *written, dim::kNumber, "noise, exposure and dropped are numbers");
+      if (!value) return;
+      if (!(*value >= 0 && *value <= most)) {
+        context.report(Situation::kColorRange, written->span,
+                       fmt::format("expected a number between 0 and {}", most));
+        return;
+      }
+      to = *value;
+    };
+    share(stmt.noise, 1, sensor.noise);
+    share(stmt.dropped, 1, sensor.dropped);
+    sensor.mirrored = stmt.mirrored ? 1 : 0;
+    share(stmt.exposure, plan::kMaxExposure, sensor.exposure);
+    if (stmt.exposure && sensor.exposure == 0 && context.mistakes() == 0)
+      context.report(Situation::kNotPositive, stmt.exposure->span,
+                     "expected an exposure of more than 0");
+    if (sensor.exposure == 1) sensor.exposure = 0;
+    if (stmt.blur) {
+      const auto blur = read_positive(context, *stmt.blur, dim::kPixel,
+                                      {"`blur` takes pixels", plan::Magnitude::kPixel});
+      if (blur && *blur > plan::kMaxBlur)
+        context.report(Situation::kColorRange, stmt.blur->span,
+                       fmt::format("expected a blur of at most {}px", plan::kMaxBlur));
+      sensor.blur = blur.value_or(0);
+    }
+    if (stmt.patch_low && stmt.patch_high) patch(*stmt.patch_low, *stmt.patch_high);
+  }
+  void patch(const syntax::Point& low, const syntax::Point& high) {
+    const char* takes = "a patch takes shares of the picture's width and height";
+    const auto from = read_point(context, low, 2, 2, dim::kNumber, takes);
+    const auto to = read_point(context, high, 2, 2, dim::kNumber, takes);
+    if (!from || !to) return;
+    const std::array<double, 4> edges = {(*from)[0].si(), (*from)[1].si(), (*to)[0].si(),
+                                         (*to)[1].si()};
+    for (const double edge : edges) {
+      if (edge >= 0 && edge <= 1) continue;
+      context.report(Situation::kColorRange, join(low.span, high.span),
+                     "expected shares of the picture between 0 and 1, (0, 0) at the left top");
+      return;
+    }
+    if (edges[0] < edges[2] && edges[1] < edges[3]) {
+      camera.sensor.patch = edges;
+      return;
+    }
+    context.report(Situation::kCornersSwapped, join(low.span, high.span),
+                   "the second corner of a patch lies right of the first and below it");
+  }
   std::uint32_t size(const syntax::Int& value) {
     if (value.value >= 1 && value.value <= plan::kMaxPixels)
       return static_cast<std::uint32_t>(value.value);
@@ -115,6 +171,8 @@ struct CameraReader {
 };
 
 }  // namespace
+
+bool Camera::has_sensor() const { return !(sensor == plan::SensorRecord{}); }
 
 bool Camera::operator==(const Camera& other) const {
   return mount_link.text == other.mount_link.text && aim == other.aim &&

@@ -1,6 +1,8 @@
 // `derive`: one task for each member of a set and each choice of phrases. What it makes is a
 // variant of that member, named by the text of the derive.
 #include <algorithm>
+#include <charconv>
+#include <map>
 
 #include "compiler/define/axes.h"
 #include "compiler/define/in_start.h"
@@ -11,6 +13,7 @@
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
+#include "compiler/define/views.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::sema {
@@ -21,6 +24,14 @@ bool is_identifier(const std::string& text) {
   return !text.empty() && is_letter(text[0]) && std::all_of(text.begin(), text.end(), [&](char c) {
     return is_letter(c) || c == '_' || (c >= '0' && c <= '9');
   });
+}
+
+// A number in a name: "0.8" is 0_8 and "-3cm" m3cm.
+std::string as_name(std::string_view value) {
+  std::string name(value);
+  std::ranges::replace(name, '.', '_');
+  std::ranges::replace(name, '-', 'm');
+  return name;
 }
 
 class Derive {
@@ -75,6 +86,11 @@ class Derive {
       } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
         for (const syntax::Name& object : objects->objects)
           fits = find_thing(context_, object).has_value() && fits;
+      } else if (const auto* declared = std::get_if<syntax::BinderDeclared>(&binder.over)) {
+        for (const syntax::Name& one : declared->names)
+          fits = names_of(declared->of).find(one, context_.diagnostics).has_value() && fits;
+      } else if (const auto* numbers = std::get_if<syntax::BinderNumbers>(&binder.over)) {
+        fits = check_numbers(binder, *numbers) && fits;
       } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
         if (others->role.text == "parts") {
           const auto fixture = context_.symbols.fixtures.find(others->task, context_.diagnostics);
@@ -111,6 +127,61 @@ class Derive {
                 "this `derive` goes over no set of tasks")
         .help("add a binder such as `for t in tasks`");
     return false;
+  }
+
+  const NameTable& names_of(syntax::BinderDeclared::Of of) const {
+    switch (of) {
+      case syntax::BinderDeclared::Of::kLights:
+        return context_.symbols.lights;
+      case syntax::BinderDeclared::Of::kCameras:
+        return context_.symbols.cameras;
+      case syntax::BinderDeclared::Of::kScenes:
+        break;
+    }
+    return context_.symbols.scenes;
+  }
+
+  // Whole numbers of a range without unit; what a list holds is held against its use.
+  bool check_numbers(const syntax::Binder& binder, const syntax::BinderNumbers& numbers) {
+    constexpr long long kMost = 1000;
+    std::vector<syntax::Quantity>& values = numbers_[&binder];
+    if (!numbers.last) {
+      values = numbers.values;
+      return true;
+    }
+    const auto first = whole_of(numbers.values.front()), last = whole_of(*numbers.last);
+    if (!first || !last || *last < *first || *last - *first >= kMost) {
+      context_.report(Situation::kRangeOfNumbers, binder.span,
+                      "expected a range of at most 1000 whole numbers, such as `0 .. 6`");
+      return false;
+    }
+    for (long long value = *first; value <= *last; ++value) {
+      context_.symbols.derived_names.push_back(std::to_string(value < 0 ? -value : value));
+      syntax::Quantity number;
+      number.span = binder.span;
+      number.digits = context_.symbols.derived_names.back();
+      number.negative = value < 0;
+      values.push_back(number);
+    }
+    return true;
+  }
+
+  static std::optional<long long> whole_of(const syntax::Quantity& written) {
+    long long value = 0;
+    const char* const end = written.digits.data() + written.digits.size();
+    const auto read = std::from_chars(written.digits.data(), end, value);
+    if (written.unit != syntax::Unit::kNone || read.ec != std::errc() || read.ptr != end ||
+        value > 1'000'000'000)
+      return std::nullopt;
+    return written.negative ? -value : value;
+  }
+
+  // As it is written: "-1.5cm".
+  std::string_view text_of(const syntax::Quantity& number) {
+    context_.symbols.derived_names.push_back((number.negative ? "-" : "") +
+                                             std::string(number.digits) +
+                                             std::string(to_text(number.unit)));
+    return context_.symbols.derived_names.back();
   }
 
   bool check_frame(const syntax::Name& frame) {
@@ -201,8 +272,13 @@ class Derive {
     std::vector<std::vector<Binding>> rows = {{}};
     for (const syntax::Binder& binder : node_.binders) {
       std::vector<Binding> values;
-      for (const std::string_view value : choices(binder, base, name))
-        values.push_back({binder.name.text, value});
+      if (std::holds_alternative<syntax::BinderNumbers>(binder.over)) {
+        for (const syntax::Quantity& number : numbers_[&binder])
+          values.push_back({binder.name.text, text_of(number), number});
+      } else {
+        for (const std::string_view value : choices(binder, base, name))
+          values.push_back({binder.name.text, value});
+      }
       if (rows.size() * values.size() > kMaxTasks) return report_limit();
       std::vector<std::vector<Binding>> longer;
       for (const std::vector<Binding>& row : rows) {
@@ -232,6 +308,24 @@ class Derive {
     return std::all_of(starts.begin(), starts.end(), [&](const Start& start) {
       return InStart(relations_, base, start).denote(phrase, object).is_clear();
     });
+  }
+
+  bool has_already(const Task& base, const syntax::BinderDeclared& declared,
+                   std::uint32_t index) const {
+    const Model& model = context_.model;
+    switch (declared.of) {
+      case syntax::BinderDeclared::Of::kLights:
+        return model.lights[light_of(model, base)] == model.lights[static_cast<LightId>(index)];
+      case syntax::BinderDeclared::Of::kCameras: {
+        const auto is_it = [&](const View& view) {
+          return view.camera == static_cast<CameraId>(index);
+        };
+        return std::ranges::any_of(views_of(model, base), is_it);
+      }
+      case syntax::BinderDeclared::Of::kScenes:
+        break;
+    }
+    return base.scene == static_cast<SceneId>(index);
   }
 
   // What a binder stands for in the variants of one task. What the task has already is no choice:
@@ -270,6 +364,11 @@ class Derive {
         if (std::find(present.begin(), present.end(), id) == present.end())
           values.push_back(object.text);
       }
+    } else if (const auto* declared = std::get_if<syntax::BinderDeclared>(&binder.over)) {
+      for (const syntax::Name& one : declared->names) {
+        if (!has_already(base, *declared, *names_of(declared->of).peek(one.text)))
+          values.push_back(one.text);
+      }
     } else if (const auto* others = std::get_if<syntax::BinderDistractors>(&binder.over)) {
       if (others->role.text == "parts") return parts_of(others->task.text, present);
       const auto role = find_role(context_, others->role.text);
@@ -304,7 +403,8 @@ class Derive {
       for (const Binding& binding : bindings) {
         if (binding.name != slot->name.text) continue;
         // Of a part its own name: `cabinet.top_drawer` gives `top_drawer`.
-        name += binding.value.substr(binding.value.rfind('.') + 1);
+        name += binding.number ? as_name(binding.value)
+                               : std::string(binding.value.substr(binding.value.rfind('.') + 1));
       }
     }
     const Span& span = node_.name.text.span;
@@ -353,6 +453,7 @@ class Derive {
   const Declared<syntax::DeriveDecl>& declared_;
   const syntax::DeriveDecl& node_;
   const syntax::Binder* tasks_ = nullptr;
+  std::map<const syntax::Binder*, std::vector<syntax::Quantity>> numbers_;
   std::vector<const syntax::Name*> of_task_;  // what `distractors of` names
 };
 

@@ -203,6 +203,15 @@ struct LayoutReader {
     context.report(Situation::kNegative, stmt.value.span, "expected a jitter of 0 or more");
     layout.jitter = 0;
   }
+  void operator()(const syntax::JointsJitterStmt& stmt) {
+    layout.joints_jitter =
+        read_si(context, stmt.value, dim::kAngle,
+                {"`joints jitter` takes an angle", plan::Magnitude::kJointPosition})
+            .value_or(0);
+    if (layout.joints_jitter >= 0) return;
+    context.report(Situation::kNegative, stmt.value.span, "expected a jitter of 0 or more");
+    layout.joints_jitter = 0;
+  }
   void operator()(const syntax::StartStmt& stmt) { read_start(context, stmt, layout.joint_starts); }
   void operator()(const syntax::DropStmt& stmt) {
     layout.has_drop = true;

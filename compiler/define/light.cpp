@@ -1,4 +1,5 @@
 // `light`: an ambient part and any number of suns.
+#include <algorithm>
 #include <cmath>
 
 #include "compiler/define/define.h"
@@ -9,7 +10,8 @@
 namespace probe::sema {
 
 bool Light::operator==(const Light& other) const {
-  if (ambient != other.ambient || occlusion != other.occlusion || suns.size() != other.suns.size())
+  if (ambient != other.ambient || occlusion != other.occlusion || color != other.color ||
+      suns.size() != other.suns.size())
     return false;
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||
@@ -19,6 +21,27 @@ bool Light::operator==(const Light& other) const {
   }
   return true;
 }
+
+namespace {
+
+// Zeros for white, which is what a light is that says nothing.
+std::array<double, 3> read_color(Context& context, const syntax::LightColorStmt& stmt) {
+  const auto read =
+      read_point(context, stmt.color, 3, 3, dim::kNumber,
+                 {"`color` takes factors of red, green and blue", plan::Magnitude::kLight});
+  if (!read) return {};
+  std::array<double, 3> color{};
+  for (std::size_t i = 0; i < 3; ++i) color[i] = (*read)[i].si();
+  if (std::ranges::any_of(color, [](double channel) { return channel < 0; })) {
+    context.report(Situation::kNegative, stmt.color.span, "expected factors of 0 or more");
+  } else if (color == std::array<double, 3>{}) {
+    context.report(Situation::kColorRange, stmt.color.span,
+                   "expected some light of red, green or blue, found none");
+  }
+  return color == std::array<double, 3>{1, 1, 1} ? std::array<double, 3>{} : color;
+}
+
+}  // namespace
 
 void define_lights(Context& context) {
   for (const auto& declared : context.symbols.light_decls) {
@@ -40,6 +63,10 @@ void define_lights(Context& context) {
           continue;
         }
         light.occlusion = static_cast<std::uint32_t>(ambient->occlusion->value);
+        continue;
+      }
+      if (const auto* color = std::get_if<syntax::LightColorStmt>(&stmt)) {
+        light.color = read_color(context, *color);
         continue;
       }
       const auto& written = std::get<syntax::SunStmt>(stmt);

@@ -1,10 +1,13 @@
 // `object`: its statements over what it copied.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "compiler/define/attribute.h"
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
 #include "compiler/define/fixture.h"
+#include "compiler/define/paint.h"
 #include "compiler/define/query.h"
 #include "compiler/define/record.h"
 #include "compiler/define/thing.h"
@@ -12,6 +15,7 @@
 #include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
 #include "runtime/plan/axes.h"
+#include "runtime/plan/limits.h"
 
 namespace probe::sema {
 namespace {
@@ -22,6 +26,7 @@ struct ObjectReader {
   const syntax::File& file;
   Object& object;
   bool has_is = false, has_maybe = false, has_seen = false;
+  Span look = {};  // the first `paint` or `texture` here
 
   void facts(const std::vector<syntax::Name>& names, Truth truth, bool& begun) {
     // Statements overwrite: a new list replaces the copied one of its kind.
@@ -37,6 +42,8 @@ struct ObjectReader {
     }
   }
 
+  std::array<double, 3>& box_min() { return object.unscaled.box_min; }
+  std::array<double, 3>& box_max() { return object.unscaled.box_max; }
   void begin_box(const Span& span) {
     object.has_box = object.box_is_read = true;
     object.box_span = span;
@@ -54,8 +61,8 @@ struct ObjectReader {
         continue;
       }
       // Halving is exact in binary, so the corners are the nearest doubles to the exact ones.
-      object.box_min[i] = -*side / 2;
-      object.box_max[i] = *side / 2;
+      box_min()[i] = -*side / 2;
+      box_max()[i] = *side / 2;
     }
   }
   void operator()(const syntax::BoxCornersStmt& stmt) {
@@ -67,9 +74,9 @@ struct ObjectReader {
                                  {"`box` takes lengths", plan::Magnitude::kPlace});
     if (!low || !high) return;
     for (std::size_t i = 0; i < 3; ++i) {
-      object.box_min[i] = (*low)[i].si();
-      object.box_max[i] = (*high)[i].si();
-      const double extent = object.box_max[i] - object.box_min[i];
+      box_min()[i] = (*low)[i].si();
+      box_max()[i] = (*high)[i].si();
+      const double extent = box_max()[i] - box_min()[i];
       if (extent > 0) {
         if (!check_magnitude(context, stmt.span, extent, plan::Magnitude::kExtent)) return;
         continue;
@@ -92,6 +99,35 @@ struct ObjectReader {
                                     {"`friction` takes a number", plan::Magnitude::kFriction})
                           .value_or(1);
   }
+  void operator()(const syntax::ScaleStmt& stmt) {
+    const auto factor = read_si(context, stmt.factor, dim::kNumber, "`scale` takes a number");
+    if (!factor) return;
+    if (*factor >= plan::kMinScale && *factor <= plan::kMaxScale) {
+      object.scale = *factor;
+      return;
+    }
+    context.report(
+        Situation::kScale, stmt.factor.span,
+        fmt::format("expected a factor between {} and {}", plan::kMinScale, plan::kMaxScale));
+  }
+  // A mesh has one look of all these; in a copy the later takes the other's place.
+  void begin_look(const Span& span) {
+    object.paint.reset();
+    object.texture.reset();
+    if (!look.is_none())
+      context.report(Code::P0203, span, "`" + object.name + "` has a paint or a texture, not both")
+          .label(look, "first said here");
+    look = span;
+  }
+  void operator()(const syntax::PaintStmt& stmt) {
+    begin_look(stmt.span);
+    object.paint = read_paint(context, stmt);
+  }
+  void operator()(const syntax::TextureStmt& stmt) {
+    constexpr double kSide = 0.1;  // m
+    begin_look(stmt.span);
+    object.texture = read_cover(context, stmt, kSide);
+  }
   void operator()(const syntax::IsStmt& stmt) { facts(stmt.facts, Truth::kYes, has_is); }
   void operator()(const syntax::MaybeStmt& stmt) { facts(stmt.facts, Truth::kUnknown, has_maybe); }
   void operator()(const syntax::SeenInStmt& stmt) {
@@ -111,7 +147,8 @@ struct ObjectReader {
     if (const auto turns = read_turns(context, stmt.poses)) object.rest = *turns;
   }
   void operator()(const syntax::RegionStmt& stmt) {
-    if (auto region = read_region(context, stmt)) put_region(object.regions, std::move(*region));
+    if (auto region = read_region(context, stmt))
+      put_region(object.unscaled.regions, std::move(*region));
   }
   void operator()(const syntax::NameStmt& stmt) {
     object.text = spelled(stmt.text);
@@ -157,6 +194,21 @@ struct ObjectReader {
   }
 };
 
+// Box and regions are written of the mesh as it is; factors of 1 leave every bit.
+void grow(Object& object) {
+  const auto times = [&](std::array<double, 3> point) {
+    for (double& value : point) value *= object.scale;
+    return point;
+  };
+  object.box_min = times(object.unscaled.box_min);
+  object.box_max = times(object.unscaled.box_max);
+  object.regions = object.unscaled.regions;
+  for (Region& region : object.regions) {
+    region.low = times(region.low);
+    region.high = times(region.high);
+  }
+}
+
 }  // namespace
 
 void read_look(Context& context, const syntax::File& file,
@@ -185,8 +237,10 @@ void define_objects(Context& context) {
     ObjectReader reader{context, *declared.file, object};
     for (const syntax::ObjectStmt& stmt : declared.node->body) std::visit(reader, stmt);
     if (object.rest.empty()) object.rest.push_back({});
+    grow(object);
   };
-  const auto complete = [&](const Object& object, bool) {
+  const auto complete = [&](const Object& object, bool is_read) {
+    if (is_read) check_paint(context, object);
     const auto need = [&](bool is_there, std::string_view statement) {
       require(context, is_there, "object", object.name, object.span, statement);
     };

@@ -7,6 +7,7 @@
 #include "compiler/define/control.h"
 #include "compiler/define/define.h"
 #include "compiler/define/fixture.h"
+#include "compiler/define/paint.h"
 #include "compiler/define/record.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
@@ -19,7 +20,7 @@ struct SceneReader {
   Context& context;
   Scene& scene;
   bool has_surface = false, has_physics = false, has_backdrop = false, has_cameras = false;
-  bool has_joints = false;
+  bool has_joints = false, has_fixture = false;
   Span fixture_region = {};
 
   void operator()(const syntax::SceneRobotStmt& stmt) {
@@ -74,6 +75,7 @@ struct SceneReader {
     }
   }
   void operator()(const syntax::FixtureStmt& stmt) {
+    has_fixture = true;
     scene.fixture = spelled(stmt.mesh);
     assign(scene.fixture_position,
            read_point(context, stmt.at, 3, 3, dim::kLength,
@@ -113,6 +115,20 @@ struct SceneReader {
   void operator()(const syntax::BackdropStmt& stmt) {
     has_backdrop = true;
     scene.backdrop = spelled(stmt.mesh);
+  }
+  void operator()(const syntax::TextureStmt& stmt) {
+    constexpr double kSide = 0.5;  // m
+    using Part = std::pair<std::string_view, plan::CoverOf>;
+    static constexpr Part kOf[] = {{"surface", plan::CoverOf::kSurface},
+                                   {"walls", plan::CoverOf::kWalls},
+                                   {"floor", plan::CoverOf::kFloor}};
+    const auto* const of = std::ranges::find(kOf, stmt.of->text, &Part::first);
+    if (of == std::end(kOf)) {
+      report_unknown(context.diagnostics, "part of a backdrop", *stmt.of,
+                     {"surface", "walls", "floor"});
+      return;
+    }
+    if (auto cover = read_cover(context, stmt, kSide)) scene.covers[of->second] = std::move(*cover);
   }
   void operator()(const syntax::SceneCameraStmt& stmt) {
     has_cameras = true;
@@ -280,9 +296,13 @@ void define_scenes(Context& context) {
   Own own;
   const auto read = [&](const Declared<syntax::SceneDecl>& declared, Scene& scene) {
     SceneReader reader{context, scene};
+    const double copied_z = scene.surface_z;
     const auto errors = context.mistakes();
     for (const syntax::SceneStmt& stmt : declared.node->body) std::visit(reader, stmt);
     if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
+    // What was copied stands on the surface as it stood there.
+    if (declared.node->like && reader.has_surface && scene.fixture && !reader.has_fixture)
+      scene.fixture_position[2] += scene.surface_z - copied_z;
     if (reader.has_backdrop) scene.backdrop_z = scene.surface_z;
     if (reader.has_cameras) scene.cameras_z = scene.surface_z;
     if (!reader.fixture_region.is_none() && !scene.fixture) {

@@ -35,6 +35,25 @@ std::string path_text(const syntax::Path& path) {
 
 }  // namespace
 
+// What a member is compared with, and what that is compared with, stands before it.
+void SetReader::add_baselines(Members& members) const {
+  Mask known(context_.model.tasks.size());
+  Members all;
+  const auto add = [&](TaskId id) {
+    if (known.has(id)) return;
+    known.add(id);
+    all.push_back(id);
+  };
+  for (const TaskId id : members) {
+    Members chain;
+    for (TaskId at = id; at != TaskId::kNone && chain.size() <= context_.model.tasks.size();
+         at = context_.model.tasks[at].baseline)
+      chain.push_back(at);
+    for (auto at = chain.rbegin(); at != chain.rend(); ++at) add(*at);
+  }
+  members = std::move(all);
+}
+
 SetReader::SetReader(Context& context, Mode mode)
     : context_(context),
       preview_(mode == Mode::kPreview),
@@ -159,6 +178,10 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span& sp
   Mask kept(context_.model.tasks.size());
   for (const auto& [draw, id] : draws) kept.add(id);
   std::erase_if(members, [&](TaskId id) { return !kept.has(id); });
+  if (sample.with_baselines) {
+    add_baselines(members);
+    return members;
+  }
   for (const TaskId id : members) {
     const TaskId baseline = context_.model.tasks[id].baseline;
     if (baseline != TaskId::kNone && !kept.has(baseline)) cuts_.push_back({id, span});

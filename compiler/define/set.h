@@ -39,6 +39,7 @@ class SetReader {
   Members read_node(const syntax::File& file, const Span&, const syntax::TaskSetBinary& binary);
   Members read_node(const syntax::File& file, const Span&, const syntax::TaskSetWhere& where);
   bool holds(const syntax::CondTest& test, const Task& task) const;
+  void add_baselines(Members& members) const;
 
   Context& context_;
   bool preview_;

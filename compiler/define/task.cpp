@@ -2,7 +2,11 @@
 // follows from the fields.
 #include "compiler/define/task.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
@@ -16,6 +20,7 @@
 #include "compiler/names/like.h"
 #include "compiler/names/quantities.h"
 #include "compiler/syntax/words.h"
+#include "runtime/base/sha256.h"
 #include "runtime/plan/limits.h"
 
 namespace probe::sema {
@@ -50,6 +55,41 @@ struct TaskReader {
       if (binding.name == name.text) return {name.span, binding.value};
     }
     return name;
+  }
+  // A number that a `derive` binds; nothing, and P0201, where the name is none.
+  std::optional<syntax::Quantity> bound_number(const Span& span, std::string_view binder) {
+    std::vector<std::string_view> known;
+    for (const Binding& binding : declared.bindings) {
+      if (!binding.number) continue;
+      known.push_back(binding.name);
+      if (binding.name != binder) continue;
+      syntax::Quantity number = *binding.number;
+      number.span = span;
+      return number;
+    }
+    report_unknown(context.diagnostics, "binder of numbers", {span, binder}, known)
+        .help("a number, or a name that a `derive` binds to some: `for t in core, k in 1 .. 4`");
+    poisoned = true;
+    return std::nullopt;
+  }
+  std::optional<syntax::Quantity> bound(const syntax::Quantity& written) {
+    if (written.binder.empty()) return written;
+    return bound_number(written.span, written.binder);
+  }
+  std::optional<syntax::Int> bound(const syntax::Int& written) {
+    if (written.binder.empty()) return written;
+    const auto number = bound_number(written.span, written.binder);
+    if (!number) return std::nullopt;
+    syntax::Int whole{written.span, 0, {}};
+    const char* const end = number->digits.data() + number->digits.size();
+    const auto read = std::from_chars(number->digits.data(), end, whole.value);
+    if (number->unit == syntax::Unit::kNone && !number->negative && read.ec == std::errc() &&
+        read.ptr == end)
+      return whole;
+    context.report(Code::P0302, written.span,
+                   "`" + std::string(written.binder) + "` is not bound to whole numbers");
+    poisoned = true;
+    return std::nullopt;
   }
   // `none` takes what was copied away again.
   void role(RoleId role, const syntax::Name& name) {
@@ -121,7 +161,7 @@ struct TaskReader {
     Symbols& symbols = context.symbols;
     switch (stmt.field) {
       case syntax::TaskField::kScene:
-        return field(task.scene, symbols.scenes, stmt.value);
+        return field(task.scene, symbols.scenes, bound(stmt.value));
       case syntax::TaskField::kSource:
         return role(RoleId::kSource, stmt.value);
       case syntax::TaskField::kTarget:
@@ -129,7 +169,7 @@ struct TaskReader {
       case syntax::TaskField::kMetrics:
         return field(task.metrics, symbols.metrics, stmt.value);
       case syntax::TaskField::kLight:
-        return field(task.light, symbols.lights, stmt.value);
+        return field(task.light, symbols.lights, bound(stmt.value));
     }
   }
   void operator()(const syntax::TaskLayoutStmt& stmt) {
@@ -144,7 +184,7 @@ struct TaskReader {
   }
   void operator()(const syntax::TaskCameraStmt& stmt) {
     Task::OtherCamera other;
-    field(other.camera, context.symbols.cameras, stmt.camera);
+    field(other.camera, context.symbols.cameras, bound(stmt.camera));
     if (other.camera == CameraId::kNone) return;
     if (stmt.as) other.as = spelled(*stmt.as);
     task.cameras.push_back(std::move(other));
@@ -153,6 +193,7 @@ struct TaskReader {
     task.distractors.clear();
     task.distractor_spans.clear();
     task.distractors_span = stmt.span;
+    if (stmt.count) return;  // drawn when the roles are known
     for (const syntax::Name& name : stmt.objects) {
       ObjectId object = ObjectId::kNone;
       field(object, context.symbols.objects, bound(name));
@@ -165,6 +206,41 @@ struct TaskReader {
       }
       task.distractors.push_back(object);
       task.distractor_spans.push_back(name.span);
+    }
+  }
+  // So many of these that have no role: every object draws its own number from the seed, its name
+  // and the task that this one copies, so that more of them are those and others.
+  void draw_distractors(const syntax::DistractorsStmt& stmt) {
+    const auto count = bound(*stmt.count), seed = bound(*stmt.seed);
+    if (!count || !seed) return;
+    std::vector<std::pair<Sha256, ObjectId>> draws;
+    const std::vector<ObjectId> taken = task.objects();
+    const std::string& of =
+        task.like == TaskId::kNone ? task.name : context.model.tasks[task.like].name;
+    for (const syntax::Name& name : stmt.objects) {
+      ObjectId object = ObjectId::kNone;
+      field(object, context.symbols.objects, name);
+      const auto is_it = [&](const auto& drawn) { return drawn.second == object; };
+      if (object == ObjectId::kNone || std::ranges::find(taken, object) != taken.end() ||
+          std::ranges::any_of(draws, is_it))
+        continue;
+      Hasher hasher;
+      hasher.text("distractors").u64(seed->value).text(of).text(name.text);
+      draws.emplace_back(hasher.finish(), object);
+    }
+    if (poisoned) return;
+    if (count->value > draws.size()) {
+      context.report(Situation::kSampleTooLarge, stmt.count->span,
+                     std::to_string(count->value) + " of " + std::to_string(draws.size()) +
+                         " objects that have no role in `" + task.name + "`");
+      poisoned = true;
+      return;
+    }
+    std::ranges::sort(draws);
+    draws.resize(count->value);
+    for (const auto& [draw, object] : draws) {
+      task.distractors.push_back(object);
+      task.distractor_spans.push_back(stmt.span);
     }
   }
   void operator()(const syntax::SayStmt& stmt) {
@@ -208,11 +284,17 @@ struct TaskReader {
     task.poses.push_back(std::move(pose));
   }
   void operator()(const syntax::StartStmt& stmt) {
-    poisoned = !read_start(context, stmt, task.joint_starts) || poisoned;
+    syntax::StartStmt said = stmt;
+    const auto value = bound(stmt.value);
+    if (!value) return;
+    said.value = *value;
+    poisoned = !read_start(context, said, task.joint_starts) || poisoned;
   }
   void operator()(const syntax::HorizonStmt& stmt) {
     task.horizon_span = stmt.span;
-    task.horizon = stmt.steps.value;
+    const auto steps = bound(stmt.steps);
+    if (!steps) return;
+    task.horizon = steps->value;
     if (task.horizon >= 1 && task.horizon <= plan::kMaxHorizon) return;
     context.report(
         Situation::kHorizon, stmt.steps.span,
@@ -220,13 +302,36 @@ struct TaskReader {
     poisoned = true;
   }
   void operator()(const syntax::IdleStmt& stmt) {
-    task.idle =
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(stmt.steps.value, plan::kMaxIdle));
-    if (stmt.steps.value <= plan::kMaxIdle) return;
+    const auto steps = bound(stmt.steps);
+    if (!steps) return;
+    task.idle = static_cast<std::uint32_t>(std::min<std::uint64_t>(steps->value, plan::kMaxIdle));
+    if (steps->value <= plan::kMaxIdle) return;
     context.report(
         Situation::kIdleTooLong, stmt.steps.span,
         "expected at most " + std::to_string(plan::kMaxIdle) + " steps of standing still");
     poisoned = true;
+  }
+  void operator()(const syntax::DelayStmt& stmt) {
+    task.delay = 0;
+    task.delay_time.reset();
+    task.delay_span = stmt.span;
+    if (const auto* written = std::get_if<syntax::Int>(&stmt.how_long)) {
+      const auto steps = bound(*written);
+      if (!steps) return;
+      task.delay =
+          static_cast<std::uint32_t>(std::min<std::uint64_t>(steps->value, plan::kMaxDelay));
+      if (steps->value <= plan::kMaxDelay) return;
+      context.report(Situation::kDelay, steps->span,
+                     "expected at most " + std::to_string(plan::kMaxDelay) + " steps");
+      poisoned = true;
+      return;
+    }
+    // How many steps that are depends on the robot.
+    const auto time = bound(std::get<syntax::Quantity>(stmt.how_long));
+    if (!time) return;
+    task.delay_time =
+        read_quantity(context, *time, dim::kTime, "`delay` takes a number of steps, or a time");
+    poisoned = poisoned || !task.delay_time;
   }
   void operator()(const syntax::MetricStmt& stmt) {
     Metric metric = read_metric(context, *declared.file, stmt);
@@ -319,6 +424,23 @@ void check_things(Context& context, const Task& task, bool& poisoned) {
 }
 
 // A joint that begins somewhere is in the scene.
+// A time in control steps of the task's robot.
+void count_delay(Context& context, Task& task, bool& poisoned) {
+  if (!task.delay_time) return;
+  const double rate = context.model.robots[context.model.scenes[task.scene].robot].control_hz;
+  const double steps = task.delay_time->si() * rate, whole = std::nearbyint(steps);
+  if (whole >= 0 && whole <= plan::kMaxDelay && std::abs(steps - whole) <= 1e-9 * whole) {
+    task.delay = static_cast<std::uint32_t>(whole);
+    return;
+  }
+  poisoned = true;
+  Diagnostic& said =
+      context.report(Situation::kDelay, task.delay_span,
+                     fmt::format("expected a whole number of control steps up to {}, found {:.6g}",
+                                 plan::kMaxDelay, steps));
+  if (rate > 0) said.help(fmt::format("a control step is {:.6g}ms here", 1000 / rate));
+}
+
 void check_joint_starts(Context& context, const Task& task, bool& poisoned) {
   const Scene& scene = context.model.scenes[task.scene];
   const std::vector<JointStart>* said[] = {&context.model.layouts[task.layout].joint_starts,
@@ -552,6 +674,8 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   }
   for (const syntax::TaskStmt& stmt : *declared.body) {
     if (std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
+    const auto* drawn = std::get_if<syntax::DistractorsStmt>(&stmt);
+    if (drawn != nullptr && drawn->count) reader.draw_distractors(*drawn);
   }
   poisoned = poisoned || has_broken_part(model, task);
   for (const auto& [role, refer] : task.refer) {
@@ -572,6 +696,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   if (task.complete) check_things(context_, task, poisoned);
   if (task.complete) check_cameras(context_, task, poisoned);
   if (task.complete) check_joint_starts(context_, task, poisoned);
+  if (task.complete) count_delay(context_, task, poisoned);
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
   task.complete = task.complete && !poisoned;
   poison_[index] = poisoned;

@@ -19,6 +19,9 @@ void Emitter::add_camera(sema::CameraId id) {
   record.fy = camera.fy;
   record.cx = camera.cx;
   record.cy = camera.cy;
+  if (camera.has_sensor())
+    record.sensor =
+        plan::append(records().sensors, std::span<const plan::SensorRecord>(&camera.sensor, 1));
   records().cameras.push_back(record);
 }
 

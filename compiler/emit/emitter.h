@@ -127,6 +127,8 @@ class Emitter {
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
   void add_task(const sema::Task& task);
   plan::Slice add_joint_starts(const sema::Task& task);
+  plan::Slice add_arm_start(const sema::Task& task, std::size_t index);
+  plan::Slice add_covers(const std::map<plan::CoverOf, sema::Cover>& covers, AssetOwner owner);
   // What its words say of places; `index` is the task's. Shapes that are alike share programs.
   void add_claims(const sema::Task& task, const std::vector<lower::Body>& bodies,
                   std::uint32_t index);
@@ -171,7 +173,7 @@ class Emitter {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
   std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
   std::map<std::vector<double>, plan::Slice> placements_;
-  std::map<std::vector<double>, plan::Slice> joint_starts_;
+  std::map<std::vector<double>, plan::Slice> joint_starts_, arm_starts_;
   std::map<std::pair<const sema::Start*, double>, std::vector<plan::Slice>> placement_lists_;
   std::map<std::vector<std::uint32_t>, plan::Slice> views_, roles_;
   std::map<std::vector<std::uint32_t>, std::uint32_t> claim_programs_;  // by shape

@@ -10,6 +10,7 @@ void Emitter::add_light(sema::LightId id) {
   record.name = writer_.text(light.name);
   record.ambient = light.ambient;
   record.occlusion = light.occlusion;
+  record.color = light.color;
   record.suns = plan::append(records().suns, std::span<const plan::SunRecord>(light.suns));
   records().lights.push_back(record);
 }

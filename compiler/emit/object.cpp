@@ -1,7 +1,21 @@
 // Objects as records.
 #include "compiler/emit/emitter.h"
+#include "runtime/base/asset_path.h"
 
 namespace probe::emit {
+
+plan::Slice Emitter::add_covers(const std::map<plan::CoverOf, sema::Cover>& covers,
+                                AssetOwner owner) {
+  std::vector<plan::CoverRecord> rows;
+  for (const auto& [of, cover] : covers) {
+    const std::string path = assets_.find("textures/" + cover.picture.text, kPhotoExtensions);
+    const std::uint32_t picture =
+        assets_.add(path, plan::AssetKind::kPhoto, cover.picture.span, owner);
+    rows.push_back({static_cast<std::uint32_t>(of), picture, cover.side});
+  }
+  if (rows.empty()) return {};
+  return plan::append(records().covers, std::span<const plan::CoverRecord>(rows));
+}
 
 void Emitter::add_object(ObjectId id) {
   if (!objects_.add(id, size32(records().objects))) return;
@@ -18,6 +32,12 @@ void Emitter::add_object(ObjectId id) {
   record.box_max = object.box_max;
   record.density = object.density;
   record.friction = object.friction;
+  if (object.scale != 1) record.scale = object.scale;
+  if (object.paint) {
+    const auto& rgb = object.paint->rgb;
+    record.paint = {rgb[0], rgb[1], rgb[2], 1};
+  }
+  if (object.texture) record.cover = add_covers({{plan::CoverOf::kObject, *object.texture}}, owner);
   add_regions(object.regions, object.name, plan::BodyKind::kObject, size32(records().objects));
   add_span(plan::SpanKind::kObjects, size32(records().objects), object.span);
   records().objects.push_back(record);

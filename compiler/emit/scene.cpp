@@ -69,6 +69,15 @@ void Emitter::add_scene(sema::SceneId id) {
         assets_.add(meshes.collision, plan::AssetKind::kCollisionMesh, span, owner);
     record.fixture_position = scene.fixture_position;
   }
+  record.covers = add_covers(scene.covers, owner);
+  if (!scene.covers.empty() && (record.photo != plan::kNone || record.backdrop == plan::kNone)) {
+    diagnostics_
+        .report(Situation::kPhotoCovered, scene.covers.begin()->second.picture.span,
+                record.photo != plan::kNone
+                    ? "a photo stands before what this texture covers"
+                    : "scene `" + scene.name + "` has no backdrop that a texture could cover")
+        .help("textures cover the meshes of a `backdrop` that no photo stands before");
+  }
   record.base_position = scene.base_position;
   record.base_rotation = scene.base_turn.rotation;
   std::vector<double> joints;

@@ -1,6 +1,7 @@
 // Tasks as records, with their bodies, placements and episodes.
 #include <algorithm>
 
+#include "compiler/define/arm_start.h"
 #include "compiler/define/fixture.h"
 #include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
@@ -128,6 +129,15 @@ plan::Slice Emitter::add_joint_starts(const sema::Task& task) {
   return at->second;
 }
 
+// Nothing where the arm begins as its scene says.
+plan::Slice Emitter::add_arm_start(const sema::Task& task, std::size_t index) {
+  std::vector<double> start = arm_start_of(model_, task, index);
+  if (start.empty()) return {};
+  const auto [at, is_new] = arm_starts_.try_emplace(start, plan::Slice{});
+  if (is_new) at->second = writer_.reals(start);
+  return at->second;
+}
+
 void Emitter::add_task(const sema::Task& task) {
   const sema::Scene& scene = model_.scenes[task.scene];
   if (!model_.robots[scene.robot].model) return;
@@ -164,6 +174,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.distractors = size32(task.distractors);
   record.horizon = static_cast<std::uint32_t>(task.horizon);
   record.idle = task.idle;
+  record.delay = task.delay;
   record.baseline = tasks_[task.baseline];
   record.axes = record.baseline == plan::kNone ? 0 : task.axes;
   record.ood = task.ood;
@@ -178,6 +189,7 @@ void Emitter::add_task(const sema::Task& task) {
   for (std::size_t e = 0; e < task.starts.size(); ++e) {
     plan::EpisodeRecord episode;
     episode.joints = joints;
+    episode.arm = add_arm_start(task, e);
     episode.task = index;
     episode.index = static_cast<std::uint32_t>(e);
     episode.placements = placements[e];

@@ -11,7 +11,7 @@ const Centre& Centres::of(const Object& object) {
   if (!is_new) return at->second;
   const std::filesystem::path path =
       std::filesystem::path(asset_root_) / "objects" / object.mesh.text / "collision.obj";
-  if (const auto shape = scene::load_collision_mesh(path.string(), {1, 1, 1})) {
+  if (const auto shape = scene::load_collision_mesh(path.string(), Vec3::Constant(object.scale))) {
     at->second.at = shape->center_of_mass;
     return at->second;
   }

@@ -88,6 +88,21 @@ struct Region {
   std::array<double, 3> low{}, high{};  // m
 };
 
+// The colour of all of an object, sRGB.
+struct Paint {
+  std::array<std::uint8_t, 3> rgb{};
+  Span span;  // of the colour
+};
+
+// A picture that covers something, again and again.
+struct Cover {
+  Spelled picture;  // under assets/textures
+  double side = 0;  // m that one picture covers
+  bool is_same(const Cover& other) const {
+    return picture.text == other.picture.text && side == other.side;
+  }
+};
+
 // What a row of the objects is that is a part or a region of a fixture: it has words and facts, may
 // fill a role and is nowhere placed.
 struct OfFixture {
@@ -106,7 +121,14 @@ struct Object {
   Spelled text;  // in instructions
   bool bare = false;
   bool has_box = false, has_density = false, has_friction = false;
-  std::array<double, 3> box_min{}, box_max{};
+  std::array<double, 3> box_min{}, box_max{};  // with its scale
+  double scale = 1;
+  struct Unscaled {  // as written
+    std::array<double, 3> box_min{}, box_max{};
+    std::vector<Region> regions;
+  } unscaled;
+  std::optional<Paint> paint;
+  std::optional<Cover> texture;
   Span box_span;             // of the statement
   bool box_is_read = false;  // else something was wrong with it, and was reported
   double density = 0;
@@ -170,14 +192,17 @@ struct Camera {
   std::uint32_t width = 0, height = 0;
   std::uint32_t samples = 0;  // a pixel: 4 or 16, 0 for one
   double fx = 0, fy = 0, cx = 0, cy = 0;
-  bool operator==(const Camera& other) const;  // what is seen through it; the name does not count
+  plan::SensorRecord sensor;                   // what it does to its picture; zeros: nothing
+  bool operator==(const Camera& other) const;  // place and lens; neither name nor sensor
+  bool has_sensor() const;
 };
 
 struct Light {
   std::string name;
   Span span;
   double ambient = 0;
-  std::uint32_t occlusion = 0;  // rays a sample that find how open it is to ambient light
+  std::uint32_t occlusion = 0;    // rays a sample that find how open it is to ambient light
+  std::array<double, 3> color{};  // of all its light; zeros: white
   std::vector<plan::SunRecord> suns;
   bool operator==(const Light& other) const;
 };
@@ -280,7 +305,8 @@ struct Scene {
   std::vector<FixtureId> fixtures;                       // with joints
   std::vector<Region> surface_regions, fixture_regions;  // about (0, 0, surface_z); in the mesh
   std::optional<Spelled> backdrop;
-  std::vector<View> views;  // the first is what a policy with one picture sees
+  std::map<plan::CoverOf, Cover> covers;  // on the backdrop
+  std::vector<View> views;                // the first is what a policy with one picture sees
   LightId light = LightId::kNone;
   double air_density = 0, air_viscosity = 0;
   Span air_span;
@@ -345,6 +371,7 @@ struct Layout {
   Span given_span;  // of the statement; none where there is no file
   double jitter = 0;
   Span jitter_span;
+  double joints_jitter = 0;  // rad, of the robot's turning joints
   std::vector<JointStart> joint_starts;
   bool has_drop = false;
   double drop = 0;
@@ -450,7 +477,10 @@ struct Task {
   std::vector<PoseOverride> poses;
   std::vector<JointStart> joint_starts;
   std::uint64_t horizon = 0;
-  std::uint32_t idle = 0;         // steps of standing still before the first of the horizon
+  std::uint32_t idle = 0;              // steps of standing still before the first of the horizon
+  std::uint32_t delay = 0;             // steps until an action acts
+  std::optional<Quantity> delay_time;  // the same, as a time
+  Span delay_span;
   std::vector<Metric> overrides;  // `set`
 
   Span layout_span, say_span, distractors_span, horizon_span;

@@ -36,6 +36,9 @@ struct KeyOf {
   Key operator()(const syntax::TaskCameraStmt& stmt) const {
     return stmt.as ? "camera as " + std::string(stmt.as->text) : "camera";
   }
+  Key operator()(const syntax::TextureStmt& stmt) const {
+    return stmt.of ? "texture " + std::string(stmt.of->text) : "texture";
+  }
   Key operator()(const syntax::RoleStmt& stmt) const { return Key(stmt.role.text); }
   template <typename Stmt>
   Key operator()(const Stmt& stmt) const {

@@ -23,6 +23,7 @@ struct Declared {
 // A name that `derive` binds, with what it stands for in one of its tasks.
 struct Binding {
   std::string_view name, value;
+  std::optional<syntax::Quantity> number = {};
 };
 
 // A task is declared in one of four ways; this is what they have in common.

@@ -48,11 +48,13 @@ struct Quantity {
   std::string_view digits;
   Unit unit = Unit::kNone;
   bool negative = false;
+  std::string_view binder = {};  // of a `derive`, in place of all of it
 };
 
 struct Int {
   Span span;
   std::uint64_t value = 0;
+  std::string_view binder = {};  // of a `derive`, in place of the value
 };
 
 // `value` is what the escapes mean; `raw` stands between the quotes.
@@ -259,6 +261,7 @@ struct TaskSetSample {  // `sample 12 of x seed 7`
   Int count;
   TaskSetId of;
   Int seed;
+  bool with_baselines = false;
 };
 struct TaskSetBinary {
   SetOp op;
@@ -353,6 +356,20 @@ struct FrictionStmt {
   Span span;
   Quantity value;
 };
+struct ScaleStmt {  // `scale 1.2`
+  Span span;
+  Quantity factor;
+};
+struct PaintStmt {  // `paint red`, `paint (0.9, 0.4, 0.1)`
+  Span span;
+  std::variant<Name, Point> color;
+};
+struct TextureStmt {  // `texture "wood" 10cm`; of a scene `texture surface "wood" 40cm`
+  Span span;
+  std::optional<Name> of;
+  Text picture;
+  std::optional<Quantity> side;
+};
 struct IsStmt {
   Span span;
   std::vector<Name> facts;
@@ -397,9 +414,10 @@ struct RegionStmt {  // `region inside of top_drawer box (..) .. (..)`
   Point low, high;
   std::optional<Text> text;  // of a fixture's: in instructions
 };
-using ObjectStmt = std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, FrictionStmt,
-                                IsStmt, MaybeStmt, SeenInStmt, UnseenStmt, RestStmt, RegionStmt,
-                                NameStmt, PhraseStmt, AttributeStmt>;
+using ObjectStmt =
+    std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, FrictionStmt, ScaleStmt,
+                 PaintStmt, TextureStmt, IsStmt, MaybeStmt, SeenInStmt, UnseenStmt, RestStmt,
+                 RegionStmt, NameStmt, PhraseStmt, AttributeStmt>;
 struct ObjectDecl {
   Name name;
   std::optional<Name> like;
@@ -514,7 +532,13 @@ struct LensStmt {
   Span span;
   std::vector<Quantity> values;
 };
-using CameraStmt = std::variant<MountStmt, ImageStmt, LensStmt>;
+struct SensorStmt {  // `sensor noise 0.02 blur 1.5px exposure 0.7 patch (..) .. (..) dropped 0.1`
+  Span span;
+  std::optional<Quantity> noise, blur, exposure, dropped;
+  std::optional<Point> patch_low, patch_high;
+  bool mirrored = false;
+};
+using CameraStmt = std::variant<MountStmt, ImageStmt, LensStmt, SensorStmt>;
 struct CameraDecl {
   Name name;
   std::optional<Name> like;
@@ -532,7 +556,11 @@ struct SunStmt {
   Quantity power;
   bool shadow = false;
 };
-using LightStmt = std::variant<AmbientStmt, SunStmt>;
+struct LightColorStmt {  // `color (1, 0.8, 0.6)`
+  Span span;
+  Point color;
+};
+using LightStmt = std::variant<AmbientStmt, SunStmt, LightColorStmt>;
 struct LightDecl {
   Name name;
   std::vector<LightStmt> body;
@@ -615,7 +643,7 @@ struct PhysicsStmt {
 };
 using SceneStmt =
     std::variant<SceneRobotStmt, JointsStmt, SurfaceStmt, FixtureStmt, SceneFixturesStmt,
-                 RegionStmt, BackdropStmt, SceneCameraStmt, UseLightStmt, PhysicsStmt>;
+                 RegionStmt, BackdropStmt, TextureStmt, SceneCameraStmt, UseLightStmt, PhysicsStmt>;
 struct SceneDecl {
   Name name;
   std::optional<Name> like;
@@ -659,6 +687,10 @@ struct JitterStmt {
   Span span;
   Quantity value;
 };
+struct JointsJitterStmt {  // `joints jitter 2deg`
+  Span span;
+  Quantity value;
+};
 struct StartStmt {  // `start cabinet.top 4cm`: where a fixture's joint begins
   Span span;
   Name fixture, joint;
@@ -680,7 +712,7 @@ struct ExpectEpisodesStmt {
 };
 using LayoutStmt =
     std::variant<CellsStmt, PlaceAtStmt, PlaceInStmt, PlaceOnStmt, OrientByRestStmt, OrientStmt,
-                 StartsStmt, JitterStmt, StartStmt, DropStmt, ExpectEpisodesStmt>;
+                 StartsStmt, JitterStmt, JointsJitterStmt, StartStmt, DropStmt, ExpectEpisodesStmt>;
 struct LayoutDecl {
   Name name;
   std::optional<Name> like;
@@ -761,9 +793,10 @@ struct TaskCameraStmt {  // `camera near_wrist as wrist`: in place of the scene'
   Name camera;
   std::optional<Name> as;  // else in place of the first
 };
-struct DistractorsStmt {  // `none` is the empty list
+struct DistractorsStmt {  // `none` is the empty list; `3 of (a, b, c, d) seed 7`
   Span span;
   std::vector<Name> objects;
+  std::optional<Int> count, seed;  // so many of them, drawn
 };
 struct RoleStmt {  // `helper spoon`, `goods carrot, spoon`; `none` is the empty list
   Span span;
@@ -792,9 +825,13 @@ struct IdleStmt {
   Span span;
   Int steps;
 };
+struct DelayStmt {  // `delay 2 steps`, `delay 400ms`
+  Span span;
+  std::variant<Int, Quantity> how_long;
+};
 using TaskStmt =
     std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt, ReferStmt,
-                 PoseStmt, StartStmt, HorizonStmt, IdleStmt, MetricStmt, RoleStmt>;
+                 PoseStmt, StartStmt, HorizonStmt, IdleStmt, DelayStmt, MetricStmt, RoleStmt>;
 
 struct TaskDecl {
   bool abstract = false;
@@ -830,6 +867,15 @@ struct BinderTemplates {  // `w in templates of put`
 struct BinderObjects {  // `o in objects (carrot, spoon)`, `p in parts (cabinet.top_drawer)`
   std::vector<Name> objects;
 };
+struct BinderDeclared {  // `l in lights (day, night)`
+  enum class Of : std::uint8_t { kLights, kCameras, kScenes };
+  Of of = Of::kLights;
+  std::vector<Name> names;
+};
+struct BinderNumbers {  // `s in 0.8, 1, 1.2`, `k in 0 .. 6`
+  std::vector<Quantity> values;
+  std::optional<Quantity> last;  // of a range, whose first is the one of `values`
+};
 struct BinderDistractors {  // `o in distractors of t`, `o in goods of t`, `p in parts of cabinet`
   Name role;
   Name task;
@@ -840,7 +886,9 @@ struct BinderTasks {  // `t in core`; a `where` belongs to the derive
 struct Binder {
   Span span;
   Name name;
-  std::variant<BinderPhrases, BinderTemplates, BinderObjects, BinderDistractors, BinderTasks> over;
+  std::variant<BinderPhrases, BinderTemplates, BinderObjects, BinderDeclared, BinderNumbers,
+               BinderDistractors, BinderTasks>
+      over;
 };
 struct DeriveDecl {
   TemplateText name;  // slots are binders

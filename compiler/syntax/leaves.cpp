@@ -80,7 +80,7 @@ Quantity Parser::quantity() {
 }
 
 Int Parser::integer() {
-  Int out{here(), 0};
+  Int out{here(), 0, {}};
   if (!at(TokenKind::kNumber)) {
     fail_expected();
     return out;
@@ -103,6 +103,21 @@ Int Parser::integer() {
   }
   advance();
   return out;
+}
+
+Quantity Parser::bound_quantity() {
+  if (!at(TokenKind::kIdent)) return quantity();
+  const Name binder = name();
+  Quantity out;
+  out.span = binder.span;
+  out.binder = binder.text;
+  return out;
+}
+
+Int Parser::bound_integer() {
+  if (!at(TokenKind::kIdent)) return integer();
+  const Name binder = name();
+  return {binder.span, 0, binder.text};
 }
 
 Text Parser::string() {

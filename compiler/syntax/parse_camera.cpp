@@ -40,4 +40,30 @@ CameraStmt Parser::camera_lens() {
   return LensStmt{{}, comma_list([this] { return quantity(); })};
 }
 
+// In any order, each once.
+CameraStmt Parser::camera_sensor() {
+  SensorStmt out;
+  const auto number = [&](std::string_view word, std::optional<Quantity>& to) {
+    if (to || !accept_word(word)) return false;
+    to = quantity();
+    return true;
+  };
+  const auto patch = [&] {
+    if (out.patch_low || !accept_word("patch")) return false;
+    out.patch_low = point();
+    expect(TokenKind::kDotDot);
+    out.patch_high = point();
+    return true;
+  };
+  const auto mirror = [&] { return !out.mirrored && (out.mirrored = accept_word("mirrored")); };
+  bool any = false;
+  while (number("noise", out.noise) || number("blur", out.blur) ||
+         number("exposure", out.exposure) || patch() || number("dropped", out.dropped) ||
+         mirror()) {
+    any = true;
+  }
+  if (!any) fail_expected();
+  return out;
+}
+
 }  // namespace probe::syntax

@@ -14,6 +14,29 @@ DeclNode Parser::derive_decl() {
   return out;
 }
 
+std::optional<BinderDeclared::Of> Parser::declared_pool() {
+  if (at_word("lights")) return BinderDeclared::Of::kLights;
+  if (at_word("cameras")) return BinderDeclared::Of::kCameras;
+  if (at_word("scenes")) return BinderDeclared::Of::kScenes;
+  return std::nullopt;
+}
+
+// A comma goes on with numbers where a number stands behind it, else with binders.
+BinderNumbers Parser::binder_numbers() {
+  BinderNumbers out;
+  out.values.push_back(quantity());
+  if (accept(TokenKind::kDotDot)) {
+    out.last = quantity();
+    return out;
+  }
+  while (at(TokenKind::kComma) &&
+         (kind_ahead(1) == TokenKind::kNumber || kind_ahead(1) == TokenKind::kMinus)) {
+    advance();
+    out.values.push_back(quantity());
+  }
+  return out;
+}
+
 Binder Parser::binder() {
   Binder out;
   const std::uint32_t begin = mark();
@@ -40,6 +63,14 @@ Binder Parser::binder() {
     expect_word("of");
     others.task = name();
     out.over = others;
+  } else if (at(TokenKind::kNumber) || at(TokenKind::kMinus)) {
+    out.over = binder_numbers();
+  } else if (const auto declared = declared_pool();
+             declared && kind_ahead(1) == TokenKind::kLeftParen) {
+    advance();
+    advance();
+    out.over = BinderDeclared{*declared, names()};
+    expect(TokenKind::kRightParen);
   } else if ((at_word("objects") || at_word("parts")) && kind_ahead(1) == TokenKind::kLeftParen) {
     advance();
     advance();

@@ -77,16 +77,16 @@ RegionStmt Parser::region(bool has_owner) {
   return out;
 }
 
-StartStmt Parser::joint_start() {
+StartStmt Parser::joint_start(bool may_be_bound) {
   StartStmt out;
   out.fixture = name();
   expect(TokenKind::kDot);
   out.joint = name();
-  out.value = quantity();
+  out.value = may_be_bound ? bound_quantity() : quantity();
   return out;
 }
 
-LayoutStmt Parser::layout_start() { return joint_start(); }
-TaskStmt Parser::task_start() { return joint_start(); }
+LayoutStmt Parser::layout_start() { return joint_start(false); }
+TaskStmt Parser::task_start() { return joint_start(true); }
 
 }  // namespace probe::syntax

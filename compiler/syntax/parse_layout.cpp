@@ -72,6 +72,11 @@ LayoutStmt Parser::layout_starts() { return StartsStmt{{}, string(), {}}; }
 
 LayoutStmt Parser::layout_jitter() { return JitterStmt{{}, quantity()}; }
 
+LayoutStmt Parser::layout_joints() {
+  expect_word("jitter");
+  return JointsJitterStmt{{}, quantity()};
+}
+
 LayoutStmt Parser::layout_drop() {
   DropStmt out;
   out.height = quantity();

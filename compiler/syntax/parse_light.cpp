@@ -31,4 +31,6 @@ LightStmt Parser::light_sun() {
   return out;
 }
 
+LightStmt Parser::light_color() { return LightColorStmt{{}, point()}; }
+
 }  // namespace probe::syntax

@@ -39,6 +39,28 @@ ObjectStmt Parser::object_density() { return DensityStmt{{}, quantity()}; }
 
 ObjectStmt Parser::object_friction() { return FrictionStmt{{}, quantity()}; }
 
+ObjectStmt Parser::object_scale() { return ScaleStmt{{}, quantity()}; }
+
+ObjectStmt Parser::object_paint() {
+  PaintStmt out;
+  if (at(TokenKind::kLeftParen)) {
+    out.color = point();
+  } else {
+    out.color = name();
+  }
+  return out;
+}
+
+ObjectStmt Parser::object_texture() { return texture(false); }
+
+TextureStmt Parser::texture(bool has_owner) {
+  TextureStmt out;
+  if (has_owner) out.of = name();
+  out.picture = string();
+  if (at(TokenKind::kNumber)) out.side = quantity();
+  return out;
+}
+
 ObjectStmt Parser::object_is() { return IsStmt{{}, names()}; }
 
 ObjectStmt Parser::object_maybe() { return MaybeStmt{{}, names()}; }

@@ -51,6 +51,8 @@ SceneStmt Parser::scene_region() { return region(true); }
 
 SceneStmt Parser::scene_backdrop() { return BackdropStmt{{}, string()}; }
 
+SceneStmt Parser::scene_texture() { return texture(true); }
+
 SceneStmt Parser::scene_camera() {
   SceneCameraStmt out;
   out.cameras = comma_list([this] {

@@ -74,6 +74,10 @@ TaskSetId Parser::task_set_operand() {
     out.of = task_set_operand();
     expect_word("seed");
     out.seed = integer();
+    if (accept_word("with")) {
+      expect_word("baselines");
+      out.with_baselines = true;
+    }
     return add(TaskSet{since(begin), out}, {out.of});
   }
   const Name only = name();

@@ -82,6 +82,16 @@ TaskStmt Parser::task_camera() {
 
 TaskStmt Parser::task_distractors() {
   DistractorsStmt out;
+  if (at(TokenKind::kNumber) || (text_ahead(1) == "of" && kind_ahead(2) == TokenKind::kLeftParen)) {
+    out.count = bound_integer();
+    expect_word("of");
+    expect(TokenKind::kLeftParen);
+    out.objects = names();
+    expect(TokenKind::kRightParen);
+    expect_word("seed");
+    out.seed = bound_integer();
+    return out;
+  }
   out.objects = names();
   const bool none = out.objects.size() == 1 && out.objects.front().text == "none";
   if (none) out.objects.clear();
@@ -115,15 +125,27 @@ TaskStmt Parser::task_pose() {
 
 TaskStmt Parser::task_horizon() {
   HorizonStmt out;
-  out.steps = integer();
+  out.steps = bound_integer();
   expect_word("steps");
   return out;
 }
 
 TaskStmt Parser::task_idle() {
   IdleStmt out;
-  out.steps = integer();
+  out.steps = bound_integer();
   expect_word("steps");
+  return out;
+}
+
+// Whole numbers of steps, or a time, whose unit touches its number.
+TaskStmt Parser::task_delay() {
+  DelayStmt out;
+  if (text_ahead(1) == "steps") {
+    out.how_long = bound_integer();
+    expect_word("steps");
+  } else {
+    out.how_long = bound_quantity();
+  }
   return out;
 }
 

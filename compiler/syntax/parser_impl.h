@@ -105,6 +105,9 @@ class Parser {
   Path path();
   Quantity quantity();
   Int integer();
+  // A number, or the name of a binder in its place.
+  Quantity bound_quantity();
+  Int bound_integer();
   Text string();
   TemplateText template_text();
   Point point();
@@ -137,6 +140,10 @@ class Parser {
   ObjectStmt object_box();
   ObjectStmt object_density();
   ObjectStmt object_friction();
+  ObjectStmt object_scale();
+  ObjectStmt object_paint();
+  ObjectStmt object_texture();
+  TextureStmt texture(bool has_owner);
   ObjectStmt object_is();
   ObjectStmt object_maybe();
   ObjectStmt object_seen();
@@ -173,9 +180,11 @@ class Parser {
   CameraStmt camera_mount();
   CameraStmt camera_image();
   CameraStmt camera_lens();
+  CameraStmt camera_sensor();
   DeclNode light_decl();
   LightStmt light_ambient();
   LightStmt light_sun();
+  LightStmt light_color();
 
   // ---- parse_fixture.cpp ----
   DeclNode fixture_decl();
@@ -186,7 +195,7 @@ class Parser {
   FixtureBodyStmt fixture_part();
   FixtureBodyStmt fixture_region();
   RegionStmt region(bool has_owner);
-  StartStmt joint_start();
+  StartStmt joint_start(bool may_be_bound);
 
   // ---- parse_scene.cpp ----
   DeclNode scene_decl();
@@ -196,6 +205,7 @@ class Parser {
   SceneStmt scene_fixture();
   SceneStmt scene_region();
   SceneStmt scene_backdrop();
+  SceneStmt scene_texture();
   SceneStmt scene_camera();
   SceneStmt scene_light();
   SceneStmt scene_physics();
@@ -207,6 +217,7 @@ class Parser {
   LayoutStmt layout_orient();
   LayoutStmt layout_starts();
   LayoutStmt layout_jitter();
+  LayoutStmt layout_joints();
   LayoutStmt layout_start();
   LayoutStmt layout_drop();
   LayoutStmt layout_expect();
@@ -263,6 +274,7 @@ class Parser {
   TaskStmt task_start();
   TaskStmt task_horizon();
   TaskStmt task_idle();
+  TaskStmt task_delay();
   TaskStmt task_metric();
   TaskStmt task_role();
   DeclNode role_decl();
@@ -272,6 +284,8 @@ class Parser {
   // ---- parse_derive.cpp ----
   DeclNode derive_decl();
   Binder binder();
+  std::optional<BinderDeclared::Of> declared_pool();
+  BinderNumbers binder_numbers();
 
   // ---- parse_set.cpp ----
   DeclNode set_decl();

@@ -166,6 +166,18 @@ bool same_goal(const plan::Plan& plan, plan::IdHasher& hasher, const plan::TaskR
   return true;
 }
 
+// Whether the arm begins alike in all starts; of another scene's arm it is no question.
+bool same_arms(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+  const auto ours = plan.episodes(a), theirs = plan.episodes(b);
+  const auto arm = [&](const plan::EpisodeRecord& episode) {
+    return plan::slice_of(plan.tables().reals, episode.arm);
+  };
+  for (std::size_t e = 0; e < std::min(ours.size(), theirs.size()); ++e) {
+    if (!std::ranges::equal(arm(ours[e]), arm(theirs[e]))) return false;
+  }
+  return true;
+}
+
 std::vector<double> joint_starts(const plan::Plan& plan, const plan::TaskRecord& task) {
   return plan::joint_starts_of(plan.tables(), plan.scenes()[task.scene], plan.episodes(task)[0]);
 }
@@ -185,10 +197,25 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
     };
     return part(ours) == part(theirs);
   };
+  // What only some starts have.
+  const auto is_same_of_some = [&](std::string_view name) {
+    const auto part = [name](const auto& parts) {
+      const auto at = std::ranges::find(parts, name, &plan::IdHasher::StartPart::name);
+      return at == parts.end() ? std::nullopt : std::optional(at->hash);
+    };
+    return part(ours) == part(theirs);
+  };
+  const plan::SceneRecord &here = plan.scenes()[a.scene], &there = plan.scenes()[b.scene];
+  // Two heights are compared at a third, so that both are rounded.
+  const double elsewhere_z = std::max(here.surface_z, there.surface_z) + 1;
   plan::TaskRecord elsewhere = a;
   elsewhere.scene = b.scene;
-  const bool scene_moves = !is_same("robot") || !is_same("scene") ||
-                           hasher.judge(a) != hasher.judge(elsewhere);  // another law or rate
+  const bool scene_moves =
+      !is_same("robot") ||
+      (here.surface_z == there.surface_z ? !is_same("scene")
+                                         : hasher.surroundings_at(here, elsewhere_z) !=
+                                               hasher.surroundings_at(there, elsewhere_z)) ||
+      hasher.judge(a) != hasher.judge(elsewhere);  // another law or rate
   const auto moves = [&](plan::Axis axis) {
     switch (axis) {
       case plan::Axis::kObjectSource:
@@ -203,6 +230,10 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
         return !same_layout(plan, a, b, same_distractors);
       case plan::Axis::kScene:
         return scene_moves;
+      case plan::Axis::kSceneTexture:
+        return !scene_moves && !is_same_of_some("textures");
+      case plan::Axis::kSceneGeometry:
+        return !scene_moves && here.surface_z != there.surface_z;
       // All starts of a task have one.
       case plan::Axis::kFixture:
         return !scene_moves && joint_starts(plan, a) != joint_starts(plan, b);
@@ -212,6 +243,12 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
         return !scene_moves && !is_same("light");
       case plan::Axis::kCamera:
         return !scene_moves && !is_same("camera");
+      case plan::Axis::kSensor:
+        return a.views.count == b.views.count && !is_same_of_some("sensor");
+      case plan::Axis::kRobot:
+        return !same_arms(plan, a, b);
+      case plan::Axis::kLatency:
+        return a.delay != b.delay;
       case plan::Axis::kGoal:
         return !same_goal(plan, hasher, a, b);
       // Frames and phrases are not in a plan.

@@ -11,6 +11,7 @@
 #include "runtime/inspect/fixture_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
+#include "runtime/inspect/varied.h"
 #include "runtime/inspect/words.h"
 #include "runtime/inspect/wrap.h"
 #include "runtime/plan/roles.h"
@@ -19,7 +20,7 @@ namespace probe::inspect {
 namespace {
 
 // What only some tasks have; it stands below what all of them have.
-constexpr const char* kOfSome[] = {"law", "placed", "joints", "idle", "claims"};
+constexpr const char* kOfSome[] = {"law", "placed", "joints", "idle", "varied", "claims"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -47,6 +48,7 @@ Json side(const plan::Plan& plan, std::uint32_t index) {
   if (plan.scenes()[task.scene].fixtures.count > 0)
     json["joints"] = joint_starts_text(fixtures_of(plan, index));
   if (task.idle != 0) json["idle"] = task.idle;
+  if (const auto varied = varied_in(plan, task); !varied.empty()) json["varied"] = varied;
   Json said;
   add_claims(plan, index, said);
   if (said.contains("claims")) json["claims"] = claims_text(said["claims"]);

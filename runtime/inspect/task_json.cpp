@@ -17,6 +17,7 @@
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
+#include "runtime/inspect/varied.h"
 #include "runtime/inspect/wrap.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/roles.h"
@@ -135,6 +136,8 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   add_roles(plan, task, json);
   json["horizon"] = task.horizon;
   if (task.idle != 0) json["idle"] = task.idle;
+  if (task.delay != 0) json["delay"] = task.delay;
+  if (const auto varied = varied_in(plan, task); !varied.empty()) json["varied"] = varied;
   add_claims(plan, index, json);
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
@@ -286,6 +289,7 @@ std::string describe_text(const Json& task) {
   line("layout",
        fmt::format("{} starts, dropped from {} cm, settled for {} s", task["starts"].size(),
                    tenth(task["drop_m"].get<double>(), 100), task["settle_s"].get<double>()));
+  if (task.contains("varied")) line("varied", joined(task["varied"], "nothing"));
   line("metrics", joined(task["metrics"], "none"));
   const std::string idle = task.contains("idle") ? fmt::format(", behind {} of standing still",
                                                                task["idle"].get<std::uint32_t>())

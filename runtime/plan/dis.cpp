@@ -191,6 +191,41 @@ void list_robots(std::string& out, const Plan& plan) {
   }
 }
 
+// What varies without a new mesh, as it stands in the records.
+void list_variations(std::string& out, const Plan& plan) {
+  const auto to = std::back_inserter(out);
+  std::string text;
+  const auto in = std::back_inserter(text);
+  for (const ObjectRecord& o : plan.objects()) {
+    if (o.scale != 0) fmt::format_to(in, "  {} scale {}\n", plan.text(o.name), o.scale);
+    if (o.paint[3] != 0)
+      fmt::format_to(in, "  {} paint {} {} {}\n", plan.text(o.name), o.paint[0], o.paint[1],
+                     o.paint[2]);
+    if (const CoverRecord* cover = plan.cover(o))
+      fmt::format_to(in, "  {} texture {} side {}\n", plan.text(o.name),
+                     plan.text(plan.assets()[cover->texture].path), cover->side);
+  }
+  for (const CameraRecord& c : plan.cameras()) {
+    if (const SensorRecord* s = plan.sensor(c))
+      fmt::format_to(in, "  {} noise {}, blur {}, exposure {}, patch{}, dropped {}, mirrored {}\n",
+                     plan.text(c.name), s->noise, s->blur, s->exposure, numbers_text(s->patch),
+                     s->dropped, s->mirrored);
+  }
+  for (const LightRecord& l : plan.lights()) {
+    if (l.color != std::array<double, 3>{})
+      fmt::format_to(in, "  {} color{}\n", plan.text(l.name), numbers_text(l.color));
+  }
+  for (const SceneRecord& s : plan.scenes()) {
+    for (const CoverRecord& cover : plan.covers(s))
+      fmt::format_to(in, "  {} texture on {}: {} side {}\n", plan.text(s.name), cover.what,
+                     plan.text(plan.assets()[cover.texture].path), cover.side);
+  }
+  for (const TaskRecord& k : plan.tasks()) {
+    if (k.delay != 0) fmt::format_to(in, "  {} delay {}\n", plan.text(k.name), k.delay);
+  }
+  if (!text.empty()) fmt::format_to(to, "\nvaried\n{}", text);
+}
+
 }  // namespace
 
 std::string disassemble(const Plan& plan, std::uint32_t task) {
@@ -209,6 +244,7 @@ std::string disassemble(const Plan& plan) {
       plan.tasks().size(), plan.episodes().size(), plan.programs().size(), plan.objects().size(),
       plan.bytes().size(), plan.has_sources() ? "" : ", without sources");
   list_robots(out, plan);
+  list_variations(out, plan);
   std::vector<std::vector<std::uint32_t>> users(plan.programs().size());
   for (std::uint32_t i = 0; i < plan.tasks().size(); ++i)
     users[plan.tasks()[i].program].push_back(i);

@@ -81,9 +81,13 @@ struct ObjectRecord {
   std::uint32_t collision = kNone;  // kAssets
   std::array<double, 3> box_min{};  // metres, model frame
   std::array<double, 3> box_max{};
-  double density = 0;   // kg/m3
-  double friction = 0;  // of the object's own material
-  std::uint64_t zero[5] = {};
+  double density = 0;                   // kg/m3
+  double friction = 0;                  // of the object's own material
+  double scale = 0;                     // of its meshes; the box is scaled already; 0: as they are
+  Slice cover;                          // kCovers: a texture on all of it, or none
+  std::array<std::uint8_t, 4> paint{};  // sRGB and 1 where it is painted, else 0
+  std::uint32_t zero = 0;
+  std::uint64_t zero2[2] = {};
 };
 static_assert(sizeof(ObjectRecord) == 128);
 
@@ -105,8 +109,8 @@ struct RobotRecord {
   std::uint32_t control = 0;   // Control
   double control_hz = 0;
   std::array<FingerRecord, 2> fingers{};  // without a link: there is none; more in `more_fingers`
-  double grip_closed = 0;  // finger target for gripper command -1
-  double grip_open = 0;    // finger target for gripper command +1
+  double grip_closed = 0;                 // finger target for gripper command -1
+  double grip_open = 0;                   // finger target for gripper command +1
   double finger_friction = 0;
   double finger_patch = 0;   // torsional patch radius, m
   double link_friction = 0;  // of all other links
@@ -170,9 +174,24 @@ struct CameraRecord {
   std::array<double, 4>
       aim_values{};  // look: direction xyz and 0; quat: w x y z, columns forward left up
   double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels, at width x height
-  std::uint64_t zero2[1] = {};
+  Slice sensor;                           // kSensors: one, or none: a picture as it is
 };
 static_assert(sizeof(CameraRecord) == 128);
+
+// What a camera does to its picture before a policy gets it; 0 everywhere: nothing.
+struct SensorRecord {
+  double noise = 0;     // standard deviation, of the full range of a channel
+  double blur = 0;      // pixels, standard deviation
+  double exposure = 0;  // factor of the light; 0: 1
+  std::array<double, 4>
+      patch{};  // left, top, right, bottom in shares of the picture: black; none: 0
+  double dropped =
+      0;  // share of the pictures that do not arrive: the one before stays; 1: the first
+  std::uint32_t mirrored = 0;  // 0 or 1: left is right
+  std::uint32_t zero = 0;
+  bool operator==(const SensorRecord&) const = default;
+};
+static_assert(sizeof(SensorRecord) == 72);
 
 inline constexpr std::uint32_t kMaxOcclusion = 16;
 
@@ -182,7 +201,8 @@ struct LightRecord {
   Slice suns;                   // kSuns
   std::uint32_t occlusion = 0;  // rays a sample that find how open it is to ambient light
   std::uint32_t zero = 0;
-  std::uint64_t zero2[4] = {};
+  std::array<double, 3> color{};  // factors of all its light, r g b; zeros: white
+  std::uint64_t zero2 = 0;
 };
 static_assert(sizeof(LightRecord) == 64);
 
@@ -210,13 +230,24 @@ struct SceneRecord {
   double surface_z = 0;
   std::array<double, 4> area{};  // x min, y min, x max, y max of the surface
   double physics_hz = 0;
-  double friction = 0;  // of the surface's own material
-  Slice fixtures;       // kList of kFixtures, with joints; each once
+  double friction = 0;       // of the surface's own material
+  Slice fixtures;            // kList of kFixtures, with joints; each once
   double air_density = 0;    // kg/m3: felt by robots whose law gives efforts
   double air_viscosity = 0;  // Pa s
-  std::uint64_t zero2[7] = {};
+  Slice covers;              // kCovers: other pictures on its backdrop, ascending by `what`
+  std::uint64_t zero2[6] = {};
 };
 static_assert(sizeof(SceneRecord) == 256);
+
+// What a texture covers: of a backdrop, or all of an object.
+enum class CoverOf : std::uint32_t { kSurface = 1, kWalls = 2, kFloor = 3, kObject = 4 };
+
+struct CoverRecord {
+  std::uint32_t what = 0;         // CoverOf
+  std::uint32_t texture = kNone;  // kAssets, a picture
+  double side = 0;                // m that one picture covers
+};
+static_assert(sizeof(CoverRecord) == 16);
 
 // What moves on joints that nobody drives.
 struct FixtureRecord {
@@ -376,7 +407,9 @@ struct TaskRecord {
   std::array<std::uint8_t, 32> judge_id{};
   Slice views;  // kViews, the first shows `camera`; empty: that camera alone, under its own name
   Slice roles;  // kRoles, in the order of their bodies
-  std::uint64_t zero2[5] = {};
+  std::uint32_t delay = 0;  // control steps until an action acts
+  std::uint32_t zero = 0;
+  std::uint64_t zero2[4] = {};
 };
 static_assert(sizeof(TaskRecord) == 192);
 
@@ -415,7 +448,8 @@ struct EpisodeRecord {
   std::array<std::uint8_t, 32> episode_id{};
   Slice joints;  // kReals: where the joints of the scene's fixtures begin, in their order; empty:
                  // where the fixtures say
-  std::uint64_t zero[5] = {};
+  Slice arm;  // kReals: where the robot's joints begin, in drive order; empty: where the scene says
+  std::uint64_t zero[4] = {};
 };
 static_assert(sizeof(EpisodeRecord) == 128);
 

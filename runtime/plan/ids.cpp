@@ -1,5 +1,7 @@
 #include "runtime/plan/ids.h"
 
+#include <cmath>
+
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/questions.h"
 #include "runtime/plan/roles.h"
@@ -18,6 +20,11 @@ Hasher tagged(std::string_view tag) {
 void hash_constants(Hasher& h, std::span<const double> constants) {
   // By bit pattern, not by value: 0.0 and -0.0 are different constants to MUL.
   h.u32(static_cast<std::uint32_t>(constants.size())).bytes(std::as_bytes(constants));
+}
+
+void hash_sensor(Hasher& h, const SensorRecord& s) {
+  h.text("sensor").f64(s.noise).f64(s.blur).f64(s.exposure).f64s(s.patch).f64(s.dropped);
+  h.u32(s.mirrored);
 }
 
 }  // namespace
@@ -103,8 +110,19 @@ Sha256 IdHasher::object(std::uint32_t index) {
   const ObjectRecord& o = tables_.objects[index];
   Hasher h = tagged("vlaprobe.object.1");
   h.hash(asset(o.visual)).hash(asset(o.collision)).f64s(o.box_min).f64s(o.box_max);
-  known = h.f64(o.density).f64(o.friction).finish();
+  h.f64(o.density).f64(o.friction);
+  // Behind all else, so that objects without them keep their ids.
+  if (o.scale != 0) h.text("scale").f64(o.scale);
+  if (o.paint[3] != 0) h.text("paint").bytes(std::as_bytes(std::span(o.paint)));
+  if (o.cover.count != 0) hash_covers(h, o.cover);
+  known = h.finish();
   return *known;
+}
+
+void IdHasher::hash_covers(Hasher& h, const Slice& covers) const {
+  h.text("texture").u32(covers.count);
+  for (const CoverRecord& cover : slice_of(tables_.covers, covers))
+    h.u32(cover.what).hash(asset(cover.texture)).f64(cover.side);
 }
 
 // Link and joint names are references into the URDF's content and so are part of what is simulated.
@@ -162,6 +180,7 @@ void IdHasher::hash_surroundings(Hasher& h, const SceneRecord& s) const {
   }
   if (s.air_density != 0 || s.air_viscosity != 0)
     h.text("air").f64(s.air_density).f64(s.air_viscosity);
+  if (s.covers.count != 0) hash_covers(h, s.covers);
 }
 
 Sha256 IdHasher::scene(std::uint32_t index) {
@@ -176,15 +195,20 @@ Sha256 IdHasher::scene(std::uint32_t index) {
   return *known;
 }
 
+// What only some cameras have is part of a second version, so that the others keep their ids.
+void IdHasher::hash_lens(Hasher& h, const CameraRecord& c) const {
+  if (c.samples != 0) h.u32(c.samples);
+  h.text(tables_.text(c.mount_link)).u32(c.aim).u32(c.width).u32(c.height);
+  h.f64s(c.position).f64s(c.aim_values).f64(c.fx).f64(c.fy).f64(c.cx).f64(c.cy);
+}
+
 Sha256 IdHasher::camera(std::uint32_t index) {
   std::optional<Sha256>& known = cameras_[index];
   if (known) return *known;
   const CameraRecord& c = tables_.cameras[index];
-  // What only some cameras have is part of a second version, so that the others keep their ids.
   Hasher h = tagged(c.samples == 0 ? "vlaprobe.camera.1" : "vlaprobe.camera.2");
-  if (c.samples != 0) h.u32(c.samples);
-  h.text(tables_.text(c.mount_link)).u32(c.aim).u32(c.width).u32(c.height);
-  h.f64s(c.position).f64s(c.aim_values).f64(c.fx).f64(c.fy).f64(c.cx).f64(c.cy);
+  hash_lens(h, c);
+  for (const SensorRecord& s : slice_of(tables_.sensors, c.sensor)) hash_sensor(h, s);
   known = h.finish();
   return *known;
 }
@@ -201,6 +225,55 @@ Sha256 IdHasher::cameras(const TaskRecord& task) {
   return h.finish();
 }
 
+std::optional<Sha256> IdHasher::sensors(const TaskRecord& task) const {
+  Hasher h = tagged("vlaprobe.sensors.1");
+  bool any = false;
+  const auto add = [&](const CameraRecord& camera) {
+    h.u32(camera.sensor.count);
+    for (const SensorRecord& s : slice_of(tables_.sensors, camera.sensor)) {
+      any = true;
+      hash_sensor(h, s);
+    }
+  };
+  if (task.views.count == 0) add(tables_.cameras[task.camera]);
+  for (const ViewRecord& view : slice_of(tables_.views, task.views))
+    add(tables_.cameras[view.camera]);
+  if (!any) return std::nullopt;
+  return h.finish();
+}
+
+Sha256 IdHasher::lenses(const TaskRecord& task) {
+  if (!sensors(task)) return cameras(task);
+  const auto lens = [&](const CameraRecord& c) {
+    Hasher h = tagged(c.samples == 0 ? "vlaprobe.camera.1" : "vlaprobe.camera.2");
+    hash_lens(h, c);
+    return h.finish();
+  };
+  if (task.views.count == 0) return lens(tables_.cameras[task.camera]);
+  Hasher h = tagged("vlaprobe.cameras.1");
+  h.u32(task.views.count);
+  for (const ViewRecord& view : slice_of(tables_.views, task.views)) {
+    h.text(tables_.text(view.name)).hash(lens(tables_.cameras[view.camera]));
+    h.hash(asset(view.photo));
+  }
+  return h.finish();
+}
+
+Sha256 IdHasher::surroundings_at(const SceneRecord& scene, double surface_z) const {
+  SceneRecord there = scene;
+  // To the nanometre: differences of heights are rounded.
+  const auto above = [&](double z) { return std::nearbyint((z - scene.surface_z) * 1e9) * 1e-9; };
+  if (scene.surface_z != surface_z) {
+    there.base_position[2] = surface_z + above(scene.base_position[2]);
+    there.fixture_position[2] = surface_z + above(scene.fixture_position[2]);
+    there.surface_z = surface_z;
+  }
+  there.covers = {};
+  Hasher h = tagged("vlaprobe.surroundings.1");
+  hash_surroundings(h, there);
+  return h.finish();
+}
+
 Sha256 IdHasher::light(std::uint32_t index) {
   std::optional<Sha256>& known = lights_[index];
   if (known) return *known;
@@ -211,6 +284,7 @@ Sha256 IdHasher::light(std::uint32_t index) {
   for (const SunRecord& sun : slice_of(tables_.suns, l.suns)) {
     h.f64s(sun.direction).f64(sun.power).u32(sun.shadow);
   }
+  if (l.color != std::array<double, 3>{}) h.text("color").f64s(l.color);
   known = h.finish();
   return *known;
 }
@@ -243,6 +317,8 @@ Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
     h.u32(static_cast<std::uint32_t>(joints.size())).f64s(joints);
   }
   if (task.idle != 0) hash_idle(h, task);
+  if (episode.arm.count != 0) h.text("arm").f64s(slice_of(tables_.reals, episode.arm));
+  if (task.delay != 0) h.text("delay").u32(task.delay);
   return h.finish();
 }
 
@@ -256,19 +332,29 @@ void IdHasher::hash_idle(Hasher& h, const TaskRecord& task) const {
 std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
                                                        const EpisodeRecord& episode) {
   const SceneRecord& s = tables_.scenes[task.scene];
-  Hasher surroundings = tagged("vlaprobe.surroundings.1");
-  hash_surroundings(surroundings, s);
   Hasher drop = tagged("vlaprobe.drop.1");
   drop.f64(task.drop).f64(task.settle);
   std::vector<StartPart> parts = {{"robot", robot(tables_.robots[s.robot])},
-                                  {"scene", surroundings.finish()},
-                                  {"camera", cameras(task)},
+                                  {"scene", surroundings_at(s, s.surface_z)},
+                                  {"camera", lenses(task)},
                                   {"light", light(task.light)},
                                   {"drop", drop.finish()}};
   if (task.idle != 0) {
     Hasher idle;
     hash_idle(idle, task);
     parts.push_back({"idle steps", idle.finish()});
+  }
+  if (const auto sensor = sensors(task)) parts.push_back({"sensor", *sensor});
+  if (s.covers.count != 0) {
+    Hasher covers = tagged("vlaprobe.covers.1");
+    hash_covers(covers, s.covers);
+    parts.push_back({"textures", covers.finish()});
+  }
+  if (task.delay != 0)
+    parts.push_back({"delay", tagged("vlaprobe.delay.1").u32(task.delay).finish()});
+  if (episode.arm.count != 0) {
+    Hasher arm = tagged("vlaprobe.arm.1");
+    parts.push_back({"arm", arm.f64s(slice_of(tables_.reals, episode.arm)).finish()});
   }
   const TaskRoles roles = roles_of(tables_, task);
   if (s.fixtures.count > 0) {

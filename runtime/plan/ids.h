@@ -53,18 +53,25 @@ class IdHasher {
     bool operator==(const StartPart&) const = default;
   };
   std::vector<StartPart> start_parts(const TaskRecord& task, const EpisodeRecord& episode);
+  // A scene but for its robot and textures, its surface put at `surface_z` with all that stands on
+  // it.
+  Sha256 surroundings_at(const SceneRecord& scene, double surface_z) const;
 
  private:
   Sha256 program(std::uint32_t index);
   Sha256 object(std::uint32_t index);
   Sha256 scene(std::uint32_t index);
   void hash_surroundings(Hasher& hasher, const SceneRecord& scene) const;
+  void hash_covers(Hasher& hasher, const Slice& covers) const;
   void hash_law(Hasher& hasher, const LawRecord& law) const;
   void hash_idle(Hasher& hasher, const TaskRecord& task) const;
   Sha256 robot(const RobotRecord& robot) const;
   Sha256 fixture(const FixtureRecord& fixture) const;
   Sha256 camera(std::uint32_t index);
-  Sha256 cameras(const TaskRecord& task);  // all of them
+  void hash_lens(Hasher& hasher, const CameraRecord& camera) const;
+  Sha256 lenses(const TaskRecord& task);                        // all cameras but for their sensors
+  std::optional<Sha256> sensors(const TaskRecord& task) const;  // none where no camera has one
+  Sha256 cameras(const TaskRecord& task);                       // all of them
   Sha256 light(std::uint32_t index);
   Sha256 asset(std::uint32_t index) const;
   Sha256 prompt(StringRef text);

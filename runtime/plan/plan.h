@@ -54,7 +54,22 @@ class Plan {
   std::span<const double> home(const LawRecord& law) const;
   std::span<const std::uint32_t> meshes(const RobotRecord& robot) const;  // indices of assets()
   std::span<const SunRecord> suns(const LightRecord& light) const;
+  // Null: a picture as it is.
+  const SensorRecord* sensor(const CameraRecord& camera) const {
+    return camera.sensor.count == 0 ? nullptr : &tables_.sensors[camera.sensor.first];
+  }
+  // Null: the object looks as its mesh does.
+  const CoverRecord* cover(const ObjectRecord& object) const {
+    return object.cover.count == 0 ? nullptr : &tables_.covers[object.cover.first];
+  }
+  std::span<const CoverRecord> covers(const SceneRecord& scene) const {
+    return slice_of(tables_.covers, scene.covers);
+  }
   std::span<const double> joints(const SceneRecord& scene) const;
+  // Where an episode's robot begins, in drive order: as its scene says, or as its start does.
+  std::span<const double> joints(const SceneRecord& scene, const EpisodeRecord& episode) const {
+    return episode.arm.count == 0 ? joints(scene) : slice_of(tables_.reals, episode.arm);
+  }
   std::span<const std::uint32_t> fixtures(const SceneRecord& scene) const;  // indices of fixtures()
   std::span<const FixtureJointRecord> joints(const FixtureRecord& fixture) const;
   std::span<const PartRecord> parts(const FixtureRecord& fixture) const;

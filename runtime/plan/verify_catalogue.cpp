@@ -63,7 +63,15 @@ Status RecordCheck::check(const ObjectRecord& o) const {
   PROBE_TRY(check_positive(o.density, "a density"));
   PROBE_TRY(check_magnitude(o.density, Magnitude::kDensity));
   PROBE_TRY(check_friction(o.friction));
-  return check_zero(o.zero);
+  if (o.scale != 0 && !(o.scale >= kMinScale && o.scale <= kMaxScale))
+    return fail(
+        Rule::kScale, &o.scale,
+        fmt::format("an object is scaled by {} to {}, not {}", kMinScale, kMaxScale, o.scale));
+  if (o.paint[3] > 1 || (o.paint[3] == 0 && o.paint != std::array<std::uint8_t, 4>{}))
+    return fail(Rule::kPaint, &o.paint, "an object is painted (1) or not (0, and no colour)");
+  PROBE_TRY(check_slice(o.cover, t.covers.size(), "COVR"));
+  PROBE_TRY(check_zero(o.zero));
+  return check_zero(o.zero2);
 }
 
 Status RecordCheck::check(const DriveRecord& d) const {
@@ -158,7 +166,7 @@ Status RecordCheck::check(const CameraRecord& c) const {
   PROBE_TRY(check_magnitude(c.fy, Magnitude::kFocal));
   PROBE_TRY(check_magnitude(c.cx, Magnitude::kPixel));
   PROBE_TRY(check_magnitude(c.cy, Magnitude::kPixel));
-  return check_zero(c.zero2);
+  return check_slice(c.sensor, t.sensors.size(), "SENS");
 }
 
 Status RecordCheck::check(const SunRecord& s) const {
@@ -188,8 +196,12 @@ Status RecordCheck::check(const LightRecord& l) const {
                 fmt::format("ambient light is traced by at most {} rays, not {}", kMaxOcclusion,
                             l.occlusion));
   }
+  for (const double& channel : l.color) {
+    PROBE_TRY(check_not_negative(channel, "the colour of a light"));
+    PROBE_TRY(check_magnitude(channel, Magnitude::kLight));
+  }
   PROBE_TRY(check_zero(l.zero));
-  return check_zero(l.zero2);
+  return check_zero({&l.zero2, 1});
 }
 
 Status RecordCheck::check(const SceneRecord& s) const {
@@ -234,6 +246,7 @@ Status RecordCheck::check(const SceneRecord& s) const {
     PROBE_TRY(check_not_negative(*of_air, "a density or viscosity of air"));
     PROBE_TRY(check_magnitude(*of_air, Magnitude::kAir));
   }
+  PROBE_TRY(check_slice(s.covers, t.covers.size(), "COVR"));
   return check_zero(s.zero2);
 }
 

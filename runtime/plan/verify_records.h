@@ -47,6 +47,8 @@ class RecordCheck : FieldCheck {
   Status check(const CameraRecord& camera) const;
   Status check(const LightRecord& light) const;
   Status check(const SunRecord& sun) const;
+  Status check(const SensorRecord& sensor) const;
+  Status check(const CoverRecord& cover) const;
   Status check(const SceneRecord& scene) const;
   Status check(const StateRecord& state) const;
   Status check(const ProgramRecord& program) const;
@@ -81,6 +83,10 @@ Status verify_robots(std::span<const std::byte> bytes, const Tables& tables);
 
 // What the records of fixtures say of one another, of scenes and of episodes; after RecordCheck.
 Status verify_fixtures(std::span<const std::byte> bytes, const Tables& tables);
+
+// What objects, cameras, scenes and episodes say of their scales, textures, sensors and arms; after
+// RecordCheck.
+Status verify_variations(std::span<const std::byte> bytes, const Tables& tables);
 
 // What claims say of their tasks and programs; after verify_relations.
 Status verify_claims(std::span<const std::byte> bytes, const Tables& tables);

@@ -134,6 +134,10 @@ Status RecordCheck::check(const TaskRecord& k) const {
   if (k.idle > kMaxIdle)
     return fail(Rule::kIdle, &k.idle,
                 fmt::format("a task idles for at most {} steps, not {}", kMaxIdle, k.idle));
+  if (k.delay > kMaxDelay)
+    return fail(Rule::kDelay, &k.delay,
+                fmt::format("an action acts after at most {} steps, not {}", kMaxDelay, k.delay));
+  PROBE_TRY(check_zero(k.zero));
   return check_zero(k.zero2);
 }
 
@@ -148,6 +152,7 @@ Status RecordCheck::check(const ClaimRecord& c) const {
 Status RecordCheck::check(const EpisodeRecord& e) const {
   PROBE_TRY(check_zero(e.zero));
   PROBE_TRY(check_slice(e.joints, t.reals.size(), "REAL"));
+  PROBE_TRY(check_slice(e.arm, t.reals.size(), "REAL"));
   return check_slice(e.placements, t.placements.size(), "PLAC");
 }
 

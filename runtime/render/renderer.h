@@ -37,6 +37,7 @@ struct Sun {
 struct Lights {
   double ambient = 0.3;
   std::vector<Sun> suns;
+  std::array<double, 3> color{1, 1, 1};  // factors of all of it: red, green, blue
 };
 
 // A rigid visual. `body` is what segmentation shows + 1; kBackdrop for geometry without a body.

@@ -73,6 +73,12 @@ PROBE_CLONES void shade_sun(const ShadeInput& __restrict in, int count, float lx
   }
 }
 
+// Of what is not emitted, the share that a light of that colour gives.
+void tint(const ShadeInput::Array& emission, int count, float factor, ShadeInput::Array& out) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+    out[k] = emission[k] + factor * (out[k] - emission[k]);
+}
+
 ShadeInput::Array make_ones() {
   ShadeInput::Array ones;
   ones.fill(1);
@@ -111,6 +117,11 @@ void shade(const ShadeInput& input, int count, const LightTable& lights,
     shade_sun(input, n, sun.x, sun.y, sun.z, sun.irradiance,
               given ? factors.visible[s] : kOnes.data(), output);
   }
+  // White light is left alone, to the bit.
+  if (lights.color == std::array<float, 3>{1, 1, 1}) return;
+  tint(input.emission_r, n, lights.color[0], output.r);
+  tint(input.emission_g, n, lights.color[1], output.g);
+  tint(input.emission_b, n, lights.color[2], output.b);
 }
 
 }  // namespace probe::render

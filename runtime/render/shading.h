@@ -37,6 +37,7 @@ struct LightRay {
 struct LightTable {
   float ambient = 0;
   std::vector<LightRay> suns;
+  std::array<float, 3> color{1, 1, 1};  // of all of it
 
   bool any_shadow() const;
 };

@@ -208,6 +208,13 @@ Result<LightTable> make_lights(const Lights& lights) {
         .code = Fault::kRender, .message = "ambient light must be finite, 0 or more", .where = ""};
   }
   table.ambient = static_cast<float>(lights.ambient);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!std::isfinite(lights.color[k]) || lights.color[k] < 0)
+      return Failure{.code = Fault::kRender,
+                     .message = "the colour of a light has factors of 0 or more",
+                     .where = ""};
+    table.color[k] = static_cast<float>(lights.color[k]);
+  }
   for (const Sun& sun : lights.suns) {
     const double length = sun.direction.norm();
     if (!sun.direction.allFinite() || !(length > 0) || !std::isfinite(sun.power) || sun.power < 0) {
@@ -263,7 +270,7 @@ Sha256 StaticPicture::key_of(const SceneSpec& spec) {
   hasher.u32(static_cast<std::uint32_t>(camera.width))
       .u32(static_cast<std::uint32_t>(camera.height));
   hasher.f64(camera.fx).f64(camera.fy).f64(camera.cx).f64(camera.cy);
-  hasher.f64(spec.lights.ambient).u64(spec.lights.suns.size());
+  hasher.f64(spec.lights.ambient).f64s(spec.lights.color).u64(spec.lights.suns.size());
   for (const Sun& sun : spec.lights.suns) {
     vec3(sun.direction);
     hasher.f64(sun.power).u8(sun.shadow ? 1 : 0);

@@ -21,14 +21,20 @@ namespace {
 
 constexpr std::array<std::uint8_t, 3> kGood = {110, 230, 120}, kBad = {255, 150, 110};
 
-Result<Picture> draw(stage::SceneView& view, std::span<const double> q,
-                     const vm::StepSample& sample, std::size_t objects,
-                     const SheetOptions& options) {
+// What the policy saw after `step` steps of the trace.
+Result<Picture> draw(stage::SceneView& view, const store::Trace& trace, const Sha256& start_id,
+                     int step, std::size_t objects, const SheetOptions& options) {
   std::vector<Pose> poses;
-  for (std::size_t i = 0; i < std::min(objects, sample.bodies.size()); ++i) {
-    poses.push_back({sample.bodies[i].origin, sample.bodies[i].rotation});
-  }
-  PROBE_ASSIGN(const auto frames, view.render_all(q, poses));
+  const auto at = [&](int then) -> stage::SceneView::Placed {
+    const bool is_start = then == 0;
+    const auto index = static_cast<std::size_t>(then) - (is_start ? 0u : 1u);
+    const vm::StepSample& sample = is_start ? trace.start->sample : trace.steps[index].sample;
+    poses.clear();
+    for (std::size_t i = 0; i < std::min(objects, sample.bodies.size()); ++i)
+      poses.push_back({sample.bodies[i].origin, sample.bodies[i].rotation});
+    return {is_start ? trace.start->q : trace.steps[index].q, poses};
+  };
+  PROBE_ASSIGN(const auto frames, view.render_seen({start_id, step}, at));
   PROBE_ASSIGN(const Picture shown, show_frames(frames, options.camera));
   return shrink_to(shown, options.cell_width);
 }
@@ -83,14 +89,20 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
     PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
     // An episode may have ended before its start: then there is nothing to draw.
     if (!trace.start) continue;
+    const auto episodes = plan.episodes(plan.tasks()[*plan.find_task(row.task)]);
+    const auto index = static_cast<std::size_t>(row.episode);
+    if (index >= episodes.size())
+      return Failure{Fault::kStore, "its plan has no such episode of `" + row.task + "`",
+                     store::plan_path(dir)};
+    const Sha256 start_id{episodes[index].start_id};
     GridCell cell;
     cell.caption = caption(row);
     cell.color = succeeded(row) ? kGood : kBad;
-    PROBE_ASSIGN(Picture first, draw(*view, trace.start->q, trace.start->sample, objects, options));
+    PROBE_ASSIGN(Picture first, draw(*view, trace, start_id, 0, objects, options));
     cell.pictures.assign(2, std::move(first));
     if (!trace.steps.empty()) {
-      const store::TraceStep& last = trace.steps.back();
-      PROBE_ASSIGN(cell.pictures[1], draw(*view, last.q, last.sample, objects, options));
+      const int last = static_cast<int>(trace.steps.size());
+      PROBE_ASSIGN(cell.pictures[1], draw(*view, trace, start_id, last, objects, options));
     }
     cells.push_back(std::move(cell));
   }

@@ -12,9 +12,11 @@
 #include "runtime/plan/plan.h"
 #include "runtime/render/scene_store.h"
 #include "runtime/scene/collision_mesh.h"
+#include "runtime/scene/covered_mesh.h"
 #include "runtime/scene/hull.h"
 #include "runtime/scene/image.h"
 #include "runtime/scene/mesh_cache.h"
+#include "runtime/stage/backdrop.h"
 
 namespace probe::stage {
 namespace {
@@ -70,15 +72,14 @@ class SharedAssets::Loader {
     for (const std::uint32_t visual : {scene.backdrop, scene.fixture_visual}) {
       if (visual != plan::kNone) PROBE_TRY(mesh(visual));
     }
+    PROBE_TRY(backdrop(task.scene));
     if (scene.fixture_collision != plan::kNone) PROBE_TRY(shape(scene.fixture_collision));
     for (const plan::ViewRecord& view : plan_.views(task)) {
       if (view.photo != plan::kNone) PROBE_TRY(photo(view.photo));
     }
     for (const plan::BodyRecord& body : plan_.bodies(task)) {
       if (body.kind != static_cast<std::uint32_t>(plan::BodyKind::kObject)) continue;
-      const plan::ObjectRecord& object = plan_.objects()[body.index];
-      if (object.visual != plan::kNone) PROBE_TRY(mesh(object.visual));
-      if (object.collision != plan::kNone) PROBE_TRY(shape(object.collision));
+      PROBE_TRY(object(body.index));
     }
     for (const std::uint32_t index : plan_.fixtures(scene)) PROBE_TRY(planned(index));
     by_scene(task.scene);
@@ -166,6 +167,63 @@ class SharedAssets::Loader {
     PROBE_ASSIGN(scene::CollisionShape shape,
                  scene::load_collision_mesh(path_of(asset), {1, 1, 1}, limits()));
     assets_.shapes_[asset] = std::make_shared<scene::CollisionShape>(std::move(shape));
+    return {};
+  }
+
+  Status object(std::uint32_t index) {
+    const plan::ObjectRecord& object = plan_.objects()[index];
+    const Vec3 scale = Vec3::Constant(object.scale == 0 ? 1 : object.scale);
+    if (object.visual != plan::kNone && !assets_.object_meshes_.contains(index)) {
+      PROBE_TRY(mesh(object.visual));
+      std::shared_ptr<const scene::Mesh> seen = assets_.mesh(object.visual);
+      if (object.scale != 0) {
+        PROBE_ASSIGN(seen, scene::shared_mesh(path_of(object.visual), scale, limits()));
+      }
+      if (object.paint[3] != 0) {
+        const auto& rgb = object.paint;
+        seen = std::make_shared<scene::Mesh>(scene::painted_mesh(*seen, {rgb[0], rgb[1], rgb[2]}));
+      }
+      if (const plan::CoverRecord* cover = plan_.cover(object)) {
+        PROBE_TRY(photo(cover->texture));
+        seen = std::make_shared<scene::Mesh>(scene::covered_mesh(
+            *seen, *assets_.photo(cover->texture), cover->side,
+            [](const Vec3&, const Vec3&, const Vec3&, const Vec3&) { return true; }));
+      }
+      assets_.object_meshes_[index] = std::move(seen);
+    }
+    if (object.collision == plan::kNone || assets_.object_shapes_.contains(index)) return {};
+    PROBE_TRY(shape(object.collision));
+    assets_.object_shapes_[index] = assets_.shape(object.collision);
+    if (object.scale == 0) return {};
+    PROBE_ASSIGN(scene::CollisionShape scaled,
+                 scene::load_collision_mesh(path_of(object.collision), scale, limits()));
+    assets_.object_shapes_[index] = std::make_shared<scene::CollisionShape>(std::move(scaled));
+    return {};
+  }
+
+  Status backdrop(std::uint32_t index) {
+    const plan::SceneRecord& record = plan_.scenes()[index];
+    if (record.backdrop == plan::kNone || assets_.backdrops_.contains(index)) return {};
+    std::shared_ptr<const scene::Mesh> seen = assets_.mesh(record.backdrop);
+    const auto covers = plan_.covers(record);
+    if (!covers.empty()) {
+      std::vector<Cover> textures;
+      for (const plan::CoverRecord& cover : covers) {
+        PROBE_TRY(photo(cover.texture));
+        textures.push_back({static_cast<plan::CoverOf>(cover.what),
+                            assets_.photo(cover.texture).get(), cover.side});
+      }
+      const scene::Mesh* const fixture = record.fixture_visual == plan::kNone
+                                             ? nullptr
+                                             : assets_.mesh(record.fixture_visual).get();
+      auto covered = covered_backdrop(*seen, {fixture, to_vec(record.fixture_position)},
+                                      record.area, record.surface_z, textures);
+      if (!covered)
+        return Failure{covered.failure().code, covered.failure().message,
+                       "scene `" + std::string(plan_.text(record.name)) + "`"};
+      seen = std::make_shared<scene::Mesh>(std::move(*covered));
+    }
+    assets_.backdrops_[index] = std::move(seen);
     return {};
   }
 
@@ -283,6 +341,19 @@ std::shared_ptr<const scene::CollisionShape> SharedAssets::shape(std::uint32_t a
 
 std::shared_ptr<const scene::Texture> SharedAssets::photo(std::uint32_t asset) const {
   return find(photos_, asset);
+}
+
+std::shared_ptr<const scene::Mesh> SharedAssets::object_mesh(std::uint32_t object) const {
+  return find(object_meshes_, object);
+}
+
+std::shared_ptr<const scene::CollisionShape> SharedAssets::object_shape(
+    std::uint32_t object) const {
+  return find(object_shapes_, object);
+}
+
+std::shared_ptr<const scene::Mesh> SharedAssets::backdrop(std::uint32_t scene) const {
+  return find(backdrops_, scene);
 }
 
 const UrdfParts* SharedAssets::robot(std::uint32_t urdf_asset) const {

@@ -63,6 +63,12 @@ class SharedAssets {
   std::shared_ptr<const scene::Mesh> mesh(std::uint32_t asset) const;
   std::shared_ptr<const scene::CollisionShape> shape(std::uint32_t asset) const;
   std::shared_ptr<const scene::Texture> photo(std::uint32_t asset) const;
+  // Of an object (index of the plan's objects), scaled, painted and covered as the plan says; null
+  // where it has none.
+  std::shared_ptr<const scene::Mesh> object_mesh(std::uint32_t object) const;
+  std::shared_ptr<const scene::CollisionShape> object_shape(std::uint32_t object) const;
+  // What stands behind a scene (index of the plan's scenes), covered as the plan says, or null.
+  std::shared_ptr<const scene::Mesh> backdrop(std::uint32_t scene) const;
   const UrdfParts* robot(std::uint32_t urdf_asset) const;
   // Those with joints in a scene (index of the plan's scenes) of a loaded task: the plan's, then
   // the others.
@@ -78,6 +84,8 @@ class SharedAssets {
   std::map<std::uint32_t, std::shared_ptr<const scene::Mesh>> meshes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> shapes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::Texture>> photos_;
+  std::map<std::uint32_t, std::shared_ptr<const scene::Mesh>> object_meshes_, backdrops_;
+  std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> object_shapes_;
   std::map<std::uint32_t, std::unique_ptr<const UrdfParts>> robots_;
   std::map<std::uint32_t, std::unique_ptr<const LoadedFixture>> planned_;  // by plan's index
   std::vector<std::unique_ptr<const LoadedFixture>> others_;

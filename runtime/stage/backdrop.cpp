@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
+
+#include "runtime/scene/covered_mesh.h"
 
 namespace probe::stage {
 namespace {
@@ -96,6 +99,49 @@ double backdrop_lift(std::optional<double> table_height, double surface_z) {
   if (!table_height) return 0;
   const double lift = surface_z - *table_height;
   return std::abs(lift) <= kMeant || std::abs(lift) > kOtherThing ? 0 : lift;
+}
+
+Result<scene::Mesh> covered_backdrop(const scene::Mesh& backdrop, const SeenMesh& fixture,
+                                     const std::array<double, 4>& area, double surface_z,
+                                     std::span<const Cover> covers) {
+  constexpr double kLevel = 0.9, kUpright = 0.3;         // of the normal's z
+  constexpr double kAtTable = 0.015, kBelowTable = 0.2;  // m
+  constexpr double kAtFloor = 0.05;                      // m
+  const double table = table_height({&backdrop}, fixture, area).value_or(surface_z);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const scene::MeshPart& part : backdrop.parts) {
+    for (std::size_t i = 2; i < part.positions.size(); i += 3)
+      lowest = std::min(lowest, static_cast<double>(part.positions[i]));
+  }
+  scene::Mesh made = backdrop;
+  for (const Cover& cover : covers) {
+    const auto is_covered = [&](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal) {
+      const double low = std::min({a.z(), b.z(), c.z()}), high = std::max({a.z(), b.z(), c.z()});
+      const bool is_level = std::abs(normal.z()) > kLevel;
+      switch (cover.of) {
+        case plan::CoverOf::kSurface:
+          return is_level && std::abs(low - table) < kAtTable && std::abs(high - table) < kAtTable;
+        case plan::CoverOf::kWalls:
+          return std::abs(normal.z()) < kUpright && high > table + kAtTable;
+        case plan::CoverOf::kFloor:
+          return is_level && high < lowest + kAtFloor && high < table - kBelowTable;
+        case plan::CoverOf::kObject:
+          break;
+      }
+      return false;
+    };
+    std::size_t count = 0;
+    made = scene::covered_mesh(made, *cover.picture, cover.side, is_covered, &count);
+    if (count > 0) continue;
+    const char* const what = cover.of == plan::CoverOf::kSurface ? "a surface"
+                             : cover.of == plan::CoverOf::kWalls ? "walls"
+                                                                 : "a floor";
+    return Failure{Fault::kRender,
+                   std::string("the backdrop has nothing that looks like ") + what +
+                       ": its texture would cover nothing",
+                   backdrop.name};
+  }
+  return made;
 }
 
 }  // namespace probe::stage

@@ -5,8 +5,11 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "runtime/base/geometry.h"
+#include "runtime/base/result.h"
+#include "runtime/plan/format.h"
 #include "runtime/scene/mesh.h"
 
 namespace probe::stage {
@@ -27,5 +30,19 @@ std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fix
 // table, one within 2 mm (drawn a little lower so that nothing flickers), or one farther than half
 // a metre away, which is the floor of a room.
 double backdrop_lift(std::optional<double> table_height, double surface_z);
+
+// A texture on a part of a backdrop.
+struct Cover {
+  plan::CoverOf of = plan::CoverOf::kSurface;
+  const scene::Texture* picture = nullptr;
+  double side = 0;  // m that one picture covers
+};
+
+// `backdrop` with textures on its surface (level, at the table's height), its walls (upright, above
+// that) and its floor (level, the lowest of it, well below that). Where it has no table the surface
+// is what lies at `surface_z`. Fails (kRender), naming the part, where a texture covers nothing.
+Result<scene::Mesh> covered_backdrop(const scene::Mesh& backdrop, const SeenMesh& fixture,
+                                     const std::array<double, 4>& area, double surface_z,
+                                     std::span<const Cover> covers);
 
 }  // namespace probe::stage

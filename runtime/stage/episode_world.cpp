@@ -17,6 +17,13 @@ namespace {
 // over objects and joints of fixtures), and how long it is (s). From the reference's reset.
 constexpr double kStillSpeed = 1e-3, kStillSpin = 1e-2, kExtraSettle = 1.5;
 
+// What the arm is told while it waits: to stay, the gripper open.
+constexpr policy::Action kStay = [] {
+  policy::Action stay{};
+  stay.back() = 1;
+  return stay;
+}();
+
 // An articulation that nobody drives, its joints at `positions`. Its springs rest where the fixture
 // says, wherever settling has left the joints.
 world::ArticulationSpec passive(const LoadedFixture& loaded, std::span<const double> positions) {
@@ -94,8 +101,7 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
   // While objects fall nobody drives the arm: it floats.
   arm.by_efforts = with_robot_links && controller_.kind().reads == robot::Reads::kDynamics;
   arm.joints = drives_;
-  const auto joints = plan_.joints(scene_);
-  arm.positions.assign(joints.begin(), joints.end());
+  arm.positions = arm_;
   for (std::size_t k = 0; with_robot_links && k < bodies_.robot_links; ++k) {
     const auto link = static_cast<std::size_t>(bodies_.links[k].link);
     const bool finger = k < robot_.fingers.size();
@@ -112,7 +118,7 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
   for (std::size_t i = 0; i < bodies_.objects; ++i) {
     const plan::ObjectRecord& object = plan_.objects()[records[i].index];
     spec.bodies.push_back({std::string(plan_.text(records[i].name)),
-                           assets_->shape(object.collision), object.density, object.friction,
+                           assets_->object_shape(records[i].index), object.density, object.friction,
                            at.objects[i]});
   }
   if (bodies_.fixture != TaskBodies::kNone) {
@@ -188,6 +194,9 @@ Status EpisodeWorld::reset(std::uint32_t index) {
   Arrangement begun = arrangement(std::move(placed));
   std::ranges::copy(plan::joint_starts_of(plan_.tables(), scene_, episode),
                     begun.fixture_joints.begin());
+  const auto joints = plan_.joints(scene_, episode);
+  arm_.assign(joints.begin(), joints.end());
+  waiting_.clear();
   PROBE_ASSIGN(const Arrangement settled, settle(begun));
   PROBE_TRY(begin_world(settled));
   controller_.reset(robot_q());
@@ -200,14 +209,27 @@ Status EpisodeWorld::reset(std::uint32_t index) {
 
 // The arm is told to stay and the gripper to be open.
 Status EpisodeWorld::idle() {
-  policy::Action stay{};
-  stay.back() = 1;
   for (std::uint32_t i = 0; i < task_.idle; ++i)
-    PROBE_TRY(loop_->step(stay, substeps_, &controller_, world_.get()));
+    PROBE_TRY(loop_->step(kStay, substeps_, &controller_, world_.get()));
   return {};
 }
 
-Status EpisodeWorld::act(const policy::Action& action) {
+// Where actions are late, what was said so many steps ago is done; before that the arm stays.
+Status EpisodeWorld::act(const policy::Action& now) {
+  policy::Action action = now;
+  if (task_.delay != 0) {
+    if (!std::ranges::all_of(now, [](double number) { return std::isfinite(number); }))
+      return Failure{Fault::kPolicy, "an action has a number that is not finite", ""};
+    waiting_.push_back(now);
+    if (waiting_.size() <= task_.delay) {
+      PROBE_TRY(loop_->step(kStay, substeps_, &controller_, world_.get()));
+      ++steps_;
+      measure();
+      return {};
+    }
+    action = waiting_.front();
+    waiting_.pop_front();
+  }
   const auto* osc = std::get_if<robot::OscPose>(&robot_.law);
   const policy::Action numbers = osc == nullptr ? action : robot::shares_of(*osc, action);
   PROBE_TRY(loop_->step(numbers, substeps_, &controller_, world_.get()));
@@ -217,7 +239,7 @@ Status EpisodeWorld::act(const policy::Action& action) {
 }
 
 WorldState EpisodeWorld::save() const {
-  return {world_->save(), controller_.save(), starts_, steps_};
+  return {world_->save(), controller_.save(), starts_, steps_, {waiting_.begin(), waiting_.end()}};
 }
 
 Status EpisodeWorld::restore(const WorldState& state) {
@@ -225,7 +247,14 @@ Status EpisodeWorld::restore(const WorldState& state) {
     return Failure{Fault::kWorld, "the saved state is of a task with other bodies",
                    "task `" + std::string(plan_.text(task_.name)) + "`"};
   }
+  if (state.waiting.size() !=
+      std::min<std::size_t>(task_.delay, static_cast<std::size_t>(state.steps))) {
+    return Failure{Fault::kWorld, "the saved state has actions on their way of another task",
+                   "task `" + std::string(plan_.text(task_.name)) + "`"};
+  }
   if (!world_) {
+    const auto joints = plan_.joints(scene_);
+    arm_.assign(joints.begin(), joints.end());
     std::vector<Pose> anywhere(bodies_.objects);
     PROBE_TRY(begin_world(arrangement(std::move(anywhere))));
   }
@@ -233,6 +262,7 @@ Status EpisodeWorld::restore(const WorldState& state) {
   PROBE_TRY(controller_.restore(state.control));
   starts_ = state.starts;
   steps_ = state.steps;
+  waiting_.assign(state.waiting.begin(), state.waiting.end());
   measure();
   return {};
 }

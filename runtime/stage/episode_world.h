@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,8 +28,9 @@ namespace probe::stage {
 struct WorldState {
   std::vector<std::byte> physics;  // world::World::save()
   robot::ControlState control;
-  std::vector<vm::BodyStart> starts;  // as the judge was told them after settling
-  int steps = 0;                      // control steps done
+  std::vector<vm::BodyStart> starts;         // as the judge was told them after settling
+  int steps = 0;                             // control steps done
+  std::vector<policy::Action> waiting = {};  // said and not yet done, where actions are late
 };
 
 class EpisodeWorld {
@@ -103,6 +105,8 @@ class EpisodeWorld {
   std::unique_ptr<world::World> world_;
   std::optional<world::ControlLoop> loop_;  // of world_
   int steps_ = 0;
+  std::vector<double> arm_;             // where the robot's joints begin
+  std::deque<policy::Action> waiting_;  // said and not yet done
   std::vector<Pose> objects_;
   std::vector<vm::BodyStart> starts_;
   vm::StepSample sample_;

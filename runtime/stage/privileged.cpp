@@ -41,7 +41,7 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
   view.surface_z = scene.surface_z;
   for (std::size_t i = 0; i < bodies.objects; ++i) {
     const plan::ObjectRecord& object = plan.objects()[records[i].index];
-    const auto shape = assets.shape(object.collision);
+    const auto shape = assets.object_shape(records[i].index);
     if (!shape) return lacks_mesh("object", records[i]);
     policy::PrivilegedObject seen;
     seen.name = std::string(plan.text(records[i].name));

@@ -74,6 +74,7 @@ void resize(render::Camera& camera, ImageSize size) {
 render::Lights make_lights(const plan::Plan& plan, const plan::LightRecord& record) {
   render::Lights lights;
   lights.ambient = record.ambient;
+  if (record.color != std::array<double, 3>{}) lights.color = record.color;
   for (const plan::SunRecord& sun : plan.suns(record)) {
     lights.suns.push_back({to_vec(sun.direction), sun.power, sun.shadow != 0});
   }
@@ -120,7 +121,7 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   render::SceneSpec spec;
   if (scene.backdrop != plan::kNone) {
     PROBE_ASSIGN(const double lift, lift_backdrop(plan, task, *assets));
-    spec.statics.push_back({assets->mesh(scene.backdrop),
+    spec.statics.push_back({assets->backdrop(task.scene),
                             {Vec3(0, 0, lift), Quat::Identity()},
                             render::kBackdrop,
                             "backdrop",
@@ -136,7 +137,7 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
       if (visual == plan::kNone) {
         return Failure{Fault::kAsset, "object `" + name + "` has no mesh to draw", ""};
       }
-      spec.dynamics.push_back({assets->mesh(visual), {}, body, name, false});
+      spec.dynamics.push_back({assets->object_mesh(bodies[i].index), {}, body, name, false});
       ++view->objects_;
     }
     if (kind == plan::BodyKind::kFixture && scene.fixture_visual != plan::kNone) {
@@ -163,6 +164,8 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   spec.occlusion_rays = static_cast<int>(light.occlusion);
   for (const plan::ViewRecord& record : plan.views(task)) {
     PROBE_ASSIGN(Eye eye, view->open_eye(plan, scene, record, spec, size));
+    if (const plan::SensorRecord* sensor = plan.sensor(plan.cameras()[record.camera]))
+      eye.sensor.emplace(*sensor, view->eyes_.size());
     view->eyes_.push_back(std::move(eye));
   }
   return view;
@@ -252,6 +255,29 @@ Result<std::span<const CameraFrame>> SceneView::render_all(std::span<const doubl
     frames_.push_back({eye.name, frame});
   }
   return std::span<const CameraFrame>(frames_);
+}
+
+Result<std::span<const CameraFrame>> SceneView::render_seen(
+    const Moment& moment, const std::function<Placed(int step)>& at) {
+  frames_.clear();
+  int placed = -1;
+  for (Eye& eye : eyes_) {
+    const int step = eye.sensor ? eye.sensor->shown_step(moment) : moment.step;
+    if (step != placed) {
+      const Placed there = at(step);
+      place(there.q, there.objects);
+      placed = step;
+    }
+    PROBE_ASSIGN(render::FrameView frame, look(eye, false));
+    if (eye.sensor) frame = eye.sensor->apply(frame, {moment.start_id, step});
+    frames_.push_back({eye.name, frame});
+  }
+  return std::span<const CameraFrame>(frames_);
+}
+
+bool SceneView::drops() const {
+  return std::ranges::any_of(eyes_,
+                             [](const Eye& eye) { return eye.sensor && eye.sensor->drops(); });
 }
 
 Result<render::FrameView> SceneView::render_full(std::span<const double> q,

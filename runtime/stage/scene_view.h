@@ -2,6 +2,7 @@
 // object poses. Knows no physics, so stored episodes can be drawn with it too.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include "runtime/render/renderer.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/placed_tree.h"
+#include "runtime/stage/sensor.h"
 
 namespace probe::stage {
 
@@ -43,6 +45,17 @@ class SceneView {
   // Every camera's picture, valid until the next call.
   Result<std::span<const CameraFrame>> render_all(std::span<const double> q,
                                                   std::span<const Pose> objects);
+  // What a policy sees at `moment`: every camera's picture as its sensor gives it, which may be
+  // that of an earlier step. `at` says where things were then; what it points to lives until the
+  // next call of `at`. Valid until the next call.
+  struct Placed {
+    std::span<const double> q;
+    std::span<const Pose> objects;
+  };
+  Result<std::span<const CameraFrame>> render_seen(const Moment& moment,
+                                                   const std::function<Placed(int step)>& at);
+  // Whether a camera may show an earlier step.
+  bool drops() const;
   // Every pixel traced again: the same picture, for tests.
   Result<render::FrameView> render_full(std::span<const double> q, std::span<const Pose> objects,
                                         std::size_t camera = 0);
@@ -53,6 +66,7 @@ class SceneView {
     int moving_mount = -1;    // the robot's link that carries it, where that moves
     render::Camera on_mount;  // its place in the link, its picture's size and lens
     std::unique_ptr<render::Renderer> renderer;
+    std::optional<Sensor> sensor;
   };
 
   Result<Eye> open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,

@@ -1,6 +1,7 @@
 // The order of an episode: settle, look, act, measure, judge.
 #include "runtime/stage/stage.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -21,6 +22,8 @@ Status Stage::reset(std::uint32_t index) {
   frames_ = {};
   start_ = index;
   PROBE_TRY(world_->reset(index));
+  past_.clear();
+  remember();
   return judge_.begin(world_->starts());
 }
 
@@ -29,7 +32,13 @@ Result<policy::Observation> Stage::observe() {
   policy::Observation seen;
   images_.clear();
   if (view_) {
-    PROBE_ASSIGN(frames_, view_->render_all(world_->q(), world_->objects()));
+    const plan::EpisodeRecord& episode = plan_.episodes(task)[start_];
+    const auto at = [this](int step) -> SceneView::Placed {
+      if (step == steps()) return {world_->q(), world_->objects()};
+      const PastPlaces& then = past(step);
+      return {then.q, then.objects};
+    };
+    PROBE_ASSIGN(frames_, view_->render_seen({Sha256{episode.start_id}, steps()}, at));
     for (const CameraFrame& frame : frames_) {
       images_.push_back({frame.camera, {frame.frame.width, frame.frame.height, frame.frame.rgb}});
     }
@@ -46,7 +55,24 @@ Result<policy::Observation> Stage::observe() {
 
 Status Stage::step(const policy::Action& action) {
   PROBE_TRY(world_->act(action));
+  remember();
   return judge_.step(world_->sample());
+}
+
+void Stage::remember() {
+  if (!view_ || !view_->drops()) return;
+  const auto q = world_->q();
+  const auto objects = world_->objects();
+  past_.push_back({steps(), {q.begin(), q.end()}, {objects.begin(), objects.end()}});
+  // The first, for a camera that shows nothing else, and as many as another may be late.
+  if (past_.size() > 1 + static_cast<std::size_t>(Sensor::kLongestGap))
+    past_.erase(past_.begin() + 1);
+}
+
+// The state of a stage without pictures has none: then it is shown as it is.
+const PastPlaces& Stage::past(int step) const {
+  const auto then = std::ranges::find(past_, step, &PastPlaces::step);
+  return then == past_.end() ? past_.back() : *then;
 }
 
 bool Stage::done() const {
@@ -56,7 +82,11 @@ bool Stage::done() const {
 
 StageState Stage::save() const {
   const plan::EpisodeRecord& episode = plan_.episodes(plan_.tasks()[task_])[start_];
-  return {start_, Sha256{episode.episode_id}, world_->save(), judge_.save()};
+  return {start_,
+          Sha256{episode.episode_id},
+          world_->save(),
+          judge_.save(),
+          {past_.begin(), past_.end()}};
 }
 
 Status Stage::restore(const StageState& state) {
@@ -69,6 +99,14 @@ Status Stage::restore(const StageState& state) {
   }
   PROBE_TRY(world_->restore(state.world));
   start_ = state.start;
+  for (const PastPlaces& places : state.past) {
+    if (places.q.size() == world_->q().size() && places.objects.size() == world_->objects().size())
+      continue;
+    return Failure{Fault::kWorld, "the saved state shows other things than are in this task",
+                   "task `" + std::string(plan_.text(plan_.tasks()[task_].name)) + "`"};
+  }
+  past_.assign(state.past.begin(), state.past.end());
+  if (past_.empty()) remember();
   return judge_.restore(world_->starts(), state.judge);
 }
 

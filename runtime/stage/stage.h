@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <string>
@@ -98,6 +99,11 @@ class Stage {
   vm::Judge judge_;
   std::span<const CameraFrame> frames_;
   std::vector<policy::CameraImage> images_;  // of the last observation
+
+  // Where things were in the last steps, where a camera may show them late.
+  void remember();
+  const PastPlaces& past(int step) const;
+  std::deque<PastPlaces> past_;
 };
 
 }  // namespace probe::stage

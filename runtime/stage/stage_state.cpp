@@ -13,7 +13,7 @@ namespace probe::stage {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'S', 'T', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 1, kLateVersion = 2;
 constexpr std::size_t kCheckBytes = 8;
 // Two objects of 256 parts of which each touches each of the other's would save 54 MB.
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
@@ -38,6 +38,41 @@ robot::ControlState get_control(ByteReader& from) {
   return control;
 }
 
+void put_late(ByteWriter& to, const StageState& state) {
+  to.u32(static_cast<std::uint32_t>(state.world.waiting.size()));
+  for (const policy::Action& action : state.world.waiting) {
+    for (const double number : action) to.f64(number);
+  }
+  to.u32(static_cast<std::uint32_t>(state.past.size()));
+  for (const PastPlaces& places : state.past) {
+    to.u32(static_cast<std::uint32_t>(places.step));
+    to.reals(places.q);
+    to.u32(static_cast<std::uint32_t>(places.objects.size()));
+    for (const Pose& pose : places.objects) {
+      to.vec(pose.position);
+      to.quat(pose.rotation);
+    }
+  }
+}
+
+void get_late(ByteReader& from, StageState& state) {
+  state.world.waiting.resize(from.count(from.u32(), sizeof(policy::Action)));
+  for (policy::Action& action : state.world.waiting) {
+    for (double& number : action) number = from.f64();
+  }
+  constexpr std::size_t kLeast = 3 * sizeof(std::uint32_t);
+  state.past.resize(from.count(from.u32(), kLeast));
+  for (PastPlaces& places : state.past) {
+    places.step = static_cast<int>(std::min(from.u32(), 1'000'000'000u));
+    places.q = from.reals();
+    places.objects.resize(from.count(from.u32(), 7 * sizeof(double)));
+    for (Pose& pose : places.objects) {
+      pose.position = from.vec();
+      pose.rotation = from.quat();
+    }
+  }
+}
+
 std::span<const std::byte> check_of(const Sha256& hash) {
   return std::as_bytes(std::span(hash.bytes)).first(kCheckBytes);
 }
@@ -47,7 +82,8 @@ std::span<const std::byte> check_of(const Sha256& hash) {
 std::vector<std::byte> StageState::to_bytes() const {
   ByteWriter to;
   for (const std::uint8_t byte : kMagic) to.u8(byte);
-  to.u32(kVersion);
+  const bool is_late = !world.waiting.empty() || !past.empty();
+  to.u32(is_late ? kLateVersion : kVersion);
   to.u32(start);
   to.hash(episode_id);
   to.u32(static_cast<std::uint32_t>(world.steps));
@@ -66,6 +102,7 @@ std::vector<std::byte> StageState::to_bytes() const {
   }
   to.reals(judge.values);
   to.u8(judge.decided ? 1 : 0);
+  if (is_late) put_late(to, *this);
   std::vector<std::byte> bytes = to.bytes();
   const Sha256 hash = sha256(std::span<const std::byte>(bytes));
   const auto check = check_of(hash);
@@ -84,9 +121,11 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   }
   ByteReader from(bytes.first(bytes.size() - kCheckBytes));
   from.take(kMagic.size());
-  if (const std::uint32_t version = from.u32(); version != kVersion) {
-    return refuse(
-        fmt::format("a saved stage of format {}, this program reads {}", version, kVersion));
+  const std::uint32_t version = from.u32();
+  const bool is_late = version == kLateVersion;
+  if (version != kVersion && !is_late) {
+    return refuse(fmt::format("a saved stage of format {}, this program reads {} and {}", version,
+                              kVersion, kLateVersion));
   }
   const Sha256 hash = sha256(bytes.first(bytes.size() - kCheckBytes));
   if (!std::ranges::equal(bytes.last(kCheckBytes), check_of(hash))) {
@@ -114,6 +153,7 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   }
   state.judge.values = from.reals();
   state.judge.decided = from.u8() != 0;
+  if (is_late) get_late(from, state);
   if (!from.ok() || from.left() != 0 || steps > kMostSteps) {
     return refuse("the saved stage has another form than its version");
   }

@@ -14,17 +14,27 @@
 
 namespace probe::stage {
 
+// Where things were at a step before.
+struct PastPlaces {
+  int step = 0;
+  std::vector<double> q;
+  std::vector<Pose> objects;
+};
+
 // Of no meaning to a stage of another plan or task.
 struct StageState {
   std::uint32_t start = 0;  // within the task
   Sha256 episode_id;        // of that start, by the plan
   WorldState world;         // bodies, joints, contacts, the controller's target, steps done
   vm::JudgeState judge;     // monitors and verdicts so far
+  std::vector<PastPlaces> past = {};  // where a camera may show them late; at most 33
 
-  // Little endian: "\x89STG\r\n\x1a\n", u32 version 1; start, episode id; world: steps, controller
+  // Little endian: "\x89STG\r\n\x1a\n", u32 version 1, or 2 where actions are late or pictures
+  // dropped; start, episode id; world: steps, controller
   // (target pose, joint targets, u8 reached), bodies at the start, physics; judge: monitors,
-  // values, u8 decided; the first 8 bytes of the SHA-256 of all before. The physics has its own
-  // magic and counts (world/snapshot). Equal states have equal bytes.
+  // values, u8 decided; of version 2 actions on their way and past places; the first 8 bytes of the
+  // SHA-256 of all before. The physics has its own magic and counts (world/snapshot). Equal states
+  // have equal bytes.
   std::vector<std::byte> to_bytes() const;
   // Fails (kWorld) on bytes that are no saved stage, of another version, cut short, changed or
   // longer than any stage needs; never takes more memory than a few times the bytes. Whether the

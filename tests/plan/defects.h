@@ -133,7 +133,7 @@ inline std::vector<Defect> catalogue_defects() {
       {"OBJT", "positive extent", [](Records& r, Writer&) { r.objects[0].box_max[1] = -1; }},
       {"OBJT", "a density", [](Records& r, Writer&) { r.objects[0].density = 0; }},
       {"OBJT", "a friction", [](Records& r, Writer&) { r.objects[0].friction = std::nan(""); }},
-      {"OBJT", "reserved", [](Records& r, Writer&) { r.objects[0].zero[4] = 1; }},
+      {"OBJT", "reserved", [](Records& r, Writer&) { r.objects[0].zero2[1] = 1; }},
       {"ASST", "leads out", [](Records& r, Writer& w) { r.assets[0].path = w.text("../secret"); }},
       {"ASST", "leads out",
        [](Records& r, Writer& w) { r.assets[0].path = w.text("/etc/passwd"); }},
@@ -254,6 +254,11 @@ inline void give_claims(Records& r, Writer& w, std::uint32_t count) {
   }
 }
 
+// A texture on the given part, of nobody yet.
+inline void give_cover(Records& r, Writer& w, std::uint32_t what) {
+  r.covers.push_back({what, add_asset(w, "textures/wood.png", AssetKind::kPhoto), 0.1});
+}
+
 inline std::vector<Defect> task_defects() {
   return {
       {"CLAM", "stands behind one of task 1",
@@ -268,6 +273,38 @@ inline std::vector<Defect> task_defects() {
        [](Records& r, Writer& w) {
          give_claims(r, w, 1), r.metrics[3].name = w.text("body_1");
          r.programs[1].metrics.count = 1;
+       }},
+      {"OBJT", "scaled by", [](Records& r, Writer&) { r.objects[0].scale = 1000; }},
+      {"OBJT", "is painted",
+       [](Records& r, Writer&) {
+         r.objects[0].paint = {9, 0, 0, 0};
+       }},
+      {"OBJT", "covers all of it",
+       [](Records& r, Writer& w) {
+         give_cover(r, w, 1), r.objects[0].cover = {0, 1};
+       }},
+      {"SCNE", "each once",
+       [](Records& r, Writer& w) {
+         give_cover(r, w, 2), give_cover(r, w, 1), r.scenes[0].covers = {0, 2};
+       }},
+      {"COVR", "is not known",
+       [](Records& r, Writer& w) {
+         give_cover(r, w, 5), r.scenes[0].covers = {0, 1};
+       }},
+      {"COVR", "belongs to nobody", [](Records& r, Writer& w) { give_cover(r, w, 4); }},
+      {"OBJT", "of two records",
+       [](Records& r, Writer& w) {
+         give_cover(r, w, 4), r.objects[0].cover = r.objects[1].cover = {0, 1};
+       }},
+      {"SENS", "noise and dropped",
+       [](Records& r, Writer&) {
+         r.sensors.push_back({1.5, 0, 0, {}, 0, 0, 0}), r.cameras[0].sensor = {0, 1};
+       }},
+      {"LITE", "the colour of a light", [](Records& r, Writer&) { r.lights[0].color[1] = -1; }},
+      {"TASK", "acts after at most", [](Records& r, Writer&) { r.tasks[0].delay = 1001; }},
+      {"EPIS", "its robot has 2 drives",
+       [](Records& r, Writer&) {
+         r.episodes[0].arm = {0, 1};
        }},
       {"TASK", "idles for at most", [](Records& r, Writer&) { r.tasks[0].idle = 1001; }},
       {"METR", "at most one metric of a program ends",
@@ -335,7 +372,7 @@ inline std::vector<Defect> task_defects() {
       {"TASK", "a settling time is at most", [](Records& r, Writer&) { r.tasks[0].settle = 61; }},
       {"TASK", "its own baseline", [](Records& r, Writer&) { r.tasks[0].baseline = 1; }},
       {"TASK", "its own baseline", [](Records& r, Writer&) { r.tasks[1].baseline = 1; }},
-      {"TASK", "axes 0x8000", [](Records& r, Writer&) { r.tasks[1].axes = 0x8000; }},
+      {"TASK", "axes 0x80000000", [](Records& r, Writer&) { r.tasks[1].axes = 0x80000000; }},
       {"TASK", "no axis", [](Records& r, Writer&) { r.tasks[0].axes = 1; }},
       {"TASK", "ood", [](Records& r, Writer&) { r.tasks[0].ood = 8; }},
       {"TASK", "of VIEW", [](Records& r, Writer&) { r.tasks[0].views.count = 1; }},

@@ -1,0 +1,77 @@
+#include "runtime/inspect/varied.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+namespace probe::inspect {
+namespace {
+
+std::string covered_with(const plan::Plan& plan, const plan::CoverRecord& cover) {
+  return fmt::format("covered with `{}`, {:.6g} cm a picture",
+                     plan.text(plan.assets()[cover.texture].path), 100 * cover.side);
+}
+
+std::string what_does(const plan::SensorRecord& sensor) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  if (sensor.blur > 0) fmt::format_to(out, ", blur {:.6g} px", sensor.blur);
+  if (sensor.exposure > 0) fmt::format_to(out, ", exposure {:.6g}", sensor.exposure);
+  if (sensor.noise > 0) fmt::format_to(out, ", noise {:.6g}", sensor.noise);
+  const auto& p = sensor.patch;
+  if (p != std::array<double, 4>{})
+    fmt::format_to(out, ", patch ({:.6g}, {:.6g}) .. ({:.6g}, {:.6g})", p[0], p[1], p[2], p[3]);
+  if (sensor.dropped > 0) fmt::format_to(out, ", dropped {:.6g}", sensor.dropped);
+  if (sensor.mirrored != 0) text += ", mirrored";
+  return text.empty() ? "nothing" : text.substr(2);
+}
+
+// Of joints that turn, over all starts, in degrees.
+double farthest_arm(const plan::Plan& plan, const plan::TaskRecord& task) {
+  const auto from = plan.joints(plan.scenes()[task.scene]);
+  double most = 0;
+  for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
+    const auto arm = plan.joints(plan.scenes()[task.scene], episode);
+    for (std::size_t i = 0; i < arm.size(); ++i) most = std::max(most, std::abs(arm[i] - from[i]));
+  }
+  return most * 180 / std::numbers::pi;
+}
+
+}  // namespace
+
+std::vector<std::string> varied_in(const plan::Plan& plan, const plan::TaskRecord& task) {
+  std::vector<std::string> varied;
+  for (const plan::BodyRecord& body : plan.bodies(task)) {
+    if (body.kind != static_cast<std::uint32_t>(plan::BodyKind::kObject)) continue;
+    const plan::ObjectRecord& object = plan.objects()[body.index];
+    const std::string name(plan.text(body.name));
+    if (object.scale != 0) varied.push_back(fmt::format("{} scaled by {:.6g}", name, object.scale));
+    const auto& paint = object.paint;
+    if (paint[3] != 0)
+      varied.push_back(fmt::format("{} painted ({}, {}, {})", name, paint[0], paint[1], paint[2]));
+    if (const plan::CoverRecord* cover = plan.cover(object))
+      varied.push_back(name + " " + covered_with(plan, *cover));
+  }
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  constexpr const char* kParts[] = {"surface", "walls", "floor"};
+  for (const plan::CoverRecord& cover : plan.covers(scene))
+    varied.push_back(std::string(kParts[cover.what - 1]) + " " + covered_with(plan, cover));
+  const auto& color = plan.lights()[task.light].color;
+  if (color != std::array<double, 3>{})
+    varied.push_back(fmt::format("light ({:.6g}, {:.6g}, {:.6g})", color[0], color[1], color[2]));
+  for (const plan::ViewRecord& view : plan.views(task)) {
+    if (const plan::SensorRecord* sensor = plan.sensor(plan.cameras()[view.camera]))
+      varied.push_back(fmt::format("{}: {}", plan.text(view.name), what_does(*sensor)));
+  }
+  if (task.delay != 0)
+    varied.push_back(
+        fmt::format("actions late by {} {}", task.delay, task.delay == 1 ? "step" : "steps"));
+  if (const double most = farthest_arm(plan, task); most > 0)
+    varied.push_back(fmt::format("the arm begins up to {:.3g} degrees elsewhere", most));
+  return varied;
+}
+
+}  // namespace probe::inspect

@@ -1,0 +1,217 @@
+// What varies without a new mesh. Each case begins with the productions it holds.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/dsl/built.h"
+
+using namespace probe;
+using namespace probe::test;
+
+TEST_CASE("object_st: with `scale` box and regions follow, mass by volume; a copy's scale replaces") {
+  const Built built(
+      "object large like red { scale 2; region inside box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1cm) }\n"
+      "object back like large { scale 1 }\n"
+      "variant grown of red_on_tray { source large }\n");
+  const plan::Plan& plan = built.plan();
+  const plan::ObjectRecord& red = plan.objects()[built.task("red_on_tray").source];
+  const plan::ObjectRecord& large = plan.objects()[built.task("grown").source];
+  CHECK(red.scale == 0);
+  CHECK(large.scale == 2);
+  CHECK(large.box_max[0] == 2 * red.box_max[0]);
+  CHECK(large.density == red.density);
+  CHECK(built.task("grown").axes == bit(plan::Axis::kObjectSource));
+  const auto a = clean("object large like red { scale 2 }\nobject back like large { scale 1 }\n");
+  CHECK(named(a->model.objects, "back").box_max == named(a->model.objects, "red").box_max);
+  CHECK(analyze_with_suite("object o like red { scale 0; name \"o\" }\n")->codes() == "P0304");
+  CHECK(analyze_with_suite("object o like red { scale 101; name \"o\" }\n")->codes() == "P0304");
+  CHECK(analyze_with_suite("object o like red { scale 2cm; name \"o\" }\n")->codes() == "P0302");
+}
+
+TEST_CASE("object_st: paint by name or by number, and the colour that is said agrees") {
+  const auto a = clean(
+      "object o like red { paint (0, 0.2, 1); color blue; name \"o\" }\n"
+      "object p like red { paint red; name \"p\" }\nobject plain like p { texture \"wood\" 4cm "
+      "}\n");
+  const sema::Object& o = named(a->model.objects, "o");
+  REQUIRE(o.paint);
+  CHECK(o.paint->rgb == std::array<std::uint8_t, 3>{0, 51, 255});
+  const sema::Object& plain = named(a->model.objects, "plain");
+  CHECK(!plain.paint);
+  REQUIRE(plain.texture);
+  CHECK(plain.texture->side == 0.04);
+  const auto lies = analyze_with_suite("object o like red { paint blue; name \"o\" }\n");
+  CHECK(lies->codes() == "P1510");
+  CHECK(lies->underlined() == "blue");
+  CHECK(analyze_with_suite("object o like red { paint blu; name \"o\" }\n")->codes() == "P0201");
+  CHECK(analyze_with_suite("object o like red { paint (2, 0, 0); name \"o\" }\n")->codes() ==
+        "P0304");
+  CHECK(analyze_with_suite("object o like red { paint red; texture \"wood\"; name \"o\" }\n")
+            ->codes() == "P0203");
+}
+
+TEST_CASE("light_st: a colour of its light, white is what says nothing") {
+  const Built built(
+      "light warm { ambient 0.3; color (1, 0.8, 0.6) }\nlight white { ambient 0.3; color (1, 1, 1) "
+      "}\n"
+      "light bare { ambient 0.3 }\n"
+      "variants of red_on_tray { a { light warm }; b { light white } }\n"
+      "variant c of b { light warm }\n");
+  const plan::Plan& plan = built.plan();
+  CHECK(plan.lights()[built.task("a").light].color == std::array<double, 3>{1, 0.8, 0.6});
+  CHECK(plan.lights()[built.task("b").light].color == std::array<double, 3>{});
+  CHECK(built.task("c").axes == bit(plan::Axis::kLight));
+  CHECK(analyze_with_suite("light l { ambient 1; color (0, 0, 0) }\n")->codes().find("P0304") !=
+        std::string::npos);
+  CHECK(analyze_with_suite("light l { ambient 1; color (1, 0, -1) }\n")->codes().find("P0304") !=
+        std::string::npos);
+}
+
+TEST_CASE("camera_st, sensor: in any order, each once; the lens is the same") {
+  const Built built(
+      "camera c like eye { sensor dropped 0.1 mirrored noise 0.02 exposure 0.5 blur 1.5px patch "
+      "(0.1, 0.2) .. "
+      "(0.3, 0.4) }\n"
+      "variant v of red_on_tray { camera c }\n");
+  CHECK(built.task("v").axes == bit(plan::Axis::kSensor));
+  const plan::SensorRecord* sensor =
+      built.plan().sensor(built.plan().cameras()[built.task("v").camera]);
+  REQUIRE(sensor != nullptr);
+  CHECK(sensor->noise == 0.02);
+  CHECK(sensor->blur == 1.5);
+  CHECK(sensor->exposure == 0.5);
+  CHECK(sensor->patch == std::array<double, 4>{0.1, 0.2, 0.3, 0.4});
+  CHECK(sensor->dropped == 0.1);
+  CHECK(sensor->mirrored == 1);
+  for (const char* bad : {"noise 2", "dropped 1.5", "patch (0.5, 0) .. (0.2, 1)",
+                          "patch (0, 0) .. (2, 1)", "exposure 0", "blur 65px"})
+    CHECK(analyze_with_suite(std::string("camera c like eye { sensor ") + bad + " }\n")
+              ->codes()
+              .find("P0304") != std::string::npos);
+  for (const char* bad : {"", "noise 0.1 noise 0.2", "mirrored mirrored", "haze 0.1"})
+    CHECK(analyze_with_suite(std::string("camera c like eye { sensor ") + bad + " }\n")
+              ->codes()
+              .find("P0101") != std::string::npos);
+}
+
+TEST_CASE("layout_st: with `joints jitter` turning joints begin elsewhere, as the start's number says") {
+  const Built built(
+      "layout shaken like pairs { joints jitter 2deg }\nvariant v of red_on_tray { layout shaken "
+      "}\n"
+      "variant w of v { source blue }\n");
+  const plan::Plan& plan = built.plan();
+  CHECK(built.task("v").axes == bit(plan::Axis::kRobot));
+  const plan::SceneRecord& scene = plan.scenes()[built.task("v").scene];
+  const auto first = plan.episodes(built.task("v"));
+  const auto other = plan.episodes(built.task("w"));
+  const auto from = plan.joints(scene);
+  double most = 0;
+  for (std::size_t e = 0; e < first.size(); ++e) {
+    const auto arm = plan.joints(scene, first[e]);
+    REQUIRE(arm.size() == from.size());
+    CHECK(std::equal(arm.begin(), arm.end(), plan.joints(scene, other[e]).begin()));
+    for (std::size_t i = 0; i < arm.size(); ++i) most = std::max(most, std::abs(arm[i] - from[i]));
+  }
+  CHECK(most > 0.005);
+  CHECK(most <= 0.0349066);
+  CHECK(first[0].start_id != plan.episodes(built.task("red_on_tray"))[0].start_id);
+}
+
+TEST_CASE("task_st: a delay in steps or in a time that is a whole number of them") {
+  const Built built(
+      "variants of red_on_tray { v { delay 2 steps }; w { delay 400ms } }\n"
+      "variant u of v { say take }\n");
+  CHECK(built.task("v").delay == 2);
+  CHECK(built.task("v").axes == bit(plan::Axis::kLatency));
+  CHECK(built.task("w").delay == 2);
+  CHECK(built.task("u").delay == 2);
+  CHECK(built.task("v").judge_id == built.task("red_on_tray").judge_id);
+  CHECK(analyze_with_suite("variant v of red_on_tray { delay 450ms }\n")->codes() == "P0304");
+  CHECK(analyze_with_suite("variant v of red_on_tray { delay 1001 steps }\n")->codes() == "P0304");
+  CHECK(analyze_with_suite("variant v of red_on_tray { delay 2cm }\n")->codes() == "P0302");
+}
+
+TEST_CASE(
+    "scene_st: textures of surface, walls and floor; a height of the surface is another axis") {
+  const auto a = clean(
+      "scene covered like bench { texture surface \"wood\" 40cm; texture walls \"bricks\" }\n"
+      "variant v of red_on_tray { scene covered }\n");
+  const sema::Scene& covered = named(a->model.scenes, "covered");
+  REQUIRE(covered.covers.size() == 2);
+  CHECK(covered.covers.at(plan::CoverOf::kSurface).side == 0.4);
+  CHECK(named(a->model.tasks, "v").axes == bit(plan::Axis::kSceneTexture));
+  CHECK(analyze_with_suite("scene c like bench { texture roof \"wood\" }\n")->codes() == "P0201");
+  CHECK(analyze_with_suite("scene c like bench { texture walls \"a\"; texture walls \"b\" }\n")
+            ->codes() == "P0203");
+}
+
+TEST_CASE("binder: lights, cameras and scenes by name; what the task has already is left out") {
+  const auto a = clean(
+      "light dusk { ambient 0.1 }\nlight noon { ambient 0.9 }\n"
+      "derive \"{t}_{l}\" for t in { red_on_tray }, l in lights (day, dusk, noon) { light l }\n"
+      "camera near like eye { mount arm.base at (0cm, 0cm, 40cm) look (1, 0, -1) }\n"
+      "derive \"{t}_{c}\" for t in { red_on_tray }, c in cameras (near) { camera c }\n"
+      "suite s { tasks variants of { red_on_tray }; seeds 1 }\n");
+  CHECK(named(a->model.suites, "s").members.size() == 3);
+  CHECK(named(a->model.tasks, "red_on_tray_dusk").axes == bit(plan::Axis::kLight));
+  CHECK(named(a->model.tasks, "red_on_tray_near").axes == bit(plan::Axis::kCamera));
+  CHECK(analyze_with_suite(
+            "derive \"{t}_{l}\" for t in { red_on_tray }, l in lights (dai) { light l }\n")
+            ->codes() == "P0201");
+}
+
+TEST_CASE("binder: numbers, in a range or a list, where a task takes some") {
+  const auto a = clean(
+      "derive \"{t}_{k}\" for t in { red_on_tray }, k in 1 .. 3 { idle k steps }\n"
+      "derive \"{t}_by_{d}\" for t in { red_on_tray }, d in 200ms, 0.4s { delay d }\n"
+      "suite s { tasks variants of { red_on_tray }; seeds 1 }\n");
+  CHECK(named(a->model.suites, "s").members.size() == 5);
+  CHECK(named(a->model.tasks, "red_on_tray_3").idle == 3);
+  CHECK(named(a->model.tasks, "red_on_tray_by_200ms").delay == 1);
+  CHECK(named(a->model.tasks, "red_on_tray_by_0_4s").delay == 2);
+  const auto codes = [](const std::string& text) { return analyze_with_suite(text)->codes(); };
+  CHECK(codes("derive \"{t}_{k}\" for t in { red_on_tray }, k in 3 .. 1 { idle k steps }\n") ==
+        "P0304");
+  CHECK(codes("derive \"{t}_{k}\" for t in { red_on_tray }, k in 1cm .. 3cm { idle k steps }\n") ==
+        "P0304");
+  CHECK(codes("variant v of red_on_tray { idle k steps }\n") == "P0201");
+  CHECK(codes("derive \"{t}_{k}\" for t in { red_on_tray }, k in 0.5, 1 { idle k steps }\n")
+            .find("P0302") == 0);
+}
+
+TEST_CASE("task_st, count: drawn distractors grow by the number and have no role") {
+  const auto a = clean(
+      "object third like red { name \"third block\" }\nobject fourth like red { name \"fourth "
+      "block\" }\n"
+      "variants of red_on_tray { one { distractors 1 of (red, blue, third, fourth) seed 3 }\n"
+      "  two { distractors 2 of (fourth, third, blue, red) seed 3 } }\n"
+      "suite s { tasks tasks; seeds 1 }\n");
+  const sema::Task& one = named(a->model.tasks, "one");
+  const sema::Task& two = named(a->model.tasks, "two");
+  REQUIRE(one.distractors.size() == 1);
+  REQUIRE(two.distractors.size() == 2);
+  CHECK(one.distractors[0] == two.distractors[0]);
+  CHECK(one.axes == bit(plan::Axis::kDistractors));
+  CHECK(one.role_of(one.distractors[0]) == sema::RoleId::kNone);
+  CHECK(analyze_with_suite("variant v of red_on_tray { distractors 2 of (red, blue) seed 1 }\n")
+            ->codes() == "P0304");
+}
+
+TEST_CASE("t1: of a sample with baselines what is drawn comes with what it is compared with") {
+  const auto a = clean(
+      "variants of red_on_tray { a { idle 1 steps }; b { idle 2 steps }; c { idle 3 steps } }\n"
+      "variant d of a { idle 4 steps }\n"
+      "set drawn = sample 2 of ({ a, b, c, d } - { a }) seed 5 with baselines\n"
+      "suite s { tasks drawn; seeds 1 }\n");
+  const sema::Suite& suite = named(a->model.suites, "s");
+  CHECK(suite.cuts.empty());
+  for (std::size_t i = 0; i < suite.members.size(); ++i) {
+    const sema::TaskId baseline = a->model.tasks[suite.members[i]].baseline;
+    if (baseline == sema::TaskId::kNone) continue;
+    const auto at = std::find(suite.members.begin(), suite.members.end(), baseline);
+    CHECK(at - suite.members.begin() < static_cast<std::ptrdiff_t>(i));
+  }
+  CHECK(suite.members.size() >= 3);
+}
