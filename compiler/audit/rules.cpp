@@ -98,9 +98,10 @@ bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t suc
     if (op.result != plan::Kind::kUnused) defining.push_back(in);
     if (op.b == plan::Kind::kMetric && in.b == success) open.emplace_back(in.a, false);
   }
+  const std::size_t fingers = plan::finger_count(plan.robots()[plan.scenes()[record.scene].robot]);
   const auto is_finger = [&](std::uint16_t body) {
     return static_cast<plan::BodyKind>(bodies[body].kind) == plan::BodyKind::kLink &&
-           bodies[body].index < 2;
+           bodies[body].index < fingers;
   };
   while (!open.empty()) {
     const auto [at, held] = open.back();

@@ -183,6 +183,12 @@ void check_count(const Model& model, Reporter& reporter, const Task& task,
 
 }  // namespace
 
+std::string asks_for_fingers(const Model& model, ExprRef expr) {
+  FingerFinder finder{model};
+  finder.visit(expr);
+  return finder.what;
+}
+
 void check_metrics(const Model& model, Reporter& reporter) {
   // A metric that is copied with `like` is looked at where it stands.
   std::set<std::pair<std::uint32_t, std::uint32_t>> looked_at;

@@ -248,7 +248,14 @@ Result<AnalyzedText> analyze_text(std::span<const std::string> files,
                                   const CompileOptions& options) {
   Analyzed analyzed;
   PROBE_TRY(analyze(files, options, analyzed));
-  return AnalyzedText{std::move(analyzed.compilation), std::move(analyzed.model)};
+  std::set<std::uint32_t> roots;
+  for (const FileId id : analyzed.ids) {
+    const std::string& name = analyzed.compilation.sources.file(id).name();
+    if (std::find(analyzed.roots.begin(), analyzed.roots.end(), name) != analyzed.roots.end())
+      roots.insert(id.value);
+  }
+  return AnalyzedText{std::move(analyzed.compilation), std::move(analyzed.model),
+                      std::move(roots)};
 }
 
 }  // namespace probe

@@ -281,6 +281,13 @@ class Pass {
       case Op::kMAXR:
       case Op::kMINR:
         return of(a().number);
+      case Op::kRISES:  // every other step at most
+        if (a().truth) return number(*a().truth ? 1 : 0, *a().truth ? 1 : 0);
+        return number(0, std::ceil(horizon_ / 2));
+      case Op::kGATED:
+        return vector(std::array<Interval, 3>{a().number, Interval{0, 1}, Interval{0, 0}});
+      case Op::kKEPT:
+        return of(a().vector[0]);
       // Contacts and turning have no bound that is worth a message.
       case Op::kPUSH:
       case Op::kSPIN:

@@ -548,8 +548,7 @@ class Lowering {
     using plan::BodyKind;
     switch (set.op) {
       case sema::SetOp::kFingers:
-        return where(
-            [](const Body& b, std::size_t) { return b.kind == BodyKind::kLink && b.index < 2; });
+        return where([](const Body& b, std::size_t) { return b.is_finger; });
       case sema::SetOp::kLinks:
         return where([](const Body& b, std::size_t) { return b.kind == BodyKind::kLink; });
       case sema::SetOp::kBodies:
@@ -740,7 +739,7 @@ class Lowering {
       case Measure::kPush:
         return reg(Op::kPUSH, first, args[1].index);
       case Measure::kOpening:
-        if (bodies_[first].kind != plan::BodyKind::kLink || bodies_[first].index >= 2) {
+        if (!bodies_[first].is_finger) {
           return fail(node.span,
                       "`opening` is measured of a finger, found `" + bodies_[first].name + "`");
         }
@@ -827,6 +826,11 @@ class Lowering {
         return travel_as(node, args[0], false);
       case Measure::kWithin:
         return within(args[0], args[1]);
+      case Measure::kLatest: {
+        if (args[0].kind == Value::kNumber || args[1].kind == Value::kTruth) return args[0];
+        const Value gated = reg(Op::kGATED, first, args[1].index);
+        return builder_.monitor(Op::kKEPT, gated);
+      }
       case Measure::kLocal:
         return reg(Op::kLOCAL, args[1].index, point(args[0]));
     }
@@ -901,8 +905,10 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
     set_regions(bodies.back(), scene.fixture_regions, static_cast<std::uint32_t>(task.scene));
   }
   std::uint32_t link = 0;
-  for (const sema::Finger& finger : robot.fingers)
+  for (const sema::Finger& finger : robot.fingers) {
     bodies.push_back({plan::BodyKind::kLink, link++, finger.link.text});
+    bodies.back().is_finger = true;
+  }
   for (const robot::Link& known : robot.model->links) {
     const bool is_finger =
         std::any_of(robot.fingers.begin(), robot.fingers.end(),
@@ -925,7 +931,7 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
 std::vector<std::uint32_t> shape_of(const sema::Model& model, std::span<const sema::Metric> metrics,
                                     const std::vector<Body>& bodies) {
   std::vector<std::uint32_t> shape;
-  shape.reserve(1 + 3 * bodies.size() + 9 * metrics.size());
+  shape.reserve(1 + 6 * bodies.size() + 9 * metrics.size());
   shape.push_back(static_cast<std::uint32_t>(bodies.size()));
   for (const Body& body : bodies) {
     // Which object it is counts for nothing: instructions name bodies by their place in the list,
@@ -938,6 +944,7 @@ std::vector<std::uint32_t> shape_of(const sema::Model& model, std::span<const se
     shape.push_back(body.part);
     for (const Body::Filled& filled : body.filled)
       shape.insert(shape.end(), {0xfffffffdu, filled.role, filled.number});
+    shape.push_back(body.is_finger ? 1 : 0);
   }
   for (const sema::Metric& metric : metrics) {
     // A metric's name stands at its span.

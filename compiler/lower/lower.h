@@ -37,6 +37,7 @@ struct Body {
     std::string name;
   };
   std::vector<Filled> filled = {};
+  bool is_finger = false;  // of a link
 };
 inline constexpr std::uint32_t kDistractorRole = 0xfffffffeu;
 

@@ -103,6 +103,9 @@ std::pair<int, std::string> decision(const History& h, int last) {
     case plan::Readout::kCount:
       if (h.last_true == 0) return never();
       return {h.last_true, fmt::format("last at step {} of {}", h.last_true, last)};
+    case plan::Readout::kTimes:
+      if (h.first_true == 0) return never();
+      return {h.best, fmt::format("last from step {}", h.best)};
     case plan::Readout::kMax:
     case plan::Readout::kMin:
       return {h.best, fmt::format("at step {}", h.best)};

@@ -31,12 +31,12 @@ struct Tally {
 };
 
 // What the plan says of one metric; without it a number is a number.
-struct Kind {
+struct MetricKind {
   Dimension dimension = Dimension::kNumber;
   std::optional<double> never = {};  // the value that says so
 };
 
-Kind kind_of(const plan::Plan* plan, const std::string& task, const std::string& metric) {
+MetricKind kind_of(const plan::Plan* plan, const std::string& task, const std::string& metric) {
   const auto index = plan == nullptr ? std::nullopt : plan->find_task(task);
   if (!index) return {};
   const plan::TaskRecord& record = plan->tasks()[*index];
@@ -73,7 +73,7 @@ void add(Tally& tally, const store::ResultRow& row) {
 }
 
 // "mean 91.2cm, 88cm .. 1.02m", and how often it never came.
-std::string numbers_text(Column column, const Kind& kind) {
+std::string numbers_text(Column column, const MetricKind& kind) {
   if (kind.never) column.never = static_cast<int>(std::erase(column.values, *kind.never));
   std::string text;
   if (!column.values.empty()) {

@@ -40,6 +40,8 @@ bool Judge::decided() const {
         break;
       case plan::Op::kMAXR:
       case plan::Op::kMINR:
+      case plan::Op::kRISES:
+      case plan::Op::kKEPT:
         now = a;
         break;
       case plan::Op::kEMITB:

@@ -449,6 +449,22 @@ void Judge::run(std::span<const Step> steps, const StepSample& sample) {
         d.x = best.value;
         break;
       }
+      case Op::kRISES: {  // `started`: it was true at the step before
+        JudgeState::Monitor& rises = states_[s.b];
+        if (a.x != 0.0 && !rises.started) rises.value += 1.0;
+        rises.started = a.x != 0.0;
+        d.x = rises.value;
+        break;
+      }
+      case Op::kGATED:
+        d = {a.x, b.x, 0.0};
+        break;
+      case Op::kKEPT: {
+        JudgeState::Monitor& kept = states_[s.b];
+        if (a.y != 0.0) kept = {a.x, true};
+        d.x = kept.started ? kept.value : a.x;
+        break;
+      }
       case Op::kEMITB:
       case Op::kEMITR:
         emitted_[s.b] = a.x;

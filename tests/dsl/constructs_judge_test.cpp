@@ -287,7 +287,11 @@ TEST_CASE("e_un: every measure") {
                 {"at end angle(axis_z(source), up) < 89deg", 0},
                 {"final grip", 0.5},
                 {"final step", 1},
-                {"final time", 0.2}},
+                {"final time", 0.2},
+                {"final latest(height(source), step <= 1)", 0.9},
+                {"final latest(height(source), height(source) < 1cm)", 0.9},
+                {"times height(source) > 1cm", 1},
+                {"times height(source) < 1cm", 0}},
                world);
 }
 

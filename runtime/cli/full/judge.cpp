@@ -6,10 +6,12 @@
 
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
+#include "runtime/cli/full/grafted.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
 #include "runtime/rejudge/readings.h"
 #include "runtime/rejudge/rejudge.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::cli {
 namespace {
@@ -197,8 +199,28 @@ int judge_under_several(const JudgeArguments& arguments, const plan::Plan& plan)
   return kFine;
 }
 
+// The plan that `--with` names, or the stored one with the metrics of a text that has no tasks.
+LoadedPlan judging_plan(const JudgeArguments& arguments) {
+  auto text = metrics_text(arguments.with, arguments.assets);
+  if (!text) return load_plan(arguments.with, arguments.assets);
+  LoadedPlan loaded;
+  const auto stored = store::open_run_plan(arguments.dir);
+  if (!stored) {
+    loaded.exit = report(stored.failure());
+    return loaded;
+  }
+  auto grafted = graft(*stored, *std::move(text));
+  if (!grafted) {
+    loaded.exit = report(grafted.failure());
+    return loaded;
+  }
+  for (const MetricLeftOut& out : grafted->left_out) say("{}\n", to_text(out));
+  loaded.plan = std::move(grafted->plan);
+  return loaded;
+}
+
 int judge_verb(JudgeArguments arguments) {
-  LoadedPlan loaded = load_plan(arguments.with, arguments.assets);
+  LoadedPlan loaded = judging_plan(arguments);
   if (!loaded.plan) return loaded.exit;
   const plan::Plan& plan = *loaded.plan;
   bool several = arguments.suites.size() > 1 || !arguments.metric.empty();
@@ -236,9 +258,13 @@ void add_judge(Verb app, int& exit) {
       "tasks are matched by name, or through variants that differ in nothing but what is judged\n"
       "with several suites the table has a line for each, with --metric a column for each and\n"
       "a line a task; `40 +9 -2` is 40 episodes, 9 that were none before, without 2 that were\n"
-      "example: vlaprobe judge runs/expert --with suite/semantics.probe --suite ever");
+      "example: vlaprobe judge runs/expert --with suite/semantics.probe --suite ever\n"
+      "         vlaprobe judge runs/expert --with std/events.probe -o runs/expert-events");
   verb.add_option("DIR", arguments->dir, "results folder").required();
-  verb.add_option("--with", arguments->with, "the judging .plan or .probe text").required();
+  verb.add_option("--with", arguments->with,
+                  "the judging .plan or .probe text; a text of metrics alone, such as "
+                  "std/events.probe, is put behind the run's own")
+      .required();
   verb.add_option("--suite", arguments->suites,
                   "judge with this suite's tasks; several, or a glob: a table of them")
       .no_extra_values();

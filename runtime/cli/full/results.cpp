@@ -8,10 +8,14 @@
 #include "runtime/ask/answers.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/answer_results.h"
+#include "runtime/cli/full/grafted.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/cli/load.h"
+#include "runtime/rejudge/event_table.h"
 #include "runtime/rejudge/tally.h"
 #include "runtime/run/delivery.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 
 namespace probe::cli {
@@ -19,7 +23,9 @@ namespace {
 
 struct ResultsArguments {
   std::string dir;
-  bool json = false, csv = false, delivery = false;
+  bool json = false, csv = false, delivery = false, events = false;
+  std::string with;
+  AssetOptions assets;
 };
 
 // What the questions at the beginning of the run showed of a policy server. A folder of an older
@@ -76,14 +82,62 @@ int delivery_verb(const ResultsArguments& arguments, const store::ProvenResults&
   return kFine;
 }
 
+// What happened in the episodes. One whose trace does not bear its row is told of with the reason.
+int events_verb(ResultsArguments arguments) {
+  if (arguments.with.empty()) arguments.with = kEventsText;
+  const auto stored = store::open_run_plan(arguments.dir);
+  if (!stored) return report(stored.failure());
+  auto rows = store::read_results(arguments.dir);
+  if (!rows) return report(rows.failure());
+  auto text = metrics_text(arguments.with, arguments.assets);
+  if (!text) {
+    const LoadedPlan loaded = load_plan(arguments.with, arguments.assets);
+    if (!loaded.plan) return loaded.exit;
+    return report({Fault::kUsage,
+                   "has tasks of its own; events are told by a text of metrics alone",
+                   arguments.with});
+  }
+  const auto grafted = graft(*stored, *std::move(text));
+  if (!grafted) return report(grafted.failure());
+  int exit = kFine;
+  std::vector<rejudge::EventRow> told;
+  for (store::ResultRow& row : *rows) {
+    rejudge::EventRow& out = told.emplace_back();
+    const auto task = stored->find_task(row.task);
+    const auto trace = store::prove(*stored, row);
+    if (!trace || !task) {
+      out.events.untold = trace ? "its task is not in the plan" : to_text(trace.failure());
+      exit = kOutside;
+    } else {
+      auto events = rejudge::events_of(grafted->plan, *task, *trace, grafted->metrics);
+      if (!events) return report(events.failure());
+      out.events = std::move(*events);
+    }
+    out.row = std::move(row);
+  }
+  if (arguments.json) {
+    put("{}\n", rejudge::events_to_json(told));
+  } else if (arguments.csv) {
+    put("{}", rejudge::events_to_csv(told));
+  } else {
+    put("{}", rejudge::event_tally(told));
+  }
+  for (const MetricLeftOut& out : grafted->left_out) say("{}\n", to_text(out));
+  return exit;
+}
+
 int results_verb(const ResultsArguments& arguments) {
   if (ask::holds_answers(arguments.dir)) {
-    if (arguments.delivery)
-      return report({Fault::kUsage, "is of runs; these are answers", "--delivery"});
+    if (arguments.delivery || arguments.events)
+      return report({Fault::kUsage, "is of runs; these are answers",
+                     arguments.events ? "--events" : "--delivery"});
     return print_answers(arguments.dir, arguments.json  ? AnswerForm::kJson
                                         : arguments.csv ? AnswerForm::kCsv
                                                         : AnswerForm::kTable);
   }
+  if (arguments.events) return events_verb(arguments);
+  if (!arguments.with.empty())
+    return report({Fault::kUsage, "says what events are, which --events asks for", "--with"});
   auto proven = store::read_proven_results(arguments.dir);
   if (!proven) return report(proven.failure());
   for (const std::string& sentence : proven->refused) say("vlaprobe: {}\n", sentence);
@@ -109,12 +163,20 @@ void add_results(Verb app, int& exit) {
   auto arguments = std::make_shared<ResultsArguments>();
   Verb verb = app.add_subcommand(
       "results", "what a run or an asking found: counts, or one row an episode or answer");
-  verb.footer("example: vlaprobe results runs/expert --json");
+  verb.footer(
+      "example: vlaprobe results runs/expert --json\n"
+      "         vlaprobe results runs/expert --events");
   verb.add_option("DIR", arguments->dir, "results folder").required();
   const Option json = verb.add_flag("--json", arguments->json, "a JSON array of rows");
   verb.add_flag("--csv", arguments->csv, "rows as comma-separated values").excludes(json);
   verb.add_flag("--delivery", arguments->delivery,
                 "whether differing instructions and pictures reached the policy (--json too)");
+  verb.add_flag(
+      "--events", arguments->events,
+      "what happened: dropped, bumped, tipped; subgoals and their times; how the tool moved");
+  verb.add_option("--with", arguments->with,
+                  "with --events: the text that says what events are (std/events.probe)");
+  add_asset_option(verb, arguments->assets);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = results_verb(*arguments); });
 }

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "compiler/define/views.h"
 #include "compiler/lower/builder.h"
 #include "tests/compiler/small_suite.h"
@@ -51,6 +53,26 @@ TEST_CASE(
   std::string names;
   for (const lower::Body& body : lower::bodies_of(a->model, a->task("v"))) names += body.name + " ";
   CHECK(names == "red tray blue surface left right base wrist ");
+}
+
+TEST_CASE("`fingers` are all of a hand and nothing else, whether it has one or three") {
+  for (const std::size_t count : {std::size_t{1}, std::size_t{3}}) {
+    auto a = test::analyze_with_suite(
+        "metrics touched { success = at end any f in fingers: impulse(f, source) > 1e-6Ns }\n"
+        "variant v of red_on_tray { metrics touched }");
+    const sema::Task& task = a->task("v");
+    sema::Robot& robot = a->model.robots[a->model.scenes[task.scene].robot];
+    robot.fingers.resize(count, robot.fingers.front());
+    if (count == 3) robot.fingers.back().link.text = "wrist";
+    Diagnostics unheard;
+    const auto program =
+        lower::lower_metrics(a->model, task.judged, lower::bodies_of(a->model, task), {}, unheard);
+    REQUIRE(program);
+    const auto is_touch = [](const plan::Instruction& in) {
+      return in.op == static_cast<std::uint8_t>(plan::Op::kIMP);
+    };
+    CHECK(std::ranges::count_if(program->code, is_touch) == static_cast<std::ptrdiff_t>(count));
+  }
 }
 
 TEST_CASE("a greater-than swaps its sides and equal subexpressions are shared") {

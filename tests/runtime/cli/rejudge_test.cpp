@@ -233,3 +233,75 @@ TEST_CASE("build gives one root from any directory, and whatever order files are
   CHECK(root(backwards, "d.plan") == here);
   CHECK(read_file(sandbox() / "c.plan") == read_file(sandbox() / "d.plan"));
 }
+
+TEST_CASE("a run made without them is told of by the library's events, in words, JSON and CSV") {
+  const Outcome table = sandbox().vlaprobe("results run --events --assets $ASSETS");
+  REQUIRE_MESSAGE(table.exit == 0, table.err);
+  CHECK(contains(table.out, "carrot_on_plate: 2 episodes\n"));
+  CHECK(contains(table.out, "came as far as reached it 2, grasped it 2, lifted it 2"));
+  const Outcome told = sandbox().vlaprobe("results run --events --json --assets $ASSETS");
+  REQUIRE_MESSAGE(told.exit == 0, told.err);
+  const json rows = parsed(told.out);
+  REQUIRE(rows.size() == 2);
+  for (const json& row : rows) {
+    CHECK(row["reached"] == 6);
+    CHECK(row["events"]["left_table"] == 0);
+    CHECK(row["motion"]["path"].get<double>() > 0.3);
+    CHECK(row["motion"]["sparc"].get<double>() < -1);
+    CHECK(row["motion"]["hand_over"].get<double>() > 0);
+    // Subgoals in their order, each not before the one before.
+    int last = 0;
+    for (const json& subgoal : row["subgoals"]) {
+      CHECK(subgoal["step"].get<int>() >= last);
+      last = subgoal["step"].get<int>();
+    }
+  }
+  const Outcome csv = sandbox().vlaprobe("results run --events --csv --assets $ASSETS");
+  CHECK(csv.out.starts_with("task,episode,seed,policy,steps,reached,subgoals,dropped,bumped,"));
+}
+
+TEST_CASE("a text of metrics alone judges a run, and what it writes is a run with them") {
+  const Outcome judged =
+      sandbox().vlaprobe("judge run --with std/events.probe -o told --json --assets $ASSETS");
+  REQUIRE_MESSAGE(judged.exit == 0, judged.err);
+  const json report = parsed(judged.out);
+  for (const json& metric : report["metrics"]) {
+    if (metric["metric"] == "success") CHECK(metric["changed"] == 0);
+    if (metric["metric"] == "dropped") CHECK(metric["only_after"] == 2);
+  }
+  for (const json& row : rows_of("told")) {
+    CHECK(row["success"] == true);
+    CHECK(row["freed_it"].get<int>() > row["grasped_it"].get<int>());
+  }
+  const Outcome why = sandbox().vlaprobe("why told carrot_on_plate 0 --metric grasped_it");
+  REQUIRE_MESSAGE(why.exit == 0, why.err);
+  CHECK(contains(why.out, "events.probe:"));
+  CHECK(contains(why.out, "first held(source)"));
+}
+
+TEST_CASE("events are asked for by a text of metrics alone, and of runs") {
+  const Outcome other =
+      sandbox().vlaprobe("results run --events --with " + kSemantics + " --assets $ASSETS");
+  CHECK(other.exit != 0);
+  CHECK(contains(other.err, "has tasks of its own; events are told by a text of metrics alone"));
+  const Outcome without = sandbox().vlaprobe("results run --with std/events.probe");
+  CHECK(without.exit != 0);
+  CHECK(contains(without.err, "says what events are, which --events asks for"));
+}
+
+TEST_CASE("of an episode whose trace was cut nothing is told but the reason") {
+  namespace fs = std::filesystem;
+  const fs::path from = sandbox() / "run", to = sandbox() / "cut";
+  fs::copy(from, to, fs::copy_options::recursive);
+  for (const auto& file : fs::directory_iterator(to / "traces/carrot_on_plate")) {
+    if (file.path().filename().string().starts_with("1-")) fs::resize_file(file.path(), 3000);
+  }
+  const Outcome told = sandbox().vlaprobe("results cut --events --json --assets $ASSETS");
+  CHECK(told.exit != 0);
+  const json rows = parsed(told.out);
+  REQUIRE(rows.size() == 2);
+  CHECK(!rows[0].contains("untold"));
+  CHECK(rows[1].contains("untold"));
+  CHECK(!rows[1].contains("events"));
+  CHECK(!rows[1].contains("motion"));
+}

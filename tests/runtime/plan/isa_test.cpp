@@ -20,8 +20,8 @@ TEST_CASE("every operation is found by its code and no other code is one") {
 }
 
 TEST_CASE(
-    "an immediate has a limit, constants have a place, and a monitor remembers for a read-out or a "
-    "`for`") {
+    "an immediate has a limit, constants have a place, and a monitor remembers for a read-out, a "
+    "`for` or a `latest`") {
   std::size_t emits = 0;
   for (const OpInfo& op : all_ops()) {
     CAPTURE(op.name);
@@ -31,7 +31,9 @@ TEST_CASE(
     if (op.a == Kind::kThreeConstants) CHECK(op.result == Kind::kVector);
     // Of a finger, only its opening is known that other bodies do not have.
     if (op.a == Kind::kFinger || op.b == Kind::kFinger) CHECK(op.result == Kind::kVector);
-    CHECK(op.is_monitor() == (readout_of(op.op) != nullptr || op.b == Kind::kTimedState));
+    const bool is_of_latest = op.op == Op::kKEPT;
+    CHECK(op.is_monitor() ==
+          (readout_of(op.op) != nullptr || op.b == Kind::kTimedState || is_of_latest));
     if (op.b != Kind::kMetric) continue;
     ++emits;
     CHECK(op.result == Kind::kUnused);

@@ -210,7 +210,7 @@ TEST_CASE("a `once` is decided when it was true, an `always` when it was broken,
     Records& r = w.records;
     r.spans.clear();
     r.constants = {0.05};
-    const bool counts = op == Op::kCOUNT || op == Op::kFIRST;
+    const bool counts = op == Op::kCOUNT || op == Op::kFIRST || op == Op::kRISES;
     r.states = {{static_cast<std::uint16_t>(op), std::uint16_t(op == Op::kHOLD ? 5 : 0)}};
     r.metrics = {{w.text("m"),
                   static_cast<std::uint32_t>(counts ? MetricType::kReal : MetricType::kBool), 1}};
@@ -241,6 +241,48 @@ TEST_CASE("a `once` is decided when it was true, an `always` when it was broken,
   CHECK(decided_at(Op::kFIRST) == 3);
   CHECK(decided_at(Op::kHOLD) == 0);
   CHECK(decided_at(Op::kCOUNT) == 0);
+  CHECK(decided_at(Op::kRISES) == 0);
+}
+
+TEST_CASE("how often a condition began, and a number as it was when it last held") {
+  // "The tool is within 5 cm of the origin", and how far it was then.
+  Writer w = small_writer();
+  Records& r = w.records;
+  r.spans.clear();
+  r.constants = {0.05};
+  r.states = {{static_cast<std::uint16_t>(Op::kRISES), 0},
+              {static_cast<std::uint16_t>(Op::kKEPT), 0}};
+  const auto real = static_cast<std::uint32_t>(MetricType::kReal);
+  r.metrics = {{w.text("times"), real, 10}, {w.text("then"), real, 6}};
+  r.code = {make_instruction(Op::kKR, 0, 0),       make_instruction(Op::kTCP, 1),
+            make_instruction(Op::kVLEN, 2, 1),     make_instruction(Op::kLT, 3, 2, 0),
+            make_instruction(Op::kRISES, 4, 3, 0), make_instruction(Op::kEMITR, 5, 4, 0),
+            make_instruction(Op::kGATED, 5, 2, 3), make_instruction(Op::kKEPT, 6, 5, 1),
+            make_instruction(Op::kEMITR, 7, 6, 1), make_instruction(Op::kEND, 7)};
+  r.programs[0].constants = {0, 1};
+  r.programs[0].states = r.programs[0].metrics = {0, 2};
+  r.programs[0].code = {0, static_cast<std::uint32_t>(r.code.size())};
+  auto bytes = w.finish();
+  REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
+  const Plan plan = Plan::from_bytes(std::move(*bytes)).value();
+  Judge judge(plan, 0);
+  const std::vector<BodyStart> starts(kSmallBodies);
+  REQUIRE(judge.begin(starts).ok());
+  const std::vector<double> far = {0.3, 0.01, 0.02, 0.5, 0.6, 0.04, 0.2};
+  const std::vector<double> times = {0, 1, 1, 1, 1, 2, 2};
+  const std::vector<double> then = {0.3, 0.01, 0.02, 0.02, 0.02, 0.04, 0.04};
+  for (std::size_t i = 0; i < far.size(); ++i) {
+    CAPTURE(i);
+    // Kept and put back between any two steps, it goes on as it would have.
+    const JudgeState state = judge.save();
+    REQUIRE(judge.begin(starts).ok());
+    REQUIRE(judge.restore(starts, state).ok());
+    StepSample sample = resting(static_cast<int>(i) + 1);
+    sample.tcp = {far[i], 0, 0};
+    REQUIRE(judge.step(sample).ok());
+    CHECK(judge.value(0) == times[i]);
+    CHECK(judge.value(1) == then[i]);
+  }
 }
 
 TEST_CASE("the state of a judge of other metrics is refused, and no step may follow") {

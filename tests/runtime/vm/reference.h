@@ -199,7 +199,17 @@ class Reference {
       case kFIRST:
       case kMAXR:
       case kMINR:
+      case kRISES:
         return monitor(in, now);
+      case kGATED:
+        return {x(in.a)[0], x(in.b)[0] != 0 ? 1.0 : 0.0, 0};
+      case kKEPT: {
+        for (std::size_t i = now + 1; i-- > 0;) {
+          const Value then = eval(in.a, i);
+          if (then[1] != 0) return {then[0], 0, 0};
+        }
+        return {x(in.a)[0], 0, 0};
+      }
       case kEND:
       case kEMITB:
       case kEMITR:
@@ -243,6 +253,13 @@ class Reference {
         double best = past[0];
         for (double v : past) best = v < best ? v : best;
         return {best, 0, 0};
+      }
+      case plan::Readout::kTimes: {
+        double begun = 0;
+        for (std::size_t i = 0; i <= now; ++i) {
+          if (past[i] != 0 && (i == 0 || past[i - 1] == 0)) ++begun;
+        }
+        return {begun, 0, 0};
       }
       case plan::Readout::kAtEnd:
       case plan::Readout::kFinal:

@@ -1,0 +1,31 @@
+// A stored run's plan with the metrics of a text behind its own: what `judge --with`, `results
+// --events` and `report` read runs by that were made without them.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "compiler/emit/graft.h"
+#include "runtime/cli/verbs.h"
+#include "runtime/plan/plan.h"
+#include "runtime/rejudge/events.h"
+
+namespace probe::cli {
+
+inline constexpr char kEventsText[] = "std/events.probe";
+
+// What `path` says when it is a text of metrics alone, looked for as it is named and then in the
+// standard library; nothing when it is another text or a plan, or has a mistake.
+std::optional<AnalyzedText> metrics_text(const std::string& path, const AssetOptions& assets);
+
+struct GraftedPlan {
+  plan::Plan plan;
+  rejudge::EventMetrics metrics;        // by the sets of the text: `progress` are the subgoals
+  std::vector<MetricLeftOut> left_out;  // by tasks that lack what they measure
+};
+Result<GraftedPlan> graft(const plan::Plan& stored, AnalyzedText text);
+
+// "metric `placed_it` is left out of 3 tasks, such as open_top: ...".
+std::string to_text(const MetricLeftOut& out);
+
+}  // namespace probe::cli
