@@ -68,8 +68,7 @@ double weight_on_alone(const Fixture& fixture, const robot::Joint& joint) {
     turn = above.origin.rotation * turn;
     link = above.parent_link;
   }
-  const auto& base = fixture.turn.rotation;
-  const Vec3 axis = Quat(base[0], base[1], base[2], base[3]) * (turn * joint.axis);
+  const Vec3 axis = to_quat(fixture.turn.rotation) * (turn * joint.axis);
   Load load;
   add_load(model, joint.child_link, {}, joint.axis, load);
   constexpr double kGravity = 9.81;

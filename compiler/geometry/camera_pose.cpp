@@ -14,7 +14,7 @@ Quat looking_along(const std::array<double, 4>& direction) {
 }  // namespace
 
 Pose pose_of(const std::array<double, 3>& p, const std::array<double, 4>& q) {
-  return {{p[0], p[1], p[2]}, Quat(q[0], q[1], q[2], q[3]).normalized()};
+  return {to_vec(p), to_quat(q).normalized()};
 }
 
 std::optional<Pose> camera_pose(const Model& model, const Scene& scene, const Camera& camera) {

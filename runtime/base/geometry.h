@@ -13,6 +13,8 @@ using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
 
 inline Vec3 to_vec(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+// As it is stored: w, x, y, z.
+inline Quat to_quat(const std::array<double, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
 
 // A rigid transform: x_parent = rotation * x_child + position. `rotation` is unit.
 struct Pose {

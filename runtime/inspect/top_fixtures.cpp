@@ -41,9 +41,8 @@ class PosedFixture {
     for (const plan::FixtureJointRecord& joint : plan.joints(record))
       names.emplace_back(plan.text(joint.joint));
     PROBE_ASSIGN(robot::Tree tree, robot::Tree::create(model, names));
-    const auto& q = record.rotation;
     return PosedFixture(std::move(model), std::move(tree),
-                        {Vec3(record.position.data()), Quat(q[0], q[1], q[2], q[3])});
+                        {to_vec(record.position), to_quat(record.rotation)});
   }
 
   std::vector<Pose> at(std::span<const double> joints) const {

@@ -183,8 +183,7 @@ Status EpisodeWorld::reset(std::uint32_t index) {
   const plan::EpisodeRecord& episode = plan_.episodes(task_)[index];
   std::vector<Pose> placed;
   for (const plan::PlacementRecord& placement : plan_.placements(episode)) {
-    const auto& q = placement.rotation;
-    placed.push_back({to_vec(placement.position), Quat(q[0], q[1], q[2], q[3])});
+    placed.push_back({to_vec(placement.position), to_quat(placement.rotation)});
   }
   if (placed.size() != bodies_.objects) {
     return Failure{Fault::kPlan,

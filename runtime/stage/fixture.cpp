@@ -8,8 +8,7 @@ Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record) {
   Fixture fixture;
   fixture.name = std::string(plan.text(record.name));
   fixture.urdf = std::string(plan.text(plan.assets()[record.urdf].path));
-  const auto& q = record.rotation;
-  fixture.base = {to_vec(record.position), Quat(q[0], q[1], q[2], q[3])};
+  fixture.base = {to_vec(record.position), to_quat(record.rotation)};
   fixture.friction = record.friction;
   for (const plan::FixtureJointRecord& joint : plan.joints(record)) {
     world::JointSpec spec;

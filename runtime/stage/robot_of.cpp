@@ -107,8 +107,7 @@ Result<std::vector<world::JointSpec>> drives_of(const plan::Plan& plan,
 }
 
 Pose base_pose(const plan::SceneRecord& scene) {
-  const auto& q = scene.base_rotation;
-  return {to_vec(scene.base_position), Quat(q[0], q[1], q[2], q[3])};
+  return {to_vec(scene.base_position), to_quat(scene.base_rotation)};
 }
 
 Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& record,

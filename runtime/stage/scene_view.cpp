@@ -39,7 +39,7 @@ Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRec
     }
     axes = *look;
   } else {
-    axes = Quat(aim[0], aim[1], aim[2], aim[3]).normalized().toRotationMatrix();
+    axes = to_quat(aim).normalized().toRotationMatrix();
   }
   camera.position = to_vec(record.position);
   camera.forward_left_up = axes;

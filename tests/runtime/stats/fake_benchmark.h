@@ -16,6 +16,18 @@ namespace probe::stats {
 
 inline constexpr std::size_t kPolicies = 2;
 
+// How often something was so.
+struct Share {
+  double hits = 0, n = 0;
+  void add(bool hit) {
+    hits += hit ? 1 : 0;
+    n += 1;
+  }
+  double value() const { return hits / n; }
+  // The share and twice its standard error if the truth is `p`.
+  double less_noise(double p) const { return value() - 2 * std::sqrt(p * (1 - p) / n); }
+};
+
 struct FakeTask {
   std::size_t category = 0;
   std::size_t baseline = 0;               // itself for an original

@@ -15,18 +15,6 @@ namespace {
 
 constexpr double kAlpha = 0.05;
 
-// How often something was so.
-struct Share {
-  double hits = 0, n = 0;
-  void add(bool hit) {
-    hits += hit ? 1 : 0;
-    n += 1;
-  }
-  double value() const { return hits / n; }
-  // The share and twice its standard error if the truth is `p`.
-  double less_noise(double p) const { return value() - 2 * std::sqrt(p * (1 - p) / n); }
-};
-
 struct Tally {
   std::map<std::string, Share> found;    // p at most 5 %
   std::map<std::string, Share> covered;  // the truth of the question

@@ -16,16 +16,6 @@ namespace {
 
 constexpr double kAlpha = 0.05;
 
-// How often something was so.
-struct Share {
-  double hits = 0, n = 0;
-  void add(bool hit) {
-    hits += hit ? 1 : 0;
-    n += 1;
-  }
-  double value() const { return hits / n; }
-};
-
 struct Outcome {
   std::map<std::string, Share> coverage;
   double false_discovery_share = 0;  // mean over runs
