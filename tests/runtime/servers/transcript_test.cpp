@@ -75,6 +75,8 @@ TEST_CASE("the projects' own serving code is asked as when it was recorded, and 
       {Protocol::kGr00t, "gr00t_n1.6", "&profile=gr00t_bridge&dialect=n1.6"},
       {Protocol::kGr00t, "gr00t_n1.6_nested", "&profile=gr00t_bridge&dialect=n1.6_nested"},
       {Protocol::kGr00t, "gr00t_n1.5", "&profile=gr00t_bridge&dialect=n1.5"},
+      {Protocol::kOpenVla, "openvla", "&profile=openvla_bridge"},
+      {Protocol::kOpenVla, "openvla_encoded", "&profile=openvla_bridge&dialect=encoded"},
       {Protocol::kLeRobot, "lerobot",
        "&type=smolvla&model=/m&device=cpu&action.form=delta&action.units=m_rad&action.rotation="
        "vector&action.gripper=signed&action.threshold=none&chunk.length=2"}};
