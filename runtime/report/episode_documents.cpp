@@ -129,6 +129,7 @@ struct Reading {
   std::vector<std::string> bodies;
   std::vector<TimelineJoint> joints;
   std::vector<rejudge::MetricWhy> why;
+  std::optional<rejudge::EpisodeEvents> events;
   std::string problem;
 };
 
@@ -157,7 +158,7 @@ Json joints_json(const std::vector<TimelineJoint>& joints) {
 }
 
 Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> metrics,
-                     bool explained) {
+                     const rejudge::EventMetrics& asked, bool explained) {
   Reading reading;
   const auto trace = store::read_stored_trace(*episode.row);
   if (!trace) {
@@ -174,6 +175,14 @@ Reading read_episode(const EpisodeTrace& episode, std::span<const std::string> m
   }
   reading.timeline = encode_timeline(*trace, metrics, ends, reading.joints);
   reading.bodies = trace->header.bodies;
+  if (task && episode.events != nullptr) {
+    auto events = rejudge::events_of(*episode.events, *task, *trace, asked);
+    if (events) {
+      reading.events = std::move(*events);
+    } else {
+      reading.problem = to_text(events.failure());
+    }
+  }
   if (!explained) return reading;
   if (!task || trace->header.plan_root != episode.plan->root()) return reading;
   auto why = rejudge::explain(*episode.plan, *task, *trace);
@@ -239,6 +248,21 @@ std::string encode_timeline(const store::Trace& trace, std::span<const std::stri
   return text;
 }
 
+std::string encode_events(const rejudge::EpisodeEvents& events,
+                          std::span<const std::string> names) {
+  std::string text;
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    std::string marks;
+    for (const rejudge::EventMark& mark : events.marks) {
+      if (mark.name != names[n]) continue;
+      marks += fmt::format("{}{}", marks.empty() ? "" : ",", mark.step);
+      for (const std::uint16_t body : mark.of) marks += fmt::format(".{}", body);
+    }
+    if (!marks.empty()) text += fmt::format("{}e{}:{}", text.empty() ? "" : ";", n, marks);
+  }
+  return text;
+}
+
 EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
                                    std::span<const std::string> metrics, std::size_t task_count,
                                    const EpisodeDocumentOptions& options) {
@@ -248,7 +272,7 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
   std::vector<Reading> readings(episodes.size());
   const auto work = [&](std::size_t i) -> Status {
     if (!episodes[i].row->trace.empty())
-      readings[i] = read_episode(episodes[i], metrics, explained[i] != 0);
+      readings[i] = read_episode(episodes[i], metrics, options.events, explained[i] != 0);
     return {};
   };
   // No job fails: what cannot be read is noted.
@@ -258,6 +282,9 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
   std::vector<std::vector<std::string>> bodies(task_count);
   std::vector<Json> joints(task_count, Json::array());
   bool has_joints = false;
+  std::vector<std::string> names = options.events.events;
+  names.insert(names.end(), options.events.subgoals.begin(), options.events.subgoals.end());
+  documents.events.resize(readings.size());
   Json lines = Json::array(), whys = Json::object();
   TextTable texts;
   std::size_t problems = 0;
@@ -265,6 +292,11 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
     Reading& reading = readings[i];
     if (!reading.problem.empty() && problems++ < kNotes)
       documents.notes.push_back("no timeline of one episode: " + reading.problem);
+    if (reading.events) {
+      const std::string told = encode_events(*reading.events, names);
+      if (!told.empty()) reading.timeline += (reading.timeline.empty() ? "" : ";") + told;
+      documents.events[i] = std::move(reading.events);
+    }
     lines.push_back(reading.timeline.empty() ? Json(0) : Json(std::move(reading.timeline)));
     const auto task = static_cast<std::size_t>(episodes[i].task);
     if (task < task_count && bodies[task].empty()) bodies[task] = std::move(reading.bodies);
@@ -280,6 +312,12 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
   const auto dumped = [](const Json& json) { return json.dump(); };
   Json timelines = {{"every", kEvery}, {"bodies", bodies}};
   if (has_joints) timelines["joints"] = joints;
+  if (!names.empty()) {
+    Json& told = timelines["events"] = Json::array();
+    for (std::size_t n = 0; n < names.size(); ++n) {
+      told.push_back({rejudge::event_words(names[n]), n >= options.events.events.size() ? 1 : 0});
+    }
+  }
   timelines["e"] = std::move(lines);
   documents.timelines = dumped(timelines);
   documents.whys = dumped({{"strings", texts.texts()}, {"e", std::move(whys)}});

@@ -2,11 +2,13 @@
 // and `whys` of the page, read from stored traces. Knows nothing of counts and tables.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "runtime/plan/plan.h"
+#include "runtime/rejudge/events.h"
 #include "runtime/store/results.h"
 #include "runtime/store/trace.h"
 
@@ -17,6 +19,8 @@ struct EpisodeTrace {
   const store::ResultRow* row = nullptr;
   const plan::Plan* plan = nullptr;  // the one the row was made under
   int task = 0;                      // index into the page's tasks
+  // The same plan with metrics that tell of events behind its own; null: none are told.
+  const plan::Plan* events = nullptr;
 };
 
 struct EpisodeDocumentOptions {
@@ -25,11 +29,14 @@ struct EpisodeDocumentOptions {
   // Explained verdicts are long: at most so many episodes have one, the same number of each task
   // and policy, those that did not succeed first. The others have the command that explains them.
   std::size_t explained = 600;
+  rejudge::EventMetrics events = {};  // of EpisodeTrace::events
 };
 
 struct EpisodeDocuments {
   std::string timelines, whys;     // JSON texts
   std::vector<std::string> notes;  // sentences: traces that could not be read
+  // By episode; nothing where none were asked for or its trace could not be read.
+  std::vector<std::optional<rejudge::EpisodeEvents>> events = {};
 };
 
 // `metrics` are the page's metrics by name, `task_count` its tasks.
@@ -49,5 +56,7 @@ struct TimelineJoint {
 };
 std::string encode_timeline(const store::Trace& trace, std::span<const std::string> metrics,
                             Ends ends = {}, std::span<const TimelineJoint> joints = {});
+// The records of its events; `names` are those that the document lists.
+std::string encode_events(const rejudge::EpisodeEvents& events, std::span<const std::string> names);
 
 }  // namespace probe::report

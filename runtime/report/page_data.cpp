@@ -265,6 +265,7 @@ Json page_data(const Benchmark& benchmark, const Tables& tables, const PageOptio
   data["episodes"] = episodes_json(benchmark, options, strings);
   data["strings"] = std::move(strings);
   data["tables"] = tables_json(benchmark, tables, options);
+  if (!options.events.is_null()) data["tables"]["events"] = options.events;
   add_knowledge(benchmark, make_knowledge(benchmark), data);
   return data;
 }

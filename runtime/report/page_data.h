@@ -17,6 +17,7 @@ struct PageOptions {
   std::string relative_to = {};  // folder of the page; dirs and videos are written from it
   std::vector<PublishedTable> published = {};  // other people's numbers
   bool models = true;                          // mixed models, which take seconds
+  Json events = nullptr;                       // of events_json(), or none
 };
 
 Json page_data(const Benchmark& benchmark, const Tables& tables, const PageOptions& options);

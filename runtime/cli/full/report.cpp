@@ -7,10 +7,12 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
+#include "runtime/cli/full/grafted.h"
 #include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/output.h"
 #include "runtime/report/episode_documents.h"
+#include "runtime/report/event_tables.h"
 #include "runtime/report/page_data.h"
 #include "runtime/report/page_writer.h"
 #include "runtime/report/published_match.h"
@@ -29,21 +31,53 @@ struct ReportArguments {
 
 std::string dump(const Json& json, int indent = -1) { return json.dump(indent); }
 
-report::EpisodeDocuments read_traces(const report::Benchmark& benchmark,
+// The plans of the runs with std/events.probe behind their metrics, in the benchmark's order; none
+// when there is no standard library, or one of them cannot be asked: a note then.
+struct EventPlans {
+  std::vector<plan::Plan> plans;
+  rejudge::EventMetrics metrics;
+  std::string note;
+};
+EventPlans event_plans(const report::Benchmark& benchmark) {
+  EventPlans out;
+  for (const plan::Plan& stored : benchmark.plan_files) {
+    auto text = metrics_text(kEventsText, {});
+    if (!text) {
+      return {.plans = {},
+              .metrics = {},
+              .note =
+                  "no events are told: std/events.probe is not "
+                  "there, or has a mistake"};
+    }
+    auto grafted = graft(stored, *std::move(text));
+    if (!grafted) {
+      return {
+          .plans = {}, .metrics = {}, .note = "no events are told: " + to_text(grafted.failure())};
+    }
+    out.plans.push_back(std::move(grafted->plan));
+    out.metrics = std::move(grafted->metrics);
+  }
+  return out;
+}
+
+report::EpisodeDocuments read_traces(const report::Benchmark& benchmark, const EventPlans& events,
                                      const ReportArguments& arguments) {
   std::vector<report::EpisodeTrace> episodes;
   episodes.reserve(benchmark.episodes.size());
   for (const report::Episode& e : benchmark.episodes) {
+    const auto plan = static_cast<std::size_t>(e.plan);
     episodes.push_back({.row = &e.row,
-                        .plan = &benchmark.plan_files[static_cast<std::size_t>(e.plan)],
-                        .task = e.task});
+                        .plan = &benchmark.plan_files[plan],
+                        .task = e.task,
+                        .events = events.plans.empty() ? nullptr : &events.plans[plan]});
   }
   std::vector<std::string> metrics;
   for (const report::Metric& metric : benchmark.metrics) metrics.push_back(metric.name);
   const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return report::episode_documents(
-      episodes, metrics, benchmark.tasks.size(),
-      {.jobs = arguments.jobs > 0 ? arguments.jobs : all, .traces = !arguments.no_traces});
+  return report::episode_documents(episodes, metrics, benchmark.tasks.size(),
+                                   {.jobs = arguments.jobs > 0 ? arguments.jobs : all,
+                                    .traces = !arguments.no_traces,
+                                    .events = events.metrics});
 }
 
 Status write_report(const ReportArguments& arguments) {
@@ -75,11 +109,15 @@ Status write_report(const ReportArguments& arguments) {
     put("{}", text);
     return {};
   }
+  EventPlans events;
+  if (!arguments.no_traces) events = event_plans(benchmark);
+  if (!events.note.empty()) benchmark.notes.push_back({.level = "note", .text = events.note});
+  report::EpisodeDocuments episodes = read_traces(benchmark, events, arguments);
+  options.events = report::events_json(benchmark, {events.metrics, std::move(episodes.events)});
   if (arguments.json) {
     put("{}\n", dump(report::page_data(benchmark, tables, options), 1));
     if (arguments.out.empty()) return {};
   }
-  report::EpisodeDocuments episodes = read_traces(benchmark, arguments);
   for (std::string& note : episodes.notes)
     benchmark.notes.push_back({.level = "warn", .text = std::move(note)});
   const std::string page =

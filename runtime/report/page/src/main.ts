@@ -6,6 +6,7 @@ import { details, noteList, type Panel, panel, policyLabel, prose } from "./part
 import { cases } from "./panels/cases";
 import { compare } from "./panels/compare";
 import { deltas } from "./panels/deltas";
+import { events } from "./panels/events";
 import { floors } from "./panels/floors";
 import { gap } from "./panels/gap";
 import { heatmap } from "./panels/heatmap";
@@ -23,7 +24,7 @@ import { isDark } from "./theme";
 const kPanels: [string, string, (state: State) => Panel][] = [
   ["main", "Main table", mainTable], ["radar", "Intention and success by category", radar], ["gap", "Intention\u2013action gap", gap],
   ["knows", "What the model knows", knows], ["compare", "Policies in pairs", compare], ["deltas", "Variants against baselines", deltas], ["language", "The same task in other words", language],
-  ["heatmap", "Source by target", heatmap], ["objects", "By object", objects], ["cases", "Case studies", cases],
+  ["heatmap", "Source by target", heatmap], ["objects", "By object", objects], ["cases", "Case studies", cases], ["events", "What happened", events],
   ["tasks", "Tasks, starts, episodes", tasks], ["floors", "Floors and ceilings", floors], ["confounded", "Confounded comparisons", confounded],
   ["invalid", "Invalid episodes", invalid], ["delivery", "What reached the policy", delivery], ["runs", "Runs and fingerprints", runs],
 ];

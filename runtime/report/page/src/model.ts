@@ -58,7 +58,14 @@ export interface Sequential { a: number; b: number; metric: number; on_these_sta
 export interface Ranking { policy: number; metric: number; score: number; low?: number | null; high?: number | null }
 export interface MixedTerm { term: string; kind: string; odds: number | null; low: number | null; high: number | null; p: number | null; note?: string }
 export interface Mixed { metric: number; model?: string; rows: MixedTerm[]; random?: { factor: string; sd: number }[]; n?: number; note?: string }
+// Events and subgoals as truths of episodes; `metric` of its rows is an index into `names`.
+export interface EventTables {
+  names: { name: string; label: string; subgoal: boolean }[];
+  main: MainRow[]; by_task: Record<string, Estimate[][]>; deltas: Delta[];
+  numbers: { name: string; label: string; unit: string; rows: [policy: number, task: number, mean: number, low: number, high: number, n: number][] }[];
+}
 export interface Tables {
+  events?: EventTables;
   main?: { rows: MainRow[]; all_label?: string };
   external?: { source: string; rows: ExternalRow[] }[];
   by_task?: Record<string, Estimate[][]>;
@@ -79,7 +86,7 @@ export interface Data {
   models?: Model[]; policies: Policy[]; tasks: Task[]; episodes: Episodes; tables: Tables; empty?: Record<string, string>;
 }
 export type TimelineJoint = [name: string, unit: string, lower: number, upper: number];
-export interface Timelines { every?: number; bodies?: string[][]; joints?: TimelineJoint[][]; e?: (string | 0)[] }
+export interface Timelines { every?: number; bodies?: string[][]; joints?: TimelineJoint[][]; events?: [label: string, subgoal: number][]; e?: (string | 0)[] }
 export type WhyCondition = [line: number, text: number, bodies: number, measured: number, truth: number, decides: number, alike: number];
 export type WhyMetric = [name: string, shown: string, when: string, file: number, line: number, conditions: WhyCondition[]];
 export interface Whys { strings?: string[]; e?: Record<string, WhyMetric[]> }

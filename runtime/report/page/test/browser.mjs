@@ -12,7 +12,7 @@ const puppeteer = await import(pathToFileURL(require.resolve("puppeteer-core")).
 const launch = (puppeteer.default ?? puppeteer).launch;
 mkdirSync(out, { recursive: true });
 
-const kPanels = ["main", "radar", "gap", "knows", "compare", "deltas", "language", "heatmap", "objects", "cases", "tasks", "floors", "confounded", "invalid", "delivery", "runs"];
+const kPanels = ["main", "radar", "gap", "knows", "compare", "deltas", "language", "heatmap", "objects", "cases", "events", "tasks", "floors", "confounded", "invalid", "delivery", "runs"];
 const wrong = [];
 const expect = (holds, what) => { if (!holds) wrong.push(what); };
 const pause = (ms) => new Promise((done) => setTimeout(done, ms));
@@ -132,6 +132,9 @@ async function checkKeyboard(page) {
     const from = await x();
     await page.keyboard.press("ArrowRight");
     expect((await x()) !== from, "the slider does not move the timeline's cursor");
+    const told = await page.$eval(".timeline", (t) => t.getAttribute("aria-label"));
+    expect(/dropped: step 31 \(/.test(told), `the timeline does not tell of events: ${told.slice(0, 80)}`);
+    expect((await page.$$(".timeline .event, .timeline .subgoal")).length === 5, "the timeline does not mark its events");
   } else {
     wrong.push("the opened episode has no timeline");
   }

@@ -228,6 +228,15 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
   const knows = models.flatMap((_, model) => [-1, ...categories.keys()].flatMap((category) => list.slice(0, 2).map((_, policy) => ({ model, policy, family: 0, category, counts: [20, 5, 30, 65, 71, 2, 200, 807], starts: 1200, diff: 0.148, low: 0.09, high: 0.2,
     says: `of the 98 episodes in which ${list[policy].label} did not go for the right object, ${models[model].label} named it in 73`, ...answers(0.09, 0.2, 0.001, 1200, 0.01) }))));
   const named = (t) => tasks[t].name;
+  // Events that began as often as some verdict was true, one that never did, and two subgoals.
+  const told = [["dropped", 0, false], ["bumped", 1, false], ["left_table", -1, false], ["reached_it", 1, true], ["grasped_it", 2, true]]
+    .map(([name, m, subgoal]) => ({ name, m, subgoal, label: hostile ? kHostile[0] : name.replaceAll("_", " ") }));
+  const never = (e) => (e ? [0, e[1], 0, e[3]] : null);
+  const events = count === 0 || list.length === 0 ? undefined : { names: told.map(({ name, label, subgoal }) => ({ name, label, subgoal })),
+    main: list.flatMap((_, p) => told.map(({ m }, metric) => { const all = main.rows.find((r) => r.policy === p && r.metric === Math.max(0, m))?.all ?? null; return { policy: p, metric, all: m < 0 ? never(all) : all, cells: [] }; })),
+    by_task: Object.fromEntries(told.map(({ name, m }) => [name, m < 0 ? by_task[metrics[0].name].map((row) => row.map(never)) : by_task[metrics[m].name]])),
+    deltas: deltas.filter((d) => d.metric < 2 && d.policy < 3),
+    numbers: [["path", "m"], ["hand_over", "s"], ["sparc", ""]].map(([name, unit], i) => ({ name, label: name.replaceAll("_", " "), unit, rows: list.slice(0, 3).flatMap((_, p) => tasks.slice(0, 9 - 4 * i).map((_, t) => [p, t, 0.71 + i, 0.4, 1.93 + i, 24])) })) };
   const data = {
     format: "vlaprobe-report", version: 1, title: hostile ? kHostile[1] : "vlaprobe report", program: "vlaprobe 0.1.0",
     command: `vlaprobe report ${list.map((p) => "runs/" + p.name).slice(0, 6).join(" ")} -o report.html`,
@@ -243,7 +252,7 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
     policies: list.map(({ name, label, role }, p) => ({ name, label, role, runs: [{ dir: hostile ? kHostile[5] : `runs/${name}`, plan: 0, fingerprint: 0, seeds, done: rows[p].flat().length,
       expected: tasks.length * starts * seeds.length, invalid: rows[p].flat().filter((i) => episodes.reason[i] >= 0).length, videos: 3 }] })),
     tasks, episodes, models,
-    tables: { accuracy, knows, main, by_task, deltas, category_deltas, pairs, objects: things, gap, floors, compare, sequential,
+    tables: { events, accuracy, knows, main, by_task, deltas, category_deltas, pairs, objects: things, gap, floors, compare, sequential,
       external: count === 0 ? [] : [{ source: "published.csv", rows: [{ policy: hostile ? kHostile[0] : "pi0 fintune", metric: "success", all: 30.4,
         cells: [47.6, 49.3, 24.4, 21.5, 39.6, 38.5, 22.2, 43.1, 25.2, 26.4, 10.6], flags: Array.from({ length: 12 }, (_, i) => (i === 3 ? "49.3 % is no count of 120 episodes" : null)) }] }],
       delivery: count === 0 ? [] : [{ level: "good", text: "Every prompt that was sent has the hash of its plan's instruction." }],
@@ -253,7 +262,8 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
   for (let i = 0; i < Math.min(episodes.count, 400); ++i)
     whys.e[i] = [["success", "false", "at step 60", 0, 31, [[32, 1, 2, 3, 0, 1, 0], [33, 1, 2, 3, 1, 0, 2]]]];
   const timelines = { every: 2, bodies: tasks.map((t) => [objects[t.source].name, objects[t.target].name, ...t.distractors.map((d) => objects[d].name),
-    ...Array(2 - t.distractors.length).fill(""), "gripper"]), e: lines };
+    ...Array(2 - t.distractors.length).fill(""), "gripper"]), events: told.map(({ label, subgoal }) => [label, subgoal ? 1 : 0]),
+    e: lines.map((line) => (line ? `${line};e0:31.0,44.0;e1:33.0.1;e3:9.0;e4:14.0` : line)) };
   return { data, timelines, whys };
 }
 

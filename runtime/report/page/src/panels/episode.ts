@@ -6,18 +6,19 @@ import { policyLabel } from "../parts";
 import type { State } from "../state";
 
 type Spans = [first: number, last: number][];
-interface Timeline { metrics: [number, Spans][]; contacts: [number, number, Spans][]; gripper: Spans; distance: number[]; joints: [number, number[]][] }
+interface Timeline { metrics: [number, Spans][]; contacts: [number, number, Spans][]; gripper: Spans; distance: number[]; joints: [number, number[]][]; events: [number, [step: number, bodies: number[]][]][] }
 
 const spansOf = (text: string): Spans => text.split(",").filter(Boolean).map((part) => { const [a, b] = part.split("-").map(Number); return [a!, b ?? a!]; });
 
 function decode(text: string): Timeline {
-  const timeline: Timeline = { metrics: [], contacts: [], gripper: [], distance: [], joints: [] };
+  const timeline: Timeline = { metrics: [], contacts: [], gripper: [], distance: [], joints: [], events: [] };
   for (const record of text.split(";")) {
     const colon = record.indexOf(":"), key = record.slice(0, colon), rest = record.slice(colon + 1);
     if (key[0] === "m") timeline.metrics.push([Number(key.slice(1)), spansOf(rest)]);
     else if (key[0] === "c") { const [a, b] = key.slice(1).split(".").map(Number); timeline.contacts.push([a!, b!, spansOf(rest)]); }
     else if (key === "g") timeline.gripper = spansOf(rest);
     else if (key === "d") timeline.distance = rest.split(",").map(Number);
+    else if (key[0] === "e") timeline.events.push([Number(key.slice(1)), rest.split(",").map((mark) => { const [step, ...of] = mark.split(".").map(Number); return [step!, of]; })]);
     else if (key[0] === "j") timeline.joints.push([Number(key.slice(1)), rest.split(",").map(Number)]);
   }
   return timeline;
@@ -40,23 +41,48 @@ function curvesOf(timeline: Timeline, joints: TimelineJoint[]): Curve[] {
   return curves;
 }
 
-// Lines of spans over control steps, curves below, and a cursor that set() moves.
-function drawing(data: Data, timeline: Timeline, bodies: string[], joints: TimelineJoint[], steps: number, every: number): { element: SVGElement; set: (step: number) => void } {
+interface Marks { name: string; subgoal: boolean; at: { step: number; of: string }[] }
+
+// Events in the order of the library, each with its steps and whose it is.
+function marksOf(timeline: Timeline, events: [string, number][], bodies: string[]): Marks[] {
+  return timeline.events.flatMap(([number, marks]) => {
+    const event = events[number];
+    return event ? [{ name: event[0], subgoal: !!event[1], at: marks.map(([step, of]) => ({ step, of: of.map((b) => bodies[b] ?? "?").join(", ") })) }] : [];
+  });
+}
+
+// Lines of marks and spans over control steps, curves below, and a cursor that set() moves.
+function drawing(data: Data, timeline: Timeline, events: [string, number][], bodies: string[], joints: TimelineJoint[], steps: number, every: number): { element: SVGElement; set: (step: number) => void } {
   const x = (step: number) => kLeft + (kWide * step) / Math.max(steps, 1);
   const lines: [string, string, Spans][] = [
     ...timeline.metrics.map(([m, spans]): [string, string, Spans] => [data.metrics[m]?.label ?? "", data.metrics[m]?.name === "wrong" ? "bad" : "metric", spans]),
     ...(timeline.gripper.length ? [["gripper closing", "gripper", timeline.gripper] as [string, string, Spans]] : []),
     ...timeline.contacts.map(([a, b, spans]): [string, string, Spans] => [`${bodies[a] || "?"} \u2013 ${bodies[b] || "?"}`, "contact", spans]),
   ];
-  const curves = curvesOf(timeline, joints);
-  const top = 4, bottom = top + lines.length * kLine, height = bottom + curves.length * kCurve + 24;
-  const cursor = s("line", { class: "cursor", y1: top, y2: height - 20, x1: kLeft, x2: kLeft });
+  const curves = curvesOf(timeline, joints), marks = marksOf(timeline, events, bodies);
+  const head = 4, top = head + marks.length * kLine + (marks.length ? 6 : 0), bottom = top + lines.length * kLine, height = bottom + curves.length * kCurve + 24;
+  const cursor = s("line", { class: "cursor", y1: head, y2: height - 20, x1: kLeft, x2: kLeft });
   const ticks: number[] = [];
   const stride = [1, 2, 5, 10, 20, 50, 100, 200, 500].find((d) => steps / d <= 8) ?? 1000;
   for (let step = 0; step <= steps; step += stride) ticks.push(step);
-  const words = lines.map(([name, , spans]) => `${name}: steps ${spans.map(([a, b]) => `${a} to ${b}`).join(", ")}`).join("; ");
+  const said = marks.map(({ name, at }) => `${name}: ${at.map(({ step, of }) => `step ${step}${of ? ` (${of})` : ""}`).join(", ")}; `).join("");
+  const words = said + lines.map(([name, , spans]) => `${name}: steps ${spans.map(([a, b]) => `${a} to ${b}`).join(", ")}`).join("; ");
   const element = s("svg", { class: "timeline", viewBox: `0 0 ${kLeft + kWide + 20} ${height}`, role: "img", "aria-label": `Timeline of ${steps} control steps. ${words}` },
-    ticks.map((step) => [s("line", { class: "tick", x1: x(step), x2: x(step), y1: top, y2: height - 20 }), s("text", { class: "axis", x: x(step), y: height - 6, "text-anchor": "middle" }, String(step))]),
+    ticks.map((step) => [s("line", { class: "tick", x1: x(step), x2: x(step), y1: head, y2: height - 20 }), s("text", { class: "axis", x: x(step), y: height - 6, "text-anchor": "middle" }, String(step))]),
+    marks.map(({ name, subgoal, at }, i) => {
+      const y = head + i * kLine + kLine / 2;
+      const middle = (mark: { step: number }) => x(mark.step - 0.5);
+      return [s("text", { class: "line", x: kLeft - 10, y: y + 4, "text-anchor": "end" }, name),
+        at.map((mark, k) => {
+          // Words stand behind their mark, before it at the right edge, and nowhere if they met another mark.
+          const { step, of } = mark, cx = middle(mark), wide = 16 + 6.5 * of.length, toLeft = cx + wide > kLeft + kWide;
+          const before = at[k - 1], after = at[k + 1];
+          const fits = toLeft ? !before || middle(before) + 8 < cx - wide : !after || middle(after) - 8 > cx + wide;
+          return s("g", { class: subgoal ? "subgoal" : "event" }, s("title", {}, `${name}, step ${step}${of ? `: ${of}` : ""}`),
+            subgoal ? s("path", { d: `M${cx} ${y - 6}L${cx + 6} ${y}L${cx} ${y + 6}L${cx - 6} ${y}Z` }) : s("circle", { cx, cy: y, r: 5 }),
+            fits ? s("text", { class: "axis", x: toLeft ? cx - 9 : cx + 9, y: y + 4, "text-anchor": toLeft ? "end" : "start" }, of) : null);
+        })];
+    }),
     lines.map(([name, kind, spans], i) => [
       s("text", { class: "line", x: kLeft - 10, y: top + i * kLine + 14, "text-anchor": "end" }, name.length > 26 ? name.slice(0, 25) + "\u2026" : name),
       spans.map(([a, b]) => s("rect", { class: kind, x: x(a - 1), width: Math.max(2, x(b) - x(a - 1)), y: top + i * kLine + 4, height: kLine - 8, rx: 2 }))]),
@@ -124,7 +150,7 @@ export function episodeView(state: State, row: number): Child {
   const holds = (m: number) => isTrue(e, row, m);
 
   const timelines = readTimelines(), encoded = timelines.e?.[row];
-  const timeline = encoded ? drawing(data, decode(encoded), timelines.bodies?.[t] ?? [], timelines.joints?.[t] ?? [], steps, timelines.every ?? 1) : null;
+  const timeline = encoded ? drawing(data, decode(encoded), timelines.events ?? [], timelines.bodies?.[t] ?? [], timelines.joints?.[t] ?? [], steps, timelines.every ?? 1) : null;
   const link = safeLink(data.strings[e.video?.[row] ?? -1] ?? "");
   const video = link ? h("video", { src: link, controls: true, preload: "metadata", playsinline: true, muted: true, "aria-label": `Video of ${task.name}, start ${start}` }) : null;
   // A video has a frame before the first step and one after each.
