@@ -16,7 +16,7 @@ Diagnostic& unread(Context& context, const Span& span, const Robot& robot, const
 }
 
 // One number for all six directions, (shift, turn), or all six.
-void read_six(Context& context, const syntax::Point& written, const Takes& takes,
+void read_six(Context& context, const syntax::Point& written, const Takes& takes, bool may_be_zero,
               std::array<double, 6>* out) {
   const std::size_t count = written.coordinates.size();
   if (count != 1 && count != 2 && count != 6) {
@@ -37,6 +37,14 @@ void read_six(Context& context, const syntax::Point& written, const Takes& takes
     }
     const auto value = read_si(context, number, dim::kNumber, takes);
     if (!value) return;
+    if (*value == 0 && !may_be_zero) {
+      context
+          .report(Situation::kNotPositive, number.span,
+                  "expected a value above zero, found `" +
+                      std::string(context.sources.text(number.span)) + "`")
+          .point("without a gain the tool does not follow its goal there");
+      return;
+    }
     if (*value < 0) {
       context
           .report(
@@ -84,12 +92,13 @@ struct SettingReader {
   void operator()(const syntax::ControlKpStmt& stmt) {
     if (osc() == nullptr) return void(unread(context, stmt.span, robot, "`kp`"));
     read_six(context, stmt.values, {"`kp` takes 1/s2, without a unit", plan::Magnitude::kGain},
-             &osc()->kp);
+             false, &osc()->kp);
   }
   void operator()(const syntax::ControlDampingStmt& stmt) {
     if (osc() == nullptr) return void(unread(context, stmt.span, robot, "`damping`"));
     read_six(context, stmt.values,
-             {"`damping` takes a ratio: 1 is critical", plan::Magnitude::kGain}, &osc()->damping);
+             {"`damping` takes a ratio: 1 is critical", plan::Magnitude::kGain}, true,
+             &osc()->damping);
   }
   void operator()(const syntax::ControlOutputStmt& stmt) {
     if (osc() == nullptr) return void(unread(context, stmt.span, robot, "`output`"));

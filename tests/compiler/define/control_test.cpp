@@ -90,12 +90,15 @@ TEST_CASE("one number is for all directions, two for shift and turn, six for eac
   CHECK(said(arm(with(kOsc, "home", "output (5cm, 5cm); home"))) == "P0302 5cm");
 }
 
-TEST_CASE("gains are not negative, outputs not zero, ramps a share, rates above zero") {
+TEST_CASE("gains are above zero, damping not negative, outputs not zero, ramps a share, rates above zero") {
   const auto bad = [](const std::string& numbers) {
     return said(arm(with(kOsc, "home", numbers + "; home")));
   };
   CHECK(bad("kp -150") == "P0304 -150");
   CHECK(bad("kp (150, -1)") == "P0304 -1");
+  CHECK(bad("kp 0") == "P0304 0");
+  CHECK(bad("kp (150, 150, 0, 150, 150, 150)") == "P0304 0");
+  CHECK(law_of("damping 0").damping[0] == 0);
   CHECK(bad("damping -1") == "P0304 -1");
   CHECK(bad("output (0cm, 0.5rad)") == "P0304 0cm");
   CHECK(bad("null -10") == "P0304 -10");
