@@ -13,6 +13,7 @@
 #include "compiler/define/fixture.h"
 #include "compiler/define/metrics.h"
 #include "compiler/define/role.h"
+#include "compiler/define/solution.h"
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
 #include "compiler/define/views.h"
@@ -332,6 +333,12 @@ struct TaskReader {
     task.delay_time =
         read_quantity(context, *time, dim::kTime, "`delay` takes a number of steps, or a time");
     poisoned = poisoned || !task.delay_time;
+  }
+  void operator()(const syntax::SolutionStmt& stmt) {
+    const auto solution =
+        read_solution(context, stmt, [this](const syntax::Name& name) { return bound(name); });
+    poisoned = poisoned || !solution;
+    if (solution) task.solution = *solution;
   }
   void operator()(const syntax::MetricStmt& stmt) {
     Metric metric = read_metric(context, *declared.file, stmt);
@@ -697,6 +704,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   if (task.complete) check_cameras(context_, task, poisoned);
   if (task.complete) check_joint_starts(context_, task, poisoned);
   if (task.complete) count_delay(context_, task, poisoned);
+  if (task.complete && !task.abstract) poisoned = !check_solution(context_, task) || poisoned;
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
   task.complete = task.complete && !poisoned;
   poison_[index] = poisoned;

@@ -130,6 +130,9 @@ class Emitter {
   plan::Slice add_arm_start(const sema::Task& task, std::size_t index);
   plan::Slice add_covers(const std::map<plan::CoverOf, sema::Cover>& covers, AssetOwner owner);
   // What its words say of places; `index` is the task's. Shapes that are alike share programs.
+  std::uint32_t region_named(const std::string& name, plan::BodyKind kind, std::uint32_t index);
+  void add_skills(const sema::Task& task, const std::vector<lower::Body>& bodies,
+                  std::uint32_t index);
   void add_claims(const sema::Task& task, const std::vector<lower::Body>& bodies,
                   std::uint32_t index);
   void add_put(const sema::Task& task, const sema::Put& put, ObjectId where,

@@ -198,6 +198,7 @@ void Emitter::add_task(const sema::Task& task) {
   add_span(plan::SpanKind::kTasks, index, task.span);
   records().tasks.push_back(record);
   add_claims(task, bodies, index);
+  add_skills(task, bodies, index);
 }
 
 }  // namespace probe::emit

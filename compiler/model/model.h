@@ -441,6 +441,20 @@ struct ClearPhrase {
   Spelled phrase;
 };
 
+// What a skill is done with, as written; what it is depends on the task.
+struct SkillOperand {
+  Spelled owner, name;  // "cabinet", "top_drawer"; no name: empty
+  Span span;
+};
+struct SkillUse {
+  plan::Skill skill = plan::Skill::kPick;
+  SkillOperand what;
+  plan::SkillRelation relation = plan::SkillRelation::kNothing;
+  SkillOperand to;    // of `put`
+  double amount = 0;  // rad, of `turn`
+  Span span;
+};
+
 struct Task {
   std::string name;
   Span span;       // of its name
@@ -482,6 +496,7 @@ struct Task {
   std::optional<Quantity> delay_time;  // the same, as a time
   Span delay_span;
   std::vector<Metric> overrides;  // `set`
+  std::vector<SkillUse> solution;
 
   Span layout_span, say_span, distractors_span, horizon_span;
   std::vector<Span> distractor_spans;  // by distractor

@@ -16,6 +16,7 @@
 #include "compiler/source/source.h"
 #include "runtime/plan/questions.h"
 #include "runtime/plan/readouts.h"
+#include "runtime/plan/skills.h"
 
 namespace probe::syntax {
 
@@ -829,9 +830,28 @@ struct DelayStmt {  // `delay 2 steps`, `delay 400ms`
   Span span;
   std::variant<Int, Quantity> how_long;
 };
-using TaskStmt =
-    std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt, ReferStmt,
-                 PoseStmt, StartStmt, HorizonStmt, IdleStmt, DelayStmt, MetricStmt, RoleStmt>;
+// What a skill is done with: `source`, `cabinet.top_drawer`.
+struct SkillOperand {
+  Span span;
+  Name owner;
+  std::optional<Name> name;
+};
+struct SkillStmt {  // `put source in cabinet.inside_top`, `turn stove.left_knob by 90deg`
+  Span span;
+  plan::Skill skill = plan::Skill::kPick;
+  SkillOperand what;
+  plan::SkillRelation relation = plan::SkillRelation::kNothing;
+  std::optional<SkillOperand> to;  // of `put`
+  std::optional<Quantity> amount;  // of `turn`
+};
+using SkillNode = std::variant<SkillStmt>;
+struct SolutionStmt {  // `none` is the empty list
+  Span span;
+  std::vector<SkillNode> skills;
+};
+using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
+                              ReferStmt, PoseStmt, StartStmt, HorizonStmt, IdleStmt, DelayStmt,
+                              SolutionStmt, MetricStmt, RoleStmt>;
 
 struct TaskDecl {
   bool abstract = false;

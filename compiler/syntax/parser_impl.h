@@ -272,6 +272,11 @@ class Parser {
   TaskStmt task_refer();
   TaskStmt task_pose();
   TaskStmt task_start();
+  TaskStmt task_solution();
+  SkillOperand skill_operand();
+  template <plan::Skill kind>
+  SkillNode skill();
+  SkillNode skill_of(plan::Skill kind);
   TaskStmt task_horizon();
   TaskStmt task_idle();
   TaskStmt task_delay();

@@ -22,6 +22,7 @@ enum class Block : std::uint8_t {
   kScene,
   kLayout,
   kTask,
+  kSolution,
   kQuestions,
   kSuite
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/base/trig.h"
+#include "runtime/expert/put_spot.h"
 
 namespace probe::expert {
 namespace {
@@ -16,7 +17,6 @@ constexpr double kRoomy = 0.04;                     // m between outlines; more 
 constexpr double kNarrow = 0.015;                   // m between outlines; no spot has less
 constexpr double kOffTarget = 0.03;  // m beyond the target's half diagonal, from centre to centre
 constexpr double kAbove = 0.08;      // m over the surface
-constexpr double kHalf = 0.01;       // m, of the square that stands for the spot
 
 struct Spot {
   Vec2 at = Vec2::Zero();
@@ -64,17 +64,8 @@ std::optional<Vec2> find_spot(const Scene& scene, const Reach& reach) {
 }
 
 Scene with_spot(Scene scene, const Vec2& spot) {
-  Footprint mark;
-  mark.whole = {spot + Vec2(-kHalf, -kHalf), spot + Vec2(kHalf, -kHalf), spot + Vec2(kHalf, kHalf),
-                spot + Vec2(-kHalf, kHalf)};
-  mark.parts = {mark.whole};
-  mark.part_tops = {scene.surface};
-  mark.center = spot;
-  mark.radius = kHalf * std::numbers::sqrt2;
-  mark.bottom = mark.top = scene.surface;
-  if (!scene.target.whole.empty()) scene.others.push_back(std::move(scene.target));
-  scene.target = std::move(mark);
-  return scene;
+  const Vec3 at(spot.x(), spot.y(), scene.surface);
+  return with_target_at(std::move(scene), at);
 }
 
 }  // namespace probe::expert

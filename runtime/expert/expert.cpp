@@ -10,11 +10,14 @@
 #include <fmt/format.h>
 
 #include "runtime/expert/away.h"
+#include "runtime/expert/joint_skill.h"
 #include "runtime/expert/path_planner.h"
 #include "runtime/expert/place_candidates.h"
+#include "runtime/expert/put_spot.h"
 #include "runtime/expert/servo.h"
 #include "runtime/expert/shove.h"
 #include "runtime/expert/waypoints.h"
+#include "runtime/expert/wrong_skills.h"
 #include "runtime/robot/grip_command.h"
 #include "runtime/robot/rotation.h"
 
@@ -40,6 +43,8 @@ constexpr double kOpenGripper = 1, kClosedGripper = -1;
 constexpr int kMostTries = 3;
 constexpr double kCareful = 0.4;  // more steps with each try
 constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
+
+constexpr double kOffSpot = 0.05, kOnSpot = 0.03;  // m, of what was put
 
 constexpr double kThin = 0.015;       // m high
 constexpr int kLongestShove = 8;      // steps
@@ -74,11 +79,22 @@ class Expert final : public policy::Policy {
     shove_.reset();
     path_.reset();
     spot_.reset();
+    put_spot_.reset();
+    pushes_ = false;
+    solution_.clear();
+    skill_ = 0;
+    skill_begun_ = false;
     enter(Phase::kRaise);
     return {};
   }
 
   Result<policy::Action> act(const policy::Observation& observation) override {
+    if (!started_ && observation.privileged != nullptr)
+      solution_ = skills_of(*observation.privileged);
+    // Nothing to do wrong.
+    if (options_.source > 1 && solution_.empty() && observation.privileged != nullptr &&
+        !observation.privileged->solution.empty())
+      return policy::Action{0, 0, 0, 0, 0, 0, kOpenGripper};
     PROBE_TRY(check(observation));
     if (started_ && --until_decision_ > 0) {
       const policy::Proprioception& now = observation.proprioception;
@@ -86,17 +102,17 @@ class Expert final : public policy::Policy {
       return servo_.next({reach_->chain().pose(q), now.joints, now.openness});
     }
     const policy::Privileged& view = *observation.privileged;
-    Scene scene = look(
-        observation,
-        {view.object_of(options_.source), options_.close ? view.object_of(options_.target) : -1},
-        reach_->hand());
-    lifts_ = options_.close && view.goal == policy::Goal::kLifted;
-    if (!started_) look_for_spot(observation, scene);
+    Scene scene = seen(observation);
+    if (!started_) {
+      lifts_ = options_.close && view.goal == policy::Goal::kLifted;
+      if (solution_.empty()) look_for_spot(observation, scene);
+    }
     if (spot_) scene = with_spot(std::move(scene), *spot_);
     if (observation.horizon > 0) horizon_ = observation.horizon;
     const Arm arm = arm_of(scene);
     if (!started_) {
       servo_.begin(reach_->chain(), arm, law_, rate_);
+      ready_ = arm.tcp;
       last_ = scene;
       started_ = true;
       first_seen_ = scene.source.center;
@@ -110,7 +126,42 @@ class Expert final : public policy::Policy {
     // A source in the air hinders the arm no more than an empty hand.
     const bool touched =
         std::ranges::any_of(scene.fingers_on_source, [](bool touches) { return touches; });
-    servo_.observe(arm, !touched || (phase_ == Phase::kTransport && steps_ > 1));
+    servo_.observe(arm,
+                   !moves_joint() && (!touched || (phase_ == Phase::kTransport && steps_ > 1)));
+    return !solution_.empty() ? act_by_solution(observation) : act_on(scene);
+  }
+
+ private:
+  // What the skills of a solution are done with, or else the roles.
+  Scene seen(const policy::Observation& observation) const {
+    const policy::Privileged& view = *observation.privileged;
+    if (solution_.empty())
+      return look(
+          observation,
+          {view.object_of(options_.source), options_.close ? view.object_of(options_.target) : -1},
+          reach_->hand());
+    const bool is_over = skill_ >= solution_.size();
+    const policy::Skill skill = is_over ? policy::Skill{} : solution_[skill_];
+    Scene scene = look(observation, {skill.object, goes_to_spot(skill) ? -1 : skill.to_object},
+                       reach_->hand());
+    return put_spot_ ? with_target_at(std::move(scene), spot_now(*put_spot_, view)) : scene;
+  }
+
+  // The skills of this episode; else the usual pick and place.
+  std::vector<policy::Skill> skills_of(const policy::Privileged& view) const {
+    if (options_.source > 1) return wrong_skills(view, options_.source);
+    std::vector<policy::Skill> skills = view.solution;
+    // What only reaches goes to the first thing that is done something with.
+    if (!options_.close && !skills.empty()) skills.resize(1);
+    return skills;
+  }
+  // The skill that is being done.
+  bool moves_joint() const {
+    return !solution_.empty() && skill_ < solution_.size() && solution_[skill_].fixture >= 0;
+  }
+
+  // The usual phases, of one object.
+  policy::Action act_on(const Scene& scene) {
     // Phases that are done take no time; each leads on, so this ends.
     for (int i = 0; i < 12; ++i) {
       const Phase before = phase_;
@@ -123,7 +174,49 @@ class Expert final : public policy::Policy {
     return action;
   }
 
- private:
+  // Skill by skill; one that is done takes no time.
+  policy::Action act_by_solution(const policy::Observation& observation) {
+    const policy::Privileged& view = *observation.privileged;
+    while (skill_ < solution_.size()) {
+      const policy::Skill& skill = solution_[skill_];
+      const bool is_new = !skill_begun_;
+      skill_begun_ = true;
+      if (skill.fixture >= 0) {
+        if (is_new) joint_.begin(skill, ready_, !options_.close);
+        const Scene scene = seen(observation);
+        if (const auto action = joint_.act(view, arm_of(scene), servo_, *reach_)) return *action;
+      } else {
+        if (is_new) begin_object_skill(observation, skill);
+        const policy::Action action = act_on(seen(observation));
+        const bool is_over = phase_ == Phase::kRest || phase_ == Phase::kKeep;
+        if (!is_over || skill_ + 1 >= solution_.size()) return action;
+      }
+      ++skill_;
+      skill_begun_ = false;
+      put_spot_.reset();
+    }
+    return servo_.hold(arm_of(seen(observation)), kOpenGripper);
+  }
+
+  void begin_object_skill(const policy::Observation& observation, const policy::Skill& skill) {
+    lifts_ = skill.kind == policy::Skill::Kind::kPick;
+    pushes_ = skill.kind == policy::Skill::Kind::kPush;
+    tries_ = 0;
+    failed_.clear();
+    pick_.reset();
+    shove_.reset();
+    path_.reset();
+    put_spot_.reset();
+    const Scene scene = seen(observation);
+    if (options_.close && skill.kind == policy::Skill::Kind::kPut && goes_to_spot(skill))
+      put_spot_ = find_put_spot(scene, *observation.privileged, skill, *reach_);
+    first_seen_ = scene.source.center;
+    last_ = seen(observation);
+    const bool has_place = !options_.close || skill.kind != policy::Skill::Kind::kPut ||
+                           !goes_to_spot(skill) || put_spot_;
+    enter(has_place ? Phase::kRaise : Phase::kRest);
+  }
+
   Status check(const policy::Observation& observation) const {
     if (!reach_)
       return Failure{Fault::kPolicy, "the expert was asked to act before an episode began", ""};
@@ -131,6 +224,7 @@ class Expert final : public policy::Policy {
       return Failure{Fault::kPolicy, "the expert needs the privileged view and got none", ""};
     }
     const policy::Privileged& view = *observation.privileged;
+    if (!solution_.empty()) return check_joints(observation);
     const bool lacks_target = options_.close && view.goal != policy::Goal::kLifted &&
                               view.goal != policy::Goal::kAway &&
                               view.object_of(options_.target) < 0;
@@ -146,6 +240,10 @@ class Expert final : public policy::Policy {
     }
     if (view.object_of(options_.source) < 0 || lacks_target || is_other)
       return Failure{Fault::kPolicy, std::string(policy::kNoSolution), ""};
+    return check_joints(observation);
+  }
+
+  Status check_joints(const policy::Observation& observation) const {
     if (observation.proprioception.joints.size() < reach_->chain().joint_count()) {
       return Failure{
           Fault::kPolicy,
@@ -228,13 +326,19 @@ class Expert final : public policy::Policy {
         return;
       case Phase::kRetreat:
         if (s.tcp.position.z() < release_.position.z() + 0.055 && steps_ < 6) return;
-        if (shove_ ? (s.source.center - first_seen_).norm() > kShoved : lies_on_target(s)) {
+        if (shove_ ? (s.source.center - first_seen_).norm() > kShoved : is_put(s)) {
           return enter(Phase::kRest);
         }
         return start_over();
       case Phase::kRest:
         return;
     }
+  }
+
+  bool is_put(const Scene& s) const {
+    if (!put_spot_) return lies_on_target(s);
+    return (s.source.center - s.target.center).norm() < kOffSpot &&
+           s.source.bottom < s.target.top + kOnSpot;
   }
 
   void advance_raise(const Scene& s) {
@@ -255,7 +359,8 @@ class Expert final : public policy::Policy {
     shove_.reset();
     // A thin rim that slipped once slips again.
     const int rims = s.source.top - s.source.bottom < kThin ? 1 : 2;
-    if (options_.close && !lifts_ && (!pick_ || (pick_->grasp.rim && tries_ >= rims))) {
+    const bool needs_shove = !pick_ || (pick_->grasp.rim && tries_ >= rims);
+    if (pushes_ || (options_.close && !lifts_ && !put_spot_ && needs_shove)) {
       shove_ = plan_shove(s, *reach_);
       if (shove_) pick_ = shove_->start;
     }
@@ -418,8 +523,15 @@ class Expert final : public policy::Policy {
   bool started_ = false;
   Servo servo_;
   Phase phase_ = Phase::kRaise;
-  bool lifts_ = false;  // the source shall only be picked up
-  int steps_ = 0;       // in this phase
+  std::vector<policy::Skill> solution_;  // none: the usual pick and place
+  std::size_t skill_ = 0;                // of these
+  bool skill_begun_ = false;
+  JointSkill joint_;
+  Pose ready_;                       // of the tool, at the start
+  std::optional<PutSpot> put_spot_;  // where a skill puts the source, when that is no object
+  bool pushes_ = false;              // the source shall only be pushed
+  bool lifts_ = false;               // the source shall only be picked up
+  int steps_ = 0;                    // in this phase
   int tries_ = 0;
   std::vector<Pose> failed_;  // grasps, in the source's frame
   Scene last_;

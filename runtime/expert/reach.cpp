@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "runtime/expert/servo.h"
+#include "runtime/policy/policy.h"
 #include "runtime/robot/ik.h"
 #include "runtime/robot/rotation.h"
 
@@ -15,9 +16,8 @@ namespace probe::expert {
 Result<Reach> Reach::create(const robot::Robot& robot) {
   if (!robot.hand) {
     return Failure{Fault::kPolicy,
-                   fmt::format("the expert grasps with two fingers that close on each other; the "
-                               "robot `{}` has {}",
-                               robot.name, robot.fingers.empty() ? "no fingers" : "others"),
+                   fmt::format("{}; the robot `{}` has {}", policy::kOtherHand, robot.name,
+                               robot.fingers.empty() ? "no fingers" : "others"),
                    ""};
   }
   const robot::RobotModel& model = *robot.model;

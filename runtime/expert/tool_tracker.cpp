@@ -14,6 +14,8 @@ constexpr double kDecisions = 5;  // a second, where the arm is fast enough
 constexpr double kFastShift = 1.9 * 0.040;  // m
 constexpr double kFastTurn = 1.9 * 0.24;    // rad
 constexpr double kAsWide = 0.04;            // of openness: close enough
+constexpr double kTooWide = 0.08;           // of openness, at rest: to be mended
+constexpr double kRests = 0.004;            // of openness in a control step
 constexpr int kParts = 200;                 // of a control step, to follow the law's motion
 // Of what the tool is off its way, what a free tool takes back in a control step. All of it at once
 // makes the arm swing: a pull at the tool also turns it, and a turn pulls, so that some motions
@@ -67,13 +69,15 @@ ToolTracker::ToolTracker(const robot::OscPose& law, double rate) : output_(law.o
 
 void ToolTracker::begin(const Pose& tool) {
   at_ = from_ = to_ = tool;
-  gripper_ = 1;
+  gripper_ = last_openness_ = 1;
+  is_wide_ = false;
   step_ = 0;
 }
 
 void ToolTracker::aim(const Pose& goal, double gripper) {
   from_ = at_;
   to_ = goal;
+  is_wide_ = is_wide_ && gripper == gripper_;
   gripper_ = gripper;
   step_ = 0;
 }
@@ -97,12 +101,25 @@ policy::Action ToolTracker::act(double openness) {
     most[i / 3] = std::max(most[i / 3], std::abs(action[i]) / output_[i]);
   }
   for (std::size_t i = 0; i < 6; ++i) action[i] /= most[i / 3];
-  // 1 opens, -1 closes, 0 stays.
-  const double wider = 0.5 * (gripper_ + 1) - openness;
-  const bool stays = std::abs(gripper_) < 1 && std::abs(wider) < kAsWide;
-  const bool opens = gripper_ >= 1 || (gripper_ > -1 && wider > 0);
-  action[robot::kActionGripper] = stays ? 0 : opens ? 1 : -1;
+  action[robot::kActionGripper] = grip(openness);
   return action;
+}
+
+// 1 opens, -1 closes, 0 stays: at a fixed pace, which fingers follow a step late. What is as wide
+// as it can be told to be is left alone.
+double ToolTracker::grip(double openness) {
+  const double late = openness - last_openness_;
+  last_openness_ = openness;
+  if (std::abs(gripper_) >= 1) return gripper_ > 0 ? 1 : -1;
+  const double wider = 0.5 * (gripper_ + 1) - openness;
+  if (is_wide_) {
+    const bool rests = std::abs(late) < kRests;
+    is_wide_ = std::abs(wider) < (rests ? kTooWide : 2 * kTooWide);
+    if (is_wide_) return 0;
+  }
+  const bool is_there = std::abs(wider) < kAsWide || (late != 0 && wider * (wider - late) <= 0);
+  is_wide_ = is_there;
+  return is_there ? 0 : wider > 0 ? 1 : -1;
 }
 
 }  // namespace probe::expert

@@ -34,6 +34,8 @@ class ToolTracker {
   policy::Action act(double openness);
 
  private:
+  double grip(double openness);
+
   // Of a direction: what to ask for, per m (rad) that the tool shall go on in a control step, and
   // per m that it is off.
   struct Response {
@@ -44,8 +46,9 @@ class ToolTracker {
   std::array<double, 6> output_;
   int interval_ = 1;
   Pose at_, from_, to_;
-  double gripper_ = 1;
-  int step_ = 0;  // of the interval
+  double gripper_ = 1, last_openness_ = 1;
+  bool is_wide_ = false;  // the gripper, as wide as it shall be
+  int step_ = 0;          // of the interval
 };
 
 }  // namespace probe::expert

@@ -9,12 +9,13 @@
 
 #include "runtime/inspect/claims_json.h"
 #include "runtime/inspect/question_json.h"
+#include "runtime/inspect/skills_json.h"
 
 namespace probe::inspect {
 namespace {
 
 struct Changes {
-  bool prompt = false, judge = false, claims = false;  // equal
+  bool prompt = false, judge = false, claims = false, solution = false;  // equal
   std::size_t starts = 0, episodes = 0, of_a = 0, of_b = 0;
 
   bool none() const { return of_a == of_b && episodes == of_a && starts == of_a; }
@@ -25,6 +26,7 @@ Changes compare(const plan::Plan& a, std::uint32_t our_task, const plan::Plan& b
   const plan::TaskRecord &ours = a.tasks()[our_task], &theirs = b.tasks()[their_task];
   Changes found;
   found.claims = same_claims(a, our_task, b, their_task);
+  found.solution = same_solution(a, our_task, b, their_task);
   found.prompt = a.text(ours.prompt) == b.text(theirs.prompt);
   found.judge = ours.judge_id == theirs.judge_id;
   const auto here = a.episodes(ours);
@@ -54,7 +56,7 @@ Json diff_plans(const plan::Plan& a, const plan::Plan& b) {
     }
     const Changes found = compare(a, t, b, match->second);
     by_name.erase(match);
-    if (found.none() && found.prompt && found.judge && found.claims) {
+    if (found.none() && found.prompt && found.judge && found.claims && found.solution) {
       ++equal;
       continue;
     }
@@ -66,6 +68,7 @@ Json diff_plans(const plan::Plan& a, const plan::Plan& b) {
                        {"of_a", found.of_a},
                        {"of_b", found.of_b}});
     if (!found.claims) changed.back()["claims"] = false;
+    if (!found.solution) changed.back()["solution"] = false;
   }
   for (const plan::TaskRecord& task : b.tasks()) {
     if (by_name.contains(b.text(task.name))) only_b.push_back(b.text(task.name));
@@ -92,6 +95,7 @@ std::string plan_diff_text(const Json& diff) {
     if (!task["prompt"].get<bool>()) text += " prompt;";
     if (!task["judge"].get<bool>()) text += " judge;";
     if (task.contains("claims")) text += " what its words say of places;";
+    if (task.contains("solution")) text += " solution;";
     const std::size_t of = std::max(number("of_a"), number("of_b"));
     if (number("starts") != of) fmt::format_to(out, " {} of {} starts;", of - number("starts"), of);
     fmt::format_to(out, " {} of {} episodes are others\n", of - number("episodes"), of);

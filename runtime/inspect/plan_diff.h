@@ -11,8 +11,9 @@ namespace probe::inspect {
 
 // {a, b, only_a[], only_b[], changed[], equal, questions}: the roots, names of tasks, how many
 // tasks are equal in all four, and diff_questions of question_json.h. A changed task is {task,
-// prompt, judge, claims (false where they differ), starts, episodes, of_a, of_b}: whether the ids
-// are equal, how many of starts and episodes are at equal index, and their numbers.
+// prompt, judge, claims, solution (the last two false where they differ), starts, episodes, of_a,
+// of_b}: whether the ids are equal, how many of starts and episodes are at equal index, and their
+// numbers.
 Json diff_plans(const plan::Plan& a, const plan::Plan& b);
 std::string plan_diff_text(const Json& diff);
 

@@ -11,6 +11,7 @@
 #include "runtime/inspect/fixture_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
+#include "runtime/inspect/skills_json.h"
 #include "runtime/inspect/varied.h"
 #include "runtime/inspect/words.h"
 #include "runtime/inspect/wrap.h"
@@ -20,7 +21,8 @@ namespace probe::inspect {
 namespace {
 
 // What only some tasks have; it stands below what all of them have.
-constexpr const char* kOfSome[] = {"law", "placed", "joints", "idle", "varied", "claims"};
+constexpr const char* kOfSome[] = {"law",    "placed", "joints",  "idle",
+                                   "varied", "claims", "solution"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -52,6 +54,7 @@ Json side(const plan::Plan& plan, std::uint32_t index) {
   Json said;
   add_claims(plan, index, said);
   if (said.contains("claims")) json["claims"] = claims_text(said["claims"]);
+  add_solution(plan, index, json);
   json["instructions"] = plan.code(plan.programs()[task.program]).size();
   json["episodes"] = task.episodes.count;
   return json;

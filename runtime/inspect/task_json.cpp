@@ -17,6 +17,7 @@
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
+#include "runtime/inspect/skills_json.h"
 #include "runtime/inspect/varied.h"
 #include "runtime/inspect/wrap.h"
 #include "runtime/plan/ids.h"
@@ -139,6 +140,7 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   if (task.delay != 0) json["delay"] = task.delay;
   if (const auto varied = varied_in(plan, task); !varied.empty()) json["varied"] = varied;
   add_claims(plan, index, json);
+  add_solution(plan, index, json);
   json["metrics"] = Json::array();
   for (const plan::MetricRecord& metric : plan.metrics(task))
     json["metrics"].push_back(plan.text(metric.name));
@@ -296,6 +298,7 @@ std::string describe_text(const Json& task) {
                                                  : "";
   line("horizon", fmt::format("{} steps{}", task["horizon"].get<std::uint32_t>(), idle));
   if (task.contains("claims")) line("claims", joined(claims_text(task["claims"]), "none"));
+  if (task.contains("solution")) line("solution", joined(task["solution"], "none"));
   const Json& ids = task["ids"];
   line("prompt id", short_id(ids["prompt"]));
   line("judge id", short_id(ids["judge"]));

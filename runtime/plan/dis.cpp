@@ -8,6 +8,7 @@
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/isa.h"
 #include "runtime/plan/roles.h"
+#include "runtime/plan/skills.h"
 #include "runtime/plan/source_line.h"
 
 namespace probe::plan {
@@ -140,6 +141,19 @@ void list_claim_programs(std::string& out, const Plan& plan, std::uint32_t task)
   }
 }
 
+// How tasks can be solved: of one, or of all.
+void list_skills(std::string& out, const Plan& plan, std::uint32_t task) {
+  std::uint32_t of = kNone;
+  for (const SkillRecord& skill : plan.skills()) {
+    if (task != kNone && skill.task != task) continue;
+    if (skill.task != of) {
+      of = skill.task;
+      out += fmt::format("\nsolution of {}\n", plan.text(plan.tasks()[of].name));
+    }
+    out += "  " + skill_text(plan.tables(), skill) + "\n";
+  }
+}
+
 // Programs of which a question has its right answer, below those of tasks: of one task, or of all.
 void list_question_programs(std::string& out, const Plan& plan, std::uint32_t task) {
   std::vector<bool> listed(plan.programs().size(), false);
@@ -233,6 +247,7 @@ std::string disassemble(const Plan& plan, std::uint32_t task) {
   const TaskRecord& record = plan.tasks()[task];
   list_program(out, plan, record, record.program, plan.text(record.name));
   list_claim_programs(out, plan, task);
+  list_skills(out, plan, task);
   list_question_programs(out, plan, task);
   return out;
 }
@@ -257,6 +272,7 @@ std::string disassemble(const Plan& plan) {
     list_program(out, plan, first, first.program, names);
   }
   list_claim_programs(out, plan, kNone);
+  list_skills(out, plan, kNone);
   list_question_programs(out, plan, kNone);
   return out;
 }

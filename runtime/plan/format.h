@@ -435,6 +435,24 @@ struct ClaimRecord {
 };
 static_assert(sizeof(ClaimRecord) == 32);
 
+enum class Skill : std::uint32_t {
+#define PROBE_SKILL(number, name, word, takes) k##name = number,
+#include "runtime/plan/skills.def"
+};
+enum class SkillRelation : std::uint32_t { kNothing = 0, kOn = 1, kIn = 2, kBeside = 3, kTo = 4, kBy = 5 };
+
+// A step of a task's reference solution; see skills.h. In no id.
+struct SkillRecord {
+  std::uint32_t task = kNone;    // kTasks
+  std::uint32_t skill = 0;       // Skill
+  std::uint32_t body = kNone;    // task-local: the object or part that it is done with
+  std::uint32_t relation = 0;    // SkillRelation: of `put` and `turn`
+  std::uint32_t to = kNone;      // task-local, of `put`: what it goes to; kNone for a region
+  std::uint32_t region = kNone;  // kRegions, of `put`
+  double amount = 0;             // rad, of `turn`: from where it is closed, or from where it is
+};
+static_assert(sizeof(SkillRecord) == 32);
+
 enum class Axis : std::uint32_t {
 #define PROBE_AXIS(bit, name, text, in, is_phrase) k##name = 1u << bit,
 #include "runtime/plan/axes.def"

@@ -170,6 +170,7 @@ Status verify_tables(std::span<const std::byte> bytes, const Tables& tables) {
   PROBE_TRY(verify_fixtures(bytes, tables));
   PROBE_TRY(verify_variations(bytes, tables));
   PROBE_TRY(verify_relations(bytes, tables));
+  PROBE_TRY(verify_skills(bytes, tables));
   PROBE_TRY(verify_claims(bytes, tables));
   return verify_questions(bytes, tables);
 }

@@ -58,6 +58,7 @@ class RecordCheck : FieldCheck {
   Status check(const RoleRecord& role) const;
   Status check(const TaskRecord& task) const;
   Status check(const ClaimRecord& claim) const;
+  Status check(const SkillRecord& skill) const;
   Status check(const EpisodeRecord& episode) const;
   Status check(const SetRecord& set) const;
   Status check(const SuiteRecord& suite) const;
@@ -87,6 +88,9 @@ Status verify_fixtures(std::span<const std::byte> bytes, const Tables& tables);
 // What objects, cameras, scenes and episodes say of their scales, textures, sensors and arms; after
 // RecordCheck.
 Status verify_variations(std::span<const std::byte> bytes, const Tables& tables);
+
+// What skills say of their tasks; after verify_relations.
+Status verify_skills(std::span<const std::byte> bytes, const Tables& tables);
 
 // What claims say of their tasks and programs; after verify_relations.
 Status verify_claims(std::span<const std::byte> bytes, const Tables& tables);

@@ -39,9 +39,15 @@ struct Proprioception {
   std::size_t arm_joints() const { return joints.size() - std::min(finger_joints, joints.size()); }
 };
 
-// How a scripted policy fails (kPolicy) in a task that asks for what it has no skill for: a status of
-// its own, and no failed start.
+// How a scripted policy fails (kPolicy) in a task that asks for what it has no skill for: a status
+// of its own, and no failed start.
 inline constexpr std::string_view kNoSolution = "no solution in skills for this goal";
+// How it begins to say that the robot's hand is none that it has skills for: the same status.
+inline constexpr std::string_view kOtherHand =
+    "the expert grasps with two fingers that close on each other";
+inline bool was_not_attempted(const Failure& failure) {
+  return failure.message == kNoSolution || failure.message.starts_with(kOtherHand);
+}
 
 // An object's collision hulls and where it is; all but the last two are fixed in an episode.
 struct PrivilegedObject {
@@ -55,9 +61,19 @@ struct PrivilegedObject {
 
 // What stands in the scene and is no object: a fixture, or a link of one that has joints.
 struct PrivilegedFixture {
+  // What moves it: it goes by `axis` for every m, or turns about `axis` through `point`.
+  struct Joint {
+    bool slides = false, endless = false;
+    Vec3 axis = Vec3::UnitX(), point = Vec3::Zero();  // the fixture's own frame; unit length
+    double lower = 0, upper = 0;                      // m or rad
+    double closed = 0, rest = 0;                      // where it is closed; where it began
+    double position = 0;                              // now
+    std::size_t number = 0;                           // among the joints of all fixtures
+  };
   std::string name;
   std::vector<std::vector<Vec3>> parts;  // convex parts' vertices, its own frame
   Pose pose;  // of that frame in world, now; what never moves has the world's frame
+  std::optional<Joint> joint = {};  // none for what stands
 };
 
 // What success asks for.
@@ -66,6 +82,25 @@ enum class Goal : std::uint8_t {
   kAway,    // anywhere but on the target, still in the hand at the end
   kLifted,  // in the hand above where it was
   kOther,   // nothing that is found by moving the source about
+};
+
+// A step of a solution, by indices into the privileged view; -1 for none.
+struct Skill {
+  enum class Kind : std::uint8_t { kPick, kPut, kOpen, kClose, kTurn, kPress, kPush };
+  enum class Place : std::uint8_t { kOn, kIn, kBeside };
+  Kind kind = Kind::kPick;
+  int object = -1;   // that is picked, put, pushed
+  int fixture = -1;  // that is opened, closed, turned, pressed
+  // Of a put.
+  Place place = Place::kOn;
+  int to_object = -1, to_fixture = -1;  // both none: the surface
+  struct Box {
+    Vec3 low, high;  // in the frame of what it is put to; of the surface in the world's
+  };
+  std::optional<Box> region;
+  // Of a turn, rad: from where it is closed, or from where it is.
+  double amount = 0;
+  bool by = false;
 };
 
 // The privileged view.
@@ -83,9 +118,11 @@ struct Privileged {
     return at < static_cast<int>(objects.size()) ? at : -1;
   }
   std::vector<PrivilegedFixture> fixtures;
-  Pose base;  // robot base in world
+  std::size_t fixture_joints = 0;  // how many joints they have together
+  Pose base;                       // robot base in world
   double surface_z = 0;
   Goal goal = Goal::kOnTarget;
+  std::vector<Skill> solution;  // how the task can be solved; what it says goes before the goal
 };
 
 // A scene's camera and what it shows now.

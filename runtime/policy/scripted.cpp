@@ -72,7 +72,8 @@ class StillWithoutPolicy final : public Policy {
   Status begin(const EpisodeStart& start) override { return inner_->begin(start); }
   Result<Action> act(const Observation& observation) override {
     const Privileged* view = observation.privileged;
-    if (view != nullptr && view->object_of(role_) < 0) return kStill;
+    // A solution in skills may be about other things than objects: the inner one knows.
+    if (view != nullptr && view->object_of(role_) < 0 && view->solution.empty()) return kStill;
     return inner_->act(observation);
   }
 

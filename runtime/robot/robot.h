@@ -2,6 +2,9 @@
 // fingers, or none. Read by whoever acts for it: the controller, the expert, what is measured.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +34,17 @@ struct HandShape {
   double palm_half = 0;                  // along y
   double palm_back = 0, palm_front = 0;  // along -z and +z
   double thinnest = 0;                   // the least width that the closed fingers hold
+  // Outer faces again, from the fingertips up to the palm at even heights; all 0: as outside_half.
+  std::array<double, 6> tapered{};
+
+  // Outer faces from the middle at a height, x from the tool centre point towards the tips.
+  double outside_at(double x) const {
+    if (tapered.back() <= 0) return outside_half;
+    constexpr std::size_t kLast = 5;
+    const double up = (tip_below - x) / (tip_below + palm_above) * static_cast<double>(kLast);
+    const auto below = static_cast<std::size_t>(std::clamp(up, 0.0, static_cast<double>(kLast)));
+    return std::max(tapered[below], tapered[std::min(below + 1, kLast)]);
+  }
 };
 
 struct Hand {
@@ -45,7 +59,7 @@ struct Robot {
   std::vector<std::string> joints;  // those that have drives, in the order of q
   std::vector<Finger> fingers;
   EeControlSpec control;
-  Law law;  // what its controller does
+  Law law;                   // what its controller does
   std::optional<Hand> hand;  // where there are two fingers that close on each other
 };
 

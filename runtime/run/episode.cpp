@@ -29,7 +29,7 @@ struct Outcome {
 Outcome policy_failed(const Failure& failure) {
   // Of a world that does not wait and cannot keep up.
   if (failure.code == Fault::kWorld) return {reason("world", failure), {}};
-  if (failure.message == policy::kNoSolution)
+  if (policy::was_not_attempted(failure))
     return {std::string(store::kNotAttempted) + to_text(failure), {}, failure.code};
   return {reason("policy", failure), {}, failure.code};
 }

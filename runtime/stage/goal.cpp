@@ -1,9 +1,7 @@
 #include "runtime/stage/goal.h"
 
-#include <vector>
-
-#include "runtime/plan/fixtures.h"
 #include "runtime/plan/roles.h"
+#include "runtime/stage/derived_solution.h"
 #include "runtime/vm/made_up.h"
 
 namespace probe::stage {
@@ -11,7 +9,6 @@ namespace {
 
 constexpr double kAside = 0.2;    // m: far from the target
 constexpr double kLifted = 0.12;  // m above where it stood
-constexpr double kTurned = 1.5;   // rad: how far a joint without end is turned either way
 
 Result<bool> holds_of(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
                       const Vec3& by) {
@@ -28,34 +25,6 @@ Result<bool> lies_on_target(const plan::Plan& plan, std::uint32_t task, std::uin
   world.press_down(world.source, world.target);
   world.press_down(world.target, world.surface);
   return vm::judge_world(plan, task, success, std::move(world));
-}
-
-// Whether a joint of a fixture at one of its ends, or all of them there, makes the success that is
-// none while nothing has moved: what is asked for then is not carried.
-Result<bool> asks_for_joints(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
-  const plan::TaskRecord& record = plan.tasks()[task];
-  const vm::MadeUpWorld still = vm::make_up_world(plan, task);
-  const auto joints = plan::joints_of(plan.tables(), plan.scenes()[record.scene]);
-  if (joints.empty() || plan.episodes(record).empty()) return false;
-  PROBE_ASSIGN(const bool at_once, vm::judge_world(plan, task, success, still));
-  if (at_once) return false;
-  const std::size_t first = still.sample.joints.size() - joints.size();  // the robot's stand before
-  for (const bool up : {false, true}) {
-    vm::MadeUpWorld all = still;
-    for (std::size_t k = 0; k < joints.size(); ++k) {
-      const plan::FixtureJointRecord& joint = *joints[k];
-      double end = up ? joint.upper : joint.lower;
-      if (plan::is_endless(joint))
-        end = still.sample.joints[first + k].position + (up ? kTurned : -kTurned);
-      vm::MadeUpWorld one = still;
-      one.sample.joints[first + k].position = all.sample.joints[first + k].position = end;
-      PROBE_ASSIGN(const bool alone, vm::judge_world(plan, task, success, std::move(one)));
-      if (alone) return true;
-    }
-    PROBE_ASSIGN(const bool together, vm::judge_world(plan, task, success, std::move(all)));
-    if (together) return true;
-  }
-  return false;
 }
 
 }  // namespace
@@ -78,8 +47,9 @@ Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task) {
   }
   PROBE_ASSIGN(const bool held, holds_of(plan, task, *success, {0, kAside, 0}));
   if (held) return Goal::kAway;
-  PROBE_ASSIGN(const bool by_joints, asks_for_joints(plan, task, *success));
-  return by_joints ? Goal::kOther : else_goal;
+  // Rather skills that make it than the usual task.
+  PROBE_ASSIGN(const auto skills, derive_solution(plan, task));
+  return skills.empty() ? else_goal : Goal::kOther;
 }
 
 }  // namespace probe::stage

@@ -214,6 +214,18 @@ std::optional<robot::Hand> hand_of_shapes(const robot::Robot& robot, const UrdfP
   shape.palm_half = y.empty() ? shape.outside_half : std::max(y.high, -y.low);
   shape.palm_back = z.empty() ? shape.finger_half : std::max(0.0, -z.low);
   shape.palm_front = z.empty() ? shape.finger_half : std::max(0.0, z.high);
+  for (std::size_t i = 0; i < shape.tapered.size(); ++i) {
+    // Not quite at the tips, where there is no section.
+    const double share =
+        std::max(0.02, static_cast<double>(i) / static_cast<double>(shape.tapered.size() - 1));
+    const double at = shape.tip_below - share * (shape.tip_below + shape.palm_above);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Interval section = extent_of(open.parts(links[k], *frame), at).inner;
+      if (section.empty()) continue;
+      shape.tapered[i] = std::max({shape.tapered[i], section.high, -section.low});
+    }
+    if (shape.tapered[i] <= 0) shape.tapered[i] = shape.outside_half;
+  }
   return hand;
 }
 

@@ -1,10 +1,16 @@
 #include "runtime/stage/privileged.h"
 
+#include <algorithm>
+#include <optional>
 #include <string>
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/roles.h"
+#include "runtime/plan/skills.h"
+#include "runtime/stage/derived_solution.h"
 #include "runtime/stage/goal.h"
 #include "runtime/stage/robot_of.h"
+#include "runtime/stage/solution.h"
 
 namespace probe::stage {
 namespace {
@@ -22,6 +28,39 @@ std::vector<std::vector<Vec3>> vertices_of(const scene::CollisionShape& shape, c
     }
   }
   return parts;
+}
+
+// What moves a link, in the link's frame: the joint may be some fixed joints above it. `first` is
+// the number of the fixture's first joint among those of all fixtures.
+std::optional<policy::PrivilegedFixture::Joint> joint_above(const LoadedFixture& loaded, int link,
+                                                            std::size_t first) {
+  const robot::RobotModel& model = loaded.parts.model;
+  const std::vector<world::JointSpec>& moving = loaded.fixture.joints;
+  Pose to_moving;  // the link in the frame of the one that the joint moves
+  for (int at = model.links[static_cast<std::size_t>(link)].parent_joint; at >= 0;) {
+    const robot::Joint& joint = model.joints[static_cast<std::size_t>(at)];
+    const auto found = std::ranges::find(moving, joint.name, &world::JointSpec::joint);
+    if (found != moving.end()) {
+      const auto own = static_cast<std::size_t>(found - moving.begin());
+      const Pose back = to_moving.inverse();
+      policy::PrivilegedFixture::Joint seen;
+      seen.number = first + own;
+      seen.slides = joint.kind == robot::JointKind::kPrismatic;
+      seen.endless = joint.kind == robot::JointKind::kContinuous;
+      seen.axis = back.rotation * joint.axis;
+      seen.point = back.position;
+      seen.lower = joint.lower;
+      seen.upper = joint.upper;
+      const bool at_upper = !seen.endless && plan::closes_at_upper(joint.lower, joint.upper);
+      seen.closed = seen.endless ? 0 : at_upper ? joint.upper : joint.lower;
+      seen.position = seen.rest = loaded.fixture.positions[own];
+      return seen;
+    }
+    if (joint.kind != robot::JointKind::kFixed) return std::nullopt;
+    to_moving = joint.origin * to_moving;
+    at = model.links[static_cast<std::size_t>(joint.parent_link)].parent_joint;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -57,19 +96,32 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
     view.fixtures.push_back(
         {bodies.names[bodies.fixture], vertices_of(*shape, to_vec(scene.fixture_position)), {}});
   }
+  const auto loaded = assets.fixtures(task.scene);
+  std::vector<std::size_t> first_joints = {0};  // by fixture; the last is their number
+  for (const LoadedFixture* one : loaded)
+    first_joints.push_back(first_joints.back() + one->fixture.joints.size());
   for (std::size_t k = bodies.robot_links; k < bodies.links.size(); ++k) {
     const auto [tree, link] = bodies.links[k];
-    const auto& shapes = assets.fixtures(task.scene)[tree - 1]->parts.shapes;
-    view.fixtures.push_back({bodies.names[bodies.first_link + k],
-                             vertices_of(*shapes[static_cast<std::size_t>(link)], Vec3::Zero()),
-                             {}});
+    const UrdfParts& parts = loaded[tree - 1]->parts;
+    view.fixtures.push_back(
+        {bodies.names[bodies.first_link + k],
+         vertices_of(*parts.shapes[static_cast<std::size_t>(link)], Vec3::Zero()),
+         {},
+         joint_above(*loaded[tree - 1], link, first_joints[tree - 1])});
   }
+  view.fixture_joints = first_joints.back();
   const plan::TaskRoles roles = plan::roles_of(plan.tables(), task);
   view.source = roles.has_source() ? static_cast<int>(roles.source) : -1;
   view.target = roles.has_target() ? static_cast<int>(roles.target) : -1;
   view.first_distractor =
       roles.distractors.count > 0 ? static_cast<int>(roles.distractors.first) : -1;
   PROBE_ASSIGN(view.goal, goal_of(plan, task_index));
+  const auto said = plan::skills_of(plan.tables(), task_index);
+  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
+  if (skills.empty() && view.goal == policy::Goal::kOther) {
+    PROBE_ASSIGN(skills, derive_solution(plan, task_index));
+  }
+  view.solution = solution_of(plan, skills, bodies);
   return view;
 }
 
@@ -79,6 +131,11 @@ void update_privileged(const vm::StepSample& sample, const TaskBodies& bodies, s
     policy::PrivilegedObject& object = view->objects[i];
     object.pose = {sample.bodies[i].origin, sample.bodies[i].rotation};
     object.finger_contact.assign(fingers, false);
+  }
+  const std::size_t first = sample.joints.size() - view->fixture_joints;
+  for (policy::PrivilegedFixture& fixture : view->fixtures) {
+    if (fixture.joint)
+      fixture.joint->position = sample.joints[first + fixture.joint->number].position;
   }
   // The last fixtures are the last bodies, link by link.
   const std::size_t moving = bodies.links.size() - bodies.robot_links;

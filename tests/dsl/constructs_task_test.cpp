@@ -131,6 +131,30 @@ TEST_CASE("task_st: what each statement moves") {
           .distractors.empty());
 }
 
+TEST_CASE("skill, thing: how a task can be solved moves nothing, is inherited and replaced whole") {
+  const auto a = clean(
+      "task t like red_on_tray { solution { pick source; put source on target; put source on "
+      "surface } }\n"
+      "variant u of t { source blue }\n"
+      "variant v of t { solution none; say take }\n");
+  const auto& solution = a->task("t").solution;
+  REQUIRE(solution.size() == 3);
+  CHECK(solution[0].skill == plan::Skill::kPick);
+  CHECK(solution[1].relation == plan::SkillRelation::kOn);
+  CHECK(solution[2].to.owner.text == "surface");
+  CHECK(a->task("u").solution.size() == 3);
+  CHECK(a->task("v").solution.empty());
+  CHECK(analyze_with_suite("variant v of red_on_tray { solution { push target } }")->codes() ==
+        "P0702");
+  CHECK(analyze_with_suite("task v like red_on_tray { solution { put source beside source } }")
+            ->codes() == "P1401");
+  CHECK(
+      analyze_with_suite("task v like red_on_tray { solution { turn source to 3cm } }")->codes() ==
+      "P0302");
+  CHECK(analyze_with_suite("task v like red_on_tray { solution { put source } }")->codes() ==
+        "P0101");
+}
+
 TEST_CASE("role, task_st: `refer` chooses a phrase of the object in that role") {
   const auto a = clean("variant v of red_on_tray { refer source as toy }\n");
   CHECK(a->task("v").prompt == "put toy on the tray");

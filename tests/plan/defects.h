@@ -259,8 +259,55 @@ inline void give_cover(Records& r, Writer& w, std::uint32_t what) {
   r.covers.push_back({what, add_asset(w, "textures/wood.png", AssetKind::kPhoto), 0.1});
 }
 
+// Of the first task: its source put onto its target, `count` times over the tasks.
+inline void give_skills(Records& r, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    SkillRecord skill;
+    skill.task = i;
+    skill.skill = static_cast<std::uint32_t>(Skill::kPut);
+    skill.body = 0;
+    skill.relation = static_cast<std::uint32_t>(SkillRelation::kOn);
+    skill.to = 1;
+    r.skills.push_back(skill);
+  }
+}
+
 inline std::vector<Defect> task_defects() {
   return {
+      {"SKIL", "stands behind one of task 1",
+       [](Records& r, Writer&) { give_skills(r, 2), std::swap(r.skills[0], r.skills[1]); }},
+      {"SKIL", "skill 8 is not known",
+       [](Records& r, Writer&) { give_skills(r, 1), r.skills[0].skill = 8; }},
+      {"SKIL", "relation 4 is none of `put`",
+       [](Records& r, Writer&) { give_skills(r, 1), r.skills[0].relation = 4; }},
+      {"SKIL", "has no amount",
+       [](Records& r, Writer&) { give_skills(r, 1), r.skills[0].amount = 1; }},
+      {"SKIL", "to one body or region",
+       [](Records& r, Writer&) { give_skills(r, 1), r.skills[0].to = kNone; }},
+      {"SKIL", "has no body 99",
+       [](Records& r, Writer&) { give_skills(r, 1), r.skills[0].body = 99; }},
+      {"SKIL", "is no object of task",
+       [](Records& r, Writer&) { give_skills(r, 1), r.skills[0].body = 2; }},
+      {"SKIL", "is no part that a joint moves",
+       [](Records& r, Writer&) {
+         give_skills(r, 1), r.skills[0].skill = static_cast<std::uint32_t>(Skill::kOpen);
+         r.skills[0].relation = 0, r.skills[0].to = kNone;
+       }},
+      {"SKIL", "is of nothing in task",
+       [](Records& r, Writer& w) {
+         give_skills(r, 1);
+         r.objects.push_back(r.objects[0]);
+         r.objects.back().name = w.text("pear");
+         r.regions.push_back({w.text("pear.inside"),
+                              static_cast<std::uint32_t>(BodyKind::kObject),
+                              static_cast<std::uint32_t>(r.objects.size() - 1),
+                              {},
+                              {1, 1, 1}});
+         r.skills[0].to = kNone;
+         r.skills[0].region = static_cast<std::uint32_t>(r.regions.size() - 1);
+       }},
+      {"SKIL", "cannot be put to body 0",
+       [](Records& r, Writer&) { give_skills(r, 1), r.skills[0].to = 0; }},
       {"CLAM", "stands behind one of task 1",
        [](Records& r, Writer& w) { give_claims(r, w, 2), std::swap(r.claims[0], r.claims[1]); }},
       {"CLAM", "is no object or part of task",

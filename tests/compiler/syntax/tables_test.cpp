@@ -88,6 +88,7 @@ TEST_CASE("each block of the grammar has the statements of its block in the tabl
       {Block::kControl, "control_st"},
       {Block::kCamera, "camera_st"},   {Block::kLight, "light_st"},   {Block::kScene, "scene_st"},
       {Block::kFixture, "fixture_st"}, {Block::kLayout, "layout_st"}, {Block::kTask, "task_st"},
+      {Block::kSolution, "skill"},
       {Block::kQuestions, "question"}, {Block::kSuite, "suite_st"}};
   std::size_t checked = 0;
   for (const auto& [block, rule] : blocks) {

@@ -1,0 +1,316 @@
+// Solids of the part times ways to come to them, scored.
+#include "runtime/expert/holds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "runtime/robot/rotation.h"
+
+namespace probe::expert {
+namespace {
+
+constexpr double kTight = 0.003;        // m between an open finger and the handle, at least
+constexpr double kRoom = 0.0025;        // m between the hand and what it does not hold
+constexpr double kComfortable = 0.012;  // m; more earns nothing
+constexpr std::array kBeside = {0.014, 0.009,
+                                0.006};  // m between an open finger and the handle, a side
+constexpr double kDeepest = 0.020;       // m of a handle that the tool centre point goes down
+constexpr double kTipUnder = 0.012;      // m of the fingertips behind the point that they push at
+constexpr double kUpright = 0.3;   // cosine of 72 degrees: closing lines nearly across the way down
+constexpr double kAgainst = 0.75;  // cosine between a face's normal and the way it is pushed
+constexpr double kNearBy = 0.6, kFarCost = 40;  // m from the base; cost of a square metre more
+constexpr double kKnob = 0.03;  // m from the axis: what is nearer is turned about itself
+constexpr std::array kOnFace = {0.0, 0.6, -0.6, 0.92, -0.92};  // of its half width and height
+constexpr int kLooks = 5;                                      // at the way of the part
+
+// From a point in it to its face.
+double way_out(const Solid& solid, const Pose& pose, const Vec3& from, const Vec3& direction) {
+  const Vec3 own = pose.rotation.conjugate() * direction;
+  const Vec3 at = pose.inverse().apply(from) - solid.center();
+  double least = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(own[i]) < 1e-6) continue;
+    const double face = own[i] > 0 ? solid.half()[i] : -solid.half()[i];
+    least = std::min(least, (face - at[i]) / own[i]);
+  }
+  return least;
+}
+
+double half_along(const Solid& solid, const Pose& pose, const Vec3& direction) {
+  const Vec3 own = pose.rotation.conjugate() * direction;
+  return own.cwiseAbs().dot(solid.half());
+}
+
+double closed_half(const robot::HandShape& hand) {
+  const double thick = hand.outside_at(hand.tip_below - kTipUnder) - hand.opening_half;
+  return std::max(thick, 0.004) + 0.5 * hand.thinnest;
+}
+
+Quat frame_of(const Vec3& down, const Vec3& closing) {
+  Mat3 m;
+  m.col(0) = down;
+  m.col(1) = closing;
+  m.col(2) = down.cross(closing);
+  return Quat(m).normalized();
+}
+
+// Ways for the hand to come: from above, from the sides that the part has, and between.
+std::vector<Vec3> ways_to(const Pose& pose) {
+  std::vector<Vec3> ways = {-Vec3::UnitZ()};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 axis = pose.rotation * Vec3::Unit(i);
+    if (std::abs(axis.z()) > 0.5) continue;
+    for (const double sign : {1.0, -1.0}) {
+      const Vec3 flat = Vec3(sign * axis.x(), sign * axis.y(), 0).normalized();
+      ways.push_back(flat);
+      ways.push_back((flat - Vec3::UnitZ()).normalized());
+      ways.push_back((flat - 0.5 * Vec3::UnitZ()).normalized());
+      ways.push_back((0.5 * flat - Vec3::UnitZ()).normalized());
+    }
+  }
+  return ways;
+}
+
+class Search {
+ public:
+  explicit Search(const HoldProblem& problem) : p_(problem) {
+    for (const Surroundings::Body& body : p_.around->bodies) {
+      if (body.fixture == p_.fixture) part_ = &body;
+    }
+    sign_ = p_.aim >= p_.joint.position ? 1 : -1;
+    if (part_ == nullptr) return;
+    axis_ = part_->pose.rotation * p_.joint.axis;
+    point_ = part_->pose.apply(p_.joint.point);
+    for (const Solid& solid : part_->solids)
+      lever_ = std::max(lever_, lever(part_->pose.apply(solid.center())));
+  }
+
+  std::vector<Hold> run() {
+    if (part_ == nullptr) return {};
+    ways_ = ways_to(part_->pose);
+    for (std::size_t s = 0; s < part_->solids.size(); ++s) {
+      grasps(static_cast<int>(s));
+      pushes(static_cast<int>(s));
+    }
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const Hold& a, const Hold& b) { return a.cost < b.cost; });
+    return std::move(found_);
+  }
+
+ private:
+  double lever(const Vec3& at) const {
+    const Vec3 off = at - point_;
+    return (off - axis_.dot(off) * axis_).norm();
+  }
+  // Which way a point of the part goes.
+  Vec3 way_at(const Vec3& at) const {
+    if (p_.joint.slides) return sign_ * axis_;
+    const Vec3 way = sign_ * axis_.cross(at - point_);
+    return way.norm() > 1e-9 ? Vec3(way.normalized()) : Vec3(Vec3::Zero());
+  }
+  // Near a hinge it takes force.
+  double lever_cost(const Vec3& at) const {
+    if (p_.joint.slides || lever_ < kKnob) return 0;
+    return 2 * (1 - std::min(1.0, lever(at) / lever_));
+  }
+  double turn_cost(const Quat& turned, const Vec3& down) const {
+    const double tilt = std::acos(std::clamp(-down.z(), -1.0, 1.0));
+    const double turn = robot::to_rotation_vector(turned * p_.now.conjugate()).norm();
+    return 0.7 * tilt + 0.1 * turn;
+  }
+
+  // Room for the hand where the part is and along its way; the least of it.
+  double room_of(const Hold& hold) const {
+    const HandBalls balls = balls_of(hold, p_.hand);
+    double least = kComfortable;
+    for (int i = 0; i <= kLooks; ++i) {
+      const double by = (p_.aim - p_.joint.position) * i / kLooks;
+      const Pose at = moved_part(p_.joint, part_->pose, by);
+      const Pose tool = tool_at(hold, at, p_.hand);
+      const MovedPart moved{p_.fixture, at};
+      // Of what is held or pushed only the fingers are near.
+      least = std::min(
+          least, p_.around->clearance(tool, balls.fingers, least, moved, {p_.fixture, hold.solid}));
+      least = std::min(least, p_.around->clearance(tool, balls.rest, least, moved));
+      if (least < kRoom) return least;
+    }
+    return least;
+  }
+
+  void add(Hold hold, double cost) {
+    const double room = room_of(hold);
+    if (room < kRoom) return;
+    // An arm that is stretched does not come where it shall.
+    const double far = (part_->pose.apply(hold.tool.position)).norm() - kNearBy;
+    hold.cost =
+        cost + 40 * (kComfortable - room) + kFarCost * std::max(0.0, far) * std::max(0.0, far);
+    found_.push_back(hold);
+  }
+
+  void grasps(int s) {
+    const Solid& solid = part_->solids[static_cast<std::size_t>(s)];
+    const Pose& pose = part_->pose;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 axis = pose.rotation * Vec3::Unit(i);
+      for (const Vec3& down : ways_) {
+        if (std::abs(axis.dot(down)) > kUpright) continue;
+        const Vec3 closing = (axis - axis.dot(down) * down).normalized();
+        const double half = half_along(solid, pose, closing);
+        if (half > p_.hand.opening_half - 0.006 || 2 * half < p_.hand.thinnest) continue;
+        const Vec3 along = down.cross(closing);
+        const Vec3 middle = pose.apply(solid.center());
+        const double slack =
+            std::max(0.0, way_out(solid, pose, middle, along) - p_.hand.finger_half);
+        for (const double share : {0.0, 0.6, -0.6}) {
+          if (share != 0 && slack < 0.01) continue;
+          const Vec3 beside = middle + share * slack * along;
+          const double up = way_out(solid, pose, beside, -down);
+          const double deep = 0.5 * (up + way_out(solid, pose, beside, down));
+          const Vec3 at = beside + (std::min(deep, kDeepest) - up) * down;
+          for (const double flip : {1.0, -1.0}) grasp(s, at, down, flip * closing, half, share);
+        }
+      }
+    }
+  }
+
+  void grasp(int s, const Vec3& at, const Vec3& down, const Vec3& closing, double half,
+             double share) {
+    const Pose& pose = part_->pose;
+    Hold hold;
+    hold.solid = s;
+    hold.turned = frame_of(down, closing);
+    hold.tool = pose.inverse() * Pose{at, hold.turned};
+    const bool twists = !p_.joint.slides && lever(at) < kKnob;
+    double cost = p_.grasps ? 0 : 1.5;
+    cost += twists ? 0.5 * (1 - std::abs(down.dot(axis_)))
+                   : 0.8 * (1 - std::abs(closing.dot(way_at(at))));
+    cost += turn_cost(hold.turned, down) + lever_cost(at) + 0.1 * std::abs(share);
+    for (const double beside : kBeside) {
+      const double parted = half + beside;
+      if (parted > p_.hand.opening_half) continue;
+      hold.open = parted / p_.hand.opening_half;
+      const std::size_t before = found_.size();
+      // Where there is less room on one side, the fingers stand to the other.
+      for (const double aside : {0.0, 0.5, -0.5}) {
+        if (aside != 0 && beside < 2 * kTight) continue;
+        hold.tool = pose.inverse() * Pose{at + aside * beside * closing, hold.turned};
+        hold.follows = Follows::kRigid;
+        const double more = cost + (aside != 0 ? 0.05 : 0);
+        add(hold, more);
+        if (!p_.joint.slides && !twists) {
+          hold.follows = Follows::kUpright;
+          add(hold, more + 0.4);
+        }
+        if (found_.size() > before) return;
+      }
+    }
+  }
+
+  void pushes(int s) {
+    const Solid& solid = part_->solids[static_cast<std::size_t>(s)];
+    const Pose& pose = part_->pose;
+    for (int i = 0; i < 3; ++i) {
+      for (const double side : {1.0, -1.0}) {
+        const Vec3 normal = side * Vec3::Unit(i);
+        for (const double u : kOnFace) {
+          for (const double v : kOnFace) {
+            Vec3 own = solid.center() + side * solid.half()[i] * Vec3::Unit(i);
+            own[(i + 1) % 3] += u * solid.half()[(i + 1) % 3];
+            own[(i + 2) % 3] += v * solid.half()[(i + 2) % 3];
+            push(s, own, normal, pose);
+          }
+        }
+      }
+    }
+  }
+
+  void push(int s, const Vec3& contact, const Vec3& normal, const Pose& pose) {
+    const Vec3 at = pose.apply(contact), out = pose.rotation * normal, way = way_at(at);
+    if (-out.dot(way) < kAgainst || out.z() < -0.3) return;
+    // Fingers straight down, their line along or across the face's normal.
+    Vec3 flat(out.x(), out.y(), 0);
+    flat = flat.norm() > 0.1 ? Vec3(flat.normalized()) : Vec3(Vec3::UnitY());
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const Vec3 closing = quarter % 2 == 0 ? Vec3((1 - quarter) * flat)
+                                            : Vec3((2 - quarter) * Vec3::UnitZ().cross(flat));
+      Hold hold;
+      hold.follows = Follows::kTouching;
+      hold.solid = s;
+      hold.contact = contact;
+      hold.normal = normal;
+      hold.open = 0;
+      hold.turned = frame_of(-Vec3::UnitZ(), closing);
+      hold.tool = pose.inverse() * tool_at(hold, pose, p_.hand);
+      add(hold, (p_.grasps ? 1.5 : 0) + turn_cost(hold.turned, -Vec3::UnitZ()) + lever_cost(at) +
+                    2 * (1 + out.dot(way)));
+    }
+  }
+
+  const HoldProblem& p_;
+  const Surroundings::Body* part_ = nullptr;
+  double sign_ = 1, lever_ = 0;
+  Vec3 axis_ = Vec3::UnitX(), point_ = Vec3::Zero();
+  std::vector<Vec3> ways_;
+  std::vector<Hold> found_;
+};
+
+}  // namespace
+
+Pose moved_part(const PartJoint& joint, const Pose& pose, double by) {
+  Pose own;
+  if (joint.slides) {
+    own.position = by * joint.axis;
+  } else {
+    own.rotation = robot::from_rotation_vector(by * joint.axis);
+    own.position = joint.point - own.rotation * joint.point;
+  }
+  return pose * own;
+}
+
+Pose tool_at(const Hold& hold, const Pose& part, const robot::HandShape& hand, double gap) {
+  if (hold.follows == Follows::kRigid) return part * hold.tool;
+  if (hold.follows == Follows::kUpright) return {part.apply(hold.tool.position), hold.turned};
+  const Vec3 at = part.apply(hold.contact), out = part.rotation * hold.normal;
+  const Vec3 flat(out.x(), out.y(), 0);
+  const double across = flat.norm(), up = std::max(out.z(), 0.0);
+  const Vec3 own = hold.turned.conjugate() * flat;
+  // Half of the closed fingers towards the face; under a face that looks up they end at it.
+  const double thick = std::abs(own.y()) > std::abs(own.z()) ? closed_half(hand) : hand.finger_half;
+  Vec3 tool = at + gap * out;
+  if (across > 1e-6) tool += thick * flat / std::max({across, up, 1e-6});
+  const double under = across > up ? kTipUnder * (across - up) / across : 0;
+  tool.z() += hand.tip_below - under;
+  return {tool, hold.turned};
+}
+
+HandBalls balls_of(const Hold& hold, const robot::HandShape& hand) {
+  return hand_balls(hand, hold.pushes() ? 0 : hold.open * hand.opening_half);
+}
+
+Hold refined(const HoldProblem& problem, const Hold& hold, double openness) {
+  if (hold.pushes()) return hold;
+  const auto part =
+      std::ranges::find(problem.around->bodies, problem.fixture, &Surroundings::Body::fixture);
+  Hold best = hold;
+  best.open = openness;
+  const std::vector<Ball> fingers = balls_of(best, problem.hand).fingers;
+  double most = -1;
+  constexpr int kShifts = 10;  // mm to each side
+  for (int i = 0; i <= 2 * kShifts; ++i) {
+    const double shift = 0.001 * (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
+    Hold moved = hold;
+    moved.tool.position += shift * (hold.tool.rotation * Vec3::UnitY());
+    const Pose tool = tool_at(moved, part->pose, problem.hand);
+    const double room = problem.around->clearance(tool, fingers, kComfortable);
+    if (room < most + 1e-4) continue;
+    most = room;
+    best.tool = moved.tool;
+  }
+  return best;
+}
+
+std::vector<Hold> hold_candidates(const HoldProblem& problem) { return Search(problem).run(); }
+
+}  // namespace probe::expert

@@ -1,0 +1,272 @@
+#include "runtime/expert/put_spot.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "runtime/base/trig.h"
+#include "runtime/expert/path_planner.h"
+
+namespace probe::expert {
+namespace {
+
+constexpr int kGrid = 9;             // spots along each side of a region
+constexpr double kRoomiest = 0.025;  // m between outlines; more earns nothing
+constexpr double kTightest = 0.004;  // m; rather none than less
+constexpr double kLevel = 0.006;     // m: what is as high as the support
+constexpr double kHandRoom = 0.01;   // m of clearance of the hand
+constexpr double kHandAbove = 0.02;  // m of the tool centre point over the support
+constexpr std::array kTurned = {0.0, 0.25, 0.5, 0.75};  // half turns of the source that are tried
+constexpr double kFootOut = 0.6;                        // of its outline: where its feet are
+constexpr double kOver = 0.08;                          // m, where the hand comes from
+constexpr double kHeld = 0.03;                          // m that hang below the tool, about
+constexpr double kNearby = 0.6, kStretchCost = 8;       // m from the base; what a m more costs
+constexpr int kRing = 16;                               // directions around what it is put beside
+constexpr std::array kApart = {0.015, 0.03, 0.05};      // m between outlines' circles
+constexpr std::size_t kMostSpots = 20;                  // put to inverse kinematics
+constexpr double kMark = 0.01;  // m, half of the square that stands for the spot
+
+// A place that is looked at.
+struct Wanted {
+  Vec3 at;          // z: the lowest that counts as the region
+  double top = 0;   // the highest
+  double away = 0;  // m from the middle
+};
+
+bool contains(const Outline& outline, const Vec2& p) {
+  if (outline.size() < 3) return false;
+  const Prism prism = make_prism(outline, -1, 1);
+  return distance_to(prism, {p.x(), p.y(), 0}).value <= 0;
+}
+
+class Spots {
+ public:
+  Spots(const Scene& scene, const policy::Privileged& view, const policy::Skill& skill)
+      : scene_(scene), view_(view), skill_(skill), to_base_(view.base.inverse()) {}
+
+  std::vector<Wanted> wanted() const {
+    if (skill_.place == policy::Skill::Place::kBeside) return ring();
+    if (skill_.region) return grid(*skill_.region, owner());
+    if (skill_.to_fixture >= 0) return grid(top_of_fixture(), owner());
+    return around_source();
+  }
+
+  Pose owner() const {
+    if (skill_.to_fixture >= 0)
+      return to_base_ * view_.fixtures[static_cast<std::size_t>(skill_.to_fixture)].pose;
+    if (skill_.to_object >= 0)
+      return to_base_ * view_.objects[static_cast<std::size_t>(skill_.to_object)].pose;
+    return to_base_;
+  }
+
+  // What a thing at `at` would stand on, at most `top` high.
+  double support(const Vec2& at, double top) const {
+    double height = scene_.surface;
+    for (const Footprint* other : others_of(scene_, true)) {
+      for (std::size_t i = 0; i < other->parts.size(); ++i) {
+        if (other->part_tops[i] > top || other->part_tops[i] < height) continue;
+        if (contains(other->parts[i], at)) height = other->part_tops[i];
+      }
+    }
+    return height;
+  }
+
+  // The least gap to what stands higher than the support, of the source turned so; what hangs over
+  // it counts.
+  double room(const Vec2& at, double height, const Eigen::Matrix2d& turn) const {
+    Outline moved = scene_.source.whole;
+    for (Vec2& p : moved) p = at + turn * (p - scene_.source.center);
+    double least = kRoomiest;
+    for (const Footprint* other : others_of(scene_, true)) {
+      for (std::size_t i = 0; i < other->parts.size(); ++i) {
+        if (other->part_tops[i] < height + kLevel || other->parts[i].size() < 3) continue;
+        least = std::min(least, separation(moved, other->parts[i]));
+      }
+    }
+    return least;
+  }
+
+  double share_supported(const Vec2& at, double height, double top,
+                         const Eigen::Matrix2d& turn) const {
+    int held = 0;
+    for (const Vec2& p : scene_.source.whole) {
+      // Half way out: what stands needs no more.
+      const Vec2 point = at + kFootOut * (turn * (p - scene_.source.center));
+      held += support(point, top) > height - kLevel;
+    }
+    const auto all = static_cast<double>(scene_.source.whole.size());
+    return all > 0 ? held / all : 1;
+  }
+
+ private:
+  std::vector<Wanted> grid(const policy::Skill::Box& box, const Pose& pose) const {
+    std::vector<Wanted> out;
+    const Vec3 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 at = pose.apply({corner & 1 ? box.low.x() : box.high.x(),
+                                  corner & 2 ? box.low.y() : box.high.y(),
+                                  corner & 4 ? box.low.z() : box.high.z()});
+      low = std::min(low, at.z());
+      high = std::max(high, at.z());
+    }
+    for (int i = 0; i < kGrid; ++i) {
+      for (int j = 0; j < kGrid; ++j) {
+        const double u = 0.9 * (2.0 * i / (kGrid - 1) - 1), v = 0.9 * (2.0 * j / (kGrid - 1) - 1);
+        const Vec3 at = pose.apply(middle + Vec3(u * half.x(), v * half.y(), 0));
+        out.push_back({{at.x(), at.y(), low}, high, Vec2(u * half.x(), v * half.y()).norm()});
+      }
+    }
+    return out;
+  }
+
+  // The face of its highest solid, with the air above.
+  policy::Skill::Box top_of_fixture() const {
+    const auto& fixture = view_.fixtures[static_cast<std::size_t>(skill_.to_fixture)];
+    policy::Skill::Box best{Vec3::Zero(), Vec3::Zero()};
+    double highest = -std::numeric_limits<double>::infinity();
+    for (const std::vector<Vec3>& part : fixture.parts) {
+      Vec3 low = part.front(), high = low;
+      for (const Vec3& v : part) low = low.cwiseMin(v), high = high.cwiseMax(v);
+      const double top =
+          (to_base_ * fixture.pose).apply(0.5 * (low + high)).z() + 0.5 * (high - low).z();
+      const double area = (high - low).head<2>().prod();
+      // A rim is no place to stand.
+      if (area < 1e-3 || top < highest + 1e-9) continue;
+      highest = top;
+      best = {{low.x(), low.y(), high.z() - 0.002}, {high.x(), high.y(), high.z() + 0.005}};
+    }
+    return best;
+  }
+
+  std::vector<Wanted> ring() const {
+    std::vector<Wanted> out;
+    const Footprint beside =
+        skill_.to_object >= 0
+            ? footprint_of(view_.objects[static_cast<std::size_t>(skill_.to_object)].parts, owner())
+            : footprint_of(view_.fixtures[static_cast<std::size_t>(skill_.to_fixture)].parts,
+                           owner());
+    for (const double apart : kApart) {
+      const double radius = beside.radius + scene_.source.radius + apart;
+      for (int i = 0; i < kRing; ++i) {
+        const SinCos t = portable_sincos(2 * std::numbers::pi * i / kRing);
+        const Vec2 at = beside.center + radius * Vec2(t.cos, t.sin);
+        out.push_back({{at.x(), at.y(), scene_.surface},
+                       scene_.surface + kLevel,
+                       apart + 0.1 * (at - scene_.source.center).norm()});
+      }
+    }
+    return out;
+  }
+
+  // Free surface, a hand's breadth from where it is.
+  std::vector<Wanted> around_source() const {
+    std::vector<Wanted> out;
+    for (const double radius : {0.10, 0.14, 0.18}) {
+      for (int i = 0; i < kRing; ++i) {
+        const SinCos t = portable_sincos(2 * std::numbers::pi * i / kRing);
+        const Vec2 at = scene_.source.center + radius * Vec2(t.cos, t.sin);
+        out.push_back({{at.x(), at.y(), scene_.surface}, scene_.surface + kLevel, radius});
+      }
+    }
+    return out;
+  }
+
+  const Scene& scene_;
+  const policy::Privileged& view_;
+  const policy::Skill& skill_;
+  Pose to_base_;
+};
+
+}  // namespace
+
+bool goes_to_spot(const policy::Skill& skill) {
+  return skill.to_object < 0 || skill.region || skill.place == policy::Skill::Place::kBeside;
+}
+
+std::optional<PutSpot> find_put_spot(const Scene& scene, const policy::Privileged& view,
+                                     const policy::Skill& skill, const Reach& reach) {
+  struct Found {
+    Vec3 at;
+    double cost;
+  };
+  const Spots spots(scene, view, skill);
+  const std::vector<Ball> balls = gripper_balls(scene.hand, scene.hand.opening_half);
+  const Obstacles obstacles = obstacles_of(scene, true);
+  const double yaw_now = yaw_of(scene.tcp.rotation);
+  std::vector<Found> found;
+  for (const Wanted& wanted : spots.wanted()) {
+    const Vec2 at = wanted.at.head<2>();
+    const double height = spots.support(at, wanted.top);
+    // Under the region there may be its floor, or none of it.
+    if (height < wanted.at.z() - 0.05) continue;
+    double room = 0, share = 0;
+    for (const double turned : kTurned) {
+      const SinCos t = portable_sincos(turned * std::numbers::pi);
+      Eigen::Matrix2d turn;
+      turn << t.cos, -t.sin, t.sin, t.cos;
+      const double here = spots.room(at, height, turn);
+      if (here < room + 1e-9) continue;
+      room = here;
+      share = spots.share_supported(at, height, wanted.top, turn);
+    }
+    if (room < kTightest) continue;
+    double hand = -1;
+    for (const double turn : {0.0, 0.5}) {
+      const Pose there = top_down({at.x(), at.y(), height + scene.hand.tip_below + kHandAbove},
+                                  yaw_now + turn * std::numbers::pi);
+      hand = std::max(hand, least_clearance(there, balls, obstacles, kHandRoom));
+    }
+    const double stretched = std::max(0.0, at.norm() - kNearby);
+    found.push_back({{at.x(), at.y(), height},
+                     30 * (kRoomiest - room) + 60 * (kHandRoom - hand) + 4 * wanted.away +
+                         3 * (1 - share) + kStretchCost * stretched});
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.cost < b.cost; });
+  found.resize(std::min(found.size(), kMostSpots));
+  for (const Found& one : found) {
+    for (const double turn : {0.0, 0.5, 1.0, 1.5}) {
+      const double low = one.at.z() + scene.hand.tip_below + kHandAbove;
+      const double yaw = yaw_now + turn * std::numbers::pi;
+      // What is carried comes over everything.
+      const double high = std::max(low + kOver, travel_height(scene, scene.hand.tip_below) + kHeld);
+      const Pose above = top_down({one.at.x(), one.at.y(), high}, yaw);
+      const Pose there = top_down({one.at.x(), one.at.y(), low}, yaw);
+      if (!reach.follow(scene.joints, std::array{above, there})) continue;
+      PutSpot spot{skill.to_object, skill.to_fixture, {}};
+      if (skill.place == policy::Skill::Place::kBeside) spot = {};
+      const Pose own = spot.object < 0 && spot.fixture < 0 ? Pose{} : spots.owner();
+      spot.at = own.inverse().apply(one.at);
+      return spot;
+    }
+  }
+  return std::nullopt;
+}
+
+Vec3 spot_now(const PutSpot& spot, const policy::Privileged& view) {
+  if (spot.object < 0 && spot.fixture < 0) return spot.at;
+  const Pose to_base = view.base.inverse();
+  const Pose& pose = spot.fixture >= 0 ? view.fixtures[static_cast<std::size_t>(spot.fixture)].pose
+                                       : view.objects[static_cast<std::size_t>(spot.object)].pose;
+  return (to_base * pose).apply(spot.at);
+}
+
+Scene with_target_at(Scene scene, const Vec3& spot) {
+  Footprint mark;
+  const Vec2 at = spot.head<2>();
+  mark.whole = {at + Vec2(-kMark, -kMark), at + Vec2(kMark, -kMark), at + Vec2(kMark, kMark),
+                at + Vec2(-kMark, kMark)};
+  mark.parts = {mark.whole};
+  mark.part_tops = {spot.z()};
+  mark.center = at;
+  mark.radius = kMark * std::numbers::sqrt2;
+  mark.bottom = mark.top = spot.z();
+  if (!scene.target.whole.empty()) scene.others.push_back(std::move(scene.target));
+  scene.target = std::move(mark);
+  return scene;
+}
+
+}  // namespace probe::expert

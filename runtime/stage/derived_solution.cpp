@@ -1,0 +1,346 @@
+#include "runtime/stage/derived_solution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "runtime/plan/fixtures.h"
+#include "runtime/plan/roles.h"
+#include "runtime/plan/skills.h"
+#include "runtime/vm/made_up.h"
+
+namespace probe::stage {
+namespace {
+
+constexpr double kAngleStep = std::numbers::pi / 36;  // rad: how finely a wanted turn is found
+constexpr double kTurnRoom = 2;                       // steps more than the least that is enough
+constexpr double kHalfOpen = 0.5;  // of the way: what is less open is opened to put something in
+
+// A part's joint at one of its ends, or turned by an angle.
+struct JointMove {
+  std::uint32_t body = plan::kNone;
+  std::size_t joint = 0;  // of all joints of the scene's fixtures
+  plan::Skill skill = plan::Skill::kOpen;
+  double position = 0;
+  double amount = 0;  // rad from where it is closed, of a turn
+};
+
+// Where things are put: onto a body, or into a region.
+struct Place {
+  std::uint32_t to = plan::kNone, region = plan::kNone;
+  plan::SkillRelation relation = plan::SkillRelation::kOn;
+};
+
+struct Bundle {
+  std::vector<std::uint32_t> objects;
+  Place place;
+  std::vector<JointMove> joints;
+  std::size_t size() const { return objects.size() + joints.size(); }
+};
+
+class Deriver {
+ public:
+  Deriver(const plan::Plan& plan, std::uint32_t task, std::uint32_t success)
+      : plan_(plan),
+        task_(task),
+        success_(success),
+        record_(plan.tasks()[task]),
+        roles_(plan::roles_of(plan.tables(), record_)),
+        still_(vm::make_up_world(plan, task)),
+        joints_(plan::joints_of(plan.tables(), plan.scenes()[record_.scene])) {}
+
+  Result<std::vector<plan::SkillRecord>> run() {
+    std::vector<plan::SkillRecord> none;
+    PROBE_ASSIGN(const bool at_once, holds({}));
+    if (at_once || plan_.episodes(record_).empty()) return none;
+    find_joint_moves();
+    for (const Bundle& bundle : bundles()) {
+      PROBE_ASSIGN(const bool is_enough, holds(bundle));
+      if (!is_enough) continue;
+      PROBE_ASSIGN(const Bundle least, without_needless(bundle));
+      return skills_of(least);
+    }
+    return none;
+  }
+
+ private:
+  // Smaller ones first, so that the first that is enough says little too much.
+  std::vector<Bundle> bundles() const {
+    std::vector<std::vector<JointMove>> joints = {{}};
+    for (const JointMove& move : moves_) joints.push_back({move});
+    for (std::size_t i = 0; i < moves_.size(); ++i) {
+      for (std::size_t k = i + 1; k < moves_.size(); ++k) {
+        if (moves_[i].joint != moves_[k].joint) joints.push_back({moves_[i], moves_[k]});
+      }
+    }
+    for (const plan::Skill skill : {plan::Skill::kOpen, plan::Skill::kClose}) {
+      joints.emplace_back();
+      for (const JointMove& move : moves_) {
+        if (move.skill == skill) joints.back().push_back(move);
+      }
+    }
+    std::vector<std::vector<std::uint32_t>> objects = {{}};
+    for (std::uint32_t o = 0; o < roles_.objects; ++o) objects.push_back({o});
+    std::vector<std::uint32_t> moved;  // all that have a role but the target
+    for (std::uint32_t o = 0; o < roles_.objects; ++o) {
+      const bool has_role = !plan::role_of_body(plan_.tables(), roles_, o).empty();
+      if (has_role && o != roles_.target && !is_distractor(o)) moved.push_back(o);
+    }
+    if (moved.size() > 1) objects.push_back(moved);
+    std::vector<Bundle> all;
+    for (const auto& put : objects) {
+      for (const Place& place : put.empty() ? std::vector<Place>{{}} : places_) {
+        if (std::ranges::find(put, place.to) != put.end()) continue;
+        for (const auto& moves : joints) {
+          // Every pair of joints beside every put would be too many to ask about.
+          if (!put.empty() && moves.size() > 1) continue;
+          Bundle bundle{put, place, moves};
+          if (bundle.size() > 0) all.push_back(std::move(bundle));
+        }
+      }
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Bundle& a, const Bundle& b) { return a.size() < b.size(); });
+    return all;
+  }
+
+  bool is_distractor(std::uint32_t object) const {
+    return object >= roles_.distractors.first &&
+           object < roles_.distractors.first + roles_.distractors.count;
+  }
+
+  void find_joint_moves() {
+    const auto bodies = plan_.bodies(record_);
+    const plan::SceneRecord& scene = plan_.scenes()[record_.scene];
+    std::size_t first = 0;
+    for (const std::uint32_t index : plan::slice_of(plan_.tables().list, scene.fixtures)) {
+      const plan::FixtureRecord& fixture = plan_.fixtures()[index];
+      const auto records = plan::slice_of(plan_.tables().fixture_joints, fixture.joints);
+      std::vector<bool> seen(records.size(), false);
+      for (std::uint32_t p = 0; p < fixture.parts.count; ++p) {
+        const std::uint32_t number = fixture.parts.first + p;
+        const plan::PartRecord& part = plan_.tables().parts[number];
+        if (part.joint == plan::kNone || seen[part.joint]) continue;
+        seen[part.joint] = true;
+        for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+          const bool is_part = bodies[b].kind == static_cast<std::uint32_t>(plan::BodyKind::kPart);
+          if (is_part && bodies[b].index == number) add_moves(b, first + part.joint);
+        }
+      }
+      first += records.size();
+    }
+    for (std::uint32_t o = 0; o < roles_.objects; ++o)
+      places_.push_back({o, plan::kNone, plan::SkillRelation::kOn});
+    for (std::uint32_t r = 0; r < plan_.regions().size(); ++r) {
+      if (owner_of(plan_.regions()[r]))
+        places_.push_back({plan::kNone, r, plan::SkillRelation::kIn});
+    }
+    // Only where nothing else makes success.
+    for (std::uint32_t o = 0; o < roles_.objects; ++o)
+      places_.push_back({o, plan::kNone, plan::SkillRelation::kBeside});
+  }
+
+  void add_moves(std::uint32_t body, std::size_t joint) {
+    const plan::FixtureJointRecord& record = *joints_[joint];
+    if (plan::is_endless(record)) return;
+    const bool at_upper = plan::closes_at_upper(record.lower, record.upper);
+    const double closed = at_upper ? record.upper : record.lower;
+    const double far = at_upper ? record.lower : record.upper;
+    moves_.push_back({body, joint, plan::Skill::kOpen, far, 0});
+    moves_.push_back({body, joint, plan::Skill::kClose, closed, 0});
+    if (plan::slides(record)) return;
+    // The least turn that is enough, and some more; where that is less than all.
+    const double sign = far > closed ? 1 : -1;
+    for (double angle = kAngleStep; angle < std::abs(far - closed); angle += kAngleStep) {
+      const JointMove turn{body, joint, plan::Skill::kTurn, closed + sign * angle, angle};
+      const auto enough = holds({{}, {}, {turn}});
+      if (!enough.ok() || !*enough) continue;
+      const double more =
+          std::min(angle + kTurnRoom * kAngleStep, std::abs(far - closed) - kAngleStep);
+      const double wanted = std::max(angle, more);
+      moves_.insert(moves_.begin(),
+                    {body, joint, plan::Skill::kTurn, closed + sign * wanted, wanted});
+      return;
+    }
+  }
+
+  std::optional<std::uint32_t> owner_of(const plan::RegionRecord& region) const {
+    const auto bodies = plan_.bodies(record_);
+    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+      const bool is_scene = region.kind == static_cast<std::uint32_t>(plan::BodyKind::kSurface) ||
+                            region.kind == static_cast<std::uint32_t>(plan::BodyKind::kFixture);
+      const bool is_it = is_scene ? region.index == record_.scene : bodies[b].index == region.index;
+      if (bodies[b].kind == region.kind && is_it) return b;
+    }
+    return std::nullopt;
+  }
+
+  // Whether success holds when all of a bundle is done and nothing is held; or, if not, while the
+  // fingers are at the parts that were moved.
+  Result<bool> holds(const Bundle& bundle) const {
+    PROBE_ASSIGN(const bool alone, holds_with(bundle, false));
+    if (alone || bundle.joints.empty() || !bundle.objects.empty()) return alone;
+    return holds_with(bundle, true);
+  }
+
+  Result<bool> holds_with(const Bundle& bundle, bool handled) const {
+    vm::MadeUpWorld world = still_;
+    double along = 0;
+    for (const std::uint32_t object : bundle.objects) put(object, bundle.place, along++, &world);
+    const std::size_t first =
+        world.sample.joints.size() - joints_.size();  // the robot's stand before
+    for (const JointMove& move : bundle.joints) {
+      world.sample.joints[first + move.joint].position = move.position;
+      if (!handled) continue;
+      for (const std::uint16_t finger : world.fingers)
+        world.sample.contacts.push_back(
+            {finger, static_cast<std::uint16_t>(move.body), {0, vm::kMadeUpContact, 0}});
+    }
+    // Each pair once, ascending, as judges are told of contacts.
+    auto& contacts = world.sample.contacts;
+    const auto pair = [](const vm::ContactSample& c) { return std::pair(c.a, c.b); };
+    std::ranges::stable_sort(contacts, {}, pair);
+    contacts.erase(std::ranges::unique(contacts, {}, pair).begin(), contacts.end());
+    return vm::judge_world(plan_, task_, success_, std::move(world));
+  }
+
+  // Several things lie side by side, a millimetre apart: rules look at each alone.
+  void put(std::uint32_t object, const Place& place, double along, vm::MadeUpWorld* world) const {
+    const Vec3 aside(0.001 * along, 0, 0);
+    const Vec3& half = world->starts[object].half;
+    std::uint32_t below = place.to;
+    Vec3 at = Vec3::Zero();
+    if (place.region != plan::kNone) {
+      const plan::RegionRecord& region = plan_.regions()[place.region];
+      below = *owner_of(region);
+      for (int i = 0; i < 3; ++i)
+        at[i] = 0.5 * (region.low[static_cast<std::size_t>(i)] +
+                       region.high[static_cast<std::size_t>(i)]);
+      at += world->sample.bodies[below].origin;
+    } else {
+      const Vec3& half_below = world->starts[below].half;
+      const Vec3& to = world->sample.bodies[below].position;
+      if (place.relation == plan::SkillRelation::kBeside) {
+        const double apart = half.head<2>().norm() + half_below.head<2>().norm() + 0.015;
+        at = Vec3(to.x(), to.y() + apart, to.z() - half_below.z() + half.z());
+        below = world->surface;
+      } else {
+        at = to + Vec3(0, 0, half.z() + half_below.z());
+        touch(place.to, world->surface, world);
+      }
+    }
+    world->put(object, at + aside);
+    touch(object, below, world);
+  }
+
+  // `above` presses `below`, whichever has the lower number.
+  static void touch(std::uint32_t above, std::uint32_t below, vm::MadeUpWorld* world) {
+    const auto a = static_cast<std::uint16_t>(above), b = static_cast<std::uint16_t>(below);
+    if (a < b) return world->press_down(a, b);
+    world->sample.contacts.push_back({b, a, {0, 0, vm::kMadeUpContact}});
+  }
+
+  Result<Bundle> without_needless(Bundle bundle) const {
+    for (std::size_t i = bundle.joints.size(); i-- > 0;) {
+      Bundle less = bundle;
+      less.joints.erase(less.joints.begin() + static_cast<std::ptrdiff_t>(i));
+      if (less.size() == 0) break;
+      PROBE_ASSIGN(const bool is_enough, holds(less));
+      if (is_enough) bundle = std::move(less);
+    }
+    for (std::size_t i = bundle.objects.size(); i-- > 0;) {
+      Bundle less = bundle;
+      less.objects.erase(less.objects.begin() + static_cast<std::ptrdiff_t>(i));
+      if (less.size() == 0) break;
+      PROBE_ASSIGN(const bool is_enough, holds(less));
+      if (is_enough) bundle = std::move(less);
+    }
+    return bundle;
+  }
+
+  JointMove closing(const JointMove& opening) const {
+    return *std::ranges::find_if(moves_, [&](const JointMove& move) {
+      return move.joint == opening.joint && move.skill == plan::Skill::kClose;
+    });
+  }
+
+  plan::SkillRecord record_of(plan::Skill skill, std::uint32_t body) const {
+    plan::SkillRecord record;
+    record.task = task_;
+    record.skill = static_cast<std::uint32_t>(skill);
+    record.body = body;
+    return record;
+  }
+  plan::SkillRecord record_of(const JointMove& move) const {
+    plan::SkillRecord record = record_of(move.skill, move.body);
+    if (move.skill != plan::Skill::kTurn) return record;
+    record.relation = static_cast<std::uint32_t>(plan::SkillRelation::kTo);
+    record.amount = move.amount;
+    return record;
+  }
+
+  Result<std::vector<plan::SkillRecord>> skills_of(const Bundle& bundle) const {
+    std::vector<plan::SkillRecord> before, puts, after;
+    std::vector<JointMove> joints = bundle.joints;
+    // The part whose region is filled is open while that happens.
+    if (!bundle.objects.empty() && bundle.place.region != plan::kNone) {
+      const std::uint32_t owner = *owner_of(plan_.regions()[bundle.place.region]);
+      for (const JointMove& move : moves_) {
+        if (move.body != owner || move.skill != plan::Skill::kOpen) continue;
+        const plan::FixtureJointRecord& joint = *joints_[move.joint];
+        const std::size_t first = still_.sample.joints.size() - joints_.size();
+        const double now = still_.sample.joints[first + move.joint].position;
+        const double left = std::abs(move.position - now) / (joint.upper - joint.lower);
+        if (left > kHalfOpen) {
+          before.push_back(record_of(move));
+          // It was closed; whether it may stay open is asked, too.
+          Bundle open = bundle;
+          std::erase_if(open.joints,
+                        [&](const JointMove& other) { return other.joint == move.joint; });
+          open.joints.push_back(move);
+          PROBE_ASSIGN(const bool may_stay, holds(open));
+          const bool is_closed_anyway = std::ranges::any_of(joints, [&](const JointMove& other) {
+            return other.joint == move.joint && other.skill != plan::Skill::kOpen;
+          });
+          if (!may_stay && !is_closed_anyway) joints.push_back(closing(move));
+        }
+        std::erase_if(joints, [&](const JointMove& other) {
+          return other.joint == move.joint && other.skill == plan::Skill::kOpen;
+        });
+      }
+    }
+    for (const std::uint32_t object : bundle.objects) {
+      plan::SkillRecord put = record_of(plan::Skill::kPut, object);
+      put.relation = static_cast<std::uint32_t>(bundle.place.relation);
+      put.to = bundle.place.to;
+      put.region = bundle.place.region;
+      puts.push_back(put);
+    }
+    for (const JointMove& move : joints) after.push_back(record_of(move));
+    std::vector<plan::SkillRecord> all = std::move(before);
+    all.insert(all.end(), puts.begin(), puts.end());
+    all.insert(all.end(), after.begin(), after.end());
+    return all;
+  }
+
+  const plan::Plan& plan_;
+  const std::uint32_t task_, success_;
+  const plan::TaskRecord& record_;
+  const plan::TaskRoles roles_;
+  const vm::MadeUpWorld still_;
+  const std::vector<const plan::FixtureJointRecord*> joints_;
+  std::vector<JointMove> moves_;
+  std::vector<Place> places_;
+};
+
+}  // namespace
+
+Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, std::uint32_t task) {
+  const auto success = plan.find_metric(plan.tasks()[task], "success");
+  if (!success) return std::vector<plan::SkillRecord>();
+  return Deriver(plan, task, *success).run();
+}
+
+}  // namespace probe::stage

@@ -1,0 +1,19 @@
+// A solution where the text says none: what has to be done is found by asking the judge about
+// made-up worlds in which it is done. No word of the instruction is read.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+
+namespace probe::stage {
+
+// The skills that make success together, none of which could be left out, in the order in which
+// they can be done: a part that something is put into is opened before, and closed after where it
+// shall be closed. Of objects put on, in or beside one place, of parts opened, closed and turned.
+// Empty where no such bundle makes success, and where nothing has to be done.
+Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, std::uint32_t task);
+
+}  // namespace probe::stage

@@ -1,0 +1,142 @@
+// Solutions of tasks from their text to episodes: the expert does what the text says.
+#include "runtime/stage/solution.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "compiler/diag/text.h"
+#include "compiler/emit/compile.h"
+#include "runtime/expert/expert.h"
+#include "runtime/plan/skills.h"
+#include "runtime/stage/stage.h"
+
+namespace probe::stage {
+namespace {
+
+plan::Plan kitchen_of(const std::string& tasks) {
+  const std::string root = VLAPROBE_SOURCE_DIR;
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("probe_solution_" + std::to_string(getpid()) + ".probe");
+  std::ofstream(file) << R"(
+use "suite/panda.probe"
+use "std/fixtures.probe"
+fixture cabinet {
+  urdf "fixtures/cabinet/cabinet.urdf"; at (2cm, 32cm, 90cm) yaw -90deg
+  joint top friction 1N damping 5Ns/m
+  joint middle friction 1N damping 5Ns/m
+  joint bottom friction 1N damping 5Ns/m
+  part top_drawer link top_drawer name "top drawer"
+  region inside_top of top_drawer box (-8cm, -12cm, -3cm) .. (10cm, 12cm, 2cm)
+}
+fixture stove {
+  urdf "fixtures/stove/stove.urdf"; at (14cm, -25cm, 90cm) yaw 180deg
+  joint left friction 0.05Nm
+  joint right friction 0.05Nm
+  part left_knob link left_knob
+}
+fixture microwave {
+  urdf "fixtures/microwave/microwave.urdf"; at (-22cm, -34cm, 90cm) yaw 90deg
+  joint hinge friction 0.1Nm damping 0.5Nms/rad
+  part door link door name "microwave door"
+}
+scene wide like panda_table { surface 90cm area (-40cm, -60cm) .. (40cm, 60cm) }
+scene drawers like wide { fixture cabinet }
+scene cooker like wide { fixture stove }
+scene oven like wide { fixture microwave }
+layout left like grid_24 { cells corners = grid 2 x 2 at (-20cm, 17cm) spread (6.5cm, 6.5cm) }
+abstract task kept like panda_carrot_on_plate { horizon 600 steps }
+)" << tasks;
+  const std::vector<std::string> files = {file.string()};
+  auto made = build(
+      files,
+      {.asset_root = root + "/assets", .suite = "", .library_folders = {root + "/dsl", root}});
+  std::filesystem::remove(file);
+  REQUIRE_MESSAGE(made.ok(), (made.ok() ? "" : to_text(made.failure())));
+  REQUIRE_MESSAGE(!made->diagnostics.has_errors(), render_text(made->diagnostics, made->sources));
+  auto plan = plan::Plan::from_bytes(std::move(made->plan));
+  REQUIRE_MESSAGE(plan.ok(), (plan.ok() ? "" : to_text(plan.failure())));
+  return std::move(*plan);
+}
+
+// Whether the expert makes the success of a task's start.
+bool solves(const plan::Plan& plan, const std::string& name, std::uint32_t start) {
+  const std::uint32_t tasks[] = {plan.find_task(name).value()};
+  const auto loaded = SharedAssets::load(plan, VLAPROBE_SOURCE_DIR "/assets", tasks);
+  REQUIRE_MESSAGE(loaded.ok(), (loaded.ok() ? "" : to_text(loaded.failure())));
+  const auto stage = Stage::create(plan, tasks[0], *loaded, {{}, false});
+  REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
+  const auto expert = expert::make_expert({});
+  REQUIRE(expert.ok());
+  REQUIRE((*stage)->reset(start).ok());
+  REQUIRE((*expert)->begin((*stage)->introduction()).ok());
+  while (!(*stage)->done()) {
+    const auto seen = (*stage)->observe();
+    REQUIRE(seen.ok());
+    const auto action = (*expert)->act(*seen);
+    REQUIRE_MESSAGE(action.ok(), (action.ok() ? "" : to_text(action.failure())));
+    const Status stepped = (*stage)->step(*action);
+    REQUIRE_MESSAGE(stepped.ok(), (stepped.ok() ? "" : to_text(stepped.failure())));
+  }
+  return (*stage)->judge().truth(*plan.find_metric(plan.tasks()[tasks[0]], "success"));
+}
+
+TEST_CASE("a solution's words are in the plan and in no id, roles stand for what fills them") {
+  const plan::Plan plan = kitchen_of(R"(
+metrics away { success = at end (closed(cabinet.top_drawer) and put_in(source, cabinet.inside_top)) }
+task silent like kept { scene drawers; metrics away; say "put {the source} away" }
+task said like silent {
+  solution { open cabinet.top_drawer; pick source; put source in cabinet.inside_top; close cabinet.top_drawer }
+}
+variant spoon of said { source spoon }
+variant unsaid of said { solution none; say "put {the source} into the drawer" }
+)");
+  const auto task = [&](const char* name) { return plan.find_task(name).value(); };
+  const auto words = [&](const char* name) {
+    std::string text;
+    for (const plan::SkillRecord& skill : plan::skills_of(plan.tables(), task(name)))
+      text += plan::skill_text(plan.tables(), skill) + "; ";
+    return text;
+  };
+  CHECK(words("silent").empty());
+  CHECK(words("unsaid").empty());
+  CHECK(words("said") ==
+        "open cabinet.top_drawer; pick carrot; put carrot in cabinet.inside_top; "
+        "close cabinet.top_drawer; ");
+  CHECK(words("spoon").find("put spoon in cabinet.inside_top") != std::string::npos);
+  const plan::TaskRecord &a = plan.tasks()[task("silent")], &b = plan.tasks()[task("said")];
+  CHECK(a.judge_id == b.judge_id);
+  CHECK(plan.episodes(a)[0].episode_id == plan.episodes(b)[0].episode_id);
+}
+
+TEST_CASE("the expert opens a drawer, puts the carrot in and closes it") {
+  const plan::Plan plan = kitchen_of(R"(
+metrics away { success = at end (closed(cabinet.top_drawer) and put_in(source, cabinet.inside_top)) }
+task put_away like kept {
+  scene drawers; metrics away; say "put {the source} into the top drawer"; horizon 1000 steps
+  solution { open cabinet.top_drawer; put source in cabinet.inside_top; close cabinet.top_drawer }
+}
+)");
+  CHECK(solves(plan, "put_away", 0));
+}
+
+TEST_CASE("the expert turns a knob, opens a door and closes it") {
+  const plan::Plan plan = kitchen_of(R"(
+metrics cooking { success = at end turned(stove.left_knob, 80deg) }
+metrics opening { success = at end opened(microwave.door) }
+metrics closing { success = at end closed(microwave.door) }
+task turn_on like kept { scene cooker; layout left; metrics cooking; say "turn on the stove"; solution { turn stove.left_knob to 90deg } }
+task open_oven like kept { scene oven; layout left; metrics opening; say "open the microwave"; solution { open microwave.door } }
+task close_oven like kept {
+  scene oven; layout left; metrics closing; say "close the microwave"; start microwave.hinge 90deg; solution { close microwave.door }
+}
+)");
+  CHECK(solves(plan, "turn_on", 0));
+  CHECK(solves(plan, "open_oven", 1));
+  CHECK(solves(plan, "close_oven", 2));
+}
+
+}  // namespace
+}  // namespace probe::stage
