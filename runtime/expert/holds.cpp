@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTight = 0.003;        // m between an open finger and the handle, at least
 constexpr double kRoom = 0.0025;        // m between the hand and what it does not hold
-constexpr double kComfortable = 0.012;  // m; more earns nothing
+constexpr double kRoomyEnough = 0.012;  // m; more earns nothing
 constexpr std::array kBeside = {0.014, 0.009,
                                 0.006};  // m between an open finger and the handle, a side
 constexpr double kDeepest = 0.020;       // m of a handle that the tool centre point goes down
@@ -124,7 +124,7 @@ class Search {
   // Room for the hand where the part is and along its way; the least of it.
   double room_of(const Hold& hold) const {
     const HandBalls balls = balls_of(hold, p_.hand);
-    double least = kComfortable;
+    double least = kRoomyEnough;
     for (int i = 0; i <= kLooks; ++i) {
       const double by = (p_.aim - p_.joint.position) * i / kLooks;
       const Pose at = moved_part(p_.joint, part_->pose, by);
@@ -145,7 +145,7 @@ class Search {
     // An arm that is stretched does not come where it shall.
     const double far = (part_->pose.apply(hold.tool.position)).norm() - kNearBy;
     hold.cost =
-        cost + 40 * (kComfortable - room) + kFarCost * std::max(0.0, far) * std::max(0.0, far);
+        cost + 40 * (kRoomyEnough - room) + kFarCost * std::max(0.0, far) * std::max(0.0, far);
     found_.push_back(hold);
   }
 
@@ -303,7 +303,7 @@ Hold refined(const HoldProblem& problem, const Hold& hold, double openness) {
     Hold moved = hold;
     moved.tool.position += shift * (hold.tool.rotation * Vec3::UnitY());
     const Pose tool = tool_at(moved, part->pose, problem.hand);
-    const double room = problem.around->clearance(tool, fingers, kComfortable);
+    const double room = problem.around->clearance(tool, fingers, kRoomyEnough);
     if (room < most + 1e-4) continue;
     most = room;
     best.tool = moved.tool;

@@ -11,7 +11,7 @@
 namespace probe::expert {
 namespace {
 
-constexpr int kMostTries = 4, kMostParts = 8, kMostHomes = 2;
+constexpr int kMostHoldTries = 4, kMostParts = 8, kMostHomes = 2;
 constexpr std::size_t kMostHolds = 40;  // put to inverse kinematics
 constexpr double kOpenAim = 0.97, kOpenEnough = 0.93, kOpenLeast = 0.85;  // of the way
 constexpr double kClosedEnough = 0.01, kClosedLeast = 0.03;               // of the way
@@ -205,7 +205,7 @@ void JointSkill::try_again(double position) {
   if (went_on) failed_.clear();
   if (hold_ && !went_on) failed_.push_back(*hold_);
   if (went_on && ++parts_ < kMostParts) return enter(Phase::kPlan);
-  enter(++tries_ < kMostTries ? Phase::kPlan : Phase::kOver);
+  enter(++tries_ < kMostHoldTries ? Phase::kPlan : Phase::kOver);
 }
 
 void JointSkill::advance_move(double position) {

@@ -16,9 +16,9 @@ TEST_CASE("the manifest gives size and hash of every file, sorted by path") {
     paths.push_back(path);
   }
   CHECK(std::is_sorted(paths.begin(), paths.end()));
-  // Three scenes, the sink's two files, six links of fixtures with joints, two a link and two an
-  // object.
-  CHECK(paths.size() == 12 + 2 * test::link_names().size() + 2 * test::object_names().size());
+  // Six textures, three scenes, the sink's two files, six links of fixtures with joints, two a link
+  // and two an object.
+  CHECK(paths.size() == 6 + 12 + 2 * test::link_names().size() + 2 * test::object_names().size());
 }
 
 TEST_CASE("no mesh lies in the asset folders that the manifest does not name") {

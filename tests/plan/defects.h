@@ -326,11 +326,11 @@ inline std::vector<Defect> task_defects() {
        [](Records& r, Writer&) {
          r.objects[0].paint = {9, 0, 0, 0};
        }},
-      {"OBJT", "covers all of it",
+      {"COVR", "covers all of it",
        [](Records& r, Writer& w) {
          give_cover(r, w, 1), r.objects[0].cover = {0, 1};
        }},
-      {"SCNE", "each once",
+      {"COVR", "each once",
        [](Records& r, Writer& w) {
          give_cover(r, w, 2), give_cover(r, w, 1), r.scenes[0].covers = {0, 2};
        }},

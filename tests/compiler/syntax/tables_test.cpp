@@ -84,11 +84,12 @@ std::string rule_of(const std::string& grammar, const std::string& name) {
 TEST_CASE("each block of the grammar has the statements of its block in the table") {
   const std::string grammar = read(kDsl / "grammar.ebnf");
   const std::pair<Block, const char*> blocks[] = {
-      {Block::kDataset, "dataset"},    {Block::kObject, "object_st"}, {Block::kRobot, "robot_st"},
-      {Block::kControl, "control_st"},
-      {Block::kCamera, "camera_st"},   {Block::kLight, "light_st"},   {Block::kScene, "scene_st"},
-      {Block::kFixture, "fixture_st"}, {Block::kLayout, "layout_st"}, {Block::kTask, "task_st"},
-      {Block::kSolution, "skill"},
+      {Block::kDataset, "dataset"},    {Block::kObject, "object_st"},
+      {Block::kRobot, "robot_st"},     {Block::kControl, "control_st"},
+      {Block::kCamera, "camera_st"},   {Block::kLight, "light_st"},
+      {Block::kScene, "scene_st"},     {Block::kFixture, "fixture_st"},
+      {Block::kLayout, "layout_st"},   {Block::kTask, "task_st"},
+      {Block::kSolution, "skill"},     {Block::kPart, "part_st"},
       {Block::kQuestions, "question"}, {Block::kSuite, "suite_st"}};
   std::size_t checked = 0;
   for (const auto& [block, rule] : blocks) {

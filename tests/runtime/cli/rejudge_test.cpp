@@ -275,8 +275,9 @@ TEST_CASE("a text of metrics alone judges a run, and what it writes is a run wit
   }
   const Outcome why = sandbox().vlaprobe("why told carrot_on_plate 0 --metric grasped_it");
   REQUIRE_MESSAGE(why.exit == 0, why.err);
-  CHECK(contains(why.out, "events.probe:"));
-  CHECK(contains(why.out, "first held(source)"));
+  CHECK(contains(why.out, "grasped_it = "));
+  CHECK(contains(why.out, "(first)\n  contact.probe\n"));  // what `held` is, in its library
+  CHECK(contains(why.out, "[carrot, left_finger_link]"));
 }
 
 TEST_CASE("events are asked for by a text of metrics alone, and of runs") {

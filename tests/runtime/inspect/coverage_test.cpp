@@ -32,8 +32,13 @@ language.spatial         .      .      .
 layout                   .      .      .
 fixture                  .      .      .
 scene                    .      .      .
+scene.texture            .      .      .
+scene.geometry           .      .      .
 light                    1      .      1
 camera                   .      .      .
+sensor                   .      .      .
+robot                    .      .      .
+latency                  .      .      .
 goal                     1      .      1
 variants                 6      .      6
 confounded               1      .      1
@@ -42,7 +47,7 @@ ood target               .      .      .
 ood relation             .      1      1
 tasks                    7      1      8
 
-27 of 32 cells are empty
+37 of 42 cells are empty
 objects never a source: plate
 objects never a target: carrot, twig
 objects never a distractor: carrot, plate

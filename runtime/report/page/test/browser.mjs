@@ -133,8 +133,11 @@ async function checkKeyboard(page) {
     await page.keyboard.press("ArrowRight");
     expect((await x()) !== from, "the slider does not move the timeline's cursor");
     const told = await page.$eval(".timeline", (t) => t.getAttribute("aria-label"));
-    expect(/dropped: step 31 \(/.test(told), `the timeline does not tell of events: ${told.slice(0, 80)}`);
-    expect((await page.$$(".timeline .event, .timeline .subgoal")).length === 5, "the timeline does not mark its events");
+    // What happened in a made page is known; in a given one an episode reaches its object, at least.
+    const event = given ? /reached it: step \d+ \(/ : /dropped: step 31 \(/;
+    expect(event.test(told), `the timeline does not tell of events: ${told.slice(0, 80)}`);
+    const marks = (await page.$$(".timeline .event, .timeline .subgoal")).length;
+    expect(given ? marks > 0 : marks === 5, `the timeline marks ${marks} events`);
   } else {
     wrong.push("the opened episode has no timeline");
   }
