@@ -90,7 +90,9 @@ TEST_CASE("one number is for all directions, two for shift and turn, six for eac
   CHECK(said(arm(with(kOsc, "home", "output (5cm, 5cm); home"))) == "P0302 5cm");
 }
 
-TEST_CASE("gains are above zero, damping not negative, outputs not zero, ramps a share, rates above zero") {
+TEST_CASE(
+    "gains are above zero, damping not negative, outputs not zero, ramps a share, rates above "
+    "zero") {
   const auto bad = [](const std::string& numbers) {
     return said(arm(with(kOsc, "home", numbers + "; home")));
   };

@@ -63,10 +63,10 @@ TEST_CASE("a can is picked up without a target, judged and repeated bit for bit"
 
 TEST_CASE("what the expert has no skill for is not attempted: neither invalid nor failed") {
   TemporaryFolder folder;
-  const RunOptions options = one_start(folder / "run", "expert", "*_*_*");
+  const RunOptions options = one_start(folder / "run", "expert", "cubes_in_basket");
   const RunSummary summary = must_run(roles_plan(), options);
-  CHECK(summary.done == 3);
-  CHECK(summary.not_attempted == 3);
+  CHECK(summary.done == 1);
+  CHECK(summary.not_attempted == 1);
   CHECK(summary.invalid == 0);
   const auto rows = read_results(folder / "run");
   REQUIRE(rows.ok());
@@ -81,7 +81,7 @@ TEST_CASE("what the expert has no skill for is not attempted: neither invalid no
   // Asking again would change nothing.
   const RunSummary again = must_run(roles_plan(), options);
   CHECK(again.done == 0);
-  CHECK(again.skipped == 3);
+  CHECK(again.skipped == 1);
 }
 
 TEST_CASE("scripted policies run through tasks that lack what they go for") {
