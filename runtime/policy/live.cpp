@@ -294,6 +294,7 @@ double percentile(std::vector<double> values, double share) {
 }
 
 std::string to_text(const LiveFigures& figures) {
+  if (figures.steps == 0) return "no control step was done";
   std::string text = percent_of(figures.held_share()) + " of " +
                      plural(figures.steps, "control step") + " had no action of the policy";
   if (figures.late > 0)

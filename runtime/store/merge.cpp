@@ -80,9 +80,10 @@ Status check_same_run(const std::vector<Source>& sources, bool mixed_builds,
   return {};
 }
 
-// What answers showed of the server, where the profile left it open, is part of what a run is.
-// Another machine can round otherwise, so that answers which differ are told.
-Status check_same_meaning(const std::vector<Source>& sources, std::vector<std::string>& notes) {
+// What answers showed of the server, where the profile left it open, is part of what a run is, and
+// so is who answered. Another machine can round otherwise, which only the user knows.
+Status check_same_meaning(const std::vector<Source>& sources, bool mixed_builds,
+                          std::vector<std::string>& notes) {
   std::vector<RunCall> before;
   std::string whose;
   for (const Source& source : sources) {
@@ -101,11 +102,17 @@ Status check_same_meaning(const std::vector<Source>& sources, std::vector<std::s
       if (whose.empty()) whose = source.dir;
       before.push_back(call);
     }
-    if (is_other) {
-      notes.push_back("the server of " + source.dir +
-                      " answered the first questions otherwise than one before it: another policy, "
-                      "or a machine that rounds otherwise");
+    if (!is_other) continue;
+    const std::string what = "its server answered the first questions otherwise than that of " +
+                             whose + ": another policy, or a machine that rounds otherwise";
+    if (!mixed_builds) {
+      return Failure{Fault::kUsage,
+                     what +
+                         "; --mixed-builds joins them all the same, and what is shown of the "
+                         "folder says so",
+                     source.dir};
     }
+    notes.push_back(source.dir + ": " + what);
   }
   return {};
 }
@@ -209,7 +216,7 @@ Result<MergeSummary> merge(const MergeOptions& options) {
     sources.push_back(std::move(source));
   }
   PROBE_TRY(check_same_run(sources, options.mixed_builds, summary.notes));
-  PROBE_TRY(check_same_meaning(sources, summary.notes));
+  PROBE_TRY(check_same_meaning(sources, options.mixed_builds, summary.notes));
   std::map<EpisodeKey, Chosen> chosen;
   for (const Source& source : sources) {
     if (auto own = open_run_plan(source.dir); !own) return own.failure();

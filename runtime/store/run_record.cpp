@@ -143,6 +143,23 @@ std::string to_text(const RunCall& call) {
          percent(call.queries.gathering_s, call.elapsed_s * call.worlds) + " of theirs";
 }
 
+namespace {
+
+// Against the first that counts: answers alike are alike among one another, too.
+bool has_others(const std::vector<RunCall>& calls) {
+  const policy::Reading* first = nullptr;
+  for (const RunCall& call : calls) {
+    // Of a call that ended with another policy no episode counts.
+    if (!call.reading || call.reading->at_end == policy::AtEnd::kOther) continue;
+    if (!call.reading->is_steady) continue;
+    if (first != nullptr && are_others(*first, *call.reading)) return true;
+    if (first == nullptr) first = &*call.reading;
+  }
+  return false;
+}
+
+}  // namespace
+
 ReadingSummary summarize_readings(const std::vector<RunCall>& calls) {
   ReadingSummary summary;
   for (const RunCall& call : calls) {
@@ -157,6 +174,11 @@ ReadingSummary summarize_readings(const std::vector<RunCall>& calls) {
       if (std::ranges::find(summary.findings, finding) == summary.findings.end())
         summary.findings.push_back(finding);
     }
+  }
+  if (has_others(calls)) {
+    summary.findings.push_back(
+        "calls of this folder had servers that answered the same first questions otherwise: more "
+        "than one policy, or machines that round otherwise");
   }
   if (summary.findings.empty() && summary.proven > 0) {
     summary.good = "other words and other pictures had other answers when the run began";

@@ -29,6 +29,7 @@ bool is_this_machine(const std::string& host) {
 struct Choices {
   PictureCoding coding = PictureCoding::kPng;
   std::optional<bool> send_state;  // nothing: as the server asks
+  bool without_wrist = false;      // though the server asks for a wrist picture
 };
 
 Result<Choices> read_choices(const wire::Endpoint& server) {
@@ -52,6 +53,15 @@ Result<Choices> read_choices(const wire::Endpoint& server) {
                      "--policy"};
     }
     choices.send_state = it->second == "true";
+  }
+  if (const auto it = server.options.find("send_wrist_image"); it != server.options.end()) {
+    if (it->second != "false") {
+      return Failure{Fault::kUsage,
+                     "`send_wrist_image` is false, not `" + it->second +
+                         "`: a picture is sent by a line `image = CAMERA -> wrist`",
+                     "--policy"};
+    }
+    choices.without_wrist = true;
   }
   return choices;
 }
@@ -122,6 +132,7 @@ class VlaEval : public Transport {
   }
 
   Status adapt(Profile& profile) const override {
+    PROBE_TRY(check_wishes(profile));
     PROBE_TRY(choose_meaning(profile));
     if (!sends_state()) profile.state_layout = StateLayout::kNone;
     if (!asks_for("send_wrist_image", true)) {
@@ -240,6 +251,45 @@ class VlaEval : public Transport {
             ""};
   }
 
+  Failure contradicted(const std::string& what, const std::string& way_out) const {
+    return {Fault::kUsage, what + "; " + way_out, ""};
+  }
+
+  // What would be another policy's input or output without a word of the profile.
+  Status check_wishes(const Profile& profile) const {
+    if (const wire::Value* history = asked("image_history")) {
+      const auto* count = history->as<std::int64_t>();
+      if (*history != wire::Value(false) && (count == nullptr || *count > 1))
+        return not_done("image_history", wire::describe(*history));
+    }
+    const bool has_wrist = std::any_of(profile.images.begin(), profile.images.end(), is_wrist);
+    if (asks_for("send_wrist_image", true) && !has_wrist && !choices_.without_wrist) {
+      return contradicted("the server asks for send_wrist_image = true, and the profile has none",
+                          "a line `image = CAMERA -> wrist` sends one, `?send_wrist_image=false` "
+                          "runs without");
+    }
+    const wire::Value* spec = hello_.find("action_spec");
+    const auto* parts = spec == nullptr ? nullptr : spec->as<wire::Map>();
+    if (parts != nullptr && profile.action_form == ActionForm::kUnsaid) {
+      for (const auto& [name, part] : *parts) {
+        if (name != "position" && name != "rotation" && name != "gripper")
+          return not_done("an action_spec with", name);
+      }
+    }
+    const bool is_inverted = profile.action_gripper == GripperRange::kSignedInverted ||
+                             profile.action_gripper == GripperRange::kUnitInverted;
+    const std::string gripper = format_of("gripper");
+    const bool closes = gripper == "binary_close_positive";
+    const bool opens = gripper == "binary_close_negative" || gripper == "binary_open_positive";
+    if ((closes && !is_inverted) || (opens && is_inverted)) {
+      return contradicted("the server's action_spec says its gripper is " + gripper +
+                              ", and the profile reads it the other way round",
+                          closes ? "say `action.gripper = signed_inverted` or `unit_inverted`"
+                                 : "say `action.gripper = signed` or `unit`");
+    }
+    return {};
+  }
+
   // Changes of the pose or poses, and what their rotation is: by the control mode where the server
   // names one, since that is what its numbers were tried with, else by its action_spec. Where
   // neither says, vla-eval's benchmark does changes. The profile's word stands above all.
@@ -257,6 +307,12 @@ class VlaEval : public Transport {
       const bool wants_poses = mode.empty()
                                    ? asks_for("absolute_action", true) || position == "absolute_xyz"
                                    : mode == kBasePoseMode;
+      if (mode.empty() && asks_for("absolute_action", true) && position == "delta_xyz") {
+        return contradicted(
+            "the server asks for absolute_action = true, and its action_spec says "
+            "its positions are delta_xyz",
+            "say `action.form = absolute` or `delta`");
+      }
       if (mode == kDeltaMode && position == "absolute_xyz")
         return not_done("positions that are absolute_xyz, and for control_mode", mode);
       profile.action_form = wants_poses ? ActionForm::kAbsolute : ActionForm::kDelta;
@@ -266,6 +322,12 @@ class VlaEval : public Transport {
     if (!rotation.empty() && rotation != "euler_xyz" && rotation != "axis_angle" &&
         rotation != "raw") {
       return not_done("a rotation in the form", rotation);
+    }
+    if (!is_base_pose() && profile.action_form == ActionForm::kDelta && rotation == "euler_xyz") {
+      return contradicted(
+          "the server's action_spec says the rotations of its changes are "
+          "euler_xyz, and vla-eval's own benchmark takes them for rotation vectors",
+          "say `action.rotation = vector`, as published, or `euler`, as meant");
     }
     const bool is_euler =
         is_base_pose() || (profile.action_form == ActionForm::kAbsolute && rotation == "euler_xyz");
@@ -397,8 +459,10 @@ std::vector<KeyUse> vlaeval_key_uses(const Profile& profile) {
 }
 
 // `pictures`: raw, png, jpeg; else raw to this machine and png to others. `send_state`: true,
-// false; else what the server asks for.
-constexpr std::array<std::string_view, 2> kVlaEvalOptions = {"pictures", "send_state"};
+// false; else what the server asks for. `send_wrist_image`: false, where it asks for what there is
+// not.
+constexpr std::array<std::string_view, 3> kVlaEvalOptions = {"pictures", "send_state",
+                                                             "send_wrist_image"};
 constexpr std::array<std::string_view, 4> kVlaEvalKeys = {"images", "task_name", "base_pose",
                                                           "tcp_pose"};
 

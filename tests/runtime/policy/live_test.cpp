@@ -231,8 +231,7 @@ TEST_CASE("a policy in this process is late by what it took") {
 
 TEST_CASE("figures say how often nothing was done and how late answers were") {
   LiveFigures figures;
-  CHECK(to_text(figures) ==
-        "0.0 % of 0 control steps had no action of the policy; no answer came in time");
+  CHECK(to_text(figures) == "no control step was done");
   for (int step = 0; step < 100; ++step) {
     LiveStep live;
     live.source = step % 4 == 0 ? LiveSource::kHeld : LiveSource::kAnswer;

@@ -194,6 +194,27 @@ TEST_CASE("what was shown of a server goes with its rows, once, and must be the 
     CHECK(std::ranges::any_of(
         *calls, [](const RunCall& call) { return call.reading && call.reading->is_unchecked; }));
   }
+  // Another policy is refused, as a run refuses to go on with it; only the user knows that another
+  // machine rounds otherwise.
+  policy::Reading steady = shown;
+  steady.questions_sha256 = "cd";
+  steady.is_steady = true;
+  part("d", 0, steady);
+  steady.answers_sha256 = "ef";
+  part("e", 1, steady);
+  const auto exchanged = merge({{folder / "d", folder / "e"}, folder / "de"});
+  REQUIRE_FALSE(exchanged.ok());
+  CHECK(exchanged.failure().where == folder / "e");
+  CHECK(exchanged.failure().message.find("answered the first questions otherwise") !=
+        std::string::npos);
+  MergeOptions mixed{{folder / "d", folder / "e"}, folder / "de"};
+  mixed.mixed_builds = true;
+  must_merge(mixed);
+  const auto summary = summarize_readings(*read_run_calls(folder / "de"));
+  CHECK(summary.good == "");
+  REQUIRE(summary.findings.size() == 1);
+  CHECK(summary.findings[0].find("more than one policy, or machines that round otherwise") !=
+        std::string::npos);
   shown.measured = {{"action.form", "absolute"}};
   part("c", 1, shown);
   const auto other = merge({{folder / "a", folder / "c"}, folder / "ac"});

@@ -213,6 +213,24 @@ TEST_CASE(
         "the server asks for a position in the form = joint_positions, which is not done here");
   CHECK(refusal(R"(spec={"rotation": {"format": "rot6d_interleaved"}})") ==
         "the server asks for a rotation in the form = rot6d_interleaved, which is not done here");
+  CHECK(refusal(R"(params={"image_history": 2})") ==
+        "the server asks for image_history = the number 2, which is not done here");
+  CHECK(refusal(R"(params={"send_wrist_image": true})")
+            .find("`?send_wrist_image=false` runs "
+                  "without") != std::string::npos);
+  CHECK(refusal(R"(spec={"joints": {"format": "joint_delta_pos"}})") ==
+        "the server asks for an action_spec with = joints, which is not done here");
+  CHECK(refusal(R"(spec={"gripper": {"format": "binary_close_positive"}})")
+            .find("the profile reads it the other way round") != std::string::npos);
+  const PythonServer torn("vlaeval_server.py", {R"(params={"absolute_action": true})",
+                                                R"(spec={"position": {"format": "delta_xyz"}})"});
+  const auto unclear = policy_at("vlaeval", torn)->begin(asking_start());
+  REQUIRE_FALSE(unclear.ok());
+  CHECK(unclear.failure().message.find("say `action.form = absolute` or `delta`") !=
+        std::string::npos);
+  CHECK(policy_at("vlaeval", torn, "&action.form=absolute&action.rotation=vector")
+            ->begin(asking_start())
+            .ok());
   const PythonServer server("vlaeval_server.py",
                             {R"(spec={"position": {"format": "absolute_xyz"}, )"
                              R"("rotation": {"format": "euler_xyz"}})"});
@@ -226,6 +244,13 @@ TEST_CASE(
   Profile as_published;
   as_published.images = {{"", "primary"}};
   const auto transport = opened(euler);
+  // Which of the two is meant the profile must say.
+  const auto unsaid = transport->adapt(as_published);
+  REQUIRE_FALSE(unsaid.ok());
+  CHECK(unsaid.failure().message.find("say `action.rotation = vector`, as published") !=
+        std::string::npos);
+  as_published.action_form = ActionForm::kUnsaid;
+  as_published.action_rotation = RotationForm::kVector;
   REQUIRE(transport->adapt(as_published).ok());
   CHECK(as_published.action_form == ActionForm::kDelta);
   CHECK(as_published.action_rotation == RotationForm::kVector);
