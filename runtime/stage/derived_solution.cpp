@@ -202,7 +202,10 @@ class Deriver {
     auto& contacts = world.sample.contacts;
     const auto pair = [](const vm::ContactSample& c) { return std::pair(c.a, c.b); };
     std::ranges::stable_sort(contacts, {}, pair);
-    contacts.erase(std::ranges::unique(contacts, {}, pair).begin(), contacts.end());
+    const auto is_same = [&](const vm::ContactSample& a, const vm::ContactSample& b) {
+      return pair(a) == pair(b);
+    };
+    contacts.erase(std::unique(contacts.begin(), contacts.end(), is_same), contacts.end());
     return vm::judge_world(plan_, task_, success_, std::move(world));
   }
 
