@@ -220,17 +220,16 @@ Status EpisodeWorld::act(const policy::Action& now) {
     if (!std::ranges::all_of(now, [](double number) { return std::isfinite(number); }))
       return Failure{Fault::kPolicy, "an action has a number that is not finite", ""};
     waiting_.push_back(now);
-    if (waiting_.size() <= task_.delay) {
-      PROBE_TRY(loop_->step(kStay, substeps_, &controller_, world_.get()));
-      ++steps_;
-      measure();
-      return {};
-    }
+    if (waiting_.size() <= task_.delay) return move(kStay);
     action = waiting_.front();
     waiting_.pop_front();
   }
   const auto* osc = std::get_if<robot::OscPose>(&robot_.law);
-  const policy::Action numbers = osc == nullptr ? action : robot::shares_of(*osc, action);
+  return move(osc == nullptr ? action : robot::shares_of(*osc, action));
+}
+
+// One control step with what the controller reads.
+Status EpisodeWorld::move(const policy::Action& numbers) {
   PROBE_TRY(loop_->step(numbers, substeps_, &controller_, world_.get()));
   ++steps_;
   measure();

@@ -83,6 +83,7 @@ class EpisodeWorld {
   world::WorldSpec spec_at(const Arrangement& at, bool with_robot_links) const;
   Result<Arrangement> settle(const Arrangement& placed);
   Status idle();
+  Status move(const policy::Action& numbers);
   bool still_moves(const world::World& world) const;
   std::span<const double> robot_q() const { return q().first(controller_.joint_count()); }
   void measure();

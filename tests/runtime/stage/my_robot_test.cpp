@@ -10,10 +10,10 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
-#include "runtime/expert/expert.h"
 #include "runtime/plan/plan.h"
 #include "runtime/stage/stage.h"
 #include "tests/runtime/stage/gantry.h"
+#include "tests/runtime/stage/solves.h"
 
 namespace probe::stage {
 namespace {
@@ -56,27 +56,10 @@ TEST_CASE("the example's own robot is checked, its hand measured, and the expert
   REQUIRE_MESSAGE(loaded.ok(), (loaded.ok() ? "" : to_text(loaded.failure())));
   const auto stage = Stage::create(*plan, tasks[0], *loaded, {{}, false});
   REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
-  const auto metrics = plan->metrics(plan->tasks()[tasks[0]]);
   const std::uint32_t starts = plan->tasks()[tasks[0]].episodes.count;
   int solved = 0;
-  for (std::uint32_t start = 0; start < starts; ++start) {
-    const auto expert = expert::make_expert({});
-    REQUIRE(expert.ok());
-    REQUIRE((*stage)->reset(start).ok());
-    const Status begun = (*expert)->begin((*stage)->introduction());
-    REQUIRE_MESSAGE(begun.ok(), (begun.ok() ? "" : to_text(begun.failure())));
-    while (!(*stage)->done()) {
-      const auto seen = (*stage)->observe();
-      REQUIRE(seen.ok());
-      const auto action = (*expert)->act(*seen);
-      REQUIRE_MESSAGE(action.ok(), (action.ok() ? "" : to_text(action.failure())));
-      const Status stepped = (*stage)->step(*action);
-      REQUIRE_MESSAGE(stepped.ok(), (stepped.ok() ? "" : to_text(stepped.failure())));
-    }
-    for (std::uint32_t m = 0; m < metrics.size(); ++m) {
-      if (plan->text(metrics[m].name) == "success") solved += (*stage)->judge().truth(m) ? 1 : 0;
-    }
-  }
+  for (std::uint32_t start = 0; start < starts; ++start)
+    solved += solves(**stage, *plan, start) ? 1 : 0;
   MESSAGE("the gantry: " << solved << " of " << starts);
   CHECK(solved == static_cast<int>(starts));
 }

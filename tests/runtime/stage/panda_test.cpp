@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "runtime/expert/expert.h"
 #include "runtime/stage/robot_of.h"
 #include "runtime/stage/stage.h"
 #include "tests/parity/published.h"
+#include "tests/runtime/stage/solves.h"
 #include "tests/runtime/world/panda.h"
 
 namespace probe::stage {
@@ -31,27 +31,6 @@ Opened open(const std::string& name) {
   auto stage = Stage::create(panda_plan(), tasks[0], *assets, {{}, false});
   REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
   return {*assets, std::move(*stage)};
-}
-
-bool solves(Stage& stage, std::uint32_t start) {
-  const auto expert = expert::make_expert({});
-  REQUIRE(expert.ok());
-  REQUIRE(stage.reset(start).ok());
-  const Status begun = (*expert)->begin(stage.introduction());
-  REQUIRE_MESSAGE(begun.ok(), (begun.ok() ? "" : to_text(begun.failure())));
-  while (!stage.done()) {
-    const auto seen = stage.observe();
-    REQUIRE(seen.ok());
-    const auto action = (*expert)->act(*seen);
-    REQUIRE_MESSAGE(action.ok(), (action.ok() ? "" : to_text(action.failure())));
-    const Status stepped = stage.step(*action);
-    REQUIRE_MESSAGE(stepped.ok(), (stepped.ok() ? "" : to_text(stepped.failure())));
-  }
-  const auto metrics = panda_plan().metrics(panda_plan().tasks()[stage.task()]);
-  for (std::uint32_t m = 0; m < metrics.size(); ++m) {
-    if (panda_plan().text(metrics[m].name) == "success") return stage.judge().truth(m);
-  }
-  return false;
 }
 
 TEST_CASE("the text's Panda is the one that the reference's records were compared with") {
@@ -114,7 +93,7 @@ TEST_CASE("the expert puts things where they belong with the Panda, too") {
     int solved = 0;
     const std::uint32_t starts = panda_plan().tasks()[opened.stage->task()].episodes.count;
     for (std::uint32_t start = 0; start < starts; ++start) {
-      const bool success = solves(*opened.stage, start);
+      const bool success = solves(*opened.stage, panda_plan(), start);
       CHECK_MESSAGE(success, task, " start ", start);
       solved += success ? 1 : 0;
     }

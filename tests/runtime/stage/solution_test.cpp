@@ -9,9 +9,9 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
-#include "runtime/expert/expert.h"
 #include "runtime/plan/skills.h"
 #include "runtime/stage/stage.h"
+#include "tests/runtime/stage/solves.h"
 
 namespace probe::stage {
 namespace {
@@ -68,19 +68,7 @@ bool solves(const plan::Plan& plan, const std::string& name, std::uint32_t start
   REQUIRE_MESSAGE(loaded.ok(), (loaded.ok() ? "" : to_text(loaded.failure())));
   const auto stage = Stage::create(plan, tasks[0], *loaded, {{}, false});
   REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
-  const auto expert = expert::make_expert({});
-  REQUIRE(expert.ok());
-  REQUIRE((*stage)->reset(start).ok());
-  REQUIRE((*expert)->begin((*stage)->introduction()).ok());
-  while (!(*stage)->done()) {
-    const auto seen = (*stage)->observe();
-    REQUIRE(seen.ok());
-    const auto action = (*expert)->act(*seen);
-    REQUIRE_MESSAGE(action.ok(), (action.ok() ? "" : to_text(action.failure())));
-    const Status stepped = (*stage)->step(*action);
-    REQUIRE_MESSAGE(stepped.ok(), (stepped.ok() ? "" : to_text(stepped.failure())));
-  }
-  return (*stage)->judge().truth(*plan.find_metric(plan.tasks()[tasks[0]], "success"));
+  return solves(**stage, plan, start);
 }
 
 TEST_CASE("a solution's words are in the plan and in no id, roles stand for what fills them") {
