@@ -11,6 +11,7 @@ extern "C" {
 }
 
 #include <cstring>
+#include <vector>
 
 namespace probe::show {
 namespace {
@@ -58,9 +59,10 @@ class Mp4Writer final : public VideoWriter {
     codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT;
     av_opt_set(codec_->priv_data, "preset", "veryfast", 0);
     av_opt_set(codec_->priv_data, "crf", "20", 0);
-    // x264's own threads would cut the picture by the number of cores.
-    av_opt_set(codec_->priv_data, "x264-params", "threads=1:lookahead-threads=1:sliced-threads=0",
-               0);
+    // x264's own threads would cut the picture by the number of cores; its macroblock tree, whose
+    // AVX-512 code reads memory that nothing wrote, would make other bytes from the same pictures.
+    av_opt_set(codec_->priv_data, "x264-params",
+               "threads=1:lookahead-threads=1:sliced-threads=0:mbtree=0", 0);
     code = avcodec_open2(codec_, encoder, nullptr);
     if (code < 0) return failed("libx264 does not open", code);
     stream_->time_base = codec_->time_base;
@@ -77,6 +79,7 @@ class Mp4Writer final : public VideoWriter {
         sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
                        SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
     if (scaler_ == nullptr) return failed("no colour conversion", 0);
+    padded_.resize(rgb_bytes() + 64);
 
     code = avio_open(&format_->pb, path_.c_str(), AVIO_FLAG_WRITE);
     if (code < 0) return failed("cannot be made", code);
@@ -89,12 +92,11 @@ class Mp4Writer final : public VideoWriter {
   }
 
   Status add(std::span<const std::uint8_t> rgb) override {
-    const std::size_t wanted =
-        3 * static_cast<std::size_t>(codec_->width) * static_cast<std::size_t>(codec_->height);
-    if (rgb.size() != wanted) return failed("a frame of another size", 0);
+    if (rgb.size() != rgb_bytes()) return failed("a frame of another size", 0);
     int code = av_frame_make_writable(frame_);
     if (code < 0) return failed("no memory", code);
-    const std::uint8_t* rows[] = {rgb.data()};
+    std::memcpy(padded_.data(), rgb.data(), rgb.size());
+    const std::uint8_t* rows[] = {padded_.data()};
     const int strides[] = {3 * codec_->width};
     sws_scale(scaler_, rows, strides, 0, codec_->height, frame_->data, frame_->linesize);
     frame_->pts = next_++;
@@ -111,6 +113,10 @@ class Mp4Writer final : public VideoWriter {
   }
 
  private:
+  std::size_t rgb_bytes() const {
+    return 3 * static_cast<std::size_t>(codec_->width) * static_cast<std::size_t>(codec_->height);
+  }
+
   Failure failed(const char* what, int code) const {
     return {Fault::kVideo, code == 0 ? std::string(what) : std::string(what) + ": " + said(code),
             path_};
@@ -138,6 +144,7 @@ class Mp4Writer final : public VideoWriter {
   AVFrame* frame_ = nullptr;
   AVPacket* packet_ = nullptr;
   SwsContext* scaler_ = nullptr;
+  std::vector<std::uint8_t> padded_;  // one frame; the scaler reads a few bytes behind its end
   std::int64_t next_ = 0;
 };
 
