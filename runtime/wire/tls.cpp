@@ -159,14 +159,25 @@ Result<std::unique_ptr<TlsStream>> TlsStream::over(asio::ip::tcp::socket& socket
   return std::unique_ptr<TlsStream>(new TlsStream(std::move(parts)));
 }
 
+// Whether a server that closes is heard to end the stream or to reset the connection is a race with
+// what we still send: both are a connection that ended without TLS's own end.
+static TlsStream::DoneBytes told_as_cut(TlsStream::DoneBytes done) {
+  return [done = std::move(done)](TlsStream::Error error, std::size_t bytes) {
+    const bool is_reset = error == asio::error::connection_reset ||
+                          error == asio::error::broken_pipe ||
+                          error == asio::error::connection_aborted;
+    done(is_reset ? boost::system::error_code(ssl::error::stream_truncated) : error, bytes);
+  };
+}
+
 void TlsStream::async_handshake(Done done) {
   parts_->stream.async_handshake(ssl::stream_base::client, std::move(done));
 }
 void TlsStream::async_read_some(asio::mutable_buffer buffer, DoneBytes done) {
-  parts_->stream.async_read_some(buffer, std::move(done));
+  parts_->stream.async_read_some(buffer, told_as_cut(std::move(done)));
 }
 void TlsStream::async_write_some(asio::const_buffer buffer, DoneBytes done) {
-  parts_->stream.async_write_some(buffer, std::move(done));
+  parts_->stream.async_write_some(buffer, told_as_cut(std::move(done)));
 }
 void TlsStream::async_shutdown(Done done) { parts_->stream.async_shutdown(std::move(done)); }
 

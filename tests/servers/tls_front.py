@@ -2,12 +2,13 @@
 
 tls_front.py ca=FILE [cert=KIND] [fault=NAME] [shown=PREFIX] SCRIPT [argument...]
 
-FILE gets the authority's certificate; PREFIX.pem and PREFIX.key what is shown, for other servers. KIND is good (for localhost and 127.0.0.1), expired, early (not
-yet valid), elsewhere (for other hosts), purpose (for clients only), stranger (signed by an authority
-that is not in FILE) or self (signed by itself). Faults: `hang` never answers a handshake, `cut` ends
-connections without TLS's own end, `mutual` and `mutual12` want a certificate of the client (TLS 1.3 and
-1.2), `old` speaks TLS 1.1; asyncio closes on a client that does not fit without saying so, and with
-`alerts` the server says it.
+FILE gets the authority's certificate; PREFIX.pem and PREFIX.key what is shown, for other servers.
+KIND is good (for localhost and 127.0.0.1), expired, early (not yet valid), elsewhere (for other hosts),
+purpose (for clients only), stranger (signed by an authority that is not in FILE) or self (signed by
+itself). Faults: `hang` never answers a handshake, `cut` ends connections without TLS's own end, `reset`
+resets them right behind the handshake (with `alerts`), `mutual` and `mutual12` want a certificate of the
+client (TLS 1.3 and 1.2), `old` speaks TLS 1.1; asyncio closes on a client that does not fit without
+saying so, and with `alerts` the server says it.
 """
 import asyncio
 import ctypes
@@ -17,6 +18,7 @@ import os
 import signal
 import socket
 import ssl
+import struct
 import subprocess
 import sys
 import tempfile
@@ -122,6 +124,8 @@ def alert(made):
         inside = made.wrap_socket(connection, server_side=True, do_handshake_on_connect=False)
         try:
             inside.do_handshake()
+            inside.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            inside.close()  # with a reset, as where a client still sends
         except (OSError, ssl.SSLError):
             time.sleep(0.5)  # closed at once, what the client still sent would cut the connection
             inside.close()

@@ -184,6 +184,9 @@ TEST_CASE("servers that want a client's certificate, or speak an old TLS, are to
     CHECK(said({"fault=mutual"}, over_http) ==
           "the server closed the connection right behind TLS's handshake: does it want a "
           "certificate of its clients (mutual TLS)? vlaprobe has none");
+    CHECK(said({"fault=reset", "alerts=yes"}, over_http) ==
+          "the server closed the connection right behind TLS's handshake: does it want a "
+          "certificate of its clients (mutual TLS)? vlaprobe has none");
     for (const char* fault : {"fault=mutual12", "fault=old"}) {
       CHECK(said({fault}, over_http) ==
             "opening TLS: the server closed the connection; does it speak TLS, of 1.2 or newer and "
