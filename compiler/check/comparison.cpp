@@ -35,6 +35,8 @@ const Span* statement_of(const Task& task, plan::Axis axis) {
       return &task.layout_span;
     case plan::Axis::kLatency:
       return &task.delay_span;
+    case plan::Axis::kMotion:
+      return task.motions.empty() ? nullptr : &task.motions.front().span;
     case plan::Axis::kLanguageAppearance:
     case plan::Axis::kLanguageCommonsense:
     case plan::Axis::kLanguageSpatial:

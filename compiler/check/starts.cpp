@@ -48,7 +48,7 @@ void check_starts(const Model& model, const std::string& asset_root, Reporter& r
     Where where{task.scene, {}, joint_starts_of(model, task)};
     for (const View& view : views_of(model, task)) std::get<1>(where).push_back(view.camera);
     auto& known = fine_in[task.starts.data()];
-    if (known.contains(where)) {
+    if (task.motions.empty() && known.contains(where)) {
       fine[index] = true;
       continue;
     }
@@ -61,6 +61,7 @@ void check_starts(const Model& model, const std::string& asset_root, Reporter& r
     check_travel(starts, travels);
     // What lies beside the table is out of reach and out of view as well.
     if (check_surface(starts) && check_reach(starts, arms)) check_frame(starts);
+    check_motion(starts, travels);
     fine[index] = reporter.diagnostics.size() == before;
     if (fine[index]) known.insert(std::move(where));
   }

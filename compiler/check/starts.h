@@ -58,6 +58,7 @@ bool check_surface(const TaskStarts& starts);            // P0505; false when so
 bool check_reach(const TaskStarts& starts, Arms& arms);  // P0502; as above
 void check_frame(const TaskStarts& starts);              // P0505 as a warning
 void check_travel(const TaskStarts& starts, Travels& travels);                        // P1302
+void check_motion(const TaskStarts& starts, Travels& travels);                        // P1511
 void check_fixture_places(const Model& model, Travels& travels, Reporter& reporter);  // P1302
 
 std::string centimetres(double metres);  // "7.5cm"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "compiler/define/fixture.h"
+#include "compiler/define/motion.h"
 #include "compiler/define/role.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
@@ -208,6 +209,7 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       !same_choice(a, b) ||
       (a.scene != b.scene && !is_same_place(model, model.scenes[a.scene], model.scenes[b.scene])) ||
       layout.joints_jitter != model.layouts[b.layout].joints_jitter || a.delay != b.delay ||
+      !same_motions(model, a, b) ||
       !same_sensors(model, a, b) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) || joint_starts_of(model, a) != joint_starts_of(model, b) ||
@@ -311,6 +313,8 @@ class Comparison {
                model_.layouts[baseline_.layout].joints_jitter;
       case plan::Axis::kLatency:
         return task_.delay != baseline_.delay;
+      case plan::Axis::kMotion:
+        return !same_motions(model_, task_, baseline_);
       case plan::Axis::kGoal:
         return !same_goal(model_, task_, baseline_);
     }
@@ -438,6 +442,7 @@ bool uses(const Model& model, const Task& task, plan::Axis axis) {
     case plan::Axis::kSensor:
     case plan::Axis::kRobot:
     case plan::Axis::kLatency:
+    case plan::Axis::kMotion:
     case plan::Axis::kGoal:
       break;
   }

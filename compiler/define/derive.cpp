@@ -29,7 +29,7 @@ bool is_identifier(const std::string& text) {
 // A number in a name: "0.8" is 0_8 and "-3cm" m3cm.
 std::string as_name(std::string_view value) {
   std::string name(value);
-  std::ranges::replace(name, '.', '_');
+  std::ranges::replace_if(name, [](char c) { return c == '.' || c == '/'; }, '_');
   std::ranges::replace(name, '-', 'm');
   return name;
 }

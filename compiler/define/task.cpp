@@ -12,6 +12,7 @@
 #include "compiler/define/define.h"
 #include "compiler/define/fixture.h"
 #include "compiler/define/metrics.h"
+#include "compiler/define/motion.h"
 #include "compiler/define/role.h"
 #include "compiler/define/solution.h"
 #include "compiler/define/template.h"
@@ -333,6 +334,18 @@ struct TaskReader {
     task.delay_time =
         read_quantity(context, *time, dim::kTime, "`delay` takes a number of steps, or a time");
     poisoned = poisoned || !task.delay_time;
+  }
+  void operator()(const syntax::MovesStmt& stmt) {
+    std::optional<syntax::Quantity> speed = stmt.speed;
+    if (!stmt.points.empty()) speed = bound(stmt.speed);
+    if (!speed) return;
+    auto motion = read_motion(context, stmt, *speed);
+    poisoned = poisoned || !motion;
+    if (!motion) return;
+    motion->what = spelled(bound(stmt.what));
+    std::erase_if(task.motions,
+                  [&](const Motion& old) { return old.what.text == motion->what.text; });
+    if (!motion->points.empty()) task.motions.push_back(std::move(*motion));
   }
   void operator()(const syntax::SolutionStmt& stmt) {
     const auto solution =
@@ -704,6 +717,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   if (task.complete) check_cameras(context_, task, poisoned);
   if (task.complete) check_joint_starts(context_, task, poisoned);
   if (task.complete) count_delay(context_, task, poisoned);
+  if (task.complete && !task.abstract) poisoned = !check_motions(context_, task) || poisoned;
   if (task.complete && !task.abstract) poisoned = !check_solution(context_, task) || poisoned;
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);
   task.complete = task.complete && !poisoned;

@@ -3,6 +3,7 @@
 
 #include "compiler/define/arm_start.h"
 #include "compiler/define/fixture.h"
+#include "compiler/define/motion.h"
 #include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
 #include "runtime/plan/limits.h"
@@ -138,6 +139,16 @@ plan::Slice Emitter::add_arm_start(const sema::Task& task, std::size_t index) {
   return at->second;
 }
 
+plan::Slice Emitter::add_moves(const sema::Task& task) {
+  std::vector<plan::MoveRecord> rows;
+  for (const sema::Mover& mover : movers_of(model_, task)) {
+    const auto legs = legs_of(*mover.motion, mover.place);
+    rows.insert(rows.end(), legs.begin(), legs.end());
+  }
+  if (rows.empty()) return {};
+  return plan::append(records().moves, std::span<const plan::MoveRecord>(rows));
+}
+
 void Emitter::add_task(const sema::Task& task) {
   const sema::Scene& scene = model_.scenes[task.scene];
   if (!model_.robots[scene.robot].model) return;
@@ -175,6 +186,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.horizon = static_cast<std::uint32_t>(task.horizon);
   record.idle = task.idle;
   record.delay = task.delay;
+  record.moves = add_moves(task);
   record.baseline = tasks_[task.baseline];
   record.axes = record.baseline == plan::kNone ? 0 : task.axes;
   record.ood = task.ood;

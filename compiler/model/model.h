@@ -455,6 +455,15 @@ struct SkillUse {
   Span span;
 };
 
+// `moves`, as written; who that is depends on the task.
+struct Motion {
+  Spelled what;
+  plan::Way way = plan::Way::kBack;
+  std::vector<std::array<double, 2>> points;  // m, from where it lies when the episode begins
+  double speed = 0;                           // m/s
+  Span span;
+};
+
 struct Task {
   std::string name;
   Span span;       // of its name
@@ -497,6 +506,7 @@ struct Task {
   Span delay_span;
   std::vector<Metric> overrides;  // `set`
   std::vector<SkillUse> solution;
+  std::vector<Motion> motions;
 
   Span layout_span, say_span, distractors_span, horizon_span;
   std::vector<Span> distractor_spans;  // by distractor

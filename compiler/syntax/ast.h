@@ -830,6 +830,13 @@ struct DelayStmt {  // `delay 2 steps`, `delay 400ms`
   Span span;
   std::variant<Int, Quantity> how_long;
 };
+struct MovesStmt {  // `moves mug along (10cm, 0cm) at 5cm/s once`
+  Span span;
+  Name what;
+  plan::Way way = plan::Way::kBack;
+  std::vector<Point> points;  // empty: `none`
+  Quantity speed;
+};
 // What a skill is done with: `source`, `cabinet.top_drawer`.
 struct SkillOperand {
   Span span;
@@ -851,7 +858,7 @@ struct SolutionStmt {  // `none` is the empty list
 };
 using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
                               ReferStmt, PoseStmt, StartStmt, HorizonStmt, IdleStmt, DelayStmt,
-                              SolutionStmt, MetricStmt, RoleStmt>;
+                              MovesStmt, SolutionStmt, MetricStmt, RoleStmt>;
 
 struct TaskDecl {
   bool abstract = false;

@@ -149,6 +149,25 @@ TaskStmt Parser::task_delay() {
   return out;
 }
 
+TaskStmt Parser::task_moves() {
+  MovesStmt out;
+  out.what = name();
+  if (accept_word("none")) return out;
+  if (accept_word("around")) {
+    out.way = plan::Way::kRound;
+    out.points.push_back(point());
+  } else {
+    expect_word("along");
+    out.points = comma_list([this] { return point(); });
+  }
+  expect_word("at");
+  out.speed = bound_quantity();
+  if (out.way == plan::Way::kRound) return out;
+  if (accept_word("once")) out.way = plan::Way::kOnce;
+  if (out.way == plan::Way::kBack && accept_word("loop")) out.way = plan::Way::kLoop;
+  return out;
+}
+
 DeclNode Parser::role_decl() {
   advance();
   RoleDecl out;

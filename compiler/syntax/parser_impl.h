@@ -280,6 +280,7 @@ class Parser {
   TaskStmt task_horizon();
   TaskStmt task_idle();
   TaskStmt task_delay();
+  TaskStmt task_moves();
   TaskStmt task_metric();
   TaskStmt task_role();
   DeclNode role_decl();

@@ -178,6 +178,16 @@ bool same_arms(const plan::Plan& plan, const plan::TaskRecord& a, const plan::Ta
   return true;
 }
 
+bool same_moves(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+  const auto legs = [&](const plan::TaskRecord& task) {
+    return plan::slice_of(plan.tables().moves, task.moves);
+  };
+  return std::ranges::equal(
+      legs(a), legs(b), [](const plan::MoveRecord& p, const plan::MoveRecord& q) {
+        return p.body == q.body && p.way == q.way && p.to == q.to && p.speed == q.speed;
+      });
+}
+
 std::vector<double> joint_starts(const plan::Plan& plan, const plan::TaskRecord& task) {
   return plan::joint_starts_of(plan.tables(), plan.scenes()[task.scene], plan.episodes(task)[0]);
 }
@@ -249,6 +259,8 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
         return !same_arms(plan, a, b);
       case plan::Axis::kLatency:
         return a.delay != b.delay;
+      case plan::Axis::kMotion:
+        return !same_moves(plan, a, b);
       case plan::Axis::kGoal:
         return !same_goal(plan, hasher, a, b);
       // Frames and phrases are not in a plan.

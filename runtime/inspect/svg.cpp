@@ -114,6 +114,7 @@ class Page {
     window_.include(view.base);
     for (const Footprint& print : view.footprints) {
       for (const Point& corner : print.outline) window_.include(corner);
+      for (const Point& corner : print.way) window_.include(corner);
     }
     for (const TopPart& part : view.parts) {
       for (const auto* outlines : {&part.outlines, &part.open}) {
@@ -265,14 +266,16 @@ class Page {
   void footprints(Role role) {
     for (const Footprint& print : view_.footprints) {
       if (print.role != role) continue;
-      put("<g fill=\"{0}\" stroke=\"{0}\"><title>{1} at ({2}, {3}) cm, yaw {4} deg: starts "
+      put("<g fill=\"{0}\" stroke=\"{0}\"><title>{1} at ({2}, {3}) cm, yaw {4} deg{6}: starts "
           "{5}</title>\n",
           colour(role), escaped(print.object), cm(print.at.x), cm(print.at.y),
-          fmt::format("{}", std::nearbyint(print.yaw_deg * 10) / 10 + 0.0), ranges(print.starts));
+          fmt::format("{}", std::nearbyint(print.yaw_deg * 10) / 10 + 0.0), ranges(print.starts),
+          print.moves.empty() ? "" : ", moves " + print.moves);
       put("<polygon points=\"{}\" fill-opacity=\"0.12\" stroke-width=\"1.3\" "
           "stroke-opacity=\"0.75\"/>\n",
           points(print.outline));
       yaw_arrow(print);
+      way(print);
       put("</g>\n");
     }
   }
@@ -292,6 +295,22 @@ class Page {
     put("<polygon points=\"{},{} {},{} {},{}\" stroke=\"none\"/>\n", px(to_x), px(to_y),
         px(back_x - 3.5 * sin), px(back_y - 3.5 * cos), px(back_x + 3.5 * sin),
         px(back_y + 3.5 * cos));
+  }
+
+  // Where it goes by itself, dashed, and an arrow's head where the first leg ends.
+  void way(const Footprint& print) {
+    if (print.way.size() < 2) return;
+    std::string path;
+    for (const Point& corner : print.way)
+      path += fmt::format("{}{} {}", path.empty() ? "M" : "L", px(x(corner.x)), px(y(corner.y)));
+    put("<path d=\"{}\" fill=\"none\" stroke-width=\"1.6\" stroke-dasharray=\"6 4\"/>\n", path);
+    const Point &from = print.way[0], &to = print.way[1];
+    const double along_x = to.x - from.x, along_y = to.y - from.y;
+    const double length = std::sqrt(along_x * along_x + along_y * along_y);
+    const double cos = along_x / length, sin = along_y / length;
+    const double back_x = x(to.x) - 9 * cos, back_y = y(to.y) + 9 * sin;
+    put("<polygon points=\"{},{} {},{} {},{}\" stroke=\"none\"/>\n", px(x(to.x)), px(y(to.y)),
+        px(back_x - 4 * sin), px(back_y - 4 * cos), px(back_x + 4 * sin), px(back_y + 4 * cos));
   }
 
   void markers() {

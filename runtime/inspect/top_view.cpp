@@ -12,6 +12,7 @@
 #include "runtime/inspect/checked_urdf.h"
 #include "runtime/inspect/ground_image.h"
 #include "runtime/inspect/top_fixtures.h"
+#include "runtime/plan/moves.h"
 #include "runtime/plan/roles.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/robot/urdf.h"
@@ -52,6 +53,12 @@ Footprint footprint_of(const plan::Plan& plan, const plan::PlacementRecord& plac
   return print;
 }
 
+void add_way(std::span<const plan::MoveRecord> legs, Footprint& print) {
+  for (const auto& [x, y] : plan::corners_of(legs))
+    print.way.push_back({print.at.x + x, print.at.y + y});
+  print.moves = plan::move_text(legs);
+}
+
 Role role_of(const plan::TaskRoles& roles, std::uint32_t body) {
   if (body == roles.source) return Role::kSource;
   if (body == roles.target) return Role::kTarget;
@@ -66,6 +73,7 @@ void add_starts(const plan::Plan& plan, const plan::TaskRecord& task, TopView& v
   std::map<std::tuple<Role, std::uint32_t, std::array<double, 3>, std::array<double, 4>>,
            std::size_t>
       known;
+  const auto moves = plan::moves_of(plan.tables(), task);
   for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
     const auto placements = plan.placements(episode);
     for (std::size_t i = 0; i < placements.size(); ++i) {
@@ -73,7 +81,12 @@ void add_starts(const plan::Plan& plan, const plan::TaskRecord& task, TopView& v
       const Role role = role_of(roles, static_cast<std::uint32_t>(i));
       const auto [at, is_new] = known.try_emplace(
           {role, placement.object, placement.position, placement.rotation}, view.footprints.size());
-      if (is_new) view.footprints.push_back(footprint_of(plan, placement, role));
+      if (is_new) {
+        view.footprints.push_back(footprint_of(plan, placement, role));
+        for (const auto legs : moves) {
+          if (legs.front().body == i) add_way(legs, view.footprints.back());
+        }
+      }
       view.footprints[at->second].starts.push_back(episode.index);
       view.cells.push_back({placement.position[0], placement.position[1]});
     }

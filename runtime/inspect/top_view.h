@@ -30,6 +30,8 @@ struct Footprint {
   double yaw_deg = 0;          // of the object's x axis
   std::vector<Point> outline;  // the box seen from above, convex, counter-clockwise
   std::vector<std::uint32_t> starts;
+  std::vector<Point> way;  // where its origin goes by itself, corner by corner; empty: it stays
+  std::string moves;       // the same in words
 };
 
 // As it stands when the robot is in its initial position.

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "runtime/plan/moves.h"
+
 namespace probe::inspect {
 namespace {
 
@@ -69,6 +71,10 @@ std::vector<std::string> varied_in(const plan::Plan& plan, const plan::TaskRecor
   if (task.delay != 0)
     varied.push_back(
         fmt::format("actions late by {} {}", task.delay, task.delay == 1 ? "step" : "steps"));
+  for (const auto legs : plan::moves_of(plan.tables(), task))
+    varied.push_back(fmt::format("{} moves {}",
+                                 plan.text(plan.bodies(task)[legs.front().body].name),
+                                 plan::move_text(legs)));
   if (const double most = farthest_arm(plan, task); most > 0)
     varied.push_back(fmt::format("the arm begins up to {:.3g} degrees elsewhere", most));
   return varied;

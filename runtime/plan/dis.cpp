@@ -7,6 +7,7 @@
 
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/isa.h"
+#include "runtime/plan/moves.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
 #include "runtime/plan/source_line.h"
@@ -236,6 +237,9 @@ void list_variations(std::string& out, const Plan& plan) {
   }
   for (const TaskRecord& k : plan.tasks()) {
     if (k.delay != 0) fmt::format_to(in, "  {} delay {}\n", plan.text(k.name), k.delay);
+    for (const auto legs : moves_of(plan.tables(), k))
+      fmt::format_to(in, "  {} moves {} {}\n", plan.text(k.name),
+                     plan.text(plan.bodies(k)[legs.front().body].name), move_text(legs));
   }
   if (!text.empty()) fmt::format_to(to, "\nvaried\n{}", text);
 }

@@ -409,9 +409,22 @@ struct TaskRecord {
   Slice roles;  // kRoles, in the order of their bodies
   std::uint32_t delay = 0;  // control steps until an action acts
   std::uint32_t zero = 0;
-  std::uint64_t zero2[4] = {};
+  Slice moves;  // kMoves, ascending by body; legs of one body follow one another
+  std::uint64_t zero2[3] = {};
 };
 static_assert(sizeof(TaskRecord) == 192);
+
+enum class Way : std::uint32_t { kBack = 0, kLoop = 1, kOnce = 2, kRound = 3 };
+
+// A leg of the way that an object takes by itself, from the first step on and until the robot touches
+// it; see moves.h.
+struct MoveRecord {
+  std::uint32_t body = 0;      // task-local: an object
+  std::uint32_t way = 0;       // Way, alike for all legs of a body
+  std::array<double, 2> to{};  // m, from where it lies when the episode begins; of kRound the centre
+  double speed = 0;            // m/s, alike for all legs of a body
+};
+static_assert(sizeof(MoveRecord) == 32);
 
 // A camera as a policy knows it: the name stays when a variant puts another camera in its place.
 struct ViewRecord {

@@ -319,7 +319,14 @@ Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
   if (task.idle != 0) hash_idle(h, task);
   if (episode.arm.count != 0) h.text("arm").f64s(slice_of(tables_.reals, episode.arm));
   if (task.delay != 0) h.text("delay").u32(task.delay);
+  if (task.moves.count != 0) hash_moves(h.text("moves"), task);
   return h.finish();
+}
+
+void IdHasher::hash_moves(Hasher& h, const TaskRecord& task) const {
+  h.u32(task.moves.count);
+  for (const MoveRecord& leg : slice_of(tables_.moves, task.moves))
+    h.u32(leg.body).u32(leg.way).f64s(leg.to).f64(leg.speed);
 }
 
 // While it idles the robot is controlled, so its law and rate are part of where things are then.
@@ -352,6 +359,11 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
   }
   if (task.delay != 0)
     parts.push_back({"delay", tagged("vlaprobe.delay.1").u32(task.delay).finish()});
+  if (task.moves.count != 0) {
+    Hasher moves = tagged("vlaprobe.moves.1");
+    hash_moves(moves, task);
+    parts.push_back({"moves", moves.finish()});
+  }
   if (episode.arm.count != 0) {
     Hasher arm = tagged("vlaprobe.arm.1");
     parts.push_back({"arm", arm.f64s(slice_of(tables_.reals, episode.arm)).finish()});

@@ -65,6 +65,7 @@ class IdHasher {
   void hash_covers(Hasher& hasher, const Slice& covers) const;
   void hash_law(Hasher& hasher, const LawRecord& law) const;
   void hash_idle(Hasher& hasher, const TaskRecord& task) const;
+  void hash_moves(Hasher& hasher, const TaskRecord& task) const;
   Sha256 robot(const RobotRecord& robot) const;
   Sha256 fixture(const FixtureRecord& fixture) const;
   Sha256 camera(std::uint32_t index);

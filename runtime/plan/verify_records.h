@@ -49,6 +49,7 @@ class RecordCheck : FieldCheck {
   Status check(const SunRecord& sun) const;
   Status check(const SensorRecord& sensor) const;
   Status check(const CoverRecord& cover) const;
+  Status check(const MoveRecord& m) const;
   Status check(const SceneRecord& scene) const;
   Status check(const StateRecord& state) const;
   Status check(const ProgramRecord& program) const;

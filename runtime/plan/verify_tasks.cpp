@@ -137,6 +137,7 @@ Status RecordCheck::check(const TaskRecord& k) const {
   if (k.delay > kMaxDelay)
     return fail(Rule::kDelay, &k.delay,
                 fmt::format("an action acts after at most {} steps, not {}", kMaxDelay, k.delay));
+  PROBE_TRY(check_slice(k.moves, t.moves.size(), "MOVE"));
   PROBE_TRY(check_zero(k.zero));
   return check_zero(k.zero2);
 }

@@ -1,10 +1,15 @@
-// Stage 2: what varies without a new mesh: textures, sensors, and where arms begin.
+// Stage 2: what varies without a new mesh: textures, sensors, what moves by itself, and where arms
+// begin.
 #include <fmt/format.h>
 
+#include <array>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "runtime/plan/limits.h"
+#include "runtime/plan/moves.h"
+#include "runtime/plan/roles.h"
 #include "runtime/plan/verify_records.h"
 
 namespace probe::plan {
@@ -34,6 +39,16 @@ Status RecordCheck::check(const CoverRecord& c) const {
   PROBE_TRY(check_asset(c.texture, AssetKind::kPhoto, false));
   PROBE_TRY(check_positive(c.side, "the side of a texture"));
   return check_magnitude(c.side, Magnitude::kExtent);
+}
+
+Status RecordCheck::check(const MoveRecord& m) const {
+  if (m.way > static_cast<std::uint32_t>(Way::kRound))
+    return fail(Rule::kMoveWay, &m.way, fmt::format("way {} is not known", m.way));
+  PROBE_TRY(check_magnitude(m.to, Magnitude::kPlace));
+  if (m.speed >= kMinMoveSpeed && m.speed <= kMaxMoveSpeed) return {};
+  return fail(
+      Rule::kMoveWay, &m.speed,
+      fmt::format("things move at {} to {} m/s, not {}", kMinMoveSpeed, kMaxMoveSpeed, m.speed));
 }
 
 namespace {
@@ -70,10 +85,51 @@ class VariationCheck : FieldCheck {
         return fail(Rule::kCoverOwned, at, "a sensor or texture belongs to nobody");
       }
     }
+    PROBE_TRY(moves());
     return arms();
   }
 
  private:
+  Status moves() const {
+    std::uint32_t next = 0;
+    for (const TaskRecord& k : t.tasks) {
+      if (k.moves.count == 0) continue;
+      if (k.moves.first != next)
+        return fail(Rule::kMoveOwned, &k.moves, "legs of tasks follow one another");
+      next += k.moves.count;
+      std::uint32_t least = 0;
+      for (const std::span<const MoveRecord> legs : moves_of(t, k)) {
+        const MoveRecord& first = legs.front();
+        if (first.body < least || first.body >= roles_of(t, k).objects)
+          return fail(
+              Rule::kMoveOwned, &first.body,
+              fmt::format("body {} is no object, or stands behind a later one", first.body));
+        least = first.body + 1;
+        PROBE_TRY(one_way(legs));
+      }
+    }
+    if (next == t.moves.size()) return {};
+    return fail(Rule::kMoveOwned, &t.moves[next], "a leg belongs to no task");
+  }
+
+  // Its legs are alike, and none ends where it begins.
+  Status one_way(std::span<const MoveRecord> legs) const {
+    const bool is_round = legs.front().way == static_cast<std::uint32_t>(Way::kRound);
+    if (legs.size() > (is_round ? 1 : kMaxLegs))
+      return fail(Rule::kMoveWay, &legs.front(),
+                  fmt::format("a circle has one leg, any other way at most {}", kMaxLegs));
+    std::array<double, 2> at{};
+    for (const MoveRecord& leg : legs) {
+      if (leg.way != legs.front().way || leg.speed != legs.front().speed)
+        return fail(Rule::kMoveOwned, &leg, "legs of a body are alike");
+      const double x = leg.to[0] - at[0], y = leg.to[1] - at[1];
+      if (!(x * x + y * y >= kMinLeg * kMinLeg))
+        return fail(Rule::kMoveWay, &leg.to, "a leg ends where it begins");
+      at = leg.to;
+    }
+    return {};
+  }
+
   Status own(const Slice& slice, std::uint32_t most, std::vector<bool>& owned) const {
     if (slice.count > most)
       return fail(Rule::kCoverOwned, &slice, fmt::format("at most {}, not {}", most, slice.count));

@@ -7,6 +7,7 @@
 
 #include "runtime/base/check.h"
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/moves.h"
 #include "runtime/stage/privileged.h"
 #include "runtime/stage/robot_of.h"
 
@@ -203,6 +204,8 @@ Status EpisodeWorld::reset(std::uint32_t index) {
   steps_ = 0;
   measure();
   starts_ = instruments_.starts(sample_);
+  for (const auto legs : plan::moves_of(plan_.tables(), task_))
+    world_->lead(legs.front().body, Vec3::Zero());
   return {};
 }
 
@@ -228,8 +231,27 @@ Status EpisodeWorld::act(const policy::Action& now) {
   return move(osc == nullptr ? action : robot::shares_of(*osc, action));
 }
 
+// What nobody touched so far, from where it lay when the episode began. The way between two control
+// steps is straight. At its end it is a thing like any other.
+void EpisodeWorld::lead() {
+  const double step = substeps_ / scene_.physics_hz;  // s
+  for (const auto legs : plan::moves_of(plan_.tables(), task_)) {
+    const std::size_t body = legs.front().body;
+    if (!world_->is_led(body)) continue;
+    if (steps_ * step >= plan::moves_until(legs)) {
+      world_->lead(body, Vec3::Zero());
+      world_->let_go(body);
+      continue;
+    }
+    const auto [x, y] = plan::moved(legs, (steps_ + 1) * step);
+    const Vec3 there = starts_[body].position + Vec3(x, y, 0);
+    world_->lead(body, (there - world_->body(body).center) / step);
+  }
+}
+
 // One control step with what the controller reads.
 Status EpisodeWorld::move(const policy::Action& numbers) {
+  lead();
   PROBE_TRY(loop_->step(numbers, substeps_, &controller_, world_.get()));
   ++steps_;
   measure();

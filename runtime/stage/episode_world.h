@@ -84,6 +84,8 @@ class EpisodeWorld {
   Result<Arrangement> settle(const Arrangement& placed);
   Status idle();
   Status move(const policy::Action& numbers);
+  // What moves by itself is on its way, so that it is where its way leads when this step ends.
+  void lead();
   bool still_moves(const world::World& world) const;
   std::span<const double> robot_q() const { return q().first(controller_.joint_count()); }
   void measure();

@@ -10,6 +10,13 @@
 namespace probe::world {
 
 void predict(Body* body, const Ambient& ambient, double dt) {
+  if (body->led) {
+    body->spin.setZero();
+    body->response.setZero();
+    body->start_velocity = body->velocity;
+    body->start_spin = body->spin;
+    return;
+  }
   body->velocity =
       (body->velocity + dt * ambient.gravity) * std::max(0.0, 1.0 - dt * ambient.linear_damping);
   body->spin *= std::max(0.0, 1.0 - dt * ambient.angular_damping);

@@ -40,6 +40,11 @@ struct Search {
   Problem* problem;
 
   bool moves(const Collider& c) const { return may_move(c, articulations, *problem->bodies); }
+  bool is_led(const Collider& c) const {
+    return c.body >= 0 && (*problem->bodies)[static_cast<size_t>(c.body)].led;
+  }
+  // Whether contacts can change how it moves.
+  bool gives_way(const Collider& c) const { return moves(c) && !is_led(c); }
 
   // Index of the record of parts whose boxes meet.
   std::uint32_t near_record(ColliderPair* pair, std::uint32_t key) {
@@ -164,13 +169,16 @@ struct Search {
 
   void take_bodies(const Collider& a, const Collider* b, ContactRows* rows) const {
     const std::vector<Body>& bodies = *problem->bodies;
+    const auto inverse_mass = [&](const Collider& c) {
+      return is_led(c) ? 0.0 : 1.0 / bodies[static_cast<size_t>(c.body)].mass;
+    };
     if (a.body >= 0 && moves(a)) {
       rows->body_a = a.body;
-      rows->inverse_mass_a = 1.0 / bodies[static_cast<size_t>(a.body)].mass;
+      rows->inverse_mass_a = inverse_mass(a);
     }
     if (b != nullptr && b->body >= 0 && moves(*b)) {
       rows->body_b = b->body;
-      rows->inverse_mass_b = 1.0 / bodies[static_cast<size_t>(b->body)].mass;
+      rows->inverse_mass_b = inverse_mass(*b);
     }
   }
 };
@@ -237,7 +245,7 @@ void find_contacts(const Parameters& parameters, const Plane& plane, std::uint64
   for (ColliderPair& pair : table->pairs) {
     const Collider& a = colliders[static_cast<size_t>(pair.a)];
     const Collider* b = pair.b < 0 ? nullptr : &colliders[static_cast<size_t>(pair.b)];
-    if (!search.moves(a) && (b == nullptr || !search.moves(*b))) continue;
+    if (!search.gives_way(a) && (b == nullptr || !search.gives_way(*b))) continue;
     const double margin = pair_margin(parameters, a, b);
     if (b == nullptr) {
       search.on_plane(&pair, a, margin);

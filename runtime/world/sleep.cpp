@@ -150,7 +150,7 @@ void fall_asleep(const Problem& problem, const Drives& drives, std::uint64_t sub
                  Joints* joints, Sleepers* s) {
   bool candidate = false;
   for (Body& b : *s->bodies) {
-    if (b.asleep) continue;
+    if (b.asleep || b.led) continue;
     b.calm = is_quiet(b) ? b.calm + 1 : 0;
     candidate = candidate || b.calm >= kQuietSubsteps;
   }

@@ -147,6 +147,10 @@ std::vector<std::byte> save_state(const Stepper& stepper) {
         point_fields(put, record.points[k]);
     }
   }
+  // States of worlds in which nobody is led are as they ever were.
+  if (std::ranges::any_of(stepper.bodies, &Body::led)) {
+    for (const Body& body : stepper.bodies) out.put(body.led);
+  }
   return out.take();
 }
 
@@ -206,6 +210,11 @@ Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
       point_fields(get, record.points[k]);
     record.valid = true;
     record.last = substep - 1;
+  }
+  const bool has_led = !in.at_end();
+  for (Body& body : bodies) {
+    body.led = false;
+    if (has_led) get(body.led);
   }
   if (!in.at_end()) {
     return Failure{Fault::kWorld, "the saved state is cut short or has bytes left over", ""};

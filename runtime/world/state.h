@@ -88,6 +88,7 @@ struct Body {
   Vec3 spin = Vec3::Zero();      // rad/s
   int calm = 0;                  // substeps at rest
   bool asleep = false;
+  bool led = false;  // moves at its velocity whatever meets it, until a robot touches it
   // Derived each substep.
   Mat3 axes = Mat3::Identity();  // the rotation as a matrix
   Mat3 response = Mat3::Zero();  // 1/(kg m2), world inverse inertia (K); locked axes zero

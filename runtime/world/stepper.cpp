@@ -113,6 +113,25 @@ void Stepper::integrate_all() {
   }
 }
 
+// A robot's touch ends that a body is led; it goes on as it was.
+void Stepper::free_touched() {
+  const auto is_robot = [&](int collider) {
+    if (collider < 0) return false;
+    const Collider& c = colliders[static_cast<size_t>(collider)];
+    return c.path != 0 && articulations[static_cast<size_t>(c.articulation)].driven;
+  };
+  for (size_t i = 0; i < problem.contacts.size(); ++i) {
+    if (problem.rows[i].rows[kNormal].impulse <= 0) continue;
+    const Contact& contact = problem.contacts[i];
+    const int sides[2] = {contact.collider_a, contact.collider_b};
+    for (const int side : {0, 1}) {
+      if (sides[side] < 0 || !is_robot(sides[1 - side])) continue;
+      const int body = colliders[static_cast<size_t>(sides[side])].body;
+      if (body >= 0) bodies[static_cast<size_t>(body)].led = false;
+    }
+  }
+}
+
 Status Stepper::advance() {
   // Where everything is, and who wakes.
   place_awake();
@@ -153,6 +172,7 @@ Status Stepper::advance() {
   store_impulses(problem, &table);
   store_joint_impulses();
   integrate_all();
+  free_touched();
   if (sleeping) fall_asleep(problem, drives, substep, &joints, &rest);
   ++substep;
   return {};

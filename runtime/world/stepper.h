@@ -41,6 +41,7 @@ struct Stepper {
   bool respond_one(const Articulation& articulation);
   bool respond_all();
   bool find_overloads(bool release);
+  void free_touched();
   void store_joint_impulses();
   void integrate_all();
   void note_load();

@@ -154,6 +154,7 @@ void World::set_body(size_t index, const Pose& model_pose) {
   b.axes = b.rotation.toRotationMatrix();
   b.position = model_pose.position + b.rotation * b.model_to_center;
   b.velocity = b.spin = Vec3::Zero();
+  b.led = false;
   const int collider = static_cast<int>(stepper_->links + index);
   place_body(b, &stepper_->colliders[static_cast<size_t>(collider)]);
   drop_records(collider, &stepper_->table);
@@ -191,6 +192,29 @@ void World::lock_tilt(bool locked) {
 
 void World::stop_bodies() {
   for (Body& body : stepper_->bodies) body.velocity = body.spin = Vec3::Zero();
+}
+
+void World::lead(size_t index, const Vec3& velocity) {
+  PROBE_CHECK(index < stepper_->bodies.size(), "a body of the spec");
+  Body& body = stepper_->bodies[index];
+  if (!body.led) {
+    Sleepers rest = stepper_->sleepers();
+    wake_body(index, stepper_->substep, &rest);
+    // What held it up no longer does.
+    drop_records(static_cast<int>(stepper_->links + index), &stepper_->table);
+    body.led = true;
+  }
+  body.velocity = velocity;
+}
+
+void World::let_go(size_t index) {
+  PROBE_CHECK(index < stepper_->bodies.size(), "a body of the spec");
+  stepper_->bodies[index].led = false;
+}
+
+bool World::is_led(size_t index) const {
+  PROBE_CHECK(index < stepper_->bodies.size(), "a body of the spec");
+  return stepper_->bodies[index].led;
 }
 
 Status World::check_state() const {

@@ -10,7 +10,8 @@
 using namespace probe;
 using namespace probe::test;
 
-TEST_CASE("object_st: with `scale` box and regions follow, mass by volume; a copy's scale replaces") {
+TEST_CASE(
+    "object_st: with `scale` box and regions follow, mass by volume; a copy's scale replaces") {
   const Built built(
       "object large like red { scale 2; region inside box (0cm, 0cm, 0cm) .. (1cm, 1cm, 1cm) }\n"
       "object back like large { scale 1 }\n"
@@ -96,7 +97,8 @@ TEST_CASE("camera_st, sensor: in any order, each once; the lens is the same") {
               .find("P0101") != std::string::npos);
 }
 
-TEST_CASE("layout_st: with `joints jitter` turning joints begin elsewhere, as the start's number says") {
+TEST_CASE(
+    "layout_st: with `joints jitter` turning joints begin elsewhere, as the start's number says") {
   const Built built(
       "layout shaken like pairs { joints jitter 2deg }\nvariant v of red_on_tray { layout shaken "
       "}\n"
@@ -117,6 +119,40 @@ TEST_CASE("layout_st: with `joints jitter` turning joints begin elsewhere, as th
   CHECK(most > 0.005);
   CHECK(most <= 0.0349066);
   CHECK(first[0].start_id != plan.episodes(built.task("red_on_tray"))[0].start_id);
+}
+
+TEST_CASE(
+    "task_st: what moves by itself, along corners or round a place; the way of one object is said "
+    "anew") {
+  const Built built(
+      "variants of red_on_tray {\n"
+      "  v { moves source along (1cm, 0cm), (1cm, 5mm) at 2cm/s loop }\n"
+      "  w { moves red around (5mm, 0cm) at 0.02m/s }\n"
+      "  u { moves source along (1cm, 0cm) at 2cm/s once }\n"
+      "}\n"
+      "variant x of v { moves source along (-1cm, 0cm) at 1cm/s }\n"
+      "variant y of v { moves source none }\n");
+  const auto legs = [&](const char* task) {
+    return plan::slice_of(built.plan().tables().moves, built.task(task).moves);
+  };
+  REQUIRE(legs("v").size() == 2);
+  CHECK(legs("v")[1].to == std::array<double, 2>{0.01, 0.005});
+  CHECK(legs("v")[0].body == 0);
+  CHECK(legs("v")[0].way == static_cast<std::uint32_t>(plan::Way::kLoop));
+  CHECK(legs("v")[0].speed == 0.02);
+  CHECK(legs("w")[0].way == static_cast<std::uint32_t>(plan::Way::kRound));
+  CHECK(legs("u")[0].way == static_cast<std::uint32_t>(plan::Way::kOnce));
+  CHECK(legs("x").size() == 1);
+  CHECK(legs("y").empty());
+  CHECK(built.task("v").axes == bit(plan::Axis::kMotion));
+  CHECK(built.task("x").axes == bit(plan::Axis::kMotion));
+  CHECK(built.task("v").judge_id == built.task("red_on_tray").judge_id);
+  const auto start = [&](const char* task) {
+    return built.plan().episodes(built.task(task))[0].start_id;
+  };
+  CHECK(start("v") != start("red_on_tray"));
+  CHECK(start("v") != start("x"));
+  CHECK(start("y") == start("red_on_tray"));
 }
 
 TEST_CASE("task_st: a delay in steps or in a time that is a whole number of them") {

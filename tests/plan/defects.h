@@ -260,6 +260,12 @@ inline void give_cover(Records& r, Writer& w, std::uint32_t what) {
 }
 
 // Of the first task: its source put onto its target, `count` times over the tasks.
+// Its first object goes 10 cm along x and back.
+inline void give_move(Records& r) {
+  r.moves.push_back({0, 0, {0.1, 0}, 0.05});
+  r.tasks[0].moves = {0, 1};
+}
+
 inline void give_skills(Records& r, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     SkillRecord skill;
@@ -352,6 +358,25 @@ inline std::vector<Defect> task_defects() {
       {"EPIS", "its robot has 2 drives",
        [](Records& r, Writer&) {
          r.episodes[0].arm = {0, 1};
+       }},
+      {"MOVE", "way 4 is not known", [](Records& r, Writer&) { give_move(r), r.moves[0].way = 4; }},
+      {"MOVE", "things move at", [](Records& r, Writer&) { give_move(r), r.moves[0].speed = 0; }},
+      {"MOVE", "a leg ends where it begins",
+       [](Records& r, Writer&) {
+         give_move(r), r.moves[0].to = {0, 0};
+       }},
+      {"MOVE", "a circle has one leg",
+       [](Records& r, Writer&) {
+         give_move(r), r.moves[0].way = 3, r.moves.push_back(r.moves[0]);
+         r.moves[1].to = {0.2, 0}, r.tasks[0].moves.count = 2;
+       }},
+      {"MOVE", "is no object", [](Records& r, Writer&) { give_move(r), r.moves[0].body = 99; }},
+      {"MOVE", "belongs to no task",
+       [](Records& r, Writer&) { give_move(r), r.tasks[0].moves.count = 0; }},
+      {"MOVE", "legs of a body are alike",
+       [](Records& r, Writer&) {
+         give_move(r), r.moves.push_back(r.moves[0]), r.moves[1].speed = 0.1;
+         r.moves[1].to = {0.2, 0}, r.tasks[0].moves.count = 2;
        }},
       {"TASK", "idles for at most", [](Records& r, Writer&) { r.tasks[0].idle = 1001; }},
       {"METR", "at most one metric of a program ends",

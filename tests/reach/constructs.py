@@ -63,7 +63,7 @@ CONSTRUCTS = {
         layout("place target in distinct c\n  place source in cabinet.inside_top", "start cabinet.top 10cm")),
     "start: joints": ("a drawer begins open, a knob turned", "task t like plain { start cabinet.top 10cm; start stove.left 60deg }\n"),
     "start: moving along a line": ("an object moves along a line", "task t like plain { distractors mug; moves mug along (5cm, 0cm) at 5cm/s }\n"),
-    "start: moving round or by points": ("an object moves on a circle or from point to point", "task t like plain { distractors mug; moves mug round (5cm, 0cm) at 5cm/s }\n"),
+    "start: moving round or by points": ("an object moves on a circle or from point to point", "task t like plain { distractors mug; moves mug around (0cm, 3cm) at 5cm/s }\n"),
     "start: robot": ("the arm begins elsewhere", "layout shaken like spots { joints jitter 3deg }\ntask t like plain { layout shaken }\n"),
     # what is varied
     "words": ("the instruction is worded otherwise", 'template other frame put "set {the source} down on {the target}"\ntask t like plain { say other }\n'),

@@ -30,6 +30,7 @@ language.commonsense     .      .      .
 language.paraphrase      .      .      .
 language.spatial         .      .      .
 layout                   .      .      .
+motion                   .      .      .
 fixture                  .      .      .
 scene                    .      .      .
 scene.texture            .      .      .
