@@ -48,7 +48,7 @@ ood target               .      .      .
 ood relation             .      1      1
 tasks                    7      1      8
 
-37 of 42 cells are empty
+39 of 44 cells are empty
 objects never a source: plate
 objects never a target: carrot, twig
 objects never a distractor: carrot, plate
