@@ -21,19 +21,29 @@ std::string text_or_empty(const Json* json) {
   return json != nullptr && json->is_string() ? json->text() : std::string();
 }
 
-// A text, or a list of parts of which some are texts; null and nothing at all are no words. None of
-// anything else, which says nothing of what the model answered.
-std::optional<std::string> content_text(const Json& message) {
+struct Content {
+  std::string words, thoughts;
+};
+
+// A text, or a list of parts of which some are texts and some thoughts; null and nothing at all are
+// no words. None of anything else, which says nothing of what the model answered.
+std::optional<Content> content_of(const Json& message) {
   const Json* content = message.find("content");
-  if (content == nullptr || content->is_null()) return std::string();
-  if (content->is_string()) return content->text();
+  if (content == nullptr || content->is_null()) return Content();
+  if (content->is_string()) return Content{content->text(), {}};
   if (!content->is_array()) return std::nullopt;
-  std::string text;
+  Content all;
   for (const Json& part : *content) {
     if (!part.is_object()) return std::nullopt;
-    text += text_or_empty(part.find("text"));
+    const std::string type = text_or_empty(part.find("type"));
+    const bool is_thought = type == "thinking" || type == "reasoning" || type == "thought";
+    const std::string words = text_or_empty(part.find("text"));
+    if (!is_thought)
+      all.words += words;
+    else
+      all.thoughts += words.empty() ? text_or_empty(part.find(type)) : words;
   }
-  return text;
+  return all;
 }
 
 std::optional<std::int64_t> count_of(const Json* json) {
@@ -139,12 +149,13 @@ Result<Said> read_chat_answer(const ChatTerms& terms, std::string_view body,
                         "`, not of `" + wanted +
                         "`; if that is the same, say answers_as= in the address");
   }
-  auto words = content_text(*message);
-  if (!words)
+  auto content = content_of(*message);
+  if (!content)
     return broken("the answer's `content` is neither text nor null: " + servers::last_lines(body));
-  said.raw = std::move(*words);
+  said.raw = std::move(content->words);
   said.reasoning = text_or_empty(message->find("reasoning"));
   if (said.reasoning.empty()) said.reasoning = text_or_empty(message->find("reasoning_content"));
+  if (said.reasoning.empty()) said.reasoning = std::move(content->thoughts);
   if (said.raw.size() + said.reasoning.size() > kMostWords) {
     return final_answer("an answer of " +
                         std::to_string((said.raw.size() + said.reasoning.size()) >> 10) +

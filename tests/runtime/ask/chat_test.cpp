@@ -255,6 +255,16 @@ TEST_CASE("content that is no words is a server's failure, and counts below noth
   CHECK(said("null")->raw.empty());
   CHECK(said("\"B\"")->raw == "B");
   CHECK(said(R"([{"type": "text", "text": "B"}, {"type": "refusal"}])")->raw == "B");
+  // Parts that are thoughts are kept as such, and answer nothing.
+  for (const char* type : {"thinking", "reasoning", "thought"}) {
+    CAPTURE(type);
+    const auto thought = said(std::string(R"([{"type": ")") + type + R"(", ")" + type +
+                              R"(": "A?", "text": "A"}, {"type": "text", "text": "B"}])");
+    CHECK(thought->raw == "B");
+    CHECK(thought->reasoning == "A");
+  }
+  CHECK(said(R"([{"type": "thinking", "thinking": "A?"}])")->raw.empty());
+  CHECK(said(R"([{"type": "thinking", "thinking": "A?"}])")->reasoning == "A?");
   CHECK(!said("\"B\"")->usage.prompt_tokens.has_value());
   CHECK(said("\"B\"")->usage.completion_tokens == 1);
 }
