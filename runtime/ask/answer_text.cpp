@@ -9,8 +9,26 @@
 namespace probe::ask {
 namespace {
 
-constexpr auto kThoughtTags =
-    std::to_array<std::string_view>({"think", "thinking", "reasoning", "thought"});
+constexpr auto kThoughtTags = std::to_array<std::string_view>(
+    {"think", "thinking", "reasoning", "thought", "analysis", "seed:think"});
+// Marks of thoughts that are no tags; in small letters.
+struct ThoughtMark {
+  std::string_view mark;
+  bool closes;
+};
+constexpr ThoughtMark kThoughtMarks[] = {
+    {"\u25c1think\u25b7", false},
+    {"\u25c1/think\u25b7", true},
+    {"[think]", false},
+    {"[/think]", true},
+    {"<|start_thinking|>", false},
+    {"<|end_thinking|>", true},
+    {"<|begin_of_thought|>", false},
+    {"<|end_of_thought|>", true},
+    {"<|channel|>analysis", false},
+    {"<|channel|>commentary", false},
+    {"<|channel|>final<|message|>", true},
+};
 
 // What only formats, or ends a text, and says nothing.
 constexpr auto kFormatTags = std::to_array<std::string_view>(
@@ -58,21 +76,27 @@ struct TagAt {
   std::size_t bytes = 0;  // of the whole tag
 };
 
-// The tag of that name at `at`, where a `<` stands, in any case and without attributes.
-std::optional<TagAt> thought_tag(std::string_view text, std::size_t at) {
-  TagAt tag;
-  std::size_t i = at + 1;
-  if (i < text.size() && text[i] == '/') {
-    tag.closes = true;
-    ++i;
+bool is_same_text(std::string_view low, std::string_view text) {
+  return text.size() >= low.size() && std::equal(low.begin(), low.end(), text.begin(),
+                                                 [](char a, char b) { return a == lower(b); });
+}
+
+// The mark of thoughts at `at`, in any case; a tag may have attributes.
+std::optional<TagAt> thought_mark(std::string_view text, std::size_t at) {
+  const std::string_view rest = text.substr(at);
+  for (const ThoughtMark& mark : kThoughtMarks) {
+    if (is_same_text(mark.mark, rest)) return TagAt{mark.closes, mark.mark.size()};
   }
+  if (rest[0] != '<') return std::nullopt;
+  const bool closes = rest.size() > 1 && rest[1] == '/';
+  const std::string_view inner = rest.substr(closes ? 2 : 1);
   for (const std::string_view name : kThoughtTags) {
-    if (text.size() - i <= name.size() || text[i + name.size()] != '>') continue;
-    const bool same = std::equal(name.begin(), name.end(), text.begin() + static_cast<long>(i),
-                                 [](char a, char b) { return a == lower(b); });
-    if (!same) continue;
-    tag.bytes = i + name.size() + 1 - at;
-    return tag;
+    if (!is_same_text(name, inner) || inner.size() == name.size()) continue;
+    std::size_t end = name.size();
+    constexpr std::size_t kLongest = 100;  // of attributes, bytes
+    if (inner[end] == ' ' && !closes) end = inner.substr(0, end + kLongest).find_first_of("><\n");
+    if (end == inner.npos || inner[end] != '>') continue;
+    return TagAt{closes, end + 1 + (closes ? 2U : 1U)};
   }
   return std::nullopt;
 }
@@ -205,8 +229,10 @@ std::string without_thoughts(std::string_view raw) {
   std::string kept;
   bool inside = false;
   std::size_t from = 0;
-  for (std::size_t at = raw.find('<'); at != std::string_view::npos; at = raw.find('<', at + 1)) {
-    const auto tag = thought_tag(raw, at);
+  constexpr std::string_view kFirsts = "<[\xe2";  // of marks
+  for (std::size_t at = raw.find_first_of(kFirsts); at != std::string_view::npos;
+       at = raw.find_first_of(kFirsts, at + 1)) {
+    const auto tag = thought_mark(raw, at);
     if (!tag) continue;
     if (tag->closes) {
       if (!inside) kept.clear();  // its beginning was not in the answer
@@ -220,6 +246,26 @@ std::string without_thoughts(std::string_view raw) {
   }
   if (!inside) kept += raw.substr(from);
   return kept;
+}
+
+std::string without_colours(std::string_view text) {
+  constexpr std::size_t kLongest = 32;  // bytes of a sequence
+  const auto is_parameter = [](char c) { return c >= ' ' && c <= '?'; };
+  const auto is_final = [](char c) { return c >= '@' && c <= '~'; };
+  std::string out;
+  std::size_t from = 0;
+  for (std::size_t at = text.find("\x1b["); at != text.npos; at = text.find("\x1b[", at)) {
+    std::size_t end = at + 2;
+    while (end < std::min(text.size(), at + kLongest) && is_parameter(text[end])) ++end;
+    if (end < text.size() && is_final(text[end])) {
+      out += text.substr(from, at - from);
+      out += ' ';
+      from = end + 1;
+    }
+    at = end;
+  }
+  out += text.substr(from);
+  return out;
 }
 
 std::string plain_form(std::string_view text) {
@@ -275,6 +321,15 @@ std::string plain_form(std::string_view text) {
 }
 
 Tokens tokens_of(std::string_view text) { return Tokenizer(text).run(); }
+
+bool is_one_of(const Token& token, std::span<const std::string_view> words) {
+  return token.is_word() && std::find(words.begin(), words.end(), token.text) != words.end();
+}
+
+bool has_one_of(std::span<const Token> tokens, std::span<const std::string_view> words) {
+  return std::any_of(tokens.begin(), tokens.end(),
+                     [&](const Token& token) { return is_one_of(token, words); });
+}
 
 bool stands_phrase(std::span<const Token> tokens, std::size_t at, std::string_view phrase) {
   while (true) {

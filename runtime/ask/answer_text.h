@@ -12,10 +12,14 @@
 
 namespace probe::ask {
 
-// What is left of an answer without its thoughts: blocks between <think> and </think> (also
-// <thinking>, <reasoning>, <thought>), from one that does not end to the end, and up to an end that
-// had no beginning, because some servers' templates write the beginning themselves. Linear.
+// What is left of an answer without its thoughts: blocks between <think> and </think> or other
+// marks of thoughts (a table: [THINK], <|START_THINKING|>, <|channel|>analysis ..), from one that
+// does not end to the end, and up to an end that had no beginning, because some servers' templates
+// write the beginning themselves. Linear.
 std::string without_thoughts(std::string_view raw);
+
+// Without a terminal's control sequences ("\x1b[31m" makes red), whose letters are no words.
+std::string without_colours(std::string_view text);
 
 // One form for what looks the same: compatible characters (full-width letters, spaces of any
 // width) and curly quotes are the plain ones, what nobody sees is left out, controls and
@@ -51,6 +55,9 @@ using Tokens = std::vector<Token>;
 // Of a text in plain form. Marks of emphasis, quotes, code and formulas, commands of LaTeX and tags
 // of HTML that only format are left out; underscores, and hyphens between letters, part words.
 Tokens tokens_of(std::string_view text);
+
+bool is_one_of(const Token& token, std::span<const std::string_view> words);
+bool has_one_of(std::span<const Token> tokens, std::span<const std::string_view> words);
 
 // Whether the words of a phrase, with blanks between them, stand from `at` on with no sign or break
 // in between.

@@ -103,7 +103,7 @@ class Asker {
 
   static void read(const AskedQuery& asked, AnswerRow& row) {
     if (plan::truth_of(asked.question) == plan::QuestionTruth::kMentions) {
-      Restatement restated = restate(asked.plan, asked.question, row.raw);
+      Restatement restated = restate(asked.plan, asked.question, row.raw, row.usage.finish);
       row.reading = std::move(restated.reading);
       row.right = restated.right;
       row.copied = restated.copied;
@@ -111,7 +111,7 @@ class Asker {
     }
     row.reading = read_answer(
         read_context(asked.plan, asked.question, asked.wording.shown, asked.width, asked.height),
-        row.raw);
+        row.raw, row.usage.finish);
     row.right = is_right(asked.truth, row.reading);
   }
 

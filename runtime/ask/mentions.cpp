@@ -17,7 +17,26 @@ constexpr auto kElsewhere = std::to_array<std::string_view>(
      "close", "toward",     "towards", "around", "against", "off",    "away"});
 constexpr auto kStops = std::to_array<std::string_view>(
     {"remove", "removes", "removing", "stop", "stops", "prevent", "prevents", "refuse", "refuses",
-     "refrain", "forbid", "decline"});
+     "refrain", "forbid", "forbidden", "decline", "fail", "fails", "nothing", "wrong"});
+// Of the task's frame: what brings one thing to another. Picking up alone does not.
+constexpr auto kPuts = std::to_array<std::string_view>(
+    {"put",       "puts",      "putting",     "place",    "places",    "placing",   "placed",
+     "move",      "moves",     "moving",      "moved",    "set",       "sets",      "setting",
+     "drop",      "drops",     "dropping",    "dropped",  "bring",     "brings",    "brought",
+     "transfer",  "transfers", "transferred", "push",     "pushes",    "pushed",    "lay",
+     "lays",      "laid",      "deposit",     "deposits", "deposited", "relocate",  "relocates",
+     "relocated", "carry",     "carries",     "carried",  "position",  "positions", "positioned",
+     "drag",      "drags",     "get",         "gets",     "stack",     "stacks",    "stacking",
+     "stacked",   "slide",     "slides",      "slid",     "insert",    "inserts",   "pour",
+     "goes",      "go",        "belongs",     "end",      "ends",      "hold",      "holds",
+     "contain",   "contains",  "receive",     "receives", "support",   "supports",  "has",
+     "have",      "transport", "release",     "releases"});
+constexpr auto kNotThere =
+    std::to_array<std::string_view>({"anywhere but", "anywhere else", "anything but",
+                                     "anything other", "other than", "else than", "other side"});
+// What a hand does when the thing is where it belongs.
+constexpr auto kLetsGo =
+    std::to_array<std::string_view>({"release", "let", "open", "withdraw", "retreat", "stop"});
 constexpr auto kLies = std::to_array<std::string_view>(
     {"is", "are", "was", "lies", "sits", "stands", "rests", "lying", "sitting", "resting"});
 constexpr auto kMoves = std::to_array<std::string_view>(
@@ -62,6 +81,7 @@ MentionRole role_before(const Tokens& tokens, const Named& name, std::size_t las
   int words = 0;
   for (std::size_t at = name.begin; at > last && words < kFar;) {
     const Token& token = tokens[--at];
+    if (token.is("\u2192")) return MentionRole::kGoal;
     if (ends_clause(token)) break;
     if (!token.is_word() || is_article(token.text)) continue;
     ++words;
@@ -94,18 +114,62 @@ MentionRole role_behind(const Tokens& tokens, const Named& name, std::size_t nex
   return MentionRole::kUnmarked;
 }
 
+// "the carrot and the cup", of which nobody knows the cup; "the plate's box".
+bool names_more(const RestateContext& context, std::string_view text, const Tokens& tokens,
+                const std::vector<Named>& named) {
+  constexpr auto kOfItself = std::to_array<std::string_view>(
+      {"surface", "top", "center", "centre", "middle", "inside", "interior", "edge", "rim"});
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    const std::size_t end = named[i].end;
+    const std::uint32_t option = context.options[named[i].place].option;
+    if (end >= tokens.size() || !tokens[end].is_word()) continue;
+    const Token& last = tokens[end - 1];
+    const bool owns = text.substr(last.begin, last.end - last.begin).find('\'') != text.npos;
+    if (owns && !has_word(kOfItself, tokens[end].text)) return true;
+    const bool joins = option == context.source && tokens[end].is("and") &&
+                       end + 2 < tokens.size() && is_article(tokens[end + 1].text);
+    const bool known = i + 1 < named.size() && named[i + 1].begin == end + 2;
+    if (joins && !known) return true;
+  }
+  return false;
+}
+
 // What the answer does with the mentions that is no restating, though their roles would do: it says
 // where something lies, stops the task, or goes on to a second place. Empty: none of it.
-std::string_view why_else(const RestateContext& context, const Tokens& tokens,
-                          const std::vector<Named>& named, const std::vector<MentionRole>& roles) {
-  for (const Token& token : tokens) {
+std::string_view why_else(const RestateContext& context, std::string_view text,
+                          const Tokens& tokens, const std::vector<Named>& named,
+                          const std::vector<MentionRole>& roles) {
+  for (std::size_t at = 0; at < tokens.size(); ++at) {
+    const Token& token = tokens[at];
     if (token.is_word() && has_word(kStops, token.text)) return "it says what not to do";
+    if (token.is_sign('?')) return "it asks";
+    if (token.is("or") && !is_denied(tokens, at)) return "it leaves a choice";
   }
-  std::size_t goal_end = 0;
+  if (names_more(context, text, tokens, named)) return "it mentions another object";
+  if (context.target && has_phrase(tokens, kNotThere)) return "it names another place";
+  // "Carrot on plate" has no other words, "a picture of a carrot on a plate" has.
+  bool puts = !context.target, talks = false;
+  for (std::size_t at = 0, name = 0; at < tokens.size(); ++at) {
+    while (name < named.size() && named[name].end <= at) ++name;
+    if (name < named.size() && named[name].begin <= at) continue;
+    const Token& token = tokens[at];
+    puts = puts || (token.is_word() && has_word(kPuts, token.text));
+    talks = talks || (token.is_word() && !is_article(token.text) && !token.is("to") &&
+                      !has_word(kGoalWords, token.text) && !token.is("top") && !token.is("of"));
+  }
+  if (talks && !puts) return "it does not say to put it there";
+  std::size_t goal_end = 0, source_end = 0;
+  bool is_over = false;
   for (std::size_t i = 0; i < named.size(); ++i) {
     const std::uint32_t option = context.options[named[i].place].option;
     const std::size_t end = named[i].end;
-    if (option == context.target && roles[i] == MentionRole::kGoal) goal_end = end;
+    if (option == context.target && roles[i] == MentionRole::kGoal) {
+      goal_end = end;
+      std::size_t before = named[i].begin;
+      while (before > 0 && is_article(tokens[before - 1].text)) --before;
+      is_over = before > 0 && tokens[before - 1].is("over");
+    }
+    if (option == context.source) source_end = end;
     if (option != context.source || end + 1 >= tokens.size()) continue;
     const std::size_t verb = tokens[end].is("that") || tokens[end].is("which") ? end + 1 : end;
     const bool lies = has_word(kLies, tokens[verb].text) && verb + 1 < tokens.size() &&
@@ -119,7 +183,14 @@ std::string_view why_else(const RestateContext& context, const Tokens& tokens,
   for (std::size_t at = goal_end; goal_end > 0 && at < tokens.size(); ++at) {
     const bool joined = at == goal_end && tokens[at].is("and") && at + 1 < tokens.size() &&
                         has_word(kGoalWords, tokens[at + 1].text);
-    if (tokens[at].is("then") || tokens[at].is("afterwards") || joined)
+    const bool lets_go = at + 1 < tokens.size() && has_word(kLetsGo, tokens[at + 1].text);
+    const bool crosses = is_over && at == goal_end &&
+                         (tokens[at].is("to") || tokens[at].is("onto") || tokens[at].is("into"));
+    const bool again = at >= source_end && tokens[at].is_word() &&
+                       (has_word(kMoves, tokens[at].text) || tokens[at].is("back")) &&
+                       !is_denied(tokens, at);
+    if ((tokens[at].is("then") && !lets_go) || tokens[at].is("afterwards") || joined || crosses ||
+        again)
       return "it goes on to another place";
   }
   return {};
@@ -153,6 +224,7 @@ std::vector<MentionRole> roles_of(const RestateContext& context, const Tokens& t
   };
   for (const Clause& clause : clauses_of(tokens, named)) {
     bool denies_other = false;
+    std::size_t begin = clause.begin, looked = clause.begin;
     for (std::size_t i = 0; i < clause.names.size(); ++i) {
       const Named& name = named[clause.names[i]];
       const bool is_last = i + 1 == clause.names.size();
@@ -163,8 +235,13 @@ std::vector<MentionRole> roles_of(const RestateContext& context, const Tokens& t
         const MentionRole behind = role_behind(tokens, name, next, is_last);
         if (behind != MentionRole::kUnmarked) role = behind;
       }
-      const auto clause_tokens = std::span(tokens).subspan(clause.begin);
-      if (is_denied(clause_tokens, name.begin - clause.begin)) role = MentionRole::kAvoided;
+      // "without touching the towel and place it on the plate" begins another one.
+      for (; looked + 1 < name.begin; ++looked) {
+        if (tokens[looked].is("and") && has_word(kMoves, tokens[looked + 1].text))
+          begin = looked + 1;
+      }
+      const auto clause_tokens = std::span(tokens).subspan(begin);
+      if (is_denied(clause_tokens, name.begin - begin)) role = MentionRole::kAvoided;
       denies_other = denies_other || (role == MentionRole::kAvoided && !is_meant(clause.names[i]));
       roles[clause.names[i]] = role;
     }
@@ -261,11 +338,11 @@ double share_copied(const RestateContext& context, std::string_view answer) {
   return static_cast<double>(repeated) / static_cast<double>(own.size());
 }
 
-Restatement restate(const RestateContext& context, std::string_view raw) {
+Restatement restate(const RestateContext& context, std::string_view raw, std::string_view finish) {
   const ReadContext read{.form = plan::QuestionForm::kFree,
                          .options = {context.options.begin(), context.options.end()}};
   Restatement out;
-  out.reading = read_answer(read, raw);
+  out.reading = read_answer(read, raw, finish);
   if (out.reading.verdict != Verdict::kRead) return out;
   const std::string text = free_part(raw);
   const Tokens tokens = tokens_of(text);
@@ -288,7 +365,7 @@ Restatement restate(const RestateContext& context, std::string_view raw) {
     if (name.word == 0) named_by_instruction.push_back(context.options[name.place].option);
   }
   out.wrong_by = why_wrong(context, out.mentions, named_by_instruction);
-  if (out.wrong_by.empty()) out.wrong_by = why_else(context, tokens, named, roles);
+  if (out.wrong_by.empty()) out.wrong_by = why_else(context, text, tokens, named, roles);
   out.right = out.wrong_by.empty();
   out.copied = share_copied(context, text);
   return out;

@@ -59,8 +59,11 @@ struct Restatement {
 //   phrase that the instruction uses instead of the name is no mention: who repeats "rabbit's
 //   favorite vegetable" has not said which object that is;
 // - mentions neither in the other's role, nor as what to avoid;
-// - mentions nothing else but as what to avoid.
-Restatement restate(const RestateContext& context, std::string_view raw);
+// - mentions nothing else but as what to avoid;
+// - says to put it there, in whatever words of the task's frame, or nothing but "carrot on plate";
+//   asks nothing, and goes on to no other place.
+Restatement restate(const RestateContext& context, std::string_view raw,
+                    std::string_view finish = {});
 
 // The share, 0 .. 1, of the instruction's own words that stand in the answer: its words, each
 // once, without articles, prepositions and the like (a table) and without the words of the plain

@@ -33,7 +33,7 @@ ReadContext read_context(const plan::Plan& plan, const plan::QuestionRecord& que
 }
 
 Restatement restate(const plan::Plan& plan, const plan::QuestionRecord& question,
-                    std::string_view raw) {
+                    std::string_view raw, std::string_view finish) {
   std::vector<ShownOption> options;
   for (std::uint32_t index = 0; index < question.options.count; ++index)
     options.push_back(shown_option(plan, question, index));
@@ -41,7 +41,7 @@ Restatement restate(const plan::Plan& plan, const plan::QuestionRecord& question
                   .source = if_any(question.a),
                   .target = if_any(question.b),
                   .instruction = plan.text(plan.tasks()[question.task].prompt)},
-                 raw);
+                 raw, finish);
 }
 
 }  // namespace probe::ask

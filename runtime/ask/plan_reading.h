@@ -18,6 +18,6 @@ ReadContext read_context(const plan::Plan& plan, const plan::QuestionRecord& que
 
 // Of a question whose truth is kMentions.
 Restatement restate(const plan::Plan& plan, const plan::QuestionRecord& question,
-                    std::string_view raw);
+                    std::string_view raw, std::string_view finish);
 
 }  // namespace probe::ask

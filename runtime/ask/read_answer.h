@@ -42,17 +42,28 @@ inline constexpr std::size_t kLongestAnswer = std::size_t{1} << 16;
 // pixels of the picture: fractions of it (both below 1) and Molmo's percentages (a tag `point` with
 // both numbers up to 100) are unclear, since the question asks for pixels; PaliGemma's
 // <loc0512><loc0256>, y before x in 1,024 steps of the picture, can mean nothing else and is read.
-Reading read_answer(const ReadContext& context, std::string_view raw);
+//
+// `finish` is the server's reason why the answer ended. One that was cut off ("length",
+// "content_filter") holds an answer only in a place whose end is there: it is unclear, by kCutRule.
+Reading read_answer(const ReadContext& context, std::string_view raw, std::string_view finish = {});
+
+inline constexpr std::string_view kCutRule = "cut";
+bool is_cut(std::string_view finish);
+
+struct FoundPart;  // read_places.h
+struct Place;
 
 // The same for many answers to one question: what its options are called is worked out once.
 class AnswerReader {
  public:
   explicit AnswerReader(ReadContext context);
-  Reading read(std::string_view raw) const;
+  Reading read(std::string_view raw, std::string_view finish = {}) const;
 
  private:
   Reading read_part(std::string_view text, int depth) const;
-  Reading agreed(const std::vector<std::string>& parts, int depth) const;
+  Reading agreed(const std::vector<FoundPart>& parts, int depth) const;
+  bool is_doubtful_around(std::string_view text, const std::vector<FoundPart>& parts,
+                          const Place& place, const Reading& reading) const;
   Reading by_rules(std::string_view text) const;
 
   ReadContext context_;

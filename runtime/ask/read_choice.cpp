@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <set>
 
+#include "runtime/ask/doubt_words.h"
+#include "runtime/ask/read_letters.h"
 #include "runtime/ask/read_rules.h"
 
 namespace probe::ask {
@@ -15,101 +17,7 @@ Reading chosen(const ReadContext& context, std::size_t place) {
   return {.verdict = Verdict::kRead, .option = context.options[place].option};
 }
 
-// ---- letters ----------------------------------------------------------------------------------
-
-// 0 for A; nothing where the token is no single letter.
-std::optional<std::size_t> letter(const Token& token) {
-  if (!token.is_word() || token.text.size() != 1 || token.text[0] < 'a' || token.text[0] > 'z')
-    return std::nullopt;
-  return static_cast<std::size_t>(token.text[0] - 'a');
-}
-
-bool is_word_of(const auto& table, const Token& token) {
-  return token.is_word() && std::find(table.begin(), table.end(), token.text) != table.end();
-}
-
-constexpr auto kLetterNouns = std::to_array<std::string_view>(
-    {"option", "letter", "choice", "answer", "object", "label", "item"});
-constexpr auto kVerbs = std::to_array<std::string_view>({"is", "because", "since", "as", "seems"});
 constexpr auto kJoins = std::to_array<std::string_view>({"and", "or", "nor"});
-
-// One letter that stands as a letter, from `begin` to `end` with its brackets and the noun before.
-struct LetterAt {
-  std::size_t letter = 0, begin = 0, end = 0;
-  bool is_marked = false;  // by a bracket, a sign behind it or a noun before it
-};
-
-// The letter at token `at`, if it stands as one. "A" and "I" before words are an article and a
-// pronoun; small letters need a sign.
-std::optional<LetterAt> letter_at(const Tokens& tokens, std::size_t at) {
-  const auto which = letter(tokens[at]);
-  if (!which) return std::nullopt;
-  LetterAt found{*which, at, at + 1, false};
-  const Token* before = at > 0 ? &tokens[at - 1] : nullptr;
-  const Token* after = at + 1 < tokens.size() ? &tokens[at + 1] : nullptr;
-  if (before != nullptr && before->is("vitamin")) return std::nullopt;
-  const bool opens = before != nullptr && (before->is_sign('(') || before->is_sign('['));
-  const bool closes = after != nullptr && (after->is_sign(')') || after->is_sign(']'));
-  if (opens && closes) found.begin = at - 1;
-  if (closes) ++found.end;
-  const bool noun = found.begin > 0 && is_word_of(kLetterNouns, tokens[found.begin - 1]) &&
-                    (tokens[at].capital || closes);
-  if (noun) --found.begin;
-  const bool ends = after == nullptr || after->is_end();
-  const bool sign = after != nullptr && (after->is_sign('.') || after->is_sign(':'));
-  if (sign && !closes) ++found.end;
-  found.is_marked = closes || noun;
-  if (found.is_marked) return found;
-  const bool begins = before == nullptr || before->kind == TokenKind::kBreak;
-  if (begins && (sign || ends)) {
-    found.is_marked = true;
-    return found;
-  }
-  if (!tokens[at].capital) return std::nullopt;
-  const bool is_article_or_pronoun = tokens[at].is("a") || tokens[at].is("i");
-  if (!is_article_or_pronoun) return found;
-  // What follows an article is a noun; a sign, an end, a verb or another letter ("A-B") is none.
-  if (ends || after->kind == TokenKind::kSign || (after->capital && letter(*after))) return found;
-  if (tokens[at].is("a") && (is_word_of(kVerbs, *after) || is_word_of(kJoins, *after)))
-    return found;
-  return std::nullopt;
-}
-
-// In their order; letters inside names ("vitamin C") are none.
-std::vector<LetterAt> letters_of(const AnswerPart& part) {
-  std::vector<LetterAt> found;
-  std::size_t name = 0;
-  for (std::size_t at = 0; at < part.tokens.size(); ++at) {
-    while (name < part.named.size() && part.named[name].end <= at) ++name;
-    const bool inside = name < part.named.size() && part.named[name].begin <= at &&
-                        part.named[name].end - part.named[name].begin > 1;
-    if (inside) continue;
-    if (const auto one = letter_at(part.tokens, at)) found.push_back(*one);
-  }
-  return found;
-}
-
-// The places that the words right behind a letter name, articles and signs between them left out;
-// the words right before it, too, where it stands in brackets behind them.
-std::set<std::uint32_t> labels_of(const AnswerPart& part, const LetterAt& at) {
-  std::size_t from = at.end;
-  while (from < part.tokens.size() && !part.tokens[from].is_end() &&
-         (part.tokens[from].kind == TokenKind::kSign || is_article(part.tokens[from].text)))
-    ++from;
-  const auto behind = [&](std::size_t token) {
-    return std::lower_bound(part.named.begin(), part.named.end(), token,
-                            [](const Named& name, std::size_t t) { return name.begin < t; });
-  };
-  std::set<std::uint32_t> places;
-  for (auto name = behind(from); name != part.named.end() && name->begin == from; ++name)
-    places.insert(name->place);
-  if (!part.tokens[at.begin].is_sign('(')) return places;
-  for (auto name = behind(at.begin); name != part.named.begin();) {
-    if ((--name)->end != at.begin) break;
-    places.insert(name->place);
-  }
-  return places;
-}
 
 // The letter's option if it was shown and its label, if any, is that option's.
 Reading taken(const ReadContext& context, const AnswerPart& part, const LetterAt& at) {
@@ -121,24 +29,6 @@ Reading taken(const ReadContext& context, const AnswerPart& part, const LetterAt
 
 // ---- rules about letters ----------------------------------------------------------------------
 
-bool is_decoration(const Token& token) {
-  return token.kind != TokenKind::kWord && token.kind != TokenKind::kNumber;
-}
-
-// Nothing but one letter and signs, of any case.
-std::optional<LetterAt> bare_letter(const Tokens& tokens, Range range) {
-  std::optional<LetterAt> found;
-  for (std::size_t at = range.first; at < range.second; ++at) {
-    if (is_decoration(tokens[at])) continue;
-    const auto which = letter(tokens[at]);
-    const bool noun = !found && is_word_of(kLetterNouns, tokens[at]);
-    if (noun) continue;
-    if (found || !which) return std::nullopt;
-    found = LetterAt{*which, at, at + 1, true};
-  }
-  return found;
-}
-
 std::optional<Reading> letter_alone(const ReadContext& context, const AnswerPart& part) {
   if (!context.letters) return std::nullopt;
   const auto found = bare_letter(part.tokens, {0, part.tokens.size()});
@@ -146,18 +36,25 @@ std::optional<Reading> letter_alone(const ReadContext& context, const AnswerPart
   return taken(context, part, *found);
 }
 
-// "A) carrot B) plate ...": the question's options again.
+// "A) carrot B) plate ...": options again, whichever comes first. "B. plate. A. carrot is not what
+// is meant" repeats none.
 std::optional<Reading> options_repeated(const ReadContext& context, const AnswerPart& part) {
   if (!context.letters) return std::nullopt;
-  std::set<std::size_t> labelled;
-  bool begins = false;
-  for (const LetterAt& at : letters_of(part)) {
+  std::optional<std::size_t> first;
+  bool is_first_denied = false;
+  for (const LetterAt& at : letters_of(part.tokens, part.named)) {
     if (!at.is_marked) continue;
     if (!labels_of(part, at).contains(static_cast<std::uint32_t>(at.letter))) continue;
-    if (labelled.empty()) begins = at.letter == 0;
-    labelled.insert(at.letter);
+    constexpr std::size_t kFar = 40;  // tokens
+    std::size_t end = at.end;
+    while (end < part.tokens.size() && end < at.end + kFar && !part.tokens[end].is_end() &&
+           !part.tokens[end].is_sign(';'))
+      ++end;
+    const bool denied = says_not(context, std::span(part.tokens).subspan(at.end, end - at.end));
+    if (!first) is_first_denied = denied;
+    if (!first) first = at.letter;
+    if (at.letter != *first && (is_first_denied || !denied)) return unclear();
   }
-  if (begins && labelled.size() > 1) return unclear();
   return std::nullopt;
 }
 
@@ -166,7 +63,7 @@ bool is_joined(const AnswerPart& part, const LetterAt& first, const LetterAt& se
   if (first.letter == second.letter) return false;
   for (std::size_t at = first.end; at < second.begin; ++at) {
     const Token& token = part.tokens[at];
-    if (token.is_word() && !is_word_of(kJoins, token)) return false;
+    if (token.is_word() && !is_one_of(token, kJoins)) return false;
     if (token.is_end()) return false;
   }
   return true;
@@ -175,7 +72,7 @@ bool is_joined(const AnswerPart& part, const LetterAt& first, const LetterAt& se
 // The letter that the text begins with, whatever explanation follows.
 std::optional<Reading> letter_first(const ReadContext& context, const AnswerPart& part) {
   if (!context.letters) return std::nullopt;
-  const auto letters = letters_of(part);
+  const auto letters = letters_of(part.tokens, part.named);
   if (letters.empty()) return std::nullopt;
   const LetterAt& first = letters.front();
   for (std::size_t at = 0; at < first.begin; ++at) {
@@ -195,7 +92,7 @@ std::optional<Reading> letter_last(const ReadContext& context, const AnswerPart&
   if (!context.letters) return std::nullopt;
   const auto lines = lines_of(part.tokens);
   if (lines.size() < 2) return std::nullopt;
-  const auto letters = letters_of(part);
+  const auto letters = letters_of(part.tokens, part.named);
   const auto in_line = [&](const LetterAt& at) { return at.begin >= lines.back().first; };
   const auto last = std::find_if(letters.begin(), letters.end(), in_line);
   if (last == letters.end() || std::find_if(last + 1, letters.end(), in_line) != letters.end())
@@ -212,7 +109,7 @@ std::optional<Reading> letter_last(const ReadContext& context, const AnswerPart&
 
 std::optional<Reading> letter_in_sentence(const ReadContext& context, const AnswerPart& part) {
   if (!context.letters) return std::nullopt;
-  const auto letters = letters_of(part);
+  const auto letters = letters_of(part.tokens, part.named);
   if (letters.empty()) return std::nullopt;
   for (const LetterAt& at : letters) {
     if (at.letter != letters[0].letter || is_denied(part.tokens, at.begin)) return unclear();
@@ -245,7 +142,7 @@ std::optional<std::uint32_t> bare_name(const AnswerPart& part, Range range) {
       continue;
     }
     const Token& token = part.tokens[at];
-    if (!is_decoration(token) && !is_word_of(kAround, token)) return std::nullopt;
+    if (!is_decoration(token) && !is_one_of(token, kAround)) return std::nullopt;
     ++at;
   }
   return place;

@@ -2,6 +2,7 @@
 // take it back, hedges, contradictions. A doubtful reading is unclear.
 #pragma once
 
+#include "runtime/ask/read_places.h"
 #include "runtime/ask/read_rules.h"
 
 namespace probe::ask {
@@ -10,6 +11,25 @@ namespace probe::ask {
 // back or contradicted in it. Linear in the part.
 bool is_doubtful(const ReadContext& context, const AnswerPart& part, const ReadRule& rule,
                  const Reading& reading);
+
+// Whether the sentence of a part's mark speaks against what was read from the part; before the mark
+// of a line stand plain words alone.
+bool is_denied_before(const ReadContext& context, const AnswerPart& whole, const FoundPart& part,
+                      const Place& place, const Reading& reading);
+// Whether what follows byte `from` does.
+bool is_denied_behind(const ReadContext& context, const AnswerPart& whole, std::size_t from,
+                      const Reading& reading);
+
+// What is_doubtful asks by the question's form; signs that strike out are looked for before.
+bool is_choice_doubtful(const ReadContext& context, const AnswerPart& part, const ReadRule& rule,
+                        const Reading& reading);
+bool is_yesno_doubtful(const ReadContext& context, const AnswerPart& part, const ReadRule& rule,
+                       const Reading& reading);
+bool is_number_doubtful(const ReadContext& context, const AnswerPart& part, const Reading& reading);
+bool is_point_doubtful(const ReadContext& context, const AnswerPart& part, const Reading& reading);
+
+// Where the sentence begins that the token `at` stands in.
+std::size_t begin_of_sentence(const Tokens& tokens, std::size_t at);
 
 // Whether the question asks if something is there: its words, "is there", "visible".
 bool asks_for_presence(const ReadContext& context);

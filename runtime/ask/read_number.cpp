@@ -3,7 +3,7 @@
 #include <array>
 #include <charconv>
 
-#include "runtime/ask/read_rules.h"
+#include "runtime/ask/read_letters.h"
 
 namespace probe::ask {
 namespace {
@@ -15,9 +15,13 @@ constexpr auto kNumberWords = std::to_array<std::string_view>(
 
 // Words that make a number a bound or a guess of another one, or no count.
 constexpr auto kHedges = std::to_array<std::string_view>(
-    {"least",    "most",          "more",    "less",   "fewer",  "over",    "under", "about",
-     "around",   "approximately", "roughly", "nearly", "almost", "several", "maybe", "hundred",
-     "thousand", "million",       "dozen",   "half",   "minus",  "point"});
+    {"least",   "most",       "more",          "less",     "fewer",   "over",   "under",
+     "about",   "around",     "approximately", "roughly",  "nearly",  "almost", "several",
+     "maybe",   "hundred",    "thousand",      "million",  "dozen",   "half",   "minus",
+     "point",   "approx",     "circa",         "ca",       "ish",     "max",    "min",
+     "maximum", "minimum",    "upwards",       "above",    "below",   "beyond", "up",
+     "close",   "somewhere",  "near",          "negative", "percent", "times",  "twice",
+     "dozens",  "thereabouts"});
 
 struct NumberAt {
   std::size_t token = 0;
@@ -63,6 +67,53 @@ Reading counted(std::optional<std::int64_t> value) {
   return {.verdict = Verdict::kRead, .number = value};
 }
 
+// Signs that leave a number what it is; others make it a bound, a guess or a sum.
+bool is_harmless_sign(const Token& token) {
+  constexpr auto kHarmless = std::to_array<std::string_view>(
+      {".", ",", ":", ";", "!", "(", ")", "[", "]", "=", "\u2705", "\u2713", "\u2714", "\u2611"});
+  return token.kind != TokenKind::kSign ||
+         std::find(kHarmless.begin(), kHarmless.end(), token.text) != kHarmless.end();
+}
+
+// Signs or words of a sentence [from, end) that qualify its numbers.
+bool is_qualifying(const ReadContext& context, const Tokens& tokens, std::size_t from,
+                   std::size_t end) {
+  constexpr auto kCounting = std::to_array<std::string_view>(
+      {"there", "see",  "count", "counted", "counts", "total",     "altogether", "number",
+       "all",   "them", "thing", "things",  "kind",   "different", "visible",    "present",
+       "left",  "you",  "we",    "where",   "and",    "such",      "each",       "side"});
+  const auto known = known_words(context);
+  // "approx. 3"
+  if (from > 1 && tokens[from - 1].is_sign('.') &&
+      std::find(kHedges.begin(), kHedges.end(), tokens[from - 2].text) != kHedges.end())
+    return true;
+  for (std::size_t i = from; i < end; ++i) {
+    const Token& token = tokens[i];
+    if (!is_harmless_sign(token)) return true;
+    if (!token.is_word()) continue;
+    // "2 x 2"
+    if (token.text.size() == 1 && !token.is("a") && !token.is("i") && !token.is("s")) return true;
+    const bool counts =
+        std::find(kCounting.begin(), kCounting.end(), token.text) != kCounting.end() ||
+        std::find(kNumberWords.begin(), kNumberWords.end(), token.text) != kNumberWords.end();
+    if (!counts && !is_known_word(known, token)) return true;
+  }
+  return false;
+}
+
+// "Picture 3", and "1. carrot", which counts the lines of a list.
+bool is_numbering(const Tokens& tokens, std::size_t at) {
+  constexpr auto kNumbered =
+      std::to_array<std::string_view>({"picture", "image", "photo", "scene", "object", "item",
+                                       "option", "label", "question", "task", "robot"});
+  if (at > 0 &&
+      std::find(kNumbered.begin(), kNumbered.end(), tokens[at - 1].text) != kNumbered.end())
+    return true;
+  const bool begins = at == 0 || tokens[at - 1].kind == TokenKind::kBreak;
+  return begins && tokens[at].text == "1" && at + 2 < tokens.size() &&
+         (tokens[at + 1].is_sign('.') || tokens[at + 1].is_sign(')')) && tokens[at + 2].is_word();
+}
+
 // Every number of a range, if they agree.
 Reading agreed_number(const std::vector<NumberAt>& numbers) {
   for (const NumberAt& number : numbers) {
@@ -81,8 +132,15 @@ bool has_other_words(const Tokens& tokens, std::size_t first, std::size_t end) {
   return false;
 }
 
+// "2 2" is no count, "two (2)" is.
+bool tokens_are_digits(const Tokens& tokens, const std::vector<NumberAt>& numbers) {
+  return std::ranges::all_of(numbers, [&](const NumberAt& number) {
+    return tokens[number.token].kind == TokenKind::kNumber;
+  });
+}
+
 // The first or last sentence holds numbers alone; what else is counted elsewhere is an explanation.
-std::optional<Reading> number_alone(const ReadContext&, const AnswerPart& part) {
+std::optional<Reading> number_alone(const ReadContext& context, const AnswerPart& part) {
   const auto numbers = numbers_of(part.tokens);
   const auto sentences = sentences_of(part.tokens);
   std::optional<Reading> first;
@@ -94,7 +152,11 @@ std::optional<Reading> number_alone(const ReadContext&, const AnswerPart& part) 
                          [](const NumberAt& number, std::size_t t) { return number.token < t; });
     for (auto at = from; at != numbers.end() && at->token < end; ++at) here.push_back(*at);
     if (here.empty()) continue;
-    const Reading reading = agreed_number(here);
+    Reading reading = agreed_number(here);
+    const bool twice = here.size() > 1 && tokens_are_digits(part.tokens, here);
+    if (twice || is_qualifying(context, part.tokens, begin, end) ||
+        is_numbering(part.tokens, here[0].token))
+      reading = unclear();
     if (first && reading != *first) return unclear();
     first = reading;
     const bool at_an_end = begin == sentences.front().first || begin == sentences.back().first;
@@ -115,11 +177,21 @@ std::optional<Reading> hedged(const ReadContext&, const AnswerPart& part) {
   return std::nullopt;
 }
 
-std::optional<Reading> one_number(const ReadContext&, const AnswerPart& part) {
+std::optional<Reading> one_number(const ReadContext& context, const AnswerPart& part) {
   const auto numbers = numbers_of(part.tokens);
   if (numbers.empty()) return std::nullopt;
+  constexpr std::size_t kMost = 100;  // nobody counts so often
+  if (numbers.size() > kMost) return unclear();
+  for (const auto& [begin, end] : sentences_of(part.tokens)) {
+    const auto inside = [&, from = begin, to = end](const NumberAt& number) {
+      return number.token >= from && number.token < to;
+    };
+    if (std::ranges::any_of(numbers, inside) && is_qualifying(context, part.tokens, begin, end))
+      return unclear();
+  }
   for (const NumberAt& number : numbers) {
     if (is_denied(part.tokens, number.token)) return unclear();
+    if (is_numbering(part.tokens, number.token)) return unclear();
   }
   return agreed_number(numbers);
 }

@@ -36,6 +36,12 @@ bool is_taken_back(const Tokens& tokens, std::size_t at, bool yes) {
   return false;
 }
 
+// Of the refusals those that no "no" can mean.
+constexpr auto kHelpless = std::to_array<std::string_view>(
+    {"cannot tell", "cant tell", "dont know", "do not know", "cannot be determined",
+     "cant be determined", "cannot determine", "cant determine", "impossible to", "not possible to",
+     "unable to", "no image", "no picture", "cannot answer", "well enough"});
+
 // What each sentence begins with; they have to agree.
 std::optional<Reading> word_first(const ReadContext&, const AnswerPart& part) {
   const Tokens& tokens = part.tokens;
@@ -58,6 +64,8 @@ std::optional<Reading> word_first(const ReadContext&, const AnswerPart& part) {
     leads = leads || s == 0 || s + 1 == sentences.size();
   }
   if (!answer || !leads) return std::nullopt;
+  // "No, I cannot tell": the word answers nothing.
+  if (!*answer && has_phrase(tokens, kHelpless)) return std::nullopt;
   return said(*answer);
 }
 
@@ -132,6 +140,9 @@ std::optional<Reading> one_word(const ReadContext&, const AnswerPart& part) {
     const auto here = yes_or_no(token);
     if (!here) continue;
     if (answer && *answer != *here) return unclear();
+    // "That is correct" may speak of anything.
+    if (!token.is("yes") && !token.is("no") && !token.is("yeah") && !token.is("nope"))
+      return unclear();
     if (!ends && !token.is("yes")) return unclear();
     if (is_denied(part.tokens, at)) return unclear();
     answer = here;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "runtime/ask/queries.h"
+#include "runtime/ask/read_answer.h"
 #include "runtime/base/numbering.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/family_name.h"
@@ -155,6 +156,7 @@ ArmScore score_arm(const plan::Plan& plan, const std::vector<const Asked*>& aske
   for (const Asked* one : asked) {
     out.rows += one->rows;
     out.unclear += one->unclear;
+    out.cut += one->cut;
     out.refused += one->refused;
     out.empty += one->empty;
     out.invalid += one->invalid;
@@ -279,6 +281,7 @@ Status Tally::add(const AnswerRow& row) {
       break;
     case Verdict::kUnclear:
       ++asked.unclear;
+      if (row.reading.rule == kCutRule) ++asked.cut;
       break;
     case Verdict::kRefused:
       ++asked.refused;

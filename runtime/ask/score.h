@@ -29,9 +29,10 @@ struct Asked {
   int seed = -1;
   Arm arm = Arm::kPicture;
   std::uint32_t rotations = 1;
-  // Rows: of these valid ones that were not read, and invalid ones. rows - invalid may be less than
+  // Rows: of these valid ones that were not read (`cut`: of the unclear ones those that the server
+  // did not finish), and invalid ones. rows - invalid may be less than
   // rotations while a folder is being filled.
-  std::int64_t rows = 0, unclear = 0, refused = 0, empty = 0, invalid = 0;
+  std::int64_t rows = 0, unclear = 0, cut = 0, refused = 0, empty = 0, invalid = 0;
   // All rotations right; none while one is missing or invalid.
   std::optional<bool> circular = {};
   // The one rotation (episode's index % rotations) right, by which right letters are balanced over
@@ -77,7 +78,7 @@ struct Rate {
 };
 
 struct ArmScore {
-  std::int64_t rows = 0, unclear = 0, refused = 0, empty = 0, invalid = 0;
+  std::int64_t rows = 0, unclear = 0, cut = 0, refused = 0, empty = 0, invalid = 0;
   std::int64_t incomplete = 0;  // questions and starts without a circular verdict
   Rate circular, plain;
   std::optional<Rate> likely_circular, likely_plain;  // none: no row has log-probabilities

@@ -156,7 +156,7 @@ std::string Voucher::read_again(AnswerRow& row, std::uint32_t question) {
   if (plan::truth_of(record) == plan::QuestionTruth::kMentions) {
     if (row.expected != known_truth(plan_, record)->expected)
       return does_not_follow("expected", "the plan");
-    Restatement today = restate(plan_, record, row.raw);
+    Restatement today = restate(plan_, record, row.raw, row.usage.finish);
     const std::string_view cell = differing_cell(row.reading, today.reading);
     if (!is_older && !cell.empty()) return does_not_follow(cell, "its `raw`");
     if (!is_older && today.copied != row.copied) return does_not_follow("copied", "its `raw`");
@@ -166,7 +166,7 @@ std::string Voucher::read_again(AnswerRow& row, std::uint32_t question) {
     row.copied = today.copied;
     return {};
   }
-  const Reading today = order->reader->read(row.raw);
+  const Reading today = order->reader->read(row.raw, row.usage.finish);
   const std::string_view cell = differing_cell(row.reading, today);
   if (!is_older && !cell.empty()) return does_not_follow(cell, "its `raw`");
   return judge_again(row, question, today);

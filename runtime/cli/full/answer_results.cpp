@@ -31,6 +31,7 @@ std::string rest_text(const ask::ArmScore& score) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
   };
   add(score.unclear, "unclear");
+  add(score.cut, "of them cut off");
   add(score.refused, "refused");
   add(score.empty, "empty");
   add(score.invalid, "invalid");

@@ -241,7 +241,7 @@ TEST_CASE("a choice is read by its letter, then by names, and never guessed") {
           {"It cannot be determined from the picture.", "refused", "refused"},
           {"B. I cannot be sure, though.", "option 5", "letter first"},
           // Markup and controls are data.
-          {"\x1b[31mB\x1b[0m", "unclear", "nothing that answers"},
+          {"\x1b[31mB\x1b[0m", "option 5", "letter alone"},
           {"<script>alert(1)</script>", "unclear", "nothing that answers"},
           {"carrot\x07", "option 7", "name alone"},
           {"B\xff", "option 5", "letter alone"},

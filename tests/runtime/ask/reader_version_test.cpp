@@ -68,6 +68,15 @@ constexpr const char* kSaid[] = {
     "Put the orange object on the plate.",
     "Put the carrot beside the plate.",
     "Do not put the carrot on the plate.",
+    "Not: B",
+    "I doubt the answer is B",
+    "B. plate\nA. carrot is not meant",
+    "{\"answer\": \"B\"}\nWait, A",
+    "\u22483",
+    "No, I cannot tell.",
+    "No, it is.",
+    "(120, 45) mm",
+    "[THINK]A[/THINK]B",
 };
 
 TEST_CASE("how these texts are read is as this version of the reader reads them") {
@@ -79,9 +88,9 @@ TEST_CASE("how these texts are read is as this version of the reader reads them"
       hasher.text(said).text(in_short(reading)).text(reading.rule);
     }
   }
-  CHECK(kReaderVersion == 3);
+  CHECK(kReaderVersion == 4);
   CHECK_MESSAGE(
-      to_hex(hasher.finish()) == "d64c9f7349386bdd18f2552c011baf34610ee04a4bbce56c74970014ef0fb5d2",
+      to_hex(hasher.finish()) == "921338898ce4e0e1fb4697c095b1fbaeca1ab159559aa71bcd05865a441f8010",
       "raise kReaderVersion (answer_row.h), then write both here");
 }
 

@@ -364,7 +364,7 @@ TEST_CASE("a plan's question is read with its options in the order in which they
 
   // The instruction is "drop carrot on plate".
   const Restatement restated =
-      restate(plan, plan.questions()[1], "Drop the orange object on the plate");
+      restate(plan, plan.questions()[1], "Drop the orange object on the plate", "stop");
   CHECK(restated.right);
   CHECK(restated.copied == 1);
   CHECK(restated.reading.mentioned == std::vector<std::uint32_t>{0, 1});

@@ -92,7 +92,7 @@ inline void fake_answer(const plan::Plan& plan, const plan::QuestionRecord& ques
   row.raw =
       said == Said::kUnclear ? "hm" : fake_words(plan, question, wording, said == Said::kRight);
   if (plan::truth_of(question) == plan::QuestionTruth::kMentions) {
-    const ask::Restatement restated = ask::restate(plan, question, row.raw);
+    const ask::Restatement restated = ask::restate(plan, question, row.raw, row.usage.finish);
     row.reading = restated.reading;
     row.right = restated.right;
     row.copied = restated.copied;
