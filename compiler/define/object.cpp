@@ -104,6 +104,7 @@ struct ObjectReader {
     if (!factor) return;
     if (*factor >= plan::kMinScale && *factor <= plan::kMaxScale) {
       object.scale = *factor;
+      object.scale_span = stmt.factor.span;
       return;
     }
     context.report(
@@ -209,6 +210,23 @@ void grow(Object& object) {
   }
 }
 
+// What is thinner is no solid to the physics.
+void check_size(Context& context, const Object& object) {
+  constexpr double kThinnest = 1e-3;  // m
+  if (object.scale_span.is_none() || !is_within(object.scale_span, object.decl_span)) return;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double side = object.box_max[i] - object.box_min[i];
+    const double unscaled = object.unscaled.box_max[i] - object.unscaled.box_min[i];
+    if (side >= kThinnest || unscaled < kThinnest || object.scale > 1) continue;
+    context
+        .report(Situation::kScale, object.scale_span,
+                fmt::format("`{}` would be {:.2g}mm thin, an object has at least 1mm", object.name,
+                            1000 * side))
+        .label(object.box_span, "its box");
+    return;
+  }
+}
+
 }  // namespace
 
 void read_look(Context& context, const syntax::File& file,
@@ -238,6 +256,7 @@ void define_objects(Context& context) {
     for (const syntax::ObjectStmt& stmt : declared.node->body) std::visit(reader, stmt);
     if (object.rest.empty()) object.rest.push_back({});
     grow(object);
+    check_size(context, object);
   };
   const auto complete = [&](const Object& object, bool is_read) {
     if (is_read) check_paint(context, object);

@@ -717,6 +717,14 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   if (task.complete) check_cameras(context_, task, poisoned);
   if (task.complete) check_joint_starts(context_, task, poisoned);
   if (task.complete) count_delay(context_, task, poisoned);
+  if (task.complete && !task.abstract && task.delay >= task.horizon && task.delay > 0) {
+    context_
+        .report(Situation::kDelay, task.delay_span,
+                fmt::format("an action that is {} steps late never acts in the {} steps of `{}`",
+                            task.delay, task.horizon, task.name))
+        .label(task.horizon_span, "the horizon");
+    poisoned = true;
+  }
   if (task.complete && !task.abstract) poisoned = !check_motions(context_, task) || poisoned;
   if (task.complete && !task.abstract) poisoned = !check_solution(context_, task) || poisoned;
   if (!missing.empty() && !poisoned && !task.abstract) report_missing(task, missing);

@@ -123,6 +123,7 @@ struct Object {
   bool has_box = false, has_density = false, has_friction = false;
   std::array<double, 3> box_min{}, box_max{};  // with its scale
   double scale = 1;
+  Span scale_span;
   struct Unscaled {  // as written
     std::array<double, 3> box_min{}, box_max{};
     std::vector<Region> regions;

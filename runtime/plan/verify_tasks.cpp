@@ -87,6 +87,7 @@ Status RecordCheck::check(const RoleRecord& r) const {
       r.kind > static_cast<std::uint32_t>(RoleKind::kRegion))
     return fail(Rule::kRoleKind, &r.kind, fmt::format("role kind {} is not known", r.kind));
   const bool is_placed = r.kind == static_cast<std::uint32_t>(RoleKind::kPlaced);
+  PROBE_TRY(check_text(r.name));
   if (!is_placed) PROBE_TRY(check_word(r.name, "the name of a role"));
   const std::string_view name = is_placed ? "" : t.text(r.name);
   const bool is_end = name == "source" || name == "target";

@@ -195,9 +195,15 @@ class SharedAssets::Loader {
     PROBE_TRY(shape(object.collision));
     assets_.object_shapes_[index] = assets_.shape(object.collision);
     if (object.scale == 0) return {};
-    PROBE_ASSIGN(scene::CollisionShape scaled,
-                 scene::load_collision_mesh(path_of(object.collision), scale, limits()));
-    assets_.object_shapes_[index] = std::make_shared<scene::CollisionShape>(std::move(scaled));
+    auto scaled = scene::load_collision_mesh(path_of(object.collision), scale, limits());
+    if (!scaled) {
+      return Failure{scaled.failure().code,
+                     "object `" + std::string(plan_.text(object.name)) +
+                         "`, whose mesh is scaled: " + scaled.failure().message,
+                     scaled.failure().where};
+    }
+    assets_.object_shapes_[index] =
+        std::make_shared<scene::CollisionShape>(std::move(scaled).value());
     return {};
   }
 

@@ -1,6 +1,8 @@
 // From plan records to a world, and the order of an episode in it.
 #include "runtime/stage/episode_world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -199,6 +201,7 @@ Status EpisodeWorld::reset(std::uint32_t index) {
   waiting_.clear();
   PROBE_ASSIGN(const Arrangement settled, settle(begun));
   PROBE_TRY(begin_world(settled));
+  if (episode.arm.count != 0) PROBE_TRY(check_arm());
   controller_.reset(robot_q());
   PROBE_TRY(idle());
   steps_ = 0;
@@ -207,6 +210,29 @@ Status EpisodeWorld::reset(std::uint32_t index) {
   for (const auto legs : plan::moves_of(plan_.tables(), task_))
     world_->lead(legs.front().body, Vec3::Zero());
   return {};
+}
+
+// An arm that does not begin where its scene says must not begin in something.
+Status EpisodeWorld::check_arm() const {
+  constexpr double kRubs = 1e-3;  // m
+  const auto found = world_->robot_stands_in(kRubs);
+  if (!found) return {};
+  const auto name = [&](const world::Party& party) -> std::string {
+    switch (party.kind) {
+      case world::PartyKind::kSurface:
+        return "the surface";
+      case world::PartyKind::kLink:
+        return "a fixture";
+      case world::PartyKind::kBody:
+        return "`" + std::string(plan_.text(plan_.bodies(task_)[party.index].name)) + "`";
+      case world::PartyKind::kFixture:
+        return "what stands there";
+    }
+    return "";
+  };
+  return Failure{
+      Fault::kWorld,
+      fmt::format("the arm begins {:.1f} cm in {}", 100 * found->depth, name(found->other)), ""};
 }
 
 // The arm is told to stay and the gripper to be open.

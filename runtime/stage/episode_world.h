@@ -82,6 +82,7 @@ class EpisodeWorld {
   Arrangement arrangement(std::vector<Pose> objects) const;  // fixtures' joints as they begin
   world::WorldSpec spec_at(const Arrangement& at, bool with_robot_links) const;
   Result<Arrangement> settle(const Arrangement& placed);
+  Status check_arm() const;
   Status idle();
   Status move(const policy::Action& numbers);
   // What moves by itself is on its way, so that it is where its way leads when this step ends.

@@ -194,6 +194,30 @@ void World::stop_bodies() {
   for (Body& body : stepper_->bodies) body.velocity = body.spin = Vec3::Zero();
 }
 
+std::optional<Overlap> World::robot_stands_in(double least) const {
+  // On copies: looking changes no solver state.
+  PairTable table = stepper_->table;
+  Candidates scratch;
+  Problem problem;
+  problem.bodies = &stepper_->bodies;
+  find_contacts(stepper_->parameters, stepper_->plane, stepper_->substep, stepper_->articulations,
+                stepper_->colliders, &table, &scratch, &problem);
+  const auto is_robot = [&](int collider) {
+    if (collider < 0) return false;
+    const Collider& c = stepper_->colliders[static_cast<size_t>(collider)];
+    return c.body < 0 && c.path != 0 &&
+           stepper_->articulations[static_cast<size_t>(c.articulation)].driven;
+  };
+  std::optional<Overlap> deepest;
+  for (const Contact& contact : problem.contacts) {
+    const bool a = is_robot(contact.collider_a), b = is_robot(contact.collider_b);
+    if (a == b || -contact.gap <= (deepest ? deepest->depth : least)) continue;
+    deepest = {party(a ? contact.collider_a : contact.collider_b),
+               party(a ? contact.collider_b : contact.collider_a), -contact.gap};
+  }
+  return deepest;
+}
+
 void World::lead(size_t index, const Vec3& velocity) {
   PROBE_CHECK(index < stepper_->bodies.size(), "a body of the spec");
   Body& body = stepper_->bodies[index];

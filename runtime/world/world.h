@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -43,6 +44,12 @@ struct ExcludedLinks {
 struct ContactImpulse {
   Party a, b;
   Vec3 on_a = Vec3::Zero();
+};
+
+// Two that stand in one another, by how much (m).
+struct Overlap {
+  Party robot, other;
+  double depth = 0;
 };
 
 class World {
@@ -105,6 +112,9 @@ class World {
   // The same summed over all substeps of the last step(): what a sensor averages over a control
   // step. Empty after restore().
   std::span<const ContactImpulse> contact_sums() const { return sums_; }
+  // Of what links of driven articulations stand in where they are now (not in one another), the
+  // deepest; nothing where none is deeper than `least` (m).
+  std::optional<Overlap> robot_stands_in(double least) const;
   // With self-collision, the pairs of links that were left out at load.
   std::span<const ExcludedLinks> excluded_links() const { return excluded_; }
 

@@ -19,6 +19,7 @@ TEST_CASE(
   const plan::Plan& plan = built.plan();
   const plan::ObjectRecord& red = plan.objects()[built.task("red_on_tray").source];
   const plan::ObjectRecord& large = plan.objects()[built.task("grown").source];
+  CHECK(analyze_with_suite("object thin like red { scale 0.01 }\n")->codes() == "P0304");
   CHECK(red.scale == 0);
   CHECK(large.scale == 2);
   CHECK(large.box_max[0] == 2 * red.box_max[0]);
@@ -167,6 +168,9 @@ TEST_CASE("task_st: a delay in steps or in a time that is a whole number of them
   CHECK(analyze_with_suite("variant v of red_on_tray { delay 450ms }\n")->codes() == "P0304");
   CHECK(analyze_with_suite("variant v of red_on_tray { delay 1001 steps }\n")->codes() == "P0304");
   CHECK(analyze_with_suite("variant v of red_on_tray { delay 2cm }\n")->codes() == "P0302");
+  // No action would ever act.
+  CHECK(analyze_with_suite("variant v of red_on_tray { delay 12 steps; horizon 12 steps }\n")
+            ->codes() == "P0304");
 }
 
 TEST_CASE(

@@ -387,6 +387,10 @@ inline std::vector<Defect> task_defects() {
        [](Records& r, Writer& w) {
          r.roles.push_back({w.text("helper"), 7, 2, 1});
        }},
+      {"ROLE", "ends beyond the",
+       [](Records& r, Writer&) {
+         r.roles.push_back({{1u << 30, 0}, 3, 2, 1});
+       }},
       {"ROLE", "a name of its own",
        [](Records& r, Writer& w) {
          r.roles.push_back({w.text("source"), 1, 2, 1});

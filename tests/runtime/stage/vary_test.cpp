@@ -33,6 +33,7 @@ camera dark like third_view { sensor exposure 0.3 }
 camera dirty like third_view { sensor patch (0.25, 0.5) .. (0.5, 0.75) }
 camera gappy like third_view { sensor dropped 0.6 }
 layout unsteady like grid_24 { joints jitter 2deg }
+layout thrown like grid_24 { joints jitter 180deg }
 variants of carrot_on_plate {
   v_large { source large }
   v_red { source red_one }
@@ -45,6 +46,7 @@ variants of carrot_on_plate {
   v_dirty { camera dirty }
   v_gappy { camera gappy }
   v_unsteady { layout unsteady }
+  v_thrown { layout thrown }
   v_late { delay 400ms }
 }
 suite mine trained on bridge_v2 { tasks { carrot_on_plate } | variants of { carrot_on_plate }; seeds 42 }
@@ -289,6 +291,27 @@ TEST_CASE("a shaken arm begins where its start says, the objects where they did"
   CHECK(moved > 0.003);
   CHECK(moved <= 2 * 3.14159265 / 180);
   CHECK(shaken->objects()[0].position == plain->objects()[0].position);
+}
+
+TEST_CASE("an arm that begins in the table or in a thing begins no episode") {
+  const auto index = varied().find_task("v_thrown");
+  REQUIRE(index);
+  const std::uint32_t tasks[] = {*index};
+  auto assets = SharedAssets::load(varied(), VLAPROBE_SOURCE_DIR "/assets", tasks);
+  REQUIRE(assets.ok());
+  auto stage = Stage::create(varied(), *index, *assets, {.image = {320, 240}, .pictures = false});
+  REQUIRE(stage.ok());
+  int begun = 0, refused = 0;
+  for (std::uint32_t e = 0; e < 24; ++e) {
+    const Status reset = (*stage)->reset(e);
+    begun += reset.ok() ? 1 : 0;
+    if (reset.ok()) continue;
+    ++refused;
+    CHECK(reset.failure().message.starts_with("the arm begins "));
+    CHECK(reset.failure().message.find(" cm in ") != std::string::npos);
+  }
+  CHECK(begun > 0);
+  CHECK(refused > 0);
 }
 
 }  // namespace
