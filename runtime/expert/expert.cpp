@@ -11,6 +11,7 @@
 #include "runtime/expert/pick_place.h"
 #include "runtime/expert/put_spot.h"
 #include "runtime/expert/servo.h"
+#include "runtime/expert/tidy_skills.h"
 #include "runtime/expert/waypoints.h"
 #include "runtime/expert/wrong_skills.h"
 
@@ -96,11 +97,11 @@ class Expert final : public policy::Policy {
 
   // The skills of this episode; else the usual pick and place.
   std::vector<policy::Skill> skills_of(const policy::Privileged& view) const {
-    if (options_.source > 1) return wrong_skills(view, options_.source);
+    if (options_.source > 1) return tidied(view, wrong_skills(view, options_.source));
     std::vector<policy::Skill> skills = view.solution;
     // What only reaches goes to the first thing that is done something with.
     if (!options_.close && !skills.empty()) skills.resize(1);
-    return skills;
+    return tidied(view, std::move(skills));
   }
   // The skill that is being done.
   bool moves_joint() const {
@@ -115,8 +116,8 @@ class Expert final : public policy::Policy {
     // Found once: the source must not be led from spot to spot.
     if (options_.close && view.goal == policy::Goal::kAway) {
       if (const auto spot = find_spot(scene, *reach_))
-        errand.spot = PutSpot{-1, -1, {spot->x(), spot->y(), scene.surface}};
-      errand.keeps = errand.spot.has_value();
+        errand.spots.push_back({-1, -1, {spot->x(), spot->y(), scene.surface}});
+      errand.keeps = !errand.spots.empty();
     }
     return errand;
   }
@@ -151,10 +152,11 @@ class Expert final : public policy::Policy {
     errand.lifts = skill.kind == Kind::kPick;
     errand.pushes = skill.kind == Kind::kPush;
     const bool needs_spot = options_.close && skill.kind == Kind::kPut && goes_to_spot(skill);
-    if (needs_spot) errand.spot = find_put_spot(scene, view, skill, *reach_);
-    errand.may_shove = !errand.spot;
+    if (needs_spot)
+      errand.spots = find_put_spots(scene, view, skill, *reach_, is_shared(solution_, skill_));
+    errand.may_shove = errand.spots.empty();
     hand_.begin(errand, view, scene);
-    if (needs_spot && !errand.spot) hand_.rest();
+    if (needs_spot && errand.spots.empty()) hand_.rest();
   }
 
   Status check(const policy::Observation& observation) const {

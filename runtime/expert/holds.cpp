@@ -20,6 +20,8 @@ constexpr double kDeepest = 0.020;       // m of a handle that the tool centre p
 constexpr double kTipUnder = 0.012;      // m of the fingertips behind the point that they push at
 constexpr double kUpright = 0.3;   // cosine of 72 degrees: closing lines nearly across the way down
 constexpr double kAgainst = 0.75;  // cosine between a face's normal and the way it is pushed
+constexpr double kOverhang = -0.3, kMostOverhang = -0.7;  // of a face's normal, upwards
+constexpr double kEdge = 0.005;                           // m: what is nearer is at the edge
 constexpr double kNearBy = 0.6, kFarCost = 40;  // m from the base; cost of a square metre more
 constexpr double kKnob = 0.03;  // m from the axis: what is nearer is turned about itself
 constexpr std::array kOnFace = {0.0, 0.6, -0.6, 0.92, -0.92};  // of its half width and height
@@ -228,7 +230,12 @@ class Search {
 
   void push(int s, const Vec3& contact, const Vec3& normal, const Pose& pose) {
     const Vec3 at = pose.apply(contact), out = pose.rotation * normal, way = way_at(at);
-    if (-out.dot(way) < kAgainst || out.z() < -0.3) return;
+    if (-out.dot(way) < kAgainst || out.z() < kMostOverhang) return;
+    // A face that hangs over meets upright fingers with its upper edge.
+    if (out.z() < kOverhang) {
+      const Vec3 up = (Vec3::UnitZ() - out.z() * out).normalized();
+      if (way_out(part_->solids[static_cast<std::size_t>(s)], pose, at, up) > kEdge) return;
+    }
     // Fingers straight down, their line along or across the face's normal.
     Vec3 flat(out.x(), out.y(), 0);
     flat = flat.norm() > 0.1 ? Vec3(flat.normalized()) : Vec3(Vec3::UnitY());

@@ -24,7 +24,8 @@ constexpr double kAhead = 0.040;     // m (of the arc) that the tool is led ahea
 constexpr double kMostAhead = 0.35;  // rad
 constexpr std::array kShares = {1.0, 0.6, 0.3};  // of the way that is left
 constexpr double kProgress = 0.1;                // of the way that is left: more is no failure
-constexpr double kPress = 0.02;                  // m that a push aims behind the face
+constexpr double kPress = 0.02;                  // m that a push aims behind the face...
+constexpr double kPressLever = 0.5;              // ...but no more of its lever: it slides off else
 constexpr int kSamples = 6;                      // of the part's way, for inverse kinematics
 constexpr double kStands = 0.0015;               // m in a decision: less is standing still
 constexpr double kSticks = 0.002;                // m of arc in a decision: less is no progress
@@ -34,6 +35,7 @@ constexpr int kLongestMove = 60;
 constexpr Pace kFarPace{.shift = 0.070, .turn = 0.40, .gain = 0.035};
 constexpr Pace kNearHold{.shift = 0.035, .turn = 0.20};
 constexpr Pace kMovePace{.shift = 0.045, .turn = 0.30};
+constexpr Pace kTurnPace{.shift = 0.015, .turn = 0.30};
 
 bool is_near(const Pose& a, const Pose& b, double shift, double turn) {
   const robot::PoseError e = robot::pose_error(a, b);
@@ -308,9 +310,10 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
           skill_.kind == policy::Skill::Kind::kClose || skill_.kind == policy::Skill::Kind::kPress
               ? std::min(ahead, left + 0.3 * ahead)
               : std::min(ahead, left);
-      const Pose goal =
-          tool_at(*hold_, moved_part(joint, pose, goal_.up ? by : -by), hand, -kPress);
-      return servo.toward(goal, arm, -1, kMovePace);
+      const double press =
+          joint.slides ? kPress : std::min(kPress, kPressLever * lever_of(*hold_, joint));
+      const Pose goal = tool_at(*hold_, moved_part(joint, pose, goal_.up ? by : -by), hand, -press);
+      return servo.toward(goal, arm, -1, press < kPress ? kTurnPace : kMovePace);
     }
     case Phase::kLetGo:
       return servo.settle(arm.tcp, arm, open);

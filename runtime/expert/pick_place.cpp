@@ -1,6 +1,7 @@
 #include "runtime/expert/pick_place.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "runtime/expert/place_candidates.h"
 #include "runtime/robot/grip_command.h"
@@ -44,11 +45,20 @@ JointVector joints_of(const Scene& s, const Reach& reach) {
                                        static_cast<Eigen::Index>(reach.chain().joint_count()));
 }
 
+namespace {
+
+// With another spot for its target.
+Scene marked(Scene scene, const PutSpot& spot, const policy::Privileged& view) {
+  return with_target_at(std::move(scene), spot_now(spot, view));
+}
+
+}  // namespace
+
 void PickPlace::begin(const Errand& errand, const policy::Privileged& view, const Scene& scene) {
   *this = {};
   errand_ = errand;
   first_seen_ = scene.source.center;
-  last_ = errand_.spot ? with_target_at(scene, spot_now(*errand_.spot, view)) : scene;
+  last_ = errand_.spots.empty() ? scene : marked(scene, errand_.spots.front(), view);
 }
 
 void PickPlace::enter(Phase phase) {
@@ -57,7 +67,7 @@ void PickPlace::enter(Phase phase) {
 }
 
 policy::Action PickPlace::act(Scene scene, const Means& means) {
-  if (errand_.spot) scene = with_target_at(std::move(scene), spot_now(*errand_.spot, means.view));
+  if (!errand_.spots.empty()) scene = marked(std::move(scene), errand_.spots[spot_], means.view);
   // Phases that are done take no time; each leads on, so this ends.
   for (int i = 0; i < 12; ++i) {
     const Phase before = phase_;
@@ -112,7 +122,7 @@ void PickPlace::advance(const Scene& s, const Means& means) {
       if (steps_ >= 1) enter(Phase::kOpen);
       return;
     case Phase::kOpen:
-      if (steps_ >= 2 && (s.openness > 0.75 || steps_ >= 4)) {
+      if (steps_ >= 2 && (s.openness > 0.75 * let_go_ || steps_ >= 4)) {
         release_ = s.tcp;
         enter(Phase::kRetreat);
       }
@@ -129,7 +139,7 @@ void PickPlace::advance(const Scene& s, const Means& means) {
 }
 
 bool PickPlace::is_put(const Scene& s) const {
-  if (!errand_.spot) return lies_on_target(s);
+  if (errand_.spots.empty()) return lies_on_target(s);
   return (s.source.center - s.target.center).norm() < kOffSpot &&
          s.source.bottom < s.target.top + kOnSpot;
 }
@@ -202,11 +212,35 @@ void PickPlace::begin_lift() {
   enter(Phase::kLift);
 }
 
-void PickPlace::begin_transport(const Scene& s, const Means& means) {
+// With what is in the hand as it is, the spot where it stands best.
+void PickPlace::choose_spot(const Scene& s, const Means& means) {
   const JointVector q = joints_of(s, means.reach);
-  const auto place = plan_place(s, means.reach, std::span(q.data(), std::size_t(q.size())));
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < errand_.spots.size(); ++i) {
+    Scene scene = s;
+    scene.target = {};
+    scene = marked(std::move(scene), errand_.spots[i], means.view);
+    const auto place =
+        plan_place(scene, means.reach, std::span(q.data(), std::size_t(q.size())), true);
+    if (!place || place->cost + errand_.spots[i].cost >= least) continue;
+    least = place->cost + errand_.spots[i].cost;
+    spot_ = i;
+  }
+}
+
+void PickPlace::begin_transport(Scene s, const Means& means) {
+  const bool on_mark = !errand_.spots.empty() && !errand_.keeps;
+  if (on_mark) {
+    choose_spot(s, means);
+    s.target = {};
+    s = marked(std::move(s), errand_.spots[spot_], means.view);
+  }
+  const JointVector q = joints_of(s, means.reach);
+  const auto place =
+      plan_place(s, means.reach, std::span(q.data(), std::size_t(q.size())), on_mark);
   if (!place) return start_over(means);
   place_ = place->tcp;
+  let_go_ = place->openness;
   path_ = plan_transport(s, means.reach, place_, means.recent, 1 + kCareful * tries_);
   path_step_ = 0;
   if (!path_) return start_over(means);
@@ -232,6 +266,10 @@ void PickPlace::advance_lower(const Scene& s, const Means& means) {
     enter(errand_.keeps ? Phase::kKeep : Phase::kLoosen);
 }
 
+double PickPlace::wide() const {
+  return let_go_ < 1 ? robot::command_of_openness(let_go_) : kOpenGripper;
+}
+
 policy::Action PickPlace::command(const Scene& s, Servo& servo) {
   switch (phase_) {
     case Phase::kRaise:
@@ -255,11 +293,11 @@ policy::Action PickPlace::command(const Scene& s, Servo& servo) {
     case Phase::kLoosen:
       return command_loosen(s, servo);
     case Phase::kOpen:
-      return servo.hold(arm_of(s), kOpenGripper);
+      return servo.hold(arm_of(s), wide());
     case Phase::kRetreat: {
       Pose goal = release_;
       goal.position.z() += 0.075;
-      return servo.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
+      return servo.toward(goal, arm_of(s), wide(), kHeldPace);
     }
     case Phase::kRest:
       return servo.hold(arm_of(s), kOpenGripper);

@@ -16,12 +16,12 @@ namespace probe::expert {
 
 // What is done with the source.
 struct Errand {
-  bool close = true;            // false: goes to the source and stays there with open fingers
-  bool lifts = false;           // it is only picked up
-  bool pushes = false;          // it is only pushed
-  bool keeps = false;           // it stays in the hand where it was brought
-  bool may_shove = true;        // where there is no hold
-  std::optional<PutSpot> spot;  // where it goes when that is no object
+  bool close = true;           // false: goes to the source and stays there with open fingers
+  bool lifts = false;          // it is only picked up
+  bool pushes = false;         // it is only pushed
+  bool keeps = false;          // it stays in the hand where it was brought
+  bool may_shove = true;       // where there is no hold
+  std::vector<PutSpot> spots;  // where it goes when that is no object: one of these
 };
 
 // What a decision is made with.
@@ -76,10 +76,13 @@ class PickPlace {
   void advance_approach(const Scene& s, const Means& means);
   void advance_close(const Scene& s, const Means& means);
   void begin_lift();
-  void begin_transport(const Scene& s, const Means& means);
+  void choose_spot(const Scene& s, const Means& means);
+  void begin_transport(Scene s, const Means& means);
   void advance_transport(const Scene& s, const Means& means);
   void advance_lower(const Scene& s, const Means& means);
 
+  // The gripper's command once it has let go.
+  double wide() const;
   policy::Action command(const Scene& s, Servo& servo);
   policy::Action follow_path(const Scene& s, Servo& servo, double gripper);
   policy::Action command_raise(const Scene& s, Servo& servo);
@@ -97,7 +100,9 @@ class PickPlace {
   Vec2 first_seen_ = Vec2::Zero();  // centre of the source at the start
   std::optional<PlannedPath> path_;
   int path_step_ = 0;            // of the path, asked for last
+  std::size_t spot_ = 0;         // of the errand's
   Pose place_;                   // of the tool, where the path ends
+  double let_go_ = 1;            // openness there
   Vec3 in_hand_ = Vec3::Zero();  // the source's origin in the tool's frame when taken
   Pose taken_;
   double taken_bottom_ = 0;

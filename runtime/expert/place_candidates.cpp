@@ -19,6 +19,10 @@ constexpr double kComfortable = 0.01;  // m of clearance; more earns nothing
 constexpr double kFeet = 0.004;        // m: how low of the source is its feet
 constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};  // m, let go that much higher
 constexpr std::size_t kMostPlaces = 10;              // put to inverse kinematics
+constexpr double kLetsGo = 0.012;                    // m a side that are enough to let go
+constexpr double kLittleCost = 0.15;                 // of opening no more than that
+constexpr double kMarkLevel = 0.006;                 // m: what is as high as the mark
+constexpr double kRoomyGap = 0.02, kGapCost = 40;    // m between outlines; of a m less
 
 Eigen::Matrix2d turn_by(double angle) {
   const SinCos t = portable_sincos(angle);
@@ -50,34 +54,65 @@ double share_outside(std::span<const Vec2> points, const Scene& scene,
   return static_cast<double>(outside) / static_cast<double>(points.size());
 }
 
+// Wide, and where that may be too much as little as lets go.
+std::vector<double> ways_to_open(const Scene& scene, bool on_mark) {
+  const double little = scene.openness + kLetsGo / scene.hand.opening_half;
+  if (!on_mark || little > 0.9) return {1};
+  return {1, little};
+}
+
+// The least gap between the source, turned over the target's middle, and what stands higher.
+double room_between(const Scene& scene, const Eigen::Matrix2d& turn) {
+  Outline moved = scene.source.whole;
+  for (Vec2& p : moved) p = scene.target.center + turn * (p - scene.source.center);
+  double least = kRoomyGap;
+  if (moved.size() < 3) return least;
+  for (const Footprint* other : others_of(scene, false)) {
+    for (std::size_t i = 0; i < other->parts.size(); ++i) {
+      if (other->part_tops[i] < scene.target.top + kMarkLevel || other->parts[i].size() < 3)
+        continue;
+      least = std::min(least, separation(moved, other->parts[i]));
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
-std::vector<Place> place_candidates(const Scene& scene, const Pose& tool) {
+std::vector<Place> place_candidates(const Scene& scene, const Pose& tool, bool on_mark) {
   const robot::HandShape& gripper = scene.hand;
-  std::vector<Ball> balls = gripper_balls(gripper, gripper.opening_half);
   const std::vector<Ball> held = held_balls(scene, tool);
-  balls.insert(balls.end(), held.begin(), held.end());
   const Obstacles obstacles = obstacles_of(scene, false);
   const std::vector<Vec2> feet = feet_of(scene);
   const double rise = scene.target.top + kTouch - scene.source.bottom;
   std::vector<Place> out;
-  for (int i = 0; i < kTurns; ++i) {
-    Place place;
-    place.turn = 2 * std::numbers::pi / kTurns * (i <= kTurns / 2 ? i : i - kTurns);
-    const Eigen::Matrix2d flat = turn_by(place.turn);
-    const Vec2 arm = tool.position.head<2>() - scene.source.center;
-    const Vec2 at = scene.target.center + flat * arm;
-    place.tcp.rotation = robot::from_rotation_vector({0, 0, place.turn}) * tool.rotation;
-    place.overhang = share_outside(scene.source.whole, scene, flat);
-    const double unsupported = share_outside(feet, scene, flat);
-    for (const double lift : kLifts) {
-      place.lift = lift;
-      place.tcp.position = {at.x(), at.y(), tool.position.z() + rise + lift};
-      place.clearance = least_clearance(place.tcp, balls, obstacles, kComfortable);
-      place.cost = 0.3 * std::abs(place.turn) + 0.4 * place.overhang + unsupported + 20 * lift +
-                   100 * (kComfortable - place.clearance);
-      out.push_back(place);
-      if (place.clearance >= kComfortable) break;
+  for (const double openness : ways_to_open(scene, on_mark)) {
+    std::vector<Ball> balls = gripper_balls(gripper, openness * gripper.opening_half);
+    balls.insert(balls.end(), held.begin(), held.end());
+    for (int i = 0; i < kTurns; ++i) {
+      Place place;
+      place.openness = openness;
+      place.turn = 2 * std::numbers::pi / kTurns * (i <= kTurns / 2 ? i : i - kTurns);
+      const Eigen::Matrix2d flat = turn_by(place.turn);
+      const Vec2 arm = tool.position.head<2>() - scene.source.center;
+      const Vec2 at = scene.target.center + flat * arm;
+      place.tcp.rotation = robot::from_rotation_vector({0, 0, place.turn}) * tool.rotation;
+      double stands = openness < 1 ? kLittleCost : 0;
+      if (on_mark) {
+        stands += kGapCost * (kRoomyGap - room_between(scene, flat));
+      } else {
+        place.overhang = share_outside(scene.source.whole, scene, flat);
+        stands += 0.4 * place.overhang + share_outside(feet, scene, flat);
+      }
+      for (const double lift : kLifts) {
+        place.lift = lift;
+        place.tcp.position = {at.x(), at.y(), tool.position.z() + rise + lift};
+        place.clearance = least_clearance(place.tcp, balls, obstacles, kComfortable);
+        place.cost = 0.3 * std::abs(place.turn) + stands + 20 * lift +
+                     100 * (kComfortable - place.clearance);
+        out.push_back(place);
+        if (place.clearance >= kComfortable) break;
+      }
     }
   }
   std::stable_sort(out.begin(), out.end(),
@@ -86,9 +121,9 @@ std::vector<Place> place_candidates(const Scene& scene, const Pose& tool) {
 }
 
 std::optional<Place> plan_place(const Scene& scene, const Reach& reach,
-                                std::span<const double> joints) {
+                                std::span<const double> joints, bool on_mark) {
   const Pose tool = reach.chain().pose(joints.first(reach.chain().joint_count()));
-  const std::vector<Place> places = place_candidates(scene, tool);
+  const std::vector<Place> places = place_candidates(scene, tool, on_mark);
   const double hang = std::max(scene.hand.tip_below, tool.position.z() - scene.source.bottom);
   Pose lifted = tool;
   lifted.position.z() = std::max(tool.position.z() + 0.03, travel_height(scene, hang));

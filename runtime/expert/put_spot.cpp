@@ -26,7 +26,9 @@ constexpr double kNearby = 0.6, kStretchCost = 8;       // m from the base; what
 constexpr int kRing = 16;                               // directions around what it is put beside
 constexpr std::array kApart = {0.015, 0.03, 0.05};      // m between outlines' circles
 constexpr std::size_t kMostSpots = 20;                  // put to inverse kinematics
-constexpr double kMark = 0.01;  // m, half of the square that stands for the spot
+constexpr std::size_t kGiven = 8;                       // of those that are reached
+constexpr double kHalfOut = 0.7;  // of half a region: where what comes first leaves room
+constexpr double kMark = 0.01;    // m, half of the square that stands for the spot
 
 // A place that is looked at.
 struct Wanted {
@@ -43,8 +45,13 @@ bool contains(const Outline& outline, const Vec2& p) {
 
 class Spots {
  public:
-  Spots(const Scene& scene, const policy::Privileged& view, const policy::Skill& skill)
-      : scene_(scene), view_(view), skill_(skill), to_base_(view.base.inverse()) {}
+  Spots(const Scene& scene, const policy::Privileged& view, const policy::Skill& skill,
+        bool leaves_room)
+      : scene_(scene),
+        view_(view),
+        skill_(skill),
+        leaves_room_(leaves_room),
+        to_base_(view.base.inverse()) {}
 
   std::vector<Wanted> wanted() const {
     if (skill_.place == policy::Skill::Place::kBeside) return ring();
@@ -116,7 +123,9 @@ class Spots {
       for (int j = 0; j < kGrid; ++j) {
         const double u = 0.9 * (2.0 * i / (kGrid - 1) - 1), v = 0.9 * (2.0 * j / (kGrid - 1) - 1);
         const Vec3 at = pose.apply(middle + Vec3(u * half.x(), v * half.y(), 0));
-        out.push_back({{at.x(), at.y(), low}, high, Vec2(u * half.x(), v * half.y()).norm()});
+        const double off = Vec2(u * half.x(), v * half.y()).norm();
+        const double best = leaves_room_ ? kHalfOut * half.head<2>().minCoeff() : 0;
+        out.push_back({{at.x(), at.y(), low}, high, std::abs(off - best)});
       }
     }
     return out;
@@ -177,6 +186,7 @@ class Spots {
   const Scene& scene_;
   const policy::Privileged& view_;
   const policy::Skill& skill_;
+  bool leaves_room_;
   Pose to_base_;
 };
 
@@ -186,13 +196,14 @@ bool goes_to_spot(const policy::Skill& skill) {
   return skill.to_object < 0 || skill.region || skill.place == policy::Skill::Place::kBeside;
 }
 
-std::optional<PutSpot> find_put_spot(const Scene& scene, const policy::Privileged& view,
-                                     const policy::Skill& skill, const Reach& reach) {
+std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged& view,
+                                    const policy::Skill& skill, const Reach& reach,
+                                    bool leaves_room) {
   struct Found {
     Vec3 at;
     double cost;
   };
-  const Spots spots(scene, view, skill);
+  const Spots spots(scene, view, skill, leaves_room);
   const std::vector<Ball> balls = gripper_balls(scene.hand, scene.hand.opening_half);
   const Obstacles obstacles = obstacles_of(scene, true);
   const double yaw_now = yaw_of(scene.tcp.rotation);
@@ -227,7 +238,9 @@ std::optional<PutSpot> find_put_spot(const Scene& scene, const policy::Privilege
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.cost < b.cost; });
   found.resize(std::min(found.size(), kMostSpots));
+  std::vector<PutSpot> out;
   for (const Found& one : found) {
+    if (out.size() >= kGiven) break;
     for (const double turn : {0.0, 0.5, 1.0, 1.5}) {
       const double low = one.at.z() + scene.hand.tip_below + kHandAbove;
       const double yaw = yaw_now + turn * std::numbers::pi;
@@ -236,14 +249,15 @@ std::optional<PutSpot> find_put_spot(const Scene& scene, const policy::Privilege
       const Pose above = top_down({one.at.x(), one.at.y(), high}, yaw);
       const Pose there = top_down({one.at.x(), one.at.y(), low}, yaw);
       if (!reach.follow(scene.joints, std::array{above, there})) continue;
-      PutSpot spot{skill.to_object, skill.to_fixture, {}};
-      if (skill.place == policy::Skill::Place::kBeside) spot = {};
+      PutSpot spot{skill.to_object, skill.to_fixture, {}, one.cost};
+      if (skill.place == policy::Skill::Place::kBeside) spot.object = spot.fixture = -1;
       const Pose own = spot.object < 0 && spot.fixture < 0 ? Pose{} : spots.owner();
       spot.at = own.inverse().apply(one.at);
-      return spot;
+      out.push_back(spot);
+      break;
     }
   }
-  return std::nullopt;
+  return out;
 }
 
 Vec3 spot_now(const PutSpot& spot, const policy::Privileged& view) {

@@ -2,7 +2,7 @@
 // room for it and for the hand. The spot stands in for the target.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "runtime/expert/reach.h"
 #include "runtime/expert/waypoints.h"
@@ -12,15 +12,17 @@ namespace probe::expert {
 struct PutSpot {
   int object = -1, fixture = -1;  // whose frame; none: the base's
   Vec3 at = Vec3::Zero();         // on what the source shall stand
+  double cost = 0;
 };
 
 // Whether a put goes to a spot; else to an object's middle, as a target does.
 bool goes_to_spot(const policy::Skill& skill);
 
-// The roomiest near the middle; nothing where there is none that the arm reaches. `scene` sees the
-// source of the skill.
-std::optional<PutSpot> find_put_spot(const Scene& scene, const policy::Privileged& view,
-                                     const policy::Skill& skill, const Reach& reach);
+// Roomy ones near the middle that the arm reaches, best first. `scene` sees the source of the
+// skill. `leaves_room`: half way out, as something else shall lie there too.
+std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged& view,
+                                    const policy::Skill& skill, const Reach& reach,
+                                    bool leaves_room = false);
 
 // In the base frame, now.
 Vec3 spot_now(const PutSpot& spot, const policy::Privileged& view);

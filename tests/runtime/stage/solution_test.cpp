@@ -61,6 +61,18 @@ abstract task kept like panda_carrot_on_plate { horizon 600 steps }
   return std::move(*plan);
 }
 
+plan::Plan the_kitchen() {
+  const std::string root = VLAPROBE_SOURCE_DIR;
+  const std::vector<std::string> files = {root + "/suite/kitchen.probe"};
+  auto made = build(files, {.asset_root = root + "/assets",
+                            .suite = "kitchen",
+                            .library_folders = {root + "/dsl", root}});
+  REQUIRE_MESSAGE(made.ok(), (made.ok() ? "" : to_text(made.failure())));
+  auto plan = plan::Plan::from_bytes(std::move(made->plan));
+  REQUIRE_MESSAGE(plan.ok(), (plan.ok() ? "" : to_text(plan.failure())));
+  return std::move(*plan);
+}
+
 // Whether the expert makes the success of a task's start.
 bool solves(const plan::Plan& plan, const std::string& name, std::uint32_t start) {
   const std::uint32_t tasks[] = {plan.find_task(name).value()};
@@ -124,6 +136,18 @@ task close_oven like kept {
   CHECK(solves(plan, "turn_on", 0));
   CHECK(solves(plan, "open_oven", 1));
   CHECK(solves(plan, "close_oven", 2));
+}
+
+TEST_CASE("two things that are put on one plate get places of their own") {
+  CHECK(solves(the_kitchen(), "both_on_the_plate", 3));
+}
+
+TEST_CASE("a carrot goes across into a drawer in which the fingers cannot open wide") {
+  CHECK(solves(the_kitchen(), "carrot_away", 1));
+}
+
+TEST_CASE("a knob is turned back until it is closed") {
+  CHECK(solves(the_kitchen(), "turn_off_the_stove", 0));
 }
 
 }  // namespace
