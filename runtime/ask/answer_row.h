@@ -76,7 +76,8 @@ struct Usage {
   std::string model = {};        // as the server calls it
   std::string fingerprint = {};  // system_fingerprint
   std::string finish = {};       // "stop", "length"
-  // Natural logarithms of the letters' probabilities as first token, by letter; empty: not offered.
+  // Natural logarithms of the letters' probabilities where the letter stands that is read, by
+  // letter; empty: not offered, or the answer is read from no letter.
   std::vector<std::optional<double>> letter_logprobs = {};
 };
 

@@ -48,7 +48,7 @@ struct ModelProof {
   int answers = 0;               // that came
   // Equal bit for bit: answers to one question about two pictures, to two questions about one.
   bool is_blind = false, is_deaf = false;
-  bool has_logprobs = false;  // of an answer's first token
+  bool has_logprobs = false;  // of an answer's tokens
   bool is_unchecked = false;  // TLS without a look at the certificate
   bool operator==(const ModelProof&) const = default;
 };

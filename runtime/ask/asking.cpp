@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <thread>
 
 #include "runtime/ask/plan_reading.h"
@@ -97,11 +98,12 @@ class Asker {
     row.request_sha256 = said->request_sha256;
     row.latency_s = said->latency_s;
     row.attempts = said->attempts;
-    read(asked, row);
+    read(asked, said->letters, row);
     return commit(std::move(row), query, false);
   }
 
-  static void read(const AskedQuery& asked, AnswerRow& row) {
+  static void read(const AskedQuery& asked, std::span<const WrittenLetter> letters,
+                   AnswerRow& row) {
     if (plan::truth_of(asked.question) == plan::QuestionTruth::kMentions) {
       Restatement restated = restate(asked.plan, asked.question, row.raw, row.usage.finish);
       row.reading = std::move(restated.reading);
@@ -109,9 +111,11 @@ class Asker {
       row.copied = restated.copied;
       return;
     }
-    row.reading = read_answer(
-        read_context(asked.plan, asked.question, asked.wording.shown, asked.width, asked.height),
-        row.raw, row.usage.finish);
+    const AnswerReader reader(
+        read_context(asked.plan, asked.question, asked.wording.shown, asked.width, asked.height));
+    row.reading = reader.read(row.raw, row.usage.finish);
+    row.usage.letter_logprobs =
+        at_read_letter(reader, letters, row.raw, row.usage.finish, row.reading);
     row.right = is_right(asked.truth, row.reading);
   }
 

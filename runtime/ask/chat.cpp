@@ -241,7 +241,7 @@ Result<ModelProof> prove_chat(const ChatChoice& choice, const ChatContext& conte
   const auto likely = model.ask(kProofColor, red, 1);
   // Not offered is one thing, a failure that another call would not meet is another.
   if (!likely && likely.failure().code != Fault::kAnswered) return likely.failure();
-  proof.has_logprobs = likely && !likely->usage.letter_logprobs.empty();
+  proof.has_logprobs = likely && likely->has_logprobs;
   return proof;
 }
 

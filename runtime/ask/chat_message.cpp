@@ -1,8 +1,8 @@
 #include "runtime/ask/chat_message.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "runtime/ask/likely_letters.h"
 #include "runtime/base/json.h"
 #include "runtime/base/printable.h"
 #include "runtime/servers/transport.h"
@@ -50,48 +50,6 @@ std::optional<std::int64_t> count_of(const Json* json) {
   if (json == nullptr || !json->is_number_integer()) return std::nullopt;
   const auto count = json->get<std::int64_t>();
   return count >= 0 ? std::optional(count) : std::nullopt;
-}
-
-// A token that is a letter alone, whatever blanks or marks of blanks stand around it: its place.
-std::optional<std::size_t> letter_place(std::string_view token, std::size_t letters) {
-  constexpr std::string_view kMarks[] = {"\xe2\x96\x81", "\xc4\xa0", " ", "\n", "\t"};
-  for (bool any = true; any;) {
-    any = false;
-    for (const std::string_view mark : kMarks) {
-      if (token.starts_with(mark)) {
-        token.remove_prefix(mark.size());
-        any = true;
-      } else if (token.ends_with(mark)) {
-        token.remove_suffix(mark.size());
-        any = true;
-      }
-    }
-  }
-  if (token.size() != 1 || token[0] < 'A') return std::nullopt;
-  const auto place = static_cast<std::size_t>(token[0] - 'A');
-  if (place >= letters) return std::nullopt;
-  return place;
-}
-
-// By letter the logarithm of the sum of its tokens' probabilities ("A" and " A" are one letter).
-std::vector<std::optional<double>> letter_logprobs(const Json& choice, std::size_t letters) {
-  const Json* logprobs = choice.find("logprobs");
-  const Json* content = logprobs == nullptr ? nullptr : logprobs->find("content");
-  if (letters == 0 || content == nullptr || !content->is_array() || content->empty()) return {};
-  const Json* top = content->front().find("top_logprobs");
-  if (top == nullptr || !top->is_array() || top->empty()) return {};
-  std::vector<std::optional<double>> found(letters);
-  for (const Json& token : *top) {
-    const Json* logprob = token.find("logprob");
-    const auto place = letter_place(text_or_empty(token.find("token")), letters);
-    if (!place || logprob == nullptr || !logprob->is_number()) continue;
-    const double value = logprob->get<double>();
-    if (!std::isfinite(value)) continue;
-    std::optional<double>& at = found[*place];
-    const double high = at ? std::max(*at, value) : value;
-    at = at ? high + std::log1p(std::exp(std::min(*at, value) - high)) : value;
-  }
-  return found;
 }
 
 }  // namespace
@@ -167,7 +125,8 @@ Result<Said> read_chat_answer(const ChatTerms& terms, std::string_view body,
     said.usage.prompt_tokens = count_of(usage->find("prompt_tokens"));
     said.usage.completion_tokens = count_of(usage->find("completion_tokens"));
   }
-  said.usage.letter_logprobs = letter_logprobs(choice, letters);
+  said.has_logprobs = tells_logprobs(choice.find("logprobs"));
+  said.letters = written_letters(choice.find("logprobs"), said.raw, letters);
   return said;
 }
 

@@ -30,7 +30,7 @@ std::string chat_request(const ChatTerms& terms, std::string_view text, std::str
 // Answers, thoughts included, with more bytes are refused.
 inline constexpr std::size_t kMostWords = std::size_t{256} << 10;
 
-// Of an answer with status 200. `letters`: of how many options log-probabilities are looked for.
+// Of an answer with status 200. `letters`: how many options have one whose log-probabilities are looked for.
 // Fails (kPolicy) on what is no such answer, (kAnswered) on one that asking again would not change:
 // streamed, too long, by another model.
 Result<Said> read_chat_answer(const ChatTerms& terms, std::string_view body,

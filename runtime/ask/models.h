@@ -11,6 +11,7 @@
 
 #include "runtime/ask/answer_row.h"
 #include "runtime/ask/ask_record.h"
+#include "runtime/ask/likely_letters.h"
 #include "runtime/ask/picture.h"
 #include "runtime/ask/truth.h"
 #include "runtime/ask/wording.h"
@@ -33,6 +34,8 @@ struct AskedQuery {
 struct Said {
   std::string raw, reasoning = {};
   Usage usage = {};
+  bool has_logprobs = false;                // the server tells some
+  std::vector<WrittenLetter> letters = {};  // of them those where a letter stands
   std::string request_sha256 = {};  // of a request's body; a model in this process gets none
   double latency_s = 0;
   int attempts = 1;

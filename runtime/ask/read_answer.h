@@ -58,6 +58,7 @@ class AnswerReader {
  public:
   explicit AnswerReader(ReadContext context);
   Reading read(std::string_view raw, std::string_view finish = {}) const;
+  const ReadContext& context() const { return context_; }
 
  private:
   Reading read_part(std::string_view text, int depth) const;

@@ -297,7 +297,8 @@ Status Tally::add(const AnswerRow& row) {
     asked.expects_yes = record.right == 1;
   asked.copied = row.copied;
   if (!is_choice(plan_, question) || !is_proved) return {};
-  if (!row.usage.letter_logprobs.empty()) {
+  if (std::ranges::any_of(row.usage.letter_logprobs,
+                          [](const auto& logprob) { return logprob.has_value(); })) {
     seen.likely[row.rotation] = likeliest(row, rotations) == record.right;
   }
   if (row.rotation != plain_rotation(plan_, asked)) return {};

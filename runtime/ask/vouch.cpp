@@ -167,6 +167,11 @@ std::string Voucher::read_again(AnswerRow& row, std::uint32_t question) {
     return {};
   }
   const Reading today = order->reader->read(row.raw, row.usage.finish);
+  // Readers before version 4 kept those of the first token, whatever stood there.
+  constexpr int kFirstOfTheLetter = 4;
+  const bool begins_so = !row.raw.empty() && row.raw[0] >= 'A' && row.raw[0] <= 'Z' &&
+                         (row.raw.size() == 1 || row.raw[1] == '.' || row.raw[1] == ')');
+  if (row.reader < kFirstOfTheLetter && !begins_so) row.usage.letter_logprobs.clear();
   const std::string_view cell = differing_cell(row.reading, today);
   if (!is_older && !cell.empty()) return does_not_follow(cell, "its `raw`");
   return judge_again(row, question, today);

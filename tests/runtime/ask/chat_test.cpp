@@ -220,16 +220,18 @@ TEST_CASE("an address is a base as it is copied, with or without its version, or
   CHECK(path("http://h/x/chat/completions?model=m") == "/x/chat/completions");
 }
 
-TEST_CASE("log-probabilities of a letter are those of all its tokens, of the first place") {
+TEST_CASE("log-probabilities of a letter are those of all its tokens where it stands") {
   ChatTerms terms;
   terms.model = "m";
   const std::string body =
       R"({"model": "m", "choices": [{"message": {"content": "B"}, "logprobs": {"content": [
-        {"top_logprobs": [{"token": "B", "logprob": -1}, {"token": " B", "logprob": -1},
+        {"token": "B", "top_logprobs": [{"token": "B", "logprob": -1}, {"token": " B", "logprob": -1},
                           {"token": "A", "logprob": -3}, {"token": "The", "logprob": -4}]}]}}]})";
   const auto said = read_chat_answer(terms, body, "application/json", 3);
   REQUIRE(said.ok());
-  const auto& letters = said->usage.letter_logprobs;
+  CHECK(said->has_logprobs);
+  REQUIRE(said->letters.size() == 1);
+  const auto& letters = said->letters[0].logprobs;
   REQUIRE(letters.size() == 3);
   CHECK(letters[0] == doctest::Approx(-3));
   CHECK(letters[1] == doctest::Approx(-1 + 0.6931471805599453));

@@ -307,6 +307,8 @@ TEST_CASE("the likeliest letter is scored where the server tells, and a tie is n
   CHECK(scores[0].of(Arm::kPicture)->likely_plain->count.k == 2);
   CHECK(scores[0].of(Arm::kPicture)->circular.count.k == 0);
 
+  rows[0].usage.letter_logprobs = {std::nullopt, std::nullopt, std::nullopt};
+  CHECK_FALSE(asked_of(plan, rows)[0].likely_circular);
   rows[0].usage.letter_logprobs.clear();
   asked = asked_of(plan, rows);
   CHECK_FALSE(asked[0].likely_circular);
