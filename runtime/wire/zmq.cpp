@@ -93,6 +93,9 @@ class ZmqRequester::Sockets {
   }
 
   Result<Bytes> exchange(std::span<const std::uint8_t> message, Duration timeout) {
+    // ZeroMQ connects again by itself: who asks is to know, as another may answer there now.
+    while (has_news()) note_event();
+    if (lost_ && has_answered_) return failed("the server went away after its last answer");
     PROBE_ASSIGN(const bool connects, connect(Clock::now() + options_.connect_timeout));
     if (!connects) return failed(unconnected());
     // What happened to earlier connections is no news of this one.

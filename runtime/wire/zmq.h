@@ -29,8 +29,9 @@ class ZmqRequester {
 
   // Sends one message and waits for its answer, connecting first where that is needed. Fails
   // (kPolicy) naming the server and what happened: nobody there, no ZeroMQ, no answer in `timeout`,
-  // closed before it answered, more than the largest message. After a failure the next call begins
-  // with a new socket, because an unanswered REQ socket can never send again.
+  // closed before it answered or since its last answer, more than the largest message. After a
+  // failure the next call begins with a new socket, because an unanswered REQ socket can never send
+  // again.
   Result<Bytes> ask(std::span<const std::uint8_t> message, Duration timeout);
 
  private:

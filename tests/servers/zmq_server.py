@@ -7,7 +7,7 @@ huge      answers with 2 MiB
 parts     answers in two parts
 With the argument `raw` it is no ZeroMQ server: it sends HTTP to whoever connects; with `silent`
 it accepts and says nothing; with `flood` it speaks ZMTP 3.0 and answers in parts without an end,
-which ZeroMQ itself would keep until the last.
+which ZeroMQ itself would keep until the last. With a number it listens at that port.
 """
 import os
 import socket
@@ -53,10 +53,14 @@ def serve_flood():
 def main():
     if len(sys.argv) > 1 and sys.argv[1] == "flood":
         return serve_flood()
-    if len(sys.argv) > 1:
+    port = sys.argv[1] if len(sys.argv) > 1 and sys.argv[1].isdigit() else None
+    if len(sys.argv) > 1 and port is None:
         serve_raw(b"HTTP/1.1 400 Bad Request\r\n\r\n" if sys.argv[1] == "raw" else b"")
     server = zmq.Context().socket(zmq.REP)
-    port = server.bind_to_random_port("tcp://127.0.0.1")
+    if port is None:
+        port = server.bind_to_random_port("tcp://127.0.0.1")
+    else:
+        server.bind("tcp://127.0.0.1:" + port)
     print("port", port, flush=True)
     os.close(1)
     while True:

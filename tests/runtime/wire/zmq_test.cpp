@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "tests/servers/python_server.h"
 
@@ -63,6 +64,23 @@ TEST_CASE("a ZeroMQ server that dies or floods is told from one that is slow") {
   const std::string gone = failure_of(*socket, "echo", 5s);
   CHECK(gone.starts_with("the server "));
   CHECK(failure_of(*socket, "echo", 5s) == "connecting: nobody listens there");
+}
+
+TEST_CASE(
+    "a ZeroMQ server that was exchanged between two questions is not asked as if it were one") {
+  std::string port;
+  std::unique_ptr<ZmqRequester> socket;
+  {
+    const test::PythonServer server("zmq_server.py");
+    port = server.port();
+    socket = requester(port);
+    REQUIRE(socket->ask(bytes_of("echo"), 5s).ok());
+  }
+  const test::PythonServer other("zmq_server.py", {port});
+  REQUIRE(other.port() == port);
+  std::this_thread::sleep_for(300ms);  // ZeroMQ has connected again by itself
+  CHECK(failure_of(*socket, "echo", 5s) == "the server went away after its last answer");
+  CHECK(socket->ask(bytes_of("echo"), 5s).ok());
 }
 
 TEST_CASE("an answer in parts that do not end is given up at the limit") {
