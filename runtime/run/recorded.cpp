@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <set>
 
+#include "runtime/store/episode_key.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 
 namespace probe::run {
@@ -28,9 +30,16 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const
   for (const store::ResultRow& row : proven.rows) {
     if (row.invalid) continue;
     const std::string key = servers::episode_key(row.image_sha256, row.prompt_sha256);
-    if (episodes->contains(key)) continue;
     PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
-    for (const store::TraceStep& step : trace.steps) (*episodes)[key].push_back(step.action);
+    std::vector<policy::Action> actions;
+    for (const store::TraceStep& step : trace.steps) actions.push_back(step.action);
+    const auto [there, is_new] = episodes->try_emplace(key, actions);
+    if (is_new || there->second == actions) continue;
+    return Failure{Fault::kUsage,
+                   to_text(store::key_of(row)) +
+                       " begins as one of another seed and goes on otherwise, so that which is "
+                       "asked for cannot be told: serve a run of one seed",
+                   dir};
   }
   if (episodes->empty()) return Failure{Fault::kUsage, "has no valid episode to serve", dir};
   return std::shared_ptr<const servers::RecordedEpisodes>(std::move(episodes));
@@ -72,6 +81,19 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const st
   }
   if (steps->empty()) return Failure{Fault::kUsage, "has no valid episode to serve", dir};
   return std::shared_ptr<const servers::RecordedEpisodes>(std::move(steps));
+}
+
+Result<std::optional<int>> only_seed(const std::string& dir) {
+  PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+  PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  const std::string& content = record.identity.policy_content;
+  const bool is_named = content.starts_with(store::kOwnPolicy);
+  const auto choice =
+      choose_policy(is_named ? content.substr(store::kOwnPolicy.size()) : record.identity.policy);
+  if (!choice || !choice->traits.draws) return std::optional<int>();
+  std::set<int> seeds;
+  for (const store::ResultRow& row : rows) seeds.insert(row.seed);
+  return seeds.size() == 1 ? std::optional<int>(*seeds.begin()) : std::nullopt;
 }
 
 }  // namespace probe::run

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "runtime/run/policies.h"
 #include "runtime/servers/served.h"
@@ -11,9 +13,9 @@ namespace probe::run {
 // With which replay:DIR reads the actions of stored episodes.
 PolicyContext policy_context();
 
-// The valid episodes of a run whose traces bear their rows; of several with one first picture and
-// one instruction (other seeds) the first. Fails as read_proven_results does, and (kUsage) where
-// there is none.
+// The valid episodes of a run whose traces bear their rows. Fails as read_proven_results does, and
+// (kUsage) where there is none, or two that begin with one picture and one instruction (of other
+// seeds) and go on otherwise.
 Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const std::string& dir);
 
 // Of each step of these the actions from it on, at most `most`, by the step's picture and
@@ -21,5 +23,9 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const
 // sequences follow is left out.
 Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const std::string& dir,
                                                                         int most);
+
+// Which seed the episodes of a run are of, where its policy draws, so that of another seed they
+// would be others; nothing where it draws nothing, or there are several.
+Result<std::optional<int>> only_seed(const std::string& dir);
 
 }  // namespace probe::run

@@ -307,6 +307,20 @@ Status check_worlds(const RunOptions& options, const Actor& actor) {
                  "--jobs"};
 }
 
+// A server of recorded episodes answers any seed with those of its own.
+Status check_seeds(const Selection& selection, const Actor& actor) {
+  if (!actor.server || !actor.server->only_seed) return {};
+  const std::string own = std::to_string(*actor.server->only_seed);
+  for (const EpisodeJob& job : selection.jobs) {
+    if (job.seed == *actor.server->only_seed) continue;
+    return Failure{Fault::kUsage,
+                   "the server has the episodes of seed " + own + ", not of seed " +
+                       std::to_string(job.seed) + ": run with --seeds " + own,
+                   "--seeds"};
+  }
+  return {};
+}
+
 // Delays that are measured must be the policy's alone: not those of other worlds' questions, and
 // not of a machine that is busy with other worlds.
 Status check_live(const RunOptions& options, const Actor& actor) {
@@ -437,7 +451,8 @@ std::string content_of(const RunOptions& options, const PolicyTraits& traits) {
   if (!traits.content.empty() || options.own_policy) return traits.content;
   if (options.name.empty() || options.name == options.policy) return "";
   // A recorded run may have moved since.
-  return "policy " + (traits.recorded ? std::string("replay") : options.policy);
+  return std::string(store::kOwnPolicy) +
+         (traits.recorded ? std::string("replay") : options.policy);
 }
 
 }  // namespace
@@ -480,6 +495,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
                             std::to_string(options.shards) + " holds no episode: nothing to do");
     return summary;
   }
+  PROBE_TRY(check_seeds(selection, actor));
   if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
   // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks_of(selection.jobs)));

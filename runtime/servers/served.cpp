@@ -64,7 +64,8 @@ class ServedRecorded final : public ServedPolicy {
         next_ = 0;
       }
     }
-    if (actions_ == nullptr) {
+    // A question of a proof is no step of the episode, in which it may come.
+    if (actions_ == nullptr || is_known_observation(asked.picture.bytes, asked.words)) {
       return answer_unknown(asked, count,
                             "picture and instruction begin none of the episodes that are served");
     }
@@ -194,6 +195,10 @@ std::string options_for_served(Protocol protocol, const ServeOptions& options) {
       "action.form=delta&action.units=m_rad&action.rotation=vector&action.gripper=signed&"
       "action.threshold=none";
   text += row_of(protocol).served_options;
+  // Their servers know no connection from another.
+  if (options.keeps_episode && (protocol == Protocol::kGr00t || protocol == Protocol::kOpenVla))
+    text += "&worlds=one";
+  if (options.seed) text += "&seed=" + std::to_string(*options.seed);
   if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
   if (options.batch > 1) text += "&batch=" + std::to_string(options.batch);
   return text;

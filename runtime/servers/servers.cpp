@@ -68,6 +68,17 @@ Status check_fit_for_batches(const Profile& profile, const ProtocolRow& row) {
   return {};
 }
 
+Result<std::optional<int>> take_seed(Options& options) {
+  const auto node = options.extract("seed");
+  if (node.empty()) return std::optional<int>();
+  const std::string& text = node.mapped();
+  int seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc() || end != text.data() + text.size())
+    return usage("`seed` is a whole number, found `" + text + "`");
+  return std::optional<int>(seed);
+}
+
 // How the address should begin for another protocol's profile. `scheme` is a URL's, or null.
 std::string address_for(const Profile& profile, const Scheme* scheme) {
   const std::string word(to_word(profile.protocol));
@@ -104,6 +115,7 @@ Result<ServerChoice> chosen(Protocol protocol, wire::Endpoint server,
     if (auto node = options.extract(option); !node.empty()) server.options.insert(std::move(node));
   }
   PROBE_ASSIGN(const BatchLimits limits, take_limits(options, row));
+  PROBE_ASSIGN(const std::optional<int> seed, take_seed(options));
   // An image option stands for all of the file's: it could not name the one it replaces.
   if (options.contains("image")) profile.images.clear();
   for (const auto& [field, value] : options) {
@@ -117,7 +129,7 @@ Result<ServerChoice> chosen(Protocol protocol, wire::Endpoint server,
   }
   if (auto whole = check_profile(profile); !whole) return usage(whole.failure().message);
   if (limits.most > 1) PROBE_TRY(check_fit_for_batches(profile, row));
-  return ServerChoice{std::move(profile), std::move(server), limits};
+  return ServerChoice{std::move(profile), std::move(server), limits, seed};
 }
 
 // The protocols that go over what a URL begins with: "openpi, intact".

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -27,12 +28,14 @@ struct ServerChoice {
   // Questions that go in one message at most, and how long the first of them waits for others. No
   // answer depends on it: runs with other batches are one run.
   BatchLimits batch{.most = 1};
+  // The server has one seed's episodes, as our own of a policy that draws: others are not its.
+  std::optional<int> only_seed = {};
 };
 
 // `argument` is what stands after "openpi:". Options are `profile` (default: the protocol's own),
 // any field of a profile, which then stands for the file's, `batch` and `batch_wait_ms` of
-// protocols that have batches, and those of the protocol. Fails (kUsage) on others, with the
-// nearest, and on a profile of another protocol.
+// protocols that have batches, `seed` of a server that has no other, and those of the protocol.
+// Fails (kUsage) on others, with the nearest, and on a profile of another protocol.
 Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument);
 
 // The same of a URL as it was copied, "wss://HOST/PATH?profile=NAME": what is spoken there the

@@ -105,8 +105,8 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
   }
   if (there.policy_content != here.policy_content) {
     const auto said = [](const std::string& text) { return text.empty() ? "nothing" : text; };
-    const bool is_server =
-        !there.policy_content.starts_with("policy ") && !here.policy_content.starts_with("policy ");
+    const bool is_server = !there.policy_content.starts_with(kOwnPolicy) &&
+                           !here.policy_content.starts_with(kOwnPolicy);
     changes.policy_content =
         std::string("was begun with another ") + (is_server ? "profile" : "policy") +
         " (recorded " + said(there.policy_content) + ", now " + said(here.policy_content) + ")";

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -20,11 +21,15 @@ namespace probe::store {
 inline constexpr int kSchemaVersion = 2;
 inline constexpr int kLiveSchemaVersion = 3;
 
+// How the content of a policy in this process begins whose rows call it otherwise.
+inline constexpr std::string_view kOwnPolicy = "policy ";
+
 // What must not change between two calls that write into one folder.
 struct RunIdentity {
   std::string plan_root;  // hex
   std::string policy;
-  // What the name alone does not say: PolicyTraits::content, or which policy goes by another name.
+  // What the name alone does not say: PolicyTraits::content, or, behind kOwnPolicy, which policy
+  // goes by another name.
   std::string policy_content = "";
   // Of a world that does not wait for its policy: to_text of its policy::LiveTerms. Empty: it
   // waits.

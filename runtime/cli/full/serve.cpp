@@ -1,11 +1,13 @@
 // vlaprobe serve
 #include <fmt/format.h>
+
 #include "runtime/base/say.h"
 #include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/until_ended.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/run/recorded.h"
 #include "runtime/run/run.h"
+#include "runtime/run/selection.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/served.h"
 
@@ -50,6 +52,18 @@ Result<std::string> folder_of(const ServeArguments& arguments, int* exit) {
     *exit = loaded.exit;
     return std::string();
   }
+  // What draws has other episodes for each seed, which no question names: one is served.
+  PROBE_ASSIGN(const run::PolicyChoice choice, run::choose_policy(options.policy));
+  if (choice.traits.draws) {
+    PROBE_ASSIGN(const auto selection, run::select_jobs(*loaded.plan, options, true));
+    if (options.seeds.size() > 1) {
+      return Failure{Fault::kUsage,
+                     "policy `" + options.policy +
+                         "` draws, and no question names a seed: one of them can be served",
+                     "--seeds"};
+    }
+    options.seeds = {selection.seeds.front()};
+  }
   PROBE_ASSIGN(const run::RunSummary summary, run::run(*loaded.plan, options));
   print_summary(summary);
   return summary.out;
@@ -68,6 +82,9 @@ int serve_verb(const ServeArguments& arguments) {
     const auto dir = folder_of(arguments, &exit);
     if (!dir) return report(dir.failure());
     if (dir->empty()) return exit;
+    const auto seed = run::only_seed(*dir);
+    if (!seed) return report(seed.failure());
+    options.seed = *seed;
     const bool together = options.batch > 1;
     const auto episodes =
         together ? run::recorded_steps(*dir, options.chunk) : run::recorded_episodes(*dir);
@@ -77,6 +94,7 @@ int serve_verb(const ServeArguments& arguments) {
           *dir);
       options.policy = servers::serve_steps(*episodes);
     } else {
+      options.keeps_episode = true;
       say("{} episodes of {} are served, each known by its first picture as rendered\n",
           (*episodes)->size(), *dir);
       options.policy =
@@ -127,6 +145,7 @@ void add_serve(Verb app, int& exit) {
   verb.add_option("--suite", arguments->run.suite, "as for `run`");
   verb.add_option("--tasks", arguments->run.tasks, "as for `run`");
   verb.add_option("--episodes", arguments->run.episodes, "as for `run`");
+  verb.add_option("--seeds", arguments->run.seeds, "as for `run`; of a policy that draws, one");
   verb.add_option("--jobs", arguments->run.jobs, "as for `run`");
   verb.add_option("--assets", arguments->run.assets.root, "asset root");
   verb.refuse_empty_values();
