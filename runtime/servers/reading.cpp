@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "runtime/base/sha256.h"
+#include "runtime/servers/conformance.h"
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/known_observations.h"
 #include "runtime/servers/meaning.h"
@@ -92,6 +93,23 @@ ActionForm form_of(const Profile& adapted, const policy::Reading& reading) {
   return form;
 }
 
+// What `policy test` calls wrong of how far a step moves would make every episode one of another
+// policy.
+Status check_steps(Profile profile, const std::vector<Chunk>& answers, const KnownArm& arm,
+                   const policy::Reading& reading) {
+  for (const auto& [field, value] : reading.measured) PROBE_TRY(set_field(profile, field, value));
+  for (const Check& check : judge_answers(profile, answers, arm)) {
+    if (check.name != "translation" || check.verdict != Verdict::kWrong) continue;
+    std::string lines;
+    for (const std::string& line : check.fix) lines += (lines.empty() ? "; try `" : "`, `") + line;
+    return Failure{Fault::kUsage,
+                   "its first answers are no moves of the arm: " + check.found + lines +
+                       (lines.empty() ? "" : "`") + " (`vlaprobe policy test` shows more)",
+                   reading.server};
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<policy::Reading> prove_reading(const ServerChoice& choice) {
@@ -145,7 +163,7 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   reading.measured = measured_of(left);
   PROBE_TRY(check_said(adapted, left, reading.server));
   PROBE_TRY(check_form(adapted, form_of(adapted, reading), arm.control, reading.server));
-  if (asked.failure) return reading;
+  PROBE_TRY(check_steps(adapted, asked.answers, arm, reading));
   reading.is_deaf = asked.answers[0] == asked.answers[1];
   reading.is_blind = asked.answers[0] == asked.answers[2];
   reading.answers_sha256 = hash_of(asked.answers);

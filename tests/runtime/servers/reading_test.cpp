@@ -81,6 +81,29 @@ TEST_CASE("known arms have their joints before their fingers, and their tool on 
   }
 }
 
+TEST_CASE("first answers that are no moves of an arm are refused, with what would read them") {
+  const test::PythonServer server("openpi_server.py", {"openpi", "seen=normalised"});
+  REQUIRE_FALSE(server.port().empty());
+  const auto read = [&](const std::string& more) {
+    const auto choice =
+        choose_server(Protocol::kOpenpi,
+                      "//127.0.0.1:" + server.port() +
+                          "?action.form=delta&action.units=m_rad&action.rotation=vector" + more);
+    REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+    return prove_reading(*choice);
+  };
+  const auto refused = read("");
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().code == Fault::kUsage);
+  CHECK(refused.failure().where == "127.0.0.1:" + server.port());
+  CHECK(refused.failure().message.starts_with("its first answers are no moves of the arm: "));
+  CHECK(refused.failure().message.find("`action.normalised = bound") != std::string::npos);
+  const auto said = read(
+      "&action.normalised=bound&action.low=-0.02%20-0.02%20-0.02%20-0.1%20-0.1%20-0.1%200"
+      "&action.high=0.02%200.02%200.02%200.1%200.1%200.1%201");
+  CHECK_MESSAGE(said.ok(), to_text(said.failure()));
+}
+
 TEST_CASE("a wrapper that keeps its instruction is reset between the questions and reads") {
   CHECK_FALSE(read_by("keeps")->is_deaf);
 }
