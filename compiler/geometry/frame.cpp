@@ -16,6 +16,7 @@ Frame frame_of(const Model& model, const Scene& scene, const Camera& camera) {
   sight.eye = pose->position;
   sight.forward = pose->rotation * Vec3::UnitX();
   sight.right = pose->rotation * -Vec3::UnitY();
+  if (camera.sensor.mirrored != 0) sight.right = -sight.right;  // of the picture that is seen
   sight.down = pose->rotation * -Vec3::UnitZ();
   const Vec3 middle((scene.area[0] + scene.area[2]) / 2, (scene.area[1] + scene.area[3]) / 2,
                     scene.surface_z);

@@ -236,7 +236,9 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
     camera.name = plan.text(plan.cameras()[names[i].camera].name);
     const Pinhole& pinhole = cameras[i].eye;
     camera.eye = {pinhole.eye.x(), pinhole.eye.y()};
-    const Eigen::Vector2d right = -pinhole.axes.col(1).head<2>();
+    Eigen::Vector2d right = -pinhole.axes.col(1).head<2>();
+    const plan::SensorRecord* sensor = plan.sensor(plan.cameras()[names[i].camera]);
+    if (sensor != nullptr && sensor->mirrored != 0) right = -right;
     if (cameras[i].still && right.norm() > 1e-6)
       camera.right = {right.x() / right.norm(), right.y() / right.norm()};
     for (const Vec3& corner : frame_on_plane(pinhole, scene.surface_z, kFar))

@@ -89,6 +89,21 @@ TEST_CASE("what settling may turn over is too close to call") {
   CHECK(said(row("-20cm", "-12cm"), "side") == "");
 }
 
+TEST_CASE("in a mirrored picture left is right") {
+  const auto a = test::analyze_with_suite(row("-20cm", "20cm") +
+                                          "camera turned like eye { sensor mirrored }\n"
+                                          "task t like base { layout row; source sided; target "
+                                          "tray; distractors blue; refer source as side }\n"
+                                          "variant v of t { camera turned }");
+  CHECK(a->said().find("note: there it denotes `blue`\n") != std::string::npos);
+  const auto b = test::analyze_with_suite(row("20cm", "-20cm") +
+                                          "camera turned like eye { sensor mirrored }\n"
+                                          "task t like base { layout row; source sided; target "
+                                          "tray; distractors blue; refer source as side; "
+                                          "camera turned }");
+  CHECK(b->said() == "");
+}
+
 TEST_CASE("a variant that says where things are moves the spatial axis") {
   const auto a = test::analyze_with_suite(
       row("-20cm", "20cm") +
