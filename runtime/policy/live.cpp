@@ -140,6 +140,10 @@ class LivePolicy final : public Policy {
   void end(const EpisodeEnd& end) override {
     if (inner_) inner_->end(end);
   }
+  std::optional<Failure> spoiled() const override {
+    return inner_ ? inner_->spoiled() : std::nullopt;
+  }
+  bool is_earlier_spoiled() const override { return inner_ && inner_->is_earlier_spoiled(); }
   std::optional<Delivery> delivery() const override {
     return inner_ ? inner_->delivery() : std::nullopt;
   }

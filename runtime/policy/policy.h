@@ -179,6 +179,10 @@ class Policy {
   virtual Result<Action> act(const Observation& observation) = 0;
   // Once after each begin(), however the episode went and also when begin() failed.
   virtual void end(const EpisodeEnd& /*end*/) {}
+  // After end(): what showed only then that the episode was not answered as it seemed.
+  virtual std::optional<Failure> spoiled() const { return std::nullopt; }
+  // The same of the episode before the one that was begun last, where it showed even later.
+  virtual bool is_earlier_spoiled() const { return false; }
   // Of the episode that was begun last; nothing of a policy in this process, or before the first
   // request.
   virtual std::optional<Delivery> delivery() const { return std::nullopt; }

@@ -12,15 +12,24 @@ std::string_view to_word(AtEnd at_end) {
       return "other";
     case AtEnd::kUnclear:
       return "unclear";
+    case AtEnd::kDrawn:
+      return "drawn";
+    case AtEnd::kMixed:
+      return "mixed";
     case AtEnd::kNotAsked:
       break;
   }
   return "not asked";
 }
 
+bool is_exchanged(AtEnd at_end) {
+  return at_end == AtEnd::kOther || at_end == AtEnd::kDrawn || at_end == AtEnd::kMixed;
+}
+
 bool are_others(const Reading& a, const Reading& b) {
-  return a.is_steady && b.is_steady && a.questions_sha256 == b.questions_sha256 &&
-         a.answers_sha256 != b.answers_sha256;
+  if (a.questions_sha256.empty() || a.questions_sha256 != b.questions_sha256) return false;
+  if (a.is_steady && b.is_steady) return a.answers_sha256 != b.answers_sha256;
+  return (a.is_steady && b.draws) || (a.draws && b.is_steady);
 }
 
 std::string batch_remark(const Reading& reading) {
@@ -59,7 +68,30 @@ std::vector<std::string> findings_of(const Reading& reading) {
   if (reading.at_end == AtEnd::kOther) {
     findings.push_back(who +
                        " answered the questions of the beginning otherwise when the call ended: "
-                       "another policy was loaded, and the call's episodes are invalid");
+                       "another policy was loaded, and what it may have answered was made invalid, "
+                       "to be done again");
+  }
+  if (reading.at_end == AtEnd::kDrawn) {
+    findings.push_back(who +
+                       " answered each question of the beginning alike, and later each time "
+                       "otherwise: another policy was loaded, and what it may have answered was "
+                       "made invalid, to be done again");
+  }
+  if (reading.at_end == AtEnd::kMixed) {
+    findings.push_back(who +
+                       " took the questions of a batch for one another when they were asked again: "
+                       "what it may have answered so was made invalid; ask without `batch`");
+  }
+  if (reading.draws) {
+    findings.push_back(who + " draws: that it was one policy is not shown");
+    const bool both = reading.words_not_shown && reading.picture_not_shown;
+    if (reading.words_not_shown || reading.picture_not_shown) {
+      findings.push_back(who + " is not shown to read " +
+                         (both                      ? "instructions and pictures"
+                          : reading.words_not_shown ? "instructions"
+                                                    : "pictures") +
+                         ": its answers to one question are as far apart as those to others");
+    }
   }
   if (reading.at_end == AtEnd::kUnclear) {
     findings.push_back(who +

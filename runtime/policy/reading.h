@@ -14,7 +14,9 @@ enum class AtEnd : std::uint8_t {
   kNotAsked,  // of a policy that draws, or a call that did not come to its end
   kSame,
   kOther,    // another policy answers
-  kUnclear,  // it was not answered, or twice otherwise
+  kUnclear,  // nothing was answered
+  kDrawn,    // answered otherwise than at first, and each time otherwise: it drew nothing then
+  kMixed,    // takes the questions of a batch for one another, and did not at first
 };
 
 struct Reading {
@@ -32,6 +34,11 @@ struct Reading {
   // The first question, asked again, had the same answer bit for bit: nothing is drawn, so that
   // other answers are another policy's.
   bool is_steady = false;
+  // It had another answer: the policy draws, and none of its answers shows that it is the same one.
+  bool draws = false;
+  // Of one that draws: answers to other words, or to another picture, were no farther apart than
+  // those to one question.
+  bool words_not_shown = false, picture_not_shown = false;
   // What the questions showed when they were asked once more at the end of the call.
   AtEnd at_end = AtEnd::kNotAsked;
   // Questions that were asked once more in one message; 0: the run asks no batches. How far the
@@ -44,10 +51,12 @@ struct Reading {
   bool operator==(const Reading&) const = default;
 };
 
-// "same", "other", "unclear", "not asked".
+// "same", "other", "unclear", "drawn", "mixed", "not asked".
 std::string_view to_word(AtEnd at_end);
+// Whether what was answered between the first questions and these is not to be believed.
+bool is_exchanged(AtEnd at_end);
 
-// Whether two policies were read: both steady, asked the same, and answering otherwise.
+// Whether two policies were read: asked the same and answering otherwise, where not both draw.
 bool are_others(const Reading& a, const Reading& b);
 
 // What a batch showed; empty where none was asked.

@@ -245,9 +245,9 @@ class FolderLoader {
   // What the questions at the beginning of its calls showed. A folder whose calls cannot be read
   // has been told of with its rows.
   void note_reading(const std::string& dir, RunInfo& info) {
-    const auto calls = store::read_run_calls(dir);
-    if (!calls) return;
-    info.reading = store::summarize_readings(*calls);
+    auto reading = store::read_reading_summary(dir);
+    if (!reading) return;
+    info.reading = std::move(*reading);
     for (const std::string& finding : info.reading.findings)
       note("bad", fmt::format("`{}`: {}", dir, finding));
   }

@@ -77,13 +77,16 @@ class Loop {
   }
 
   // After run(), however it went: the policy hears of it and says what left for a server.
-  void leave(const Outcome& outcome) {
+  void leave(Outcome* outcome) {
     if (!policy_begun_) return;
-    policy::EpisodeEnd end{!outcome.invalid && !outcome.broken, false, row_.steps};
+    policy::EpisodeEnd end{!outcome->invalid && !outcome->broken, false, row_.steps};
     for (const store::MetricValue& metric : row_.metrics) {
       if (metric.name == "success") end.success = end.completed && metric.value != 0;
     }
     policy_.end(end);
+    // What failed for another reason keeps it.
+    if (const auto spoiled = policy_.spoiled(); spoiled && !outcome->invalid && !outcome->broken)
+      *outcome = policy_failed(*spoiled);
     if (const auto delivery = policy_.delivery()) {
       row_.sent_prompt_sha256 = delivery->prompt_sha256;
       row_.sent_image_sha256 = delivery->image_sha256;
@@ -205,7 +208,7 @@ Outcome run_guarded(Loop& loop, int steps, double most_held) {
     outcome = {"exception of unknown type", {}};
   }
   try {
-    loop.leave(outcome);
+    loop.leave(&outcome);
   } catch (...) {  // the episode is over; the policy's next begin() starts anew
   }
   return outcome;

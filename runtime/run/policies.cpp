@@ -175,7 +175,7 @@ Result<std::unique_ptr<policy::Policy>> make_policy(const PolicyChoice& chosen,
                                                     const PolicyContext& context) {
   if (chosen.server) {
     return servers::make_server(*chosen.server, context.queries, context.model, context.measured,
-                                context.line);
+                                context.line, context.identity);
   }
   PROBE_ASSIGN(const Choice choice, choose(chosen.text));
   switch (choice.entry->kind) {

@@ -15,6 +15,7 @@ namespace probe::policy {
 class QueryMeter;
 }
 namespace probe::servers {
+class Identity;
 class SharedLine;
 class SharedModel;
 struct ServerChoice;
@@ -38,6 +39,7 @@ struct PolicyContext {
   policy::QueryMeter* queries = nullptr;  // of the run; told of each query to a server; may be null
   std::shared_ptr<servers::SharedModel> model = nullptr;  // of the run's connections; may be null
   std::shared_ptr<servers::SharedLine> line = nullptr;    // of its worlds' batches; may be null
+  std::shared_ptr<servers::Identity> identity = nullptr;  // whom the run began with; may be null
   // Of a server: what its profile leaves open and its answers have shown, see policy::Reading.
   std::vector<std::pair<std::string, std::string>> measured = {};
 };

@@ -2,22 +2,19 @@
 #include "runtime/run/run.h"
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
-#include <mutex>
 #include <set>
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
 #include "runtime/run/changed_folder.h"
 #include "runtime/run/delivery.h"
-#include "runtime/run/episode.h"
+#include "runtime/run/episode_worker.h"
 #include "runtime/run/policies.h"
 #include "runtime/run/recorded.h"
 #include "runtime/run/selection.h"
+#include "runtime/run/server_proof.h"
 #include "runtime/run/workers.h"
-#include "runtime/servers/reading.h"
-#include "runtime/show/episode_video.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/robot_of.h"
 #include "runtime/store/fingerprint.h"
@@ -27,153 +24,6 @@ namespace probe::run {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What all workers read, and what they write one at a time.
-struct Shared {
-  const plan::Plan& plan;
-  const RunOptions& options;
-  const Actor& actor;
-  std::shared_ptr<const stage::SharedAssets> assets;
-  std::string fingerprint;
-  std::vector<EpisodeJob> jobs;
-  store::Store& store;
-  RunSummary& summary;
-  policy::QueryMeter& queries;
-  std::shared_ptr<servers::SharedModel> model;  // of all connections to a server
-  std::shared_ptr<servers::SharedLine> line;    // of all worlds, where they ask in batches
-  std::vector<std::pair<std::string, std::string>> measured;
-  std::mutex mutex = {};                      // summary, progress and what follows
-  std::vector<store::EpisodeKey> valid = {};  // of this call
-  int lost_in_a_row = 0;  // episodes that a policy server's failures spoiled for good
-  std::atomic<bool> given_up = false;
-};
-
-void add_once(std::vector<std::string>& notes, std::string note) {
-  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
-}
-
-bool has_failed(const store::ResultRow& row) {
-  if (row.invalid) return !store::is_not_attempted(row);
-  for (const store::MetricValue& metric : row.metrics) {
-    if (metric.name == "success") return metric.value == 0;
-  }
-  return false;
-}
-
-class EpisodeWorker {
- public:
-  explicit EpisodeWorker(Shared& shared) : shared_(shared) {}
-
-  Status begin() {
-    run::PolicyContext context = policy_context();
-    context.queries = &shared_.queries;
-    context.model = shared_.model;
-    context.line = shared_.line;
-    context.measured = shared_.measured;
-    PROBE_ASSIGN(policy_, shared_.actor.make(context));
-    if (shared_.options.live)
-      policy_ = policy::make_live(std::move(policy_), *shared_.options.live);
-    return {};
-  }
-
-  Status run(std::size_t index) {
-    const EpisodeJob& job = shared_.jobs[index];
-    if (!stage_ || stage_->task() != job.task) {
-      stage_.reset();  // frees the old before the new is made
-      PROBE_ASSIGN(stage_, stage::Stage::create(shared_.plan, job.task, shared_.assets));
-    }
-    const store::TraceHeader header =
-        make_trace_header(shared_.plan, job, *stage_, shared_.options.name, shared_.fingerprint,
-                          shared_.options.live);
-    PROBE_ASSIGN(const std::string path, shared_.store.temporary_trace(store::key_of(header)));
-    for (int attempt = 0;; ++attempt) {
-      auto played = write(job, header, path);
-      if (!played) {
-        std::error_code ignored;
-        fs::remove(path, ignored);
-        return played.failure();
-      }
-      if (!is_spoiled(*played) || attempt >= shared_.options.retries || shared_.given_up) {
-        return commit(*played, static_cast<int>(job.task));
-      }
-      const std::lock_guard lock(shared_.mutex);
-      ++shared_.summary.call.retried;
-      shared_.summary.call.observations += played->row.steps;
-    }
-  }
-
- private:
-  Result<Played> write(const EpisodeJob& job, const store::TraceHeader& header,
-                       const std::string& path) {
-    PROBE_ASSIGN(auto trace, store::TraceWriter::create(path, header));
-    std::optional<show::EpisodeVideo> video;
-    if (shared_.options.video != VideoChoice::kNone) {
-      const std::string file = store::video_path(shared_.options.out, store::key_of(header));
-      PROBE_TRY(make_folders(fs::path(file).parent_path().string()));
-      video.emplace(header, file);
-    }
-    PROBE_ASSIGN(Played played,
-                 run_episode(*stage_, shared_.plan, job, shared_.options.name, *policy_, *trace,
-                             video ? &*video : nullptr, -1,
-                             shared_.options.live ? shared_.options.live->most_held : 1));
-    if (video) {
-      const bool keep = shared_.options.video == VideoChoice::kAll || has_failed(played.row);
-      PROBE_TRY(keep ? video->finish() : video->discard());
-    }
-    return played;
-  }
-
-  // Whether a policy server kept the episode from its end. Other failures, those of policies in
-  // this process, and what profile and server do not agree on would only repeat themselves.
-  bool is_spoiled(const Played& played) const {
-    return !shared_.actor.traits.content.empty() && played.policy_fault &&
-           *played.policy_fault != Fault::kUsage;
-  }
-
-  Status commit(const Played& played, int task_order) {
-    const store::ResultRow& row = played.row;
-    // Not under the lock: other worlds must not wait for the disk.
-    PROBE_TRY(shared_.store.commit(row, task_order));
-    const std::lock_guard lock(shared_.mutex);
-    ++shared_.summary.done;
-    shared_.summary.call.observations += row.steps;
-    for (std::string& note : policy_->notes()) add_once(shared_.summary.notes, std::move(note));
-    if (store::is_not_attempted(row)) {
-      ++shared_.summary.not_attempted;
-    } else if (row.invalid) {
-      ++shared_.summary.invalid;
-    } else {
-      shared_.valid.push_back(store::key_of(row));
-    }
-    if (shared_.options.progress) {
-      shared_.options.progress(
-          {shared_.summary.done, shared_.summary.skipped, shared_.summary.total, &row});
-    }
-    if (!is_spoiled(played)) {
-      if (!row.invalid) shared_.lost_in_a_row = 0;
-      return {};
-    }
-    const int bound = shared_.options.give_up_after;
-    if (bound == 0 || ++shared_.lost_in_a_row < bound) return {};
-    shared_.given_up = true;
-    return give_up(*row.invalid);
-  }
-
-  Failure give_up(const std::string& last) const {
-    const RunSummary& summary = shared_.summary;
-    const int stored = summary.skipped + summary.done - summary.invalid - summary.not_attempted;
-    return {Fault::kPolicy,
-            "the policy failed in " + std::to_string(shared_.lost_in_a_row) +
-                " episodes in a row, the last time so: " + last + "\n  " + std::to_string(stored) +
-                " of " + std::to_string(summary.total) + " episodes are stored in " + summary.out +
-                "; when the server answers again, the same command continues",
-            shared_.options.name};
-  }
-
-  Shared& shared_;
-  std::unique_ptr<policy::Policy> policy_;
-  std::unique_ptr<stage::Stage> stage_;
-};
 
 std::vector<std::uint32_t> tasks_of(const std::vector<EpisodeJob>& jobs) {
   std::set<std::uint32_t> tasks;
@@ -372,64 +222,6 @@ Result<servers::KnownArm> arm_of(const plan::Plan& plan, const std::vector<Episo
   return arm;
 }
 
-// A policy server's part of a run: what it is asked before the first episode and after the last.
-struct ServerProof {
-  servers::ServerChoice choice;
-  servers::KnownArm arm;
-  std::shared_ptr<servers::SharedModel> model;
-};
-
-ServerProof proof_of(servers::ServerChoice choice, int worlds, const servers::KnownArm& arm,
-                     std::shared_ptr<servers::SharedModel> model) {
-  // No batch of the run will hold more; of one question, a batch shows nothing.
-  constexpr int kLeastShown = 2;
-  choice.batch.most = std::min(choice.batch.most, std::max(worlds, kLeastShown));
-  return {std::move(choice), arm, std::move(model)};
-}
-
-// What is shown of the server must be what it was when the folder was begun.
-Status check_as_before(const policy::Reading& reading, const RunOptions& options,
-                       std::vector<std::string>& notes) {
-  PROBE_ASSIGN(const auto calls, store::read_run_calls(options.out));
-  const store::ReadingChanges changes = store::changes_between(calls, reading);
-  if (changes.measured) {
-    return Failure{Fault::kStore,
-                   "was begun with a server whose answers showed other units, forms or rotations; "
-                   "say them in the profile, and take another folder",
-                   options.out};
-  }
-  if (!changes.policy) return {};
-  const std::string said =
-      "was begun with a policy that answered the first questions otherwise than the one at " +
-      reading.server + " does now: it is another one, or on a machine that rounds otherwise";
-  if (options.if_changed == IfChanged::kContinue) {
-    notes.push_back(options.out + " " + said + ": continued all the same");
-    return {};
-  }
-  return Failure{Fault::kStore,
-                 said +
-                     "; take another folder, or --if-changed continue, which mixes them in this "
-                     "one",
-                 options.out};
-}
-
-// Nobody can say when it was exchanged, so what the call did is not to be believed.
-Status check_to_the_end(const ServerProof& proof, Shared& shared) {
-  policy::Reading& reading = *shared.summary.call.reading;
-  reading.at_end = servers::prove_again(proof.choice, proof.model, proof.arm, reading);
-  if (reading.at_end == policy::AtEnd::kUnclear)
-    shared.summary.notes.push_back(policy::findings_of(reading).back());
-  if (reading.at_end != policy::AtEnd::kOther) return {};
-  PROBE_TRY(shared.store.invalidate(
-      shared.valid, "policy: " + reading.server + ": " + std::string(store::Store::kExchanged)));
-  return Failure{Fault::kPolicy,
-                 "another policy answers than at the beginning: it was exchanged meanwhile, and "
-                 "the " +
-                     std::to_string(shared.valid.size()) +
-                     " episodes of this call are invalid; the same command does them again",
-                 reading.server};
-}
-
 // Whether what makes tasks different reached the policy, over all that the folder holds.
 Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary& summary) {
   constexpr std::size_t kTold = 5;
@@ -510,41 +302,50 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   options.name = record.identity.policy;
   PROBE_ASSIGN(auto store, store::Store::open(options.out, record, plan.bytes()));
   summary.out = options.out;
+  const std::vector<EpisodeJob> chosen = selection.jobs;
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
   summary.skipped = static_cast<int>(stored.size());
   PROBE_TRY(note_missing_videos(options, stored, summary));
   if (options.progress) options.progress({0, summary.skipped, summary.total, nullptr});
-  if (selection.jobs.empty()) return summary;
+  PROBE_ASSIGN(const auto unproven, store->unproven());
+  const bool is_there_all = selection.jobs.empty();
+  if (is_there_all && (unproven.empty() || !actor.server)) return summary;
 
   summary.call.fingerprint = fingerprint;
-  summary.call.worlds =
-      static_cast<int>(std::min(selection.jobs.size(), static_cast<std::size_t>(options.jobs)));
-  const auto model = std::make_shared<servers::SharedModel>();
+  summary.call.worlds = static_cast<int>(std::min((is_there_all ? chosen : selection.jobs).size(),
+                                                  static_cast<std::size_t>(options.jobs)));
   std::optional<ServerProof> proof;
   if (actor.server) {
-    PROBE_ASSIGN(const servers::KnownArm arm, arm_of(plan, selection.jobs, *assets));
-    proof = proof_of(*actor.server, summary.call.worlds, arm, model);
-    PROBE_ASSIGN(summary.call.reading, servers::prove_reading(proof->choice, model, arm));
-    PROBE_TRY(check_as_before(*summary.call.reading, options, summary.notes));
+    PROBE_ASSIGN(const servers::KnownArm arm, arm_of(plan, chosen, *assets));
+    proof.emplace(*actor.server, summary.call.worlds, arm);
+    PROBE_ASSIGN(summary.call.reading, proof->ask());
+    PROBE_TRY(proof->check_as_before(*summary.call.reading, options, *store, summary.notes));
     for (std::string& finding : policy::findings_of(*summary.call.reading))
       summary.notes.push_back(std::move(finding));
+    if (is_there_all) {
+      summary.call.ended = true;
+      PROBE_TRY(store->write_call(summary.call));
+      return summary;
+    }
+    PROBE_TRY(proof->watch(*store));
   }
   PROBE_TRY(store->write_call(summary.call));
   note_batch(options, actor, summary);
   policy::QueryMeter queries;
-  Shared shared{.plan = plan,
-                .options = options,
-                .actor = actor,
-                .assets = std::move(assets),
-                .fingerprint = store::to_json(fingerprint),
-                .jobs = std::move(selection.jobs),
-                .store = *store,
-                .summary = summary,
-                .queries = queries,
-                .model = model,
-                .line = std::make_shared<servers::SharedLine>(),
-                .measured = summary.call.reading ? summary.call.reading->measured
-                                                 : decltype(Shared::measured)()};
+  WorkersShared shared{.plan = plan,
+                       .options = options,
+                       .actor = actor,
+                       .assets = std::move(assets),
+                       .fingerprint = store::to_json(fingerprint),
+                       .jobs = std::move(selection.jobs),
+                       .store = *store,
+                       .summary = summary,
+                       .queries = queries,
+                       .model = proof ? proof->model() : nullptr,
+                       .line = std::make_shared<servers::SharedLine>(),
+                       .identity = proof ? proof->identity() : nullptr,
+                       .measured = summary.call.reading ? summary.call.reading->measured
+                                                        : decltype(WorkersShared::measured)()};
   const auto make_worker = [&shared]() -> Result<Worker> {
     auto worker = std::make_shared<EpisodeWorker>(shared);
     PROBE_TRY(worker->begin());
@@ -558,11 +359,12 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   if (options.live && !options.live->delay_s) summary.call.queries.waiting_s = 0;
   summary.call.elapsed_s = summary.call.queries.elapsed_s;
   Status unchanged;
-  if (ran && proof) unchanged = check_to_the_end(*proof, shared);
+  if (proof && (ran || policy::is_exchanged(proof->identity()->found())))
+    unchanged = proof->check_to_the_end(*summary.call.reading, *store, summary.notes);
   const Status written = store->write_call(summary.call);
+  PROBE_TRY(unchanged);
   PROBE_TRY(ran);
   PROBE_TRY(written);
-  PROBE_TRY(unchanged);
   PROBE_TRY(note_delivery(plan, options.out, summary));
   return summary;
 }

@@ -45,8 +45,13 @@ class Batched final : public Transport {
 }  // namespace
 
 BatchLine::BatchLine(std::unique_ptr<Transport> transport, BatchLimits limits,
-                     policy::QueryMeter* queries)
-    : limits_(limits), queries_(queries), transport_(std::move(transport)) {
+                     policy::QueryMeter* queries, std::shared_ptr<Identity> identity,
+                     Profile profile)
+    : limits_(limits),
+      queries_(queries),
+      identity_(std::move(identity)),
+      given_(std::move(profile)),
+      transport_(std::move(transport)) {
   try {
     thread_ = std::thread([this] { run(); });
   } catch (const std::system_error&) {
@@ -68,14 +73,46 @@ Status BatchLine::open(const Deadlines& deadlines) {
   const std::lock_guard lock(line_);
   if (is_open_) return {};
   if (attempts_ != before) return last_attempt_;  // made while this one waited
-  last_attempt_ = transport_->open(deadlines);
+  last_attempt_ = connect(deadlines);
   ++attempts_;
-  if (last_attempt_) {
-    is_open_ = true;
-  } else {
-    transport_->close();
-  }
   return last_attempt_;
+}
+
+Status BatchLine::connect(const Deadlines& deadlines) {
+  const auto attempt = [&]() -> Status {
+    PROBE_TRY(transport_->open(deadlines));
+    if (!identity_) return {};
+    Profile adapted = given_;
+    PROBE_TRY(transport_->adapt(adapted));
+    PROBE_TRY(identity_->check(*transport_, adapted));
+    known_.reset();
+    if (!identity_->first().is_steady) return {};
+    const KnownObservations questions(adapted, *transport_, identity_->first().arm);
+    PROBE_ASSIGN(known_, questions.request_of(identity_->first().observations.front()));
+    return {};
+  };
+  Status opened = attempt();
+  is_open_ = opened.ok();
+  if (!is_open_) transport_->close();
+  return opened;
+}
+
+Result<std::vector<BatchLine::Answer>> BatchLine::ask_all(std::vector<const Request*> requests,
+                                                          const Deadlines& deadlines) {
+  // Beside questions of which nobody knows the answer, one that is known: it costs a place that is
+  // free, and an answer that is not its own says that the others are not theirs.
+  const bool has_known =
+      known_ && requests.size() > 1 && requests.size() < static_cast<std::size_t>(limits_.most);
+  if (has_known) requests.push_back(&*known_);
+  PROBE_ASSIGN(auto answers, transport_->ask_all(requests, deadlines));
+  if (!has_known || answers.empty()) return answers;
+  const Answer known = std::move(answers.back());
+  answers.pop_back();
+  if (known && !identity_->is_first_answer(*known)) {
+    identity_->note_mixed();
+    return bad("a question beside others has another answer than alone; ask without `batch`");
+  }
+  return answers;
 }
 
 Status BatchLine::adapt(Profile& profile) const {
@@ -188,16 +225,12 @@ Result<std::vector<BatchLine::Answer>> BatchLine::exchange(const Questions& batc
   deadlines.answer = std::chrono::ceil<wire::Duration>(until - now);
   const std::lock_guard lock(line_);
   if (!is_open_) {
-    if (auto opened = transport_->open(deadlines); !opened) {
-      transport_->close();
-      return opened.failure();
-    }
-    is_open_ = true;
+    if (auto opened = connect(deadlines); !opened) return opened.failure();
   }
   const int count = static_cast<int>(batch.size());
   if (queries_ != nullptr) queries_->add_batch(count, gathered_s);
   const policy::QueryMeter::InFlight flight(queries_, count);
-  auto answers = transport_->ask_all(requests, deadlines);
+  auto answers = ask_all(std::move(requests), deadlines);
   if (!answers) {
     transport_->close();
     is_open_ = false;

@@ -17,6 +17,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/policy/query_meter.h"
+#include "runtime/servers/identity.h"
 #include "runtime/servers/transport.h"
 
 namespace probe::servers {
@@ -24,8 +25,10 @@ namespace probe::servers {
 // The line that the worlds of a run share. Any thread may call any method at any time.
 class BatchLine {
  public:
-  // `queries` may be null, and outlives this.
-  BatchLine(std::unique_ptr<Transport> transport, BatchLimits limits, policy::QueryMeter* queries);
+  // `queries` may be null, and outlives this. `identity`, if there is one, is asked of each
+  // connection, in the form of `profile`; a batch with room to spare has its first question, too.
+  BatchLine(std::unique_ptr<Transport> transport, BatchLimits limits, policy::QueryMeter* queries,
+            std::shared_ptr<Identity> identity = nullptr, Profile profile = {});
   ~BatchLine();
   BatchLine(const BatchLine&) = delete;
   BatchLine& operator=(const BatchLine&) = delete;
@@ -69,12 +72,19 @@ class BatchLine {
   Result<std::vector<Answer>> send(const Questions& batch);
   Result<std::vector<Answer>> exchange(const Questions& batch);
 
+  Status connect(const Deadlines& deadlines);  // under line_
+  Result<std::vector<Answer>> ask_all(std::vector<const Request*> requests,
+                                      const Deadlines& deadlines);  // under line_
+
   BatchLimits limits_;
   policy::QueryMeter* queries_;
+  std::shared_ptr<Identity> identity_;
+  Profile given_;
 
   mutable std::mutex line_;  // the two below, and what goes over the wire
   std::unique_ptr<Transport> transport_;
   bool is_open_ = false;
+  std::optional<Request> known_;  // identity's first question, as this connection's profile asks it
   Status last_attempt_;
   std::atomic<std::uint64_t> attempts_ = 0;
 

@@ -27,8 +27,8 @@ Failure named(Failure failure, const std::string& server) {
   return failure;
 }
 
-Status open_patiently(Transport& transport, const Profile& given, const std::string& server,
-                      Profile* adapted) {
+Result<int> open_patiently(Transport& transport, const Profile& given, const std::string& server,
+                           Profile* adapted) {
   const Deadlines deadlines{to_duration(given.connect_s),
                             to_duration(std::max(given.first_s, given.answer_s))};
   const auto limit = Clock::now() + to_duration(given.wait_s);
@@ -40,7 +40,7 @@ Status open_patiently(Transport& transport, const Profile& given, const std::str
     if (opened) opened = transport.adapt(*adapted);
     // What the server says and what the profile says must go together, too.
     if (opened) opened = check_profile(*adapted);
-    if (opened) return {};
+    if (opened) return attempt;
     transport.close();
     is_answer = is_answer || opened.failure().code == Fault::kAnswered;
     Failure failure = named(opened.failure(), server);

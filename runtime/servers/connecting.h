@@ -16,8 +16,9 @@ Failure named(Failure failure, const std::string& server);
 
 // What transport.open() and adapt() do, tried again with growing pauses until `given.wait_s` have
 // passed. A server that answers with an error is there: that fails at once, and so does what
-// profile and server do not agree on (kUsage). `adapted` is `given` as the server wants it.
-Status open_patiently(Transport& transport, const Profile& given, const std::string& server,
-                      Profile* adapted);
+// profile and server do not agree on (kUsage). `adapted` is `given` as the server wants it. Out:
+// how many attempts it took; after more than one, whoever answers may be another than before.
+Result<int> open_patiently(Transport& transport, const Profile& given, const std::string& server,
+                           Profile* adapted);
 
 }  // namespace probe::servers

@@ -109,8 +109,12 @@ Status KnownObservations::open() {
 
 namespace {
 
-// The largest of an answer's numbers from those of another; infinite where they are of other
-// lengths.
+// A pass over several observations may round otherwise than over one: an answer is another
+// observation's where it is this many times nearer to that one's.
+constexpr double kNearer = 10;
+
+}  // namespace
+
 double apart(const Chunk& here, const Chunk& there) {
   double most = 0;
   if (here.size() != there.size()) return std::numeric_limits<double>::infinity();
@@ -121,12 +125,6 @@ double apart(const Chunk& here, const Chunk& there) {
   }
   return most;
 }
-
-// A pass over several observations may round otherwise than over one: an answer is another
-// observation's where it is this many times nearer to that one's.
-constexpr double kNearer = 10;
-
-}  // namespace
 
 TogetherFinding compare_together(const std::vector<Chunk>& alone,
                                  const std::vector<Chunk>& together) {

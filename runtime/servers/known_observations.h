@@ -30,6 +30,10 @@ struct KnownObservation {
 };
 inline constexpr int kInstructions = 2;
 
+// How far the numbers of an answer are from those of another, at most; infinite where they are of
+// other lengths.
+double apart(const Chunk& here, const Chunk& there);
+
 // What a batch of observations that were also asked alone shows of a server.
 struct TogetherFinding {
   // It took one observation for another, so none of its answers is believed: why. Empty: it did
@@ -90,9 +94,10 @@ class KnownObservations {
   int asked() const { return asked_; }
   const std::vector<double>& times() const { return times_; }  // of answers, s
 
+  Result<Request> request_of(const KnownObservation& observation) const;
+
  private:
   Deadlines deadlines() const;
-  Result<Request> request_of(const KnownObservation& observation) const;
 
   Profile profile_;
   Transport& transport_;

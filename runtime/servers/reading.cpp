@@ -47,7 +47,7 @@ AskedAlone ask_first(KnownObservations& observations) {
 // more in one message. Whatever does not answer it as it answers them alone, but for rounding and
 // draws, cannot be asked in batches.
 Status prove_batch(KnownObservations& observations, AskedAlone asked, const ServerChoice& choice,
-                   policy::Reading* reading) {
+                   policy::Reading* reading, FirstAnswers* first) {
   const auto refused = [&](const std::string& why) {
     return Failure{Fault::kUsage, "it cannot be asked in batches: " + why + "; ask without `batch`",
                    choice.server.name()};
@@ -78,7 +78,51 @@ Status prove_batch(KnownObservations& observations, AskedAlone asked, const Serv
   if (!finding.mixed.empty()) return refused(finding.mixed);
   reading->batch = static_cast<int>(asked.observations.size());
   reading->batch_difference = finding.difference;
+  if (first != nullptr) {
+    first->observations = std::move(asked.observations);
+    first->answers = std::move(asked.answers);
+    first->is_batched = true;
+  }
   return {};
+}
+
+// Of a policy that draws: whether words and pictures move its answers more than its draws do. The
+// chance that draws alone look so is one in 35: four answers to one question, one to another.
+Status prove_spread(KnownObservations& observations, const AskedAlone& asked, const Chunk& again,
+                    policy::Reading* reading) {
+  constexpr std::size_t kSame = 4;
+  std::vector<Chunk> same = {asked.answers.front(), again};
+  while (same.size() < kSame) {
+    PROBE_ASSIGN(Chunk more, observations.ask(asked.observations.front()));
+    same.push_back(std::move(more));
+  }
+  double within = 0;
+  for (std::size_t i = 0; i < same.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) within = std::max(within, apart(same[i], same[k]));
+  }
+  const auto is_shown = [&](const Chunk& other) {
+    for (const Chunk& answer : same) {
+      if (apart(answer, other) <= within) return false;
+    }
+    return true;
+  };
+  reading->words_not_shown = !is_shown(asked.answers[1]);
+  reading->picture_not_shown = !is_shown(asked.answers[2]);
+  return {};
+}
+
+// What a server says of itself on a second connection, too.
+std::vector<std::string> steady_hello(const ServerChoice& choice,
+                                      const std::shared_ptr<SharedModel>& model,
+                                      const std::vector<std::string>& said) {
+  if (said.empty()) return {};
+  const auto transport = make_transport(choice, model);
+  Profile adapted;
+  if (!transport || !open_patiently(**transport, choice.profile, choice.server.name(), &adapted))
+    return {};
+  const bool is_same = (*transport)->remarks() == said;
+  (*transport)->close();
+  return is_same ? said : std::vector<std::string>();
 }
 
 // As the profile or the server says it, or as it was measured.
@@ -118,7 +162,7 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice) {
 
 Result<policy::Reading> prove_reading(const ServerChoice& choice,
                                       const std::shared_ptr<SharedModel>& model,
-                                      const KnownArm& arm) {
+                                      const KnownArm& arm, FirstAnswers* first) {
   PROBE_ASSIGN(const auto transport, make_transport(choice, model));
   policy::Reading reading;
   reading.server = choice.server.name();
@@ -132,6 +176,11 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
   AskedAlone asked = ask_first(observations);
   if (asked.failure) note_failure(*asked.failure);
   reading.answers = static_cast<int>(asked.answers.size());
+  if (first != nullptr)
+    *first = {.observations = asked.observations,
+              .answers = asked.answers,
+              .is_gathered = choice.batch.most > 1 && !asks_together(choice),
+              .arm = arm};
   if (asks_together(choice)) {
     if (asked.failure) {
       return Failure{Fault::kPolicy,
@@ -139,7 +188,7 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
                          reading.failure + "; without `batch` it is asked one at a time",
                      reading.server};
     }
-    PROBE_TRY(prove_batch(observations, asked, choice, &reading));
+    PROBE_TRY(prove_batch(observations, asked, choice, &reading, first));
   }
   KnownAnswers known{asked.answers, {}, arm};
   if (wants_mirrored(adapted) && reading.failure.empty()) {
@@ -154,11 +203,22 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
     const auto again = observations.ask(asked.observations.front());
     if (again) {
       reading.is_steady = *again == asked.answers.front();
+      reading.draws = !reading.is_steady;
+      if (reading.draws) {
+        if (const auto spread = prove_spread(observations, asked, *again, &reading); !spread)
+          note_failure(spread.failure());
+      }
     } else {
       note_failure(again.failure());
     }
   }
+  const std::vector<std::string> hello = transport->remarks();
   transport->close();
+  if (first != nullptr) {
+    first->is_steady = reading.is_steady;
+    if (reading.draws) first->hello = steady_hello(choice, model, hello);
+  }
+  if (asked.failure) return reading;  // nothing is measured on what did not come
   const std::vector<OpenField> left = left_open(adapted, known);
   reading.measured = measured_of(left);
   PROBE_TRY(check_said(adapted, left, reading.server));
@@ -173,20 +233,15 @@ Result<policy::Reading> prove_reading(const ServerChoice& choice,
 }
 
 policy::AtEnd prove_again(const ServerChoice& choice, const std::shared_ptr<SharedModel>& model,
-                          const KnownArm& arm, const policy::Reading& reading) {
-  if (!reading.is_steady || reading.answers_sha256.empty()) return policy::AtEnd::kNotAsked;
+                          Identity& identity) {
+  if (policy::is_exchanged(identity.found())) return identity.found();
+  const bool draws = !identity.first().is_steady;
+  if (draws && identity.first().hello.empty()) return policy::AtEnd::kNotAsked;
   const auto transport = make_transport(choice, model);
   Profile adapted;
-  if (!transport || !open_patiently(**transport, choice.profile, reading.server, &adapted))
-    return policy::AtEnd::kUnclear;
-  KnownObservations observations(adapted, **transport, arm);
-  const AskedAlone asked = ask_first(observations);
-  if (asked.failure) return policy::AtEnd::kUnclear;
-  if (hash_of(asked.answers) == reading.answers_sha256) return policy::AtEnd::kSame;
-  // One that draws now and then is no other one.
-  const AskedAlone again = ask_first(observations);
-  if (again.failure || again.answers != asked.answers) return policy::AtEnd::kUnclear;
-  return policy::AtEnd::kOther;
+  if (!transport || !open_patiently(**transport, choice.profile, choice.server.name(), &adapted))
+    return draws ? policy::AtEnd::kNotAsked : policy::AtEnd::kUnclear;
+  return identity.ask_all(**transport, adapted);
 }
 
 }  // namespace probe::servers

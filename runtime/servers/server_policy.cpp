@@ -73,12 +73,14 @@ policy::Delivery delivery_of(const Request& request) {
 }
 
 ServerPolicy::ServerPolicy(Profile profile, std::string server,
-                           std::unique_ptr<Transport> transport, policy::QueryMeter* queries)
+                           std::unique_ptr<Transport> transport, policy::QueryMeter* queries,
+                           std::shared_ptr<Identity> identity)
     : given_(std::move(profile)),
       profile_(given_),
       server_(std::move(server)),
       transport_(std::move(transport)),
       queries_(queries),
+      identity_(std::move(identity)),
       queue_(profile_) {}
 
 ServerPolicy::~ServerPolicy() { drop(); }
@@ -88,6 +90,9 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   queue_.clear();
   target_.reset();
   in_episode_ = false;
+  spoiled_.reset();
+  is_earlier_spoiled_ = false;
+  asked_ = 0;
   if (!is_open_) PROBE_TRY(connect());
   arm_.reset();
   if (start.robot != nullptr) {
@@ -102,6 +107,7 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
     }
   }
   if (auto begun = transport_->begin_episode(start, deadlines()); !begun) {
+    note_unasked(begun.failure());
     drop();
     return named(begun.failure(), server_);
   }
@@ -112,6 +118,7 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
 Result<policy::Action> ServerPolicy::act(const policy::Observation& observation) {
   if (queue_.wants_answer()) {
     if (auto asked = ask_and_wait(observation); !asked) {
+      note_unasked(asked.failure());
       drop();
       return named(asked.failure(), server_);
     }
@@ -164,6 +171,7 @@ Status ServerPolicy::ask(const policy::Observation& seen,
       return bad(std::string("a question: ") + error.what());  // and the connection is dropped
     }
   };
+  asked_at_ = LiveClock::now();
   try {
     question_ = std::async(std::launch::async, asking);
   } catch (const std::system_error&) {
@@ -181,9 +189,12 @@ Result<std::optional<policy::Answerer::Answer>> ServerPolicy::wait(
   auto answer = question_.get();
   const Status fits = answer ? queue_.check(answer->actions) : Status(answer.failure());
   if (!fits) {
+    note_unasked(fits.failure());
     drop();
     return named(fits.failure(), server_);
   }
+  last_took_ = std::chrono::ceil<wire::Duration>(policy::LiveClock::now() - asked_at_);
+  ++asked_;
   has_answered_ = true;
   last_length_ = answer->actions.size();
   return std::optional(std::move(*answer));
@@ -204,26 +215,51 @@ void ServerPolicy::forget_question() {
   const auto answer = question_.get();
   // A question that failed has left the connection in an unknown state.
   if (answer) return;
-  if (is_open_) transport_->close();
-  is_open_ = in_episode_ = false;
+  drop();
 }
 
 void ServerPolicy::end(const policy::EpisodeEnd& end) {
   forget_question();
   if (!in_episode_) return;
   in_episode_ = false;
-  const auto ended = transport_->end_episode(end, deadlines());
-  if (!ended || profile_.connection == ConnectionUse::kPerEpisode) drop();
+  // An answer that is one too old leaves one behind, which comes as late as an answer does.
+  constexpr wire::Duration kLeast{40}, kMost{2000};
+  Status ended = transport_->listen(std::clamp(last_took_ * 3 / 2, kLeast, kMost));
+  if (ended) ended = transport_->end_episode(end, deadlines());
+  if (!ended) {
+    // Not of a connection that was lost: the episode was over.
+    if (ended.failure().code == Fault::kAnswered) spoiled_ = named(ended.failure(), server_);
+    return drop();
+  }
+  if (profile_.connection == ConnectionUse::kPerEpisode) hang_up();
 }
 
 Status ServerPolicy::connect() {
   has_answered_ = false;
-  PROBE_TRY(open_patiently(*transport_, given_, server_, &profile_));
+  PROBE_ASSIGN(const int attempts, open_patiently(*transport_, given_, server_, &profile_));
+  if (attempts > 1) is_shown_ = false;  // nobody was there for a while
   is_open_ = true;
   notes_ = transport_->notes();
   for (std::string& note : notes_) note = without_key(note);
   queue_ = ChunkQueue(profile_);
+  if (!identity_) return {};
+  if (Status known = check_identity(); !known) {
+    drop();
+    return named(known.failure(), server_);
+  }
+  is_shown_ = true;
   return {};
+}
+
+Status ServerPolicy::check_identity() {
+  if (is_shown_) return identity_->check_hello(*transport_);
+  PROBE_TRY(identity_->check(*transport_, profile_));
+  if (profile_.connection != ConnectionUse::kPerEpisode) return {};
+  // Its server knows an episode by its connection: the question is no part of one.
+  transport_->close();
+  PROBE_ASSIGN(const int attempts, open_patiently(*transport_, given_, server_, &profile_));
+  return attempts == 1 ? Status()
+                       : bad("the server went away when it had just been asked who it is");
 }
 
 Result<Request> ServerPolicy::next_request(const policy::Observation& observation) {
@@ -235,13 +271,21 @@ Result<Request> ServerPolicy::next_request(const policy::Observation& observatio
 
 Status ServerPolicy::ask_and_wait(const policy::Observation& observation) {
   PROBE_ASSIGN(const Request request, next_request(observation));
+  const auto since = policy::LiveClock::now();
   auto answer = [&] {
     const policy::QueryMeter::InFlight flight(queries_);
     return transport_->ask(request, deadlines());
   }();
   if (!answer) return answer.failure();
+  last_took_ = std::chrono::ceil<wire::Duration>(policy::LiveClock::now() - since);
+  ++asked_;
   has_answered_ = true;
   return queue_.put(std::move(*answer));
+}
+
+// What lies there before an episode's first answer is left of the episode before.
+void ServerPolicy::note_unasked(const Failure& failure) {
+  is_earlier_spoiled_ = asked_ == 0 && failure.message.find(kUnasked) != std::string::npos;
 }
 
 Deadlines ServerPolicy::deadlines() const {
@@ -250,7 +294,13 @@ Deadlines ServerPolicy::deadlines() const {
                                     : std::max(profile_.first_s, profile_.answer_s))};
 }
 
+// What was lost may have been anybody's since.
 void ServerPolicy::drop() {
+  is_shown_ = false;
+  hang_up();
+}
+
+void ServerPolicy::hang_up() {
   if (question_.valid()) question_.wait();
   question_ = {};
   if (is_open_) transport_->close();

@@ -14,6 +14,7 @@
 #include "runtime/policy/query_meter.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/servers/chunk.h"
+#include "runtime/servers/identity.h"
 #include "runtime/servers/profile.h"
 #include "runtime/servers/transport.h"
 
@@ -32,9 +33,10 @@ policy::Delivery delivery_of(const Request& request);
 // than an attempt to connect, and forgotten.
 class ServerPolicy : public policy::Policy, public policy::Answerer {
  public:
-  // `server` is HOST:PORT, for messages. `queries` may be null, and outlives this.
+  // `server` is HOST:PORT, for messages. `queries` may be null, and outlives this. `identity`, if
+  // there is one, is asked of each connection but those that this side ended.
   ServerPolicy(Profile profile, std::string server, std::unique_ptr<Transport> transport,
-               policy::QueryMeter* queries);
+               policy::QueryMeter* queries, std::shared_ptr<Identity> identity = nullptr);
   ~ServerPolicy() override;
 
   // Connects if there is no connection, trying again with growing pauses until the profile's
@@ -43,6 +45,8 @@ class ServerPolicy : public policy::Policy, public policy::Answerer {
   Status begin(const policy::EpisodeStart& start) override;
   Result<policy::Action> act(const policy::Observation& observation) override;
   void end(const policy::EpisodeEnd& end) override;
+  std::optional<Failure> spoiled() const override { return spoiled_; }
+  bool is_earlier_spoiled() const override { return is_earlier_spoiled_; }
   std::optional<policy::Delivery> delivery() const override { return delivery_; }
   std::vector<std::string> notes() const override { return notes_; }
 
@@ -59,24 +63,34 @@ class ServerPolicy : public policy::Policy, public policy::Answerer {
   Status ask_and_wait(const policy::Observation& observation);
   Result<Request> next_request(const policy::Observation& observation);
   void forget_question();
+  Status check_identity();
+  void note_unasked(const Failure& failure);
   Deadlines deadlines() const;
   void drop();
+  void hang_up();
 
   Profile given_;    // as chosen
   Profile profile_;  // as the connected server has adapted it
   std::string server_;
   std::unique_ptr<Transport> transport_;
   policy::QueryMeter* queries_;
+  std::shared_ptr<Identity> identity_;
   ChunkQueue queue_;
   std::optional<policy::Delivery> delivery_;
   std::optional<robot::Chain> arm_;  // of the episode's robot, where actions name its joints
   std::optional<Pose> target_;  // of the arm's controller; none before an episode's first action
   std::vector<std::string> notes_;  // of the transport, once there was a connection
   bool is_open_ = false;
-  bool has_answered_ = false;             // this connection, once
-  std::future<Result<Answer>> question_;  // under way
-  std::size_t last_length_ = 1;           // actions of the last answer
-  bool in_episode_ = false;               // begin_episode was fine and the connection stands since
+  std::optional<Failure> spoiled_;  // how the episode that was ended last was
+  bool is_earlier_spoiled_ = false;
+  int asked_ = 0;                                // questions of the episode
+  policy::LiveClock::time_point asked_at_ = {};  // of the question under way, in a live world
+  wire::Duration last_took_{0};                  // the last answer, from its question on
+  bool is_shown_ = false;                        // who answers, since a connection was last lost
+  bool has_answered_ = false;                    // this connection, once
+  std::future<Result<Answer>> question_;         // under way
+  std::size_t last_length_ = 1;                  // actions of the last answer
+  bool in_episode_ = false;  // begin_episode was fine and the connection stands since
 };
 
 }  // namespace probe::servers

@@ -205,23 +205,26 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
 Result<std::unique_ptr<policy::Policy>> make_server(
     ServerChoice choice, policy::QueryMeter* queries, std::shared_ptr<SharedModel> model,
     const std::vector<std::pair<std::string, std::string>>& measured,
-    std::shared_ptr<SharedLine> line) {
+    std::shared_ptr<SharedLine> line, std::shared_ptr<Identity> identity) {
   for (const auto& [field, value] : measured) PROBE_TRY(set_field(choice.profile, field, value));
   std::unique_ptr<Transport> transport;
   if (asks_together(choice)) {
     if (!line) line = std::make_shared<SharedLine>();
     const auto make = [&]() -> Result<std::shared_ptr<BatchLine>> {
       PROBE_ASSIGN(auto own, make_transport(choice, std::move(model)));
-      return std::make_shared<BatchLine>(std::move(own), choice.batch, queries);
+      return std::make_shared<BatchLine>(std::move(own), choice.batch, queries, identity,
+                                         choice.profile);
     };
     PROBE_ASSIGN(auto shared, line->get(make));
     transport = make_batched(std::move(shared));
-    queries = nullptr;  // the line counts them as they go over the wire
+    queries = nullptr;   // the line counts them as they go over the wire
+    identity = nullptr;  // and asks who answers
   } else {
     PROBE_ASSIGN(transport, make_transport(choice, std::move(model)));
   }
-  return std::unique_ptr<policy::Policy>(std::make_unique<ServerPolicy>(
-      std::move(choice.profile), choice.server.name(), std::move(transport), queries));
+  return std::unique_ptr<policy::Policy>(
+      std::make_unique<ServerPolicy>(std::move(choice.profile), choice.server.name(),
+                                     std::move(transport), queries, std::move(identity)));
 }
 
 }  // namespace probe::servers

@@ -12,6 +12,7 @@
 #include "runtime/policy/policy.h"
 #include "runtime/policy/query_meter.h"
 #include "runtime/servers/batch.h"
+#include "runtime/servers/identity.h"
 #include "runtime/servers/profile.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/shared_model.h"
@@ -55,9 +56,10 @@ Result<std::unique_ptr<Transport>> make_transport(const ServerChoice& choice,
 
 // `line` is where the worlds of a run meet for batches, or nothing: then this one is alone.
 // `measured` are fields with values that profile and server leave open, see policy::Reading.
+// `identity` is whom the run began with, or nothing: then nobody looks.
 Result<std::unique_ptr<policy::Policy>> make_server(
     ServerChoice choice, policy::QueryMeter* queries, std::shared_ptr<SharedModel> model = nullptr,
     const std::vector<std::pair<std::string, std::string>>& measured = {},
-    std::shared_ptr<SharedLine> line = nullptr);
+    std::shared_ptr<SharedLine> line = nullptr, std::shared_ptr<Identity> identity = nullptr);
 
 }  // namespace probe::servers

@@ -66,6 +66,9 @@ struct Deadlines {
   wire::Duration answer{60'000};
 };
 
+// How the failure begins that a message which no question has is.
+inline constexpr std::string_view kUnasked = "the server sent what nothing asked for";
+
 // A failure (kAnswered) that is an answer: a server is there and says no. ServerPolicy makes
 // kPolicy of it.
 Failure answered(std::string message);
@@ -102,7 +105,12 @@ class Transport {
   // as a whole where which answer is whose cannot be said.
   virtual Result<BatchAnswers> ask_all(std::span<const Request* const> requests,
                                        const Deadlines& deadlines);
-  // After an episode whose begin_episode was fine and whose connection still stands.
+  // After an episode's last answer, for `wait` at most: fails (kAnswered) where the server sends
+  // what nothing asked for, so that answers were out of step with their questions. Of protocols
+  // that show it in no other way.
+  virtual Status listen(wire::Duration /*wait*/) { return {}; }
+  // After an episode whose begin_episode was fine and whose connection still stands. Fails
+  // (kAnswered) where something else is answered.
   virtual Status end_episode(const policy::EpisodeEnd& /*end*/, const Deadlines& /*deadlines*/) {
     return {};
   }

@@ -24,6 +24,7 @@ struct Source {
   std::vector<Fingerprint> builds;  // of the folder's first call and of all that are known
   std::vector<RunCall> calls;
   std::vector<ResultRow> rows;
+  std::set<EpisodeKey> unproven;
 };
 
 // The best row of an episode so far.
@@ -44,6 +45,8 @@ Result<Source> read_source(const std::string& dir) {
   PROBE_ASSIGN(source.calls, read_run_calls(dir));
   for (const RunCall& call : source.calls) source.builds.push_back(call.fingerprint);
   PROBE_ASSIGN(source.rows, read_results(dir));
+  PROBE_ASSIGN(const auto unproven, read_unproven(dir));
+  source.unproven.insert(unproven.begin(), unproven.end());
   return source;
 }
 
@@ -250,6 +253,7 @@ Result<MergeSummary> merge(const MergeOptions& options) {
       return Failure{Fault::kStore, "its plan has no task `" + best.row.task + "`",
                      best.source->dir};
     }
+    if (best.source->unproven.contains(key)) PROBE_TRY(store->doubt({key}));
     PROBE_TRY(take_over(best, *store, options.out, static_cast<int>(*task)));
     ++summary.added;
   }

@@ -150,25 +150,41 @@ bool has_others(const std::vector<RunCall>& calls) {
   const policy::Reading* first = nullptr;
   for (const RunCall& call : calls) {
     // Of a call that ended with another policy no episode counts.
-    if (!call.reading || call.reading->at_end == policy::AtEnd::kOther) continue;
-    if (!call.reading->is_steady) continue;
+    if (!call.reading || policy::is_exchanged(call.reading->at_end)) continue;
+    if (!call.reading->is_steady && !call.reading->draws) continue;
     if (first != nullptr && are_others(*first, *call.reading)) return true;
     if (first == nullptr) first = &*call.reading;
   }
   return false;
 }
 
+// Whether a later call met the policy that the call `index` began with.
+bool is_shown_later(const std::vector<RunCall>& calls, std::size_t index) {
+  const policy::Reading& reading = *calls[index].reading;
+  return std::any_of(calls.begin() + static_cast<std::ptrdiff_t>(index) + 1, calls.end(),
+                     [&](const RunCall& later) {
+                       return later.reading && later.reading->is_steady &&
+                              later.reading->questions_sha256 == reading.questions_sha256 &&
+                              !are_others(reading, *later.reading);
+                     });
+}
+
 }  // namespace
 
-ReadingSummary summarize_readings(const std::vector<RunCall>& calls) {
+ReadingSummary summarize_readings(const std::vector<RunCall>& calls, std::size_t unproven) {
   ReadingSummary summary;
-  for (const RunCall& call : calls) {
+  for (std::size_t i = 0; i < calls.size(); ++i) {
+    const RunCall& call = calls[i];
     if (!call.reading) continue;
-    const std::string batch = policy::batch_remark(*call.reading);
+    const bool is_mixed = call.reading->at_end == policy::AtEnd::kMixed;
+    const std::string batch = is_mixed ? "" : policy::batch_remark(*call.reading);
     if (!batch.empty() && std::ranges::find(summary.batches, batch) == summary.batches.end())
       summary.batches.push_back(batch);
     summary.is_unchecked = summary.is_unchecked || call.reading->is_unchecked;
-    const auto findings = policy::findings_of(*call.reading);
+    policy::Reading reading = *call.reading;
+    if (reading.at_end == policy::AtEnd::kUnclear && is_shown_later(calls, i))
+      reading.at_end = policy::AtEnd::kSame;
+    const auto findings = policy::findings_of(reading);
     if (findings.empty()) ++summary.proven;
     for (const std::string& finding : findings) {
       if (std::ranges::find(summary.findings, finding) == summary.findings.end())
@@ -179,6 +195,12 @@ ReadingSummary summarize_readings(const std::vector<RunCall>& calls) {
     summary.findings.push_back(
         "calls of this folder had servers that answered the same first questions otherwise: more "
         "than one policy, or machines that round otherwise");
+  }
+  if (unproven > 0) {
+    summary.findings.push_back(std::to_string(unproven) +
+                               " episodes were answered in a call that was not shown to have had "
+                               "one policy to its end: the next call of `run` into this folder "
+                               "asks who answers");
   }
   if (summary.findings.empty() && summary.proven > 0) {
     summary.good = "other words and other pictures had other answers when the run began";
@@ -191,7 +213,7 @@ ReadingChanges changes_between(const std::vector<RunCall>& before, const policy:
   for (const RunCall& call : before) {
     if (!call.reading) continue;
     // Of a call that ended with another policy no episode counts.
-    if (call.reading->at_end == policy::AtEnd::kOther) continue;
+    if (policy::is_exchanged(call.reading->at_end)) continue;
     if (call.reading->measured != now.measured) changes.measured = true;
     if (are_others(*call.reading, now)) changes.policy = true;
   }
@@ -214,6 +236,9 @@ Json reading_to_json(const policy::Reading& reading) {
   if (reading.is_unchecked) json["is_unchecked"] = true;
   if (!reading.questions_sha256.empty()) json["questions_sha256"] = reading.questions_sha256;
   if (reading.is_steady) json["is_steady"] = true;
+  if (reading.draws) json["draws"] = true;
+  if (reading.words_not_shown) json["words_not_shown"] = true;
+  if (reading.picture_not_shown) json["picture_not_shown"] = true;
   if (reading.at_end != policy::AtEnd::kNotAsked) json["at_end"] = to_word(reading.at_end);
   return json;
 }
@@ -244,9 +269,13 @@ std::optional<policy::Reading> reading_from_json(const Json& json) {
   reading.answers_sha256 = *hash;
   reading.is_unchecked = flag("is_unchecked");
   reading.is_steady = flag("is_steady");
+  reading.draws = flag("draws");
+  reading.words_not_shown = flag("words_not_shown");
+  reading.picture_not_shown = flag("picture_not_shown");
   reading.questions_sha256 = text("questions_sha256").value_or("");
   for (const policy::AtEnd at_end :
-       {policy::AtEnd::kSame, policy::AtEnd::kOther, policy::AtEnd::kUnclear}) {
+       {policy::AtEnd::kSame, policy::AtEnd::kOther, policy::AtEnd::kUnclear, policy::AtEnd::kDrawn,
+        policy::AtEnd::kMixed}) {
     if (text("at_end") == to_word(at_end)) reading.at_end = at_end;
   }
   const Json *batch = json.find("batch"), *difference = json.find("batch_difference");

@@ -86,7 +86,8 @@ struct ReadingSummary {
   std::vector<std::string> batches;  // what was shown of batches, each sentence once
   bool is_unchecked = false;         // a call had --insecure
 };
-ReadingSummary summarize_readings(const std::vector<RunCall>& calls);
+// `unproven` is how many rows wait to be shown, see Store::unproven().
+ReadingSummary summarize_readings(const std::vector<RunCall>& calls, std::size_t unproven = 0);
 
 // What the questions at a call's beginning show that was otherwise in calls before it.
 struct ReadingChanges {

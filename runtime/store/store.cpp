@@ -7,18 +7,20 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 
 #include "runtime/base/file.h"
+#include "runtime/base/folder_kind.h"
 #include "runtime/base/json.h"
 #include "runtime/base/paths.h"
 #include "runtime/store/calls_table.h"
 #include "runtime/store/database.h"
-#include "runtime/base/folder_kind.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/stored_trace.h"
+#include "runtime/store/unproven_table.h"
 
 namespace probe::store {
 namespace {
@@ -47,8 +49,10 @@ constexpr int kEpisodeSince[] = {
 };
 // Of every version; those of version 2 may be absent.
 constexpr std::string_view kRunColumns[] = {"name", "value"};
-constexpr Database::Table kTables[] = {
-    {"run", kRunColumns}, {"episodes", kEpisodeColumns}, {"calls", kCallColumns}};
+constexpr Database::Table kTables[] = {{"run", kRunColumns},
+                                       {"episodes", kEpisodeColumns},
+                                       {"calls", kCallColumns},
+                                       {"unproven", kUnprovenColumns}};
 
 // What `item` gives for each column, with commas between.
 template <typename Item>
@@ -280,27 +284,50 @@ class FolderStore final : public Store {
     // Waiting for the disk here is no business of other threads: each has files of its own.
     PROBE_TRY(sync_folder(fs::path(trace).parent_path().string()));
     const std::lock_guard lock(mutex_);
-    Statement insert(database_, insert_episode().c_str(), Access::kWrite);
-    bind_episode(insert, row, task_order);
-    insert.next();
-    return insert.done();
+    if (!is_watched_) return insert_row(row, task_order);
+    return in_one([&]() -> Status {
+      PROBE_TRY(unproven_.add(key_of(row)));
+      return insert_row(row, task_order);
+    });
   }
 
   Status invalidate(const std::vector<EpisodeKey>& keys, const std::string& reason) override {
     const std::lock_guard lock(mutex_);
-    PROBE_TRY(database_.execute("begin immediate"));
-    for (const EpisodeKey& key : keys) {
-      Statement update(database_,
-                       "update episodes set invalid = ? where task = ? and episode = ? and "
-                       "seed = ? and invalid is null",
-                       Access::kWrite);
-      update.bind(reason).bind(key.task).bind(key.episode).bind(key.seed).next();
-      if (auto done = update.done(); !done) {
-        (void)database_.execute("rollback");
-        return done;
+    return in_one([&]() -> Status {
+      for (const EpisodeKey& key : keys) {
+        Statement update(database_,
+                         "update episodes set invalid = ? where task = ? and episode = ? and "
+                         "seed = ? and invalid is null",
+                         Access::kWrite);
+        update.bind(reason).bind(key.task).bind(key.episode).bind(key.seed).next();
+        PROBE_TRY(update.done());
       }
-    }
-    return database_.execute("commit");
+      return {};
+    });
+  }
+
+  Status watch() override {
+    const std::lock_guard lock(mutex_);
+    PROBE_TRY(unproven_.make());
+    is_watched_ = true;
+    return {};
+  }
+  Status doubt(const std::vector<EpisodeKey>& keys) override {
+    const std::lock_guard lock(mutex_);
+    if (keys.empty()) return {};
+    PROBE_TRY(unproven_.make());
+    return in_one([&]() -> Status {
+      for (const EpisodeKey& key : keys) PROBE_TRY(unproven_.add(key));
+      return {};
+    });
+  }
+  Result<std::vector<EpisodeKey>> unproven() override {
+    const std::lock_guard lock(mutex_);
+    return unproven_.valid();
+  }
+  Status proven() override {
+    const std::lock_guard lock(mutex_);
+    return unproven_.clear();
   }
 
   Status write_call(const RunCall& call) override {
@@ -313,6 +340,22 @@ class FolderStore final : public Store {
   }
 
  private:
+  // All that `write` does, or nothing of it.
+  Status in_one(const std::function<Status()>& write) {
+    PROBE_TRY(database_.execute("begin immediate"));
+    if (Status written = write(); !written) {
+      (void)database_.execute("rollback");
+      return written;
+    }
+    return database_.execute("commit");
+  }
+  Status insert_row(const ResultRow& row, int task_order) {
+    Statement insert(database_, insert_episode().c_str(), Access::kWrite);
+    bind_episode(insert, row, task_order);
+    insert.next();
+    return insert.done();
+  }
+
   // A plan that was lost, damaged or exchanged since: `plan_bytes` are of the root in the record.
   Status put_plan_back(std::span<const std::byte> plan_bytes) const {
     if (plan_bytes.empty()) return {};
@@ -367,9 +410,11 @@ class FolderStore final : public Store {
   std::string dir_;
   FolderLock lock_;
   std::mutex mutex_;  // of the database
+  bool is_watched_ = false;
   Database database_;
   RunRecord record_;
   CallsTable calls_{database_};
+  UnprovenTable unproven_{database_};
 };
 
 }  // namespace
@@ -422,6 +467,18 @@ Result<std::vector<RunCall>> read_run_calls(const std::string& dir) {
   }
   PROBE_TRY(select.done());
   return calls;
+}
+
+Result<std::vector<EpisodeKey>> read_unproven(const std::string& dir) {
+  if (!is_there(database_path(dir))) return no_run(dir);
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  return UnprovenTable(database).valid();
+}
+
+Result<ReadingSummary> read_reading_summary(const std::string& dir) {
+  PROBE_ASSIGN(const auto calls, read_run_calls(dir));
+  PROBE_ASSIGN(const auto unproven, read_unproven(dir));
+  return summarize_readings(calls, unproven.size());
 }
 
 Result<std::vector<ResultRow>> read_results(const std::string& dir) {

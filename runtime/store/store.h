@@ -22,8 +22,8 @@ struct StoredEpisode {
   std::string why;     // it is not valid
 };
 
-// One process writes a folder at a time. temporary_trace(), commit() and write_call() may be called
-// from any thread at any time, the others only while no other is.
+// One process writes a folder at a time. Any thread may call any method at any time once episodes()
+// has been asked.
 class Store {
  public:
   // Makes the folder or continues it, whatever the build. Fails (kStore) when the folder
@@ -44,12 +44,29 @@ class Store {
   // invalid one. `task_order` sorts rows.
   virtual Status commit(const ResultRow& row, int task_order) = 0;
 
-  // How the reason ends with which valid rows are made invalid: no trace holds it, so that
-  // read_stored_trace believes this one beside a trace that ended well, and no other.
+  // From now on commit() also notes that who answered the row's policy questions was not shown.
+  virtual Status watch() = 0;
+  // Notes rows so that came from another folder.
+  virtual Status doubt(const std::vector<EpisodeKey>& keys) = 0;
+  // Valid rows that were noted so, by this call or one before it, since the last proven().
+  virtual Result<std::vector<EpisodeKey>> unproven() = 0;
+  // One policy answered all that is stored.
+  virtual Status proven() = 0;
+
+  // How the reasons end with which valid rows are made invalid: no trace holds them, so that
+  // read_stored_trace believes these beside a trace that ended well, and no others.
+  static constexpr std::string_view kMixedUp =
+      "the questions of a batch were taken for one another later";
   static constexpr std::string_view kExchanged =
       "another policy answered when the call ended than when it began";
-  // Makes rows that are valid invalid, all of them or none; their traces stay, and they are run
-  // again as all that are invalid.
+  static constexpr std::string_view kOutOfStep =
+      "an answer that nothing asked for was found when the next episode began";
+  static constexpr std::string_view kNeverShown =
+      "that one policy answered the call to its end was never shown, and another answers now";
+  static constexpr std::string_view kLaterReasons[] = {kMixedUp, kExchanged, kOutOfStep,
+                                                       kNeverShown};
+  // Makes rows that are valid invalid, for one of these reasons, all of them or none; their traces
+  // stay, and they are run again as all that are invalid.
   virtual Status invalidate(const std::vector<EpisodeKey>& keys, const std::string& reason) = 0;
 
   // What this call of `run` has done so far; each write replaces the one before.
@@ -62,6 +79,11 @@ class Store {
 Result<std::optional<RunRecord>> find_run_record(const std::string& dir);
 // All calls that wrote into `dir`, oldest first.
 Result<std::vector<RunCall>> read_run_calls(const std::string& dir);
+// Valid rows in `dir` of which it is not shown that one policy gave their answers: the next call of
+// `run` asks.
+Result<std::vector<EpisodeKey>> read_unproven(const std::string& dir);
+// What is shown of the policy server of the run in `dir`.
+Result<ReadingSummary> read_reading_summary(const std::string& dir);
 // The run in `dir`, for readers; fails (kStore) if there is none.
 Result<RunRecord> read_run_record(const std::string& dir);
 std::string plan_path(const std::string& dir);

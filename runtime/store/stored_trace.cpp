@@ -1,12 +1,13 @@
 // Three proofs: the hash that the row keeps, whose trace the header says it is, and its last words.
 #include "runtime/store/stored_trace.h"
 
-#include "runtime/store/store.h"
+#include <algorithm>
 
 #include "runtime/base/spelling.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"
+#include "runtime/store/store.h"
 
 namespace probe::store {
 
@@ -21,9 +22,11 @@ Result<Trace> read_stored_trace(const ResultRow& row) {
                        to_text(key_of(header)) + ", policy `" + header.policy + "`)",
                    row.trace};
   }
-  // A row may become invalid after its trace ended, for one reason.
+  // A row may become invalid after its trace ended, where it was not shown who answered.
   const bool was_exchanged =
-      row.invalid && !trace.end->invalid && row.invalid->ends_with(Store::kExchanged);
+      row.invalid && !trace.end->invalid &&
+      std::ranges::any_of(Store::kLaterReasons,
+                          [&](std::string_view reason) { return row.invalid->ends_with(reason); });
   const bool ended_so = trace.end->invalid == row.invalid || was_exchanged;
   if (!ended_so || (!row.invalid && trace.end->metrics != row.metrics)) {
     return Failure{Fault::kTrace, "this trace ended with other verdicts than its result row says",

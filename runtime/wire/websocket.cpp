@@ -107,6 +107,12 @@ class WebSocket::Connection {
     return !inbox_.empty();
   }
 
+  bool awaits_message(Duration wait) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, wait, [this] { return !inbox_.empty() || broken_; });
+    return !inbox_.empty();
+  }
+
   Result<Message> receive(Duration timeout) {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, timeout, [this] { return !inbox_.empty() || broken_; })) {
@@ -237,5 +243,6 @@ Status WebSocket::send(std::span<const std::uint8_t> bytes, Duration timeout) {
 Result<Message> WebSocket::receive(Duration timeout) { return connection_->receive(timeout); }
 
 bool WebSocket::has_message() const { return connection_->has_message(); }
+bool WebSocket::awaits_message(Duration wait) const { return connection_->awaits_message(wait); }
 
 }  // namespace probe::wire

@@ -49,6 +49,8 @@ class WebSocket {
   Result<Message> receive(Duration timeout);
   // Whether a message is there already: before a question, that is one which nothing asked for.
   bool has_message() const;
+  // Whether one comes within `wait`; the connection stands either way.
+  bool awaits_message(Duration wait) const;
 
  private:
   class Connection;

@@ -2,13 +2,16 @@
 strict as they are.
 
 openpi_server.py openpi|droid|libero|intact|roboarena [chunk=N] [record=FILE] [actions=FILE] [seen=HABIT]
-                 [key=KEY] [lacks=MODEL] [port=N] [meta=JSON]
+                 [key=KEY] [lacks=MODEL] [port=N] [meta=JSON] [warm=N] [lag=N]
 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or
 those of recorded_actions, or with `seen` small ones that depend on what was asked alone, where HABIT
 is `fine` or what is to be wrong: unit, inverted, euler, vector, normalised, noise, deaf,
 blind, numb (to the state), nan, six, poses, joints (of the state), or keeps: the instruction of the first question since the last reset, of whichever
-connection, as INT-ACT's wrapper of Octo does. `record` gets every message that comes, a line of hexadecimal digits each. With
+connection, as INT-ACT's wrapper of Octo does. `record` gets every message that comes, a line of hexadecimal digits each. The
+first `warm` questions fail. From the question `lag` of the first connection with so
+many on, whose answer comes twice, each is answered with that of the one before, and its own comes
+with the next question, or 10 ms later. With
 `key` a client without this Api-Key is refused; INT-ACT's server, which has one model for all its
 connections, fails to load the model `lacks` and then can load no other.
 """
@@ -99,6 +102,7 @@ def seen_actions(image, prompt, state, habit):
     return actions[:, :6] if habit == "six" else actions
 
 
+warming = int(options.get("warm", 0))
 kept = None  # instruction, of all connections
 loaded = None  # model, of all connections
 
@@ -109,7 +113,10 @@ class Policy:
         self.count = 0
 
     def infer(self, image, prompt="", state=numpy.zeros(8)):
-        global kept
+        global kept, warming
+        if warming > 0:
+            warming -= 1
+            raise RuntimeError("warming up")
         assert image.dtype == numpy.uint8 and image.ndim >= 3 and image.shape[-1] == 3, image.shape
         if self.recorded:
             return self.recorded.answer(image, chunk)
@@ -207,8 +214,49 @@ ANSWER = {"openpi": answer_openpi, "droid": answer_droid, "libero": answer_liber
           "intact": answer_intact, "roboarena": answer_roboarena}
 
 
+class Late:
+    """A connection's answers, once out of step with their questions: only one connection's are."""
+
+    has_been = False
+
+    def __init__(self, socket):
+        self.socket, self.asked, self.held, self.timer = socket, 0, None, None
+
+    async def send(self, answer, is_question):
+        self.asked += is_question
+        if is_question and self.asked == int(options.get("lag", 0)) and not Late.has_been:
+            Late.has_been = True
+            await self.socket.send(answer)
+            self.hold(answer)
+        elif self.held is None:
+            await self.socket.send(answer)
+        elif is_question:
+            held = self.held
+            self.hold(answer)
+            await self.socket.send(held)
+        else:
+            await self.flush()
+            await self.socket.send(answer)
+
+    def hold(self, answer):
+        if self.timer is not None:
+            self.timer.cancel()
+        self.held = answer
+        self.timer = asyncio.ensure_future(self.flush_later())
+
+    async def flush_later(self):
+        await asyncio.sleep(0.01)
+        await self.flush()
+
+    async def flush(self):
+        held, self.held = self.held, None
+        if held is not None:
+            await self.socket.send(held)
+
+
 async def handle(socket):
     policy = Policy()
+    late = Late(socket)
     await socket.send(pack(METADATA[dialect]))
     async for message in socket:
         if "record" in options:
@@ -219,7 +267,9 @@ async def handle(socket):
             if dialect == "openpi" and policy.recorded:
                 # There is no reset in openpi: a picture that begins an episode does.
                 policy.recorded.begin_if_first(request["observation/image"])
-            await socket.send(ANSWER[dialect](policy, request))
+            is_question = "reset" not in request and "new_model_path" not in request
+            is_question = is_question and request.get("endpoint") != "reset"
+            await late.send(ANSWER[dialect](policy, request), is_question)
         except Exception:
             await socket.send(traceback.format_exc())
             await socket.close(1011, "Internal server error. Traceback included in previous frame.")

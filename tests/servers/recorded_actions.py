@@ -34,9 +34,14 @@ class RecordedPolicy:
             self.reset()
 
     def answer(self, image, count):
-        """The next `count` actions, fewer at the end of the episode; float64 [n, 7]."""
-        if self.actions is None:
-            key = hashlib.sha256(numpy.ascontiguousarray(image).tobytes()).hexdigest()
-            self.actions = self.episodes[key]
+        """The next `count` actions, fewer at the end of the episode; float64 [n, 7]. Small moves that
+        follow from the picture where it is of no episode: a run's first questions."""
+        if self.actions is None or self.next >= len(self.actions):
+            seen = hashlib.sha256(numpy.ascontiguousarray(image).tobytes())
+            if seen.hexdigest() not in self.episodes:
+                actions = numpy.ones((count, 7))
+                actions[:, :6] = (numpy.frombuffer(seen.digest()[:6], "u1") / 127.5 - 1) * 0.01
+                return actions
+            self.actions, self.next = self.episodes[seen.hexdigest()], 0
         begin, self.next = self.next, self.next + count
         return self.actions[begin:self.next]

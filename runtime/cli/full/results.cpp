@@ -31,12 +31,11 @@ struct ResultsArguments {
 // What the questions at the beginning of the run showed of a policy server. A folder of an older
 // program has none.
 void print_readings(const std::string& dir) {
-  const auto calls = store::read_run_calls(dir);
-  if (!calls) return;
-  const store::ReadingSummary summary = store::summarize_readings(*calls);
-  for (const std::string& finding : summary.findings) put("{}\n", finding);
-  if (!summary.good.empty()) put("{}\n", summary.good);
-  for (const std::string& sentence : summary.batches) put("{}\n", sentence);
+  const auto summary = store::read_reading_summary(dir);
+  if (!summary) return;
+  for (const std::string& finding : summary->findings) put("{}\n", finding);
+  if (!summary->good.empty()) put("{}\n", summary->good);
+  for (const std::string& sentence : summary->batches) put("{}\n", sentence);
 }
 
 // Of a world that did not wait for its policy.

@@ -19,6 +19,7 @@ class Openpi : public Transport {
     return {};
   }
   void close() override { connection_.close(); }
+  Status listen(wire::Duration wait) override { return connection_.listen(wait); }
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
     PROBE_ASSIGN(const wire::Value answer, connection_.ask(observation(request), deadlines.answer));

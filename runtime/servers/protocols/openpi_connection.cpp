@@ -38,11 +38,14 @@ Result<wire::Value> OpenpiConnection::exchange(const wire::Value& request, wire:
 Status OpenpiConnection::send(const wire::Value& request, wire::Duration timeout) {
   if (!socket_) return bad("there is no connection");
   // It would be taken for this question's answer, and every answer after it be one too old.
-  if (socket_->has_message()) {
-    PROBE_ASSIGN(const wire::Value message, receive(timeout));
-    return bad("the server sent what nothing asked for: " + wire::describe(message));
-  }
+  PROBE_TRY(listen(wire::Duration(0)));
   return socket_->send(wire::to_msgpack(request, wire::ArrayStyle::kBinKeys), timeout);
+}
+
+Status OpenpiConnection::listen(wire::Duration wait) {
+  if (!socket_ || !socket_->awaits_message(wait)) return {};
+  PROBE_ASSIGN(const wire::Value message, receive(wire::Duration(0)));
+  return answered(std::string(kUnasked) + ": " + wire::describe(message));
 }
 
 Result<wire::Message> OpenpiConnection::receive_message(wire::Duration timeout) {

@@ -28,6 +28,8 @@ class OpenpiConnection {
 
   Status send(const wire::Value& request, wire::Duration timeout);
   Result<wire::Value> receive(wire::Duration timeout);
+  // Fails (kAnswered) where a message that nothing asked for is there, or comes within `wait`.
+  Status listen(wire::Duration wait);
   // Also of texts.
   Result<wire::Message> receive_message(wire::Duration timeout);
 

@@ -75,8 +75,8 @@ class RoboArena : public Transport {
                                deadlines.answer));
     PROBE_ASSIGN(const wire::Message answer, connection_.receive_message(deadlines.answer));
     if (answer.is_text && answer.text() == "reset successful") return {};
-    return bad("reset: expected the text `reset successful`, got " +
-               (answer.is_text ? last_lines(answer.text()) : "a binary message"));
+    return answered("reset: expected the text `reset successful`, got " +
+                    (answer.is_text ? last_lines(answer.text()) : "a binary message"));
   }
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {

@@ -21,6 +21,7 @@ class StarVla : public Transport {
     return check_key();
   }
   void close() override { connection_.close(); }
+  Status listen(wire::Duration wait) override { return connection_.listen(wait); }
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
     const Request* one[] = {&request};

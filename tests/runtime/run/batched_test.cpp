@@ -5,9 +5,12 @@
 #include <set>
 
 #include "runtime/run/recorded.h"
+#include "runtime/run/run.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/served.h"
 #include "tests/runtime/run/served.h"
+#include "tests/runtime/run/table_plan.h"
+#include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {
 using namespace probe::store;
@@ -35,7 +38,59 @@ class Counting final : public ServedPolicy {
   std::atomic<std::size_t>& most_;
 };
 
+// Takes the questions of a message for one another, from its fourth message on.
+class Reversing final : public ServedPolicy {
+ public:
+  Reversing(std::unique_ptr<ServedPolicy> inner, std::atomic<int>& messages)
+      : inner_(std::move(inner)), messages_(messages) {}
+  void reset() override { inner_->reset(); }
+  Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
+    return inner_->answer(asked, count);
+  }
+  Result<std::vector<std::vector<policy::Action>>> answer_all(std::span<const Asked> asked,
+                                                              int count) override {
+    PROBE_ASSIGN(auto answers, inner_->answer_all(asked, count));
+    if (++messages_ > 3) std::reverse(answers.begin(), answers.end());
+    return answers;
+  }
+
+ private:
+  std::unique_ptr<ServedPolicy> inner_;
+  std::atomic<int>& messages_;
+};
+
 }  // namespace
+
+TEST_CASE("batches that are mixed up after they were proved spoil what they may have answered") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(4, 4);
+  std::atomic<int> messages = 0;
+  ServeOptions options;
+  options.policy = [inner = serve_digest(), &messages] {
+    return std::make_unique<Reversing>(inner(), messages);
+  };
+  options.batch = 4;
+  const auto listener = serve(Protocol::kOpenpi, options);
+  REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+  RunOptions asked;
+  asked.policy = "openpi://127.0.0.1:" + (*listener)->port() + "?" +
+                 options_for_served(Protocol::kOpenpi, options) + "&batch_wait_ms=2000";
+  asked.name = "mine";
+  asked.out = folder / "run";
+  asked.seeds = {42};
+  asked.jobs = 4;
+  asked.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
+  const auto ran = run::run(plan, asked);
+  REQUIRE_FALSE(ran.ok());
+  CHECK(ran.failure().message.find("took the questions of a batch for one another") !=
+        std::string::npos);
+  const auto rows = read_results(asked.out);
+  REQUIRE(rows.ok());
+  for (const ResultRow& row : *rows) {
+    REQUIRE(row.invalid.has_value());
+    CHECK(row.invalid->ends_with(Store::kMixedUp));
+  }
+}
 
 TEST_CASE("24 episodes that vla-eval's side gathers by 8 are those in process, bit for bit") {
   ServedRun run;

@@ -2,6 +2,8 @@
 // middle of one.
 #include <doctest/doctest.h>
 
+#include <memory>
+
 #include "runtime/run/run.h"
 #include "runtime/servers/reading.h"
 #include "runtime/servers/servers.h"
@@ -51,7 +53,194 @@ void load_other(servers::Protocol protocol, const std::string& port, const std::
   CHECK(reading->failure == "");
 }
 
+// A server of actions that follow from what is asked, on a port where another takes its place.
+class Exchangeable {
+ public:
+  explicit Exchangeable(const std::string& habit, const std::string& more = "") {
+    begin(habit, more);
+    port_ = server_->port();
+  }
+  void exchange(const std::string& habit) {
+    server_.reset();
+    begin(habit, "");
+  }
+  void leave() { server_.reset(); }
+  RunOptions options(const std::string& out, const std::string& wait_s = "10") const {
+    RunOptions run;
+    run.policy = "openpi://127.0.0.1:" + port_ +
+                 "?action.form=delta&action.units=m_rad&action.rotation=vector&chunk.length=any"
+                 "&chunk.use=all&timeout.wait_s=" +
+                 wait_s;
+    run.name = "mine";
+    run.out = out;
+    run.seeds = {42};
+    run.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
+    return run;
+  }
+
+ private:
+  void begin(const std::string& habit, const std::string& more) {
+    std::vector<std::string> words = {"openpi", "seen=" + habit};
+    if (!port_.empty()) words.push_back("port=" + port_);
+    if (!more.empty()) words.push_back(more);
+    server_ = std::make_unique<test::PythonServer>("openpi_server.py", words);
+    REQUIRE_MESSAGE(!server_->port().empty(), "Debian's python3-websockets is installed");
+  }
+  std::unique_ptr<test::PythonServer> server_;
+  std::string port_;
+};
+
+std::vector<std::string> hashes_of(const std::string& dir) {
+  const auto rows = read_results(dir);
+  REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
+  std::vector<std::string> hashes;
+  for (const ResultRow& row : *rows) hashes.push_back(row.invalid ? "" : row.trace_sha256);
+  return hashes;
+}
+
 }  // namespace
+
+TEST_CASE("who answers is asked again after each lost connection, before an episode counts") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(4, 4);
+  Exchangeable server("fine");
+  RunOptions options = server.options(folder / "run");
+  options.progress = [&](const RunProgress& progress) {
+    if (progress.done == 2) server.exchange("fine");  // restarted
+  };
+  const auto restarted = run(plan, options);
+  REQUIRE_MESSAGE(restarted.ok(), to_text(restarted.failure()));
+  CHECK(valid_rows(folder / "run") == 4);
+  // Another one that answered in between, and was gone when the call would have ended.
+  options.out = folder / "other";
+  options.progress = [&](const RunProgress& progress) {
+    if (progress.done == 2) server.exchange("numb");
+  };
+  const auto spoiled = run(plan, options);
+  REQUIRE_FALSE(spoiled.ok());
+  CHECK(spoiled.failure().code == Fault::kPolicy);
+  CHECK(spoiled.failure().message.find("another policy answers than at the beginning") !=
+        std::string::npos);
+  CHECK(valid_rows(folder / "other") == 0);
+  CHECK(last_call(folder / "other").reading->at_end == policy::AtEnd::kOther);
+  server.exchange("fine");
+  options.progress = nullptr;
+  REQUIRE(run(plan, options).ok());
+  CHECK(hashes_of(folder / "other") == hashes_of(folder / "run"));
+}
+
+TEST_CASE(
+    "rows of a call that was never shown to have had one policy are the next one's to judge") {
+  const plan::Plan plan = table_plan(3, 4);
+  for (const bool is_other : {false, true}) {
+    TemporaryFolder folder;
+    Exchangeable server("fine");
+    RunOptions options = server.options(folder / "run", "0.05");
+    options.retries = 0;
+    options.give_up_after = 1;
+    options.progress = [&](const RunProgress& progress) {
+      if (progress.done == 1) server.leave();
+    };
+    CHECK_FALSE(run(plan, options).ok());
+    CHECK(valid_rows(folder / "run") == 1);
+    server.exchange(is_other ? "numb" : "fine");
+    options.progress = nullptr;
+    const auto again = run(plan, options);
+    CHECK(again.ok() == !is_other);
+    CHECK(valid_rows(folder / "run") == (is_other ? 0 : 3));
+    if (!is_other) continue;
+    CHECK(again.failure().code == Fault::kStore);
+    // Not beside those of another, either.
+    options.if_changed = IfChanged::kContinue;
+    CHECK(run(plan, options).ok());
+    CHECK(valid_rows(folder / "run") == 3);
+  }
+}
+
+TEST_CASE("a policy that draws at the end and did not when the call began spoils what it did") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 4);
+  Exchangeable server("fine");
+  RunOptions options = server.options(folder / "run");
+  options.progress = [&](const RunProgress& progress) {
+    if (progress.done == 2) server.exchange("noise");
+  };
+  const auto spoiled = run(plan, options);
+  REQUIRE_FALSE(spoiled.ok());
+  CHECK(spoiled.failure().message.find("the 2 episodes of this call are invalid") !=
+        std::string::npos);
+  CHECK(last_call(folder / "run").reading->at_end == policy::AtEnd::kDrawn);
+  CHECK(valid_rows(folder / "run") == 0);
+  // Nothing that answers says nothing: the rows wait for whoever answers next.
+  options = server.options(folder / "gone", "0.05");
+  server.exchange("fine");
+  options.progress = [&](const RunProgress& progress) {
+    if (progress.done == 2) server.leave();
+  };
+  const auto gone = run(plan, options);
+  REQUIRE_MESSAGE(gone.ok(), to_text(gone.failure()));
+  CHECK(last_call(folder / "gone").reading->at_end == policy::AtEnd::kUnclear);
+  CHECK(valid_rows(folder / "gone") == 2);
+  server.exchange("numb");
+  options.progress = nullptr;
+  CHECK_FALSE(run(plan, options).ok());
+  CHECK(valid_rows(folder / "gone") == 0);
+}
+
+TEST_CASE("first questions that fail are asked again, and of a server that stays so no call is") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(1, 4);
+  {
+    const Exchangeable server("fine", "warm=2");
+    const auto ran = run(plan, server.options(folder / "warm"));
+    REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
+    CHECK(last_call(folder / "warm").reading->is_steady);
+    CHECK(last_call(folder / "warm").reading->at_end == policy::AtEnd::kSame);
+  }
+  const Exchangeable server("fine", "warm=1000");
+  const auto refused = run(plan, server.options(folder / "cold", "0.3"));
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().code == Fault::kPolicy);
+  CHECK(refused.failure().message.find("warming up") != std::string::npos);
+  CHECK(valid_rows(folder / "cold") == 0);
+}
+
+TEST_CASE("of a policy that draws it is said that nothing shows it to be one, or to read") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 4);
+  Exchangeable server("noise", R"(meta={"checkpoint": "A"})");
+  RunOptions options = server.options(folder / "run");
+  const auto ran = run(plan, options);
+  REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
+  const auto reading = *last_call(folder / "run").reading;
+  CHECK(reading.draws);
+  const auto summary = summarize_readings(*read_run_calls(folder / "run"));
+  CHECK(summary.good == "");
+  REQUIRE_FALSE(summary.findings.empty());
+  CHECK(summary.findings.front().find("draws: that it was one policy is not shown") !=
+        std::string::npos);
+  // What it says of itself is all there is to know it by.
+  options.out = folder / "other";
+  options.progress = [&](const RunProgress& progress) {
+    if (progress.done == 1) server.exchange("noise");
+  };
+  const auto other = run(plan, options);
+  REQUIRE_FALSE(other.ok());
+  CHECK(valid_rows(folder / "other") == 0);
+}
+
+TEST_CASE("answers that are one too old spoil their episode, which is done again") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 12);
+  const Exchangeable plain("fine");
+  const auto meant = run(plan, plain.options(folder / "plain"));
+  REQUIRE_MESSAGE(meant.ok(), to_text(meant.failure()));
+  const Exchangeable lagging("fine", "lag=7");
+  const auto ran = run(plan, lagging.options(folder / "lag"));
+  REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
+  CHECK(ran->call.retried >= 1);
+  CHECK(hashes_of(folder / "lag") == hashes_of(folder / "plain"));
+}
 
 TEST_CASE("a run does not go on at a server whose policy behind the same name is another one") {
   TemporaryFolder folder;

@@ -224,6 +224,26 @@ TEST_CASE("what was shown of a server goes with its rows, once, and must be the 
         std::string::npos);
 }
 
+TEST_CASE(
+    "rows of a shard that wait to be shown the work of one policy wait in the merged folder, too") {
+  TemporaryFolder folder;
+  const plan::Plan plan = table_plan(2, 2);
+  for (const int start : {0, 1}) {
+    RunOptions options = options_for(folder / std::to_string(start), "null");
+    options.episodes = {start, start};
+    must_run(plan, options);
+  }
+  const std::vector<ResultRow> rows = rows_of(folder / "1");
+  REQUIRE_FALSE(rows.empty());
+  {
+    auto store = Store::open(folder / "1", *read_run_record(folder / "1"), plan.bytes());
+    REQUIRE(store.ok());
+    REQUIRE((*store)->doubt({key_of(rows.front())}).ok());
+  }
+  must_merge({{folder / "0", folder / "1"}, folder / "all"});
+  CHECK(read_unproven(folder / "all").value() == std::vector{key_of(rows.front())});
+}
+
 TEST_CASE("what does not belong together is refused before anything is written") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(1, 2);

@@ -15,6 +15,25 @@ RunRecord run_of(const std::string& plan, const std::string& program, const std:
 
 }  // namespace
 
+TEST_CASE(
+    "what could not be asked at a call's end is shown by a later call that meets the same policy") {
+  RunCall unclear, later;
+  unclear.reading = policy::Reading{.server = "gpu:443", .answers = 3, .answers_sha256 = "ab"};
+  unclear.reading->questions_sha256 = "cd";
+  unclear.reading->is_steady = true;
+  unclear.reading->at_end = policy::AtEnd::kUnclear;
+  later.reading = unclear.reading;
+  later.reading->at_end = policy::AtEnd::kSame;
+  REQUIRE(summarize_readings({unclear}).findings.size() == 1);
+  CHECK(summarize_readings({unclear}).findings[0].find("is not shown") != std::string::npos);
+  CHECK(summarize_readings({unclear, later}).findings.empty());
+  CHECK(summarize_readings({later, unclear}).findings.size() == 1);
+  CHECK(summarize_readings({unclear, later}).good != "");
+  later.reading->answers_sha256 = "ef";
+  CHECK(summarize_readings({unclear, later}).findings.size() == 2);
+  CHECK(summarize_readings({later}, 7).findings[0].starts_with("7 episodes "));
+}
+
 TEST_CASE("a change is said of what changed: the plan, the assets or the build") {
   const RunRecord begun = run_of("aa", "1f", "c0");
   CHECK_FALSE(changes_between(begun, begun).any());

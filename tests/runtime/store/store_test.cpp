@@ -15,6 +15,7 @@
 #include <set>
 
 #include "runtime/plan/plan.h"
+#include "runtime/store/stored_trace.h"
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/runtime/store/sample_run.h"
 #include "tests/runtime/store/sample_trace.h"
@@ -68,6 +69,44 @@ TEST_CASE("valid rows are kept, invalid ones and lost traces are run again") {
   const auto rows = read_results(dir);
   CHECK(rows->size() == 3);
   CHECK_FALSE((*rows)[1].invalid.has_value());
+}
+
+TEST_CASE(
+    "rows wait to be shown the work of one policy, over calls, and become invalid or are "
+    "believed") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  const auto key = [](int episode) { return EpisodeKey{"carrot_on_plate", episode, 42}; };
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    REQUIRE(store_episode(**store, row_of(0)).ok());
+    CHECK((*store)->unproven().value().empty());
+    CHECK((*store)->proven().ok());
+    REQUIRE((*store)->watch().ok());
+    REQUIRE(store_episode(**store, row_of(1)).ok());
+    REQUIRE(store_episode(**store, row_of(2, "policy: gone")).ok());
+    REQUIRE(store_episode(**store, row_of(3)).ok());
+  }
+  // Of a call that was killed here, say.
+  CHECK(read_unproven(dir).value() == std::vector<EpisodeKey>{key(1), key(3)});
+  CHECK(read_reading_summary(dir)->findings.back().starts_with(
+      "2 episodes were answered in a call that was not shown to have had one policy to its end"));
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  const std::string reason = "policy: gpu:1: " + std::string(Store::kMixedUp);
+  REQUIRE((*store)->invalidate({key(1)}, reason).ok());
+  CHECK((*store)->unproven().value() == std::vector<EpisodeKey>{key(3)});
+  REQUIRE((*store)->proven().ok());
+  CHECK((*store)->unproven().value().empty());
+  const auto rows = read_results(dir);
+  REQUIRE(rows.ok());
+  CHECK((*rows)[1].invalid == reason);
+  CHECK_FALSE((*rows)[3].invalid.has_value());
+  // Its trace ended well all the same, and still is its own.
+  CHECK(read_stored_trace((*rows)[1]).ok());
+  REQUIRE((*store)->doubt({key(0)}).ok());
+  CHECK((*store)->unproven().value() == std::vector<EpisodeKey>{key(0)});
 }
 
 TEST_CASE("a truncated, swapped or foreign trace does not count as stored") {
