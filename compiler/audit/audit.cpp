@@ -11,9 +11,18 @@
 #include "compiler/audit/questions.h"
 #include "compiler/audit/rules.h"
 #include "runtime/plan/axes.h"
+#include "runtime/plan/skills.h"
 
 namespace probe::audit {
 namespace {
+
+// A solution that puts something beside something: there is where it shall lie.
+bool goes_beside(const plan::Plan& plan, std::uint32_t task) {
+  return std::ranges::any_of(
+      plan::skills_of(plan.tables(), task), [](const plan::SkillRecord& skill) {
+        return skill.relation == static_cast<std::uint32_t>(plan::SkillRelation::kBeside);
+      });
+}
 
 struct KindName {
   Kind kind;
@@ -303,7 +312,7 @@ class Auditor {
             metrics[*success].readout == static_cast<std::uint32_t>(plan::Readout::kAtEnd);
         if (at_end && ends_in_grasp(plan_, index, *success)) add_rule(kGrasp, index);
         PROBE_ASSIGN(const bool beside, passes_beside(plan_, index, *success));
-        if (beside) add_rule(kOnTable, index);
+        if (beside && !goes_beside(plan_, index)) add_rule(kOnTable, index);
         PROBE_ASSIGN(const bool on_fixture, passes_on_fixture(plan_, index, *success));
         if (on_fixture) add_rule(kOnFixture, index);
         PROBE_ASSIGN(const bool held, passes_held(plan_, index, *success));
