@@ -5,33 +5,10 @@
 #include <string_view>
 
 #include "compiler/define/wording.h"
+#include "compiler/rephrase/relations.h"
 
 namespace probe::rephrase {
 namespace {
-
-struct Relation {
-  std::string_view name;
-  std::string_view words;  // what stands before a place, without articles
-};
-
-// Words that are not here ("to", "over", "with") leave it to the frame.
-constexpr auto kRelations = std::to_array<Relation>({
-    {"on", "on|onto|upon|atop|on top of"},
-    {"in", "in|into|inside|within"},
-    {"outside", "outside"},
-    {"under", "under|underneath|below|beneath"},
-    {"beside", "beside|near|by|alongside|next to|close to"},
-    {"behind", "behind"},
-    {"before", "before|in front of"},
-    {"left", "left of"},
-    {"right", "right of"},
-    {"from", "from|off|out of"},
-    {"around", "around"},
-    {"between", "between"},
-    {"against", "against"},
-    {"through", "through"},
-    {"towards", "towards|toward"},
-});
 
 // "put {source}, not {avoid carrot}, on {target}": the carrot is not what is to be moved.
 constexpr std::string_view kInstead = "instead";

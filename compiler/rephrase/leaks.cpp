@@ -14,9 +14,10 @@ Evaluations::Evaluations(const std::vector<Evaluation>& all) {
   }
 }
 
-std::optional<Leak> Evaluations::find(const std::string& wording, const std::string& like) const {
+std::optional<Leak> Evaluations::find(const std::string& wording) const {
   if (const auto same = exact_.find(wording); same != exact_.end()) return same->second;
-  if (const auto close = alike_.find(like); close != alike_.end()) return close->second;
+  if (const auto close = alike_.find(likeness(wording)); close != alike_.end())
+    return close->second;
   return std::nullopt;
 }
 

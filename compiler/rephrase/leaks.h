@@ -20,7 +20,7 @@ struct Evaluation {
 
 struct Leak {
   std::string suite, task, instruction;
-  bool is_exact = false;  // else up to case, articles, punctuation and the order of words
+  bool is_exact = false;  // else alike by likeness.h
 };
 
 class Evaluations {
@@ -28,8 +28,7 @@ class Evaluations {
   explicit Evaluations(const std::vector<Evaluation>& all);
 
   // The first instruction that a wording is, an exact one before one that is only alike.
-  // `like`: likeness(wording).
-  std::optional<Leak> find(const std::string& wording, const std::string& like) const;
+  std::optional<Leak> find(const std::string& wording) const;
 
  private:
   std::map<std::string, Leak> exact_, alike_;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
+#include "compiler/rephrase/relations.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
@@ -59,33 +61,53 @@ constexpr auto kCourtesies = std::to_array<std::string_view>(
     {"i would like you to", "id like you to", "i want you to", "i need you to", "could you",
      "can you", "would you", "will you", "thank you", "thanks", "please", "kindly"});
 
-// How many words the courtesy that begins at `at` has; 0: none does.
+// How many words there are if all of `phrase` stand from `at` on; 0: they do not.
+std::size_t stands_at(const Words& words, std::size_t at, std::string_view phrase) {
+  std::size_t count = 0, from = 0;
+  while (from <= phrase.size()) {
+    const std::size_t end = std::min(phrase.find(' ', from), phrase.size());
+    if (at + count >= words.size() || words[at + count] != phrase.substr(from, end - from))
+      return 0;
+    ++count;
+    from = end + 1;
+  }
+  return count;
+}
+
 std::size_t courtesy_at(const Words& words, std::size_t at) {
   for (const std::string_view courtesy : kCourtesies) {
-    std::size_t count = 0, from = 0;
-    bool stands = true;
-    while (stands && from <= courtesy.size()) {
-      const std::size_t end = std::min(courtesy.find(' ', from), courtesy.size());
-      stands = at + count < words.size() && words[at + count] == courtesy.substr(from, end - from);
-      ++count;
-      from = end + 1;
-    }
-    if (stands) return count;
+    if (const std::size_t count = stands_at(words, at, courtesy); count > 0) return count;
   }
   return 0;
 }
 
+// The relation whose words stand from `at` on, the longest, and how many they are; 0: none does.
+std::pair<std::string_view, std::size_t> relation_at(const Words& words, std::size_t at) {
+  std::pair<std::string_view, std::size_t> longest;
+  for (const Relation& relation : kRelations) {
+    for (std::string_view left = relation.words; !left.empty();) {
+      const std::size_t bar = std::min(left.find('|'), left.size());
+      const std::size_t count = stands_at(words, at, left.substr(0, bar));
+      if (count > longest.second) longest = {relation.name, count};
+      left.remove_prefix(std::min(bar + 1, left.size()));
+    }
+  }
+  return longest;
+}
+
 }  // namespace
 
-std::string likeness(std::string_view wording) { return sorted_text(words_of(wording)); }
-
-std::string likeness_without_courtesy(std::string_view wording) {
+std::string likeness(std::string_view wording) {
   const Words words = words_of(wording);
   Words left;
   for (std::size_t at = 0; at < words.size();) {
-    const std::size_t polite = courtesy_at(words, at);
-    if (polite == 0) left.push_back(words[at]);
-    at += std::max<std::size_t>(polite, 1);
+    if (const std::size_t polite = courtesy_at(words, at); polite > 0) {
+      at += polite;
+      continue;
+    }
+    const auto [relation, count] = relation_at(words, at);
+    left.emplace_back(count > 0 ? relation : std::string_view(words[at]));
+    at += std::max<std::size_t>(count, 1);
   }
   return sorted_text(left.empty() ? words : left);
 }

@@ -1,5 +1,5 @@
-// When two wordings are too alike for one to be trained on and the other to be asked: up to case,
-// articles, punctuation and the order of words.
+// When two wordings are too alike for one to be trained on and the other to be held out or asked:
+// the one measure of splits and of leaks.
 #pragma once
 
 #include <string>
@@ -7,12 +7,10 @@
 
 namespace probe::rephrase {
 
-// Equal for wordings that are alike: their words in lower case, sorted, without articles and signs.
-// Apostrophes leave no gap, so "rabbit's" is "rabbits".
+// Equal for wordings that are alike: their words in lower case, sorted, without articles and signs,
+// without what only asks politely ("please", "could you"), and with one word for words of place
+// that say the same ("onto", "on top of": relations.h). Apostrophes leave no gap, so "rabbit's" is
+// "rabbits". Nothing but polite words are their own likeness.
 std::string likeness(std::string_view wording);
-
-// The same without what only asks politely ("please", "could you"): who was trained on the one form
-// has seen the other. Nothing but such words are their own likeness.
-std::string likeness_without_courtesy(std::string_view wording);
 
 }  // namespace probe::rephrase

@@ -11,6 +11,20 @@
 namespace probe::rephrase {
 namespace {
 
+// Behind `tasks` all others that can be run and have the instruction of one of them.
+void add_same_instructions(const sema::Model& model, std::vector<sema::TaskId>& tasks) {
+  std::set<std::string> instructions;
+  for (const sema::TaskId id : tasks) instructions.insert(model.tasks[id].prompt);
+  const std::set<sema::TaskId> chosen(tasks.begin(), tasks.end());
+  for (std::size_t i = 0; i < model.tasks.size(); ++i) {
+    const sema::TaskId id = model.tasks.id(i);
+    const sema::Task& task = model.tasks[id];
+    if (!task.abstract && task.complete && instructions.contains(task.prompt) &&
+        !chosen.contains(id))
+      tasks.push_back(id);
+  }
+}
+
 // Leaves what is proved of every task that has the same instruction; how many others were there, by
 // task.
 std::vector<std::uint64_t> keep_common(const sema::Model& model,
@@ -66,17 +80,19 @@ void weigh(TaskWordings& of_task, const Options& options) {
 Rephrased rephrase(const sema::Model& model, std::span<const sema::TaskId> tasks,
                    const std::vector<Evaluation>& not_in, const Options& options) {
   const Evaluations evaluations(not_in);
-  std::set<std::string> instructions;  // as likeness_without_courtesy() has them
+  std::set<std::string> instructions;  // as likeness() has them
   for (const sema::Task& task : model.tasks) {
-    if (!task.abstract && task.complete)
-      instructions.insert(likeness_without_courtesy(task.prompt));
+    if (!task.abstract && task.complete) instructions.insert(likeness(task.prompt));
   }
   Prover prover(model, options.asset_root);
+  // A wording for an instruction holds for all tasks of the text that have it, asked for or not.
+  std::vector<sema::TaskId> proved_for(tasks.begin(), tasks.end());
+  if (options.by_instruction) add_same_instructions(model, proved_for);
   std::vector<Proved> of_tasks;
-  for (const sema::TaskId id : tasks)
+  for (const sema::TaskId id : proved_for)
     of_tasks.push_back(prover.prove(model.tasks[id], options.seed));
   std::vector<std::uint64_t> of_some(tasks.size(), 0);
-  if (options.by_instruction) of_some = keep_common(model, tasks, of_tasks);
+  if (options.by_instruction) of_some = keep_common(model, proved_for, of_tasks);
 
   Rephrased all;
   all.by_instruction = options.by_instruction;
@@ -93,18 +109,18 @@ Rephrased rephrase(const sema::Model& model, std::span<const sema::TaskId> tasks
     of_task.of_some_tasks = of_some[i];
     if (options.drop_leaks) {
       of_task.leaks = std::erase_if(proved.wordings, [&](const Wording& wording) {
-        return evaluations.find(wording.text, likeness(wording.text)).has_value();
+        return evaluations.find(wording.text).has_value();
       });
     }
     of_task.over_cap = cap(proved.wordings, task.prompt, options);
     for (Wording& wording : proved.wordings) {
       if (!options.drop_leaks) {
-        if (auto leak = evaluations.find(wording.text, likeness(wording.text))) {
+        if (auto leak = evaluations.find(wording.text)) {
           ++of_task.leaks;
           all.leaks.push_back({id, wording.text, *std::move(leak)});
         }
       }
-      const std::string core = likeness_without_courtesy(wording.text);
+      const std::string core = likeness(wording.text);
       const bool is_held_out = !instructions.contains(core) &&
                                draw_share("split", options.seed, core) < options.held_out;
       ++(is_held_out ? of_task.held_out : of_task.train);

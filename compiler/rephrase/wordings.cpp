@@ -1,6 +1,7 @@
 #include "compiler/rephrase/wordings.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
@@ -162,18 +163,28 @@ std::set<std::string> turns(const Template& say) {
       "not",       "don't",   "dont",   "never",   "no",     "nothing", "nowhere",
       "anywhere",  "but",     "except", "besides", "avoid",  "nor",     "without",
       "elsewhere", "instead", "can't",  "won't",   "rather", "cannot",  "neither"};
-  static const std::set<std::string, std::less<>> kOthers = {"unless",  "refuse", "stop", "pretend",
-                                                             "imagine", "remove", "undo"};
+  static const std::set<std::string, std::less<>> kOthers = {
+      "unless", "refuse", "stop",   "pretend", "imagine", "remove", "undo",   "fail",
+      "almost", "nearly", "hardly", "barely",  "partly",  "half",   "halfway"};
+  // Of how it is to lie there, or how many of them: more than anybody proved.
+  static const auto kPhrases = std::to_array<std::string_view>(
+      {"upside down", "on its side", "two of", "three of", "several of", "some of", "both of",
+       "each of", "most of", "part of"});
   // Behind the last object; between two it only says in which order they are thought of.
   static const std::set<std::string, std::less<>> kGoingOn = {"then", "afterwards", "before",
                                                               "until"};
   const bool is_free = sema::has_negation(say);
   std::set<std::string> found, going_on;
+  std::string sentence = " ";
   for (std::string word : sema::sentence_of(say)) {
+    sentence += word + " ";
     for (std::size_t at; (at = word.find("\u2019")) != word.npos;) word.replace(at, 3, "'");
     if (word.starts_with('{')) going_on.clear();
     if (kGoingOn.contains(word)) going_on.insert(word);
     if (kOthers.contains(word) || (!is_free && kDenials.contains(word))) found.insert(word);
+  }
+  for (const std::string_view phrase : kPhrases) {
+    if (sentence.find(" " + std::string(phrase) + " ") != sentence.npos) found.emplace(phrase);
   }
   found.merge(going_on);
   return found;

@@ -89,7 +89,7 @@ TEST_CASE("shares of nothing and everything are that, but for instructions of th
   }
   // "put toy on the tray" is up to articles what `toy_on_tray` says.
   for (const auto& wording : splits(make(kAll, {.held_out = 1}))) {
-    const std::string like = rephrase::likeness_without_courtesy(wording.first);
+    const std::string like = rephrase::likeness(wording.first);
     const bool is_said = like == rephrase::likeness("put toy on tray") ||
                          like == rephrase::likeness("put red block on tray");
     CHECK_MESSAGE(wording.second != is_said, wording.first);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <span>
 #include <sstream>
 
 #include "compiler/rephrase/published.h"
@@ -122,6 +123,21 @@ TEST_CASE("tasks with one instruction share a cap in the published layout, not i
   REQUIRE(tasks[1].lines.size() == 2);
   for (std::size_t i = 0; i < 2; ++i)
     CHECK(tasks[0].lines[i].wording.text == tasks[1].lines[i].wording.text);
+}
+
+TEST_CASE("a wording holds for all tasks of an instruction, whichever of them are asked for") {
+  const Made whole({.held_out = 0, .by_instruction = true});
+  const auto& tasks = whole.all.tasks;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const sema::TaskId alone = tasks[i].task;
+    const rephrase::Rephrased some = rephrase::rephrase(
+        whole.analysis->model, std::span(&alone, 1), {}, {.held_out = 0, .by_instruction = true});
+    REQUIRE(some.tasks.size() == 1);
+    CHECK(some.tasks[0].of_some_tasks == tasks[i].of_some_tasks);
+    REQUIRE(some.tasks[0].lines.size() == tasks[i].lines.size());
+    for (std::size_t n = 0; n < tasks[i].lines.size(); ++n)
+      CHECK(some.tasks[0].lines[n].wording.text == tasks[i].lines[n].wording.text);
+  }
 }
 
 TEST_CASE("what is held out is in no published file") {

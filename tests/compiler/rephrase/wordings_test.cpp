@@ -202,10 +202,15 @@ TEST_CASE(
       "template curly frame put \"don\u2019t put {the source} on {the target}\"\n"
       "template anywhere frame put \"put {the source} anywhere but on {the target}\"\n"
       "template play frame put \"pretend to put {the source} on {the target}\"\n"
+      "template failing frame put \"fail to put {the source} on {the target}\"\n"
+      "template nearly frame put \"almost put {the source} on {the target}\"\n"
+      "template over frame put \"put {the source} upside down on {the target}\"\n"
+      "template two frame put \"put two of {the source} on {the target}\"\n"
       "template away frame put \"put {the source} on {the target} and then throw it away\"\n" +
       kPlace);
   for (const std::string& text : made.texts()) {
-    for (const char* word : {"don", "anywhere", "pretend", "throw"})
+    for (const char* word :
+         {"don", "anywhere", "pretend", "throw", "fail", "almost", "upside", "two of"})
       CHECK_MESSAGE(text.find(word) == text.npos, text);
   }
   CHECK(!made.texts().empty());
