@@ -220,8 +220,16 @@ constexpr SideWords kSideWords[] = {
     {"right of", QuestionAnswer::kLeft, false},
     {"nearer to the camera than", QuestionAnswer::kNearer, true},
     {"closer to the camera than", QuestionAnswer::kNearer, true},
+    {"nearer than", QuestionAnswer::kNearer, true},
+    {"closer than", QuestionAnswer::kNearer, true},
+    {"in front of", QuestionAnswer::kNearer, true},
     {"further from the camera than", QuestionAnswer::kNearer, false},
     {"farther from the camera than", QuestionAnswer::kNearer, false},
+    {"further away than", QuestionAnswer::kNearer, false},
+    {"farther away than", QuestionAnswer::kNearer, false},
+    {"further than", QuestionAnswer::kNearer, false},
+    {"farther than", QuestionAnswer::kNearer, false},
+    {"behind", QuestionAnswer::kNearer, false},
 };
 
 // "Is X to the left of Y?" with the answer left(Y, X): every answer would be read the wrong way
@@ -252,6 +260,65 @@ void check_sides(Context& context, const Family& family) {
                     said[0]->who.text + "` and `" + said[1]->who.text + "` the other way round")
         .help("exchange `" + who[0].text + "` and `" + who[1].text + "` in the answer");
   }
+}
+
+// Words with which a question asks for the opposite of an answer, or for another role.
+struct TurnedWords {
+  std::string_view words;
+  bool (*turns)(const QuestionAnswer& answer);
+};
+bool asks_of_presence(const QuestionAnswer& answer) {
+  return answer.kind == QuestionAnswer::kPresent;
+}
+bool asks_of_success(const QuestionAnswer& answer) {
+  return answer.kind == QuestionAnswer::kMetric && answer.truth.name == "success";
+}
+bool asks_for_source(const QuestionAnswer& answer) {
+  return answer.kind == QuestionAnswer::kOne && answer.who.size() == 1 &&
+         answer.who[0].kind == Who::kSource;
+}
+constexpr TurnedWords kTurnedWords[] = {
+    {"absent", asks_of_presence},     {"missing", asks_of_presence},
+    {"not", asks_of_presence},        {"no longer", asks_of_presence},
+    {"gone", asks_of_presence},       {"fail", asks_of_success},
+    {"fails", asks_of_success},       {"failed", asks_of_success},
+    {"not", asks_of_success},         {"not touch", asks_for_source},
+    {"not pick", asks_for_source},    {"not take", asks_for_source},
+    {"not move", asks_for_source},    {"avoid", asks_for_source},
+    {"leave alone", asks_for_source}, {"where", asks_for_source},
+};
+
+// "Is X missing?" with the answer present(X): right answers would be judged wrong. So a point at
+// another object than the answer's.
+void check_turned(Context& context, const Family& family) {
+  std::string text;
+  std::vector<const Placeholder*> said;
+  for (const Family::Part& part : family.parts) {
+    text += part.placeholder ? " " : fold_case(part.literal);
+    if (part.placeholder) said.push_back(&*part.placeholder);
+  }
+  // "Is it there or not?" asks both ways.
+  const bool asks_both = has_words(text, "or not");
+  for (const TurnedWords& turned : kTurnedWords) {
+    if (asks_both || !turned.turns(family.answer) || !has_words(text, turned.words)) continue;
+    // A point is asked for where something is.
+    if (turned.words == "where" && family.form == plan::QuestionForm::kPoint) continue;
+    context
+        .report(Code::P0904, family.answer.span,
+                "question `" + family.name + "` says \"" + std::string(turned.words) +
+                    "\", and its answer is the other one")
+        .help("ask for the answer itself, or declare the one that is asked for");
+    return;
+  }
+  if (family.form != plan::QuestionForm::kPoint || family.answer.who.size() != 1) return;
+  if (said.size() != 1 || said[0]->kind == Placeholder::kInstruction ||
+      said[0]->who == family.answer.who[0])
+    return;
+  context
+      .report(Code::P0904, family.answer.span,
+              "question `" + family.name + "` speaks of `" + said[0]->who.text +
+                  "`, and its answer is `" + family.answer.who[0].text + "`")
+      .help("answer `" + said[0]->who.text + "`");
 }
 
 }  // namespace
@@ -289,6 +356,7 @@ void define_questions(Context& context) {
         check_told(context, family);
         check_moment(context, family);
         check_sides(context, family);
+        check_turned(context, family);
       }
       set.families.push_back(std::move(family));
     }

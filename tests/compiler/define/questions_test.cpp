@@ -238,6 +238,29 @@ TEST_CASE("names that stand for nothing, and doubled names, are said once") {
   CHECK(ask(R"(yesno x "Which?" answer left(source, source))")->codes() == "P0203");
   CHECK(ask(R"(choice x "Which one is it?" answer source among objects)")->codes() == "P0904");
   CHECK(ask(R"(yesno x "There?" for o in objects at end answer present(o))")->codes() == "P0904");
+  for (
+      const char* turned :
+      {R"(yesno x "Is {the source} absent?" answer present(source))",
+       R"(yesno x "Is {the source} missing in the picture?" answer present(source))",
+       R"(yesno x "Is there not {a source}?" answer present(source))",
+       R"(yesno x "Is {the source} farther away than {the target}?" answer nearer(source, target))",
+       R"(yesno x "Is {the source} behind {the target}?" answer nearer(source, target))",
+       R"(yesno x "Told: \"{instruction}\". Has it failed?" at end answer success)",
+       R"(choice x "Told: \"{instruction}\". Which must it not touch?" answer source among objects)",
+       R"(choice x "Told: \"{instruction}\". Where must it go?" answer source among objects)",
+       R"(point x "Point at {the target}." answer source)"}) {
+    CAPTURE(turned);
+    CHECK(ask(turned)->codes() == "P0904");
+  }
+  for (const char* straight :
+       {R"(yesno x "Is {the source} there or not?" answer present(source))",
+        R"(yesno x "Is {the source} behind {the target}?" answer nearer(target, source))",
+        R"(yesno x "Told: \"{instruction}\". Has it done so?" at end answer success)",
+        R"(choice x "Told: \"{instruction}\". Where must it put it?" answer target among objects)",
+        R"(point x "Point to where {the source} is." answer source)"}) {
+    CAPTURE(straight);
+    CHECK(ask(straight)->codes() == "");
+  }
   CHECK(ask(kPick + " pixels 0")->codes() == "P0304");
   CHECK(ask(R"(free x "" answer mentions(source, target))")->codes() == "P0406");
   CHECK(test::analyze_with_suite("questions q { }")->codes() == "P0206");
