@@ -3,8 +3,8 @@
 #include "runtime/ask/answer_table.h"
 #include "runtime/ask/vouch.h"
 #include "runtime/base/file.h"
-#include "runtime/base/paths.h"
 #include "runtime/base/folder_kind.h"
+#include "runtime/base/paths.h"
 #include "runtime/store/store.h"
 
 namespace probe::ask {
@@ -73,7 +73,8 @@ Status for_each_answer(const std::string& dir,
                        const std::function<Status(AnswerRow, std::uint32_t)>& visit) {
   PROBE_ASSIGN(Database database, open_to_read(dir));
   PROBE_ASSIGN(const plan::Plan plan, open_asked_plan(dir));
-  Voucher voucher(plan);
+  PROBE_ASSIGN(const AskRecord record, read_ask_record(dir));
+  Voucher voucher(plan, record.identity.model);
   const std::string sql =
       select_answers() + " order by place, episode, seed, arm, rotation, question_id, start_id";
   Statement select(database, sql.c_str());

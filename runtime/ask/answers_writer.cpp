@@ -63,7 +63,7 @@ class FolderAnswers final : public Answers {
     }
     if (auto plan = open_asked_plan(dir_)) {
       plan_ = std::move(*plan);
-      voucher_.emplace(*plan_);
+      voucher_.emplace(*plan_, record.identity.model);
     }
     writer_ = std::thread([this] { write_on(); });
     return {};

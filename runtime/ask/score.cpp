@@ -6,6 +6,7 @@
 
 #include "runtime/ask/queries.h"
 #include "runtime/ask/read_answer.h"
+#include "runtime/ask/truth.h"
 #include "runtime/base/numbering.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/family_name.h"
@@ -292,9 +293,9 @@ Status Tally::add(const AnswerRow& row) {
   }
   const plan::QuestionRecord& record = plan_.questions()[question];
   const bool is_proved = plan::truth_of(record) == plan::QuestionTruth::kProved;
-  if (row.reading.yes) asked.expects_yes = *row.reading.yes == *row.right;
-  if (form_at(plan_, question) == plan::QuestionForm::kYesNo && is_proved)
-    asked.expects_yes = record.right == 1;
+  // Whatever was read, so that the floors are the same for all models.
+  if (form_at(plan_, question) == plan::QuestionForm::kYesNo)
+    asked.expects_yes = is_proved ? record.right == 1 : told_yes(row.expected);
   asked.copied = row.copied;
   if (!is_choice(plan_, question) || !is_proved) return {};
   if (std::ranges::any_of(row.usage.letter_logprobs,

@@ -163,6 +163,12 @@ Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, c
   return yes_or_no(a.depth < b.depth);
 }
 
+std::optional<bool> told_yes(std::string_view expected) {
+  if (expected == "yes") return true;
+  if (expected == "no") return false;
+  return std::nullopt;
+}
+
 bool is_right(const Truth& truth, const Reading& reading) {
   if (reading.verdict != Verdict::kRead) return false;
   if (truth.option) return reading.option == truth.option;

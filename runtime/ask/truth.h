@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/ask/answer_row.h"
@@ -36,6 +37,10 @@ std::optional<Truth> known_truth(const plan::Plan& plan, const plan::QuestionRec
 // where its truth is of one.
 Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, const View& view,
                  const PictureRule& rule, std::optional<bool> recorded = {});
+
+// Of a truth that the picture or the recorded episode told, as a row's `expected` says it; nothing
+// where that is neither yes nor no.
+std::optional<bool> told_yes(std::string_view expected);
 
 // Whether what was read is the right answer; false where nothing was read. Not of free answers.
 bool is_right(const Truth& truth, const Reading& reading);

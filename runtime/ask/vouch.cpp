@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "runtime/ask/likely_letters.h"
 #include "runtime/ask/plan_reading.h"
 #include "runtime/ask/prepared.h"
 #include "runtime/ask/queries.h"
@@ -51,16 +52,31 @@ bool is_about(const plan::Plan& plan, const AnswerRow& row, std::uint32_t index)
   return to_hex(plan::to_sha256(episode.start_id)) == row.start_id;
 }
 
-// Of a truth that the picture or the recorded episode told, as its words say.
-std::optional<bool> told_yes(const std::string& expected) {
-  if (expected == "yes") return true;
-  if (expected == "no") return false;
-  return std::nullopt;
+// A figure that no answer has; empty: all are possible.
+std::string impossible_figure(const AnswerRow& row, std::size_t letters) {
+  const Usage& usage = row.usage;
+  const auto below = [](std::string_view cell, int least) {
+    return "its `" + std::string(cell) + "` is below " + std::to_string(least);
+  };
+  if (usage.prompt_tokens.value_or(0) < 0) return below("prompt_tokens", 0);
+  if (usage.completion_tokens.value_or(0) < 0) return below("completion_tokens", 0);
+  if (!(row.latency_s >= 0)) return below("latency_s", 0);
+  if (row.attempts < 1) return below("attempts", 1);
+  const auto& logprobs = usage.letter_logprobs;
+  if (!logprobs.empty() && logprobs.size() != letters) {
+    return "its `letter_logprobs` are " + std::to_string(logprobs.size()) + ", its letters " +
+           std::to_string(letters);
+  }
+  const bool is_junk = std::ranges::any_of(logprobs, [](const std::optional<double>& logprob) {
+    return logprob && !is_logprob(*logprob);
+  });
+  return is_junk ? "its `letter_logprobs` are no logarithms of probabilities" : "";
 }
 
 }  // namespace
 
-Voucher::Voucher(const plan::Plan& plan) : plan_(plan) {
+Voucher::Voucher(const plan::Plan& plan, std::string model)
+    : plan_(plan), model_(std::move(model)) {
   for (std::uint32_t q = 0; q < plan.questions().size(); ++q)
     questions_[to_hex(plan::to_sha256(plan.questions()[q].question_id))].push_back(q);
   for (std::uint32_t e = 0; e < plan.episodes().size(); ++e)
@@ -76,6 +92,7 @@ void Voucher::vouch(AnswerRow& row) {
 
 // Why the row cannot be what asking stored; empty where it can.
 std::string Voucher::reason(AnswerRow& row) {
+  if (row.model != model_) return "it is of `" + row.model + "`, the folder is of `" + model_ + "`";
   const auto alike = questions_.find(row.question_id);
   if (alike == questions_.end()) return "the plan has no question " + row.question_id;
   std::uint32_t question = plan::kNone;
@@ -89,7 +106,8 @@ std::string Voucher::reason(AnswerRow& row) {
   if (!is_about(plan_, row, question)) {
     return row.task + " has no start " + row.start_id + " at " + std::to_string(row.episode);
   }
-  if (row.rotation >= rotations_of(plan_, plan_.questions()[question]))
+  const std::uint32_t rotations = rotations_of(plan_, plan_.questions()[question]);
+  if (row.rotation >= rotations)
     return "rotation " + std::to_string(row.rotation) + " is none of its options";
   const plan::FamilyRecord& family = plan_.families()[plan_.questions()[question].family];
   const bool is_end = plan::moment_of(family) == plan::QuestionMoment::kEnd;
@@ -98,6 +116,8 @@ std::string Voucher::reason(AnswerRow& row) {
                   : "it is asked of starts alone";
   if (row.invalid) return {};
   if (!row.right) return "it is neither right nor wrong";
+  if (std::string why = impossible_figure(row, rotations == 1 ? 0 : rotations); !why.empty())
+    return why;
   if (std::string why = check_shown(row, question); !why.empty()) return why;
   return read_again(row, question);
 }

@@ -22,7 +22,8 @@ namespace probe::ask {
 
 class Voucher {
  public:
-  explicit Voucher(const plan::Plan& plan);  // which must live as long
+  // Of rows of a folder of that model. The plan must live as long.
+  Voucher(const plan::Plan& plan, std::string model);
 
   // A row that another version of the reader read gets today's reading; `reader` stays, and tells.
   void vouch(AnswerRow& row);
@@ -40,6 +41,7 @@ class Voucher {
   const Order* order_of(const AnswerRow& row, std::uint32_t question);
 
   const plan::Plan& plan_;
+  std::string model_;
   using ById = std::map<std::string, std::vector<std::uint32_t>, std::less<>>;
   ById questions_;  // by id
   ById episodes_;   // that begin so, by the start's id

@@ -208,7 +208,9 @@ TEST_CASE("arms, recorded episodes and families are counted apart") {
       for (std::uint32_t index = 0; index < 2; ++index) {
         rows.push_back(row_of(plan, question, index, 0, arm == Arm::kPicture || index == 0));
         rows.back().arm = arm;
-        rows.back().reading.yes = (question == 1 || index == 0) == *rows.back().right;
+        // What is right is told by the row, whatever was read.
+        rows.back().expected = question == 1 || index == 0 ? "yes" : "no";
+        if (!*rows.back().right) rows.back().reading = {.verdict = Verdict::kUnclear};
       }
     }
   }
@@ -220,6 +222,7 @@ TEST_CASE("arms, recorded episodes and families are counted apart") {
     CHECK(row.of(Arm::kPrior)->plain.count.k == 1);
     CHECK(row.of(Arm::kPicture)->right_letters.empty());
     CHECK(*row.floors.random_circular == 0.5);
+    CHECK(row.of(Arm::kBlind)->unclear == 1);
   }
   CHECK(*scores[0].floors.first_plain == 1);    // proved: always yes
   CHECK(*scores[1].floors.first_plain == 0.5);  // told by the rows: yes and no
