@@ -314,6 +314,9 @@ void check_turned(Context& context, const Family& family) {
   if (said.size() != 1 || said[0]->kind == Placeholder::kInstruction ||
       said[0]->who == family.answer.who[0])
     return;
+  // An object by its name may be who fills the role.
+  const auto is_role = [&](const Who& who) { return find_role(context, who.text).has_value(); };
+  if (is_role(said[0]->who) != is_role(family.answer.who[0])) return;
   context
       .report(Code::P0904, family.answer.span,
               "question `" + family.name + "` speaks of `" + said[0]->who.text +
