@@ -151,6 +151,8 @@ Result<AskSummary> ask(const plan::Plan& plan, const AskOptions& given) {
 
   summary.call.fingerprint = fingerprint;
   summary.call.jobs = options.jobs;
+  summary.call.shard = options.choice.shard;
+  summary.call.shards = options.choice.shards;
   if (chat && begun_before) PROBE_TRY(prove(options, *chat, summary));
   PROBE_TRY(answers->write_call(summary.call));
   // A look's queries and some of the next: what waits never outnumbers what is being asked by far.

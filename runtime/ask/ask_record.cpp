@@ -1,7 +1,9 @@
 // Records as JSON.
 #include "runtime/ask/ask_record.h"
 
+#include <map>
 #include <optional>
+#include <set>
 
 #include "runtime/base/json.h"
 #include "runtime/base/percent.h"
@@ -116,6 +118,33 @@ std::string to_text(const AskCall& call) {
          std::to_string(call.jobs) + " questions at it on average";
 }
 
+std::string missing_shards(std::span<const AskCall> calls) {
+  std::map<int, std::set<int>> ended;  // shards by their number
+  for (const AskCall& call : calls) {
+    constexpr int kMostShards = 100'000;  // as jobs of an array may be
+    if (call.shards < 1 || call.shards > kMostShards) continue;
+    std::set<int>& shards = ended[call.shards];
+    if (call.ended) shards.insert(call.shard);
+  }
+  std::string text;
+  for (const auto& [count, there] : ended) {
+    constexpr int kNamed = 20;
+    std::string names;
+    int missing = 0;
+    for (int shard = 1; shard <= count; ++shard) {
+      if (there.contains(shard) || ++missing > kNamed) continue;
+      names += (names.empty() ? "" : ", ") + std::to_string(shard);
+    }
+    if (missing == 0) return {};  // one whole division is enough
+    if (count == 1) continue;     // a call that was killed; nobody spoke of shards
+    const bool many = missing > 1;
+    text = std::string("is partial: shard") + (many ? "s " : " ") + names +
+           (missing > kNamed ? " .." : "") + " of " + std::to_string(count) +
+           (many ? " were not asked to their end" : " was not asked to its end");
+  }
+  return text;
+}
+
 std::string call_to_json(const AskCall& call) {
   const ModelProof& proof = call.proof;
   const Json json = {{"fingerprint", store::to_json(call.fingerprint)},
@@ -127,6 +156,8 @@ std::string call_to_json(const AskCall& call) {
                      {"has_logprobs", proof.has_logprobs},
                      {"is_unchecked", proof.is_unchecked},
                      {"jobs", call.jobs},
+                     {"shard", call.shard},
+                     {"shards", call.shards},
                      {"ended", call.ended},
                      {"answers", call.answers},
                      {"retried", call.retried},
@@ -166,6 +197,11 @@ Result<AskCall> call_from_json(const std::string& text, const std::string& where
   call.proof.has_logprobs = flag("has_logprobs");
   call.proof.is_unchecked = flag("is_unchecked");
   call.jobs = number("jobs").get<int>();
+  // Older calls do not say.
+  if (json.find("shards") != nullptr) {
+    call.shard = number("shard").get<int>();
+    call.shards = number("shards").get<int>();
+  }
   call.ended = flag("ended");
   call.answers = number("answers").get<std::int64_t>();
   call.retried = number("retried").get<std::int64_t>();

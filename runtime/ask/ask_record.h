@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,7 @@ struct AskCall {
   store::Fingerprint fingerprint;
   ModelProof proof;
   int jobs = 1;
+  int shard = 1, shards = 1;  // which share it asked
   bool ended = false;
   std::int64_t answers = 0;  // stored
   std::int64_t retried = 0;  // attempts that were repeated
@@ -69,6 +71,9 @@ struct AskCall {
 
 // "158.2 answers/s; server busy 99.6 % of the time, 31.8 questions at it on average".
 std::string to_text(const AskCall& call);
+// Which shards nobody asked to their end, as "is partial: shards 2, 4 of 5 were not asked to their
+// end"; empty where none is missing.
+std::string missing_shards(std::span<const AskCall> calls);
 std::string call_to_json(const AskCall& call);
 Result<AskCall> call_from_json(const std::string& text, const std::string& where);
 

@@ -157,6 +157,11 @@ Result<store::MergeSummary> merge(const store::MergeOptions& options) {
   PROBE_ASSIGN(const plan::Plan plan, open_asked_plan(sources.front().dir));
   PROBE_ASSIGN(auto answers, Answers::open(options.out, sources.front().record, plan.bytes()));
   PROBE_TRY(take_calls(sources, *answers, options.out));
+  std::vector<AskCall> calls;
+  for (const AnswerSource& source : sources)
+    calls.insert(calls.end(), source.calls.begin(), source.calls.end());
+  if (const std::string missing = missing_shards(calls); !missing.empty())
+    summary.notes.push_back(options.out + " " + missing);
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const bool is_there = there && i == 0;
     PROBE_TRY(for_each_answer(sources[i].dir, [&](AnswerRow row, std::uint32_t place) -> Status {

@@ -205,12 +205,23 @@ Result<Queries> Queries::choose(const plan::Plan& plan, QueryChoice choice) {
     }
   }
   if (made.choice_.recorded) {
+    std::set<std::uint32_t> there;
     for (std::size_t i = 0; i < made.choice_.recorded->size(); ++i) {
       const RecordedEnd& end = (*made.choice_.recorded)[i];
       const std::uint32_t task = plan.episodes()[end.episode].task;
       if (!selected.contains(end.episode) || !ends.contains(task)) continue;
       tasks.insert(task);
+      there.insert(end.episode);
       made.looks_.push_back({end.episode, {}, i, end.seed});
+    }
+    const auto wanted = std::ranges::count_if(selected, [&](std::uint32_t episode) {
+      return ends.contains(plan.episodes()[episode].task);
+    });
+    if (const auto missing = wanted - std::ssize(there); missing > 0) {
+      made.notes_.push_back("the ends of " + std::to_string(missing) + " of " +
+                            std::to_string(wanted) +
+                            " chosen starts are not asked about: the run of --frames has no valid "
+                            "episode of them");
     }
   } else if (!ends.empty()) {
     made.notes_.push_back(

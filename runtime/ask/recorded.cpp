@@ -1,7 +1,10 @@
 #include "runtime/ask/recorded.h"
 
+#include <map>
+
 #include "runtime/ask/ask.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 
 namespace probe::ask {
@@ -17,7 +20,9 @@ Result<Recorded> read_recorded(const plan::Plan& plan, const std::string& dir,
   if (!identity.policy_content.empty()) recorded.identity += ", " + identity.policy_content;
   if (!identity.live.empty()) recorded.identity += ", " + identity.live;
   for (const std::string& sentence : proven.refused) notes.push_back(sentence);
+  PROBE_ASSIGN(const plan::Plan run_plan, store::open_run_plan(dir));
   std::size_t strange = 0;
+  std::map<std::string, std::string> other_horizons;  // by task, what is told of it
   for (store::ResultRow& row : proven.rows) {
     if (row.invalid) continue;
     const auto task = plan.find_task(row.task);
@@ -30,6 +35,16 @@ Result<Recorded> read_recorded(const plan::Plan& plan, const std::string& dir,
       ++strange;
       continue;
     }
+    // The end of a longer or shorter episode is another moment.
+    const auto ran = run_plan.find_task(row.task);
+    const std::uint32_t horizon = plan.tasks()[*task].horizon;
+    if (ran && run_plan.tasks()[*ran].horizon != horizon) {
+      other_horizons.try_emplace(row.task, "`" + row.task + "` of " + dir +
+                                               " is left out: it ran for at most " +
+                                               std::to_string(run_plan.tasks()[*ran].horizon) +
+                                               " steps, the plan's is " + std::to_string(horizon));
+      continue;
+    }
     recorded.ends.push_back({episode, row.seed, recorded.rows.size()});
     recorded.rows.push_back(std::move(row));
   }
@@ -37,6 +52,9 @@ Result<Recorded> read_recorded(const plan::Plan& plan, const std::string& dir,
     notes.push_back(std::to_string(strange) + " episodes of " + dir +
                     " are left out: the plan has no task of that name, start and instruction");
   }
+  if (recorded.ends.empty() && !other_horizons.empty())
+    return Failure{Fault::kUsage, other_horizons.begin()->second, "--frames"};
+  for (auto& [name, sentence] : other_horizons) notes.push_back(std::move(sentence));
   return recorded;
 }
 

@@ -58,6 +58,8 @@ Result<AskedModel> read_asked_model(const std::string& dir, const plan::Plan& pl
     return tally.add(row);
   }));
   model.doubts = rows.sentences();
+  if (std::string missing = ask::missing_shards(calls); !missing.empty())
+    model.doubts.push_back(std::move(missing));
   PROBE_TRY(ask::for_each_left_out(dir, [&](const ask::LeftOut&, std::uint32_t) -> Status {
     ++model.left_out;
     return {};

@@ -79,6 +79,8 @@ Status print_table(const std::string& dir) {
   for (const std::string& sentence : rows.sentences()) put("{}\n", sentence);
   for (const auto& [why, count] : left_out) put("not asked, {} times: {}\n", count, why);
   PROBE_ASSIGN(const auto calls, ask::read_ask_calls(dir));
+  if (const std::string missing = ask::missing_shards(calls); !missing.empty())
+    put("{} {}\n", dir, missing);
   std::set<std::string> told;
   for (const ask::AskCall& call : calls) {
     for (const std::string& finding : ask::findings_of(call.proof)) {
@@ -103,6 +105,9 @@ Status print_rows(const std::string& dir, AnswerForm form) {
     return {};
   }));
   if (form == AnswerForm::kJson) put("\n]\n");
+  PROBE_ASSIGN(const auto calls, ask::read_ask_calls(dir));
+  if (const std::string missing = ask::missing_shards(calls); !missing.empty())
+    say("{} {}\n", dir, missing);
   for (const std::string& sentence : rows.sentences()) say("{}\n", sentence);
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
@@ -52,7 +53,14 @@ Result<ask::AskOptions> ask_options(const AskArguments& arguments) {
 LoadedPlan load_asked(const AskArguments& arguments, ask::AskOptions& options) {
   AssetOptions assets = arguments.assets;
   assets.tasks = arguments.tasks;
-  LoadedPlan loaded = load_plan(arguments.file, assets);
+  // Of a text nothing but the suite is compiled, so that its tasks are asked its questions alone.
+  LoadedPlan loaded = load_plan(arguments.file, assets, arguments.suite);
+  if (loaded.plan && !loaded.is_text && !arguments.suite.empty() &&
+      loaded.plan->suites().size() > 1) {
+    say("note: a plan of several suites does not say which of them asks what: the tasks of `{}` "
+        "are asked all of theirs; a text, or a plan of `build --suite`, asks its own alone\n",
+        arguments.suite);
+  }
   options.choice.whole_plan = loaded.only_used_suites && arguments.suite.empty();
   return loaded;
 }

@@ -172,6 +172,31 @@ TEST_CASE("the end of a recorded episode is drawn again, and its program knows t
     CHECK(row.expected == "no");  // nobody puts it there by chance in three steps
   }
   CHECK(must_ask(plan, options).done == 0);
+  // A run that lacks episodes is told, one of another horizon refused.
+  run.seeds = {3};
+  run.episodes = {{0, 0}};
+  run.out = folder / "short";
+  REQUIRE(run::run(plan, run).ok());
+  options.frames = folder / "short";
+  options.out = folder / "of-short";
+  const AskSummary some = must_ask(plan, options);
+  CHECK(some.total == 1);
+  REQUIRE(!some.notes.empty());
+  CHECK(std::ranges::any_of(some.notes, [](const std::string& note) {
+    return note.starts_with("the ends of 1 of 2 chosen starts are not asked about");
+  }));
+  const plan::Plan longer = asking_plan(2, [](plan::Writer& writer) {
+    ask_done(writer);
+    ++writer.records.tasks[0].horizon;
+  });
+  options.out = folder / "of-longer";
+  const auto late = ask(longer, options);
+  REQUIRE(!late.ok());
+  CHECK(late.failure().where == "--frames");
+  CHECK(late.failure().message.starts_with("`carrot_on_plate` of "));
+  CHECK(late.failure().message.find("is left out: it ran for at most ") != std::string::npos);
+  options.out = folder / "answers";
+  run.episodes.reset();
   // Another run's ends are not these.
   run.policy = "null";
   run.out = folder / "other";
@@ -193,6 +218,15 @@ TEST_CASE("folders of shards become one, each answer once, and strangers are ref
     if (!must_ask(plan, options).out.empty()) parts.push_back(options.out);
   }
   must_ask(plan, asking_options("first", folder / "whole"));
+  const bool are_all_there = parts.size() == 3;
+  // One that lacks shards says which.
+  const auto is_partial = [](const std::string& note) {
+    return note.find(" is partial: shard") != note.npos;
+  };
+  const auto some = merge({.dirs = {parts.front()}, .out = folder / "some"});
+  REQUIRE(some.ok());
+  REQUIRE(std::ranges::count_if(some->notes, is_partial) == 1);
+  CHECK(std::ranges::find_if(some->notes, is_partial)->find(" of 3 w") != std::string::npos);
   parts.push_back(parts.front());
   const auto merged = merge({.dirs = parts, .out = folder / "all"});
   REQUIRE_MESSAGE(merged.ok(), to_text(merged.failure()));
@@ -203,6 +237,7 @@ TEST_CASE("folders of shards become one, each answer once, and strangers are ref
     CHECK(all[i].question_id == whole[i].question_id);
   }
   CHECK(merged->added == static_cast<int>(whole.size()));
+  CHECK(std::ranges::any_of(merged->notes, is_partial) == !are_all_there);
   const auto again = merge({.dirs = {folder / "whole"}, .out = folder / "all"});
   REQUIRE(again.ok());
   CHECK(again->added == 0);
