@@ -167,7 +167,7 @@ def action_message(numbers, seq):
         return msgpack.packb({"actions": array(numbers)})
     if protocol == "starvla":
         return msgpack.packb({"status": "ok", "ok": True, "type": "inference_result",
-                              "request_id": "default", "data": {"actions": array(numbers)}})
+                              "request_id": str(seq), "data": {"actions": array(numbers)}})
     if protocol == "intact":
         return msgpack.packb(array(numbers))
     if protocol == "vlaeval":
@@ -341,6 +341,8 @@ async def serve(wire):
         side = side_answer(request)
         if protocol == "vlaeval":
             seq = msgpack.unpackb(request, strict_map_key=False)["seq"]
+        if protocol == "starvla":
+            seq = int(msgpack.unpackb(request, strict_map_key=False)["request_id"])
         if side is None:
             continue
         fault = re.search(rb"fault:(\w+)", request)

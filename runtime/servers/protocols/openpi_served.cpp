@@ -117,7 +117,12 @@ class StarVlaSpeaker final : public OpenpiSpeaker {
     return wire::Map{{"env", "starvla_policy_server"},
                      {"available_unnorm_keys", wire::List{"oxe_bridge"}}};
   }
-  Result<wire::Frame> said(const wire::Value& request) override {
+  // A question is the payload of a message, or the message itself.
+  Result<wire::Frame> said(const wire::Value& message) override {
+    const wire::Value* number = message.find("request_id");
+    number_ = number == nullptr ? wire::Value("default") : *number;
+    const wire::Value* payload = message.find("payload");
+    const wire::Value& request = payload == nullptr ? message : *payload;
     const wire::Value* examples = request.find("examples");
     const auto* list = examples == nullptr ? nullptr : examples->as<wire::List>();
     if (list == nullptr || list->empty())
@@ -142,17 +147,19 @@ class StarVlaSpeaker final : public OpenpiSpeaker {
     return packed(wire::Map{{"status", "ok"},
                             {"ok", true},
                             {"type", "inference_result"},
-                            {"request_id", "default"},
+                            {"request_id", number_},
                             {"data", wire::Map{{"actions", std::move(array)}}}});
   }
   // Its connections outlive an error.
-  static wire::Frame failed(std::string message) {
+  wire::Frame failed(std::string message) const {
     return packed(wire::Map{{"status", "error"},
                             {"ok", false},
                             {"type", "inference_result"},
-                            {"request_id", "default"},
+                            {"request_id", number_},
                             {"error", wire::Map{{"message", std::move(message)}}}});
   }
+
+  wire::Value number_;  // of the question
 };
 
 template <typename Side>

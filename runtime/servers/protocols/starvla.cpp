@@ -1,7 +1,7 @@
 // starVLA's WebSocket server (deployment/model_server/tools/websocket_policy_server.py): openpi's
 // framing, whose maps are the arguments of predict_action: {"examples": [{"image": [...],
-// "lang"}]}, answered under "data". An error is a map like any other. Servers keep nothing between
-// questions.
+// "lang"}]}, answered under "data" and with the question's number. An error is a map like any
+// other. Servers keep nothing between questions.
 #include <array>
 
 #include "runtime/servers/protocol.h"
@@ -82,7 +82,10 @@ class StarVla : public Transport {
                   {"use_ddim", true},
                   {"num_ddim_steps", 10}};
     if (!profile_.unnorm_key.empty()) map.emplace_back("unnorm_key", profile_.unnorm_key);
-    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(map), deadlines.answer));
+    const std::string number = std::to_string(++asked_);
+    wire::Map question{{"type", "infer"}, {"request_id", number}, {"payload", std::move(map)}};
+    PROBE_ASSIGN(const wire::Value answer, connection_.ask(std::move(question), deadlines.answer));
+    PROBE_TRY(check_number(answer, number));
     if (const wire::Value* error = answer.find("error")) {
       const wire::Value* message = error->find("message");
       const auto* text = message == nullptr ? nullptr : message->as<std::string>();
@@ -96,6 +99,16 @@ class StarVla : public Transport {
                  wire::describe(data == nullptr ? answer : *data));
     }
     return *actions;
+  }
+
+  // Answers say which question they are to; those of servers that do not are believed.
+  static Status check_number(const wire::Value& answer, const std::string& number) {
+    const wire::Value* said = answer.find("request_id");
+    if (said == nullptr) return {};
+    const auto* text = said->as<std::string>();
+    if (text != nullptr && *text == number) return {};
+    return bad("an answer to another question: expected request_id `" + number + "`, got " +
+               (text == nullptr ? wire::describe(*said) : "`" + last_lines(*text) + "`"));
   }
 
   // Its statistics by name, which it lists; one of another data set would be metres of another
@@ -122,6 +135,7 @@ class StarVla : public Transport {
   Profile profile_;
   OpenpiConnection connection_;
   wire::Value metadata_;
+  std::uint64_t asked_ = 0;  // questions, of all connections
 };
 
 Result<std::unique_ptr<Transport>> make_starvla(const Profile& profile,

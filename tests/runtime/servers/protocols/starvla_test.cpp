@@ -78,10 +78,24 @@ TEST_CASE("a starVLA question has the bytes that Python's client sends, and acti
   CHECK(
       *server.asked ==
       test::from_hex(
-          "85a86578616d706c65739182a5696d6167659184c40b5f5f6e6461727261795f5fc3c40464617461c4060001"
-          "02030405c4056474797065a37c7531c405736861706593010203a46c616e67a2676fa9646f5f73616d706c65"
-          "c2a87573655f6464696dc3ae6e756d5f6464696d5f73746570730aaa756e6e6f726d5f6b6579aa6f78655f62"
-          "7269646765"));
+          "83a474797065a5696e666572aa726571756573745f6964a131a77061796c6f616485a86578616d706c657391"
+          "82a5696d6167659184c40b5f5f6e6461727261795f5fc3c40464617461c406000102030405c4056474797065"
+          "a37c7531c405736861706593010203a46c616e67a2676fa9646f5f73616d706c65c2a87573655f6464696dc3"
+          "ae6e756d5f6464696d5f73746570730aaa756e6e6f726d5f6b6579aa6f78655f627269646765"));
+}
+
+TEST_CASE("a starVLA answer that is another question's is not taken for this one's") {
+  const auto numbered = [](const char* number) {
+    wire::Map answer = *good_answer().as<wire::Map>();
+    answer.emplace_back("request_id", number);
+    return wire::Value(std::move(answer));
+  };
+  const Asking server(wire::Map{}, numbered("2"));
+  const auto transport = server.transport();
+  REQUIRE(transport->open({}).ok());
+  CHECK(transport->ask(small_starvla_request(), {}).failure().message ==
+        "an answer to another question: expected request_id `1`, got `2`");
+  CHECK(transport->ask(small_starvla_request(), {}).ok());
 }
 
 TEST_CASE("starVLA's errors are maps, and statistics that it does not have are refused") {
