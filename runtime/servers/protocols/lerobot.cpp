@@ -26,7 +26,18 @@ constexpr int kWholeChunk = 1000;               // more than any policy has: all
 std::string picture_name(std::string_view feature) {
   return std::string(feature.substr(kPicturePrefix.size()));
 }
-std::string number_name(std::size_t index) { return "state." + std::to_string(index); }
+std::string number_name(std::string_view tag, std::size_t index) {
+  return "state." + std::string(tag) + "." + std::to_string(index);
+}
+
+// A server takes an observation apart by the names that came with the policy which it loaded last:
+// of another policy, by whomever, these names are not to be found, and there is no answer.
+std::string tag_of(const lerobot::PolicySetup& setup) {
+  constexpr std::size_t kLength = 8;
+  return to_hex(sha256(setup.type + "\n" + setup.model + "\n" + setup.device + "\n" +
+                       std::to_string(setup.chunk)))
+      .substr(0, kLength);
+}
 
 // Of the observation's content; less than 2^62, so that what is counted from it stays a number of
 // 64 bits.
@@ -42,10 +53,10 @@ std::int64_t timestep_of(const Request& request) {
 }
 
 // As LeRobot's data sets say what an observation holds.
-wire::Map features_of(const Request& request) {
+wire::Map features_of(const Request& request, std::string_view tag) {
   wire::Map features;
   wire::List names;
-  for (std::size_t i = 0; i < request.state.size(); ++i) names.emplace_back(number_name(i));
+  for (std::size_t i = 0; i < request.state.size(); ++i) names.emplace_back(number_name(tag, i));
   const auto count = static_cast<std::int64_t>(names.size());
   features.emplace_back(
       std::string(kStateFeature),
@@ -70,6 +81,7 @@ class LeRobot : public Transport {
     const auto device = server.options.find("device");
     setup_.device = device == server.options.end() ? "cuda" : device->second;
     setup_.chunk = profile.chunk_length > 0 ? profile.chunk_length : kWholeChunk;
+    tag_ = tag_of(setup_);
   }
 
   void share(std::shared_ptr<SharedModel> shared) override { shared_ = std::move(shared); }
@@ -98,7 +110,7 @@ class LeRobot : public Transport {
     observation.timestamp = request.step;
     observation.timestep = timestep_of(request);
     for (std::size_t i = 0; i < request.state.size(); ++i)
-      observation.content.emplace_back(number_name(i), request.state[i]);
+      observation.content.emplace_back(number_name(tag_, i), request.state[i]);
     for (const RequestImage& image : request.images)
       observation.content.emplace_back(picture_name(image.key), image.pixels);
     observation.content.emplace_back(std::string(kInstruction), request.prompt);
@@ -122,8 +134,8 @@ class LeRobot : public Transport {
       // As also of one that was started anew and has no policy.
       shared_->forget(generation_);
       return bad(
-          "the server answered without actions: its policy failed, or it got no observation; its "
-          "log says why");
+          "the server answered without actions: its policy failed, another one was loaded "
+          "meanwhile, or it got no observation; its log says why");
     }
     return in_time(*actions, observation.timestep);
   }
@@ -139,7 +151,7 @@ class LeRobot : public Transport {
   // The policy, which is told what observations hold: at the first of them.
   Status load(const Request& request, const Deadlines& deadlines) {
     return shared_->load_once([&]() -> Status {
-      setup_.features = features_of(request);
+      setup_.features = features_of(request, tag_);
       auto loaded = call(lerobot::send_policy(setup_), deadlines.answer);
       if (loaded) return {};
       Failure failure = loaded.failure();
@@ -184,6 +196,7 @@ class LeRobot : public Transport {
   Profile profile_;
   wire::Endpoint server_;
   lerobot::PolicySetup setup_;
+  std::string tag_;  // of the setup, in the names of an observation's numbers
   std::shared_ptr<SharedModel> shared_ = std::make_shared<SharedModel>();
   std::unique_ptr<wire::GrpcChannel> channel_;
   std::uint64_t generation_ = 0;

@@ -103,15 +103,18 @@ TEST_CASE("LeRobot: an observation has what its features say, and the policy is 
   CHECK(setup["actions_per_chunk"].get<int>() == 1);
   CHECK(setup["rename_map"].items().empty());
   const Json features = setup["lerobot_features"];
-  CHECK(
-      features["observation.state"].dump() ==
-      R"({"dtype":"float32","shape":[7],"names":["state.0","state.1","state.2","state.3","state.4","state.5","state.6"]})");
+  // The first bytes of SHA-256("smolvla\n/m\ncpu\n1") tell this policy's numbers from others'.
+  Json names = Json::array();
+  for (int i = 0; i < 7; ++i) names.push_back("state.5151a6bf." + std::to_string(i));
+  CHECK(features["observation.state"]["names"].dump() == names.dump());
+  CHECK(features["observation.state"]["shape"].dump() == "[7]");
+  CHECK(features["observation.state"]["dtype"].text() == "float32");
   CHECK(features["observation.images.image"].dump() ==
         R"({"dtype":"image","shape":[6,8,3],"names":["height","width","channels"]})");
   CHECK(asked["image"].dump() == R"(["uint8",[6,8,3],1008])");
   CHECK(asked["task"].text() == "put carrot on plate");
   CHECK(asked["step"].get<double>() == 3);
-  CHECK(asked["state.6"].is_number());
+  CHECK(asked["state.5151a6bf.6"].is_number());
 }
 
 TEST_CASE("LeRobot: a server's bad answer ends one episode, with its reason, and the next works") {
@@ -274,6 +277,29 @@ TEST_CASE("LeRobot: strangers at one server are refused each other's answers") {
     CHECK_MESSAGE(is_named, said);
   }
   MESSAGE(refused << " of 40 episodes were refused");
+}
+
+TEST_CASE("LeRobot: a policy that somebody else had loaded meanwhile answers nothing of ours") {
+  const ServerRecord record;
+  const PythonServer server("lerobot_server.py", {record.option(), "seen"});
+  const auto ours = lerobot_at(server, kQuick);
+  const auto theirs = make_policy(
+      "lerobot://127.0.0.1:" + server.port() +
+      "?type=smolvla&model=/other&device=cpu&action.form=delta&action.units=m_rad"
+      "&action.rotation=vector&action.gripper=signed&action.threshold=none&timeout.wait_s=0.05");
+  REQUIRE_MESSAGE(theirs.ok(), to_text(theirs.failure()));
+  CHECK(ask_once(*ours, "put carrot on plate") == "");
+  CHECK(ask_once(**theirs, "put carrot on plate") == "");
+  CHECK(ask_once(*ours, "put carrot on plate").find("another one was loaded meanwhile") !=
+        std::string::npos);
+  CHECK(ask_once(*ours, "put carrot on plate") == "");
+  std::vector<std::string> loaded;
+  for (const std::string& line : record.lines()) {
+    const Json call = Json::parse(line);
+    if (call["call"].text() == "SendPolicyInstructions")
+      loaded.push_back(call["pretrained_name_or_path"].text());
+  }
+  CHECK(loaded == std::vector<std::string>{"/m", "/other", "/m"});
 }
 
 TEST_CASE("LeRobot: what its server cannot be told is refused before it is asked") {
