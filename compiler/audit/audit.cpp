@@ -289,7 +289,7 @@ class Auditor {
                             "`success` is true of a source that both fingers hold above the "
                             "target and nothing else touches"};
     constexpr Rule kBegun = {Kind::kHoldsAtStart, "success",
-                             "`success` is true before anything has moved: the joints begin so"};
+                             "`success` is true before anything has moved: things begin so"};
     std::map<std::uint32_t, bool> counts_target;  // by program
     for (const std::uint32_t index : scope_) {
       const plan::TaskRecord& task = plan_.tasks()[index];

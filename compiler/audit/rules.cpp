@@ -6,6 +6,7 @@
 #include "runtime/plan/isa.h"
 #include "runtime/plan/readouts.h"
 #include "runtime/plan/roles.h"
+#include "runtime/vm/claims.h"
 #include "runtime/vm/made_up.h"
 
 namespace probe::audit {
@@ -84,8 +85,23 @@ Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uin
     const auto op = static_cast<plan::Op>(in.op);
     return op == plan::Op::kSLIDE || op == plan::Op::kTURN;
   });
-  if (!reads_joints) return false;
-  return vm::judge_world(plan, task, success, vm::make_up_world(plan, task));
+  if (reads_joints) {
+    PROBE_ASSIGN(const bool holds,
+                 vm::judge_world(plan, task, success, vm::make_up_world(plan, task)));
+    if (holds) return true;
+  }
+  for (const plan::EpisodeRecord& episode : plan.episodes(plan.tasks()[task])) {
+    for (const vm::Lies lies : {vm::Lies::kOn, vm::Lies::kIn}) {
+      auto begun = vm::make_up_start(plan, task, episode, lies);
+      if (!begun) break;
+      // What an episode would be invalid for is no way to begin: on a plate is not in it.
+      PROBE_ASSIGN(const auto claims, vm::judge_claims(plan, task, begun->starts, begun->sample));
+      if (!std::ranges::all_of(claims, &vm::ClaimVerdict::holds)) continue;
+      PROBE_ASSIGN(const bool holds, vm::judge_world(plan, task, success, *std::move(begun)));
+      if (holds) return true;
+    }
+  }
+  return false;
 }
 
 bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/roles.h"
@@ -12,7 +13,9 @@ namespace probe::vm {
 namespace {
 
 constexpr int kSteps = 8;
-constexpr double kFar = 0.5;  // m: where objects stand that do not matter
+constexpr double kMostGap = 2e-3;  // m: above what carries it, where a layout puts it
+constexpr double kFloor = 5e-3;    // m: of a hollow thing
+constexpr double kFar = 0.5;       // m: where objects stand that do not matter
 
 // Half extents with z the axis that is nearest the vertical in the pose, as a world gives them.
 Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>& rotation) {
@@ -25,6 +28,34 @@ Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>&
   const auto up =
       static_cast<std::size_t>(std::max_element(upright.begin(), upright.end()) - upright.begin());
   return {half[up == 0 ? 2 : 0], half[up == 1 ? 2 : 1], half[up]};
+}
+
+// An object as it is placed, before it comes to rest.
+struct PlacedObject {
+  std::uint16_t body = 0;
+  Vec3 centre, half;  // of its box along the world's axes
+  Quat rotation;
+  double rest = 0;  // m: of the centre, when it lies
+
+  double bottom() const { return centre.z() - half.z(); }
+  // Whether a layout puts `above` on this: it begins a millimetre over it.
+  bool carries(const PlacedObject& above) const {
+    const Vec3 apart = (above.centre - centre).cwiseAbs();
+    const double gap = above.bottom() - (centre.z() + half.z());
+    return apart.x() < half.x() && apart.y() < half.y() && gap > 0 && gap < kMostGap;
+  }
+};
+
+PlacedObject placed_object(std::uint16_t body, const plan::ObjectRecord& object,
+                           const plan::PlacementRecord& at) {
+  const Vec3 low(object.box_min.data()), high(object.box_max.data());
+  PlacedObject out;
+  out.body = body;
+  out.rotation = Quat(at.rotation[0], at.rotation[1], at.rotation[2], at.rotation[3]);
+  const Mat3 turn = out.rotation.toRotationMatrix();
+  out.centre = Vec3(at.position.data()) + turn * ((low + high) / 2);
+  out.half = turn.cwiseAbs() * ((high - low) / 2);
+  return out;
 }
 
 }  // namespace
@@ -69,6 +100,53 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
     world.starts[i].position = at;
     world.put(i, at);
   }
+  return world;
+}
+
+std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t task,
+                                         const plan::EpisodeRecord& episode, Lies lies) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  const auto bodies = plan.bodies(record);
+  const auto placements = plan.placements(episode);
+  const double table = plan.scenes()[record.scene].surface_z;
+  MadeUpWorld world = make_up_world(plan, task);
+  std::vector<PlacedObject> placed;
+  for (std::size_t i = 0; i < bodies.size() && i < placements.size(); ++i) {
+    if (static_cast<plan::BodyKind>(bodies[i].kind) != plan::BodyKind::kObject) continue;
+    placed.push_back(placed_object(static_cast<std::uint16_t>(i), plan.objects()[bodies[i].index],
+                                   placements[i]));
+    world.starts[i].half = half_extents(plan.objects()[bodies[i].index], placements[i].rotation);
+  }
+  // What carries comes before what it carries.
+  std::ranges::sort(placed, {},
+                    [](const PlacedObject& one) { return std::pair(one.bottom(), one.body); });
+  bool carried = false;
+  for (PlacedObject& one : placed) {
+    const PlacedObject* carrier = nullptr;
+    for (const PlacedObject& other : placed) {
+      if (&other == &one) break;
+      if (other.carries(one)) carrier = &other;
+    }
+    const std::uint16_t below = carrier == nullptr ? world.surface : carrier->body;
+    double floor = table;
+    if (carrier != nullptr)
+      floor = lies == Lies::kOn ? carrier->rest + carrier->half.z()
+                                : carrier->rest - carrier->half.z() + kFloor;
+    one.rest = floor + one.half.z();
+    carried = carried || carrier != nullptr;
+    Vec3 at = one.centre;
+    at.z() = one.rest;
+    world.put(one.body, at);
+    world.sample.bodies[one.body].rotation = one.rotation;
+    world.starts[one.body].position = at;
+    // What is above presses down, whichever of the two has the lower number.
+    const double down = one.body < below ? -kMadeUpContact : kMadeUpContact;
+    world.sample.contacts.push_back(
+        {std::min(one.body, below), std::max(one.body, below), {0, 0, down}});
+  }
+  if (!carried) return std::nullopt;
+  std::ranges::sort(world.sample.contacts, {},
+                    [](const ContactSample& pair) { return std::pair(pair.a, pair.b); });
   return world;
 }
 

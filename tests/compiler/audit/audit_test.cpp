@@ -209,6 +209,24 @@ TEST_CASE("the kitchen and its variants have nothing irregular but what is allow
   CHECK(audited.find(Kind::kConfounded, "open_the_microwave_far") != nullptr);
 }
 
+TEST_CASE("a thing that is to be put on another and begins there is found") {
+  const Audited own = audit_text(
+      "layout apart { cells c = grid 2 x 1 at (-16cm, 0cm) spread (6cm, 0cm)\n"
+      "  place target in distinct c; place source in distinct c; drop 30cm settle 0.5s }\n"
+      "layout stacked { cells c = grid 2 x 1 at (-16cm, 0cm) spread (6cm, 0cm)\n"
+      "  place target in distinct c; place source on target; drop 30cm settle 0.5s }\n"
+      "layout turned { cells c = grid 2 x 1 at (-16cm, 0cm) spread (6cm, 0cm)\n"
+      "  place source in distinct c; place target on source; drop 30cm settle 0.5s }\n"
+      "variants of carrot_on_plate { lies { layout stacked }\n begun { layout apart }\n below { "
+      "layout turned } }\n"
+      "suite own { tasks { carrot_on_plate, lies, begun, below }; seeds 1 }\n");
+  CHECK(own.find(Kind::kHoldsAtStart, "lies") != nullptr);
+  for (const char* task : {"carrot_on_plate", "begun", "below"}) {
+    CAPTURE(task);
+    CHECK(own.find(Kind::kHoldsAtStart, task) == nullptr);
+  }
+}
+
 TEST_CASE("a warning about a task of another suite is no finding of this one") {
   const std::string text =
       "@allow(absent, \"a test\")\nvariant odd of carrot_on_plate {\n"
