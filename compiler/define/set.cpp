@@ -180,6 +180,10 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span& sp
   std::erase_if(members, [&](TaskId id) { return !kept.has(id); });
   if (sample.with_baselines) {
     add_baselines(members);
+    // All are there; `where` and `-` may still take them out again.
+    for (const TaskId id : members) {
+      if (context_.model.tasks[id].baseline != TaskId::kNone) cuts_.push_back({id, span});
+    }
     return members;
   }
   for (const TaskId id : members) {

@@ -79,6 +79,12 @@ TEST_CASE("a sample of variants is told of baselines that its suite does not run
   CHECK(codes("sample 2 of { a, b, c } seed 7") == "P0706");
   CHECK(codes("{ red_on_tray } | sample 2 of (variants of { red_on_tray }) seed 7") == "");
   CHECK(codes("variants of { red_on_tray }") == "");
+  // What stands behind the baselines may take them away again.
+  const std::string drawn = "sample 2 of { a, b, c } seed 7 with baselines";
+  CHECK(codes(drawn) == "");
+  CHECK(codes("(" + drawn + ") where has baseline") == "P0706");
+  CHECK(codes("(" + drawn + ") - { red_on_tray }") == "P0706");
+  CHECK(codes("((" + drawn + ") - { red_on_tray }) | { red_on_tray }") == "");
 }
 
 TEST_CASE("a task that a set names twice is said, tasks that two sets share are not") {
