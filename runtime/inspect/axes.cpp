@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "runtime/plan/fixtures.h"
@@ -188,6 +189,22 @@ bool same_moves(const plan::Plan& plan, const plan::TaskRecord& a, const plan::T
       });
 }
 
+// Whether the rest of two scenes is alike whose surfaces are of different heights: what stands at
+// the same place stands alike, and so does what is as high above the surface.
+bool same_but_for_height(plan::IdHasher& hasher, const plan::SceneRecord& here,
+                         plan::SceneRecord there) {
+  constexpr double kRounding = 1e-9;  // m
+  const auto stand_alike = [&](const std::array<double, 3>& a, std::array<double, 3>& b) {
+    const double above = (a[2] - here.surface_z) - (b[2] - there.surface_z);
+    if (std::abs(above) <= kRounding) b[2] = a[2];
+  };
+  stand_alike(here.base_position, there.base_position);
+  stand_alike(here.fixture_position, there.fixture_position);
+  there.surface_z = here.surface_z;
+  return hasher.surroundings_at(here, here.surface_z) ==
+         hasher.surroundings_at(there, here.surface_z);
+}
+
 std::vector<double> joint_starts(const plan::Plan& plan, const plan::TaskRecord& task) {
   return plan::joint_starts_of(plan.tables(), plan.scenes()[task.scene], plan.episodes(task)[0]);
 }
@@ -216,15 +233,12 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
     return part(ours) == part(theirs);
   };
   const plan::SceneRecord &here = plan.scenes()[a.scene], &there = plan.scenes()[b.scene];
-  // Two heights are compared at a third, so that both are rounded.
-  const double elsewhere_z = std::max(here.surface_z, there.surface_z) + 1;
   plan::TaskRecord elsewhere = a;
   elsewhere.scene = b.scene;
   const bool scene_moves =
       !is_same("robot") ||
       (here.surface_z == there.surface_z ? !is_same("scene")
-                                         : hasher.surroundings_at(here, elsewhere_z) !=
-                                               hasher.surroundings_at(there, elsewhere_z)) ||
+                                         : !same_but_for_height(hasher, here, there)) ||
       hasher.judge(a) != hasher.judge(elsewhere);  // another law or rate
   const auto moves = [&](plan::Axis axis) {
     switch (axis) {

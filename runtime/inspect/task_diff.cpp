@@ -21,8 +21,8 @@ namespace probe::inspect {
 namespace {
 
 // What only some tasks have; it stands below what all of them have.
-constexpr const char* kOfSome[] = {"law",    "placed", "joints",  "idle",
-                                   "varied", "claims", "solution"};
+constexpr const char* kOfSome[] = {"surface", "law",    "placed", "joints",
+                                   "idle",    "varied", "claims", "solution"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -124,6 +124,12 @@ Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t secon
   json["equal"] = equal_ids(plan, a, b);
   json["left"] = side(plan, first);
   json["right"] = side(plan, second);
+  // As high as the robot's and the objects' ground: told where it is another one.
+  const double heights[] = {plan.scenes()[a.scene].surface_z, plan.scenes()[b.scene].surface_z};
+  if (heights[0] != heights[1]) {
+    json["left"]["surface"] = fmt::format("{:.6g} cm", 100 * heights[0]);
+    json["right"]["surface"] = fmt::format("{:.6g} cm", 100 * heights[1]);
+  }
   json["words_a"] = to_json(words.a);
   json["words_b"] = to_json(words.b);
   return json;

@@ -47,6 +47,24 @@ TEST_CASE("a distractor changes the starts but not what is meant by the judgemen
   CHECK(diff["right"]["distractors"].empty());
 }
 
+TEST_CASE("another height of the surface is the axis that the compiler says, and both are told") {
+  const plan::Plan lower = test::compile_small(
+      "\nscene low like table { surface 85cm area (-34cm, -20cm) .. (4cm, 20cm) }\n"
+      "variant lowered of base { scene low }\nsuite more { tasks { lowered }; seeds 1 }\n");
+  const auto index = [&](std::string_view name) {
+    for (std::uint32_t t = 0; t < lower.tasks().size(); ++t)
+      if (lower.text(lower.tasks()[t].name) == name) return t;
+    return plan::kNone;
+  };
+  REQUIRE(index("lowered") != plan::kNone);
+  const auto diff = diff_tasks(lower, index("base"), index("lowered"));
+  CHECK(diff["axes"] == diff["declared_axes"]);
+  CHECK(diff["axes"].dump() == R"(["scene.geometry"])");
+  CHECK(diff["left"]["surface"] == "87 cm");
+  CHECK(diff["right"]["surface"] == "85 cm");
+  CHECK(diff_text(diff).find("\n* surface       87 cm") != std::string::npos);
+}
+
 TEST_CASE("two plans: what is only in one, and which identities changed") {
   const plan::Plan& before = test::small_plan();
   const plan::Plan after = test::compile_small(
