@@ -39,6 +39,8 @@ void check_starts(const Model& model, const std::string& asset_root,
 void check_metrics(const Model& model, Reporter& reporter);  // P0206, P0304, P0601, P0604, P0605
 // What of it only fingers or a gripper have, such as "`grip`"; empty where nothing is.
 std::string asks_for_fingers(const Model& model, ExprRef expr);
+// The read-outs whose metrics are true or false: "`at end`, `once` or `always`".
+std::string words_of_truths();
 void check_expectations(const Model& model, Reporter& reporter);    // P0504, P0211
 void check_samples(const Model& model, Reporter& reporter);         // P0706
 void check_tags(const Model& model, Reporter& reporter);            // P0705

@@ -126,7 +126,8 @@ struct LatchLint {
   }
 };
 
-// The read-outs whose metrics are true or false: "`at end`, `once` or `always`".
+}  // namespace
+
 std::string words_of_truths() {
   std::vector<std::string> words;
   for (const plan::ReadoutInfo& info : plan::kReadoutTable) {
@@ -137,6 +138,8 @@ std::string words_of_truths() {
     text += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
   return text;
 }
+
+namespace {
 
 // `success` is what an episode is scored by: a condition, in every task.
 void check_success(const Model& model, Reporter& reporter, const Task& task,

@@ -12,6 +12,7 @@
 #include "compiler/emit/merged_program.h"
 #include "compiler/emit/plan_bodies.h"
 #include "compiler/lower/lower.h"
+#include "runtime/plan/readouts.h"
 #include "runtime/plan/writer.h"
 
 namespace probe {
@@ -59,6 +60,10 @@ class Graft {
       for (const sema::Metric& metric : set.items) {
         const auto known = std::ranges::find(metrics_, metric.name, &sema::Metric::name);
         if (known == metrics_.end()) {
+          if (metric.name == "success" && !plan::info(metric.readout).is_truth()) {
+            return refuse(metric, "has to be true or false, as an episode is scored by it: " +
+                                      sema::words_of_truths() + " a condition (P0601)");
+          }
           metrics_.push_back(metric);
         } else if (known->span != metric.span) {  // the same one comes with `like`
           return refuse(metric, "stands for two metrics of this text");

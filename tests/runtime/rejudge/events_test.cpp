@@ -208,6 +208,12 @@ TEST_CASE("a metric that no task can be measured by is refused, one that some la
   REQUIRE(!refused.ok());
   CHECK(refused.failure().message ==
         "metric `helped` fits no task of the plan: this is not in the scene (`helper`)");
+  // As in a suite, an episode is not scored by a number.
+  const TextFile number("metrics mine { low = min height(source); success = max time }\n");
+  const auto scored = graft_metrics(stored, analyzed(number.path));
+  REQUIRE(!scored.ok());
+  CHECK(scored.failure().message.find("`success` has to be true or false") != std::string::npos);
+  CHECK(scored.failure().message.find("P0601") != std::string::npos);
   const TextFile seen("metrics mine { left = min view_x(source) }\n");
   CHECK(!graft_metrics(stored, analyzed(seen.path)).ok());
 }
