@@ -1,5 +1,6 @@
 // P1202: words that say where things are must be those of the relation that proves or judges them.
 #include <algorithm>
+#include <initializer_list>
 #include <set>
 
 #include "compiler/check/check.h"
@@ -169,6 +170,13 @@ struct JointGoal {
   }
 };
 
+std::string_view first_of(std::string_view text, std::initializer_list<std::string_view> words) {
+  for (const std::string_view one : words) {
+    if (has_words(text, one)) return one;
+  }
+  return {};
+}
+
 // "close the drawer" of which success is that it is open.
 void check_joint_words(const Model& model, Reporter& reporter) {
   for (const Task& task : model.tasks) {
@@ -179,16 +187,109 @@ void check_joint_words(const Model& model, Reporter& reporter) {
     }
     if (travels.opens == travels.closes || travels.is_open_ended) continue;
     const std::string text = fold_case(literal_text(model, task));
-    const bool says_open = has_words(text, "open"),
-               says_close = has_words(text, "close") || has_words(text, "shut");
+    const std::string_view open = first_of(text, {"open", "turn on", "switch on"}),
+                           close = first_of(text, {"close", "shut", "turn off", "switch off"});
+    const bool says_open = !open.empty(), says_close = !close.empty();
     if (says_open == says_close || says_open == travels.opens) continue;
     const About about(reporter, task.decl_span);
     reporter
         .report(Code::P1202, task.say_span.is_none() ? task.span : task.say_span,
-                "`" + task.name + "` says \"" + (says_open ? "open" : "close") +
+                "`" + task.name + "` says \"" + std::string(says_open ? open : close) +
                     "\" and succeeds when a joint's travel is " +
                     (travels.opens ? "at least so much" : "at most so much"))
         .label(model.metrics[task.metrics].span, "judged by these");
+  }
+}
+
+using PartOf = std::pair<FixtureId, std::uint32_t>;
+
+// The parts that success measures: by themselves, by their joint or by a region of theirs.
+void collect_parts(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
+                   std::set<PartOf>& out) {
+  if (ref == kNoExpr || !seen.insert(ref).second) return;
+  const ExprNode& node = model.exprs.nodes[ref];
+  const auto fixture = static_cast<FixtureId>(node.a);
+  if (node.op == ExprOp::kPart) out.insert({fixture, node.b});
+  if (node.op == ExprOp::kRegion)
+    out.insert({fixture, model.fixtures[fixture].regions[node.b].part});
+  if (node.op == ExprOp::kJoint) {
+    const auto& parts = model.fixtures[fixture].parts;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+      if (parts[i].joint == node.b) out.insert({fixture, i});
+    }
+  }
+  if (node.op == ExprOp::kAny || node.op == ExprOp::kAll || node.op == ExprOp::kNo) {
+    for (const ExprRef body : model.exprs.sets[node.set].bodies)
+      collect_parts(model, body, seen, out);
+  }
+  for (const ExprRef arg : node.args) collect_parts(model, arg, seen, out);
+  if (node.op == ExprOp::kCall)
+    collect_parts(model, model.predicates[node.predicate].body, seen, out);
+}
+
+// What the task does with parts: what fills its roles, what success measures, what its solution
+// handles on the way.
+std::set<PartOf> parts_meant(const Model& model, const Task& task) {
+  std::set<PartOf> meant;
+  for (const auto& [role, id] : task.things())
+    meant.insert({model.objects[id].of->fixture, model.objects[id].of->part});
+  std::set<ExprRef> seen;
+  for (const Metric& metric : task.judged) {
+    if (metric.name == "success") collect_parts(model, metric.expr, seen, meant);
+  }
+  if (meant.empty()) return meant;
+  for (const SkillUse& skill : task.solution) {
+    for (const SkillOperand& operand : {skill.what, skill.to}) {
+      const std::string name = operand.owner.text + "." + operand.name.text;
+      for (const Object& thing : model.objects) {
+        if (thing.of && thing.name == name) meant.insert({thing.of->fixture, thing.of->part});
+      }
+    }
+  }
+  return meant;
+}
+
+// "open the middle drawer" of which success is that the top drawer is open.
+void check_part_words(const Model& model, Reporter& reporter) {
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete || has_negation(model.templates[task.say])) continue;
+    const std::set<PartOf> meant = parts_meant(model, task);
+    if (meant.empty()) continue;
+    const auto is_meant = [&](const Object& thing) {
+      return meant.contains({thing.of->fixture, thing.of->part});
+    };
+    const std::string text = fold_case(literal_text(model, task));
+    const auto& parts = model.templates[task.say].parts;
+    const auto is_said = [&](const Object& thing) {
+      const std::string words = fold_case(thing.text.text);
+      return has_words(text, words) ||
+             std::any_of(parts.begin(), parts.end(), [&](const Template::Part& part) {
+               if (!part.slot) return false;
+               if (part.slot->role == RoleId::kNone) return part.slot->name.text == thing.name;
+               const auto things = task.things();
+               return std::any_of(things.begin(), things.end(), [&](const auto& filled) {
+                 return filled.first == part.slot->role && &model.objects[filled.second] == &thing;
+               });
+             });
+    };
+    // Whose part is meant may speak of others as well, as of the way there.
+    if (std::any_of(model.objects.begin(), model.objects.end(), [&](const Object& thing) {
+          return thing.of && is_meant(thing) && is_said(thing);
+        }))
+      continue;
+    const auto& fixtures = model.scenes[task.scene].fixtures;
+    for (const Object& thing : model.objects) {
+      if (!thing.of || is_meant(thing) || !is_said(thing) ||
+          std::find(fixtures.begin(), fixtures.end(), thing.of->fixture) == fixtures.end())
+        continue;
+      const About about(reporter, task.decl_span);
+      reporter
+          .report(
+              Code::P1202, task.say_span.is_none() ? task.span : task.say_span,
+              "`" + task.name + "` says `" + thing.name + "`, which its success does not measure")
+          .label(model.metrics[task.metrics].span, "judged by these");
+      break;
+    }
   }
 }
 
@@ -198,6 +299,7 @@ void check_spatial_words(const Model& model, Reporter& reporter) {
   check_phrase_words(model, reporter);
   check_goal_words(model, reporter);
   check_joint_words(model, reporter);
+  check_part_words(model, reporter);
 }
 
 }  // namespace probe::sema
