@@ -211,14 +211,19 @@ struct TaskReader {
     }
   }
   // So many of these that have no role: every object draws its own number from the seed, its name
-  // and the task that this one copies, so that more of them are those and others.
+  // and the task that this one copies, of variants of variants the first, so that more of them are
+  // those and others.
   void draw_distractors(const syntax::DistractorsStmt& stmt) {
     const auto count = bound(*stmt.count), seed = bound(*stmt.seed);
     if (!count || !seed) return;
     std::vector<std::pair<Sha256, ObjectId>> draws;
     const std::vector<ObjectId> taken = task.objects();
-    const std::string& of =
-        task.like == TaskId::kNone ? task.name : context.model.tasks[task.like].name;
+    TaskId first = task.like;
+    while (first != TaskId::kNone &&
+           context.symbols.task_decls[static_cast<std::size_t>(first)].against &&
+           context.model.tasks[first].like != TaskId::kNone)
+      first = context.model.tasks[first].like;
+    const std::string& of = first == TaskId::kNone ? task.name : context.model.tasks[first].name;
     for (const syntax::Name& name : stmt.objects) {
       ObjectId object = ObjectId::kNone;
       field(object, context.symbols.objects, name);

@@ -239,6 +239,22 @@ TEST_CASE("task_st, count: drawn distractors grow by the number and have no role
             ->codes() == "P0304");
 }
 
+TEST_CASE("task_st, count: variants of variants draw what all variants of their task draw") {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const std::string drawn =
+        "{ distractors 1 of (blue, third, fourth) seed " + std::to_string(seed) + " }\n";
+    const auto a = clean(
+        "object third like red { name \"third block\" }\nobject fourth like red { name \"fourth "
+        "block\" }\n"
+        "variant late of red_on_tray { delay 2 steps }\n"
+        "variant one of red_on_tray " +
+        drawn + "variant two of late " + drawn + "suite s { tasks tasks; seeds 1 }\n");
+    CAPTURE(seed);
+    REQUIRE(named(a->model.tasks, "one").distractors.size() == 1);
+    CHECK(named(a->model.tasks, "one").distractors == named(a->model.tasks, "two").distractors);
+  }
+}
+
 TEST_CASE("t1: of a sample with baselines what is drawn comes with what it is compared with") {
   const auto a = clean(
       "variants of red_on_tray { a { idle 1 steps }; b { idle 2 steps }; c { idle 3 steps } }\n"
