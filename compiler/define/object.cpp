@@ -27,6 +27,7 @@ struct ObjectReader {
   Object& object;
   bool has_is = false, has_maybe = false, has_seen = false;
   Span look = {};  // the first `paint` or `texture` here
+  bool says_color = false;
 
   void facts(const std::vector<syntax::Name>& names, Truth truth, bool& begun) {
     // Statements overwrite: a new list replaces the copied one of its kind.
@@ -129,6 +130,14 @@ struct ObjectReader {
     begin_look(stmt.span);
     object.texture = read_cover(context, stmt, kSide);
   }
+  // Of what is covered anew the copied colour is not known.
+  void forget_color() {
+    if (look.is_none() || !object.texture || says_color) return;
+    for (std::size_t i = 0; i < object.values.size(); ++i) {
+      if (context.model.attributes[static_cast<AttributeId>(i)].name == "color")
+        object.values[i].clear();
+    }
+  }
   void operator()(const syntax::IsStmt& stmt) { facts(stmt.facts, Truth::kYes, has_is); }
   void operator()(const syntax::MaybeStmt& stmt) { facts(stmt.facts, Truth::kUnknown, has_maybe); }
   void operator()(const syntax::SeenInStmt& stmt) {
@@ -187,6 +196,7 @@ struct ObjectReader {
     const auto attribute = context.symbols.attributes.find(stmt.attribute, context.diagnostics);
     if (!attribute) return;
     std::vector<std::uint32_t>& values = object.values[*attribute];
+    says_color = says_color || stmt.attribute.text == "color";
     values.clear();
     for (const syntax::Name& name : stmt.values) {
       if (const auto value = find_value(context, static_cast<AttributeId>(*attribute), name))
@@ -254,6 +264,7 @@ void define_objects(Context& context) {
     object.facts.resize(context.model.facts.size(), Truth::kNo);
     ObjectReader reader{context, *declared.file, object};
     for (const syntax::ObjectStmt& stmt : declared.node->body) std::visit(reader, stmt);
+    reader.forget_color();
     if (object.rest.empty()) object.rest.push_back({});
     grow(object);
     check_size(context, object);

@@ -54,6 +54,23 @@ TEST_CASE("object_st: paint by name or by number, and the colour that is said ag
             ->codes() == "P0203");
 }
 
+TEST_CASE("object_st: what is covered with a texture has no colour unless one is said with it") {
+  const auto a = clean(
+      "object p like red { texture \"wood\"; name \"p\" }\n"
+      "object q like red { texture \"wood\"; color blue; name \"q\" }\n"
+      "object r like q { scale 1.1; name \"r\" }\n");
+  const auto color = [&](const char* name) {
+    const auto& attributes = a->model.attributes;
+    std::size_t at = 0;
+    while (attributes[static_cast<sema::AttributeId>(at)].name != "color") ++at;
+    return named(a->model.objects, name).values[at];
+  };
+  CHECK(color("red").size() == 1);
+  CHECK(color("p").empty());
+  CHECK(color("q").size() == 1);
+  CHECK(color("r") == color("q"));
+}
+
 TEST_CASE("light_st: a colour of its light, white is what says nothing") {
   const Built built(
       "light warm { ambient 0.3; color (1, 0.8, 0.6) }\nlight white { ambient 0.3; color (1, 1, 1) "
