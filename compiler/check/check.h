@@ -31,6 +31,7 @@ void check_comparisons(const Model& model, Reporter& reporter);  // P0701-P0703
 void check_phrases(const Model& model, const std::string& asset_root,
                    Reporter& reporter);                            // P0401-P0407
 void check_spatial_words(const Model& model, Reporter& reporter);  // P1202
+void check_look_words(const Model& model, Reporter& reporter);     // P1510
 void check_poses(const Model& model, Reporter& reporter);          // P0404 of `pose`
 void check_mentions(const Model& model, Reporter& reporter);       // P0404 of words
 void check_named(const Model& model, Reporter& reporter);          // P0201 of metrics
