@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/scene/covered_mesh.h"
@@ -71,9 +72,28 @@ class Heights {
 
 }  // namespace
 
-std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fixture,
-                                   const std::array<double, 4>& area) {
+namespace {
+
+constexpr double kOtherThing = 0.5;  // m from the surface: the floor of a room
+
+// The longest run of ascending heights that agree: first and count.
+std::pair<std::size_t, std::size_t> longest_run(const std::vector<double>& heights) {
   constexpr double kAgree = 0.005;  // m
+  std::size_t first = 0, most = 0;
+  for (std::size_t low = 0, high = 0; high < heights.size(); ++high) {
+    while (heights[high] - heights[low] > kAgree) ++low;
+    if (high - low + 1 <= most) continue;
+    most = high - low + 1;
+    first = low;
+  }
+  return {first, most};
+}
+
+}  // namespace
+
+std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fixture,
+                                   const std::array<double, 4>& area,
+                                   std::optional<double> surface_z) {
   Heights below(area), above(area);
   below.add(backdrop);
   above.add(fixture);
@@ -82,20 +102,23 @@ std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fix
     if (below.z()[k] > above.z()[k]) counted.push_back(below.z()[k]);
   }
   std::sort(counted.begin(), counted.end());
-  // The longest run of heights that agree.
-  std::size_t first = 0, most = 0;
-  for (std::size_t low = 0, high = 0; high < counted.size(); ++high) {
-    while (counted[high] - counted[low] > kAgree) ++low;
-    if (high - low + 1 <= most) continue;
-    most = high - low + 1;
-    first = low;
+  const std::size_t places = below.z().size(), all = counted.size();
+  std::optional<double> nearest;
+  for (;;) {
+    const auto [first, most] = longest_run(counted);
+    if (10 * most < places || most == 0) return nearest;
+    const double height = counted[first + most / 2];
+    if (!surface_z) return 2 * most < all ? std::nullopt : std::optional(height);
+    const double away = std::abs(height - *surface_z);
+    if (away <= kOtherThing && (!nearest || away < std::abs(*nearest - *surface_z)))
+      nearest = height;
+    const auto run = counted.begin() + static_cast<std::ptrdiff_t>(first);
+    counted.erase(run, run + static_cast<std::ptrdiff_t>(most));
   }
-  if (10 * most < below.z().size() || 2 * most < counted.size()) return std::nullopt;
-  return counted[first + most / 2];
 }
 
 double backdrop_lift(std::optional<double> table_height, double surface_z) {
-  constexpr double kMeant = 0.002, kOtherThing = 0.5;  // m
+  constexpr double kMeant = 0.002;  // m
   if (!table_height) return 0;
   const double lift = surface_z - *table_height;
   return std::abs(lift) <= kMeant || std::abs(lift) > kOtherThing ? 0 : lift;
@@ -107,7 +130,7 @@ Result<scene::Mesh> covered_backdrop(const scene::Mesh& backdrop, const SeenMesh
   constexpr double kLevel = 0.9, kUpright = 0.3;         // of the normal's z
   constexpr double kAtTable = 0.015, kBelowTable = 0.2;  // m
   constexpr double kAtFloor = 0.05;                      // m
-  const double table = table_height({&backdrop}, fixture, area).value_or(surface_z);
+  const double table = table_height({&backdrop}, fixture, area, surface_z).value_or(surface_z);
   double lowest = std::numeric_limits<double>::infinity();
   for (const scene::MeshPart& part : backdrop.parts) {
     for (std::size_t i = 2; i < part.positions.size(); i += 3)

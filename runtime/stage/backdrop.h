@@ -22,9 +22,12 @@ struct SeenMesh {
 
 // The height (m) at which `backdrop` is level under `area` (x min, y min, x max, y max; m): what a
 // plumb line meets first, at 13 x 13 places; where that is `fixture`, the place does not count.
-// Empty unless at least a tenth of the places and half of those that count agree within 5 mm.
+// Of the levels on which at least a tenth of the places agree within 5 mm, the one nearest to
+// `surface_z`, where the things lie, within half a metre: an area may be wider than its table, and
+// then most of it is over something else. Without `surface_z` the one of half the places that count.
 std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fixture,
-                                   const std::array<double, 4>& area);
+                                   const std::array<double, 4>& area,
+                                   std::optional<double> surface_z = std::nullopt);
 
 // How far (m) the backdrop has to be raised for its table to lie at `surface_z`. 0 where it has no
 // table, one within 2 mm (drawn a little lower so that nothing flickers), or one farther than half

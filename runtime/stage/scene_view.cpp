@@ -91,7 +91,8 @@ Result<double> lift_backdrop(const plan::Plan& plan, const plan::TaskRecord& tas
   const auto fixture =
       scene.fixture_visual == plan::kNone ? nullptr : assets.mesh(scene.fixture_visual);
   const auto height =
-      table_height({backdrop.get()}, {fixture.get(), to_vec(scene.fixture_position)}, scene.area);
+      table_height({backdrop.get()}, {fixture.get(), to_vec(scene.fixture_position)}, scene.area,
+                   scene.surface_z);
   const double lift = backdrop_lift(height, scene.surface_z);
   if (lift == 0) return lift;
   for (const plan::ViewRecord& view : plan.views(task)) {

@@ -29,6 +29,18 @@ TEST_CASE(
   CHECK(table_height({&mesh, Vec3(0, 0, -0.1)}, {}, kArea).value() == doctest::Approx(0.65));
 }
 
+TEST_CASE(
+    "of an area that is wider than its table, the table is the level nearest to the surface") {
+  scene::Mesh mesh;
+  add_level(mesh, 0.72, {-5, -5, 5, 5});
+  add_level(mesh, 0.87, {-0.3, -0.5, 0.15, 0.5});
+  const std::array<double, 4> wide = {-0.6, -0.9, 0.6, 0.9};
+  CHECK(table_height({&mesh}, {}, wide).value() == doctest::Approx(0.72));
+  CHECK(table_height({&mesh}, {}, wide, 0.9).value() == doctest::Approx(0.87));
+  CHECK(table_height({&mesh}, {}, kArea, 0.8).value() == doctest::Approx(0.87));
+  CHECK_FALSE(table_height({&mesh}, {}, wide, 1.5));
+}
+
 TEST_CASE("places that a fixture covers say nothing of the backdrop, and nothing is no table") {
   scene::Mesh bench, basin, walls;
   add_level(bench, 0.869, {-0.3, -0.5, 0.3, 0.5});
