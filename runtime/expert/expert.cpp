@@ -29,6 +29,7 @@ class Expert final : public policy::Policy {
     if (start.robot == nullptr) {
       return Failure{Fault::kPolicy, "the expert was told of no robot", ""};
     }
+    if (start.delay > 0) return Failure{Fault::kPolicy, std::string(policy::kLateActions), ""};
     PROBE_ASSIGN(Reach reach, Reach::create(*start.robot));
     reach_ = std::move(reach);
     horizon_ = start.horizon;

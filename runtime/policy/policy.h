@@ -45,8 +45,12 @@ inline constexpr std::string_view kNoSolution = "no solution in skills for this 
 // How it begins to say that the robot's hand is none that it has skills for: the same status.
 inline constexpr std::string_view kOtherHand =
     "the expert grasps with two fingers that close on each other";
+// What it says where actions are late: it decides by what is now, and would fail where a start can
+// be done.
+inline constexpr std::string_view kLateActions = "the expert does not plan ahead of late actions";
 inline bool was_not_attempted(const Failure& failure) {
-  return failure.message == kNoSolution || failure.message.starts_with(kOtherHand);
+  return failure.message == kNoSolution || failure.message == kLateActions ||
+         failure.message.starts_with(kOtherHand);
 }
 
 // An object's collision hulls and where it is; all but the last two are fixed in an episode.
@@ -149,6 +153,7 @@ struct EpisodeStart {
   std::uint64_t draw_seed =
       0;  // first 8 bytes of H(seed, episode): feed everything that draws from this
   int horizon = 0;
+  int delay = 0;  // control steps until an action acts
   double control_hz = 0;                // control steps a second
   const robot::Robot* robot = nullptr;  // lives as long as the episode
 };

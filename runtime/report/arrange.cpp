@@ -83,7 +83,7 @@ void note_runs(Benchmark& benchmark) {
     if (not_attempted > 0) {
       note(benchmark, "note",
            fmt::format("`{}`: {} of {} episodes were not attempted: no solution in skills "
-                       "for their goal",
+                       "for them",
                        policy.label, not_attempted, done));
     }
     if (invalid > 0) {

@@ -117,6 +117,7 @@ policy::EpisodeStart Stage::introduction() const {
   start.prompt = plan_.text(task.prompt);
   start.index = static_cast<int>(start_);
   start.horizon = static_cast<int>(task.horizon);
+  start.delay = static_cast<int>(task.delay);
   start.control_hz = plan_.robots()[plan_.scenes()[task.scene].robot].control_hz;
   start.robot = &world_->robot();
   return start;

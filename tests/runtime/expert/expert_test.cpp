@@ -177,6 +177,15 @@ TEST_CASE("what shall only be picked up is lifted and kept in hand") {
   CHECK(table.source().pose.position.z() - before > 0.09);
 }
 
+TEST_CASE("where actions are late the expert attempts nothing") {
+  test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
+  policy::EpisodeStart start = table.start();
+  start.delay = 1;
+  const auto begun = expert()->begin(start);
+  REQUIRE_FALSE(begun.ok());
+  CHECK(policy::was_not_attempted(begun.failure()));
+}
+
 TEST_CASE("a goal that picking and placing does not reach is not attempted") {
   test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
   table.set_goal(policy::Goal::kOther);
