@@ -2,9 +2,7 @@
 // task, since tasks inherit ways.
 #pragma once
 
-#include <functional>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "compiler/names/context.h"
