@@ -405,6 +405,13 @@ class Page {
     };
     stroke("h20m-5 -4l5 4l-5 4", " stroke-width=\"1.3\"", kInk);
     say("x axis of an object: its yaw");
+    std::vector<std::string> told;  // each thing that moves once, however often it stands
+    for (const Footprint& print : view_.footprints) {
+      if (print.moves.empty() || std::ranges::find(told, print.object) != told.end()) continue;
+      stroke("h24", " stroke-width=\"1.6\" stroke-dasharray=\"6 4\"", kInk);
+      say(print.object + " moves " + print.moves);
+      told.push_back(print.object);
+    }
     stroke("m5 0h14m-7 -7v14", "", kInk);
     say("cell: where origins stand");
     stroke("h24", " stroke-width=\"1.5\"", kReach);
