@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "compiler/check/starts.h"
-#include "compiler/define/fixture.h"
 #include "compiler/define/motion.h"
 #include "compiler/define/support.h"
 #include "compiler/geometry/camera_pose.h"
@@ -47,16 +46,9 @@ class MotionCheck {
         puts_(puts_of(starts.model, starts.task)) {
     if (movers_.empty()) return;
     for (const Mover& mover : movers_) ways_.push_back(places_on(*mover.motion));
-    const std::vector<double> all = joint_starts_of(starts.model, starts.task);
-    std::span<const double> left = all;
-    for (const FixtureId id : scene_.fixtures) {
-      const Fixture& fixture = starts.model.fixtures[id];
-      const auto joints = left.first(fixture.joints.size());
-      left = left.subspan(fixture.joints.size());
-      if (const auto& travel = travels.of(id)) {
-        for (const PartBox& box : travel->at(joints))
-          standing_.push_back({box, fixture.body_name(fixture.parts[box.part])});
-      }
+    for (const BegunFixture& begun : begun_fixtures(starts, travels)) {
+      for (const PartBox& box : begun.travel.at(begun.joints))
+        standing_.push_back({box, begun.fixture.body_name(begun.fixture.parts[box.part])});
     }
   }
 
@@ -86,11 +78,9 @@ class MotionCheck {
 
   Heights heights(const Start::Placed& at) const {
     const Object& object = starts_.object(at);
-    const double bottom = at.z ? *at.z + lowest(object, rotation(at)) : scene_.surface_z;
+    const Mat3 turn = pose_of({}, at.turn.rotation).rotation.toRotationMatrix();
+    const double bottom = at.z ? *at.z + lowest(object, turn) : scene_.surface_z;
     return {bottom, bottom + height(object, at.turn)};
-  }
-  static Mat3 rotation(const Start::Placed& at) {
-    return pose_of({}, at.turn.rotation).rotation.toRotationMatrix();
   }
 
   bool meets(const Start::Placed& a, const Start::Placed& b) const {
@@ -111,13 +101,10 @@ class MotionCheck {
     const Start::Placed begin = placed(episode, mover.object);
     for (const std::array<double, 2>& by : ways_[m]) {
       const Start::Placed at = moved(begin, by);
-      if (over_edge(at))
+      if (is_over_edge(starts_, at))
         return report(mover, episode, "runs over the edge of `" + scene_.name + "`");
       for (const Standing& other : standing_) {
-        const Object& object = starts_.object(at);
-        const Mat3 turn = rotation(at);
-        const double z = at.z.value_or(scene_.surface_z - lowest(object, turn));
-        if (overlap(other.box.solid, solid(object, turn, {at.x, at.y, z})) > kRounding)
+        if (overlap(other.box.solid, solid_of(starts_, at)) > kRounding)
           return report(mover, episode, "runs into `" + other.name + "`");
       }
       for (const Start::Placed& other : starts_.task.starts[episode].placed) {
@@ -136,13 +123,6 @@ class MotionCheck {
       }
     }
     return true;
-  }
-
-  bool over_edge(const Start::Placed& at) const {
-    const Footprint shape = footprint(starts_.object(at), at);
-    const double rx = shape.reach_along({1, 0}), ry = shape.reach_along({0, 1});
-    return shape.centre.x - rx < scene_.area[0] || shape.centre.x + rx > scene_.area[2] ||
-           shape.centre.y - ry < scene_.area[1] || shape.centre.y + ry > scene_.area[3];
   }
 
   bool report(const Mover& mover, std::size_t episode, const std::string& what) const {

@@ -53,6 +53,19 @@ class Travels {
   std::map<SceneId, std::vector<ArmLink>> arms_;
 };
 
+// A fixture of a task's scene whose parts are known, its joints where the task begins.
+struct BegunFixture {
+  const Fixture& fixture;
+  const Travel& travel;
+  std::vector<double> joints;
+};
+std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& travels);
+
+// The box of what is placed, where it stands.
+scene::Solid solid_of(const TaskStarts& starts, const Start::Placed& placed);
+// Whether it stands over the edge of the surface.
+bool is_over_edge(const TaskStarts& starts, const Start::Placed& placed);
+
 void check_overlap(const TaskStarts& starts);            // P0501
 bool check_surface(const TaskStarts& starts);            // P0505; false when something was reported
 bool check_reach(const TaskStarts& starts, Arms& arms);  // P0502; as above

@@ -1,11 +1,21 @@
 // P0505 as an error: an object over the edge of the surface.
 #include <algorithm>
+#include <array>
 
 #include "compiler/check/starts.h"
 #include "compiler/define/support.h"
 #include "compiler/geometry/footprint.h"
 
 namespace probe::sema {
+
+bool is_over_edge(const TaskStarts& starts, const Start::Placed& placed) {
+  const std::array<double, 4>& area = starts.model.scenes[starts.task.scene].area;
+  const Footprint shape = footprint(starts.object(placed), placed);
+  const double rx = shape.reach_along({1, 0});
+  const double ry = shape.reach_along({0, 1});
+  return !(shape.centre.x - rx >= area[0] && shape.centre.x + rx <= area[2] &&
+           shape.centre.y - ry >= area[1] && shape.centre.y + ry <= area[3]);
+}
 
 bool check_surface(const TaskStarts& starts) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
@@ -14,13 +24,7 @@ bool check_surface(const TaskStarts& starts) {
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
       if (std::ranges::find(puts, placed.object, &Put::object) != puts.end()) continue;
-      const Footprint shape = footprint(starts.object(placed), placed);
-      const double rx = shape.reach_along({1, 0});
-      const double ry = shape.reach_along({0, 1});
-      const bool inside =
-          shape.centre.x - rx >= scene.area[0] && shape.centre.x + rx <= scene.area[2] &&
-          shape.centre.y - ry >= scene.area[1] && shape.centre.y + ry <= scene.area[3];
-      if (inside) continue;
+      if (!is_over_edge(starts, placed)) continue;
       starts.reporter
           .report(Situation::kOverEdge, starts.place({placed.object}),
                   "`" + starts.object(placed).name + "` stands over the edge of `" + scene.name +

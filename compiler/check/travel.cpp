@@ -87,11 +87,7 @@ struct TravelCheck {
   }
 
   scene::Solid body_of(const Start::Placed& placed, Look look) const {
-    const Scene& scene = starts.model.scenes[starts.task.scene];
-    const Object& object = starts.object(placed);
-    const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
-    const double z = placed.z.value_or(scene.surface_z - lowest(object, turn));
-    const scene::Solid body = solid(object, turn, {placed.x, placed.y, z});
+    const scene::Solid body = solid_of(starts, placed);
     if (look != Look::kFalling || placed.z) return body;
     const Vec3 half = body.half_extent(), fall(0, 0, starts.layout.drop);
     return scene::upright_solid(body.centre - half, body.centre + half + fall);
@@ -238,19 +234,33 @@ const std::vector<ArmLink>& Travels::arm(SceneId id) {
   return known->second;
 }
 
-void check_travel(const TaskStarts& starts, Travels& travels) {
-  const Scene& scene = starts.model.scenes[starts.task.scene];
+std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& travels) {
   const std::vector<double> all = joint_starts_of(starts.model, starts.task);
   std::span<const double> left = all;
-  for (const FixtureId id : scene.fixtures) {
+  std::vector<BegunFixture> begun;
+  for (const FixtureId id : starts.model.scenes[starts.task.scene].fixtures) {
     const Fixture& fixture = starts.model.fixtures[id];
     const auto joints = left.first(fixture.joints.size());
     left = left.subspan(fixture.joints.size());
-    const auto& travel = travels.of(id);
-    if (!travel) continue;
-    const TravelCheck check{starts, fixture, *travel};
-    check.check(joints);
-    check.check_arm(joints, travels.arm(starts.task.scene));
+    if (const auto& travel = travels.of(id))
+      begun.push_back({fixture, *travel, {joints.begin(), joints.end()}});
+  }
+  return begun;
+}
+
+scene::Solid solid_of(const TaskStarts& starts, const Start::Placed& placed) {
+  const Object& object = starts.object(placed);
+  const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+  const double surface = starts.model.scenes[starts.task.scene].surface_z;
+  return solid(object, turn,
+               {placed.x, placed.y, placed.z.value_or(surface - lowest(object, turn))});
+}
+
+void check_travel(const TaskStarts& starts, Travels& travels) {
+  for (const BegunFixture& begun : begun_fixtures(starts, travels)) {
+    const TravelCheck check{starts, begun.fixture, begun.travel};
+    check.check(begun.joints);
+    check.check_arm(begun.joints, travels.arm(starts.task.scene));
   }
 }
 
