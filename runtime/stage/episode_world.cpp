@@ -217,22 +217,10 @@ Status EpisodeWorld::check_arm() const {
   constexpr double kRubs = 1e-3;  // m
   const auto found = world_->robot_stands_in(kRubs);
   if (!found) return {};
-  const auto name = [&](const world::Party& party) -> std::string {
-    switch (party.kind) {
-      case world::PartyKind::kSurface:
-        return "the surface";
-      case world::PartyKind::kLink:
-        return "a fixture";
-      case world::PartyKind::kBody:
-        return "`" + std::string(plan_.text(plan_.bodies(task_)[party.index].name)) + "`";
-      case world::PartyKind::kFixture:
-        return "what stands there";
-    }
-    return "";
-  };
-  return Failure{
-      Fault::kWorld,
-      fmt::format("the arm begins {:.1f} cm in {}", 100 * found->depth, name(found->other)), ""};
+  return Failure{Fault::kWorld,
+                 fmt::format("the arm begins {:.1f} cm in `{}`", 100 * found->depth,
+                             bodies_.names[bodies_.local(found->other)]),
+                 ""};
 }
 
 // The arm is told to stay and the gripper to be open.
