@@ -115,6 +115,7 @@ void Stepper::integrate_all() {
 
 // A robot's touch ends that a body is led; it goes on as it was.
 void Stepper::free_touched() {
+  if (std::ranges::none_of(bodies, &Body::led)) return;
   const auto is_robot = [&](int collider) {
     if (collider < 0) return false;
     const Collider& c = colliders[static_cast<size_t>(collider)];
