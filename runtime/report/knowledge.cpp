@@ -276,7 +276,7 @@ std::string knows_sentence(const Benchmark& benchmark, const KnowsRow& row) {
   const std::string& model = model_at(benchmark, row.model).label;
   const std::string& policy = benchmark.policies[static_cast<std::size_t>(row.policy)].label;
   const std::int64_t lost = row.with(true, false) + row.with(false, false);
-  if (lost == 0) return fmt::format("{} went for the right object in every episode", policy);
+  if (lost == 0) return fmt::format("in every episode {} went for the right object", policy);
   return fmt::format(
       "of the {} episodes in which {} did not go for the right object, {} named it in {}", lost,
       policy, model, row.with(true, false));

@@ -65,6 +65,7 @@ TEST_CASE("halves are rounded away from zero and an interval with width shows it
 TEST_CASE("the page says what holds on these starts and what for starts never tried") {
   check("questions");
 }
+TEST_CASE("what is said of every model and question is said once") { check("knowing"); }
 TEST_CASE("each of 75 truths is shown as it was") { check("truths"); }
 TEST_CASE("the page fits a narrow window") { check("narrow"); }
 

@@ -236,6 +236,19 @@ const kCases = {
     expect(/5\.3\s+63\/1,200/.test(text), `63 of 1200 is not 5.3 in: ${text.slice(0, 400)}`);
     expect(text.includes("99.7\u2013100.0"), `an interval with width looks as if it had none in: ${text.slice(0, 400)}`);
   },
+  // A sentence that holds for every model and question is said once, a question once with all its models.
+  async knowing() {
+    const edit = (data) => {
+      const rows = data.tables.knows, whole = { counts: [0, 0, 0, 0, 0, 0, 200, 1000], diff: 0, low: 0, high: 0 };
+      data.tables.knows = rows.flatMap((r) => (r.policy ? [r, { ...r, family: 1 }] : [0, 1].map((family) => ({ ...r, ...whole, family, says: "in every episode a policy went for the right object" }))));
+    };
+    const { page } = await open(written("knowing.html", { policies: 2 }, edit));
+    const said = await page.$$eval("section#knows li", (all) => all.map((e) => e.innerText));
+    expect(said.filter((text) => text === "In every episode a policy went for the right object.").length === 1, `what holds for every question is said so: ${said}`);
+    expect(said.filter((text) => /named it in 73 \(understanding\.source, understanding\.restate\)\.$/.test(text)).length === 2, `what one model named is said so: ${said}`);
+    const asked = await page.$$eval("section#knows table:first-of-type td[rowspan='2'] b", (all) => all.map((e) => e.innerText));
+    expect(JSON.stringify(asked) === JSON.stringify(["understanding.source", "understanding.restate"]), `questions of two models: ${asked}`);
+  },
   // More truths than one number holds.
   async truths() {
     const edit = (data) => {

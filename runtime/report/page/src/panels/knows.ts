@@ -17,21 +17,40 @@ function unread(score: ArmScore | undefined): string {
   return parts.join(", ") || "none";
 }
 
+// A question once, beneath it how each model answers it.
 function accuracyTable(data: Data, rows: Accuracy[]): HTMLElement {
   const likely = rows.some((r) => r.picture?.likely_circular);
-  const head = ["Model", "Question", "Right in every order", "In one order", ...(likely ? ["By the likeliest letters"] : []), "Without the picture", "With another picture", "By chance", "Not read"];
+  const questions = new Map<string, Accuracy[]>();
+  for (const r of rows) {
+    const of = family(data, r.model, r.family), key = `${of?.name ?? "?"}\n${of?.text ?? ""}`;
+    questions.set(key, [...(questions.get(key) ?? []), r]);
+  }
+  const head = ["Question", "Model", "Right in every order", "In one order", ...(likely ? ["By the likeliest letters"] : []), "Without the picture", "With another picture", "By chance", "Not read"];
   return scroller("Right answers", h("table", { class: "plain" }, h("caption", {}, "Questions and starts answered right, percent"),
     h("thead", {}, h("tr", {}, head.map((text) => h("th", { scope: "col" }, text)))),
-    h("tbody", {}, rows.map((r) => {
+    h("tbody", {}, [...questions.values()].flatMap((answered) => answered.map((r, i) => {
       const of = family(data, r.model, r.family);
-      return h("tr", {}, h("th", { scope: "row" }, label(data, r.model)),
-        h("td", {}, h("b", {}, of?.name ?? "?"), h("span", { class: "sub" }, of?.text ?? "")),
+      return h("tr", {},
+        i ? null : h("td", { rowspan: String(answered.length) }, h("b", {}, of?.name ?? "?"), h("span", { class: "sub" }, of?.text ?? "")),
+        h("th", { scope: "row" }, label(data, r.model)),
         h("td", { title: spoken(r.picture?.circular ?? null) }, shortCell(r.picture?.circular ?? null)), h("td", {}, shortCell(r.picture?.plain ?? null)),
         likely ? h("td", { title: spoken(r.picture?.likely_circular ?? null) }, shortCell(r.picture?.likely_circular ?? null)) : null,
         h("td", {}, shortCell(r.blind?.circular ?? null)), h("td", {}, shortCell(r.prior?.circular ?? null)),
         h("td", { class: "number" }, r.random === undefined ? "\u2013" : percent(r.random)),
         h("td", {}, unread(r.picture), r.picture?.copied === undefined ? null : h("small", {}, ` ${percent(r.picture.copied)} % of the instruction's words repeated, ${count(r.picture.copies ?? 0)} mere copies`)));
-    }))));
+    })))));
+}
+
+// What rows say in words, each sentence once: with the questions it is said of, unless it is said of all of its policy's.
+function sentences(data: Data, rows: Knows[]): HTMLElement {
+  const said = new Map<string, Knows[]>();
+  for (const r of rows) said.set(r.says, [...(said.get(r.says) ?? []), r]);
+  return h("ul", {}, [...said].map(([says, of]) => {
+    const all = of.length > 1 && rows.every((r) => r.policy !== of[0]!.policy || of.includes(r));
+    const names = [...new Set(of.map((r) => family(data, r.model, r.family)?.name ?? "?"))];
+    const counted = of.some((r) => r.counts.some((n) => n > 0));
+    return h("li", {}, says.charAt(0).toUpperCase() + says.slice(1) + (all || !counted ? "." : ` (${names.join(", ")}).`));
+  }));
 }
 
 // Episodes at 4 knows + 2 goes + does.
@@ -70,7 +89,7 @@ export function knows(state: State): Panel {
       categories.length > 1 ? h("div", { class: "controls" }, select("Tasks", categories.map((c) => (c < 0 ? "all" : data.categories[c]?.label ?? "")), categories.indexOf(category), (i) => { category = categories[i]!; draw(); })) : null,
       wanting.length ? noteList(wanting) : null,
       accuracyTable(data, accuracy.filter((r) => r.category === category)),
-      beside.length ? [h("ul", {}, beside.map((r) => h("li", {}, r.says.charAt(0).toUpperCase() + r.says.slice(1) + (r.counts.reduce((a, b) => a + b, 0) ? ` (${family(data, r.model, r.family)?.name ?? "?"}).` : ".")))), knowsTable(state, beside), differenceTable(state, beside)] : null,
+      beside.length ? [sentences(data, beside), knowsTable(state, beside), differenceTable(state, beside)] : null,
       details("How to read these tables",
         h("p", {}, "A choice is asked once for every order of its options and counts as right only if all answers are; \u201cin one order\u201d is the plain rate, with right letters balanced over starts. Where a server tells how probable each letter was, the likeliest ones are scored, too, in every order. Without the picture, and with that of another start, a model gets what words alone give away."),
         h("p", {}, "An episode stands beside the answers about its own start and words. Knows \u2212 goes is the difference of the two rates on the same starts, tested as policies in pairs are.")));
