@@ -243,6 +243,9 @@ const kCases = {
       data.tables.knows = rows.flatMap((r) => (r.policy ? [r, { ...r, family: 1 }] : [0, 1].map((family) => ({ ...r, ...whole, family, says: "in every episode a policy went for the right object" }))));
     };
     const { page } = await open(written("knowing.html", { policies: 2 }, edit));
+    const chosen = await page.$$eval("section#knows li", (all) => all.map((e) => e.innerText));
+    expect(chosen.filter((text) => text.includes("episode")).length === 3 && !chosen.some((text) => text.includes("restate")), `of the first question is said: ${chosen}`);
+    await page.select(await page.$$eval("section#knows label", (all) => `#${CSS.escape(all.find((e) => e.innerText === "Beside policies").htmlFor)}`), "2");
     const said = await page.$$eval("section#knows li", (all) => all.map((e) => e.innerText));
     expect(said.filter((text) => text === "In every episode a policy went for the right object.").length === 1, `what holds for every question is said so: ${said}`);
     expect(said.filter((text) => /named it in 73 \(understanding\.source, understanding\.restate\)\.$/.test(text)).length === 2, `what one model named is said so: ${said}`);

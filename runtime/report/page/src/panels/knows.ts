@@ -79,16 +79,19 @@ export function knows(state: State): Panel {
   const holder = h("div", {});
   const accuracy = data.tables.accuracy ?? [], all = data.tables.knows ?? [];
   const categories = [-1, ...new Set(accuracy.map((r) => r.category).filter((c) => c >= 0))];
-  let category = -1;
+  const nameOf = (r: Knows): string => family(data, r.model, r.family)?.name ?? "?";
+  const questions = [...new Set(all.map(nameOf))];
+  let category = -1, question = questions[0] ?? "";  // of the tables beside policies; "": all
   const draw = (): void => {
     if (!accuracy.length) return replace(holder, nothing(data, "knows", "No model was asked; `vlaprobe ask` asks one, and its folder is named beside those of runs."));
-    const beside = all.filter((r) => r.category === category && state.chosen.includes(r.policy));
+    const beside = all.filter((r) => r.category === category && state.chosen.includes(r.policy) && (!question || nameOf(r) === question));
     const wanting = (data.models ?? []).filter((m) => m.invalid > 0 || m.left_out > 0)
       .map((m) => ({ level: "note" as const, text: `${m.label}: ${count(m.answers)} answers, ${count(m.invalid)} invalid, ${count(m.left_out)} not asked because the picture does not show what they ask for` }));
     replace(holder,
       categories.length > 1 ? h("div", { class: "controls" }, select("Tasks", categories.map((c) => (c < 0 ? "all" : data.categories[c]?.label ?? "")), categories.indexOf(category), (i) => { category = categories[i]!; draw(); })) : null,
       wanting.length ? noteList(wanting) : null,
       accuracyTable(data, accuracy.filter((r) => r.category === category)),
+      questions.length > 1 ? h("div", { class: "controls" }, select("Beside policies", [...questions, "all questions"], question ? questions.indexOf(question) : questions.length, (i) => { question = questions[i] ?? ""; draw(); })) : null,
       beside.length ? [sentences(data, beside), knowsTable(state, beside), differenceTable(state, beside)] : null,
       details("How to read these tables",
         h("p", {}, "A choice is asked once for every order of its options and counts as right only if all answers are; \u201cin one order\u201d is the plain rate, with right letters balanced over starts. Where a server tells how probable each letter was, the likeliest ones are scored, too, in every order. Without the picture, and with that of another start, a model gets what words alone give away."),
