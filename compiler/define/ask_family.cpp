@@ -96,9 +96,7 @@ class FamilyAsker {
       if (&before == &family_ || other->text != question.text || before.form != family_.form ||
           before.moment != family_.moment)
         continue;
-      if (question.truth == plan::QuestionTruth::kRecorded ||
-          right_of(*other) == right_of(question))
-        continue;
+      if (question.judged || right_of(*other) == right_of(question)) continue;
       const bool is_choice = family_.form == plan::QuestionForm::kChoice;
       if (is_choice && (!offers(question, other->options[other->right].object) ||
                         !offers(*other, question.options[question.right].object)))

@@ -25,12 +25,12 @@ MayOmit QuestionText::say(const Placeholder& placeholder, std::string& out) {
     out = asked_.task().prompt;
     return {};
   }
-  // What a recorded episode answers may be asked of a part of a fixture.
+  // What a judge answers may be asked of a part of a fixture.
   const QuestionAnswer::Kind answer = asked_.family().answer.kind;
-  const bool is_recorded =
+  const bool is_judged =
       answer == QuestionAnswer::kMetric || answer == QuestionAnswer::kCondition;
   ObjectId id = ObjectId::kNone;
-  if (auto why_not = is_recorded && placeholder.kind == Placeholder::kName
+  if (auto why_not = is_judged && placeholder.kind == Placeholder::kName
                          ? referents_.resolve_any(placeholder.who, id)
                          : referents_.resolve(placeholder.who, id))
     return why_not;

@@ -77,6 +77,8 @@ struct FamilyReader {
       return;
     }
     family.answer.kind = QuestionAnswer::kCondition;
+    if (const auto* call = std::get_if<syntax::ExprCall>(&file[answer.expr].node))
+      family.answer.called = call->callee.text;
     truth.name = family.name;
     truth.span = family.span;
     truth.readout_span = stmt.answer_span;
@@ -200,8 +202,16 @@ void check_told(Context& context, const Family& family) {
       .help("say the `{instruction}`, or describe it: `{phrase of " + right.text + "}`");
 }
 
-// What lies somewhere at the start may have left the picture by the end.
+// What lies somewhere at the start may have left the picture by the end, and metrics are read there.
 void check_moment(Context& context, const Family& family) {
+  if (family.answer.kind == QuestionAnswer::kMetric &&
+      family.moment == plan::QuestionMoment::kStart) {
+    context
+        .report(Code::P0904, family.answer.span,
+                "`" + family.answer.truth.name + "` is read at the end of an episode")
+        .help("ask `at end`, or answer a condition of the start, such as `closed(target)`");
+    return;
+  }
   const bool is_place = family.answer.kind == QuestionAnswer::kPresent ||
                         family.answer.kind == QuestionAnswer::kCount;
   if (!is_place || family.moment != plan::QuestionMoment::kEnd) return;
@@ -277,7 +287,12 @@ bool asks_for_source(const QuestionAnswer& answer) {
   return answer.kind == QuestionAnswer::kOne && answer.who.size() == 1 &&
          answer.who[0].kind == Who::kSource;
 }
+bool asks_of_opened(const QuestionAnswer& answer) { return answer.called == "opened"; }
+bool asks_of_closed(const QuestionAnswer& answer) { return answer.called == "closed"; }
 constexpr TurnedWords kTurnedWords[] = {
+    {"closed", asks_of_opened},       {"shut", asks_of_opened},
+    {"open", asks_of_closed},         {"not", asks_of_opened},
+    {"not", asks_of_closed},
     {"absent", asks_of_presence},     {"missing", asks_of_presence},
     {"not", asks_of_presence},        {"no longer", asks_of_presence},
     {"gone", asks_of_presence},       {"fail", asks_of_success},

@@ -46,7 +46,7 @@ class RightAnswer {
         return mentions();
       case QuestionAnswer::kMetric:
       case QuestionAnswer::kCondition:
-        return recorded();
+        return judged();
     }
     return OmissionReason::kNoMember;
   }
@@ -170,20 +170,22 @@ class RightAnswer {
     return {};
   }
 
-  MayOmit recorded() {
-    question_.truth = plan::QuestionTruth::kRecorded;
-    question_.recorded = family_.answer.truth;
+  MayOmit judged() {
+    question_.truth = family_.moment == plan::QuestionMoment::kEnd
+                          ? plan::QuestionTruth::kRecorded
+                          : plan::QuestionTruth::kSettled;
+    question_.judged = family_.answer.truth;
     if (family_.answer.kind == QuestionAnswer::kMetric) {
-      const auto judged =
-          std::find_if(task_.judged.begin(), task_.judged.end(), [&](const Metric& metric) {
-            return metric.name == family_.answer.truth.name &&
-                   metric.readout == plan::Readout::kAtEnd;
+      const auto metric =
+          std::find_if(task_.judged.begin(), task_.judged.end(), [&](const Metric& one) {
+            return one.name == family_.answer.truth.name &&
+                   one.readout == plan::Readout::kAtEnd;
           });
-      if (judged == task_.judged.end()) return OmissionReason::kNoSuchMetric;
-      question_.recorded = *judged;
+      if (metric == task_.judged.end()) return OmissionReason::kNoSuchMetric;
+      question_.judged = *metric;
     }
     // What is measured must be there.
-    const Mentioned measured = MentionedIn(model_).expression(question_.recorded->expr);
+    const Mentioned measured = MentionedIn(model_).expression(question_.judged->expr);
     for (const auto& [role, span] : measured.roles) {
       if (task_.objects_in(role).empty()) return OmissionReason::kNoMember;
     }
@@ -202,7 +204,7 @@ class RightAnswer {
     Diagnostics unsaid;
     const Scene& scene = model_.scenes[task_.scene];
     const CameraId camera = views_of(model_, task_).front().camera;
-    return lower::lower_metrics(model_, {&*question_.recorded, 1},
+    return lower::lower_metrics(model_, {&*question_.judged, 1},
                                 lower::bodies_of(model_, task_),
                                 frame_of(model_, scene, model_.cameras[camera]), unsaid)
         .has_value();

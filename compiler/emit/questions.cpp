@@ -77,9 +77,9 @@ void Emitter::add_questions() {
     record.right = asked.right;
     record.a = asked.a;
     record.b = asked.b;
-    if (asked.recorded) {
+    if (asked.judged) {
       const sema::Task& task = model_.tasks[asked.task];
-      const auto program = add_program(task, {&*asked.recorded, 1}, lower::bodies_of(model_, task));
+      const auto program = add_program(task, {&*asked.judged, 1}, lower::bodies_of(model_, task));
       if (!program) continue;  // reported
       record.program = *program;
     }

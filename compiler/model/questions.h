@@ -64,6 +64,7 @@ struct QuestionAnswer {
   std::vector<Who> who;                        // as many as the kind takes
   AttributeId attribute = AttributeId::kNone;  // kCount, as of a placeholder
   Metric truth;                                // kMetric: its name alone; kCondition
+  std::string_view called;                     // kCondition: the predicate it is, if it is one
   Span span;
 };
 
@@ -114,7 +115,7 @@ struct AskedQuestion {
   plan::QuestionTruth truth = plan::QuestionTruth::kProved;
   std::uint32_t right = plan::kNone;
   std::uint32_t a = plan::kNone, b = plan::kNone;
-  std::optional<Metric> recorded;  // what is judged of the recorded episode
+  std::optional<Metric> judged;  // the condition, of the settled start or the recorded episode
 };
 struct LeftOut {
   QuestionSetId set = QuestionSetId::kNone;

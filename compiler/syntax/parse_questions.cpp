@@ -57,9 +57,7 @@ QuestionStmt Parser::question() {
   }
   expect_word("answer");
   const std::uint32_t begin = mark();
-  out.answer = form == plan::QuestionForm::kYesNo && out.moment == plan::QuestionMoment::kEnd
-                   ? late_answer()
-                   : answer(form);
+  out.answer = answer(form);
   out.answer_span = since(begin);
   if (form == plan::QuestionForm::kChoice) {
     expect_word("among");
@@ -105,7 +103,7 @@ Answer Parser::answer(plan::QuestionForm form) {
     case plan::QuestionForm::kPoint:
       return AnswerOne{name()};
     case plan::QuestionForm::kYesNo:
-      return picture_answer();
+      return yesno_answer();
     case plan::QuestionForm::kNumber: {
       AnswerCount out;
       expect_word("count");
@@ -149,9 +147,8 @@ Answer Parser::picture_answer() {
   return out;
 }
 
-// At the end of an episode any condition can be judged; what is read off the picture is called as a
-// predicate would be.
-Answer Parser::late_answer() {
+// Any condition can be judged; what is read off the picture is called as a predicate would be.
+Answer Parser::yesno_answer() {
   const bool is_call = kind_ahead(1) == TokenKind::kLeftParen;
   if (is_call && at_any_word({"present", "left", "nearer"})) return picture_answer();
   return AnswerTruth{expr()};

@@ -313,7 +313,7 @@ class Parser {
   Answer answer(plan::QuestionForm form);
   void open_call();
   Answer picture_answer();
-  Answer late_answer();
+  Answer yesno_answer();
 
   // ---- parse_suite.cpp ----
   DeclNode suite_decl();

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "runtime/base/check.h"
 #include "runtime/base/sha256.h"
 #include "runtime/scene/image.h"
 #include "runtime/servers/resize.h"
 #include "runtime/vm/claims.h"
+#include "runtime/vm/judge.h"
 #include "runtime/wire/base64.h"
 
 namespace probe::ask {
@@ -66,6 +68,15 @@ Result<View> Viewer::start(std::uint32_t episode) {
   PROBE_TRY(stage->reset(record.index));
   PROBE_TRY(vm::check_claims(plan_, record.task, stage->body_starts(), stage->sample()));
   return look(*stage);
+}
+
+Result<bool> Viewer::judge_start(const plan::QuestionRecord& question) const {
+  const stage::Stage& stage = *stages_.front();
+  PROBE_CHECK(stage.task() == question.task, "the start that was looked at is of this task");
+  vm::Judge judge(plan_, question.task, question.program);
+  PROBE_TRY(judge.begin(stage.body_starts()));
+  PROBE_TRY(judge.step(stage.sample()));
+  return judge.truth(0);
 }
 
 Result<View> Viewer::end(std::uint32_t episode, const store::Trace& trace) {

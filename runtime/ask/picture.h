@@ -53,6 +53,9 @@ class Viewer {
   // As a policy sees it before its first action. Fails (kUsage) on a camera that the task lacks,
   // and as Stage does.
   Result<View> start(std::uint32_t episode);
+  // The question's program where things have come to rest in the start that was last looked at,
+  // which is of its task. Fails (kJudge) as a judge does.
+  Result<bool> judge_start(const plan::QuestionRecord& question) const;
   // After the last action of the trace, done again step by step. Fails (kTrace) when the world
   // does not end where the trace says, bit for bit: then this machine's picture would not be the
   // recorded one's.

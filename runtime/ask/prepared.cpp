@@ -51,6 +51,9 @@ Status fill(const plan::Plan& plan, const Look& look, const RecordedRows& record
     if (plan::truth_of(question) == plan::QuestionTruth::kRecorded) {
       PROBE_ASSIGN(judged, judge_recorded(plan, question, trace));
     }
+    if (plan::truth_of(question) == plan::QuestionTruth::kSettled) {
+      PROBE_ASSIGN(judged, viewer.judge_start(question));
+    }
     made.truths.emplace(query.question, find_truth(plan, question, view, rule, judged));
   }
   PROBE_ASSIGN(made.picture, made_of(view, rule, sends && wants(made.queries, Arm::kPicture)));

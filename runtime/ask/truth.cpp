@@ -115,7 +115,7 @@ std::optional<Truth> known_truth(const plan::Plan& plan, const plan::QuestionRec
 }
 
 Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, const View& view,
-                 const PictureRule& rule, std::optional<bool> recorded) {
+                 const PictureRule& rule, std::optional<bool> judged) {
   // What a crop leaves out is not seen.
   const bool is_cropped = rule.width > 0 && rule.resize == servers::Resize::kCrop;
   const View cropped = is_cropped ? sent_part(view, rule) : View{};
@@ -137,7 +137,8 @@ Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, c
     case plan::QuestionTruth::kMentions:
       return *known_truth(plan, question);
     case plan::QuestionTruth::kRecorded:
-      return recorded ? yes_or_no(*recorded) : left_out("no episode was recorded");
+    case plan::QuestionTruth::kSettled:
+      return judged ? yes_or_no(*judged) : left_out("nothing was judged");
     case plan::QuestionTruth::kPixelsOf:
       return area_of(plan, options[question.a], view, rule);
     case plan::QuestionTruth::kLeftOf:

@@ -30,15 +30,15 @@ struct Truth {
 };
 
 // What is right without a look at a picture: as the text proves it, or, of a free answer, what has
-// to be mentioned. Nothing where a picture or a recorded episode tells.
+// to be mentioned. Nothing where a picture or a judge tells.
 std::optional<Truth> known_truth(const plan::Plan& plan, const plan::QuestionRecord& question);
 
-// `view`: what is looked at; `recorded`: what the question's program says of the recorded episode,
-// where its truth is of one.
+// `view`: what is looked at; `judged`: what the question's program says of the recorded episode or
+// the settled start, where its truth is of one.
 Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, const View& view,
-                 const PictureRule& rule, std::optional<bool> recorded = {});
+                 const PictureRule& rule, std::optional<bool> judged = {});
 
-// Of a truth that the picture or the recorded episode told, as a row's `expected` says it; nothing
+// Of a truth that the picture or the judge told, as a row's `expected` says it; nothing
 // where that is neither yes nor no.
 std::optional<bool> told_yes(std::string_view expected);
 

@@ -65,6 +65,11 @@ Status RecordCheck::check(const OmissionRecord& o) const {
 
 namespace {
 
+// By a program: of a recorded episode, or where things have come to rest.
+bool is_judged(QuestionTruth truth) {
+  return truth == QuestionTruth::kRecorded || truth == QuestionTruth::kSettled;
+}
+
 // What a form can have as its truth.
 bool can_be(QuestionForm form, QuestionTruth truth) {
   switch (form) {
@@ -73,7 +78,7 @@ bool can_be(QuestionForm form, QuestionTruth truth) {
       return truth == QuestionTruth::kProved;
     case QuestionForm::kYesNo:
       return truth == QuestionTruth::kProved || truth == QuestionTruth::kLeftOf ||
-             truth == QuestionTruth::kNearerThan || truth == QuestionTruth::kRecorded;
+             truth == QuestionTruth::kNearerThan || is_judged(truth);
     case QuestionForm::kPoint:
       return truth == QuestionTruth::kPixelsOf;
     case QuestionForm::kFree:
@@ -206,7 +211,8 @@ class QuestionCheck : FieldCheck {
     const QuestionForm form = form_of(family);
     const QuestionTruth truth = truth_of(q);
     const bool at_end = moment_of(family) == QuestionMoment::kEnd;
-    if (!can_be(form, truth) || (truth == QuestionTruth::kRecorded && !at_end))
+    const bool is_then = at_end == (truth == QuestionTruth::kRecorded);
+    if (!can_be(form, truth) || (is_judged(truth) && !is_then))
       return fail(Rule::kQuestionForm, &q.truth,
                   fmt::format("a question of form `{}` cannot have truth {}",
                               find_form(family.form)->word, q.truth));
@@ -215,9 +221,9 @@ class QuestionCheck : FieldCheck {
     PROBE_TRY(presence(q));
     PROBE_TRY(about(q));
     const bool has_program = q.program != kNone;
-    if (has_program != (truth == QuestionTruth::kRecorded) || (has_program && !is_truth(q.program)))
+    if (has_program != is_judged(truth) || (has_program && !is_truth(q.program)))
       return fail(Rule::kQuestionProgram, &q.program,
-                  "what is judged of a recorded episode has a program with one truth");
+                  "what is judged has a program with one truth");
     return {};
   }
 

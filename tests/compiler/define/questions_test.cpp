@@ -173,13 +173,37 @@ TEST_CASE("at the end, a metric of the task or any condition is judged") {
   CHECK_MESSAGE(a->codes() == "", a->said());
   REQUIRE(a->model.asked.size() == 2);
   CHECK(a->model.asked[0].truth == plan::QuestionTruth::kRecorded);
-  REQUIRE(a->model.asked[0].recorded.has_value());
-  CHECK(a->model.asked[0].recorded->name == "success");
-  CHECK(a->model.asked[1].recorded->name == "high");
+  REQUIRE(a->model.asked[0].judged.has_value());
+  CHECK(a->model.asked[0].judged->name == "success");
+  CHECK(a->model.asked[1].judged->name == "high");
   const auto late = ask(R"(yesno done "Done?" at end answer success)",
                         "variant soon of red_on_tray { set success = once (height(source) > 1m) }");
   REQUIRE(late->model.left_out.size() == 1);
   CHECK(reason(*late) == plan::OmissionReason::kNoSuchMetric);
+}
+
+TEST_CASE("at the start, any condition is judged where things have come to rest") {
+  const auto a = ask(R"(yesno high "Is it up?" answer height(source) > 1m)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  REQUIRE(a->model.asked.size() == 1);
+  CHECK(a->model.asked[0].truth == plan::QuestionTruth::kSettled);
+  CHECK(a->model.asked[0].judged->name == "high");
+  // What is read behind the last step is not known there.
+  const auto early = ask(R"(yesno done "Done?" answer success)");
+  CHECK_MESSAGE(early->codes() == "P0904", early->said());
+  CHECK(early->said().find("`success` is read at the end of an episode") != std::string::npos);
+}
+
+TEST_CASE("a question whether something is open is not answered by whether it is closed") {
+  const std::string shut = "predicate closed(o: object) = height(o) < 1m\n";
+  const auto asked = [&](const char* words) {
+    return ask("yesno shut \"" + std::string(words) + "\" answer closed(target)", shut)->codes();
+  };
+  CHECK(asked("Is {the target} closed?") == "");
+  CHECK(asked("Is {the target} open or closed?") == "P0904");
+  CHECK(asked("Is {the target} open?") == "P0904");
+  CHECK(asked("Is {the target} not closed?") == "P0904");
+  CHECK(asked("Is {the target} closed or not?") == "");
 }
 
 TEST_CASE("what does not fit a task is left out of it, with the reason") {

@@ -207,6 +207,18 @@ TEST_CASE("the end of a recorded episode is drawn again, and its program knows t
   CHECK(other.failure().message.starts_with("holds answers about the ends of the run `random, "));
 }
 
+TEST_CASE("a condition of the start is judged where things have come to rest, without a run") {
+  TemporaryFolder folder;
+  const plan::Plan plan = asking_plan(2, ask_begun);
+  const AskSummary summary = must_ask(plan, asking_options("truth", folder / "answers"));
+  CHECK(summary.total == 2);
+  CHECK(summary.right == 2);
+  for (const AnswerRow& row : rows_in(folder / "answers")) {
+    CHECK(!row.invalid);
+    CHECK(row.expected == "no");  // it begins beside it
+  }
+}
+
 TEST_CASE("folders of shards become one, each answer once, and strangers are refused") {
   TemporaryFolder folder;
   const plan::Plan plan = asking_plan(3);

@@ -92,8 +92,9 @@ inline void ask_everything(plan::Writer& writer) {
   restate.b = 1;
 }
 
-// Whether the carrot is over the plate, about the end of a recorded episode.
-inline void ask_done(plan::Writer& writer) {
+// Whether the carrot is over the plate.
+inline void ask_over(plan::Writer& writer, const std::string& name, const std::string& text,
+                     plan::QuestionMoment moment, plan::QuestionTruth truth) {
   using enum plan::Op;
   const auto make = [](plan::Op op, unsigned dst, unsigned a = 0, unsigned b = 0) {
     return plan::Instruction{static_cast<std::uint8_t>(op), 0, static_cast<std::uint16_t>(dst),
@@ -105,7 +106,7 @@ inline void ask_done(plan::Writer& writer) {
       make(kPOS, 0, 0), make(kPOS, 1, 1),   make(kVSUB, 2, 0, 1),  make(kVLENXY, 3, 2),
       make(kKR, 4, 0),  make(kLE, 5, 3, 4), make(kEMITB, 6, 5, 0), make(kEND, 6)};
   const std::vector<plan::MetricRecord> metrics = {
-      {writer.text("done"), static_cast<std::uint32_t>(plan::MetricType::kBool),
+      {writer.text(name), static_cast<std::uint32_t>(plan::MetricType::kBool),
        static_cast<std::uint32_t>(plan::Readout::kAtEnd)}};
   plan::ProgramRecord program;
   program.constants = plan::append<double>(r.constants, constants);
@@ -114,11 +115,19 @@ inline void ask_done(plan::Writer& writer) {
   program.metrics = plan::append<plan::MetricRecord>(r.metrics, metrics);
   r.programs.push_back(program);
   QuestionWriter q(writer);
-  q.family("done", plan::QuestionForm::kYesNo).moment =
-      static_cast<std::uint32_t>(plan::QuestionMoment::kEnd);
-  q.question("The robot was told: \"put carrot on plate\". Has it done so?",
-             plan::QuestionTruth::kRecorded, {})
-      .program = static_cast<std::uint32_t>(r.programs.size() - 1);
+  q.family(name, plan::QuestionForm::kYesNo).moment = static_cast<std::uint32_t>(moment);
+  q.question(text, truth, {}).program = static_cast<std::uint32_t>(r.programs.size() - 1);
+}
+
+// About the end of a recorded episode.
+inline void ask_done(plan::Writer& writer) {
+  ask_over(writer, "done", "The robot was told: \"put carrot on plate\". Has it done so?",
+           plan::QuestionMoment::kEnd, plan::QuestionTruth::kRecorded);
+}
+// About the settled start.
+inline void ask_begun(plan::Writer& writer) {
+  ask_over(writer, "begun", "Is the carrot over the plate?", plan::QuestionMoment::kStart,
+           plan::QuestionTruth::kSettled);
 }
 
 inline plan::Plan asking_plan(std::uint32_t episodes,

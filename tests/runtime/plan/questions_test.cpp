@@ -51,6 +51,22 @@ TEST_CASE("each defect of questions is refused where it is") {
   }
 }
 
+TEST_CASE("what is judged is judged at its own moment") {
+  const auto refused = [](QuestionTruth truth, QuestionMoment moment) {
+    Writer w = question_writer();
+    std::ranges::reverse(w.records.spans);
+    w.records.questions[5].truth = static_cast<std::uint32_t>(truth);
+    w.records.families[5].moment = static_cast<std::uint32_t>(moment);
+    w.fill_ids();
+    const Status status = verify(w.lay_out());
+    return status.ok() ? std::string() : status.failure().message;
+  };
+  CHECK(refused(QuestionTruth::kRecorded, QuestionMoment::kEnd).empty());
+  CHECK(refused(QuestionTruth::kSettled, QuestionMoment::kStart).empty());
+  CHECK(refused(QuestionTruth::kSettled, QuestionMoment::kEnd).ends_with("[question-form]"));
+  CHECK(refused(QuestionTruth::kRecorded, QuestionMoment::kStart).ends_with("[question-form]"));
+}
+
 TEST_CASE("a question's id is what is asked and what is right, not what it is called") {
   const Sha256 id = first_id();
   CHECK(id == first_id([](Records& r, Writer& w) { r.families[0].name = w.text("other"); }));
