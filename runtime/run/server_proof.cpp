@@ -71,10 +71,13 @@ Status ServerProof::watch(store::Store& store) {
   // Of one that draws and says nothing of itself nothing is ever shown.
   if (!identity_->first().is_steady && identity_->first().hello.empty()) return {};
   PROBE_TRY(store.watch());
-  identity_->tell([this, &store] {
-    const auto unproven = store.unproven();
-    if (unproven && !unproven->empty()) is_shown_again_ = true;
-    (void)store.proven();  // should it fail, the rows are asked about once more
+  identity_->tell([this, &store]() -> servers::Identity::Shown {
+    auto before = store.unproven();
+    if (!before) return {};  // the rows are asked about once more
+    return [this, &store, rows = std::move(*before)] {
+      if (!rows.empty()) is_shown_again_ = true;
+      (void)store.proven(rows);  // as above, should it fail
+    };
   });
   return {};
 }

@@ -8,15 +8,16 @@ namespace probe::servers {
 using policy::AtEnd;
 
 Status Identity::check(Transport& transport, const Profile& adapted) {
+  const Shown shown = asks_ ? asks_() : Shown();
   PROBE_TRY(check_hello(transport));
-  if (!first_.is_steady) {
-    if (!first_.hello.empty() && shown_) shown_();
+  if (first_.is_steady) {
+    PROBE_ASSIGN(const AtEnd at_end, ask_again(transport, adapted, 1));
+    note(at_end);
+    if (policy::is_exchanged(at_end)) return lost();
+  } else if (first_.hello.empty()) {
     return {};
   }
-  PROBE_ASSIGN(const AtEnd at_end, ask_again(transport, adapted, 1));
-  note(at_end);
-  if (policy::is_exchanged(at_end)) return lost();
-  if (shown_) shown_();
+  if (shown) shown();
   return {};
 }
 
@@ -26,6 +27,14 @@ Status Identity::check_hello(const Transport& transport) {
   if (first_.is_steady || first_.hello.empty() || transport.remarks() == first_.hello) return {};
   note(AtEnd::kOther);
   return lost();
+}
+
+bool Identity::is_due() {
+  int answers = answers_;
+  while (first_.is_steady && answers >= kAnswersBetween) {
+    if (answers_.compare_exchange_weak(answers, 0)) return true;
+  }
+  return false;
 }
 
 AtEnd Identity::ask_all(Transport& transport, const Profile& adapted) {

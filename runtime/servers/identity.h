@@ -1,7 +1,9 @@
 // Whether the policy that a call of `run` began with is the one that answers: its first questions,
-// asked again over every connection that is made anew, and when the call ends.
+// asked again over every connection that is made anew, now and then where no connection shows an
+// exchange, and when the call ends.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -31,8 +33,10 @@ struct FirstAnswers {
 class Identity {
  public:
   explicit Identity(FirstAnswers first) : first_(std::move(first)) {}
-  // Before the first connection: is told each time that the policy was shown to be the one.
-  void tell(std::function<void()> shown) { shown_ = std::move(shown); }
+  // Before the first connection: `asks` is called each time before the policy is asked, and what it
+  // returns when the policy was shown to be the one. What was answered meanwhile is not shown.
+  using Shown = std::function<void()>;
+  void tell(std::function<Shown()> asks) { asks_ = std::move(asks); }
 
   // Of a connection that was just opened, whose profile is `adapted`: its hello is looked at, and
   // of a policy that draws nothing the first question is asked, in an episode of its own (of one
@@ -41,6 +45,13 @@ class Identity {
   Status check(Transport& transport, const Profile& adapted);
   // The hello alone, of a connection that this side ended and made again.
   Status check_hello(const Transport& transport);
+
+  // Of protocols where an exchange is not seen: an answer of an episode came; and whether so many
+  // came since the last time that who answers is to be asked again at the border of an episode.
+  // True to one caller, which check()s.
+  static constexpr int kAnswersBetween = 50;
+  void note_answer() { ++answers_; }
+  bool is_due();
 
   // Every question, as when the call began.
   policy::AtEnd ask_all(Transport& transport, const Profile& adapted);
@@ -61,7 +72,8 @@ class Identity {
   void note(policy::AtEnd at_end);
 
   FirstAnswers first_;
-  std::function<void()> shown_;
+  std::function<Shown()> asks_;
+  std::atomic<int> answers_ = 0;  // since the last is_due() that was true
   mutable std::mutex mutex_;
   policy::AtEnd found_ = policy::AtEnd::kNotAsked;
 };

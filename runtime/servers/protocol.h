@@ -81,6 +81,9 @@ struct ProtocolRow {
   bool has_joint_actions = false;
   // Two questions of the same content differ, as they carry the time.
   bool is_timed = false;
+  // Another policy can take the place of one that answers without a connection being lost: who
+  // answers is asked again now and then, see Identity::is_due().
+  bool is_exchanged_unseen = false;
   // Where they gather, Transport::gather() says how many.
   Batches batches = Batches::kNone;
 };

@@ -12,6 +12,7 @@
 #include "runtime/servers/connecting.h"
 #include "runtime/servers/conversion.h"
 #include "runtime/servers/meaning.h"
+#include "runtime/servers/protocol.h"
 #include "runtime/servers/resize.h"
 
 namespace probe::servers {
@@ -93,7 +94,8 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   spoiled_.reset();
   is_earlier_spoiled_ = false;
   asked_ = 0;
-  if (!is_open_) PROBE_TRY(connect());
+  if (is_exchanged_unseen() && identity_->is_due()) is_shown_ = false;
+  PROBE_TRY(is_open_ ? show_who_answers() : connect());
   arm_.reset();
   if (start.robot != nullptr) {
     PROBE_TRY(
@@ -194,8 +196,7 @@ Result<std::optional<policy::Answerer::Answer>> ServerPolicy::wait(
     return named(fits.failure(), server_);
   }
   last_took_ = std::chrono::ceil<wire::Duration>(policy::LiveClock::now() - asked_at_);
-  ++asked_;
-  has_answered_ = true;
+  note_answer();
   last_length_ = answer->actions.size();
   return std::optional(std::move(*answer));
 }
@@ -242,17 +243,25 @@ Status ServerPolicy::connect() {
   notes_ = transport_->notes();
   for (std::string& note : notes_) note = without_key(note);
   queue_ = ChunkQueue(profile_);
-  if (!identity_) return {};
-  if (Status known = check_identity(); !known) {
-    drop();
-    return named(known.failure(), server_);
-  }
+  if (!identity_ || !is_shown_) return show_who_answers();
+  return kept(identity_->check_hello(*transport_));
+}
+
+// A connection on which something failed is dropped.
+Status ServerPolicy::kept(const Status& fine) {
+  if (fine) return {};
+  drop();
+  return named(fine.failure(), server_);
+}
+
+Status ServerPolicy::show_who_answers() {
+  if (!identity_ || is_shown_) return {};
+  PROBE_TRY(kept(check_identity()));
   is_shown_ = true;
   return {};
 }
 
 Status ServerPolicy::check_identity() {
-  if (is_shown_) return identity_->check_hello(*transport_);
   PROBE_TRY(identity_->check(*transport_, profile_));
   if (profile_.connection != ConnectionUse::kPerEpisode) return {};
   // Its server knows an episode by its connection: the question is no part of one.
@@ -278,9 +287,18 @@ Status ServerPolicy::ask_and_wait(const policy::Observation& observation) {
   }();
   if (!answer) return answer.failure();
   last_took_ = std::chrono::ceil<wire::Duration>(policy::LiveClock::now() - since);
+  note_answer();
+  return queue_.put(std::move(*answer));
+}
+
+void ServerPolicy::note_answer() {
   ++asked_;
   has_answered_ = true;
-  return queue_.put(std::move(*answer));
+  if (is_exchanged_unseen()) identity_->note_answer();
+}
+
+bool ServerPolicy::is_exchanged_unseen() const {
+  return identity_ && row_of(profile_.protocol).is_exchanged_unseen;
 }
 
 // What lies there before an episode's first answer is left of the episode before.

@@ -64,6 +64,10 @@ class ServerPolicy : public policy::Policy, public policy::Answerer {
   Result<Request> next_request(const policy::Observation& observation);
   void forget_question();
   Status check_identity();
+  Status show_who_answers();
+  Status kept(const Status& fine);
+  bool is_exchanged_unseen() const;
+  void note_answer();
   void note_unasked(const Failure& failure);
   Deadlines deadlines() const;
   void drop();

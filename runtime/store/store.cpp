@@ -329,6 +329,14 @@ class FolderStore final : public Store {
     const std::lock_guard lock(mutex_);
     return unproven_.clear();
   }
+  Status proven(const std::vector<EpisodeKey>& rows) override {
+    const std::lock_guard lock(mutex_);
+    if (rows.empty()) return {};
+    return in_one([&]() -> Status {
+      for (const EpisodeKey& key : rows) PROBE_TRY(unproven_.remove(key));
+      return {};
+    });
+  }
 
   Status write_call(const RunCall& call) override {
     const std::lock_guard lock(mutex_);

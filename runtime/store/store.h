@@ -50,8 +50,9 @@ class Store {
   virtual Status doubt(const std::vector<EpisodeKey>& keys) = 0;
   // Valid rows that were noted so, by this call or one before it, since the last proven().
   virtual Result<std::vector<EpisodeKey>> unproven() = 0;
-  // One policy answered all that is stored.
+  // One policy answered all that is stored, or these rows.
   virtual Status proven() = 0;
+  virtual Status proven(const std::vector<EpisodeKey>& rows) = 0;
 
   // How the reasons end with which valid rows are made invalid: no trace holds them, so that
   // read_stored_trace believes these beside a trace that ended well, and no others.

@@ -15,6 +15,13 @@ Status UnprovenTable::add(const EpisodeKey& key) {
   return insert.done();
 }
 
+Status UnprovenTable::remove(const EpisodeKey& key) {
+  Statement erase(database_, "delete from unproven where task = ? and episode = ? and seed = ?",
+                  Database::Access::kWrite);
+  erase.bind(key.task).bind(key.episode).bind(key.seed).next();
+  return erase.done();
+}
+
 Result<std::vector<EpisodeKey>> UnprovenTable::valid() {
   std::vector<EpisodeKey> keys;
   PROBE_ASSIGN(const bool has_table, is_there());

@@ -19,6 +19,8 @@ class UnprovenTable {
   // Makes the table where it is not there.
   Status make();
   Status add(const EpisodeKey& key);
+  // Where the table is there.
+  Status remove(const EpisodeKey& key);
   // Of these, those whose rows are valid; none where there is no table.
   Result<std::vector<EpisodeKey>> valid();
   Status clear();

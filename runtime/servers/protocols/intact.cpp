@@ -129,6 +129,7 @@ constinit const ProtocolRow intact_row{
     .serve = serve_intact,
     .served_options = "&chunk.length=any&chunk.use=all&worlds=many&model=/served",
     .has_reset = always_has_reset,
+    .is_exchanged_unseen = true,  // any client may have another model loaded for all
 };
 
 }  // namespace probe::servers

@@ -111,6 +111,7 @@ constinit const ProtocolRow openvla_row{
     .served_options = "&chunk.length=any&chunk.use=all",
     .carrier = Carrier::kHttp,
     .path = "/act",
+    .is_exchanged_unseen = true,  // each question has a connection of its own
 };
 
 }  // namespace probe::servers

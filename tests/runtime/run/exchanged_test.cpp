@@ -2,10 +2,13 @@
 // middle of one.
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <memory>
 
 #include "runtime/run/run.h"
+#include "runtime/servers/known_observations.h"
 #include "runtime/servers/reading.h"
+#include "runtime/servers/served.h"
 #include "runtime/servers/servers.h"
 #include "runtime/store/store.h"
 #include "tests/runtime/run/table_plan.h"
@@ -88,6 +91,28 @@ class Exchangeable {
   }
   std::unique_ptr<test::PythonServer> server_;
   std::string port_;
+};
+
+// A server whose connections stand whatever becomes of its model, which changes in its place.
+class Switched final : public servers::ServedPolicy {
+ public:
+  struct State {
+    std::atomic<int> model = 0;
+    std::atomic<int> proofs = 0;  // questions of no episode
+  };
+  explicit Switched(std::shared_ptr<State> state)
+      : state_(std::move(state)), digest_(servers::serve_digest()()) {}
+  void reset() override {}
+  Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
+    if (servers::is_known_observation(asked.picture.bytes, asked.words)) ++state_->proofs;
+    servers::Asked seen = asked;
+    seen.words += std::to_string(state_->model);
+    return digest_->answer(seen, count);
+  }
+
+ private:
+  std::shared_ptr<State> state_;
+  std::unique_ptr<servers::ServedPolicy> digest_;
 };
 
 std::vector<std::string> hashes_of(const std::string& dir) {
@@ -311,6 +336,52 @@ TEST_CASE(
   CHECK(last_call(folder / "run").reading->at_end == policy::AtEnd::kSame);
   CHECK(valid_rows(folder / "run") == 2);
   CHECK(hashes_of(folder / "run") == hashes_of(folder / "alone"));
+}
+
+TEST_CASE(
+    "another model that came and went behind standing connections spoils what it may have "
+    "answered") {
+  constexpr int kSteps = 30, kEpisodes = 7;
+  for (const auto protocol : {servers::Protocol::kOpenVla, servers::Protocol::kIntact}) {
+    CAPTURE(std::string(servers::to_word(protocol)));
+    TemporaryFolder folder;
+    const plan::Plan plan = table_plan(kEpisodes, kSteps);
+    const auto state = std::make_shared<Switched::State>();
+    servers::ServeOptions serve;
+    serve.policy = [state] { return std::make_unique<Switched>(state); };
+    const auto listener = servers::serve(protocol, serve);
+    REQUIRE(listener.ok());
+    RunOptions options;
+    options.policy =
+        servers::address_of_served(protocol, serve, "127.0.0.1:" + (*listener)->port());
+    options.name = "mine";
+    options.seeds = {42};
+    options.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
+    options.out = folder / "plain";
+    const auto plain = run(plan, options);
+    REQUIRE_MESSAGE(plain.ok(), to_text(plain.failure()));
+    // Four as the call begins, one over the connection, one behind the second, fourth and sixth
+    // episode each, and three as it ends.
+    CHECK(state->proofs == 11);
+
+    options.out = folder / "run";
+    options.progress = [&](const RunProgress& progress) {
+      if (progress.done == 3) state->model = 1;
+      if (progress.done == 5) state->model = 0;
+    };
+    const auto spoiled = run(plan, options);
+    REQUIRE_FALSE(spoiled.ok());
+    CHECK(spoiled.failure().code == Fault::kPolicy);
+    CHECK(spoiled.failure().message.find(
+              "the 2 episodes of this call since it was last shown to be the same are invalid") !=
+          std::string::npos);
+    CHECK(last_call(folder / "run").reading->at_end == policy::AtEnd::kOther);
+    CHECK(valid_rows(folder / "run") == 2);
+    options.progress = nullptr;
+    const auto again = run(plan, options);
+    REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
+    CHECK(hashes_of(folder / "run") == hashes_of(folder / "plain"));
+  }
 }
 
 TEST_CASE("a policy that is exchanged in the middle of a run spoils what the call did") {

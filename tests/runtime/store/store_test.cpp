@@ -97,6 +97,11 @@ TEST_CASE(
   const std::string reason = "policy: gpu:1: " + std::string(Store::kMixedUp);
   REQUIRE((*store)->invalidate({key(1)}, reason).ok());
   CHECK((*store)->unproven().value() == std::vector<EpisodeKey>{key(3)});
+  // Rows that came while the policy was asked are not shown by its answer.
+  REQUIRE((*store)->watch().ok());
+  REQUIRE(store_episode(**store, row_of(4)).ok());
+  REQUIRE((*store)->proven({key(3)}).ok());
+  CHECK((*store)->unproven().value() == std::vector<EpisodeKey>{key(4)});
   REQUIRE((*store)->proven().ok());
   CHECK((*store)->unproven().value().empty());
   const auto rows = read_results(dir);
