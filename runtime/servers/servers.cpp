@@ -142,8 +142,54 @@ std::string words_over(Carrier carrier) {
   return words;
 }
 
-// What is spoken at a URL, by its options; takes `protocol` from them.
-Result<Protocol> spoken(const Scheme& scheme, Options& options) {
+// An address's text without one of its options.
+std::string without_option(std::string_view address, std::string_view name) {
+  const std::size_t query = std::min(address.find('?'), address.size());
+  std::string text(address.substr(0, query));
+  char before = '?';
+  for (std::string_view rest = address.substr(query); !rest.empty();) {
+    rest.remove_prefix(1);
+    const std::string_view option = rest.substr(0, rest.find('&'));
+    rest.remove_prefix(option.size());
+    if (option.substr(0, option.find('=')) == name) continue;
+    (text += before) += option;
+    before = '&';
+  }
+  return text;
+}
+
+// The same address, as it begins for a protocol that does not go over `scheme`'s URLs.
+std::string address_of(Protocol protocol, const Scheme& scheme, const wire::Endpoint& server,
+                       std::string_view argument) {
+  const ProtocolRow& row = row_of(protocol);
+  for (const Scheme& other : url_schemes()) {
+    if (other.carrier == row.carrier && other.is_tls == scheme.is_tls)
+      return std::string(other.word) + ":" + std::string(argument);
+  }
+  const std::string rest = without_option(argument, "protocol");
+  const std::string name =
+      server.host.find(':') == std::string::npos ? server.host : "[" + server.host + "]";
+  const std::string_view port = server.port == scheme.port ? row.port : server.port;
+  return std::string(row.word) + "://" + name + ":" + std::string(port) +
+         rest.substr(std::min(rest.find('?'), rest.size()));
+}
+
+// Of a URL that says nothing of what is spoken there: that it can be what others are for.
+std::string words_elsewhere(const Scheme& scheme, std::string_view argument) {
+  std::string text;
+  for (const Scheme& other : url_schemes()) {
+    if (other.carrier == scheme.carrier || other.is_tls != scheme.is_tls) continue;
+    const std::string place(argument.substr(0, argument.find('?')));
+    text +=
+        "; " + words_over(other.carrier) + " at `" + std::string(other.word) + ":" + place + "`";
+  }
+  return text;
+}
+
+// What is spoken at a URL, by its options; takes `protocol` from them. `argument` is the URL behind
+// its colon.
+Result<Protocol> spoken(const Scheme& scheme, wire::Endpoint& server, std::string_view argument) {
+  Options& options = server.options;
   const std::string url = std::string(scheme.word) + "://";
   std::string word;
   if (auto node = options.extract("protocol"); !node.empty()) {
@@ -153,10 +199,14 @@ Result<Protocol> spoken(const Scheme& scheme, Options& options) {
     word = to_word(found.protocol);
   } else {
     return usage("`" + url + "` does not say what is spoken there: add ?profile=NAME, or " +
-                 "?protocol=NAME of " + words_over(scheme.carrier));
+                 "?protocol=NAME of " + words_over(scheme.carrier) +
+                 words_elsewhere(scheme, argument));
   }
   for (const Protocol protocol : all_protocols()) {
-    if (to_word(protocol) == word && row_of(protocol).carrier == scheme.carrier) return protocol;
+    if (to_word(protocol) != word) continue;
+    if (row_of(protocol).carrier == scheme.carrier) return protocol;
+    return usage("`" + word + "` is not spoken over `" + url + "`: write `" +
+                 address_of(protocol, scheme, server, argument) + "`");
   }
   return usage("`" + word + "` is not spoken over `" + url + "`; " + words_over(scheme.carrier) +
                (words_over(scheme.carrier).find(',') == std::string::npos ? " is" : " are"));
@@ -171,7 +221,7 @@ Result<ServerChoice> choose_server(Protocol protocol, std::string_view argument)
 
 Result<ServerChoice> choose_server(const Scheme& scheme, std::string_view argument) {
   PROBE_ASSIGN(wire::Endpoint server, wire::parse_endpoint(argument, scheme.port));
-  PROBE_ASSIGN(const Protocol protocol, spoken(scheme, server.options));
+  PROBE_ASSIGN(const Protocol protocol, spoken(scheme, server, argument));
   if (scheme.is_tls) {
     server.tls.is_on = true;
     if (auto node = server.options.extract("ca"); !node.empty())

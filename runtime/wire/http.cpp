@@ -160,11 +160,12 @@ Result<HttpResponse> exchange(const Endpoint& server, const HttpRequest& request
 
 }  // namespace
 
-std::string sent_elsewhere(unsigned status, std::string_view location) {
+std::string sent_elsewhere(unsigned status, std::string_view location, bool is_websocket) {
   constexpr unsigned kSentFrom = 300, kSentBefore = 400;
   if (status < kSentFrom || status >= kSentBefore || location.empty()) return "";
   // What stands behind a question mark may be a secret.
-  const std::string place(location.substr(0, location.find('?')));
+  std::string place(location.substr(0, location.find('?')));
+  if (is_websocket && place.starts_with("http")) place.replace(0, 4, "ws");
   return ", which sends to `" + printable(place, 200) + "`: let the address name that";
 }
 

@@ -41,8 +41,8 @@ struct HttpResponse {
 };
 
 // Behind "answered with status 302": ", which sends to `PLACE`: ..."; empty for answers that send
-// nowhere.
-std::string sent_elsewhere(unsigned status, std::string_view location);
+// nowhere. Where a WebSocket was to be opened, PLACE is as its address is written.
+std::string sent_elsewhere(unsigned status, std::string_view location, bool is_websocket = false);
 
 // Whatever status the server answers with is a response. Fails (kPolicy) naming the server
 // and what happened: unknown host, refused, no answer in time, closed before or in the middle of

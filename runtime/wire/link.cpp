@@ -50,7 +50,8 @@ Failure unless_tls(Failure failure, const Endpoint& server, const Deadline& dead
   boost::asio::io_context io;
   Link link(io);
   if (!link.open(io, asked, Deadline::in(std::min(left, kProbePatience)), resolver)) return failure;
-  return {Fault::kAnswered, "the server speaks TLS: its address begins with " + scheme,
+  return {Fault::kAnswered,
+          "the server speaks TLS: its address begins with " + scheme + asked.authority(),
           server.name()};
 }
 

@@ -143,7 +143,7 @@ class WebSocket::Connection {
     if (!is_declined) return {};
     *status = response->result_int();
     const std::string location((*response)[beast::http::field::location]);
-    const std::string elsewhere = sent_elsewhere(response->result_int(), location);
+    const std::string elsewhere = sent_elsewhere(response->result_int(), location, true);
     const bool is_declined_for_good =
         !elsewhere.empty() || response->result() == beast::http::status::unauthorized ||
         response->result() == beast::http::status::forbidden;  // others may be a server that starts

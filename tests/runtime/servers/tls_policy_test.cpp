@@ -79,10 +79,22 @@ TEST_CASE("a URL as it was copied says host, port and path; a profile says what 
 TEST_CASE("a URL that does not say what is spoken, or says what cannot be, is refused") {
   CHECK(refusal("wss://gpu") ==
         "`wss://` does not say what is spoken there: add ?profile=NAME, or ?protocol=NAME of "
-        "openpi, intact, roboarena, vlaeval, starvla");
-  CHECK(refusal("wss://gpu?protocol=gr00t").starts_with("`gr00t` is not spoken over `wss://`; "));
-  CHECK(refusal("https://gpu?profile=pi0_bridge") ==
-        "`intact` is not spoken over `https://`; openvla is");
+        "openpi, intact, roboarena, vlaeval, starvla; openvla at `https://gpu`");
+  CHECK(refusal("http://gpu:8000/a?chunk.use=2") ==
+        "`http://` does not say what is spoken there: add ?profile=NAME, or ?protocol=NAME of "
+        "openvla; openpi, intact, roboarena, vlaeval, starvla at `ws://gpu:8000/a`");
+  CHECK(refusal("https://gpu?profile=pi0_bridge&model=/m") ==
+        "`intact` is not spoken over `https://`: write `wss://gpu?profile=pi0_bridge&model=/m`");
+  CHECK(refusal("http://gpu:8000/a?protocol=openpi") ==
+        "`openpi` is not spoken over `http://`: write `ws://gpu:8000/a?protocol=openpi`");
+  CHECK(refusal("wss://gpu?protocol=openvla") ==
+        "`openvla` is not spoken over `wss://`: write `https://gpu?protocol=openvla`");
+  CHECK(refusal("wss://gpu?protocol=gr00t&dialect=n1.5") ==
+        "`gr00t` is not spoken over `wss://`: write `gr00t://gpu:5555?dialect=n1.5`");
+  CHECK(refusal("http://[::1]:9?protocol=lerobot") ==
+        "`lerobot` is not spoken over `http://`: write `lerobot://[::1]:9`");
+  CHECK(refusal("wss://gpu?protocol=opnpi") ==
+        "`opnpi` is not spoken over `wss://`; openpi, intact, roboarena, vlaeval, starvla are");
   CHECK(
       refusal("wss://gpu?protocol=openpi&profile=pi0_bridge") ==
       "profile `pi0_bridge` is for servers that speak intact, not openpi: `?protocol=` is left out "
