@@ -49,8 +49,8 @@ constexpr Field kFields[] = {
     {"protocol", [](Profile& p) -> Slot { return &p.protocol; }, "what the server speaks"},
     {"about", [](Profile& p) -> Slot { return &p.about; }, "a sentence for people"},
     {"image", [](Profile& p) -> Slot { return &p.images; },
-     "CAMERA -> KEY [WIDTHxHEIGHT none|stretch|pad|crop] [hwc_u8|chw_f32]; CAMERA `first` is the "
-     "scene's first; one line each"},
+     "CAMERA -> KEY [WIDTHxHEIGHT stretch|pad|crop|lanczos|cv2_linear|cv2_area|tf_lanczos3] "
+     "[jpeg95] [hwc_u8|chw_f32]; CAMERA `first` is the scene's first; one line each"},
     {"prompt.key", [](Profile& p) -> Slot { return &p.prompt_key; }, "the instruction's key"},
     {"prompt.case", [](Profile& p) -> Slot { return &p.prompt_case; }, ""},
     {"prompt.full_stop", [](Profile& p) -> Slot { return &p.prompt_full_stop; },
@@ -311,7 +311,8 @@ struct Reader {
   Result<ImageRule> read_image() const {
     const std::vector<std::string_view> words = split(value);
     if (words.size() < 3 || words[1] != "->") {
-      return bad("an image is written `CAMERA -> KEY [WIDTHxHEIGHT RULE] [LAYOUT]`" + found(value));
+      return bad("an image is written `CAMERA -> KEY [WIDTHxHEIGHT RULE] [jpeg95] [LAYOUT]`" +
+                 found(value));
     }
     ImageRule rule;
     if (words[0] != "first") rule.camera = words[0];
@@ -330,6 +331,8 @@ struct Reader {
         }
         rule.width = *width;
         rule.height = *height;
+      } else if (word == kThroughJpeg) {
+        rule.is_jpeg = true;
       } else if (word == "hwc_u8" || word == "chw_f32") {
         PROBE_TRY(read_word(word, "image", &rule.layout));
       } else {
@@ -372,6 +375,7 @@ struct Writer {
         line += " " + std::to_string(rule.width) + "x" + std::to_string(rule.height) + " " +
                 std::string(word_of(rule.resize));
       }
+      if (rule.is_jpeg) line += " " + std::string(kThroughJpeg);
       if (rule.layout != PixelLayout::kHwcU8) line += " " + std::string(word_of(rule.layout));
       lines.push_back(std::move(line));
     }

@@ -19,12 +19,14 @@ enum class Protocol {
 };
 enum class Resize {
   kNone,
-  kStretch,    // to the size, whatever the shape
-  kPad,        // the whole picture, black bars around it: openpi's resize_with_pad
-  kCrop,       // the middle of the picture in the size's shape, then resized
-  kLanczos,    // to the size, by Pillow's LANCZOS: RoboArena's evaluator
-  kCv2Linear,  // to the size, as cv2.resize does: GR00T's client
-  kCv2Area,    // to the size, as cv2.resize with INTER_AREA does
+  kStretch,     // to the size, whatever the shape
+  kPad,         // the whole picture, black bars around it: openpi's resize_with_pad
+  kCrop,        // the middle of the picture in the size's shape, then resized
+  kLanczos,     // to the size, by Pillow's LANCZOS: RoboArena's evaluator
+  kCv2Linear,   // to the size, as cv2.resize does: GR00T's client
+  kCv2Area,     // to the size, as cv2.resize with INTER_AREA does
+  kTfLanczos3,  // to the size, as tf.image.resize with antialias does: Octo's data, OpenVLA's
+                // clients
 };
 enum class PixelLayout {
   kHwcU8,   // [height, width, 3], 0..255
@@ -110,6 +112,7 @@ struct ImageRule {
   int width = 0, height = 0;  // 0: as rendered
   Resize resize = Resize::kNone;
   PixelLayout layout = PixelLayout::kHwcU8;
+  bool is_jpeg = false;  // goes through JPEG before it is resized, see jpeg_round_trip.h
   bool operator==(const ImageRule&) const = default;
 };
 

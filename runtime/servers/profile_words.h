@@ -20,8 +20,10 @@ inline constexpr std::array kResizes = {
     Word<Resize>{"none", Resize::kNone},        Word<Resize>{"stretch", Resize::kStretch},
     Word<Resize>{"pad", Resize::kPad},          Word<Resize>{"crop", Resize::kCrop},
     Word<Resize>{"lanczos", Resize::kLanczos},  Word<Resize>{"cv2_linear", Resize::kCv2Linear},
-    Word<Resize>{"cv2_area", Resize::kCv2Area},
+    Word<Resize>{"cv2_area", Resize::kCv2Area}, Word<Resize>{"tf_lanczos3", Resize::kTfLanczos3},
 };
+// Of an image: through JPEG first.
+inline constexpr std::string_view kThroughJpeg = "jpeg95";
 inline constexpr std::array kPixelLayouts = {
     Word<PixelLayout>{"hwc_u8", PixelLayout::kHwcU8},
     Word<PixelLayout>{"chw_f32", PixelLayout::kChwF32},

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "runtime/base/trig.h"
+#include "runtime/servers/jpeg_round_trip.h"
 
 namespace probe::servers {
 namespace {
@@ -185,7 +186,10 @@ wire::Bytes resize_lanczos(const policy::Image& image, int width, int height) {
   return resampled(image, width, height, kLanczos3);
 }
 
-wire::Array to_pixels(const policy::Image& image, const ImageRule& rule) {
+wire::Array to_pixels(const policy::Image& rendered, const ImageRule& rule) {
+  policy::Image image = rendered;
+  wire::Bytes lossy;
+  if (rule.is_jpeg) image.rgb = lossy = through_jpeg(rendered);
   int width = rule.width, height = rule.height;
   wire::Bytes rgb;
   const bool as_rendered = width == 0 || (width == image.width && height == image.height);
@@ -203,6 +207,8 @@ wire::Array to_pixels(const policy::Image& image, const ImageRule& rule) {
     rgb = resize_cv2_linear(image, width, height);
   } else if (rule.resize == Resize::kCv2Area) {
     rgb = resize_cv2_area(image, width, height);
+  } else if (rule.resize == Resize::kTfLanczos3) {
+    rgb = resize_tf_lanczos3(image, width, height);
   } else {
     rgb = resize_bilinear(image, width, height);
   }

@@ -1,6 +1,6 @@
 // Pictures in the size and form that a server expects, as the policies' own clients make them, to
 // the bit: Pillow's filters (libImaging/Resample.c: as wide as the reduction, weights in 22-bit
-// fixed point) and OpenCV's.
+// fixed point) and OpenCV's; TensorFlow's nearly to it.
 #pragma once
 
 #include "runtime/policy/policy.h"
@@ -26,5 +26,9 @@ wire::Bytes resize_lanczos(const policy::Image& image, int width, int height);
 // INTER_AREA takes the mean of what an output pixel covers.
 wire::Bytes resize_cv2_linear(const policy::Image& image, int width, int height);
 wire::Bytes resize_cv2_area(const policy::Image& image, int width, int height);
+
+// tf.image.resize with lanczos3 and antialias, to the nearest level of 0 .. 255: within one level
+// of TensorFlow's, whose sums of floats are rounded as it was compiled.
+wire::Bytes resize_tf_lanczos3(const policy::Image& image, int width, int height);
 
 }  // namespace probe::servers

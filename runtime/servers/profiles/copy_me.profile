@@ -5,8 +5,9 @@
 protocol = openpi                    # openpi, intact, roboarena, vlaeval, gr00t, openvla, starvla
 about = what it is, for people
 
-# CAMERA -> KEY [WIDTHxHEIGHT stretch|pad|crop|lanczos|cv2_linear|cv2_area] [hwc_u8|chw_f32]. CAMERA is `first` or a camera's
-# name in the scene. One line a picture. Without a size the picture is sent as rendered.
+# CAMERA -> KEY [WIDTHxHEIGHT stretch|pad|crop|lanczos|cv2_linear|cv2_area|tf_lanczos3] [jpeg95] [hwc_u8|chw_f32]. CAMERA is
+# `first` or a camera's name in the scene. One line a picture. Without a size the picture is sent as rendered; with jpeg95
+# it goes through a JPEG of quality 95 before, as TensorFlow writes and reads one.
 image = first -> observation/image 224x224 pad
 
 prompt.key = prompt

@@ -131,6 +131,7 @@ TEST_CASE("a profile's text reads back equal") {
   const auto read = parse_profile(
       "protocol = gr00t\nabout = \"a # inside\" # and one behind\n"
       "image = first -> video.image_0 256x252 crop chw_f32\nimage = wrist -> w\n"
+      "image = wrist -> v 224x224 tf_lanczos3 jpeg95 chw_f32\nimage = wrist -> u jpeg95\n"
       "state.layout = joints\nstate.type = f64\naction.threshold = 0.5\n"
       "action.normalised = bound\naction.low = -1 -1 -1 -1 -1 -1 0\naction.high = 1 1 1 1 1 1 0\n"
       "action.mask = 1, 1, 1, 1, 1, 1, 0\nchunk.length = 8\nchunk.use = 3\ntimeout.wait_s = 0.25\n",
@@ -138,6 +139,10 @@ TEST_CASE("a profile's text reads back equal") {
   REQUIRE_MESSAGE(read.ok(), to_text(read.failure()));
   CHECK(read->about == "a # inside");
   CHECK(read->images[0].height == 252);
+  CHECK(read->images[2].resize == Resize::kTfLanczos3);
+  CHECK(read->images[2].is_jpeg);
+  CHECK(read->images[3].is_jpeg);
+  CHECK_FALSE(read->images[1].is_jpeg);
   const auto again = parse_profile(to_text(*read), "again");
   REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
   CHECK(*again == *read);

@@ -1,12 +1,17 @@
 // Resizing against Pillow 9.4's and OpenCV 4.6's own bytes, made once with Debian's python3-pil and
-// python3-opencv.
+// python3-opencv; against TensorFlow's formula in numpy's double precision
+// (tests/servers/tf_lanczos3.py); JPEG against libjpeg-turbo 2.1.5's own bytes.
 #include "runtime/servers/resize.h"
 
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 
 #include "runtime/base/sha256.h"
+#include "runtime/servers/jpeg_round_trip.h"
 
 namespace probe::servers {
 using namespace probe::policy;
@@ -110,6 +115,81 @@ TEST_CASE("LANCZOS is Pillow's, linear and area are OpenCV's, to the bit, smalle
         resize_cv2_area(image, 224, 224));
   CHECK(to_pixels(image, {"", "k", 224, 224, Resize::kLanczos}).bytes ==
         resize_lanczos(image, 224, 224));
+}
+
+TEST_CASE("lanczos3 is TensorFlow's formula to a level, smaller and larger") {
+  std::ifstream rows(std::string(VLAPROBE_SOURCE_DIR) + "/tests/runtime/servers/tf_lanczos3.txt");
+  const wire::Bytes small = small_picture(), large = camera_picture();
+  int read = 0, apart = 0, numbers = 0;
+  std::string line, last;
+  wire::Bytes resized;
+  while (std::getline(rows, line)) {
+    std::istringstream words(line);
+    std::string name, hex;
+    int width = 0, height = 0;
+    std::size_t row = 0;
+    words >> name >> width >> height >> row >> hex;
+    const std::string size = name + " " + std::to_string(width) + "x" + std::to_string(height);
+    CAPTURE(size);
+    const bool is_small = name == "small";
+    if (size != last)
+      resized =
+          resize_tf_lanczos3(is_small ? Image{7, 5, small} : Image{640, 480, large}, width, height);
+    last = size;
+    REQUIRE(resized.size() ==
+            static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+    const std::size_t bytes = static_cast<std::size_t>(width) * 3;
+    REQUIRE(hex.size() == 2 * bytes);
+    int farthest = 0;
+    for (std::size_t i = 0; i < bytes; ++i) {
+      const int wanted = std::stoi(hex.substr(2 * i, 2), nullptr, 16);
+      const int off = std::abs(resized[row * bytes + i] - wanted);
+      farthest = std::max(farthest, off);
+      apart += off > 0 ? 1 : 0;
+    }
+    CHECK(farthest <= 1);
+    numbers += static_cast<int>(bytes);
+    ++read;
+  }
+  CHECK(read == 42);
+  // Halves, which floats and doubles round otherwise.
+  CHECK(apart * 200 < numbers);
+  const Image image{640, 480, large};
+  CHECK(to_pixels(image, {"", "k", 224, 224, Resize::kTfLanczos3}).bytes ==
+        resize_tf_lanczos3(image, 224, 224));
+}
+
+TEST_CASE("a picture through JPEG is libjpeg-turbo's to the bit, whatever its size") {
+  struct Made {
+    int width, height;
+    const char* hash;
+  };
+  constexpr Made kMade[] = {
+      {640, 480, "7fd1bcb806a87dc51e20ce9e9950f06f04a1815d826e6a5683363afc7c043bfd"},
+      {224, 224, "20270cd67d71409d4aaee8a8af8226c9af3165ef2b140fe05c9c8c56f31f59dc"},
+      {31, 15, "429cc64749696bad59b2d1571f26336aca9eb45cdcb32d50f4b311f54eedc18d"},
+      {17, 33, "a9f2cbdb71e7222fffca7cc990a8a3c7398852853f7c99d79a6c2815bb26636b"},
+      {8, 6, "b062a73e996a4327f3474fe74f18db791858b36756823a06d93cf2849e4703b3"},
+      {7, 5, "75f8cd2bcc4f6f3cf48047ce2a11e8a01713a49ea1641a463801eeac0f7e655e"},
+      {4, 4, "324ff8f46486938dca20faca37c15e496154eec05773cc6855cfdc2a2f6e4fb4"},
+      {1, 1, "eb285c2e512e66d300029ce58da7f9e30628b67a0dfcbccc7349a0e941c027bf"},
+  };
+  const wire::Bytes large = camera_picture();
+  for (const Made& made : kMade) {
+    CAPTURE(made.width);
+    CAPTURE(made.height);
+    // The first bytes as a picture of that size.
+    const auto size = static_cast<std::size_t>(made.width) * static_cast<std::size_t>(made.height);
+    const Image image{made.width, made.height, std::span(large).first(size * 3)};
+    CHECK(hash_of(through_jpeg(image)) == made.hash);
+  }
+  const Image image{640, 480, large};
+  ImageRule rule{"", "k"};
+  rule.is_jpeg = true;
+  CHECK(to_pixels(image, rule).bytes == through_jpeg(image));
+  rule = {"", "k", 224, 224, Resize::kTfLanczos3, PixelLayout::kHwcU8, true};
+  CHECK(to_pixels(image, rule).bytes ==
+        resize_tf_lanczos3({640, 480, through_jpeg(image)}, 224, 224));
 }
 
 TEST_CASE("a camera's picture is padded, stretched and cropped as the clients in Python do") {
