@@ -1,5 +1,5 @@
 // A picture as it comes out of a JPEG file: what training data went through, and so what clients of
-// policies that were trained on it send theirs through. Without the file, whose codes lose nothing.
+// policies that were trained on it send theirs through.
 #pragma once
 
 #include "runtime/policy/policy.h"
