@@ -179,6 +179,8 @@ void slow_server(benchmark::State& state) {
   state.counters["questions_at_it"] = waiting / elapsed;
 }
 
+constexpr const char* kModel = "m";
+
 // Rows as asking stores them, about the choice (3 orders) and the yes or no of each start in three
 // arms; `visit` takes them with the question's place.
 template <typename Visit>
@@ -190,6 +192,7 @@ void make_rows(const plan::Plan& plan, const Visit& visit) {
     const plan::FamilyRecord& family = plan.families()[question.family];
     for (std::uint32_t rotation = 0; rotation < ask::rotations_of(plan, question); ++rotation) {
       ask::AnswerRow row;
+      row.model = kModel;
       row.question_id = to_hex(plan::to_sha256(question.question_id));
       row.rotation = rotation;
       row.set = plan.text(family.set);
@@ -238,7 +241,7 @@ void rows(benchmark::State& state) {
   std::int64_t written = 0;
   for (auto _ : state) {
     const run::TemporaryFolder folder;
-    const ask::AskRecord record{{to_hex(plan.root()), "m", "bench"}, "smoke", {}};
+    const ask::AskRecord record{{to_hex(plan.root()), kModel, "bench"}, "smoke", {}};
     written = 0;
     state.counters["peak_mb_before"] = peak_mb();
     {
