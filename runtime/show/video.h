@@ -1,5 +1,5 @@
-// H.264 in an mp4 file: yuv420p, index in front. Same frames, same bytes. The only user of FFmpeg's
-// headers is video.cpp.
+// H.264 in an mp4 file: yuv420p, index in front. Same frames, same bytes. FFmpeg's headers stop at
+// video.cpp and clip.cpp.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,273 @@
+// libx264 for each clip, and one mp4 muxer in bit-exact mode, its index in front, for all of them.
+// Without frames that look ahead every clip's packets are shown in the order in which they are
+// stored, so joining is counting on.
+#include "runtime/show/clip.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/imgutils.h>
+#include <libavutil/opt.h>
+#include <libswscale/swscale.h>
+}
+
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace probe::show {
+namespace {
+
+Failure clip_failure(const std::string& what, int code, const std::string& where) {
+  char text[AV_ERROR_MAX_STRING_SIZE] = {};
+  if (code != 0) av_strerror(code, text, sizeof text);
+  return {Fault::kVideo, code == 0 ? what : what + ": " + text, where};
+}
+
+class X264Clip final : public ClipEncoder {
+ public:
+  explicit X264Clip(const ClipFormat& format) { clip_.format = format; }
+  ~X264Clip() override {
+    sws_freeContext(scaler_);
+    av_packet_free(&packet_);
+    av_frame_free(&frame_);
+    avcodec_free_context(&codec_);
+  }
+
+  Status begin() {
+    const ClipFormat& format = clip_.format;
+    if (format.width <= 0 || format.height <= 0 || format.width % 2 != 0 || format.height % 2 != 0)
+      return failed("a video has even sides", 0);
+    const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
+    if (encoder == nullptr) return failed("libavcodec has no libx264", 0);
+    codec_ = avcodec_alloc_context3(encoder);
+    frame_ = av_frame_alloc();
+    packet_ = av_packet_alloc();
+    if (codec_ == nullptr || frame_ == nullptr || packet_ == nullptr) return failed("no memory", 0);
+    codec_->width = format.width;
+    codec_->height = format.height;
+    codec_->pix_fmt = AV_PIX_FMT_YUV420P;
+    codec_->time_base = {1, format.frames_per_second};
+    codec_->framerate = {format.frames_per_second, 1};
+    codec_->gop_size = format.group;
+    codec_->max_b_frames = 0;
+    codec_->thread_count = 1;
+    codec_->flags |= static_cast<int>(AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_BITEXACT |
+                                      AV_CODEC_FLAG_CLOSED_GOP);
+    av_opt_set(codec_->priv_data, "preset", "veryfast", 0);
+    av_opt_set(codec_->priv_data, "crf", std::to_string(format.quality).c_str(), 0);
+    // As in video.cpp, and nothing that waits for later frames.
+    av_opt_set(codec_->priv_data, "x264-params",
+               "threads=1:lookahead-threads=1:sliced-threads=0:mbtree=0:rc-lookahead=0:"
+               "sync-lookahead=0:bframes=0:scenecut=0",
+               0);
+    int code = avcodec_open2(codec_, encoder, nullptr);
+    if (code < 0) return failed("libx264 does not open", code);
+    clip_.header.assign(codec_->extradata, codec_->extradata + codec_->extradata_size);
+    frame_->format = codec_->pix_fmt;
+    frame_->width = format.width;
+    frame_->height = format.height;
+    code = av_frame_get_buffer(frame_, 0);
+    if (code < 0) return failed("no memory", code);
+    scaler_ = sws_getContext(format.width, format.height, AV_PIX_FMT_RGB24, format.width,
+                             format.height, AV_PIX_FMT_YUV420P,
+                             SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr,
+                             nullptr);
+    if (scaler_ == nullptr) return failed("no colour conversion", 0);
+    padded_.resize(rgb_bytes() + 64);
+    return {};
+  }
+
+  Status add(std::span<const std::uint8_t> rgb) override {
+    if (rgb.size() != rgb_bytes()) return failed("a frame of another size", 0);
+    const int code = av_frame_make_writable(frame_);
+    if (code < 0) return failed("no memory", code);
+    std::memcpy(padded_.data(), rgb.data(), rgb.size());
+    const std::uint8_t* rows[] = {padded_.data()};
+    const int strides[] = {3 * codec_->width};
+    sws_scale(scaler_, rows, strides, 0, codec_->height, frame_->data, frame_->linesize);
+    frame_->pts = frames_++;
+    return encode(frame_);
+  }
+
+  Result<Clip> finish() override {
+    PROBE_TRY(encode(nullptr));
+    if (clip_.packets.size() != static_cast<std::size_t>(frames_))
+      return failed("the encoder gave another number of frames than it got", 0);
+    return std::move(clip_);
+  }
+
+ private:
+  std::size_t rgb_bytes() const {
+    return 3 * static_cast<std::size_t>(codec_->width) * static_cast<std::size_t>(codec_->height);
+  }
+  Failure failed(const std::string& what, int code) const { return clip_failure(what, code, ""); }
+
+  Status encode(const AVFrame* frame) {
+    int code = avcodec_send_frame(codec_, frame);
+    if (code < 0) return failed("cannot be encoded", code);
+    for (;;) {
+      code = avcodec_receive_packet(codec_, packet_);
+      if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return {};
+      if (code < 0) return failed("cannot be encoded", code);
+      if (packet_->pts != packet_->dts) return failed("the encoder reorders frames", 0);
+      clip_.packets.push_back({{packet_->data, packet_->data + packet_->size},
+                               (packet_->flags & AV_PKT_FLAG_KEY) != 0});
+      av_packet_unref(packet_);
+    }
+  }
+
+  Clip clip_;
+  AVCodecContext* codec_ = nullptr;
+  AVFrame* frame_ = nullptr;
+  AVPacket* packet_ = nullptr;
+  SwsContext* scaler_ = nullptr;
+  std::vector<std::uint8_t> padded_;  // one frame; the scaler reads a few bytes behind its end
+  std::int64_t frames_ = 0;
+};
+
+class Mp4Joiner final : public ClipJoiner {
+ public:
+  explicit Mp4Joiner(std::string path) : path_(std::move(path)) {}
+  ~Mp4Joiner() override {
+    av_packet_free(&packet_);
+    if (format_ != nullptr && format_->pb != nullptr) avio_closep(&format_->pb);
+    avformat_free_context(format_);
+  }
+
+  Status begin(const Clip& first) {
+    clip_format_ = first.format;
+    header_ = first.header;
+    int code = avformat_alloc_output_context2(&format_, nullptr, "mp4", path_.c_str());
+    if (code < 0) return failed("no mp4 muxer", code);
+    format_->flags |= AVFMT_FLAG_BITEXACT;
+    packet_ = av_packet_alloc();
+    stream_ = avformat_new_stream(format_, nullptr);
+    if (packet_ == nullptr || stream_ == nullptr) return failed("no memory", 0);
+    AVCodecParameters& parameters = *stream_->codecpar;
+    parameters.codec_type = AVMEDIA_TYPE_VIDEO;
+    parameters.codec_id = AV_CODEC_ID_H264;
+    parameters.format = AV_PIX_FMT_YUV420P;
+    parameters.width = first.format.width;
+    parameters.height = first.format.height;
+    parameters.extradata = static_cast<std::uint8_t*>(
+        av_mallocz(header_.size() + AV_INPUT_BUFFER_PADDING_SIZE));
+    if (parameters.extradata == nullptr) return failed("no memory", 0);
+    std::memcpy(parameters.extradata, header_.data(), header_.size());
+    parameters.extradata_size = static_cast<int>(header_.size());
+    stream_->time_base = {1, first.format.frames_per_second};
+    stream_->avg_frame_rate = {first.format.frames_per_second, 1};
+    code = avio_open(&format_->pb, path_.c_str(), AVIO_FLAG_WRITE);
+    if (code < 0) return failed("cannot be made", code);
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "movflags", "faststart", 0);
+    code = avformat_write_header(format_, &options);
+    av_dict_free(&options);
+    return code < 0 ? Status(failed("cannot be written", code)) : Status();
+  }
+
+  Status add(const Clip& clip) override {
+    if (clip.format != clip_format_ || clip.header != header_)
+      return failed("a clip of another format", 0);
+    for (const Clip::Packet& clip_packet : clip.packets) {
+      int code = av_new_packet(packet_, static_cast<int>(clip_packet.bytes.size()));
+      if (code < 0) return failed("no memory", code);
+      std::memcpy(packet_->data, clip_packet.bytes.data(), clip_packet.bytes.size());
+      packet_->pts = packet_->dts = frames_++;
+      packet_->duration = 1;
+      packet_->stream_index = stream_->index;
+      if (clip_packet.is_key) packet_->flags |= AV_PKT_FLAG_KEY;
+      av_packet_rescale_ts(packet_, {1, clip_format_.frames_per_second}, stream_->time_base);
+      code = av_write_frame(format_, packet_);
+      av_packet_unref(packet_);
+      if (code < 0) return failed("cannot be written", code);
+      if (format_->pb->error < 0) return failed("cannot be written", format_->pb->error);
+    }
+    return {};
+  }
+
+  Status finish() override {
+    int code = av_write_trailer(format_);
+    if (code < 0) return failed("cannot be written", code);
+    if (format_->pb->error < 0) return failed("cannot be written", format_->pb->error);
+    code = avio_closep(&format_->pb);
+    return code < 0 ? Status(failed("cannot be written", code)) : Status();
+  }
+
+ private:
+  Failure failed(const std::string& what, int code) const {
+    return clip_failure(what, code, path_);
+  }
+
+  std::string path_;
+  ClipFormat clip_format_;
+  std::vector<std::uint8_t> header_;
+  AVFormatContext* format_ = nullptr;
+  AVStream* stream_ = nullptr;
+  AVPacket* packet_ = nullptr;
+  std::int64_t frames_ = 0;
+};
+
+// A file that is being read; closes itself.
+struct OpenVideo {
+  AVFormatContext* format = nullptr;
+  AVPacket* packet = nullptr;
+  ~OpenVideo() {
+    av_packet_free(&packet);
+    avformat_close_input(&format);
+  }
+};
+
+}  // namespace
+
+std::size_t Clip::bytes() const {
+  std::size_t sum = 0;
+  for (const Packet& packet : packets) sum += packet.bytes.size();
+  return sum;
+}
+
+Result<std::unique_ptr<ClipEncoder>> ClipEncoder::create(const ClipFormat& format) {
+  av_log_set_level(AV_LOG_ERROR);
+  auto encoder = std::make_unique<X264Clip>(format);
+  PROBE_TRY(encoder->begin());
+  return std::unique_ptr<ClipEncoder>(std::move(encoder));
+}
+
+Result<std::unique_ptr<ClipJoiner>> ClipJoiner::create(const std::string& path, const Clip& first) {
+  auto joiner = std::make_unique<Mp4Joiner>(path);
+  PROBE_TRY(joiner->begin(first));
+  return std::unique_ptr<ClipJoiner>(std::move(joiner));
+}
+
+Result<VideoFacts> read_video_facts(const std::string& path) {
+  av_log_set_level(AV_LOG_ERROR);
+  OpenVideo video;
+  int code = avformat_open_input(&video.format, path.c_str(), nullptr, nullptr);
+  if (code < 0) return clip_failure("cannot be opened", code, path);
+  code = avformat_find_stream_info(video.format, nullptr);
+  if (code < 0) return clip_failure("cannot be read", code, path);
+  const int index =
+      av_find_best_stream(video.format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  if (index < 0) return clip_failure("has no pictures", 0, path);
+  const AVStream& stream = *video.format->streams[index];
+  VideoFacts facts;
+  facts.codec = avcodec_get_name(stream.codecpar->codec_id);
+  facts.width = stream.codecpar->width;
+  facts.height = stream.codecpar->height;
+  facts.frames_per_second = av_q2d(stream.avg_frame_rate);
+  facts.is_even = facts.frames_per_second > 0;
+  video.packet = av_packet_alloc();
+  while ((code = av_read_frame(video.format, video.packet)) >= 0) {
+    if (video.packet->stream_index == index) {
+      const double shown = static_cast<double>(video.packet->pts) * av_q2d(stream.time_base);
+      const double wanted = static_cast<double>(facts.frames) / facts.frames_per_second;
+      if (facts.is_even && std::abs(shown - wanted) > 1e-6) facts.is_even = false;
+      ++facts.frames;
+    }
+    av_packet_unref(video.packet);
+  }
+  if (code != AVERROR_EOF) return clip_failure("cannot be read to its end", code, path);
+  return facts;
+}
+
+}  // namespace probe::show
