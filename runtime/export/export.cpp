@@ -11,9 +11,14 @@
 namespace probe::exporting {
 namespace {
 
-Result<std::unique_ptr<Sink>> open_sink(const std::string& path, const std::string& temporary) {
-  if (path.ends_with(".jsonl")) return open_json_lines(temporary);
-  if (path.ends_with(".h5") || path.ends_with(".hdf5")) return open_hdf5(temporary);
+Result<std::unique_ptr<Sink>> open_sink(const std::string& path, const std::string& temporary,
+                                        ExportOptions::Form form) {
+  using Form = ExportOptions::Form;
+  if (form == Form::kByEnding && path.ends_with(".jsonl")) form = Form::kJsonLines;
+  if (form == Form::kByEnding && (path.ends_with(".h5") || path.ends_with(".hdf5")))
+    form = Form::kHdf5;
+  if (form == Form::kJsonLines) return open_json_lines(temporary);
+  if (form == Form::kHdf5) return open_hdf5(temporary);
   return Failure{Fault::kUsage, "traces are exported to a file ending in .jsonl, .h5 or .hdf5",
                  path};
 }
@@ -49,7 +54,7 @@ Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportO
 Result<ExportReport> export_run(const std::string& dir, const std::string& path,
                                 const ExportOptions& options) {
   PendingFile pending(path);
-  PROBE_ASSIGN(auto sink, open_sink(path, pending.temporary()));
+  PROBE_ASSIGN(auto sink, open_sink(path, pending.temporary(), options.form));
   auto report = write_all(*sink, dir, options);
   sink.reset();
   if (report) PROBE_TRY(pending.keep());

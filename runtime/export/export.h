@@ -13,6 +13,7 @@ namespace probe::exporting {
 
 struct ExportOptions {
   std::string tasks = "*";  // glob over task names
+  enum class Form { kByEnding, kJsonLines, kHdf5 } form = Form::kByEnding;
 };
 
 struct ExportReport {
@@ -21,7 +22,8 @@ struct ExportReport {
   std::vector<std::string> refused;  // a sentence for each row that its trace does not bear
 };
 
-// Writes `path` whole or not at all; its ending decides the form: .jsonl, or .h5 or .hdf5. Rows
+// Writes `path` whole or not at all; unless a form is asked for, its ending decides: .jsonl, or .h5
+// or .hdf5. Rows
 // that their traces do not bear are left out and named. Fails with kUsage for another ending or
 // when no stored episode matches.
 Result<ExportReport> export_run(const std::string& dir, const std::string& path,

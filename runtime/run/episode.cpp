@@ -34,14 +34,6 @@ Outcome policy_failed(const Failure& failure) {
   return {reason("policy", failure), {}, failure.code};
 }
 
-// Of what the policy sees: a picture's bytes; of several pictures, the hash of their hashes.
-Sha256 hash_of(std::span<const stage::CameraFrame> frames) {
-  if (frames.size() == 1) return sha256(std::as_bytes(frames[0].frame.rgb));
-  Hasher all;
-  for (const stage::CameraFrame& seen : frames) all.hash(sha256(std::as_bytes(seen.frame.rgb)));
-  return all.finish();
-}
-
 class Loop {
  public:
   Loop(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job, policy::Policy& policy,
@@ -124,7 +116,7 @@ class Loop {
     auto clock = Clock::now();
     const auto observation = stage_.observe();
     if (!observation) return {reason("picture", observation.failure()), {}};
-    record.image_hash = hash_of(stage_.frames());
+    record.image_hash = picture_hash(stage_.frames());
     record.prompt_hash = prompt_hash_;
     record.render_s = seconds_since(clock);
     if (number == 0) row_.image_sha256 = to_hex(record.image_hash);
@@ -227,6 +219,13 @@ std::uint64_t draw_seed(int seed, const Sha256& episode_id) {
                           .hash(episode_id)
                           .finish();
   return little_endian_number(hash);
+}
+
+Sha256 picture_hash(std::span<const stage::CameraFrame> frames) {
+  if (frames.size() == 1) return sha256(std::as_bytes(frames[0].frame.rgb));
+  Hasher all;
+  for (const stage::CameraFrame& seen : frames) all.hash(sha256(std::as_bytes(seen.frame.rgb)));
+  return all.finish();
 }
 
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,

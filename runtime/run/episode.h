@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "runtime/base/result.h"
@@ -27,6 +28,10 @@ store::EpisodeKey key_of(const plan::Plan& plan, const EpisodeJob& job);
 // First 8 bytes of SHA-256(seed, episode id): what everything that draws in the episode starts
 // from.
 std::uint64_t draw_seed(int seed, const Sha256& episode_id);
+
+// Of what a policy sees in a step: a picture's RGB bytes; of several cameras' pictures the hash of
+// their hashes.
+Sha256 picture_hash(std::span<const stage::CameraFrame> frames);
 
 // `stage` is of the job's task: it knows the bodies and joints that are measured.
 store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& job,

@@ -69,10 +69,10 @@ class X264Clip final : public ClipEncoder {
     frame_->height = format.height;
     code = av_frame_get_buffer(frame_, 0);
     if (code < 0) return failed("no memory", code);
-    scaler_ = sws_getContext(format.width, format.height, AV_PIX_FMT_RGB24, format.width,
-                             format.height, AV_PIX_FMT_YUV420P,
-                             SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr,
-                             nullptr);
+    scaler_ =
+        sws_getContext(format.width, format.height, AV_PIX_FMT_RGB24, format.width, format.height,
+                       AV_PIX_FMT_YUV420P, SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr,
+                       nullptr, nullptr);
     if (scaler_ == nullptr) return failed("no colour conversion", 0);
     padded_.resize(rgb_bytes() + 64);
     return {};
@@ -150,8 +150,8 @@ class Mp4Joiner final : public ClipJoiner {
     parameters.format = AV_PIX_FMT_YUV420P;
     parameters.width = first.format.width;
     parameters.height = first.format.height;
-    parameters.extradata = static_cast<std::uint8_t*>(
-        av_mallocz(header_.size() + AV_INPUT_BUFFER_PADDING_SIZE));
+    parameters.extradata =
+        static_cast<std::uint8_t*>(av_mallocz(header_.size() + AV_INPUT_BUFFER_PADDING_SIZE));
     if (parameters.extradata == nullptr) return failed("no memory", 0);
     std::memcpy(parameters.extradata, header_.data(), header_.size());
     parameters.extradata_size = static_cast<int>(header_.size());
@@ -246,8 +246,7 @@ Result<VideoFacts> read_video_facts(const std::string& path) {
   if (code < 0) return clip_failure("cannot be opened", code, path);
   code = avformat_find_stream_info(video.format, nullptr);
   if (code < 0) return clip_failure("cannot be read", code, path);
-  const int index =
-      av_find_best_stream(video.format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+  const int index = av_find_best_stream(video.format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
   if (index < 0) return clip_failure("has no pictures", 0, path);
   const AVStream& stream = *video.format->streams[index];
   VideoFacts facts;

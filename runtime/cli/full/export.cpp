@@ -4,37 +4,143 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
+#include "runtime/base/clock.h"
+#include "runtime/cli/full/drawn_line.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/output.h"
+#include "runtime/export/dataset/check.h"
+#include "runtime/export/dataset/dataset.h"
 
 namespace probe::cli {
+namespace {
+
+struct ExportArguments {
+  std::vector<std::string> runs;
+  std::string out, format, tasks = "*", size, only, check;
+  dataset::DatasetOptions dataset;
+  AssetOptions assets;
+};
+
+// "224x224", in pixels.
+Status read_size(const std::string& text, dataset::DatasetOptions& options) {
+  if (text.empty()) return {};
+  int end = 0;
+  const bool is_size =
+      std::sscanf(text.c_str(), "%4dx%4d%n", &options.width, &options.height, &end) == 2 &&
+      static_cast<std::size_t>(end) == text.size() && options.width > 0 && options.height > 0;
+  if (is_size) return {};
+  return Failure{Fault::kUsage, "expected WIDTHxHEIGHT such as 224x224, found `" + text + "`",
+                 "--size"};
+}
+
+int say_refused(const std::vector<std::string>& sentences) {
+  for (const std::string& sentence : sentences) say("vlaprobe: {}\n", sentence);
+  return sentences.empty() ? kFine : kOutside;
+}
+
+int export_traces(const ExportArguments& arguments) {
+  if (arguments.runs.size() != 1)
+    return report(
+        {Fault::kUsage, "traces of one run go into a file; datasets take several", "RUN"});
+  using Form = exporting::ExportOptions::Form;
+  exporting::ExportOptions options;
+  options.tasks = arguments.tasks;
+  if (arguments.format == "jsonl") options.form = Form::kJsonLines;
+  if (arguments.format == "hdf5") options.form = Form::kHdf5;
+  const auto done = exporting::export_run(arguments.runs.front(), arguments.out, options);
+  if (!done) return report(done.failure());
+  for (const std::string& sentence : done->refused) say("vlaprobe: {}\n", sentence);
+  say("{}: {} episodes, {} steps\n", arguments.out, done->episodes, done->steps);
+  return done->refused.empty() ? kFine : kOutside;
+}
+
+int export_dataset(const ExportArguments& arguments, dataset::Format format) {
+  dataset::DatasetOptions options = arguments.dataset;
+  options.tasks = arguments.tasks;
+  options.assets = arguments.assets.root;
+  options.only_success = arguments.only == "success";
+  if (auto sized = read_size(arguments.size, options); !sized) return report(sized.failure());
+  const auto begun = std::chrono::steady_clock::now();
+  constexpr double kRedrawEvery = 0.2;
+  DrawnLine line;
+  double drawn = 0;
+  options.progress = [&](std::size_t done, std::size_t total) {
+    const double now = seconds_since(begun);
+    if (!DrawnLine::columns() || (now - drawn < kRedrawEvery && done < total)) return;
+    drawn = now;
+    line.draw(fmt::format("{} of {} demonstrations", done, total));
+  };
+  const auto done = dataset::export_dataset(arguments.runs, arguments.out, format, options);
+  line.clear();
+  if (!done) return report(done.failure());
+  for (const std::string& sentence : done->left_out) say("left out: {}\n", sentence);
+  const double seconds = seconds_since(begun);
+  say("{}: {} episodes of {} demonstrations, {} frames, {:.0f} a second\n", arguments.out,
+      done->episodes, done->demonstrations, done->frames,
+      static_cast<double>(done->frames) / std::max(seconds, 1e-9));
+  return done->refused.empty() ? kFine : kOutside;
+}
+
+int check_dataset(const ExportArguments& arguments) {
+  const auto checked = dataset::check_dataset(arguments.check, arguments.runs);
+  if (!checked) return report(checked.failure());
+  if (say_refused(checked->problems) != kFine) return kOutside;
+  put("{}: {} episodes of {} demonstrations, {} frames are as their traces\n", arguments.check,
+      checked->episodes, checked->demonstrations, checked->frames);
+  return kFine;
+}
+
+int export_verb(const ExportArguments& arguments) {
+  if (!arguments.check.empty()) {
+    if (arguments.out.empty() && arguments.format.empty()) return check_dataset(arguments);
+    return report(
+        {Fault::kUsage, "reads a dataset and writes none: without -o and --format", "--check"});
+  }
+  if (arguments.runs.empty()) return report({Fault::kUsage, "which run is exported?", "RUN"});
+  if (arguments.out.empty()) return report({Fault::kUsage, "where to write to?", "-o"});
+  if (auto spared = check_output(arguments.out, arguments.runs); !spared)
+    return report(spared.failure());
+  if (arguments.format == "lerobot") return export_dataset(arguments, dataset::Format::kLerobot);
+  return export_traces(arguments);
+}
+
+}  // namespace
 
 void add_export(Verb app, int& exit) {
-  struct ExportArguments {
-    std::string dir, out;
-    exporting::ExportOptions options;
-  };
   auto arguments = std::make_shared<ExportArguments>();
-  Verb verb = app.add_subcommand("export", "stored traces for other tools");
+  dataset::DatasetOptions& options = arguments->dataset;
+  Verb verb = app.add_subcommand("export", "stored traces for other tools, and as training data");
   verb.footer(
-      "X.jsonl holds a line for each episode and each step, X.h5 a group for each episode\n"
-      "example: vlaprobe export runs/expert -o expert.h5");
-  verb.add_option("DIR", arguments->dir, "results folder").required();
-  verb.add_option("-o,--out", arguments->out, "file to write: .jsonl, .h5 or .hdf5").required();
-  verb.add_option("--tasks", arguments->options.tasks, "glob over task names");
-  verb.callback([arguments, &exit] {
-    if (auto spared = check_output(arguments->out); !spared) {
-      exit = report(spared.failure());
-      return;
-    }
-    auto done = exporting::export_run(arguments->dir, arguments->out, arguments->options);
-    exit = done ? kFine : report(done.failure());
-    if (done) {
-      for (const std::string& sentence : done->refused) say("vlaprobe: {}\n", sentence);
-      if (!done->refused.empty()) exit = kOutside;
-      say("{}: {} episodes, {} steps\n", arguments->out, done->episodes, done->steps);
-    }
-  });
+      "X.jsonl holds a line for each episode and each step, X.h5 a group for each episode;\n"
+      "a dataset has the pictures as well, rendered again bit for bit\n"
+      "example: vlaprobe export runs/expert -o expert.h5\n"
+      "         vlaprobe export runs/demos --format lerobot --size 224x224 --jobs 2 -o demos");
+  verb.add_option("RUN", arguments->runs, "results folders");
+  verb.add_option("-o,--out", arguments->out,
+                  "file to write: .jsonl, .h5 or .hdf5; of a dataset a new folder");
+  verb.add_option("--format", arguments->format, "default: by the file's ending")
+      .one_of({"jsonl", "hdf5", "lerobot"});
+  verb.add_option("--tasks", arguments->tasks, "glob over task names");
+  verb.add_option("--only", arguments->only, "episodes that did what was asked")
+      .one_of({"success"});
+  verb.add_option("--size", arguments->size,
+                  "WIDTHxHEIGHT of a dataset's pictures (default: as the policy saw them)");
+  verb.add_option("--camera", options.cameras, "of a task's cameras this one; several times: these")
+      .one_each();
+  verb.add_option("--rephrase", options.rephrase,
+                  "X.jsonl of `vlaprobe rephrase`: tell demonstrations in its words, split train");
+  verb.add_option("--wordings", options.wordings, "wordings a demonstration, an episode each")
+      .between(1, 1000);
+  verb.add_option("--fps", options.fps, "frames a second that are written (default: control rate)")
+      .between(1, 1000);
+  verb.add_option("--jobs", options.jobs, "threads; the bytes do not depend on it")
+      .between(1, 1024);
+  verb.add_option("--check", arguments->check,
+                  "DIR: hold this dataset against its traces (RUN: where its runs are now)");
+  add_asset_option(verb, arguments->assets);
+  verb.callback([arguments, &exit] { exit = export_verb(*arguments); });
 }
 
 }  // namespace probe::cli

@@ -23,11 +23,8 @@ struct Physical {
   Type type;
   std::int32_t number;
 };
-inline constexpr Physical kPhysical[] = {{Type::kFlag, 0},
-                                         {Type::kWhole, 2},
-                                         {Type::kReal32, 4},
-                                         {Type::kReal64, 5},
-                                         {Type::kText, 6}};
+inline constexpr Physical kPhysical[] = {
+    {Type::kFlag, 0}, {Type::kWhole, 2}, {Type::kReal32, 4}, {Type::kReal64, 5}, {Type::kText, 6}};
 inline std::int32_t physical(Type type) {
   for (const Physical& known : kPhysical) {
     if (known.type == type) return known.number;

@@ -172,10 +172,10 @@ Result<Reader> Reader::open(const std::string& path) {
       const thrift::Value* meta = chunk.struct_at(3);
       const auto number = [&](int id) { return meta->whole_at(id).value_or(-1); };
       if (meta == nullptr || number(4) != format::kUncompressed || meta->find(11) != nullptr)
-        return reader.failed("has compressed or dictionary columns, which this reader does not know");
+        return reader.failed(
+            "has compressed or dictionary columns, which this reader does not know");
       const std::int64_t begin = number(9), size = number(7), values = number(5);
-      if (begin < 4 || size < 0 || values < 0 ||
-          static_cast<std::uint64_t>(begin) > reader.size_ ||
+      if (begin < 4 || size < 0 || values < 0 || static_cast<std::uint64_t>(begin) > reader.size_ ||
           static_cast<std::uint64_t>(size) > reader.size_ - static_cast<std::uint64_t>(begin))
         return reader.failed("a column lies outside of the file");
       out.chunks.push_back(
@@ -184,7 +184,8 @@ Result<Reader> Reader::open(const std::string& path) {
     reader.rows_ += out.rows;
     reader.groups_.push_back(std::move(out));
   }
-  if (all.whole_at(3) != reader.rows_) return reader.failed("its row groups have other rows than it says");
+  if (all.whole_at(3) != reader.rows_)
+    return reader.failed("its row groups have other rows than it says");
   return reader;
 }
 

@@ -70,8 +70,8 @@ struct Value {
   const Value* struct_at(int id) const;
 };
 
-// One struct from the beginning of `bytes`, and how many they are; nothing if they hold none, or one
-// of unreasonable depth.
+// One struct from the beginning of `bytes`, and how many they are; nothing if they hold none, or
+// one of unreasonable depth.
 struct Read {
   Value value;
   std::size_t size = 0;

@@ -14,10 +14,10 @@
 namespace probe::parquet {
 namespace {
 
-const Schema kEveryKind = {
-    {"flag", Type::kFlag, 0},     {"whole", Type::kWhole, 0},   {"single", Type::kReal32, 0},
-    {"double", Type::kReal64, 0}, {"text", Type::kText, 0},     {"pair", Type::kReal32, 1},
-    {"words", Type::kText, 1},    {"stats/a/mean", Type::kReal64, 3}};
+const Schema kEveryKind = {{"flag", Type::kFlag, 0},     {"whole", Type::kWhole, 0},
+                           {"single", Type::kReal32, 0}, {"double", Type::kReal64, 0},
+                           {"text", Type::kText, 0},     {"pair", Type::kReal32, 1},
+                           {"words", Type::kText, 1},    {"stats/a/mean", Type::kReal64, 3}};
 
 Rows rows_of_every_kind(int count) {
   Rows rows(kEveryKind);
@@ -126,10 +126,14 @@ TEST_CASE("Thrift's compact protocol is written to the byte") {
   thrift::Writer out;
   out.i32(1, 1).i64(3, -2).text(20, "ab").flag(21, true).list(22, thrift::Kind::kI32, 2);
   out.element_i32(5).element_i32(-300).begin(23).i16(1, 7).end().end();
-  const std::string bytes("\x15\x02\x26\x03\x08\x28\x02" "ab" "\x11\x19\x25\x0a\xd7\x04\x1c\x14\x0e\x00\x00", 20);
+  const std::string bytes(
+      "\x15\x02\x26\x03\x08\x28\x02"
+      "ab"
+      "\x11\x19\x25\x0a\xd7\x04\x1c\x14\x0e\x00\x00",
+      20);
   CHECK(out.bytes() == bytes);
-  const auto read = thrift::read_struct(
-      {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+  const auto read =
+      thrift::read_struct({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   REQUIRE(read);
   CHECK(read->size == bytes.size());
   CHECK(read->value.whole_at(3) == -2);

@@ -1,0 +1,24 @@
+// Reads an exported dataset back and holds it against the traces of the runs that it was made of.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::dataset {
+
+struct CheckReport {
+  std::int64_t demonstrations = 0, episodes = 0, frames = 0;
+  // A sentence each, with the place: what is not as the format or the traces have it.
+  std::vector<std::string> problems;
+};
+
+// `runs`: where the runs are now, in the order in which the dataset names them; empty: where it
+// says. What a damaged dataset has wrong are problems; fails (kUsage or kIo) where `dir` is no
+// dataset of ours, and as readers of runs do.
+Result<CheckReport> check_dataset(const std::string& dir,
+                                  const std::vector<std::string>& runs = {});
+
+}  // namespace probe::dataset

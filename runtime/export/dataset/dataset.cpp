@@ -1,0 +1,254 @@
+#include "runtime/export/dataset/dataset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "runtime/base/asset_root.h"
+#include "runtime/base/file.h"
+#include "runtime/base/glob.h"
+#include "runtime/export/dataset/in_order.h"
+#include "runtime/export/dataset/layout.h"
+#include "runtime/export/dataset/lerobot.h"
+#include "runtime/export/dataset/partial_folder.h"
+#include "runtime/export/dataset/provenance.h"
+#include "runtime/export/dataset/repeater.h"
+#include "runtime/export/dataset/source.h"
+#include "runtime/export/dataset/wordings.h"
+#include "runtime/robot/rotation.h"
+#include "runtime/run/workers.h"
+#include "runtime/servers/resize.h"
+#include "runtime/store/episode_key.h"
+#include "runtime/store/proof.h"
+
+namespace probe::dataset {
+namespace {
+
+// Beyond the one that each thread is at, so that none waits for a slower one at once.
+constexpr std::size_t kAhead = 4;
+
+Status check_options(const DatasetOptions& options) {
+  if ((options.width == 0) != (options.height == 0) || options.width < 0 || options.height < 0 ||
+      options.width > 4096 || options.height > 4096)
+    return Failure{Fault::kUsage, "a size is WIDTHxHEIGHT, 1 to 4096 each", "--size"};
+  if (options.wordings < 1) return Failure{Fault::kUsage, "at least one wording", "--wordings"};
+  return {};
+}
+
+// What a worker hands over: a demonstration, or why there is none.
+struct Made {
+  Demonstration demonstration;
+  std::unique_ptr<Film> film;
+  std::string refused;
+};
+
+// One thread's.
+class Maker {
+ public:
+  Maker(const Source& source, std::shared_ptr<const stage::SharedAssets> assets, const Shape& shape,
+        const Layout& layout, const Wordings* wordings, const DatasetOptions& options)
+      : source_(source),
+        repeater_(source.plan, std::move(assets)),
+        shape_(shape),
+        layout_(layout),
+        wordings_(wordings),
+        options_(options) {}
+
+  Result<Made> make(const store::ResultRow& row) {
+    Made made;
+    const auto trace = store::prove(source_.plan, row);
+    if (!trace) {
+      made.refused = store::to_text(store::key_of(row)) + " of `" + source_.dir +
+                     "`: " + to_text(trace.failure());
+      return made;
+    }
+    Demonstration& demonstration = made.demonstration;
+    demonstration.run = source_.dir;
+    demonstration.row = row;
+    demonstration.prompt = trace->header.prompt;
+    demonstration.success = is_success(row);
+    demonstration.wordings = {trace->header.prompt};
+    if (wordings_ != nullptr)
+      demonstration.wordings =
+          wordings_->draw(row.task, trace->header.prompt, options_.wordings, row.trace_sha256);
+    PROBE_ASSIGN(const auto film, layout_.film(trace->steps.size()));
+    PROBE_TRY(repeater_.repeat(*trace, [&](auto frames, const auto& observation, std::size_t at) {
+      demonstration.steps.push_back(step_of(observation, trace->steps[at].action));
+      return show(frames, *film);
+    }));
+    PROBE_ASSIGN(made.film, film->finish());
+    return made;
+  }
+
+ private:
+  static Step step_of(const policy::Observation& observation, const robot::Action& action) {
+    const policy::Proprioception& body = observation.proprioception;
+    const Vec3 place = body.tcp_in_base.position, turn = robot::to_rpy(body.tcp_in_base.rotation);
+    Step step;
+    step.state = {place.x(), place.y(), place.z(), turn.x(), turn.y(), turn.z(), body.openness};
+    step.joints = body.joints;
+    step.action = action;
+    return step;
+  }
+
+  Status show(std::span<const stage::CameraFrame> frames, FilmMaker& film) {
+    std::vector<wire::Bytes> resized(shape_.cameras.size());
+    std::vector<Picture> pictures;
+    for (std::size_t i = 0; i < shape_.cameras.size(); ++i) {
+      const CameraShape& camera = shape_.cameras[i];
+      const auto seen = std::ranges::find(frames, camera.name, &stage::CameraFrame::camera);
+      if (seen == frames.end())
+        return Failure{Fault::kInternal, "a camera is not there any more", camera.name};
+      const render::FrameView& frame = seen->frame;
+      std::span<const std::uint8_t> rgb = frame.rgb;
+      if (frame.width != camera.width || frame.height != camera.height) {
+        resized[i] = servers::resize_bilinear({frame.width, frame.height, frame.rgb}, camera.width,
+                                              camera.height);
+        rgb = resized[i];
+      }
+      pictures.push_back({&camera, rgb});
+    }
+    return film.add(pictures);
+  }
+
+  const Source& source_;
+  Repeater repeater_;
+  const Shape& shape_;
+  const Layout& layout_;
+  const Wordings* wordings_;
+  const DatasetOptions& options_;
+};
+
+Result<std::unique_ptr<Layout>> open_layout(Format format, const std::string& dir,
+                                            const Shape& shape, const DatasetOptions& options) {
+  switch (format) {
+    case Format::kLerobot:
+      return lerobot::open_layout(dir, shape, options);
+  }
+  return Failure{Fault::kInternal, "unknown format", dir};
+}
+
+// Everything that is written, in order.
+class Writing {
+ public:
+  Writing(Layout& layout, Provenance& provenance, const DatasetOptions& options, std::size_t total,
+          DatasetReport& report)
+      : layout_(layout),
+        provenance_(provenance),
+        options_(options),
+        total_(total),
+        report_(report) {}
+
+  Status take(Made made) {
+    if (!made.refused.empty()) {
+      report_.left_out.push_back(made.refused);
+      report_.refused.push_back(made.refused);
+    } else {
+      PROBE_TRY(layout_.add(made.demonstration, std::move(made.film)));
+      PROBE_TRY(provenance_.add(made.demonstration));
+    }
+    ++done_;
+    if (options_.progress) options_.progress(done_, total_);
+    return {};
+  }
+
+ private:
+  Layout& layout_;
+  Provenance& provenance_;
+  const DatasetOptions& options_;
+  std::size_t total_, done_ = 0;
+  DatasetReport& report_;
+};
+
+Status write_run(const Source& source, const Shape& shape, const Layout& layout,
+                 const Wordings* wordings, const DatasetOptions& options, const std::string& root,
+                 Writing& writing) {
+  if (source.rows.empty()) return {};
+  PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(source.plan, root, source.tasks));
+  const std::size_t jobs = static_cast<std::size_t>(std::max(options.jobs, 1));
+  InOrder<Made> order(jobs + kAhead, [&](Made made) { return writing.take(std::move(made)); });
+  return run::run_jobs(source.rows.size(), options.jobs, [&]() -> Result<run::Worker> {
+    const auto maker = std::make_shared<Maker>(source, assets, shape, layout, wordings, options);
+    return run::Worker([&, maker](std::size_t index) -> Status {
+      if (!order.wait_for(index)) return {};
+      auto made = maker->make(source.rows[index]);
+      if (made) return order.give(index, std::move(*made));
+      order.stop();
+      return made.failure();
+    });
+  });
+}
+
+// What has no other words in the table keeps its own, and that is told.
+std::vector<std::string> without_words(const std::vector<Source>& sources,
+                                       const Wordings& wordings) {
+  std::set<std::string> tasks;
+  for (const Source& source : sources) {
+    for (const std::uint32_t index : source.tasks) {
+      const plan::TaskRecord& task = source.plan.tasks()[index];
+      const std::string name(source.plan.text(task.name));
+      if (!wordings.has(name, std::string(source.plan.text(task.prompt)))) tasks.insert(name);
+    }
+  }
+  std::vector<std::string> sentences;
+  for (const std::string& task : tasks)
+    sentences.push_back("other words for the instruction of `" + task +
+                        "`: the table of wordings has none, so it keeps its own");
+  return sentences;
+}
+
+}  // namespace
+
+Result<DatasetReport> export_dataset(const std::vector<std::string>& runs, const std::string& out,
+                                     Format format, const DatasetOptions& options) {
+  PROBE_TRY(check_options(options));
+  DatasetReport report;
+  std::vector<Source> sources;
+  std::size_t total = 0;
+  for (const std::string& dir : runs) {
+    PROBE_ASSIGN(Source source, open_source(dir, options, report.left_out));
+    total += source.rows.size();
+    sources.push_back(std::move(source));
+  }
+  if (total == 0)
+    return Failure{Fault::kUsage,
+                   report.left_out.empty()
+                       ? "no stored episode matches `" + options.tasks + "`"
+                       : "nothing is left to export: " + report.left_out.front(),
+                   runs.empty() ? "" : runs.front()};
+  PROBE_ASSIGN(const Shape shape, shape_of(sources, options));
+  std::optional<Wordings> wordings;
+  if (!options.rephrase.empty()) {
+    PROBE_ASSIGN(wordings, Wordings::read(options.rephrase));
+    for (std::string& sentence : without_words(sources, *wordings))
+      report.left_out.push_back(std::move(sentence));
+  }
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+
+  PROBE_ASSIGN(PartialFolder folder, PartialFolder::create(out));
+  PROBE_ASSIGN(const auto layout, open_layout(format, folder.path(), shape, options));
+  PROBE_ASSIGN(auto provenance, Provenance::create(folder.path()));
+  Writing writing(*layout, *provenance, options, total, report);
+  for (const Source& source : sources) {
+    PROBE_TRY(
+        write_run(source, shape, *layout, wordings ? &*wordings : nullptr, options, root, writing));
+  }
+  PROBE_ASSIGN(const Contents contents, layout->finish());
+  if (contents.episodes == 0)
+    return Failure{Fault::kTrace, "nothing is left to export: " + report.left_out.front(), out};
+  report.demonstrations = contents.demonstrations;
+  report.episodes = contents.episodes;
+  report.frames = contents.frames;
+  PROBE_TRY(provenance->finish({sources, shape, options, wordings ? wordings->sha256() : ""},
+                               contents, report.left_out));
+  PROBE_TRY(folder.finish());
+  return report;
+}
+
+}  // namespace probe::dataset

@@ -1,0 +1,43 @@
+// What a format has to say: pictures are made into its files' bytes by many threads at once, and
+// put into the files by one, in the order of the episodes.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "runtime/base/result.h"
+#include "runtime/export/dataset/demonstration.h"
+
+namespace probe::dataset {
+
+// A demonstration's pictures, in a format's own form.
+class Film {
+ public:
+  virtual ~Film() = default;
+};
+
+// Takes the pictures of one demonstration, step by step, every camera's in the shape's order.
+class FilmMaker {
+ public:
+  virtual ~FilmMaker() = default;
+  virtual Status add(std::span<const Picture> pictures) = 0;
+  virtual Result<std::unique_ptr<Film>> finish() = 0;
+};
+
+// What is told of a dataset when it is whole.
+struct Contents {
+  std::int64_t demonstrations = 0, episodes = 0, frames = 0;
+  std::string readme;  // README.md, without what only the format knows
+};
+
+class Layout {
+ public:
+  virtual ~Layout() = default;
+  // Of any thread, for `steps` steps.
+  virtual Result<std::unique_ptr<FilmMaker>> film(std::size_t steps) const = 0;
+  // Of one thread at a time, in order; `film` is what a maker of this layout has finished.
+  virtual Status add(const Demonstration& demonstration, std::unique_ptr<Film> film) = 0;
+  virtual Result<Contents> finish() = 0;
+};
+
+}  // namespace probe::dataset

@@ -1,0 +1,75 @@
+#include "runtime/export/dataset/partial_folder.h"
+
+#include <filesystem>
+
+#include "runtime/base/file.h"
+#include "runtime/base/paths.h"
+
+namespace probe::dataset {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMark = ".vlaprobe-export";
+constexpr const char* kLock = "lock";  // FolderLock's
+
+Status clear(const std::string& path) {
+  PROBE_ASSIGN(const auto names, list_folder(path));
+  std::error_code error;
+  for (const std::string& name : names) {
+    if (name == kLock || name == kMark) continue;
+    fs::remove_all(fs::path(path) / name, error);
+    if (error)
+      return Failure{Fault::kIo, "cannot be removed: " + error.message(), path + "/" + name};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PartialFolder> PartialFolder::create(const std::string& out) {
+  std::string target = absolute_path(out);
+  while (target.size() > 1 && target.ends_with('/')) target.pop_back();
+  if (is_there(target) || is_link(target)) {
+    const auto names = is_folder(target)
+                           ? list_folder(target)
+                           : Result<std::vector<std::string>>(Failure{Fault::kUsage, "", out});
+    if (!names || !names->empty())
+      return Failure{Fault::kUsage, "is there already; a dataset is written to a new folder", out};
+  }
+  const std::string path = target + ".partial";
+  if (is_there(path) || is_link(path)) {
+    const bool is_ours = !is_link(path) && is_file(path + "/" + kMark);
+    const auto names = is_folder(path)
+                           ? list_folder(path)
+                           : Result<std::vector<std::string>>(Failure{Fault::kUsage, "", path});
+    if (!is_ours && !(names && names->empty()))
+      return Failure{Fault::kUsage, "is there and is not what an export left; move it away", path};
+  }
+  PROBE_TRY(make_folders(path));
+  auto lock = store::FolderLock::take(path);
+  if (!lock) return lock.failure();
+  PROBE_TRY(write_file(path + "/" + kMark, {}));
+  PROBE_TRY(clear(path));
+  return PartialFolder(target, path, std::move(*lock));
+}
+
+PartialFolder::~PartialFolder() {
+  if (!lock_ || path_.empty()) return;
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+Status PartialFolder::finish() {
+  std::error_code error;
+  fs::remove(fs::path(path_) / kLock, error);
+  fs::remove(fs::path(path_) / kMark, error);
+  fs::remove(out_, error);  // an empty folder of that name
+  fs::rename(path_, out_, error);
+  if (error) return {Failure{Fault::kIo, "cannot be given its name: " + error.message(), out_}};
+  path_.clear();
+  const fs::path parent = fs::path(out_).parent_path();
+  return sync_folder(parent.empty() ? "." : parent.string());
+}
+
+}  // namespace probe::dataset

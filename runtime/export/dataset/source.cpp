@@ -1,0 +1,162 @@
+#include "runtime/export/dataset/source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "runtime/base/glob.h"
+#include "runtime/store/episode_key.h"
+#include "runtime/store/run_plan.h"
+#include "runtime/store/store.h"
+
+namespace probe::dataset {
+namespace {
+
+std::string counted(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " episode" : " episodes");
+}
+
+Result<std::vector<CameraShape>> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task,
+                                            const DatasetOptions& options) {
+  std::vector<CameraShape> all, chosen;
+  std::string known;
+  for (const plan::ViewRecord& view : plan.views(task)) {
+    const plan::CameraRecord& camera = plan.cameras()[view.camera];
+    CameraShape shape{std::string(plan.text(view.name)), static_cast<int>(camera.width),
+                      static_cast<int>(camera.height)};
+    if (options.width > 0) {
+      shape.width = options.width;
+      shape.height = options.height;
+    }
+    known += (known.empty() ? "`" : ", `") + shape.name + "`";
+    all.push_back(std::move(shape));
+  }
+  if (options.cameras.empty()) return all;
+  for (const std::string& name : options.cameras) {
+    const auto found = std::ranges::find(all, name, &CameraShape::name);
+    if (found == all.end()) {
+      return Failure{
+          Fault::kUsage,
+          fmt::format("task `{}` has no camera `{}`, but {}", plan.text(task.name), name, known),
+          "--camera"};
+    }
+    if (std::ranges::find(chosen, name, &CameraShape::name) == chosen.end())
+      chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+// In what two tasks differ that go into one dataset, or nothing.
+std::string difference(const Shape& a, const Shape& b) {
+  if (a.robot != b.robot)
+    return fmt::format("one has robot `{}`, the other `{}`", a.robot, b.robot);
+  if (a.joints != b.joints) return "their robots have other joints";
+  if (a.control_hz != b.control_hz)
+    return fmt::format("one has {} control steps a second, the other {}", a.control_hz,
+                       b.control_hz);
+  if (a.cameras == b.cameras) return "";
+  const auto names = [](const Shape& shape) {
+    std::string text;
+    for (const CameraShape& camera : shape.cameras)
+      text += fmt::format("{}`{}` {} x {}", text.empty() ? "" : ", ", camera.name, camera.width,
+                          camera.height);
+    return text;
+  };
+  return fmt::format("one has cameras {}, the other {} (--camera chooses, --size gives one size)",
+                     names(a), names(b));
+}
+
+Result<Shape> shape_of_task(const plan::Plan& plan, const plan::TaskRecord& task,
+                            const DatasetOptions& options) {
+  const plan::RobotRecord& robot = plan.robots()[plan.scenes()[task.scene].robot];
+  Shape shape;
+  shape.robot = std::string(plan.text(robot.name));
+  shape.control_hz = robot.control_hz;
+  for (const plan::DriveRecord& drive : plan.drives(robot))
+    shape.joints.emplace_back(plan.text(drive.joint));
+  PROBE_ASSIGN(shape.cameras, cameras_of(plan, task, options));
+  shape.fps = options.fps > 0 ? options.fps : static_cast<int>(std::lround(robot.control_hz));
+  if (options.fps <= 0 && static_cast<double>(shape.fps) != robot.control_hz) {
+    return Failure{Fault::kUsage,
+                   fmt::format("task `{}` has {} control steps a second, and a dataset a whole "
+                               "number of frames; --fps N names the one to write",
+                               plan.text(task.name), robot.control_hz),
+                   "--fps"};
+  }
+  return shape;
+}
+
+}  // namespace
+
+bool is_success(const store::ResultRow& row) {
+  return !row.invalid && std::ranges::any_of(row.metrics, [](const store::MetricValue& metric) {
+    return metric.name == "success" && metric.is_bool && metric.value != 0;
+  });
+}
+
+Result<Source> open_source(const std::string& dir, const DatasetOptions& options,
+                           std::vector<std::string>& left_out) {
+  PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+  PROBE_ASSIGN(plan::Plan plan, store::open_run_plan(dir));
+  PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  Source source{dir, record.identity.policy, std::move(plan), {}, {}};
+  std::map<std::string, std::pair<std::size_t, std::string>> invalid;  // by reason: how many, first
+  std::size_t failed = 0, empty = 0;
+  std::set<std::uint32_t> tasks;
+  for (const store::ResultRow& row : rows) {
+    if (!matches_glob(options.tasks, row.task)) continue;
+    const auto task = source.plan.find_task(row.task);
+    if (row.invalid) {
+      auto& [count, first] = invalid[*row.invalid];
+      if (count++ == 0) first = store::to_text(store::key_of(row));
+    } else if (options.only_success && !is_success(row)) {
+      ++failed;
+    } else if (row.steps == 0 || !task) {
+      ++empty;
+    } else {
+      source.rows.push_back(row);
+      tasks.insert(*task);
+    }
+  }
+  source.tasks.assign(tasks.begin(), tasks.end());
+  for (const auto& [why, of] : invalid)
+    left_out.push_back(fmt::format("{} of `{}`, {} the first: invalid, {}", counted(of.first), dir,
+                                   of.second, why));
+  if (failed > 0) left_out.push_back(fmt::format("{} of `{}`: no success", counted(failed), dir));
+  if (empty > 0)
+    left_out.push_back(
+        fmt::format("{} of `{}`: no step of a task of its plan", counted(empty), dir));
+  return source;
+}
+
+Result<Shape> shape_of(const std::vector<Source>& sources, const DatasetOptions& options) {
+  std::optional<Shape> common;
+  std::string first;
+  for (const Source& source : sources) {
+    for (const std::uint32_t index : source.tasks) {
+      const plan::TaskRecord& task = source.plan.tasks()[index];
+      const std::string name = fmt::format("`{}` of `{}`", source.plan.text(task.name), source.dir);
+      PROBE_ASSIGN(Shape shape, shape_of_task(source.plan, task, options));
+      if (!common) {
+        common = std::move(shape);
+        first = name;
+        continue;
+      }
+      const std::string differs = difference(*common, shape);
+      if (!differs.empty()) {
+        return Failure{
+            Fault::kUsage,
+            fmt::format("{} and {} do not go into one dataset: {}", first, name, differs),
+            source.dir};
+      }
+    }
+  }
+  if (!common) return Failure{Fault::kUsage, "nothing to export", ""};
+  return *common;
+}
+
+}  // namespace probe::dataset

@@ -1,0 +1,35 @@
+// A run whose episodes are exported: which of them, and what they have in common with others'.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/export/dataset/dataset.h"
+#include "runtime/export/dataset/demonstration.h"
+#include "runtime/plan/plan.h"
+#include "runtime/store/results.h"
+
+namespace probe::dataset {
+
+struct Source {
+  std::string dir;     // as it was named
+  std::string policy;  // who acted
+  plan::Plan plan;
+  std::vector<store::ResultRow> rows;  // those that are wanted, in the stored order
+  std::vector<std::uint32_t> tasks;    // of these rows, ascending
+};
+
+bool is_success(const store::ResultRow& row);
+
+// The valid episodes of the run in `dir` that the options name; what else there was is told in
+// `left_out`. Fails (kStore) when there is no run.
+Result<Source> open_source(const std::string& dir, const DatasetOptions& options,
+                           std::vector<std::string>& left_out);
+
+// What all tasks of the sources have; fails (kUsage) naming two that differ in it, an unknown
+// camera, and a control rate that is no whole number.
+Result<Shape> shape_of(const std::vector<Source>& sources, const DatasetOptions& options);
+
+}  // namespace probe::dataset

@@ -1,0 +1,70 @@
+#include "runtime/export/dataset/wordings.h"
+
+#include "runtime/base/file.h"
+#include "runtime/base/hash_number.h"
+#include "runtime/base/json.h"
+#include "runtime/base/sha256.h"
+#include "runtime/policy/policy.h"
+
+namespace probe::dataset {
+
+Result<Wordings> Wordings::read(const std::string& path) {
+  PROBE_ASSIGN(const std::string text, read_file(path));
+  Wordings out;
+  out.sha256_ = to_hex(probe::sha256(std::string_view(text)));
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    at = end + 1;
+    ++number;
+    if (line.empty()) continue;
+    const Json json = Json::parse(line);
+    const auto is_text = [&](const char* key) {
+      return json.contains(key) && json.at(key).is_string();
+    };
+    const auto is_share = [&](const char* key) {
+      return json.contains(key) && json.at(key).is_number() && json.at(key).get<double>() >= 0 &&
+             json.at(key).get<double>() <= 1;
+    };
+    if (!is_text("task") || !is_text("original") || !is_text("wording") || !is_text("split") ||
+        !is_share("probability") || !is_share("original_probability"))
+      return Failure{Fault::kUsage, "is no line of `vlaprobe rephrase -o X.jsonl`",
+                     path + ":" + std::to_string(number)};
+    if (json.at("split").text() != "train") continue;
+    const std::string& original = json.at("original").text();
+    auto& choices = out.choices_[{json.at("task").text(), original}];
+    if (choices.empty())
+      choices.push_back({original, json.at("original_probability").get<double>()});
+    choices.push_back({json.at("wording").text(), json.at("probability").get<double>()});
+  }
+  if (out.choices_.empty())
+    return Failure{Fault::kUsage, "has no wordings of the split `train`", path};
+  return out;
+}
+
+bool Wordings::has(const std::string& task, const std::string& instruction) const {
+  return choices_.contains({task, instruction});
+}
+
+std::vector<std::string> Wordings::draw(const std::string& task, const std::string& instruction,
+                                        int count, std::string_view key) const {
+  const auto found = choices_.find({task, instruction});
+  if (found == choices_.end()) return {instruction};
+  std::vector<Choice> left = found->second;
+  policy::Draws draws(little_endian_number(Hasher().text("wordings").text(key).finish()));
+  std::vector<std::string> drawn;
+  while (!left.empty() && drawn.size() < static_cast<std::size_t>(count)) {
+    double sum = 0;
+    for (const Choice& choice : left) sum += choice.probability;
+    double at = draws.uniform() * sum;
+    std::size_t chosen = 0;
+    while (chosen + 1 < left.size() && at >= left[chosen].probability)
+      at -= left[chosen++].probability;
+    drawn.push_back(left[chosen].text);
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(chosen));
+  }
+  return drawn;
+}
+
+}  // namespace probe::dataset

@@ -1,0 +1,90 @@
+// A small run of a table with a carrot and a plate, and what is made of it, for tests of datasets.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runtime/export/dataset/dataset.h"
+#include "runtime/store/run_plan.h"
+#include "runtime/store/stored_trace.h"
+#include "tests/runtime/run/run_checks.h"
+#include "tests/runtime/run/table_plan.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::dataset {
+
+inline constexpr int kEpisodes = 4, kHorizon = 7;
+
+inline plan::Plan small_table(int width = 96, int height = 64) {
+  run::TablePlan table(std::string(VLAPROBE_SOURCE_DIR) + "/assets");
+  auto bytes = table.write(kEpisodes, kHorizon, [&](plan::Records& records) {
+    for (plan::CameraRecord& camera : records.cameras) {
+      const double across = static_cast<double>(width) / camera.width,
+                   down = static_cast<double>(height) / camera.height;
+      camera.fx *= across;
+      camera.cx *= across;
+      camera.fy *= down;
+      camera.cy *= down;
+      camera.width = static_cast<std::uint32_t>(width);
+      camera.height = static_cast<std::uint32_t>(height);
+    }
+  });
+  REQUIRE_MESSAGE(bytes.ok(), (bytes.ok() ? "" : to_text(bytes.failure())));
+  return plan::Plan::from_bytes(std::move(*bytes)).value();
+}
+
+inline void make_run(const plan::Plan& plan, const std::string& dir,
+                     const std::string& policy = "random") {
+  run::RunOptions options = run::options_for(dir, policy);
+  options.seeds = {42};
+  run::must_run(plan, options);
+}
+
+inline std::vector<store::StoredTrace> traces_of(const std::string& dir) {
+  const auto rows = store::read_results(dir);
+  REQUIRE(rows.ok());
+  std::vector<store::StoredTrace> all;
+  for (const store::ResultRow& row : *rows) {
+    auto trace = store::read_stored_trace(row);
+    REQUIRE_MESSAGE(trace.ok(), (trace.ok() ? "" : to_text(trace.failure())));
+    all.push_back({row, std::move(*trace)});
+  }
+  return all;
+}
+
+inline DatasetOptions dataset_options() {
+  DatasetOptions options;
+  options.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
+  return options;
+}
+
+inline DatasetReport must_export(const std::string& run, const std::string& out, Format format,
+                                 const DatasetOptions& options) {
+  const auto done = export_dataset({run}, out, format, options);
+  REQUIRE_MESSAGE(done.ok(), (done.ok() ? "" : to_text(done.failure())));
+  return *done;
+}
+
+inline std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// By path below the folder.
+inline std::map<std::string, std::string> all_files(const std::string& dir) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(dir)) {
+    if (entry.is_regular_file())
+      files[std::filesystem::relative(entry.path(), dir).generic_string()] =
+          text_of(entry.path().string());
+  }
+  return files;
+}
+
+}  // namespace probe::dataset
