@@ -98,7 +98,6 @@ class Parser {
 
   // ---- leaves.cpp ----
   Name name();
-  Name keyword_name(std::string_view what);
   std::vector<Name> names();
   Name thing();  // an object, or `fixture.part`, as one name
   std::vector<Name> braced_names();

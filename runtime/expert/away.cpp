@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "runtime/base/trig.h"
-#include "runtime/expert/put_spot.h"
 
 namespace probe::expert {
 namespace {
@@ -61,11 +60,6 @@ std::optional<Vec2> find_spot(const Scene& scene, const Reach& reach) {
     if (reach.follow(scene.joints, std::array{above, there})) return spot.at;
   }
   return std::nullopt;
-}
-
-Scene with_spot(Scene scene, const Vec2& spot) {
-  const Vec3 at(spot.x(), spot.y(), scene.surface);
-  return with_target_at(std::move(scene), at);
 }
 
 }  // namespace probe::expert

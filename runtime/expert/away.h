@@ -1,5 +1,5 @@
-// Tasks that ask for the source to be anywhere but on the target: a free spot on the surface stands
-// in for the target, and the target becomes one of the things to keep clear of.
+// Tasks that ask for the source to be anywhere but on the target: a free spot on the surface, which
+// then stands in for the target (put_spot.h).
 #pragma once
 
 #include <optional>
@@ -12,8 +12,5 @@ namespace probe::expert {
 // Where on the surface the source shall go: far from the target and from everything else, at least
 // 10 cm from where it is. The roomiest that the arm reaches; nullopt if there is none.
 std::optional<Vec2> find_spot(const Scene& scene, const Reach& reach);
-
-// The scene as if the spot were the target.
-Scene with_spot(Scene scene, const Vec2& spot);
 
 }  // namespace probe::expert

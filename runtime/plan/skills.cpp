@@ -20,8 +20,6 @@ std::string degrees_text(double rad) {
 
 }  // namespace
 
-std::span<const SkillInfo> all_skills() { return kSkills; }
-
 const SkillInfo& info_of(Skill skill) { return *find_skill(static_cast<std::uint32_t>(skill)); }
 
 const SkillInfo* find_skill(std::uint32_t number) {

@@ -18,7 +18,6 @@ struct SkillInfo {
   std::string_view word;
   SkillTakes takes;
 };
-std::span<const SkillInfo> all_skills();
 const SkillInfo& info_of(Skill skill);
 // Null for a number that is none.
 const SkillInfo* find_skill(std::uint32_t number);

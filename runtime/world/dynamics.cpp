@@ -40,7 +40,6 @@ void read_dynamics(const Tool& tool, const Drives& drives, const Joints& joints,
   d.axes = to_base * (axes * tool.carrier.offset.rotation.toRotationMatrix());
   d.position = to_base * arm;
   d.jacobian.setZero(6, n);
-  d.velocity = d.spin = Vec3::Zero();
   for (int k = tool.carrier.moving; k >= 0; k = tree.parent(k)) {
     const MovingLink& link = tree.link(k);
     const Vec3 turn = to_base * link.w, shift = to_base * (link.v + link.w.cross(arm));
