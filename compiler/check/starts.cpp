@@ -1,5 +1,5 @@
-// P05xx: every task's starts, one check after the other. Looks at boxes only; collision hulls are
-// not known here.
+// Every task's starts, one check after the other; starts.h has their codes. Objects and arms are
+// boxes here: collision hulls are not known to the compiler.
 #include "compiler/check/starts.h"
 
 #include <cstdio>

@@ -76,7 +76,7 @@ class InStart {
   Relations& relations_;
   const Task& task_;
   Scenery scenery_;
-  std::vector<lower::PlacedBody> placed_;  // by body; of those that no phrase denotes nothing
+  std::vector<lower::PlacedBody> placed_;  // by body; left as made for those no phrase can denote
 };
 
 }  // namespace probe::sema

@@ -54,9 +54,8 @@ struct Restatement {
 
 // Right is an answer that
 // - mentions the source as what is moved (or unmarked) and the target as the goal, each by its
-// plain
-//   name; where the instruction itself uses the plain name, any words that denote it will do. A
-//   phrase that the instruction uses instead of the name is no mention: who repeats "rabbit's
+//   plain name; where the instruction itself uses the plain name, any words that denote it will do.
+//   A phrase that the instruction uses instead of the name is no mention: who repeats "rabbit's
 //   favorite vegetable" has not said which object that is;
 // - mentions neither in the other's role, nor as what to avoid;
 // - mentions nothing else but as what to avoid;

@@ -227,7 +227,9 @@ std::optional<Reading> name_in_sentence(const ReadContext& context, const Answer
 constexpr ReadRule kChoiceRules[] = {
     {"letter alone", "nothing but a letter: B, (B), **B**; one that was not shown is unclear",
      letter_alone},
-    {"options repeated", "the options with their letters again, from A on: unclear",
+    {"options repeated",
+     "two options with their letters, whichever comes first: unclear, unless all but the first are "
+     "denied",
      options_repeated},
     {"letter first",
      "the letter it begins with, whatever explanation follows; unclear with "

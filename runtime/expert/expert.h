@@ -15,8 +15,10 @@ struct ExpertOptions {
   bool close = true;  // false: goes to the source and stays there with open fingers
 };
 
-// act() fails (kPolicy) without the privileged view, and with policy::kNoSolution where the task is
-// none of those that picking and placing solves.
+// Tasks that it has no skills for fail so that policy::was_not_attempted(): in begin() where
+// actions are late or the hand is none that it knows, in act() where there is neither a solution in
+// skills nor a goal that one pick and place reaches. act() also fails (kPolicy) without the
+// privileged view.
 Result<std::unique_ptr<policy::Policy>> make_expert(const ExpertOptions& options);
 
 }  // namespace probe::expert

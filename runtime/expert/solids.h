@@ -32,7 +32,6 @@ class Solid {
   Vec3 low_ = Vec3::Zero(), high_ = Vec3::Zero();
 };
 
-// Base frame, as all of the expert. Solids of one body share its pose.
 // A part that stands elsewhere than it is seen.
 struct MovedPart {
   int fixture = -1;
@@ -43,6 +42,7 @@ struct LeftOut {
   int fixture = -1, solid = -1;
 };
 
+// Base frame, as all of the expert. Solids of one body share its pose.
 struct Surroundings {
   struct Body {
     Pose pose;
@@ -50,7 +50,7 @@ struct Surroundings {
     int fixture = -1;  // of the privileged view; -1 for an object
   };
   std::vector<Body> bodies;
-  double floor = 0;
+  double floor = 0;  // m, height of the surface
 
   // The least distance of balls in the tool's frame from all else and the floor, as far as it is
   // below `beyond`. `moved` stands where `at` says instead.

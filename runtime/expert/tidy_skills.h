@@ -1,4 +1,4 @@
-// What a list of skills leaves to be seen when they are done one after another.
+// What a list of skills does not say and whoever does one after another has to see to.
 #pragma once
 
 #include <vector>

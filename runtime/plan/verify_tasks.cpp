@@ -1,5 +1,5 @@
-// Stage 2, the records of what is done and judged: programs, metrics, bodies, placements, tasks,
-// episodes, sets, suites, sources.
+// Stage 2, the records of what is done and judged: programs, metrics, bodies, placements, roles,
+// tasks, claims, episodes, sets, suites, sources.
 #include <fmt/format.h>
 
 #include <iterator>

@@ -47,11 +47,11 @@ struct Played {
 // In: a stage of the job's task and a policy. Out: the row, and the trace, closed. The order: the
 // stage is reset and the trace begun; the policy hears of the episode; then, step by step, look,
 // ask, act, judge, record; a last frame for the video; the policy hears of the end.
-// A policy with a live_step() (policy/live.h) has more of its steps held than `most_held` allows:
-// the row is invalid. Runs the full horizon (`steps` of them if not negative), or to the
-// step at which what ends the task holds. What goes wrong with
-// the world, the picture or the policy, exceptions included, makes the row invalid; a Failure is
-// only what the trace or the sink could not write.
+// Where a policy with a live_step() (policy/live.h) held a larger share of its steps than
+// `most_held`, the row is invalid. Runs the full horizon (`steps` of them if not negative), or to
+// the step at which what ends the task holds. What goes wrong with the world, the picture or the
+// policy, exceptions included, makes the row invalid; a Failure is only what the trace or the sink
+// could not write.
 Result<Played> run_episode(stage::Stage& stage, const plan::Plan& plan, const EpisodeJob& job,
                            const std::string& policy_name, policy::Policy& policy,
                            store::TraceWriter& trace, show::FrameSink* frames = nullptr,

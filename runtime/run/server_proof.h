@@ -22,7 +22,7 @@ class ServerProof {
   ServerProof(servers::ServerChoice choice, int worlds, const servers::KnownArm& arm);
 
   // The first questions. A server that is still warming up is asked them again for a while; fails
-  // where it does not answer them, because of it nothing could be shown later either.
+  // where it does not answer them: nothing could be shown of it later either.
   Result<policy::Reading> ask();
 
   // What was shown must be what it was when the folder was begun. Rows of calls that were not shown

@@ -1,7 +1,7 @@
 // What cameras do to their pictures before a policy gets them: blur, exposure, noise, a dark patch,
-// pictures that do not arrive. Every draw is a function of the start, the camera's number in its
-// task, the step and the pixel, so a picture is the same in a run, a replay and a preview,
-// whichever were drawn before it.
+// left for right, pictures that do not arrive. Every draw is a function of the start, the camera's
+// number in its task, the step and the pixel, so a picture is the same in a run, a replay and a
+// preview, whichever were drawn before it.
 #pragma once
 
 #include <cstddef>

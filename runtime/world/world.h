@@ -75,9 +75,9 @@ class World {
   void lock_tilt(bool locked);
   void stop_bodies();  // zero velocities
 
-  // From now on the body moves at `velocity` (m/s), without turning: it pushes what gives way and
-  // meets nothing that does not, weight and friction do not act on it. That ends when a link of a
-  // driven articulation touches it, or with `let_go`; it goes on at this velocity then.
+  // From now on the body moves at `velocity` (m/s, world), without turning: it pushes what gives
+  // way and passes through what does not; weight and friction do not act on it. That ends when a
+  // link of a driven articulation touches it, or with `let_go`; it goes on at this velocity then.
   void lead(std::size_t index, const Vec3& velocity);
   void let_go(std::size_t index);
   bool is_led(std::size_t index) const;
