@@ -448,7 +448,6 @@ void check_things(Context& context, const Task& task, bool& poisoned) {
   }
 }
 
-// A joint that begins somewhere is in the scene.
 // A time in control steps of the task's robot.
 void count_delay(Context& context, Task& task, bool& poisoned) {
   if (!task.delay_time) return;
@@ -466,6 +465,7 @@ void count_delay(Context& context, Task& task, bool& poisoned) {
   if (rate > 0) said.help(fmt::format("a control step is {:.6g}ms here", 1000 / rate));
 }
 
+// A joint that begins somewhere is in the scene.
 void check_joint_starts(Context& context, const Task& task, bool& poisoned) {
   const Scene& scene = context.model.scenes[task.scene];
   const std::vector<JointStart>* said[] = {&context.model.layouts[task.layout].joint_starts,
