@@ -172,15 +172,6 @@ struct CameraReader {
 
 }  // namespace
 
-bool Camera::has_sensor() const { return !(sensor == plan::SensorRecord{}); }
-
-bool Camera::operator==(const Camera& other) const {
-  return mount_link.text == other.mount_link.text && aim == other.aim &&
-         position == other.position && aim_values == other.aim_values && width == other.width &&
-         height == other.height && samples == other.samples && fx == other.fx && fy == other.fy &&
-         cx == other.cx && cy == other.cy;
-}
-
 void define_cameras(Context& context) {
   const auto read = [&](const Declared<syntax::CameraDecl>& declared, Camera& camera) {
     for (const syntax::CameraStmt& stmt : declared.node->body)

@@ -8,20 +8,6 @@
 #include "runtime/plan/limits.h"
 
 namespace probe::sema {
-
-bool Light::operator==(const Light& other) const {
-  if (ambient != other.ambient || occlusion != other.occlusion || color != other.color ||
-      suns.size() != other.suns.size())
-    return false;
-  for (std::size_t i = 0; i < suns.size(); ++i) {
-    if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||
-        suns[i].shadow != other.suns[i].shadow) {
-      return false;
-    }
-  }
-  return true;
-}
-
 namespace {
 
 // Zeros for white, which is what a light is that says nothing.

@@ -1,8 +1,6 @@
 // `object`: its statements over what it copied.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "compiler/define/attribute.h"
 #include "compiler/define/axes.h"
 #include "compiler/define/define.h"
@@ -243,18 +241,6 @@ void read_look(Context& context, const syntax::File& file,
                const std::vector<syntax::ObjectStmt>& body, Object& object) {
   ObjectReader reader{context, file, object};
   for (const syntax::ObjectStmt& stmt : body) std::visit(reader, stmt);
-}
-
-bool Phrase::is_spatial() const {
-  return std::any_of(means.begin(), means.end(),
-                     [](const QueryOp& op) { return op.kind == QueryOp::kRelation; });
-}
-
-const Phrase* Object::find_phrase(std::string_view phrase) const {
-  for (const Phrase& known : phrases) {
-    if (known.name == phrase) return &known;
-  }
-  return nullptr;
 }
 
 void define_objects(Context& context) {

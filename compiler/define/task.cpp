@@ -580,56 +580,6 @@ void read_allows(const syntax::Decl& decl, const std::vector<syntax::TaskStmt>& 
 
 }  // namespace
 
-std::vector<ObjectId> Task::objects() const {
-  std::vector<ObjectId> all;
-  for (const ObjectId id : {source, target}) {
-    if (id != ObjectId::kNone && is_object(id)) all.push_back(id);
-  }
-  for (const Filled& role : others) {
-    for (const ObjectId id : role.objects) {
-      if (is_object(id)) all.push_back(id);
-    }
-  }
-  all.insert(all.end(), distractors.begin(), distractors.end());
-  all.insert(all.end(), placed.begin(), placed.end());
-  return all;
-}
-
-std::vector<std::pair<RoleId, ObjectId>> Task::things() const {
-  std::vector<std::pair<RoleId, ObjectId>> all;
-  const auto add = [&](RoleId role, ObjectId id) {
-    if (id != ObjectId::kNone && !is_object(id)) all.emplace_back(role, id);
-  };
-  add(RoleId::kSource, source);
-  add(RoleId::kTarget, target);
-  for (const Filled& filled : others) {
-    for (const ObjectId id : filled.objects) add(filled.role, id);
-  }
-  return all;
-}
-
-std::vector<ObjectId> Task::objects_in(RoleId role) const {
-  if (role == RoleId::kSource || role == RoleId::kTarget) {
-    const ObjectId id = role == RoleId::kSource ? source : target;
-    return id == ObjectId::kNone ? std::vector<ObjectId>() : std::vector<ObjectId>{id};
-  }
-  for (const Filled& filled : others) {
-    if (filled.role == role) return filled.objects;
-  }
-  return {};
-}
-
-RoleId Task::role_of(ObjectId object) const {
-  if (object == ObjectId::kNone) return RoleId::kNone;
-  if (object == source) return RoleId::kSource;
-  if (object == target) return RoleId::kTarget;
-  for (const Filled& filled : others) {
-    if (std::find(filled.objects.begin(), filled.objects.end(), object) != filled.objects.end())
-      return filled.role;
-  }
-  return RoleId::kNone;
-}
-
 std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object) {
   for (const PoseOverride& pose : task.poses) {
     if (pose.object == object) return pose.turns;

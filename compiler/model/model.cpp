@@ -1,0 +1,92 @@
+// What the tables of the model say of themselves. Which words and checks fill them is define's.
+#include "compiler/model/model.h"
+
+#include <algorithm>
+
+namespace probe::sema {
+
+bool Phrase::is_spatial() const {
+  return std::any_of(means.begin(), means.end(),
+                     [](const QueryOp& op) { return op.kind == QueryOp::kRelation; });
+}
+
+const Phrase* Object::find_phrase(std::string_view phrase) const {
+  for (const Phrase& known : phrases) {
+    if (known.name == phrase) return &known;
+  }
+  return nullptr;
+}
+
+bool Camera::has_sensor() const { return !(sensor == plan::SensorRecord{}); }
+
+bool Camera::operator==(const Camera& other) const {
+  return mount_link.text == other.mount_link.text && aim == other.aim &&
+         position == other.position && aim_values == other.aim_values && width == other.width &&
+         height == other.height && samples == other.samples && fx == other.fx && fy == other.fy &&
+         cx == other.cx && cy == other.cy;
+}
+
+bool Light::operator==(const Light& other) const {
+  if (ambient != other.ambient || occlusion != other.occlusion || color != other.color ||
+      suns.size() != other.suns.size())
+    return false;
+  for (std::size_t i = 0; i < suns.size(); ++i) {
+    if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||
+        suns[i].shadow != other.suns[i].shadow) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<ObjectId> Task::objects() const {
+  std::vector<ObjectId> all;
+  for (const ObjectId id : {source, target}) {
+    if (id != ObjectId::kNone && is_object(id)) all.push_back(id);
+  }
+  for (const Filled& role : others) {
+    for (const ObjectId id : role.objects) {
+      if (is_object(id)) all.push_back(id);
+    }
+  }
+  all.insert(all.end(), distractors.begin(), distractors.end());
+  all.insert(all.end(), placed.begin(), placed.end());
+  return all;
+}
+
+std::vector<std::pair<RoleId, ObjectId>> Task::things() const {
+  std::vector<std::pair<RoleId, ObjectId>> all;
+  const auto add = [&](RoleId role, ObjectId id) {
+    if (id != ObjectId::kNone && !is_object(id)) all.emplace_back(role, id);
+  };
+  add(RoleId::kSource, source);
+  add(RoleId::kTarget, target);
+  for (const Filled& filled : others) {
+    for (const ObjectId id : filled.objects) add(filled.role, id);
+  }
+  return all;
+}
+
+std::vector<ObjectId> Task::objects_in(RoleId role) const {
+  if (role == RoleId::kSource || role == RoleId::kTarget) {
+    const ObjectId id = role == RoleId::kSource ? source : target;
+    return id == ObjectId::kNone ? std::vector<ObjectId>() : std::vector<ObjectId>{id};
+  }
+  for (const Filled& filled : others) {
+    if (filled.role == role) return filled.objects;
+  }
+  return {};
+}
+
+RoleId Task::role_of(ObjectId object) const {
+  if (object == ObjectId::kNone) return RoleId::kNone;
+  if (object == source) return RoleId::kSource;
+  if (object == target) return RoleId::kTarget;
+  for (const Filled& filled : others) {
+    if (std::find(filled.objects.begin(), filled.objects.end(), object) != filled.objects.end())
+      return filled.role;
+  }
+  return RoleId::kNone;
+}
+
+}  // namespace probe::sema
