@@ -9,8 +9,8 @@
 #include "compiler/check/starts.h"
 #include "compiler/define/motion.h"
 #include "compiler/define/support.h"
-#include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
 #include "runtime/plan/moves.h"
 
 namespace probe::sema {
@@ -78,7 +78,7 @@ class MotionCheck {
 
   Heights heights(const Start::Placed& at) const {
     const Object& object = starts_.object(at);
-    const Mat3 turn = pose_of({}, at.turn.rotation).rotation.toRotationMatrix();
+    const Mat3 turn = axes_of(at.turn);
     const double bottom = at.z ? *at.z + lowest(object, turn) : scene_.surface_z;
     return {bottom, bottom + height(object, at.turn)};
   }

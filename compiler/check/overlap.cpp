@@ -4,8 +4,8 @@
 #include <map>
 
 #include "compiler/check/starts.h"
-#include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
 
 namespace probe::sema {
 namespace {
@@ -68,7 +68,7 @@ bool advise_spread(const TaskStarts& starts, Diagnostic& said) {
 double overlap_of(const TaskStarts& starts, const Start::Placed& a, const Start::Placed& b) {
   if (a.z && b.z) {
     const auto bottom = [&](const Start::Placed& placed) {
-      const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+      const Mat3 turn = axes_of(placed.turn);
       return *placed.z + lowest(starts.object(placed), turn);
     };
     const double low = bottom(a), high = bottom(b);

@@ -8,8 +8,8 @@
 
 #include "compiler/check/starts.h"
 #include "compiler/define/fixture.h"
-#include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
 #include "compiler/geometry/travel.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/scene/link_solids.h"
@@ -250,7 +250,7 @@ std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& trav
 
 scene::Solid solid_of(const TaskStarts& starts, const Start::Placed& placed) {
   const Object& object = starts.object(placed);
-  const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+  const Mat3 turn = axes_of(placed.turn);
   const double surface = starts.model.scenes[starts.task.scene].surface_z;
   return solid(object, turn,
                {placed.x, placed.y, placed.z.value_or(surface - lowest(object, turn))});

@@ -6,8 +6,8 @@
 #include "compiler/define/query.h"
 #include "compiler/define/thing.h"
 #include "compiler/define/views.h"
-#include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
 #include "runtime/base/upright.h"
 #include "runtime/robot/kinematics.h"
 
@@ -29,7 +29,7 @@ Box around(const Vec3& at, const Vec3& below, const Vec3& above) {
 
 lower::PlacedBody placed_body(const Scene& scene, const Object& object, const Centre& centre,
                               const Start::Placed& placed) {
-  const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+  const Mat3 turn = axes_of(placed.turn);
   const Vec3 low(object.box_min.data()), high(object.box_max.data());
   const Vec3 origin(placed.x, placed.y, scene.surface_z - lowest(object, turn));
   Vec3 below = Vec3::Constant(scene.fixture ? kSettlesOnFixture : kSettlesOnSurface);

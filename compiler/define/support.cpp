@@ -7,18 +7,14 @@
 
 #include "compiler/define/fixture.h"
 #include "compiler/define/role.h"
-#include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
 
 namespace probe::sema {
 namespace {
 
 constexpr double kGap = 1e-3;       // m, above what carries it: it comes to rest from there
 constexpr double kRounding = 1e-6;  // m
-
-Mat3 turn_of(const Start::Placed& placed) {
-  return pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
-}
 
 Vec3 half_of(const Object& object) {
   return (Vec3(object.box_max.data()) - Vec3(object.box_min.data())) / 2;
@@ -105,7 +101,7 @@ const std::optional<Travel>& Supports::travel(FixtureId id) {
 
 std::optional<Supports::Area> Supports::on_object(const Task& task, Start::Placed& base) const {
   const Object& object = model_.objects[base.object];
-  const Mat3 turn = turn_of(base);
+  const Mat3 turn = axes_of(base.turn);
   const double lowest_corner = lowest(object, turn);
   if (!base.z) base.z = model_.scenes[task.scene].surface_z - lowest_corner + kGap;
   const Vec3 half = half_of(object);
@@ -159,7 +155,7 @@ std::optional<Supports::Area> Supports::in_region(const Task& task, const OfFixt
 // A region may begin below the floor that is in it: the object stands on what it would meet.
 double Supports::height_in(const Area& area, const Object& object,
                            const Start::Placed& member) const {
-  const Mat3 turn = turn_of(member);
+  const Mat3 turn = axes_of(member.turn);
   const double below = lowest(object, turn);
   double floor = area.low;
   while (true) {
@@ -220,7 +216,7 @@ std::optional<LayoutProblem> Supports::stack(const Layout& layout, const Task& t
       Start::Placed& member = *placed(members[i]);
       const double at = (2 * static_cast<double>(i) + 1) * share - 1;
       const Vec3 slot = area->middle + area->along[0] * (area->half[0] * at);
-      const Mat3 turn = turn_of(member);
+      const Mat3 turn = axes_of(member.turn);
       const Vec3 offset = turn * centre_of(object);
       member.x = slot.x() - offset.x();
       member.y = slot.y() - offset.y();

@@ -1,5 +1,7 @@
 #include "compiler/geometry/camera_pose.h"
 
+#include "compiler/geometry/pose.h"
+
 namespace probe::sema {
 namespace {
 
@@ -12,10 +14,6 @@ Quat looking_along(const std::array<double, 4>& direction) {
 }
 
 }  // namespace
-
-Pose pose_of(const std::array<double, 3>& p, const std::array<double, 4>& q) {
-  return {to_vec(p), to_quat(q).normalized()};
-}
 
 std::optional<Pose> camera_pose(const Model& model, const Scene& scene, const Camera& camera) {
   if (scene.robot == RobotId::kNone || camera.mount_robot != scene.robot || camera.broken)

@@ -8,9 +8,6 @@
 
 namespace probe::sema {
 
-// A record's numbers as a pose; the quaternion (w, x, y, z) is made a unit one.
-Pose pose_of(const std::array<double, 3>& position, const std::array<double, 4>& rotation);
-
 // Of the camera in the world; x of its frame looks forward, y left, z up. Nothing when the camera
 // moves with the arm or its robot is not known.
 std::optional<Pose> camera_pose(const Model& model, const Scene& scene, const Camera& camera);

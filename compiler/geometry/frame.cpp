@@ -1,6 +1,7 @@
 #include "compiler/geometry/frame.h"
 
 #include "compiler/geometry/camera_pose.h"
+#include "compiler/geometry/pose.h"
 
 namespace probe::sema {
 

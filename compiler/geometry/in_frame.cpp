@@ -5,6 +5,7 @@
 
 #include "compiler/geometry/camera_pose.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
 
 namespace probe::sema {
 std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const Camera& camera) {
@@ -20,7 +21,7 @@ std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const
 }
 
 std::optional<double> Frustum::outside(const Object& object, const Start::Placed& placed) const {
-  const Mat3 turn = pose_of({}, placed.turn.rotation).rotation.toRotationMatrix();
+  const Mat3 turn = axes_of(placed.turn);
   const Vec3 low(object.box_min.data()), high(object.box_max.data());
   // A corner is the sum of a part of each axis, of which there are two.
   const Mat3 axes = turn_from_world_ * turn;

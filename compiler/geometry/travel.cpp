@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numbers>
 
-#include "compiler/geometry/camera_pose.h"
+#include "compiler/geometry/pose.h"
 #include "runtime/scene/link_solids.h"
 
 namespace probe::sema {
