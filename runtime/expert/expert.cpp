@@ -18,8 +18,6 @@
 namespace probe::expert {
 namespace {
 
-constexpr double kOpenGripper = 1;
-
 class Expert final : public policy::Policy {
  public:
   explicit Expert(const ExpertOptions& options) : options_(options) {}

@@ -6,7 +6,6 @@
 
 #include "runtime/expert/free_way.h"
 #include "runtime/robot/grip_command.h"
-#include "runtime/robot/rotation.h"
 
 namespace probe::expert {
 namespace {
@@ -36,11 +35,6 @@ constexpr Pace kFarPace{.shift = 0.070, .turn = 0.40, .gain = 0.035};
 constexpr Pace kNearHold{.shift = 0.035, .turn = 0.20};
 constexpr Pace kMovePace{.shift = 0.045, .turn = 0.30};
 constexpr Pace kTurnPace{.shift = 0.015, .turn = 0.30};
-
-bool is_near(const Pose& a, const Pose& b, double shift, double turn) {
-  const robot::PoseError e = robot::pose_error(a, b);
-  return e.position < shift && e.rotation < turn;
-}
 
 // How far a point of the part goes for a rad; 1 for what slides.
 double lever_of(const Hold& hold, const PartJoint& joint) {
@@ -297,7 +291,7 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
     case Phase::kMeet:
       return servo.settle(way_.back(), arm, open);
     case Phase::kGrip:
-      return servo.settle(way_.back(), arm, -1);
+      return servo.settle(way_.back(), arm, kClosedGripper);
     case Phase::kMove: {
       const policy::PrivilegedFixture& seen = part(view);
       const PartJoint& joint = *seen.joint;
@@ -313,7 +307,7 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
       const double press =
           joint.slides ? kPress : std::min(kPress, kPressLever * lever_of(*hold_, joint));
       const Pose goal = tool_at(*hold_, moved_part(joint, pose, goal_.up ? by : -by), hand, -press);
-      return servo.toward(goal, arm, -1, press < kPress ? kTurnPace : kMovePace);
+      return servo.toward(goal, arm, kClosedGripper, press < kPress ? kTurnPace : kMovePace);
     }
     case Phase::kLetGo:
       return servo.settle(arm.tcp, arm, open);
@@ -324,7 +318,7 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
     case Phase::kOver:
       break;
   }
-  return servo.hold(arm, 1);
+  return servo.hold(arm, kOpenGripper);
 }
 
 std::optional<policy::Action> JointSkill::act(const policy::Privileged& view, const Arm& arm,

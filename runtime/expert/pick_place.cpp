@@ -10,7 +10,6 @@
 namespace probe::expert {
 namespace {
 
-constexpr double kOpenGripper = 1, kClosedGripper = -1;
 constexpr int kMostTries = 3;
 constexpr double kCareful = 0.4;  // more steps with each try
 constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
@@ -27,11 +26,6 @@ constexpr int kLongestApproach = 30;  // steps in which a source that moves is f
 constexpr Pace kNearPace{.shift = 0.030, .turn = 0.20};
 constexpr Pace kHeldPace{.shift = 0.040, .turn = 0.20, .gain = 0.015};
 constexpr Pace kTouchPace{.shift = 0.015, .turn = 0.10, .lead = false};
-
-bool is_near(const Pose& a, const Pose& b, double shift, double turn) {
-  const robot::PoseError e = robot::pose_error(a, b);
-  return e.position < shift && e.rotation < turn;
-}
 
 bool all_fingers(const Scene& s) {
   const auto on = [](bool touches) { return touches; };

@@ -24,6 +24,11 @@ double share(double length, double most) { return length > most ? most / length 
 
 }  // namespace
 
+bool is_near(const Pose& a, const Pose& b, double shift, double turn) {
+  const robot::PoseError e = robot::pose_error(a, b);
+  return e.position < shift && e.rotation < turn;
+}
+
 Pose stepped(const Pose& from, const Pose& to, double shift, double turn) {
   const Vec3 way = to.position - from.position;
   const Vec3 rotation = robot::to_rotation_vector(to.rotation * from.rotation.conjugate());

@@ -17,6 +17,9 @@
 
 namespace probe::expert {
 
+// The seventh number of an action.
+inline constexpr double kOpenGripper = 1, kClosedGripper = -1;
+
 struct Pace {
   double shift = 0.05;  // m a control step
   double turn = 0.30;   // rad a control step
@@ -79,6 +82,9 @@ class Servo {
   double last_shift_ = 0;
   int learnt_ = 0;  // free control steps seen
 };
+
+// Whether they are less than `shift` (m) and `turn` (rad) apart.
+bool is_near(const Pose& a, const Pose& b, double shift, double turn);
 
 // `from` moved towards `to`, no more than the given shift and turn.
 Pose stepped(const Pose& from, const Pose& to, double shift, double turn);
