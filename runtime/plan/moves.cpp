@@ -69,7 +69,7 @@ std::vector<std::span<const MoveRecord>> moves_of(const Tables& tables, const Ta
   return found;
 }
 
-Point moved(std::span<const MoveRecord> legs, double seconds) {
+Point offset_at(std::span<const MoveRecord> legs, double seconds) {
   double along = legs.front().speed * seconds;  // m
   if (way_of(legs) == Way::kRound) {
     const Point& centre = legs.front().to;

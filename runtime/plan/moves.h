@@ -20,7 +20,7 @@ std::vector<std::span<const MoveRecord>> moves_of(const Tables& tables, const Ta
 // Of the legs of one object: where it is `seconds` after its first step began, from where it lay
 // (m, x and y of the world). Back and forth, the first leg's beginning is the last one's end; in a
 // circle counterclockwise as seen from above.
-std::array<double, 2> moved(std::span<const MoveRecord> legs, double seconds);
+std::array<double, 2> offset_at(std::span<const MoveRecord> legs, double seconds);
 // When it stands still for good (s); infinite but for `once`.
 double moves_until(std::span<const MoveRecord> legs);
 // The corners of its way in their order, from (0, 0) on; of a circle `kCirclePoints` of its points.

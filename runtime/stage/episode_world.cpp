@@ -257,7 +257,7 @@ void EpisodeWorld::lead() {
       world_->let_go(body);
       continue;
     }
-    const auto [x, y] = plan::moved(legs, (steps_ + 1) * step);
+    const auto [x, y] = plan::offset_at(legs, (steps_ + 1) * step);
     const Vec3 there = starts_[body].position + Vec3(x, y, 0);
     world_->lead(body, (there - world_->body(body).center) / step);
   }

@@ -18,7 +18,7 @@ std::vector<MoveRecord> way(Way kind, std::initializer_list<std::array<double, 2
 
 void check_at(const std::vector<MoveRecord>& legs, double seconds, double x, double y) {
   CAPTURE(seconds);
-  const auto at = moved(legs, seconds);
+  const auto at = offset_at(legs, seconds);
   CHECK(at[0] == doctest::Approx(x).epsilon(1e-12));
   CHECK(at[1] == doctest::Approx(y).epsilon(1e-12));
 }
@@ -59,7 +59,7 @@ TEST_CASE("a circle begins where the object lies and is walked counterclockwise 
   check_at(legs, round / 2, 0.2, 0);
   check_at(legs, 3 * round / 4, 0.1, 0.1);
   for (double t = 0; t < 2 * round; t += 0.3) {
-    const auto at = moved(legs, t);
+    const auto at = offset_at(legs, t);
     CHECK(std::hypot(at[0] - 0.1, at[1]) == doctest::Approx(0.1).epsilon(1e-12));
   }
 }

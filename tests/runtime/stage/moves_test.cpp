@@ -58,7 +58,7 @@ TEST_CASE("after each control step a thing that moves is where its way leads the
   for (int step = 1; step <= 59; ++step) {
     steps(*stage, 1);
     const Vec3 way = stage->objects()[kOrange].position - begun;
-    const auto [x, y] = plan::moved(legs[0], 0.2 * step);
+    const auto [x, y] = plan::offset_at(legs[0], 0.2 * step);
     CAPTURE(step);
     CHECK(std::abs(way.x() - x) < 1e-9);
     CHECK(std::abs(way.y() - y) < 1e-9);
