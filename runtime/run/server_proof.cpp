@@ -43,11 +43,11 @@ Status ServerProof::check_as_before(const policy::Reading& reading, const RunOpt
                    "say them in the profile, and take another folder",
                    options.out};
   }
-  if (!changes.policy) return store.proven();
+  if (!changes.policy) return store.forget_unproven();
   PROBE_ASSIGN(const auto unproven, store.unproven());
   PROBE_TRY(store.invalidate(
       unproven, "policy: " + reading.server + ": " + std::string(store::Store::kNeverShown)));
-  PROBE_TRY(store.proven());
+  PROBE_TRY(store.forget_unproven());
   if (!unproven.empty()) {
     notes.push_back(std::to_string(unproven.size()) +
                     " episodes of calls whose policy was not shown to be one to the end are "
@@ -70,13 +70,13 @@ Status ServerProof::check_as_before(const policy::Reading& reading, const RunOpt
 Status ServerProof::watch(store::Store& store) {
   // Of one that draws and says nothing of itself nothing is ever shown.
   if (!identity_->first().is_steady && identity_->first().hello.empty()) return {};
-  PROBE_TRY(store.watch());
+  PROBE_TRY(store.note_unproven());
   identity_->tell([this, &store]() -> servers::Identity::Shown {
     auto before = store.unproven();
     if (!before) return {};  // the rows are asked about once more
     return [this, &store, rows = std::move(*before)] {
       if (!rows.empty()) is_shown_again_ = true;
-      (void)store.proven(rows);  // as above, should it fail
+      (void)store.forget_unproven(rows);  // as above, should it fail
     };
   });
   return {};
@@ -87,7 +87,7 @@ Status ServerProof::check_to_the_end(policy::Reading& reading, store::Store& sto
   reading.at_end = servers::prove_again(choice_, model_, *identity_);
   // Of one that draws there is no more to ask.
   if (reading.at_end == policy::AtEnd::kSame || reading.at_end == policy::AtEnd::kNotAsked)
-    return store.proven();
+    return store.forget_unproven();
   if (!policy::is_exchanged(reading.at_end)) {
     notes.push_back(policy::findings_of(reading).back());
     return {};
@@ -96,7 +96,7 @@ Status ServerProof::check_to_the_end(policy::Reading& reading, store::Store& sto
   const bool is_mixed = reading.at_end == policy::AtEnd::kMixed;
   const auto reason = is_mixed ? store::Store::kMixedUp : store::Store::kExchanged;
   PROBE_TRY(store.invalidate(unproven, "policy: " + reading.server + ": " + std::string(reason)));
-  PROBE_TRY(store.proven());
+  PROBE_TRY(store.forget_unproven());
   std::string what = is_mixed ? "it took the questions of a batch for one another"
                               : "another policy answers than at the beginning: it was exchanged "
                                 "meanwhile";

@@ -306,7 +306,7 @@ class FolderStore final : public Store {
     });
   }
 
-  Status watch() override {
+  Status note_unproven() override {
     const std::lock_guard lock(mutex_);
     PROBE_TRY(unproven_.make());
     is_watched_ = true;
@@ -325,11 +325,11 @@ class FolderStore final : public Store {
     const std::lock_guard lock(mutex_);
     return unproven_.valid();
   }
-  Status proven() override {
+  Status forget_unproven() override {
     const std::lock_guard lock(mutex_);
     return unproven_.clear();
   }
-  Status proven(const std::vector<EpisodeKey>& rows) override {
+  Status forget_unproven(const std::vector<EpisodeKey>& rows) override {
     const std::lock_guard lock(mutex_);
     if (rows.empty()) return {};
     return in_one([&]() -> Status {

@@ -45,14 +45,14 @@ class Store {
   virtual Status commit(const ResultRow& row, int task_order) = 0;
 
   // From now on commit() also notes that who answered the row's policy questions was not shown.
-  virtual Status watch() = 0;
+  virtual Status note_unproven() = 0;
   // Notes rows so that came from another folder.
   virtual Status doubt(const std::vector<EpisodeKey>& keys) = 0;
-  // Valid rows that were noted so, by this call or one before it, since the last proven().
+  // Valid rows that were noted so, by this call or one before it, since the last forget_unproven().
   virtual Result<std::vector<EpisodeKey>> unproven() = 0;
-  // One policy answered all that is stored, or these rows.
-  virtual Status proven() = 0;
-  virtual Status proven(const std::vector<EpisodeKey>& rows) = 0;
+  // For when one policy was shown to have answered all that is stored, or these rows.
+  virtual Status forget_unproven() = 0;
+  virtual Status forget_unproven(const std::vector<EpisodeKey>& rows) = 0;
 
   // How the reasons end with which valid rows are made invalid: no trace holds them, so that
   // read_stored_trace believes these beside a trace that ended well, and no others.

@@ -82,8 +82,8 @@ TEST_CASE(
     REQUIRE(store.ok());
     REQUIRE(store_episode(**store, row_of(0)).ok());
     CHECK((*store)->unproven().value().empty());
-    CHECK((*store)->proven().ok());
-    REQUIRE((*store)->watch().ok());
+    CHECK((*store)->forget_unproven().ok());
+    REQUIRE((*store)->note_unproven().ok());
     REQUIRE(store_episode(**store, row_of(1)).ok());
     REQUIRE(store_episode(**store, row_of(2, "policy: gone")).ok());
     REQUIRE(store_episode(**store, row_of(3)).ok());
@@ -98,11 +98,11 @@ TEST_CASE(
   REQUIRE((*store)->invalidate({key(1)}, reason).ok());
   CHECK((*store)->unproven().value() == std::vector<EpisodeKey>{key(3)});
   // Rows that came while the policy was asked are not shown by its answer.
-  REQUIRE((*store)->watch().ok());
+  REQUIRE((*store)->note_unproven().ok());
   REQUIRE(store_episode(**store, row_of(4)).ok());
-  REQUIRE((*store)->proven({key(3)}).ok());
+  REQUIRE((*store)->forget_unproven({key(3)}).ok());
   CHECK((*store)->unproven().value() == std::vector<EpisodeKey>{key(4)});
-  REQUIRE((*store)->proven().ok());
+  REQUIRE((*store)->forget_unproven().ok());
   CHECK((*store)->unproven().value().empty());
   const auto rows = read_results(dir);
   REQUIRE(rows.ok());
