@@ -69,8 +69,7 @@ std::uint32_t PlanBodies::role_of(const plan::TaskRecord& task, std::uint32_t bo
   const plan::TaskRoles roles = plan::roles_of(plan_.tables(), task);
   if (body == roles.source) return static_cast<std::uint32_t>(sema::RoleId::kSource);
   if (body == roles.target) return static_cast<std::uint32_t>(sema::RoleId::kTarget);
-  if (body >= roles.distractors.first && body - roles.distractors.first < roles.distractors.count)
-    return lower::kDistractorRole;
+  if (roles.is_distractor(body)) return lower::kDistractorRole;
   const std::string_view name = plan::role_of_body(plan_.tables(), roles, body);
   const auto known = std::ranges::find(model_.roles, name, &sema::Role::name);
   if (name.empty() || known == model_.roles.end())

@@ -62,9 +62,8 @@ void add_way(std::span<const plan::MoveRecord> legs, Footprint& print) {
 Role role_of(const plan::TaskRoles& roles, std::uint32_t body) {
   if (body == roles.source) return Role::kSource;
   if (body == roles.target) return Role::kTarget;
-  if (body < roles.distractors.first) return Role::kOther;
-  return body - roles.distractors.first < roles.distractors.count ? Role::kDistractor
-                                                                  : Role::kPlaced;
+  if (roles.is_distractor(body)) return Role::kDistractor;
+  return body < roles.distractors.first ? Role::kOther : Role::kPlaced;
 }
 
 // Every different way in which something stands, in the order of the first start that has it.

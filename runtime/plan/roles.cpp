@@ -74,8 +74,7 @@ TaskRoles roles_of(const Tables& tables, const TaskRecord& task) {
 std::string_view role_of_body(const Tables& tables, const TaskRoles& roles, std::uint32_t body) {
   if (body == roles.source) return "source";
   if (body == roles.target) return "target";
-  if (body >= roles.distractors.first && body - roles.distractors.first < roles.distractors.count)
-    return "distractor";
+  if (roles.is_distractor(body)) return "distractor";
   const RoleRecord* role = role_with(roles, body);
   return role == nullptr ? std::string_view() : tables.text(role->name);
 }

@@ -20,6 +20,9 @@ struct TaskRoles {
   Slice distractors;
   std::uint32_t objects = 0;
 
+  bool is_distractor(std::uint32_t body) const {
+    return body >= distractors.first && body - distractors.first < distractors.count;
+  }
   bool has_source() const { return source != kNone; }
   bool has_target() const { return target != kNone; }
   // What most of the field's tasks are: one thing goes to another.

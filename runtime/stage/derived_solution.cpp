@@ -86,7 +86,7 @@ class Deriver {
     std::vector<std::uint32_t> moved;  // all that have a role but the target
     for (std::uint32_t o = 0; o < roles_.objects; ++o) {
       const bool has_role = !plan::role_of_body(plan_.tables(), roles_, o).empty();
-      if (has_role && o != roles_.target && !is_distractor(o)) moved.push_back(o);
+      if (has_role && o != roles_.target && !roles_.is_distractor(o)) moved.push_back(o);
     }
     if (moved.size() > 1) objects.push_back(moved);
     std::vector<Bundle> all;
@@ -104,11 +104,6 @@ class Deriver {
     std::stable_sort(all.begin(), all.end(),
                      [](const Bundle& a, const Bundle& b) { return a.size() < b.size(); });
     return all;
-  }
-
-  bool is_distractor(std::uint32_t object) const {
-    return object >= roles_.distractors.first &&
-           object < roles_.distractors.first + roles_.distractors.count;
   }
 
   void find_joint_moves() {
