@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/regions.h"
 
 namespace probe::inspect {
 namespace {
@@ -16,15 +16,6 @@ double shown(const Json& joint, const char* key) {
   const bool slides = joint["moves"].get<std::string>() == "slides";
   const double scale = slides ? 100 : 180 / std::numbers::pi;
   return std::nearbyint(joint[key].get<double>() * scale * 10) / 10 + 0.0;
-}
-
-bool is_of(const plan::Plan& plan, const plan::TaskRecord& task, const plan::RegionRecord& region) {
-  const auto kind = static_cast<plan::BodyKind>(region.kind);
-  if (kind == plan::BodyKind::kSurface || kind == plan::BodyKind::kFixture)
-    return region.index == task.scene;
-  return std::ranges::any_of(plan.bodies(task), [&](const plan::BodyRecord& body) {
-    return body.kind == region.kind && body.index == region.index;
-  });
 }
 
 }  // namespace
@@ -73,7 +64,7 @@ Json regions_of(const plan::Plan& plan, std::uint32_t index) {
   const plan::TaskRecord& task = plan.tasks()[index];
   Json all = Json::array();
   for (const plan::RegionRecord& region : plan.regions()) {
-    if (!is_of(plan, task, region)) continue;
+    if (!plan::has_region(plan.tables(), task, region)) continue;
     Json low = Json::array(), high = Json::array();
     for (const double x : region.low) low.push_back(x);
     for (const double x : region.high) high.push_back(x);

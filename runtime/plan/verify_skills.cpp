@@ -1,9 +1,8 @@
 // Stage 2, skills: that each can be done with what its task has.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/regions.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
 #include "runtime/plan/verify.h"
@@ -91,15 +90,7 @@ class SkillCheck : FieldCheck {
                               t.text(task.name), skill.to));
     }
     const RegionRecord& region = t.regions[skill.region];
-    const auto bodies = slice_of(t.bodies, task.bodies);
-    const bool is_scene = region.kind == static_cast<std::uint32_t>(BodyKind::kSurface) ||
-                          region.kind == static_cast<std::uint32_t>(BodyKind::kFixture);
-    const bool is_there =
-        is_scene ? region.index == task.scene
-                 : std::any_of(bodies.begin(), bodies.end(), [&](const BodyRecord& body) {
-                     return body.kind == region.kind && body.index == region.index;
-                   });
-    if (is_there) return {};
+    if (has_region(t, task, region)) return {};
     return fail(Rule::kSkillRegion, &skill.region,
                 fmt::format("region `{}` is of nothing in task `{}`", t.text(region.name),
                             t.text(task.name)));

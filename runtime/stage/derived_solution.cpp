@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/regions.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
 #include "runtime/vm/made_up.h"
@@ -162,14 +163,7 @@ class Deriver {
   }
 
   std::optional<std::uint32_t> owner_of(const plan::RegionRecord& region) const {
-    const auto bodies = plan_.bodies(record_);
-    for (std::uint32_t b = 0; b < bodies.size(); ++b) {
-      const bool is_scene = region.kind == static_cast<std::uint32_t>(plan::BodyKind::kSurface) ||
-                            region.kind == static_cast<std::uint32_t>(plan::BodyKind::kFixture);
-      const bool is_it = is_scene ? region.index == record_.scene : bodies[b].index == region.index;
-      if (bodies[b].kind == region.kind && is_it) return b;
-    }
-    return std::nullopt;
+    return plan::owner_of(plan_.tables(), record_, region);
   }
 
   // Whether success holds when all of a bundle is done and nothing is held; or, if not, while the

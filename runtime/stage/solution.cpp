@@ -1,5 +1,6 @@
 #include "runtime/stage/solution.h"
 
+#include "runtime/plan/regions.h"
 #include "runtime/plan/skills.h"
 
 namespace probe::stage {
@@ -66,7 +67,6 @@ std::vector<policy::Skill> solution_of(const plan::Plan& plan,
   std::vector<policy::Skill> solution;
   for (const plan::SkillRecord& record : skills) {
     const plan::TaskRecord& task = plan.tasks()[record.task];
-    const auto records = plan.bodies(task);
     policy::Skill skill;
     skill.kind = kind_of(static_cast<plan::Skill>(record.skill));
     const Seen what = seen_of(record.body, bodies);
@@ -88,11 +88,8 @@ std::vector<policy::Skill> solution_of(const plan::Plan& plan,
         if (region.kind == static_cast<std::uint32_t>(plan::BodyKind::kFixture))
           origin = vec(scene.fixture_position);
         skill.region = policy::Skill::Box{vec(region.low) + origin, vec(region.high) + origin};
-        for (std::uint32_t b = 0; b < records.size(); ++b) {
-          const bool is_scene = region.kind == static_cast<std::uint32_t>(plan::BodyKind::kFixture);
-          if (records[b].kind == region.kind && (is_scene || records[b].index == region.index))
-            to = seen_of(b, bodies);
-        }
+        if (const auto owner = plan::owner_of(plan.tables(), task, region))
+          to = seen_of(*owner, bodies);
       }
       skill.to_object = to.object;
       skill.to_fixture = to.fixture;
