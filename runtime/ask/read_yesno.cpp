@@ -1,4 +1,4 @@
-// How yes and no are read, and what is read of a sentence that answers freely.
+// How yes and no are read.
 #include <algorithm>
 #include <array>
 #include <set>
@@ -188,31 +188,8 @@ constexpr ReadRule kYesNoRules[] = {
     {"one word", "yes or no somewhere, as a word of its own", one_word},
 };
 
-// ---- free -------------------------------------------------------------------------------------
-
-std::optional<Reading> refused_free(const ReadContext&, const AnswerPart& part) {
-  if (!part.named.empty() || !is_refusal(part.tokens)) return std::nullopt;
-  return Reading{.verdict = Verdict::kRefused};
-}
-
-std::optional<Reading> sentence(const ReadContext& context, const AnswerPart& part) {
-  Reading reading{.verdict = Verdict::kRead};
-  for (const Named& name : part.named) {
-    const std::uint32_t option = context.options[name.place].option;
-    auto& known = reading.mentioned;
-    if (std::find(known.begin(), known.end(), option) == known.end()) known.push_back(option);
-  }
-  return reading;
-}
-
-constexpr ReadRule kFreeRules[] = {
-    {"refused", "words that say that it cannot or will not answer, and no object", refused_free},
-    {"sentence", "the objects that it names, in their order, each once", sentence},
-};
-
 }  // namespace
 
 std::span<const ReadRule> yesno_rules() { return kYesNoRules; }
-std::span<const ReadRule> free_rules() { return kFreeRules; }
 
 }  // namespace probe::ask
