@@ -86,6 +86,15 @@ class Exchange {
     grpc_byte_buffer_destroy(send.data.send_message.send_message);
   }
 
+  // Nothing more will be sent.
+  void close() {
+    if (!is_sent_ || is_closed_) return;
+    grpc_op close{};
+    close.op = GRPC_OP_SEND_CLOSE_FROM_CLIENT;
+    is_sent_ = queue_.run(call_, {&close, 1});
+    is_closed_ = true;
+  }
+
   // The status comes whatever became of what was sent.
   Outcome end() {
     is_over_ = true;
@@ -103,7 +112,7 @@ class Exchange {
     ops[2].op = GRPC_OP_RECV_STATUS_ON_CLIENT;
     ops[2].data.recv_status_on_client = {&last, &outcome.status, &details, nullptr};
     ops[3].op = GRPC_OP_SEND_CLOSE_FROM_CLIENT;
-    queue_.run(call_, {ops, std::size_t{is_sent_ ? 4U : 3U}});
+    queue_.run(call_, {ops, std::size_t{is_sent_ && !is_closed_ ? 4U : 3U}});
     outcome.details.assign(reinterpret_cast<const char*>(GRPC_SLICE_START_PTR(details)),
                            GRPC_SLICE_LENGTH(details));
     if (answer != nullptr) {
@@ -119,7 +128,7 @@ class Exchange {
  private:
   Queue queue_;
   grpc_call* call_ = nullptr;
-  bool is_sent_ = false, is_over_ = false;
+  bool is_sent_ = false, is_closed_ = false, is_over_ = false;
 };
 
 }  // namespace grpc_io
@@ -208,6 +217,14 @@ std::shared_ptr<GrpcChannel::Begun> GrpcChannel::begin(const GrpcCall& asked, Du
   for (std::size_t i = 0; i + 1 < asked.messages.size(); ++i)
     begun->exchange.send(asked.messages[i]);
   if (!asked.messages.empty()) begun->last = asked.messages.back();
+  return begun;
+}
+
+std::shared_ptr<GrpcChannel::Begun> GrpcChannel::start(const GrpcCall& asked, Duration timeout) {
+  auto begun = begin(asked, timeout);
+  if (begun->last) begun->exchange.send(*begun->last);
+  begun->last.reset();
+  begun->exchange.close();
   return begun;
 }
 

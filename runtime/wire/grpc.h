@@ -53,6 +53,8 @@ class GrpcChannel {
   class Begun;
   std::shared_ptr<Begun> begin(const GrpcCall& call, Duration timeout);
   Result<Bytes> end(const std::shared_ptr<Begun>& begun);
+  // All messages are sent, and end() only waits for the answer.
+  std::shared_ptr<Begun> start(const GrpcCall& call, Duration timeout);
 
   // Whether the last failure was the connection's: the server may have been started anew.
   bool is_lost() const { return is_lost_; }
@@ -63,5 +65,9 @@ class GrpcChannel {
   std::unique_ptr<Parts> parts_;
   bool is_lost_ = false;
 };
+
+// As listen_grpc, for a speaker whose answer() may be called from several threads at a time.
+Result<std::unique_ptr<Listener>> listen_grpc_at_once(const std::string& address,
+                                                      const std::string& port, MakeSpeaker make);
 
 }  // namespace probe::wire

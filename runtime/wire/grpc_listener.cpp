@@ -23,7 +23,8 @@ constexpr int kLargestGrpcQuestion = 256 << 20;
 // One call at a time, in a thread and a queue of its own.
 class GrpcWorker {
  public:
-  GrpcWorker(grpc_server* server, grpc_completion_queue* queue, std::mutex& talk, Speaker& speaker)
+  // `talk` is held while the speaker answers; null: it is not.
+  GrpcWorker(grpc_server* server, grpc_completion_queue* queue, std::mutex* talk, Speaker& speaker)
       : server_(server), queue_(queue), talk_(talk), speaker_(speaker) {
     thread_ = std::thread([this] { work(); });
   }
@@ -80,7 +81,8 @@ class GrpcWorker {
       grpc_byte_buffer_destroy(message);
     }
     const Speaker::Reply reply = [&] {
-      const std::lock_guard lock(talk_);
+      const auto lock =
+          talk_ != nullptr ? std::unique_lock(*talk_) : std::unique_lock<std::mutex>();
       return speaker_.answer(to_frame(asked));
     }();
     Bytes bytes;
@@ -106,14 +108,14 @@ class GrpcWorker {
 
   grpc_server* server_;
   grpc_completion_queue* queue_;
-  std::mutex& talk_;
+  std::mutex* talk_;
   Speaker& speaker_;
   std::thread thread_;
 };
 
 class GrpcListener final : public Listener {
  public:
-  explicit GrpcListener(const MakeSpeaker& make) : speaker_(make()) {}
+  GrpcListener(const MakeSpeaker& make, bool at_once) : speaker_(make()), at_once_(at_once) {}
   ~GrpcListener() override {
     if (server_ == nullptr) return;
     grpc_completion_queue* end = grpc_completion_queue_create_for_pluck(nullptr);
@@ -152,7 +154,7 @@ class GrpcListener final : public Listener {
     grpc_server_credentials_release(open);
     grpc_server_start(server_);
     for (grpc_completion_queue* queue : queues)
-      workers_.emplace_back(server_, queue, talk_, *speaker_);
+      workers_.emplace_back(server_, queue, at_once_ ? nullptr : &talk_, *speaker_);
     if (bound == 0)
       return Failure{Fault::kUsage, "listening: the address is not to be had, or taken",
                      address + ":" + port};
@@ -165,18 +167,29 @@ class GrpcListener final : public Listener {
  private:
   std::mutex talk_;  // the speaker
   std::unique_ptr<Speaker> speaker_;
+  bool at_once_;
   grpc_server* server_ = nullptr;
   std::list<GrpcWorker> workers_;
   std::string port_;
 };
 
+Result<std::unique_ptr<Listener>> listening(const std::string& address, const std::string& port,
+                                            const MakeSpeaker& make, bool at_once) {
+  auto listener = std::make_unique<GrpcListener>(make, at_once);
+  PROBE_TRY(listener->listen(address, port));
+  return std::unique_ptr<Listener>(std::move(listener));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Listener>> listen_grpc(const std::string& address, const std::string& port,
                                               MakeSpeaker make) {
-  auto listener = std::make_unique<GrpcListener>(make);
-  PROBE_TRY(listener->listen(address, port));
-  return std::unique_ptr<Listener>(std::move(listener));
+  return listening(address, port, make, false);
+}
+
+Result<std::unique_ptr<Listener>> listen_grpc_at_once(const std::string& address,
+                                                      const std::string& port, MakeSpeaker make) {
+  return listening(address, port, make, true);
 }
 
 }  // namespace probe::wire

@@ -1,11 +1,12 @@
 """A server that speaks LeRobot's asynchronous inference as its policy_server.py does: one place for an
 observation, one policy for all, pickles both ways. PyTorch's tensors are written by hand.
 
-lerobot_server.py [chunk=N] [record=FILE] [lacks=MODEL] [port=N] [seen]
+lerobot_server.py [chunk=N] [record=FILE] [lacks=MODEL] [port=N] [seen] [arrivals] [impatient]
 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or, with
 `seen`, small ones that follow from what was asked and which model is loaded.
-`record` gets a line of JSON for each call. The model `lacks` cannot be loaded. An instruction
+`record` gets a line of JSON for each call, with `arrivals` also when actions are asked for and when an
+observation has arrived. With `impatient` who asks before there is one gets nothing at once. The model `lacks` cannot be loaded. An instruction
 "fault:NAME" makes that answer fail as named in FAULTS.
 """
 import hashlib
@@ -241,12 +242,17 @@ class Server(grpc.GenericRpcHandler):
         if observation.must_go:
             if self.queue.full():
                 self.queue.get_nowait()
+            if "arrivals" in options:
+                time.sleep(0.02)  # so that whoever does not wait for it is there first
+                self.note("arrived")
             self.queue.put(observation)
         return b""
 
     def act(self, message, context):
+        if "arrivals" in options:
+            self.note("asked")
         try:
-            observation = self.queue.get(timeout=2)
+            observation = self.queue.get(timeout=0.001 if "impatient" in options else 2)
         except Empty:
             return b""
         raw = observation.observation

@@ -1,5 +1,8 @@
 // LeRobot's protocol from the server's side, see lerobot.cpp: one place for an observation, and
-// nothing for whoever asks while it is empty.
+// nothing for whoever asks while it is empty and stays so.
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <optional>
 
 #include "runtime/servers/protocols/lerobot_messages.h"
@@ -8,7 +11,8 @@
 namespace probe::servers {
 namespace {
 
-constexpr double kStepTime = 1.0 / 30;  // s, what its servers count by
+constexpr double kStepTime = 1.0 / 30;        // s, what its servers count by
+constexpr std::chrono::seconds kPatience{2};  // for an observation: their obs_queue_timeout
 
 class LeRobotSpeaker final : public wire::Speaker {
  public:
@@ -27,16 +31,24 @@ class LeRobotSpeaker final : public wire::Speaker {
  private:
   Result<wire::Bytes> said(const wire::GrpcCall& call) {
     if (call.method == lerobot::kReady) {
+      const std::scoped_lock lock(working_, place_);
       observation_.reset();
+      ++readied_;
+      arrived_.notify_all();
       policy_->reset();
       return wire::Bytes{};
     }
     if (call.method == lerobot::kSendPolicy) {
-      PROBE_ASSIGN(setup_, lerobot::setup_of(call));
+      PROBE_ASSIGN(auto setup, lerobot::setup_of(call));
+      const std::lock_guard lock(place_);
+      setup_ = std::move(setup);
       return wire::Bytes{};
     }
     if (call.method == lerobot::kSendObservations) {
-      PROBE_ASSIGN(observation_, lerobot::observation_of(call));
+      PROBE_ASSIGN(auto observation, lerobot::observation_of(call));
+      const std::lock_guard lock(place_);
+      observation_ = std::move(observation);
+      arrived_.notify_one();
       return wire::Bytes{};
     }
     if (call.method == lerobot::kGetActions) return actions();
@@ -44,13 +56,20 @@ class LeRobotSpeaker final : public wire::Speaker {
   }
 
   Result<wire::Bytes> actions() {
+    std::unique_lock place(place_);
+    // Of a place that Ready empties for another one nothing comes, as there.
+    arrived_.wait_for(place, kPatience,
+                      [&, before = readied_] { return observation_ || readied_ != before; });
     if (!observation_ || !setup_) return wire::Bytes{};
     const lerobot::Observation seen = std::move(*observation_);
     observation_.reset();
+    const int most = std::min(chunk_, setup_->chunk);
+    place.unlock();
     PROBE_ASSIGN(wire::Array picture, first_picture(seen.content));
     PROBE_ASSIGN(std::string words, text_at(seen.content, "task"));
-    PROBE_ASSIGN(const auto answered, policy_->answer({std::move(picture), std::move(words)},
-                                                      std::min(chunk_, setup_->chunk)));
+    const std::lock_guard working(working_);
+    PROBE_ASSIGN(const auto answered,
+                 policy_->answer({std::move(picture), std::move(words)}, most));
     std::vector<lerobot::TimedAction> timed;
     for (const policy::Action& action : answered) {
       const auto count = static_cast<double>(timed.size());
@@ -63,7 +82,11 @@ class LeRobotSpeaker final : public wire::Speaker {
   }
 
   int chunk_;
+  std::mutex working_;  // policy_
   std::unique_ptr<ServedPolicy> policy_;
+  std::mutex place_;  // what is below
+  std::condition_variable arrived_;
+  int readied_ = 0;
   std::optional<lerobot::PolicySetup> setup_;
   std::optional<lerobot::Observation> observation_;
 };
@@ -71,8 +94,8 @@ class LeRobotSpeaker final : public wire::Speaker {
 }  // namespace
 
 Result<std::unique_ptr<wire::Listener>> serve_lerobot(const ServeOptions& options) {
-  return wire::listen_grpc(options.address, options.port,
-                           [options] { return std::make_unique<LeRobotSpeaker>(options); });
+  return wire::listen_grpc_at_once(options.address, options.port,
+                                   [options] { return std::make_unique<LeRobotSpeaker>(options); });
 }
 
 }  // namespace probe::servers

@@ -1,6 +1,7 @@
 // LeRobot's protocol against a server that keeps what LeRobot's own keeps.
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -248,6 +249,47 @@ TEST_CASE("LeRobot: worlds at one server take turns, and each has its own answer
   for (std::size_t world = 0; world < kWorlds; ++world) {
     CHECK(alone[world].size() == kSteps);
     CHECK(together[world] == alone[world]);
+  }
+}
+
+TEST_CASE(
+    "LeRobot: a busy server is asked while the observation arrives, and waits for it or not") {
+  constexpr int kQuestions = 4;
+  for (const bool is_patient : {true, false}) {
+    for (const int worlds : {1, 3}) {
+      CAPTURE(is_patient);
+      CAPTURE(worlds);
+      const ServerRecord record;
+      const PythonServer server(
+          "lerobot_server.py", {record.option(), "arrivals", is_patient ? "patient" : "impatient"});
+      PolicyContext context;
+      context.model = std::make_shared<SharedModel>();
+      std::atomic<int> right = 0;
+      std::vector<std::thread> threads;
+      for (int world = 0; world < worlds; ++world) {
+        auto policy = lerobot_at(server, "", context);
+        threads.emplace_back([&, policy = std::move(policy)] {
+          if (!policy->begin(asking_start()).ok()) return;
+          AskingPicture picture;
+          for (int step = 0; step < kQuestions; ++step) {
+            Observation seen = picture.observation(step);
+            seen.prompt = "fault:slow";
+            if (policy->act(seen).ok()) ++right;
+          }
+          policy->end({});
+        });
+      }
+      for (std::thread& thread : threads) thread.join();
+      CHECK(right == worlds * kQuestions);
+      // How often actions were asked for before there was anything to answer.
+      int there = 0, early = 0;
+      for (const std::string& call : calls_of(record)) {
+        if (call == "arrived") ++there;
+        if (call == "GetActions") --there;
+        if (call == "asked" && there == 0) ++early;
+      }
+      CHECK((early > 0) == (worlds > 1));
+    }
   }
 }
 
