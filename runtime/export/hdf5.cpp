@@ -104,7 +104,7 @@ class Hdf5 final : public Sink {
     const hsize_t bodies = trace.header.bodies.size(), joints = trace.header.joints.size();
     const hsize_t metric_count = trace.header.metrics.size();
     std::vector<double> step, time, grip, tcp, action, q, u, metrics, seconds;
-    std::vector<double> position, origin, velocity, spin, rotation;
+    std::vector<double> position, origin, velocity, spin, rotation, own;
     std::vector<std::uint8_t> prompt, image, state;
     const auto append = [](auto& to, const auto& from) {
       to.insert(to.end(), from.begin(), from.end());
@@ -122,6 +122,7 @@ class Hdf5 final : public Sink {
       append(prompt, s.prompt_hash.bytes);
       append(image, s.image_hash.bytes);
       append(state, s.state_hash.bytes);
+      for (const vm::OwnPlace& place : s.sample.own) put(own, place.position);
       for (const vm::BodySample& body : s.sample.bodies) {
         put(position, body.position);
         put(origin, body.origin);
@@ -145,6 +146,15 @@ class Hdf5 final : public Sink {
     reals(group, "body_velocity", velocity, {n, bodies, 3});
     reals(group, "body_spin", spin, {n, bodies, 3});
     reals(group, "body_rotation", rotation, {n, bodies, 4});
+    // What moves by itself is the same in every step.
+    if (!own.empty()) {
+      std::vector<double> bodies_of_own;
+      for (const vm::OwnPlace& place : trace.steps.front().sample.own)
+        bodies_of_own.push_back(place.body);
+      const hsize_t movers = bodies_of_own.size();
+      reals(group, "own_place_body", bodies_of_own, {movers});
+      reals(group, "own_place", own, {n, movers, 3});
+    }
     bytes(group, "prompt_sha256", prompt, {n, 32});
     bytes(group, "image_sha256", image, {n, 32});
     bytes(group, "state_hash", state, {n, 32});

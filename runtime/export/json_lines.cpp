@@ -33,6 +33,11 @@ Json sample_json(const vm::StepSample& sample, const std::vector<std::string>& n
         {"rotation_wxyz", wxyz(body.rotation)}};
   }
   json["bodies"] = std::move(bodies);
+  for (const vm::OwnPlace& place : sample.own) {
+    const std::string name =
+        place.body < names.size() ? names[place.body] : std::to_string(place.body);
+    json["bodies"][name]["own_place_m"] = xyz(place.position);
+  }
   Json contacts = Json::array();
   for (const vm::ContactSample& contact : sample.contacts) {
     const auto name = [&](std::uint16_t i) {

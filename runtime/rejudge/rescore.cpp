@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/moves.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/vm/claims.h"
 
@@ -52,6 +53,13 @@ Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::T
     if (at < header.joints.size() && header.joints[at] == joints[i]) continue;
     return refuse(fmt::format("joint `{}` was not measured, task `{}` judges it", joints[i],
                               plan.text(record.name)));
+  }
+  for (const auto legs : plan::moves_of(plan.tables(), record)) {
+    const std::uint32_t body = legs.front().body;
+    const auto is_it = [&](const vm::OwnPlace& place) { return place.body == body; };
+    if (trace.steps.empty() || std::ranges::any_of(trace.steps.front().sample.own, is_it)) continue;
+    return refuse(fmt::format("it does not say where `{}` was let go, which moves by itself",
+                              header.bodies[body]));
   }
   const double hz = plan.robots()[plan.scenes()[record.scene].robot].control_hz;
   if (hz != header.control_hz) {

@@ -293,6 +293,14 @@ Status EpisodeWorld::restore(const WorldState& state) {
     PROBE_TRY(begin_world(arrangement(std::move(anywhere))));
   }
   PROBE_TRY(world_->restore(state.physics));
+  for (const auto legs : plan::moves_of(plan_.tables(), task_)) {
+    if (world_->led_to(legs.front().body)) continue;
+    return Failure{
+        Fault::kWorld,
+        fmt::format("the saved state does not say where `{}` was let go, which moves by itself",
+                    bodies_.names[legs.front().body]),
+        "task `" + std::string(plan_.text(task_.name)) + "`"};
+  }
   PROBE_TRY(controller_.restore(state.control));
   starts_ = state.starts;
   steps_ = state.steps;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/base/upright.h"
+#include "runtime/plan/moves.h"
 #include "runtime/stage/robot_of.h"
 
 namespace probe::stage {
@@ -40,6 +41,11 @@ void Instruments::read(const world::World& world, int steps, int substeps, doubl
   }
   read_links(world, sample);
   read_contacts(world, sample);
+  sample->own.clear();
+  for (const auto legs : plan::moves_of(plan_.tables(), task_)) {
+    const auto body = static_cast<std::uint16_t>(legs.front().body);
+    sample->own.push_back({body, world.led_to(body).value_or(sample->bodies[body].position)});
+  }
   sample->joints.clear();
   for (std::size_t i = 0; i < world.joints().size(); ++i) {
     sample->joints.push_back({world.joints()[i], world.joint_speeds()[i]});

@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "runtime/base/check.h"
 #include "runtime/base/file.h"
@@ -97,6 +99,11 @@ class FileTraceWriter final : public TraceWriter {
     }
     // The timing goes first, so that a whole step in the file has it.
     PROBE_TRY(chunk(Tag::kTime, timing.bytes()));
+    if (!step.sample.own.empty()) {
+      ByteWriter own;
+      codec::put_own(own, step);
+      PROBE_TRY(chunk(Tag::kOwn, own.bytes()));
+    }
     PROBE_TRY(chunk(Tag::kStep, payload.bytes()));
     return flush();
   }
@@ -254,15 +261,31 @@ bool fits(const TraceHeader& header, const TraceEnd& end) {
   return end.invalid || std::ranges::equal(end.metrics, header.metrics, is_same);
 }
 
-// One chunk into the trace; what is wrong with it, if anything is.
 // Seconds of rendering, policy, physics; of a live step those of its answers.
 using LiveTiming = std::array<double, 3 + policy::kMostAnswersOfAStep>;
 
-std::string accept(Trace& trace, bool is_live, bool& has_header, LiveTiming& timing, Tag tag,
+// What stands in the file before the step that it is of.
+struct Ahead {
+  LiveTiming timing{};
+  std::optional<std::vector<vm::OwnPlace>> own;
+};
+
+// The same bodies in every step, each once.
+bool fits(const Trace& trace, const std::vector<vm::OwnPlace>& own) {
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own[i].body >= trace.header.bodies.size()) return false;
+    if (i > 0 && own[i].body <= own[i - 1].body) return false;
+  }
+  return trace.steps.empty() || std::ranges::equal(own, trace.steps.front().sample.own, {},
+                                                   &vm::OwnPlace::body, &vm::OwnPlace::body);
+}
+
+// One chunk into the trace; what is wrong with it, if anything is.
+std::string accept(Trace& trace, bool is_live, bool& has_header, Ahead& ahead, Tag tag,
                    std::span<const std::byte> payload) {
   if (!is_known(tag)) return "a chunk of unknown kind";
   if ((tag == Tag::kHead) == has_header) return has_header ? "a second header" : "no header";
-  const bool needs_start = tag == Tag::kStep || tag == Tag::kTime;
+  const bool needs_start = tag == Tag::kStep || tag == Tag::kTime || tag == Tag::kOwn;
   if (needs_start && !trace.start) return "a step before the settled start";
   if (trace.end && tag != Tag::kHash) return "a chunk after the end";
   if (has_header && is_live && !trace.header.live && tag != Tag::kLive)
@@ -292,18 +315,26 @@ std::string accept(Trace& trace, bool is_live, bool& has_header, LiveTiming& tim
       return {};
     }
     case Tag::kTime:
-      for (std::size_t i = 0; i < (is_live ? timing.size() : 3u); ++i) timing[i] = from.f64();
+      for (std::size_t i = 0; i < (is_live ? ahead.timing.size() : 3u); ++i)
+        ahead.timing[i] = from.f64();
       return from.ok() && from.left() == 0 ? "" : "a timing of another form";
+    case Tag::kOwn:
+      if (ahead.own) return "two places of what moves by itself before one step";
+      ahead.own = codec::get_own(payload);
+      if (!ahead.own || ahead.own->empty()) return "places of what moves by itself of another form";
+      return {};
     case Tag::kStep: {
       auto step = codec::get_step(payload, is_live);
       if (!step) return "a step of another form";
       if (!fits(trace.steps, *step)) return "an answer to a question that was not asked";
       if (!fits(trace.header, *step)) return "a step of other things than its header's";
-      step->render_s = timing[0];
-      step->policy_s = timing[1];
-      step->physics_s = timing[2];
+      step->render_s = ahead.timing[0];
+      step->policy_s = ahead.timing[1];
+      step->physics_s = ahead.timing[2];
       for (std::size_t i = 0; step->live && i < step->live->answers.size(); ++i)
-        step->live->answers[i].answer_s = timing[3 + i];
+        step->live->answers[i].answer_s = ahead.timing[3 + i];
+      if (ahead.own) step->sample.own = std::move(*std::exchange(ahead.own, {}));
+      if (!fits(trace, step->sample.own)) return "a step in which other things move by themselves";
       trace.steps.push_back(std::move(*step));
       return {};
     }
@@ -359,7 +390,7 @@ Result<Trace> read_trace_prefix(const std::string& path) {
   Hasher hasher;
   bool has_header = false, has_hash = false;
   Sha256 recorded;
-  LiveTiming timing{};
+  Ahead ahead;
   std::string wrong;
   while (wrong.empty() && from.left() > 0 && !has_hash) {
     const std::size_t begin = from.position();
@@ -373,7 +404,7 @@ Result<Trace> read_trace_prefix(const std::string& path) {
       wrong = "a chunk with another check word";
       break;
     }
-    wrong = accept(trace, is_live, has_header, timing, tag, payload);
+    wrong = accept(trace, is_live, has_header, ahead, tag, payload);
     if (!wrong.empty()) break;
     if (is_hashed(tag)) hasher.bytes(chunk);
     if (tag == Tag::kHash) {

@@ -5,6 +5,7 @@ namespace probe::store::codec {
 namespace {
 
 constexpr std::size_t kBodyBytes = 16 * sizeof(double);
+constexpr std::size_t kOwnBytes = sizeof(std::uint16_t) + 3 * sizeof(double);
 constexpr std::size_t kContactBytes = 2 * sizeof(std::uint16_t) + 3 * sizeof(double);
 
 void put_texts(ByteWriter& to, const std::vector<std::string>& texts) {
@@ -166,6 +167,24 @@ std::optional<TraceStart> get_start(std::span<const std::byte> bytes) {
   start.sample = get_sample(from);
   start.sample.joints = joints_of(start.q, {});
   return whole(from, std::move(start));
+}
+
+void put_own(ByteWriter& to, const TraceStep& step) {
+  to.u32(static_cast<std::uint32_t>(step.sample.own.size()));
+  for (const vm::OwnPlace& place : step.sample.own) {
+    to.u16(place.body);
+    to.vec(place.position);
+  }
+}
+
+std::optional<std::vector<vm::OwnPlace>> get_own(std::span<const std::byte> bytes) {
+  ByteReader from(bytes);
+  std::vector<vm::OwnPlace> own(from.count(from.u32(), kOwnBytes));
+  for (vm::OwnPlace& place : own) {
+    place.body = from.u16();
+    place.position = from.vec();
+  }
+  return whole(from, std::move(own));
 }
 
 void put_step(ByteWriter& to, const TraceStep& step) {

@@ -22,6 +22,7 @@ enum class Tag : std::uint32_t {
   kLive = 0x4556494c,         // LIVE, of version 2
   kFingerprint = 0x474e4946,  // FING, not hashed
   kSettled = 0x4c544553,      // SETL
+  kOwn = 0x534e574f,          // OWNS, of what moves by itself
   kStep = 0x50455453,         // STEP
   kTime = 0x454d4954,         // TIME, not hashed
   kDone = 0x454e4f44,         // DONE
@@ -29,13 +30,14 @@ enum class Tag : std::uint32_t {
 };
 
 inline bool is_hashed(Tag tag) {
-  return tag == Tag::kHead || tag == Tag::kLive || tag == Tag::kSettled || tag == Tag::kStep ||
-         tag == Tag::kDone;
+  return tag == Tag::kHead || tag == Tag::kLive || tag == Tag::kSettled || tag == Tag::kOwn ||
+         tag == Tag::kStep || tag == Tag::kDone;
 }
 
 void put_header(ByteWriter& to, const TraceHeader& header);
 void put_terms(ByteWriter& to, const policy::LiveTerms& terms);
 void put_start(ByteWriter& to, const TraceStart& start);
+void put_own(ByteWriter& to, const TraceStep& step);
 void put_step(ByteWriter& to, const TraceStep& step);
 void put_end(ByteWriter& to, const TraceEnd& end);
 
@@ -43,7 +45,8 @@ void put_end(ByteWriter& to, const TraceEnd& end);
 std::optional<TraceHeader> get_header(std::span<const std::byte> bytes);
 std::optional<policy::LiveTerms> get_terms(std::span<const std::byte> bytes);
 std::optional<TraceStart> get_start(std::span<const std::byte> bytes);
-// `is_live`: of version 2.
+std::optional<std::vector<vm::OwnPlace>> get_own(std::span<const std::byte> bytes);
+// `is_live`: of version 2. Without the places of what moves by itself.
 std::optional<TraceStep> get_step(std::span<const std::byte> bytes, bool is_live);
 std::optional<TraceEnd> get_end(std::span<const std::byte> bytes);
 

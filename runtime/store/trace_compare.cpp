@@ -60,6 +60,10 @@ class Finder {
         real("rotation of " + name(i), a.rotation.coeffs()[k], b.rotation.coeffs()[k]);
       }
     }
+    count("things that move by themselves", here.own.size(), recorded.own.size());
+    for (std::size_t i = 0; i < std::min(here.own.size(), recorded.own.size()); ++i)
+      vec("where its own motion has " + name(here.own[i].body), here.own[i].position,
+          recorded.own[i].position);
     count("contacts", here.contacts.size(), recorded.contacts.size());
     for (std::size_t i = 0; i < std::min(here.contacts.size(), recorded.contacts.size()); ++i) {
       const vm::ContactSample &a = here.contacts[i], &b = recorded.contacts[i];
@@ -141,7 +145,9 @@ Status TraceComparer::step(const TraceStep& here) {
   const TraceStep& recorded = recorded_.steps[index];
   const bool is_given = recorded_.header.live && recorded_.header.live->delay_s;
   const bool same_delays = !is_given || here.live == recorded.live;
-  if (same_delays && same_bytes(codec::put_step, here, recorded)) return {};
+  if (same_delays && same_bytes(codec::put_step, here, recorded) &&
+      same_bytes(codec::put_own, here, recorded))
+    return {};
   Finder finder;
   // In the order of cause and effect: what was seen and done, then what came of it.
   finder.hash("prompt hash", here.prompt_hash, recorded.prompt_hash);

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "runtime/base/check.h"
+#include "runtime/plan/moves.h"
 #include "runtime/plan/readouts.h"
 
 namespace probe::vm {
@@ -106,15 +107,22 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task, std::uint32_t number) {
     metrics_.push_back(
         {std::string(plan.text(metric.name)), static_cast<plan::MetricType>(metric.type)});
   }
+  const auto ways = plan::moves_of(plan.tables(), record);
+  const auto moves_by_itself = [&](std::uint16_t body) {
+    return std::ranges::any_of(ways, [&](const auto& legs) { return legs.front().body == body; });
+  };
   const auto code = plan.code(program);
   for (const plan::Instruction& in : code) {
     const auto op = static_cast<Op>(in.op);
     if (op == Op::kPUSH || op == Op::kIMP) {
       pairs_.push_back({std::min(in.a, in.b), std::max(in.a, in.b), Vec3::Zero(), Vec3::Zero()});
     }
+    if (op == Op::kSTART && moves_by_itself(in.a)) movers_.push_back(in.a);
     if (plan::find_op(in.op)->a == Kind::kJoint)
       joints_ = std::max(joints_, first_joint_ + in.a + std::size_t{1});
   }
+  std::ranges::sort(movers_);
+  movers_.erase(std::unique(movers_.begin(), movers_.end()), movers_.end());
   const auto key = [](const Pair& p) { return std::pair(p.a, p.b); };
   std::ranges::sort(pairs_, {}, key);
   const auto same = [&](const Pair& p, const Pair& q) { return key(p) == key(q); };
@@ -134,6 +142,8 @@ Judge::Judge(const plan::Plan& plan, std::uint32_t task, std::uint32_t number) {
       step.b = in.a > in.b ? 1 : 0;  // 1: what the greater body exerts on the smaller
     }
     bool is_fixed = info.known == plan::Known::kStart;
+    // What moves by itself is compared with where its own motion has it, which every step says.
+    if (info.op == Op::kSTART && moves_by_itself(in.a)) is_fixed = false;
     if (info.known == plan::Known::kOperands)
       is_fixed = fixed[in.a] && (!plan::is_register(info.b) || fixed[in.b]);
     if (info.result != Kind::kUnused) fixed.push_back(is_fixed);
@@ -230,7 +240,14 @@ Status Judge::check(const StepSample& sample) const {
     return Failure{Fault::kJudge, "a measurement of joint " + std::to_string(i) + " is not finite",
                    task_name_};
   }
+  for (const std::uint16_t body : movers_) {
+    if (std::ranges::find(sample.own, body, &OwnPlace::body) != sample.own.end()) continue;
+    return Failure{Fault::kJudge,
+                   "a step does not say where its own motion has body " + std::to_string(body),
+                   task_name_};
+  }
   FiniteCheck rest;
+  for (const OwnPlace& place : sample.own) rest.see(place.position);
   rest.see(sample.tcp);
   rest.see(sample.grip);
   rest.see(sample.step);
@@ -266,6 +283,11 @@ Status Judge::step(const StepSample& sample) {
   return {};
 }
 
+const Vec3& Judge::start_of(std::uint16_t body, const StepSample& sample) const {
+  if (!std::ranges::binary_search(movers_, body)) return starts_[body].position;
+  return std::ranges::find(sample.own, body, &OwnPlace::body)->position;
+}
+
 void Judge::run(std::span<const Step> steps, const StepSample& sample) {
   Register* const r = registers_.data();
   const auto put = [](Register& d, const Vec3& v) { d = {v.x(), v.y(), v.z()}; };
@@ -291,7 +313,7 @@ void Judge::run(std::span<const Step> steps, const StepSample& sample) {
         put(d, sample.bodies[s.a].position);
         break;
       case Op::kSTART:
-        put(d, starts_[s.a].position);
+        put(d, start_of(s.a, sample));
         break;
       case Op::kHALF:
         put(d, starts_[s.a].half);

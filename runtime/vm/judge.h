@@ -95,12 +95,15 @@ class Judge {
 
   Status check(const StepSample& sample) const;
   void read_contacts(std::span<const ContactSample> contacts);
+  // What a body is compared with: where it lay, or where its own motion has it.
+  const Vec3& start_of(std::uint16_t body, const StepSample& sample) const;
   void run(std::span<const Step> steps, const StepSample& sample);
 
   std::string task_name_;
   std::size_t bodies_ = 0;
-  std::size_t first_joint_ = 0;  // of fixtures, behind the robot's
-  std::size_t joints_ = 0;       // that a sample must have
+  std::size_t first_joint_ = 0;        // of fixtures, behind the robot's
+  std::size_t joints_ = 0;             // that a sample must have
+  std::vector<std::uint16_t> movers_;  // bodies that move by themselves, of which START is asked
   std::vector<double> constants_;
   std::vector<std::uint16_t> hold_;  // per state, HOLD's n
   std::vector<Metric> metrics_;

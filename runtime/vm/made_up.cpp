@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/moves.h"
 #include "runtime/plan/roles.h"
 #include "runtime/vm/judge.h"
 
@@ -100,6 +101,10 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
     world.starts[i].position = at;
     world.put(i, at);
   }
+  for (const auto legs : plan::moves_of(plan.tables(), record)) {
+    const auto body = static_cast<std::uint16_t>(legs.front().body);
+    world.sample.own.push_back({body, world.starts[body].position});
+  }
   return world;
 }
 
@@ -145,6 +150,7 @@ std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t t
         {std::min(one.body, below), std::max(one.body, below), {0, 0, down}});
   }
   if (!carried) return std::nullopt;
+  for (OwnPlace& place : world.sample.own) place.position = world.starts[place.body].position;
   std::ranges::sort(world.sample.contacts, {},
                     [](const ContactSample& pair) { return std::pair(pair.a, pair.b); });
   return world;

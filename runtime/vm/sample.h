@@ -33,6 +33,13 @@ struct BodyStart {
   Vec3 opening = Vec3::Zero();  // fingers: unit opening axis in the link frame
 };
 
+// Of a body that moves by itself: where its own motion has it, or had it when somebody touched it
+// or it came to its end. What such a body is compared with where others are with their start.
+struct OwnPlace {
+  std::uint16_t body = 0;
+  Vec3 position = Vec3::Zero();  // centre of mass
+};
+
 // Contact impulse between two bodies over the last physics substep, N s; a < b; `push` is exerted
 // by a on b. Pairs without contact are absent, so this list is short.
 struct ContactSample {
@@ -45,6 +52,7 @@ struct StepSample {
   std::vector<BodySample> bodies;
   std::vector<ContactSample> contacts;  // ascending by (a, b)
   std::vector<JointSample> joints;      // the robot's in drive order, then those of fixtures
+  std::vector<OwnPlace> own;            // of what moves by itself, ascending by body
   Vec3 tcp = Vec3::Zero();
   double grip = 0;  // closedness 0..1
   double step = 0;  // control steps done

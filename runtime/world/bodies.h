@@ -15,6 +15,13 @@ struct Ambient {
 // Velocities after gravity and damping, and the world inverse inertia the rows need.
 void predict(Body* body, const Ambient& ambient, double dt);
 
+// It goes on as any body does, and where that began is kept. Of what is not led nothing changes.
+inline void let_go(Body* body) {
+  if (!body->led) return;
+  body->led = false;
+  body->let_go_at = body->position;
+}
+
 // Poses after the substep.
 void integrate(Body* body, const Ambient& ambient, double dt);
 

@@ -15,6 +15,9 @@ static_assert(std::endian::native == std::endian::little,
               "states are written as they lie in memory");
 constexpr std::uint32_t kMagic = 0x33535756;  // VWS3
 
+// Of a body, whether it is led; the last goes on with where it was let go.
+constexpr std::uint8_t kNeverLed = 0, kIsLed = 1, kWasLetGo = 2;
+
 class Writer {
  public:
   template <typename T>
@@ -147,9 +150,14 @@ std::vector<std::byte> save_state(const Stepper& stepper) {
         point_fields(put, record.points[k]);
     }
   }
-  // States of worlds in which nobody is led are as they ever were.
-  if (std::ranges::any_of(stepper.bodies, &Body::led)) {
-    for (const Body& body : stepper.bodies) out.put(body.led);
+  // States of worlds in which nobody is or was led are as they ever were.
+  const auto was_let_go = [](const Body& body) { return body.let_go_at.has_value(); };
+  if (std::ranges::any_of(stepper.bodies, &Body::led) ||
+      std::ranges::any_of(stepper.bodies, was_let_go)) {
+    for (const Body& body : stepper.bodies) {
+      out.put(body.led ? kIsLed : was_let_go(body) ? kWasLetGo : kNeverLed);
+      if (was_let_go(body)) out.put(*body.let_go_at);
+    }
   }
   return out.take();
 }
@@ -214,7 +222,14 @@ Status restore_state(std::span<const std::byte> bytes, Stepper* stepper) {
   const bool has_led = !in.at_end();
   for (Body& body : bodies) {
     body.led = false;
-    if (has_led) get(body.led);
+    body.let_go_at.reset();
+    if (!has_led) continue;
+    std::uint8_t leading = kNeverLed;
+    get(leading);
+    if (leading > kWasLetGo)
+      return Failure{Fault::kWorld, "the saved state has a body that is led in no known way", ""};
+    body.led = leading == kIsLed;
+    if (leading == kWasLetGo) get(body.let_go_at.emplace());
   }
   if (!in.at_end()) {
     return Failure{Fault::kWorld, "the saved state is cut short or has bytes left over", ""};

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "runtime/base/geometry.h"
@@ -89,6 +90,7 @@ struct Body {
   int calm = 0;                  // substeps at rest
   bool asleep = false;
   bool led = false;  // moves at its velocity whatever meets it, until a robot touches it
+  std::optional<Vec3> let_go_at;  // m, its position when that ended; none before
   // Derived each substep.
   Mat3 axes = Mat3::Identity();  // the rotation as a matrix
   Mat3 response = Mat3::Zero();  // 1/(kg m2), world inverse inertia (K); locked axes zero

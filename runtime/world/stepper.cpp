@@ -128,7 +128,7 @@ void Stepper::free_touched() {
     for (const int side : {0, 1}) {
       if (sides[side] < 0 || !is_robot(sides[1 - side])) continue;
       const int body = colliders[static_cast<size_t>(sides[side])].body;
-      if (body >= 0) bodies[static_cast<size_t>(body)].led = false;
+      if (body >= 0) let_go(&bodies[static_cast<size_t>(body)]);
     }
   }
 }

@@ -155,6 +155,7 @@ void World::set_body(size_t index, const Pose& model_pose) {
   b.position = model_pose.position + b.rotation * b.model_to_center;
   b.velocity = b.spin = Vec3::Zero();
   b.led = false;
+  b.let_go_at.reset();
   const int collider = static_cast<int>(stepper_->links + index);
   place_body(b, &stepper_->colliders[static_cast<size_t>(collider)]);
   drop_records(collider, &stepper_->table);
@@ -227,13 +228,20 @@ void World::lead(size_t index, const Vec3& velocity) {
     // What held it up no longer does.
     drop_records(static_cast<int>(stepper_->links + index), &stepper_->table);
     body.led = true;
+    body.let_go_at.reset();
   }
   body.velocity = velocity;
 }
 
 void World::let_go(size_t index) {
   PROBE_CHECK(index < stepper_->bodies.size(), "a body of the spec");
-  stepper_->bodies[index].led = false;
+  probe::world::let_go(&stepper_->bodies[index]);
+}
+
+std::optional<Vec3> World::led_to(size_t index) const {
+  PROBE_CHECK(index < stepper_->bodies.size(), "a body of the spec");
+  const Body& body = stepper_->bodies[index];
+  return body.led ? body.position : body.let_go_at;
 }
 
 bool World::is_led(size_t index) const {

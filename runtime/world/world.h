@@ -81,6 +81,8 @@ class World {
   void lead(std::size_t index, const Vec3& velocity);
   void let_go(std::size_t index);
   bool is_led(std::size_t index) const;
+  // Its centre of mass where it is led now, or was when that ended; none of what never was led.
+  std::optional<Vec3> led_to(std::size_t index) const;
 
   // Of an articulation and one link of its description, now: what a law of torques reads. Fails
   // (kWorld) for a link that is not there and for more joints than `Dynamics` holds.

@@ -67,6 +67,23 @@ TEST_CASE("measurements that are not the task's are refused with the reason") {
   CHECK(judged->metrics == rescore(plan, 0, made_trace(plan, 0))->metrics);
 }
 
+TEST_CASE("what moves by itself is judged by where it was let go, or not at all") {
+  plan::Writer w = plan::small_writer();
+  w.records.moves.push_back({0, 0, {0.1, 0}, 0.05});
+  w.records.tasks[0].moves = {0, 1};
+  const plan::Plan plan = opened(w);
+  store::Trace trace = made_trace(plan, 0);
+  const auto refused = rescore(plan, 0, trace);
+  REQUIRE(!refused.ok());
+  CHECK(refused.failure().message ==
+        "it does not say where `carrot` was let go, which moves by itself");
+  for (store::TraceStep& step : trace.steps)
+    step.sample.own = {{0, step.sample.bodies[0].position}};
+  const auto score = rescore(plan, 0, trace);
+  REQUIRE_MESSAGE(score.ok(), to_text(score.failure()));
+  CHECK(!score->invalid);
+}
+
 TEST_CASE("an invalid episode stays invalid with its reason, judged as far as it went") {
   const plan::Plan plan = small();
   store::Trace trace = made_trace(plan, 0);

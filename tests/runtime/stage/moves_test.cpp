@@ -93,6 +93,54 @@ TEST_CASE("a saved state on the way goes on bit for bit, in a stage that was nev
   CHECK(again->state_hash() == there);
 }
 
+TEST_CASE("what moves by itself has not moved to the rules that ask, until somebody touches it") {
+  const auto stage = stage_of("passes");
+  const Vec3 begun = stage->objects()[kOrange].position;
+  const auto wrong = stage->judge().find_metric("wrong");
+  REQUIRE(wrong);
+  steps(*stage, 30);
+  CHECK((stage->objects()[kOrange].position - begun).norm() > 0.2);
+  CHECK_FALSE(stage->judge().truth(*wrong));
+  // Let go there it lies as others do; what moves it then has moved it.
+  REQUIRE(stage->sample().own.size() == 1);
+  const vm::OwnPlace& own = stage->sample().own[0];
+  CHECK(own.body == kOrange);
+  CHECK(own.position == stage->sample().bodies[kOrange].position);
+  auto sample = stage->sample();
+  const auto index = *moving().find_task("passes");
+  const auto judged = [&] {
+    vm::Judge judge(moving(), index);
+    REQUIRE(judge.begin(stage->body_starts()).ok());
+    const Status so = judge.step(sample);
+    REQUIRE_MESSAGE(so.ok(), to_text(so.failure()));
+    return judge.truth(*judge.find_metric("wrong"));
+  };
+  CHECK_FALSE(judged());
+  sample.bodies[kOrange].position.y() -= 0.04;
+  CHECK(judged());
+  sample.own.clear();
+  vm::Judge judge(moving(), index);
+  REQUIRE(judge.begin(stage->body_starts()).ok());
+  const Status refused = judge.step(sample);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().message == "a step does not say where its own motion has body 2");
+}
+
+TEST_CASE("at the end of its way it is compared with that") {
+  const auto stage = stage_of("leaves");
+  const Vec3 begun = stage->objects()[kOrange].position;
+  steps(*stage, 30);
+  REQUIRE(stage->sample().own.size() == 1);
+  CHECK((stage->sample().own[0].position - stage->sample().bodies[kOrange].position).norm() < 1e-4);
+  CHECK((stage->objects()[kOrange].position - begun).norm() > 0.035);
+  CHECK_FALSE(stage->judge().truth(*stage->judge().find_metric("wrong")));
+  const StageState state = stage->save();
+  const Vec3 own = stage->sample().own[0].position;
+  const auto again = stage_of("leaves");
+  REQUIRE(again->restore(state).ok());
+  CHECK(again->sample().own[0].position == own);
+}
+
 TEST_CASE("what moves is said to move to the judge, and its start is another than of what stands") {
   const auto index = [&](const char* name) { return *moving().find_task(name); };
   const auto start = [&](const char* name) {

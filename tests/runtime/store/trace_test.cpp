@@ -109,6 +109,44 @@ TEST_CASE("a live trace keeps its terms and what each step had of answers") {
   }
 }
 
+TEST_CASE("a trace says of each step where the motion of what moves by itself has it") {
+  TemporaryFolder folder;
+  const auto write = [&](const std::string& path, std::vector<std::vector<vm::OwnPlace>> own) {
+    auto writer = TraceWriter::create(path, sample_header());
+    REQUIRE(writer.ok());
+    REQUIRE((*writer)->start(sample_start()).ok());
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      TraceStep step = sample_step(static_cast<int>(i) + 1);
+      step.sample.own = own[i];
+      REQUIRE((*writer)->step(step).ok());
+    }
+    const auto count = static_cast<std::uint32_t>(own.size());
+    REQUIRE((*writer)->finish({count, {{"success", true, 1}, {"height", false, 0.5}}, {}}).ok());
+  };
+  write(folder / "a.trace", {{{1, {1, 2, 3}}}, {{1, {1.5, 2, 3}}}});
+  const auto trace = read_trace(folder / "a.trace");
+  REQUIRE_MESSAGE(trace.ok(), to_text(trace.failure()));
+  REQUIRE(trace->steps[1].sample.own.size() == 1);
+  CHECK(trace->steps[1].sample.own[0].body == 1);
+  CHECK(trace->steps[1].sample.own[0].position == Vec3(1.5, 2, 3));
+  TraceComparer comparer(*trace);
+  CHECK(comparer.start(sample_start()).ok());
+  TraceStep other = sample_step(1);
+  other.sample.own = {{1, {1, 2, 3.5}}};
+  CHECK(comparer.step(other).ok());
+  CHECK(comparer.difference() == "step 1: where its own motion has `plate` z is 3.5, recorded 3");
+  const auto refused = [&](std::vector<std::vector<vm::OwnPlace>> own) {
+    write(folder / "b.trace", std::move(own));
+    const auto wrong = read_trace(folder / "b.trace");
+    REQUIRE_FALSE(wrong.ok());
+    return wrong.failure().message.find("a step in which other things move by themselves") == 0;
+  };
+  CHECK(refused({{{2, {}}}}));
+  CHECK(refused({{{1, {}}, {0, {}}}}));
+  CHECK(refused({{{1, {}}}, {}}));
+  CHECK(refused({{}, {{1, {}}}}));
+}
+
 TEST_CASE("the hash covers everything but the clock") {
   TemporaryFolder folder;
   const auto a = write_sample_trace(folder / "a.trace", 3, 0.006);

@@ -65,6 +65,11 @@ class RandomProgram {
     r.programs[0].states = {0, static_cast<std::uint32_t>(r.states.size())};
     r.programs[0].code = {0, static_cast<std::uint32_t>(r.code.size())};
     r.programs[0].metrics = {0, static_cast<std::uint32_t>(r.metrics.size())};
+    // The carrot of every other second task goes to and fro.
+    if (pick(2) == 0) {
+      r.moves.push_back({0, 0, {0.1, 0}, 0.05});
+      r.tasks[1].moves = {0, 1};
+    }
     auto bytes = w.finish();
     REQUIRE_MESSAGE(bytes.ok(), to_text(bytes.failure()));
     auto plan = Plan::from_bytes(std::move(*bytes));
@@ -163,6 +168,9 @@ class RandomWorld {
     }
     std::uniform_real_distribution<double> joint(-2, 2);
     for (int i = 0; i < kJoints; ++i) s.joints.push_back({joint(joints_), joint(joints_)});
+    // Said of what does not move, too: nobody asks for it then.
+    const double x = joint(joints_), y = joint(joints_);
+    s.own = {{0, {x, y, joint(joints_)}}};
     s.tcp = vector();
     s.grip = number_();
     s.step = number;

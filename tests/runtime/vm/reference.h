@@ -19,6 +19,7 @@ class Reference {
   Reference(const plan::Plan& plan, const plan::TaskRecord& task, std::span<const BodyStart> starts,
             std::span<const StepSample> history)
       : plan_(plan),
+        task_(task),
         program_(plan.programs()[task.program]),
         drives_(plan.robots()[plan.scenes()[task.scene].robot].drives.count),
         starts_(starts),
@@ -41,6 +42,13 @@ class Reference {
   using Value = std::array<double, 3>;
 
   std::size_t drives() const { return drives_; }  // the joints before those of fixtures
+
+  bool moves_by_itself(std::uint16_t body) const {
+    for (const plan::MoveRecord& leg : plan::slice_of(plan_.tables().moves, task_.moves)) {
+      if (leg.body == body) return true;
+    }
+    return false;
+  }
 
   static Value vector(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
   static Value truth(bool b) { return {b ? 1.0 : 0.0, 0, 0}; }
@@ -77,6 +85,9 @@ class Reference {
       case kPOS:
         return vector(s.bodies[in.a].position);
       case kSTART:
+        for (const OwnPlace& place : s.own) {
+          if (moves_by_itself(in.a) && place.body == in.a) return vector(place.position);
+        }
         return vector(starts_[in.a].position);
       case kHALF:
         return vector(starts_[in.a].half);
@@ -270,6 +281,7 @@ class Reference {
   }
 
   const plan::Plan& plan_;
+  const plan::TaskRecord& task_;
   const plan::ProgramRecord& program_;
   std::size_t drives_;
   std::span<const BodyStart> starts_;

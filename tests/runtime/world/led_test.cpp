@@ -93,8 +93,18 @@ TEST_CASE("a robot's touch ends that a body is led, a touch of other bodies does
   bench.world->lead(0, Vec3::Zero());
   REQUIRE(bench.world->step(100).ok());
   CHECK(bench.world->is_led(0));
+  CHECK(*bench.world->led_to(0) == bench.world->body(0).center);
   close_on(&bench, kSpot);
   CHECK_FALSE(bench.world->is_led(0));
+  // Where it was then is kept, whatever the gripper does with it.
+  const Vec3 touched = *bench.world->led_to(0);
+  CHECK((touched - bench.world->body(0).center).norm() < 0.01);
+  const auto state = bench.world->save();
+  bench.world->set_body(0, {{0.4, 0.1, 0.9}, Quat::Identity()});
+  CHECK_FALSE(bench.world->led_to(0));
+  REQUIRE(bench.world->restore(state).ok());
+  CHECK(*bench.world->led_to(0) == touched);
+  CHECK(bench.world->save() == state);
 
   const auto world = cubes_at({0, 0.04});
   world->lead(0, {0.05, 0, 0});
