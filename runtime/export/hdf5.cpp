@@ -1,4 +1,4 @@
-// One HDF5 file, a group an episode. The only file that includes HDF5.
+// One HDF5 file, a group an episode. HDF5 stops here and at dataset/robomimic.cpp.
 #include <hdf5.h>
 
 #include <array>

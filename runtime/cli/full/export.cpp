@@ -20,7 +20,6 @@ struct ExportArguments {
   std::vector<std::string> runs;
   std::string out, format, tasks = "*", size, only, check;
   dataset::DatasetOptions dataset;
-  AssetOptions assets;
 };
 
 // "224x224", in pixels.
@@ -59,7 +58,6 @@ int export_traces(const ExportArguments& arguments) {
 int export_dataset(const ExportArguments& arguments, dataset::Format format) {
   dataset::DatasetOptions options = arguments.dataset;
   options.tasks = arguments.tasks;
-  options.assets = arguments.assets.root;
   options.only_success = arguments.only == "success";
   if (auto sized = read_size(arguments.size, options); !sized) return report(sized.failure());
   const auto begun = std::chrono::steady_clock::now();
@@ -103,6 +101,9 @@ int export_verb(const ExportArguments& arguments) {
   if (auto spared = check_output(arguments.out, arguments.runs); !spared)
     return report(spared.failure());
   if (arguments.format == "lerobot") return export_dataset(arguments, dataset::Format::kLerobot);
+  if (arguments.format == "robomimic")
+    return export_dataset(arguments, dataset::Format::kRobomimic);
+  if (arguments.format == "rlds") return export_dataset(arguments, dataset::Format::kRlds);
   return export_traces(arguments);
 }
 
@@ -121,7 +122,7 @@ void add_export(Verb app, int& exit) {
   verb.add_option("-o,--out", arguments->out,
                   "file to write: .jsonl, .h5 or .hdf5; of a dataset a new folder");
   verb.add_option("--format", arguments->format, "default: by the file's ending")
-      .one_of({"jsonl", "hdf5", "lerobot"});
+      .one_of({"jsonl", "hdf5", "lerobot", "robomimic", "rlds"});
   verb.add_option("--tasks", arguments->tasks, "glob over task names");
   verb.add_option("--only", arguments->only, "episodes that did what was asked")
       .one_of({"success"});
@@ -130,7 +131,7 @@ void add_export(Verb app, int& exit) {
   verb.add_option("--camera", options.cameras, "of a task's cameras this one; several times: these")
       .one_each();
   verb.add_option("--rephrase", options.rephrase,
-                  "X.jsonl of `vlaprobe rephrase`: tell demonstrations in its words, split train");
+                  "X.jsonl of `vlaprobe rephrase`: tell in its words, split train");
   verb.add_option("--wordings", options.wordings, "wordings a demonstration, an episode each")
       .between(1, 1000);
   verb.add_option("--fps", options.fps, "frames a second that are written (default: control rate)")
@@ -139,7 +140,8 @@ void add_export(Verb app, int& exit) {
       .between(1, 1024);
   verb.add_option("--check", arguments->check,
                   "DIR: hold this dataset against its traces (RUN: where its runs are now)");
-  add_asset_option(verb, arguments->assets);
+  verb.add_option("--assets", options.assets,
+                  "asset folder (default: $VLAPROBE_ASSETS, then the one beside the program)");
   verb.callback([arguments, &exit] { exit = export_verb(*arguments); });
 }
 

@@ -3,22 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "runtime/base/asset_root.h"
-#include "runtime/base/file.h"
-#include "runtime/base/glob.h"
 #include "runtime/export/dataset/in_order.h"
 #include "runtime/export/dataset/layout.h"
 #include "runtime/export/dataset/lerobot.h"
 #include "runtime/export/dataset/partial_folder.h"
 #include "runtime/export/dataset/provenance.h"
 #include "runtime/export/dataset/repeater.h"
+#include "runtime/export/dataset/rlds.h"
+#include "runtime/export/dataset/robomimic.h"
 #include "runtime/export/dataset/source.h"
 #include "runtime/export/dataset/wordings.h"
 #include "runtime/robot/rotation.h"
@@ -130,6 +129,10 @@ Result<std::unique_ptr<Layout>> open_layout(Format format, const std::string& di
   switch (format) {
     case Format::kLerobot:
       return lerobot::open_layout(dir, shape, options);
+    case Format::kRobomimic:
+      return robomimic::open_layout(dir, shape);
+    case Format::kRlds:
+      return rlds::open_layout(dir, shape, options);
   }
   return Failure{Fault::kInternal, "unknown format", dir};
 }
@@ -149,6 +152,9 @@ class Writing {
     if (!made.refused.empty()) {
       report_.left_out.push_back(made.refused);
       report_.refused.push_back(made.refused);
+    } else if (const auto refusal = layout_.refusal(made.demonstration)) {
+      report_.left_out.push_back(store::to_text(store::key_of(made.demonstration.row)) + " of `" +
+                                 made.demonstration.run + "`: " + *refusal);
     } else {
       PROBE_TRY(layout_.add(made.demonstration, std::move(made.film)));
       PROBE_TRY(provenance_.add(made.demonstration));
@@ -166,6 +172,16 @@ class Writing {
   DatasetReport& report_;
 };
 
+// Adapters catch what libraries throw; this is for what they missed, memory above all.
+Result<Made> make_guarded(Maker& maker, const store::ResultRow& row) {
+  try {
+    return maker.make(row);
+  } catch (const std::exception& error) {
+    return Failure{Fault::kInternal, std::string("exception: ") + error.what(),
+                   store::to_text(store::key_of(row))};
+  }
+}
+
 Status write_run(const Source& source, const Shape& shape, const Layout& layout,
                  const Wordings* wordings, const DatasetOptions& options, const std::string& root,
                  Writing& writing) {
@@ -177,7 +193,7 @@ Status write_run(const Source& source, const Shape& shape, const Layout& layout,
     const auto maker = std::make_shared<Maker>(source, assets, shape, layout, wordings, options);
     return run::Worker([&, maker](std::size_t index) -> Status {
       if (!order.wait_for(index)) return {};
-      auto made = maker->make(source.rows[index]);
+      auto made = make_guarded(*maker, source.rows[index]);
       if (made) return order.give(index, std::move(*made));
       order.stop();
       return made.failure();

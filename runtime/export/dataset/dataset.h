@@ -37,7 +37,7 @@ struct DatasetReport {
   std::vector<std::string> refused;   // of these, what the traces do not bear
 };
 
-enum class Format { kLerobot };
+enum class Format { kLerobot, kRobomimic, kRlds };
 
 // Writes the folder `out`, whole or not at all: it is made as OUT.partial, which a later call
 // begins anew. Fails with kUsage where runs do not go into one dataset or `out` is there, with

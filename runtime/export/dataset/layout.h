@@ -3,7 +3,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 
 #include "runtime/base/result.h"
 #include "runtime/export/dataset/demonstration.h"
@@ -27,7 +29,8 @@ class FilmMaker {
 // What is told of a dataset when it is whole.
 struct Contents {
   std::int64_t demonstrations = 0, episodes = 0, frames = 0;
-  std::string readme;  // README.md, without what only the format knows
+  std::string readme;     // what README.md says of the format
+  std::string card = {};  // and what stands before all of it, for programs
 };
 
 class Layout {
@@ -35,6 +38,10 @@ class Layout {
   virtual ~Layout() = default;
   // Of any thread, for `steps` steps.
   virtual Result<std::unique_ptr<FilmMaker>> film(std::size_t steps) const = 0;
+  // Why the format cannot have it; such a demonstration is left out, and that is told.
+  virtual std::optional<std::string> refusal(const Demonstration& /*demonstration*/) const {
+    return std::nullopt;
+  }
   // Of one thread at a time, in order; `film` is what a maker of this layout has finished.
   virtual Status add(const Demonstration& demonstration, std::unique_ptr<Film> film) = 0;
   virtual Result<Contents> finish() = 0;

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "runtime/base/file.h"
@@ -142,6 +141,9 @@ class LerobotLayout final : public Layout {
     PROBE_TRY(write_json(kStatsPath, stats_json()));
     PROBE_TRY(write_json(kInfoPath, info_json()));
     contents_.readme = readme();
+    contents_.card =
+        "---\ntask_categories:\n- robotics\ntags:\n- LeRobot\nconfigs:\n- config_name: default\n"
+        "  data_files: data/*/*.parquet\n---\n\n";
     return contents_;
   }
 

@@ -48,9 +48,7 @@ Json dataset_json(const Provenance::Facts& facts, const Contents& contents) {
 
 std::string readme(const Provenance::Facts& facts, const Contents& contents,
                    const std::vector<std::string>& left_out) {
-  std::string text =
-      "---\ntask_categories:\n- robotics\ntags:\n- LeRobot\nconfigs:\n- config_name: default\n"
-      "  data_files: data/*/*.parquet\n---\n\n# Demonstrations from simulated episodes\n\n";
+  std::string text = contents.card + "# Demonstrations from simulated episodes\n\n";
   text += fmt::format(
       "{} episodes of {} demonstrations, {} frames at {} a second, robot `{}`. Written by "
       "`vlaprobe "

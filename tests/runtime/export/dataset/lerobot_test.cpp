@@ -3,9 +3,11 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <set>
 
 #include "runtime/base/json.h"
@@ -140,6 +142,32 @@ TEST_CASE("the video has the pictures that the policy saw, evenly spaced, as ffp
   CHECK(stream["avg_frame_rate"] == "5/1");
   CHECK(stream["nb_read_frames"] == std::to_string(kEpisodes * kHorizon));
   CHECK(stream["width"] == 96);
+
+  // Frame by frame: each is the picture of its step, but for what the codec loses.
+  const std::string raw = output_of("ffmpeg -v error -i '" + made.out + "/" + kVideo +
+                                    "' -f rawvideo -pix_fmt rgb24 - 2>/dev/null");
+  constexpr std::size_t kBytes = 96 * 64 * 3;
+  REQUIRE(raw.size() == kBytes * kEpisodes * kHorizon);
+  auto plan = store::open_run_plan(made.run);
+  REQUIRE(plan.ok());
+  const std::uint32_t tasks[] = {0};
+  const auto assets = stage::SharedAssets::load(*plan, dataset_options().assets, tasks);
+  REQUIRE(assets.ok());
+  Repeater repeater(*plan, *assets);
+  std::size_t frame = 0;
+  for (const store::StoredTrace& stored : traces_of(made.run)) {
+    const auto repeated = repeater.repeat(stored.trace, [&](auto frames, const auto&, std::size_t) {
+      const auto rgb = frames[0].frame.rgb;
+      double apart = 0;
+      for (std::size_t i = 0; i < kBytes; ++i)
+        apart += std::abs(rgb[i] -
+                          static_cast<int>(static_cast<unsigned char>(raw[frame * kBytes + i])));
+      CHECK_MESSAGE(apart / kBytes < 6, "frame ", frame);
+      ++frame;
+      return Status();
+    });
+    REQUIRE(repeated.ok());
+  }
 }
 
 TEST_CASE("the bytes do not depend on the threads, and files are cut where they get too large") {
