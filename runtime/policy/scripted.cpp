@@ -84,8 +84,8 @@ class StillWithoutPolicy final : public Policy {
 
 class NoisyPolicy final : public Policy {
  public:
-  NoisyPolicy(std::unique_ptr<Policy> inner, double sigma)
-      : inner_(std::move(inner)), sigma_(sigma) {}
+  NoisyPolicy(std::unique_ptr<Policy> inner, double sigma, double share)
+      : inner_(std::move(inner)), sigma_(sigma), share_(share) {}
 
   Status begin(const EpisodeStart& start) override {
     draws_ = Draws(start.draw_seed);
@@ -93,6 +93,7 @@ class NoisyPolicy final : public Policy {
   }
   Result<Action> act(const Observation& observation) override {
     PROBE_ASSIGN(Action action, inner_->act(observation));
+    if (share_ < 1 && draws_.uniform() >= share_) return action;
     for (std::size_t i = 0; i < robot::kActionGripper; ++i) {
       action[i] += (i < robot::kActionTurn ? sigma_ : 2 * sigma_) * normal();  // m, rad
     }
@@ -109,9 +110,11 @@ class NoisyPolicy final : public Policy {
   }
 
   std::unique_ptr<Policy> inner_;
-  double sigma_;
+  double sigma_, share_;  // of the steps that are noisy
   Draws draws_{0};
 };
+
+constexpr double kPushedShare = 1.0 / 8;
 
 }  // namespace
 
@@ -128,7 +131,11 @@ std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inn
 }
 
 std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma) {
-  return std::make_unique<NoisyPolicy>(std::move(inner), sigma);
+  return std::make_unique<NoisyPolicy>(std::move(inner), sigma, 1);
+}
+
+std::unique_ptr<Policy> make_pushed(std::unique_ptr<Policy> inner, double sigma) {
+  return std::make_unique<NoisyPolicy>(std::move(inner), sigma, kPushedShare);
 }
 
 }  // namespace probe::policy

@@ -35,4 +35,8 @@ std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inn
 // 0.01). The gripper stays as it is.
 std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma);
 
+// `inner`, pushed off its way now and then: in one step of eight, drawn, the noise of make_noisy is
+// added, and in the others `inner` finds back. What it shows is how one recovers.
+std::unique_ptr<Policy> make_pushed(std::unique_ptr<Policy> inner, double sigma);
+
 }  // namespace probe::policy

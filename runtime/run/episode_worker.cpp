@@ -58,6 +58,8 @@ Status EpisodeWorker::run(std::size_t index) {
     }
     if (!is_spoiled(*played) || attempt >= shared_.options.retries || shared_.given_up ||
         is_exchanged()) {
+      if (shared_.options.only_success && !played->row.invalid && has_failed(played->row))
+        return drop(*played, path);
       return commit(*played, static_cast<int>(job.task));
     }
     const std::lock_guard lock(shared_.mutex);
@@ -142,6 +144,22 @@ Status EpisodeWorker::commit(const Played& played, int task_order) {
   if (bound == 0 || ++shared_.lost_in_a_row < bound) return {};
   shared_.given_up = true;
   return give_up(*row.invalid);
+}
+
+Status EpisodeWorker::drop(const Played& played, const std::string& path) {
+  std::error_code error;
+  fs::remove(path, error);
+  if (error) return Failure{Fault::kIo, "cannot be removed: " + error.message(), path};
+  last_valid_.reset();
+  const std::lock_guard lock(shared_.mutex);
+  ++shared_.summary.done;
+  ++shared_.summary.not_kept;
+  shared_.summary.call.observations += played.row.steps;
+  if (shared_.options.progress) {
+    shared_.options.progress(
+        {shared_.summary.done, shared_.summary.skipped, shared_.summary.total, &played.row});
+  }
+  return {};
 }
 
 Failure EpisodeWorker::give_up(const std::string& last) const {

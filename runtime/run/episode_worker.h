@@ -57,6 +57,7 @@ class EpisodeWorker {
   Status spoil_last();
   bool is_exchanged() const;
   Status commit(const Played& played, int task_order);
+  Status drop(const Played& played, const std::string& path);
   Failure give_up(const std::string& last) const;
 
   WorkersShared& shared_;

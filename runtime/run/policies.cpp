@@ -18,7 +18,7 @@
 namespace probe::run {
 namespace {
 
-enum class Kind { kExpert, kNull, kRandom, kReach, kWrong, kNoisy, kReplay, kServer };
+enum class Kind { kExpert, kNull, kRandom, kReach, kWrong, kNoisy, kPushed, kReplay, kServer };
 
 struct Entry {
   std::string_view name;      // what stands before ':'
@@ -45,6 +45,11 @@ const std::array kOwnPolicies = {
           Kind::kNoisy,
           {true, false, false},
           "the expert with noise, SIGMA in metres"},
+    Entry{"pushed",
+          "SIGMA",
+          Kind::kPushed,
+          {true, false, false},
+          "the expert, pushed off its way in one step of eight"},
     Entry{
         "replay", "DIR", Kind::kReplay, {true, true, false}, "the recorded actions of another run"},
 };
@@ -127,13 +132,14 @@ Failure nothing_to_accept(std::string_view policy) {
           "--insecure"};
 }
 
-Result<double> read_sigma(const std::string& text) {
+Result<double> read_sigma(const std::string& text, std::string_view policy) {
   double sigma = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), sigma);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(sigma) ||
       sigma < 0 || sigma > 1) {
     return Failure{Fault::kUsage,
-                   "SIGMA of `noisy:SIGMA` is a length in metres from 0 to 1, found `" + text + "`",
+                   "SIGMA of `" + std::string(policy) +
+                       ":SIGMA` is a length in metres from 0 to 1, found `" + text + "`",
                    "--policy"};
   }
   return sigma;
@@ -156,8 +162,8 @@ Result<std::unique_ptr<policy::Policy>> make_scripted(Kind kind) {
 Result<PolicyChoice> choose_policy(std::string_view text, bool accepts_any_certificate) {
   PROBE_ASSIGN(const Choice choice, choose(text));
   PolicyChoice chosen{std::string(text), choice.entry->traits, nullptr};
-  if (choice.entry->kind == Kind::kNoisy) {
-    PROBE_ASSIGN(const double sigma, read_sigma(choice.argument));
+  if (choice.entry->kind == Kind::kNoisy || choice.entry->kind == Kind::kPushed) {
+    PROBE_ASSIGN(const double sigma, read_sigma(choice.argument, choice.entry->name));
     chosen.traits.draws = sigma > 0;
   }
   if (choice.entry->kind == Kind::kServer) {
@@ -185,10 +191,12 @@ Result<std::unique_ptr<policy::Policy>> make_policy(const PolicyChoice& chosen,
       return policy::make_random();
     case Kind::kReplay:
       return policy::make_recorded(choice.argument, context.recorded_actions);
-    case Kind::kNoisy: {
-      PROBE_ASSIGN(const double sigma, read_sigma(choice.argument));
+    case Kind::kNoisy:
+    case Kind::kPushed: {
+      PROBE_ASSIGN(const double sigma, read_sigma(choice.argument, choice.entry->name));
       PROBE_ASSIGN(std::unique_ptr<policy::Policy> expert, make_scripted(Kind::kExpert));
-      return policy::make_noisy(std::move(expert), sigma);
+      return choice.entry->kind == Kind::kNoisy ? policy::make_noisy(std::move(expert), sigma)
+                                                : policy::make_pushed(std::move(expert), sigma);
     }
     case Kind::kExpert:
     case Kind::kReach:

@@ -66,6 +66,8 @@ struct RunOptions {
   IfChanged if_changed = IfChanged::kRefuse;
   // The world does not wait for the policy; see policy/live.h. None: it does.
   std::optional<policy::LiveTerms> live = {};
+  // Valid episodes that did not succeed are not stored; a later call does them again.
+  bool only_success = false;
   VideoChoice video = VideoChoice::kNone;  // DIR/videos/TASK/EPISODE-SEED.mp4
   std::string assets;                      // asset root, see find_asset_root
   // Called from worker threads, one call at a time.
@@ -75,6 +77,7 @@ struct RunOptions {
 
 struct RunSummary {
   int total = 0, done = 0, skipped = 0, invalid = 0;
+  int not_kept = 0;                // no success, where only successes are stored
   int not_attempted = 0;           // a policy of ours has no skill for them; not among the invalid
   std::vector<std::string> notes;  // sentences for stderr, such as why seeds were dropped
   std::string out;                 // the folder that was written

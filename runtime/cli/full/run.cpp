@@ -3,11 +3,8 @@
 #include "runtime/base/say.h"
 
 #include <fmt/format.h>
-#include <chrono>
-#include <cstdlib>
 
-#include "runtime/cli/full/drawn_line.h"
-#include "runtime/cli/full/progress.h"
+#include "runtime/cli/full/progress_printer.h"
 #include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/run/policies.h"
@@ -18,41 +15,6 @@ namespace {
 struct CallArguments {
   RunArguments run;
   std::string shard = "1/1";
-};
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-// A line that is redrawn on a terminal, one now and then elsewhere, and one for each episode that
-// went wrong.
-class ProgressPrinter {
- public:
-  void operator()(const run::RunProgress& progress) {
-    const double now = now_s();
-    progress_.add(progress);
-    if (progress.row && progress.row->invalid) {
-      line_.clear();
-      print_invalid(*progress.row);
-    }
-    const auto columns = DrawnLine::columns();
-    if (!columns) {
-      if (const auto line = progress_.log_line(now)) say("{}\n", *line);
-      return;
-    }
-    constexpr double kRedrawEvery = 0.1;  // s
-    if (now - drawn_ < kRedrawEvery && progress.done + progress.skipped < progress.total) return;
-    drawn_ = now;
-    // The last column stays free: a full line would wrap.
-    line_.draw(progress_.terminal_line(now, *columns - 1, color_));
-  }
-  void clear() { line_.clear(); }
-
- private:
-  Progress progress_{now_s()};
-  double drawn_ = 0;
-  bool color_ = std::getenv("NO_COLOR") == nullptr;
-  DrawnLine line_;
 };
 
 int run_verb(const CallArguments& arguments) {
