@@ -233,6 +233,14 @@ std::optional<LayoutProblem> Supports::stack(const Layout& layout, const Task& t
                                  sides(area->half[0] * share, area->half[1]) + ",",
                              line.where.span, "put here"};
       member.z = height_in(*area, object, member);
+      const double surface = model_.scenes[task.scene].surface_z;
+      const double below = surface - (*member.z + lowest(object, turn));
+      if (area->is_region && below > kRounding)
+        return LayoutProblem{
+            Situation::kPutNowhere,
+            fmt::format("`{}` would lie in `{}` {:.3g}cm below the surface, which nothing passes,",
+                        object.name, carrier.name, 100 * below),
+            line.where.span, "put here"};
     }
   }
   return std::nullopt;
