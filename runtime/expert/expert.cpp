@@ -2,7 +2,10 @@
 #include "runtime/expert/expert.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -17,6 +20,10 @@
 
 namespace probe::expert {
 namespace {
+
+constexpr double kHandRoom =
+    0.05;                  // m that the fingers may be wide, and a part go between two looks
+constexpr int kLooks = 8;  // at a joint's way
 
 class Expert final : public policy::Policy {
  public:
@@ -39,7 +46,20 @@ class Expert final : public policy::Policy {
     skill_ = 0;
     skill_begun_ = false;
     hand_ = {};
+    lack_.clear();
     return {};
+  }
+
+  void end(const policy::EpisodeEnd&) override {
+    if (!started_ || !options_.close || !lack_.empty()) return;
+    // The last one keeps still when it is done.
+    const bool is_over = solution_.empty() || (skill_ + 1 == solution_.size() && !moves_joint())
+                             ? hand_.is_over()
+                             : skill_ >= solution_.size();
+    if (!is_over) note("it was not done when the episode ended");
+  }
+  std::optional<std::string> remark() const override {
+    return lack_.empty() ? std::nullopt : std::optional(lack_);
   }
 
   Result<policy::Action> act(const policy::Observation& observation) override {
@@ -64,7 +84,10 @@ class Expert final : public policy::Policy {
       ready_ = arm.tcp;
       started_ = true;
       recent_.assign(Path::kPast, joints_of(scene, *reach_));
-      if (solution_.empty()) hand_.begin(usual_errand(view, scene), view, scene);
+      if (solution_.empty()) {
+        hand_.begin(usual_errand(view, scene), view, scene);
+        usual_ = usual_name(view);
+      }
     }
     // Time passes in decisions.
     until_decision_ = servo_.interval();
@@ -76,10 +99,73 @@ class Expert final : public policy::Policy {
     servo_.observe(arm, !moves_joint() && (!touched || hand_.carries()));
     const Means means{view, *reach_, servo_, recent_,
                       (horizon_ - observation.step) / servo_.interval()};
-    return solution_.empty() ? hand_.act(scene, means) : act_by_solution(observation, means);
+    const bool may_refuse = observation.step == 0 && options_.close && options_.source == 0;
+    if (may_refuse) PROBE_TRY(check_reach(view));
+    const policy::Action action =
+        solution_.empty() ? hand_.act(scene, means) : act_by_solution(observation, means);
+    note_hand();
+    // What cannot be begun where the episode begins is not attempted, and no failed start.
+    if (may_refuse && !lack_.empty()) return Failure{Fault::kPolicy, lack_, ""};
+    return action;
   }
 
  private:
+  // What kept a skill from being done; the first is what the others follow from.
+  void note(const std::string& lack) {
+    if (!lack_.empty() || lack.empty()) return;
+    lack_ = (skill_ < solution_.size() ? solution_[skill_].name : usual_) + ": " + lack;
+  }
+  // The same of what the hand does, if that is what is being done.
+  void note_hand() {
+    const bool is_hands =
+        solution_.empty() || (skill_ < solution_.size() && solution_[skill_].fixture < 0);
+    if (is_hands && options_.close) note(hand_.lack());
+  }
+
+  // That no skill is about something farther away than the arm is long, wherever its joint stands.
+  Status check_reach(const policy::Privileged& view) const {
+    for (const policy::Skill& skill : solution_) {
+      const Pose to_base = view.base.inverse();
+      double beyond = 0;
+      if (skill.fixture >= 0) {
+        beyond = how_far_beyond(view.fixtures[static_cast<std::size_t>(skill.fixture)], to_base);
+      } else if (skill.object >= 0) {
+        const policy::PrivilegedObject& object =
+            view.objects[static_cast<std::size_t>(skill.object)];
+        // What begins in a drawer comes nearer with it.
+        if (!std::ranges::any_of(solution_, [](const auto& s) { return s.fixture >= 0; }))
+          beyond = beyond_of(object.parts, to_base * object.pose);
+      }
+      if (beyond <= 0) continue;
+      return Failure{
+          Fault::kPolicy,
+          fmt::format("{}: it is out of the arm's reach ({:.1f} cm)", skill.name, 100 * beyond),
+          ""};
+    }
+    return {};
+  }
+  // How far the nearest vertex is beyond what the stretched arm and its hand come to.
+  double beyond_of(const std::vector<std::vector<Vec3>>& parts, const Pose& pose) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::vector<Vec3>& part : parts) {
+      double size = 0;  // vertices may be as far apart as the part is large
+      for (const Vec3& vertex : part) size = std::max(size, (vertex - part.front()).norm());
+      for (const Vec3& vertex : part)
+        least = std::min(least, reach_->beyond(pose.apply(vertex)) - size);
+    }
+    return std::isfinite(least) ? least - reach_->hand().shape.tip_below - kHandRoom : 0;
+  }
+  double how_far_beyond(const policy::PrivilegedFixture& part, const Pose& to_base) const {
+    if (!part.joint || part.joint->endless) return beyond_of(part.parts, to_base * part.pose);
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kLooks; ++i) {
+      const double at = part.joint->lower + (part.joint->upper - part.joint->lower) * i / kLooks;
+      const Pose pose = moved_part(*part.joint, to_base * part.pose, at - part.joint->position);
+      least = std::min(least, beyond_of(part.parts, pose));
+    }
+    return least;
+  }
+
   // What the skills of a solution are done with, or else the roles.
   Scene seen(const policy::Observation& observation) const {
     const policy::Privileged& view = *observation.privileged;
@@ -121,6 +207,19 @@ class Expert final : public policy::Policy {
     return errand;
   }
 
+  // What picking and placing is called where no solution says so.
+  std::string usual_name(const policy::Privileged& view) const {
+    const auto name = [&](int role) {
+      const int object = view.object_of(role);
+      return object < 0 ? std::string() : view.objects[static_cast<std::size_t>(object)].name;
+    };
+    const std::string source = name(options_.source), target = name(options_.target);
+    const bool is_put = view.goal != policy::Goal::kLifted && !target.empty();
+    const char* to = view.goal == policy::Goal::kAway ? "off" : "on";
+    return fmt::format("{}`{} {}{}`", policy::kSkillCannot, is_put ? "put" : "pick", source,
+                       is_put ? fmt::format(" {} {}", to, target) : "");
+  }
+
   // Skill by skill; one that is done takes no time.
   policy::Action act_by_solution(const policy::Observation& observation, const Means& means) {
     while (skill_ < solution_.size()) {
@@ -132,10 +231,12 @@ class Expert final : public policy::Policy {
         if (is_new) joint_.begin(skill, ready_, !options_.close);
         if (const auto action = joint_.act(means.view, arm_of(scene), servo_, *reach_))
           return *action;
+        if (!joint_.reached()) note(joint_.lack());
       } else {
-        if (is_new) begin_object_skill(means.view, scene, skill);
-        const policy::Action action = hand_.act(scene, means);
+        if (is_new) begin_object_skill(means.view, scene, skill, observation);
+        const policy::Action action = hand_.act(is_new ? seen(observation) : scene, means);
         if (!hand_.is_over() || skill_ + 1 >= solution_.size()) return action;
+        note_hand();
       }
       ++skill_;
       skill_begun_ = false;
@@ -144,7 +245,7 @@ class Expert final : public policy::Policy {
   }
 
   void begin_object_skill(const policy::Privileged& view, const Scene& scene,
-                          const policy::Skill& skill) {
+                          const policy::Skill& skill, const policy::Observation& observation) {
     using Kind = policy::Skill::Kind;
     Errand errand;
     errand.close = options_.close;
@@ -153,9 +254,15 @@ class Expert final : public policy::Policy {
     const bool needs_spot = options_.close && skill.kind == Kind::kPut && goes_to_spot(skill);
     if (needs_spot)
       errand.spots = find_put_spots(scene, view, skill, *reach_, is_shared(solution_, skill_));
+    // Where there is no room beside what lies there already, it goes to the middle, as if alone.
+    if (needs_spot && errand.spots.empty() && skill.shares) {
+      solution_[skill_].region.reset();
+      return begin_object_skill(view, seen(observation), solution_[skill_], observation);
+    }
     errand.may_shove = errand.spots.empty();
     hand_.begin(errand, view, scene);
-    if (needs_spot && errand.spots.empty()) hand_.rest();
+    if (needs_spot && errand.spots.empty())
+      hand_.rest("there is no spot with room for it that the arm reaches");
   }
 
   Status check(const policy::Observation& observation) const {
@@ -209,7 +316,9 @@ class Expert final : public policy::Policy {
   bool skill_begun_ = false;
   JointSkill joint_;
   PickPlace hand_;
-  Pose ready_;  // of the tool, at the start
+  std::string usual_;  // the usual pick and place, as a skill is called
+  std::string lack_;   // what kept the first skill that was not done from being done
+  Pose ready_;         // of the tool, at the start
   Recent recent_;
 };
 

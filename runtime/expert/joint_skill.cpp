@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
 
 #include "runtime/expert/free_way.h"
 #include "runtime/robot/grip_command.h"
@@ -86,6 +89,7 @@ void JointSkill::begin(const policy::Skill& skill, const Pose& ready, bool only_
   tries_ = parts_ = homes_ = 0;
   reached_ = planned_ = false;
   failed_.clear();
+  lack_.clear();
   hold_.reset();
   enter(Phase::kPlan);
 }
@@ -124,14 +128,18 @@ void JointSkill::refine(const policy::Privileged& view, const Arm& arm, const Re
 // All of the way with one hold, or as much as goes: a door is pulled ajar, then pushed from behind.
 bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reach& reach) {
   begun_ = part(view).joint->position;
+  HoldLack lack;
   for (const double share : kShares) {
-    if (plan(view, arm, reach, begun_ + share * (goal_.aim - begun_))) return true;
+    lack = {};
+    if (plan(view, arm, reach, begun_ + share * (goal_.aim - begun_), &lack)) return true;
   }
+  const Surroundings around = surroundings_of(view);
+  lack_ = to_text(lack, problem_of(view, around, arm, reach));
   return false;
 }
 
 bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reach& reach,
-                      double aim) {
+                      double aim, HoldLack* lack) {
   aim_ = aim;
   const Surroundings around = surroundings_of(view);
   const policy::PrivilegedFixture& seen = part(view);
@@ -143,6 +151,7 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
   });
   for (std::size_t i = 0; i < std::min(holds.size(), kMostHolds); ++i) {
     const Hold& hold = holds[i];
+    ++lack->holds;
     const Pose at = tool_at(hold, pose, problem.hand, hold.pushes() ? kOff : 0);
     Pose before = at;
     before.position -= kBefore * (at.rotation * Vec3::UnitX());
@@ -154,14 +163,19 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
     const std::vector<Ball> balls = balls_of(hold, problem.hand).all();
     const double widest = std::max(arm.openness, hold.open) * problem.hand.opening_half;
     auto way = free_way(around, arm.tcp, before, hand_balls(problem.hand, widest).all());
-    if (!way) continue;
     const FreeLine last{&around, balls};
-    if (!last.is_free(before, at)) continue;
+    if (!way || !last.is_free(before, at)) {
+      ++lack->blocked;
+      continue;
+    }
     way->push_back(at);
     std::vector<Pose> whole = *way;
     if (hold.pushes()) whole.push_back(tool_at(hold, pose, problem.hand));
     whole.insert(whole.end(), moving.begin(), moving.end());
-    if (!reach.follow(arm.joints, whole)) continue;
+    if (!reach.follow(arm.joints, whole)) {
+      lack->add_out_of_reach(reach, arm.joints, at);
+      continue;
+    }
     hold_ = hold;
     way_ = std::move(*way);
     return true;
@@ -200,6 +214,10 @@ void JointSkill::try_again(double position) {
   const bool went_on = std::abs(position - begun_) > kProgress * std::abs(goal_.aim - begun_);
   if (went_on) failed_.clear();
   if (hold_ && !went_on) failed_.push_back(*hold_);
+  const double turned = slides_ ? 100 : 180 / std::numbers::pi;
+  lack_ =
+      fmt::format("it stands at {:.1f} {} and should at {:.1f}, after {} holds", turned * position,
+                  slides_ ? "cm" : "deg", turned * goal_.least, tries_ + parts_ + 1);
   if (went_on && ++parts_ < kMostParts) return enter(Phase::kPlan);
   enter(++tries_ < kMostHoldTries ? Phase::kPlan : Phase::kOver);
 }
@@ -215,7 +233,7 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
   const PartJoint& joint = *part(view).joint;
   switch (phase_) {
     case Phase::kPlan:
-      if (!planned_) goal_ = goal_of(skill_, joint);
+      if (!planned_) goal_ = goal_of(skill_, joint), slides_ = joint.slides;
       planned_ = true;
       reached_ = goal_.met(joint.position, goal_.enough);
       if (reached_) return enter(Phase::kOver);

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "runtime/expert/hold_lack.h"
 #include "runtime/expert/holds.h"
 #include "runtime/expert/reach.h"
 #include "runtime/expert/servo.h"
@@ -23,6 +25,8 @@ class JointSkill {
 
   // Whether the joint is where it shall be; after act() gave nothing.
   bool reached() const { return reached_; }
+  // Why it is not, then.
+  const std::string& lack() const { return lack_; }
 
  private:
   enum class Phase { kPlan, kHome, kGo, kMeet, kGrip, kMove, kLetGo, kBack, kOver };
@@ -38,7 +42,8 @@ class JointSkill {
 
   const policy::PrivilegedFixture& part(const policy::Privileged& view) const;
   bool plan(const policy::Privileged& view, const Arm& arm, const Reach& reach);
-  bool plan(const policy::Privileged& view, const Arm& arm, const Reach& reach, double aim);
+  bool plan(const policy::Privileged& view, const Arm& arm, const Reach& reach, double aim,
+            HoldLack* lack);
   HoldProblem problem_of(const policy::Privileged& view, const Surroundings& around, const Arm& arm,
                          const Reach& reach) const;
   void refine(const policy::Privileged& view, const Arm& arm, const Reach& reach);
@@ -55,7 +60,7 @@ class JointSkill {
   Goal goal_;
   Phase phase_ = Phase::kPlan;
   int steps_ = 0, tries_ = 0, parts_ = 0, homes_ = 0, still_ = 0;
-  bool reached_ = false, planned_ = false, only_reaches_ = false;
+  bool reached_ = false, planned_ = false, only_reaches_ = false, slides_ = false;
   double aim_ = 0;    // of this hold: the goal's, or part of the way there
   double begun_ = 0;  // where the joint was when this hold was planned
   double last_ = 0, openness_ = 1;
@@ -63,6 +68,7 @@ class JointSkill {
   Pose at_;  // of the tool, a decision before
   std::optional<Hold> hold_;
   std::vector<Hold> failed_;
+  std::string lack_;
   std::vector<Pose> way_;  // of the tool, to the hold or back
   std::size_t next_ = 0;
 };

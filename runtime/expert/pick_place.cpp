@@ -16,6 +16,8 @@ constexpr int kStepsOfATry = 24;  // fewer left: another try cannot end in time
 
 constexpr double kOffSpot = 0.05, kOnSpot = 0.03;  // m, of what was put
 
+constexpr const char* kLost = "it slipped in the hand";
+
 constexpr double kThin = 0.015;       // m high
 constexpr int kLongestShove = 8;      // steps
 constexpr double kLift = 0.12;        // m, of what is picked up
@@ -75,7 +77,8 @@ policy::Action PickPlace::act(Scene scene, const Means& means) {
 }
 
 // Opens and begins again, or gives up and keeps still.
-void PickPlace::start_over(const Means& means) {
+void PickPlace::start_over(const Means& means, const char* lack) {
+  lack_ = lack;
   if (pick_) failed_.push_back(pick_->source_pose.inverse() * pick_->grasp.tcp);
   const bool again = ++tries_ < kMostTries && means.steps_left >= kStepsOfATry;
   pick_.reset();
@@ -106,11 +109,11 @@ void PickPlace::advance(const Scene& s, const Means& means) {
     case Phase::kLower:
       return advance_lower(s, means);
     case Phase::kLift:
-      if (!holds(s)) return start_over(means);
+      if (!holds(s)) return start_over(means, kLost);
       if (is_near(s.tcp, place_, 0.01, 0.2) || steps_ >= kLongestLift) enter(Phase::kKeep);
       return;
     case Phase::kKeep:
-      if (!holds(s)) start_over(means);
+      if (!holds(s)) start_over(means, kLost);
       return;
     case Phase::kLoosen:
       if (steps_ >= 1) enter(Phase::kOpen);
@@ -124,9 +127,11 @@ void PickPlace::advance(const Scene& s, const Means& means) {
     case Phase::kRetreat:
       if (s.tcp.position.z() < release_.position.z() + 0.055 && steps_ < 6) return;
       if (shove_ ? (s.source.center - first_seen_).norm() > kShoved : is_put(s)) {
+        lack_ = shove_ && !errand_.pushes ? "the hand finds no hold of it and pushed it" : "";
         return enter(Phase::kRest);
       }
-      return start_over(means);
+      return start_over(
+          means, shove_ ? "it was pushed and hardly moved" : "it does not lie where it was put");
     case Phase::kRest:
       return;
   }
@@ -143,7 +148,9 @@ void PickPlace::advance_raise(const Scene& s, const Means& means) {
   const bool open = s.openness > 0.8 || steps_ >= 3;
   const bool still = (s.source_pose.position - last_.source_pose.position).norm() < 0.002;
   if (!(clear && open && still) && steps_ < 8) return;
-  enter(plan_to_grasp(s, means) ? Phase::kApproach : Phase::kRest);
+  if (plan_to_grasp(s, means)) return enter(Phase::kApproach);
+  if (lack_.empty()) lack_ = "the arm follows no way to a hold of it from above";
+  enter(Phase::kRest);
 }
 
 bool PickPlace::plan_to_grasp(const Scene& s, const Means& means) {
@@ -185,7 +192,7 @@ void PickPlace::advance_approach(const Scene& s, const Means& means) {
   if (is_near(s.tcp, pick_->grasp.tcp, 0.003, 0.04)) return enter(next);
   if (path_step_ < path_->path.steps() + 3) return;
   if (is_near(s.tcp, pick_->grasp.tcp, 0.010, 0.15)) return enter(next);
-  start_over(means);
+  start_over(means, "the hand does not come to its hold");
 }
 
 void PickPlace::advance_close(const Scene& s, const Means& means) {
@@ -197,7 +204,7 @@ void PickPlace::advance_close(const Scene& s, const Means& means) {
     taken_bottom_ = s.source.bottom;
     return errand_.lifts ? begin_lift() : begin_transport(s, means);
   }
-  if (steps_ >= 4) start_over(means);
+  if (steps_ >= 4) start_over(means, "not all fingers touch it when they close");
 }
 
 void PickPlace::begin_lift() {
@@ -232,12 +239,12 @@ void PickPlace::begin_transport(Scene s, const Means& means) {
   const JointVector q = joints_of(s, means.reach);
   const auto place =
       plan_place(s, means.reach, std::span(q.data(), std::size_t(q.size())), on_mark);
-  if (!place) return start_over(means);
+  if (!place) return start_over(means, "the arm follows no way to a place for it");
   place_ = place->tcp;
   let_go_ = place->openness;
   path_ = plan_transport(s, means.reach, place_, means.recent, 1 + kCareful * tries_);
   path_step_ = 0;
-  if (!path_) return start_over(means);
+  if (!path_) return start_over(means, "the arm follows no way to a place for it");
   enter(Phase::kTransport);
 }
 
@@ -247,14 +254,14 @@ bool PickPlace::lifted_enough(const Scene& s, double rise) const {
 
 void PickPlace::advance_transport(const Scene& s, const Means& means) {
   const double rise = s.tcp.position.z() - taken_.position.z();
-  if (!holds(s) || (rise > 0.02 && !lifted_enough(s, rise))) return start_over(means);
+  if (!holds(s) || (rise > 0.02 && !lifted_enough(s, rise))) return start_over(means, kLost);
   if (!path_done()) return;
   const double off = (carry_goal(s) - s.tcp.position).head<2>().norm();
   if (off < 0.006 || path_step_ >= path_->path.steps() + 3) enter(Phase::kLower);
 }
 
 void PickPlace::advance_lower(const Scene& s, const Means& means) {
-  if (!holds(s)) return start_over(means);
+  if (!holds(s)) return start_over(means, kLost);
   const bool stopped = steps_ >= 3 && last_.tcp.position.z() - s.tcp.position.z() < 0.0008;
   if (gap_to_target(s) < 0.0025 || stopped || steps_ >= 9)
     enter(errand_.keeps ? Phase::kKeep : Phase::kLoosen);

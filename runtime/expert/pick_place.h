@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "runtime/expert/path_planner.h"
@@ -37,12 +38,17 @@ class PickPlace {
  public:
   void begin(const Errand& errand, const policy::Privileged& view, const Scene& scene);
   // Keeps still from now on: there is no place for it.
-  void rest() { enter(Phase::kRest); }
+  void rest(std::string lack) {
+    enter(Phase::kRest);
+    lack_ = std::move(lack);
+  }
 
   policy::Action act(Scene scene, const Means& means);
 
   // Nothing is left to be done but to keep still.
   bool is_over() const { return phase_ == Phase::kRest || phase_ == Phase::kKeep; }
+  // Why it keeps still without having done its errand; empty else.
+  std::string lack() const { return phase_ == Phase::kRest ? lack_ : std::string(); }
   // The source is in the air: it hinders the arm no more than an empty hand.
   bool carries() const { return phase_ == Phase::kTransport && steps_ > 1; }
 
@@ -63,7 +69,7 @@ class PickPlace {
   };
 
   void enter(Phase phase);
-  void start_over(const Means& means);
+  void start_over(const Means& means, const char* lack);
   bool holds(const Scene& s) const;
   bool is_put(const Scene& s) const;
   bool moved_since_plan(const Scene& s) const;
@@ -93,6 +99,7 @@ class PickPlace {
   Phase phase_ = Phase::kRaise;
   int steps_ = 0;  // in this phase
   int tries_ = 0;
+  std::string lack_;          // what ended the last try
   std::vector<Pose> failed_;  // grasps, in the source's frame
   Scene last_;
   std::optional<Pick> pick_;

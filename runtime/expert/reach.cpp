@@ -26,9 +26,22 @@ Result<Reach> Reach::create(const robot::Robot& robot) {
     return Failure{Fault::kUrdf, fmt::format("no link is named `{}`", robot.tcp_link), model.path};
   }
   std::vector<std::string> joints;
+  // From the tool down to the first joint that moves, which a fixed way leads to.
+  double longest = 0, below_first = 0;
+  Vec3 shoulder = Vec3::Zero();
   for (int l = tcp; model.links[std::size_t(l)].parent_joint >= 0;) {
     const robot::Joint& joint = model.joints[std::size_t(model.links[std::size_t(l)].parent_joint)];
-    if (joint.kind != robot::JointKind::kFixed && joint.mimic < 0) joints.push_back(joint.name);
+    const bool moves = joint.kind != robot::JointKind::kFixed && joint.mimic < 0;
+    if (moves) joints.push_back(joint.name);
+    // What lies below a joint is as far from it as its links are long.
+    shoulder = joint.origin.apply(shoulder);
+    below_first += joint.origin.position.norm();
+    if (joint.kind == robot::JointKind::kPrismatic)
+      below_first += std::max(std::abs(joint.lower), std::abs(joint.upper));
+    if (moves) {
+      longest = below_first - joint.origin.position.norm();
+      shoulder = joint.origin.position;
+    }
     l = joint.parent_link;
   }
   std::reverse(joints.begin(), joints.end());
@@ -38,7 +51,11 @@ Result<Reach> Reach::create(const robot::Robot& robot) {
     return Failure{Fault::kUrdf, fmt::format("no joint moves the link `{}`", robot.tcp_link),
                    model.path};
   }
-  return Reach(std::move(chain), *robot.hand);
+  return Reach(std::move(chain), *robot.hand, shoulder, longest);
+}
+
+double Reach::beyond(const Vec3& place) const {
+  return std::max(0.0, (place - shoulder_).norm() - longest_);
 }
 
 std::optional<std::vector<JointVector>> Reach::follow(std::span<const double> q,

@@ -23,6 +23,10 @@ class Reach {
   const robot::Chain& chain() const { return chain_; }
   const robot::Hand& hand() const { return hand_; }
 
+  // How far a place for the grasp frame is beyond the arm, however its joints stand: m, 0 where
+  // this bound does not tell. In the base frame.
+  double beyond(const Vec3& place) const;
+
   // Follows straight lines from the tool's pose at `q` through the poses, a solution every 5 cm or
   // 0.3 rad, each from the one before. The joint positions at each pose; nothing as soon as one
   // fails.
@@ -30,9 +34,12 @@ class Reach {
                                                  std::span<const Pose> way) const;
 
  private:
-  Reach(robot::Chain chain, const robot::Hand& hand) : chain_(std::move(chain)), hand_(hand) {}
+  Reach(robot::Chain chain, const robot::Hand& hand, const Vec3& shoulder, double longest)
+      : chain_(std::move(chain)), hand_(hand), shoulder_(shoulder), longest_(longest) {}
   robot::Chain chain_;
   robot::Hand hand_;
+  Vec3 shoulder_;   // the lowest point that no joint moves; base frame
+  double longest_;  // m: of the arm stretched out from there
 };
 
 }  // namespace probe::expert

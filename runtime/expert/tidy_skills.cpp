@@ -11,10 +11,13 @@ using policy::Skill;
 constexpr double kInnerBox = 0.7;  // of half an object's box: a square within a round plate
 constexpr double kOverBox = 0.03;  // m over its box
 
+// On or in one object, whichever of the two is said.
 bool is_same_place(const Skill& a, const Skill& b) {
-  return a.kind == Skill::Kind::kPut && b.kind == Skill::Kind::kPut &&
-         a.place == Skill::Place::kOn && b.place == Skill::Place::kOn && a.to_object >= 0 &&
-         a.to_object == b.to_object && a.object != b.object;
+  const auto goes_there = [](const Skill& skill) {
+    return skill.kind == Skill::Kind::kPut && skill.place != Skill::Place::kBeside &&
+           skill.to_object >= 0;
+  };
+  return goes_there(a) && goes_there(b) && a.to_object == b.to_object && a.object != b.object;
 }
 
 // In the object's frame.
@@ -39,7 +42,8 @@ std::vector<Skill> tidied(const policy::Privileged& view, std::vector<Skill> ski
                          skills[i + 1].object == skill.object;
     if (skill.kind == Skill::Kind::kPick && is_held) continue;
     const auto shares = [&](const Skill& other) { return is_same_place(skill, other); };
-    if (std::ranges::any_of(skills, shares) && !skill.region)
+    skill.shares = std::ranges::any_of(skills, shares) && !skill.region;
+    if (skill.shares)
       skill.region = top_of(view.objects[static_cast<std::size_t>(skill.to_object)]);
     out.push_back(skill);
   }

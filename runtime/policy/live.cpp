@@ -144,6 +144,9 @@ class LivePolicy final : public Policy {
     return inner_ ? inner_->spoiled() : std::nullopt;
   }
   bool is_earlier_spoiled() const override { return inner_ && inner_->is_earlier_spoiled(); }
+  std::optional<std::string> remark() const override {
+    return inner_ ? inner_->remark() : std::nullopt;
+  }
   std::optional<Delivery> delivery() const override {
     return inner_ ? inner_->delivery() : std::nullopt;
   }

@@ -48,9 +48,12 @@ inline constexpr std::string_view kOtherHand =
 // What it says where actions are late: it decides by what is now, and would fail where a start can
 // be done.
 inline constexpr std::string_view kLateActions = "the expert does not plan ahead of late actions";
+// How it begins to say that a skill of the solution cannot be done where the episode begins: the
+// arm does not reach it, or the hand finds no hold.
+inline constexpr std::string_view kSkillCannot = "skill ";
 inline bool was_not_attempted(const Failure& failure) {
   return failure.message == kNoSolution || failure.message == kLateActions ||
-         failure.message.starts_with(kOtherHand);
+         failure.message.starts_with(kOtherHand) || failure.message.starts_with(kSkillCannot);
 }
 
 // An object's collision hulls and where it is; all but the last two are fixed in an episode.
@@ -102,9 +105,11 @@ struct Skill {
     Vec3 low, high;  // in the frame of what it is put to; of the surface in the world's
   };
   std::optional<Box> region;
+  bool shares = false;  // `region` is the expert's: beside others on or in `to_object`
   // Of a turn, rad: from where it is closed, or from where it is.
   double amount = 0;
   bool by = false;
+  std::string name = {};  // "skill 2 `put carrot in cabinet.inside_top`"
 };
 
 // The privileged view.
@@ -153,7 +158,7 @@ struct EpisodeStart {
   std::uint64_t draw_seed =
       0;  // first 8 bytes of H(seed, episode): feed everything that draws from this
   int horizon = 0;
-  int delay = 0;  // control steps until an action acts
+  int delay = 0;                        // control steps until an action acts
   double control_hz = 0;                // control steps a second
   const robot::Robot* robot = nullptr;  // lives as long as the episode
 };
@@ -188,6 +193,9 @@ class Policy {
   virtual std::optional<Failure> spoiled() const { return std::nullopt; }
   // The same of the episode before the one that was begun last, where it showed even later.
   virtual bool is_earlier_spoiled() const { return false; }
+  // After end(): what kept it from doing what it meant to, as people read it; of scripted policies
+  // that know.
+  virtual std::optional<std::string> remark() const { return std::nullopt; }
   // Of the episode that was begun last; nothing of a policy in this process, or before the first
   // request.
   virtual std::optional<Delivery> delivery() const { return std::nullopt; }

@@ -76,6 +76,8 @@ class StillWithoutPolicy final : public Policy {
     if (view != nullptr && view->object_of(role_) < 0 && view->solution.empty()) return kStill;
     return inner_->act(observation);
   }
+  void end(const EpisodeEnd& end) override { inner_->end(end); }
+  std::optional<std::string> remark() const override { return inner_->remark(); }
 
  private:
   int role_;
@@ -99,6 +101,8 @@ class NoisyPolicy final : public Policy {
     }
     return action;
   }
+  void end(const EpisodeEnd& end) override { inner_->end(end); }
+  std::optional<std::string> remark() const override { return inner_->remark(); }
 
  private:
   // Twelve uniforms make a normal to within what a wrist can tell, without the C library's log and

@@ -391,6 +391,7 @@ Result<EpisodeWhy> why(const std::string& dir, const std::string& task, int epis
                  .seed = stored.row.seed,
                  .steps = static_cast<int>(stored.trace.steps.size()),
                  .invalid = stored.row.invalid,
+                 .remark = stored.row.remark,
                  .claims = {},
                  .metrics = {}};
   if (stored.trace.start) {

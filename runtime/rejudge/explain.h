@@ -57,6 +57,7 @@ struct EpisodeWhy {
   std::string task;
   int episode = 0, seed = 0, steps = 0;
   std::optional<std::string> invalid;
+  std::optional<std::string> remark;  // of the policy
   std::vector<ClaimWhy> claims;
   std::vector<MetricWhy> metrics;
 };

@@ -7,6 +7,7 @@
 #include <map>
 #include <vector>
 
+#include "runtime/base/printable.h"
 #include "runtime/plan/readouts.h"
 #include "runtime/rejudge/dimension.h"
 #include "runtime/store/run_plan.h"
@@ -14,6 +15,8 @@
 
 namespace probe::rejudge {
 namespace {
+
+constexpr std::size_t kMostRemarks = 3, kLongestRemark = 300;  // of a task; characters
 
 struct Column {
   std::string name;
@@ -23,10 +26,17 @@ struct Column {
   std::vector<double> values;
 };
 
+// What a policy says of some episodes.
+struct Remark {
+  std::string text;
+  int count = 0;
+};
+
 struct Tally {
   int valid = 0, invalid = 0, not_attempted = 0;
   std::string first_invalid;  // which, and why
   std::string why_not;        // attempted
+  std::vector<Remark> remarks;
   std::vector<Column> columns;
 };
 
@@ -60,6 +70,11 @@ void add(Tally& tally, const store::ResultRow& row) {
     return;
   }
   ++tally.valid;
+  if (row.remark) {
+    auto said = std::ranges::find(tally.remarks, *row.remark, &Remark::text);
+    if (said == tally.remarks.end()) said = tally.remarks.insert(said, Remark{*row.remark, 0});
+    ++said->count;
+  }
   for (const store::MetricValue& metric : row.metrics) {
     auto column = std::find_if(tally.columns.begin(), tally.columns.end(),
                                [&](const Column& known) { return known.name == metric.name; });
@@ -123,6 +138,13 @@ std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan*
                        numbers_text(column, kind_of(plan, task, column.name)));
       }
     }
+    std::vector<Remark> remarks = tally.remarks;
+    std::ranges::stable_sort(remarks, std::ranges::greater(), &Remark::count);
+    for (std::size_t i = 0; i < remarks.size() && i < kMostRemarks; ++i)
+      fmt::format_to(out, "  {} of {}: {}\n", remarks[i].count, tally.valid,
+                     printable(remarks[i].text, kLongestRemark));
+    if (remarks.size() > kMostRemarks)
+      fmt::format_to(out, "  and {} other remarks (--json)\n", remarks.size() - kMostRemarks);
   }
   return text;
 }

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "runtime/base/percent.h"
+#include "runtime/base/printable.h"
 
 namespace probe::report {
 namespace {
@@ -102,6 +103,8 @@ std::uint64_t truth_bits(const Episode& episode, int first) {
   return bits;
 }
 
+constexpr std::size_t kLongestRemark = 300;  // characters
+
 Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json& strings) {
   Json columns = {{"count", benchmark.episodes.size()}};
   for (const char* name :
@@ -111,6 +114,7 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
   for (const Metric& metric : benchmark.metrics) {
     if (!metric.truth) numbers[metric.name] = Json::array();
   }
+  Json remarks = Json::object();
   Json more_bits = Json::array();
   const auto truths = std::count_if(benchmark.metrics.begin(), benchmark.metrics.end(),
                                     [](const Metric& metric) { return metric.truth; });
@@ -133,6 +137,10 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
       columns["video"].push_back(strings.size());
       strings.push_back(from(options.relative_to, e.video));
     }
+    if (e.row.remark) {
+      remarks[std::to_string(columns["sha"].size())] = strings.size();
+      strings.push_back(printable(*e.row.remark, kLongestRemark));
+    }
     columns["sha"].push_back(e.row.trace_sha256.substr(0, 12));
     for (auto& [key, values] : numbers.items()) {
       const std::string& name = key;
@@ -142,6 +150,7 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
     }
   }
   if (!more_bits.empty()) columns["more_bits"] = std::move(more_bits);
+  if (!remarks.empty()) columns["remarks"] = std::move(remarks);
   if (!numbers.empty()) columns["numbers"] = std::move(numbers);
   return columns;
 }

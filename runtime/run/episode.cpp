@@ -79,6 +79,7 @@ class Loop {
     // What failed for another reason keeps it.
     if (const auto spoiled = policy_.spoiled(); spoiled && !outcome->invalid && !outcome->broken)
       *outcome = policy_failed(*spoiled);
+    if (!outcome->invalid && !outcome->broken && !end.success) row_.remark = policy_.remark();
     if (const auto delivery = policy_.delivery()) {
       row_.sent_prompt_sha256 = delivery->prompt_sha256;
       row_.sent_image_sha256 = delivery->image_sha256;

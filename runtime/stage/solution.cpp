@@ -1,5 +1,7 @@
 #include "runtime/stage/solution.h"
 
+#include <fmt/format.h>
+
 #include "runtime/plan/regions.h"
 #include "runtime/plan/skills.h"
 
@@ -65,9 +67,11 @@ std::vector<policy::Skill> solution_of(const plan::Plan& plan,
                                        std::span<const plan::SkillRecord> skills,
                                        const TaskBodies& bodies) {
   std::vector<policy::Skill> solution;
-  for (const plan::SkillRecord& record : skills) {
+  for (std::size_t number = 1; const plan::SkillRecord& record : skills) {
     const plan::TaskRecord& task = plan.tasks()[record.task];
     policy::Skill skill;
+    skill.name = fmt::format("{}{} `{}`", policy::kSkillCannot, number++,
+                             plan::skill_text(plan.tables(), record));
     skill.kind = kind_of(static_cast<plan::Skill>(record.skill));
     const Seen what = seen_of(record.body, bodies);
     skill.object = what.object;

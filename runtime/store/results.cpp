@@ -46,8 +46,8 @@ constexpr std::string_view kBehind[] = {"steps",
                                         "start_id",
                                         "trace"};
 
-// Behind those, of live runs alone.
-constexpr std::string_view kLiveField[] = {"live"};
+// Behind those, where there is something to say.
+constexpr std::string_view kRareFields[] = {"live", "remark"};
 
 // A metric is called as in the text, and `metric.NAME` where a row has a field NAME: names in texts
 // have no dots, and those of a foreign plan that do are prefixed too.
@@ -56,7 +56,7 @@ std::string column_of(const std::string& metric) {
   const auto has = [&](const auto& fields) {
     return std::find(std::begin(fields), std::end(fields), metric) != std::end(fields);
   };
-  return has(kBefore) || has(kBehind) || has(kLiveField) || metric.starts_with(kPrefix)
+  return has(kBefore) || has(kBehind) || has(kRareFields) || metric.starts_with(kPrefix)
              ? std::string(kPrefix) + metric
              : metric;
 }
@@ -108,6 +108,7 @@ std::string results_to_json(std::span<const ResultRow> rows) {
     json["start_id"] = row.start_id;
     json["trace"] = row.trace;
     if (!row.live.empty()) json["live"] = row.live;
+    if (row.remark) json["remark"] = *row.remark;
     array.push_back(std::move(json));
   }
   // A policy's error text may hold any bytes; what is not UTF-8 is replaced, never thrown.
@@ -121,7 +122,10 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
   header.insert(header.end(), std::begin(kBehind), std::end(kBehind));
   const bool has_live =
       std::ranges::any_of(rows, [](const ResultRow& row) { return !row.live.empty(); });
-  if (has_live) header.emplace_back(kLiveField[0]);
+  const bool has_remark =
+      std::ranges::any_of(rows, [](const ResultRow& row) { return row.remark.has_value(); });
+  if (has_live) header.emplace_back(kRareFields[0]);
+  if (has_remark) header.emplace_back(kRareFields[1]);
   std::string text = line_of(header);
   for (const ResultRow& row : rows) {
     std::vector<std::string> cells = {row.task, std::to_string(row.episode),
@@ -135,6 +139,7 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
       cells.push_back(value);
     }
     if (has_live) cells.push_back(row.live);
+    if (has_remark) cells.push_back(row.remark.value_or(""));
     text += line_of(cells);
   }
   return text;

@@ -35,6 +35,9 @@ struct ResultRow {
   std::string trace_sha256;  // of the trace's content without timing
   std::string episode_id, start_id;
   std::string trace;  // path of the trace; read_results gives an absolute one
+  // What the policy, one of ours, says kept it from doing what it meant to: "skill 1 `open
+  // cabinet.top_drawer`: ...". None of what it did, and of other policies.
+  std::optional<std::string> remark = {};
   // RunIdentity::live of its run; empty in one whose world waits. Of read_results.
   std::string live = {};
   bool operator==(const ResultRow&) const = default;
@@ -52,7 +55,8 @@ inline bool is_not_attempted(const ResultRow& row) {
 Result<std::vector<ResultRow>> read_results(const std::string& dir);
 
 // A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.
-// Rows of a live run have a key `live` behind `trace`.
+// Rows of a live run have a key `live` behind `trace`, and those of which the policy says something
+// a key `remark`.
 std::string results_to_json(std::span<const ResultRow> rows);
 // The same as comma-separated values with a header line; truths as true/false.
 std::string results_to_csv(std::span<const ResultRow> rows);

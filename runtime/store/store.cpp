@@ -18,6 +18,7 @@
 #include "runtime/store/database.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/remarks_table.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/stored_trace.h"
 #include "runtime/store/unproven_table.h"
@@ -52,7 +53,8 @@ constexpr std::string_view kRunColumns[] = {"name", "value"};
 constexpr Database::Table kTables[] = {{"run", kRunColumns},
                                        {"episodes", kEpisodeColumns},
                                        {"calls", kCallColumns},
-                                       {"unproven", kUnprovenColumns}};
+                                       {"unproven", kUnprovenColumns},
+                                       {"remarks", kRemarkColumns}};
 
 // What `item` gives for each column, with commas between.
 template <typename Item>
@@ -161,6 +163,7 @@ std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& tex
 Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
   PROBE_ASSIGN(const auto record, load_record(database));
   if (!record) return failed("no run here: results.sqlite is empty", dir);
+  PROBE_ASSIGN(const auto remarks, RemarksTable(database).all());
   Statement select(database, select_episodes(record->schema).c_str());
   std::vector<ResultRow> rows;
   std::size_t bytes = 0;
@@ -195,6 +198,8 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
     row.sent_prompt_sha256 = select.optional_text(EpisodeColumn::kSentPromptSha);
     row.sent_image_sha256 = select.optional_text(EpisodeColumn::kSentImageSha);
     row.live = record->identity.live;
+    if (const auto said = remarks.find(key_of(row)); said != remarks.end())
+      row.remark = said->second;
     rows.push_back(std::move(row));
   }
   PROBE_TRY(select.done());
@@ -284,9 +289,9 @@ class FolderStore final : public Store {
     // Waiting for the disk here is no business of other threads: each has files of its own.
     PROBE_TRY(sync_folder(fs::path(trace).parent_path().string()));
     const std::lock_guard lock(mutex_);
-    if (!is_watched_) return insert_row(row, task_order);
     return in_one([&]() -> Status {
-      PROBE_TRY(unproven_.add(key_of(row)));
+      if (is_watched_) PROBE_TRY(unproven_.add(key_of(row)));
+      PROBE_TRY(remarks_.put(key_of(row), row.remark));
       return insert_row(row, task_order);
     });
   }
@@ -423,6 +428,7 @@ class FolderStore final : public Store {
   RunRecord record_;
   CallsTable calls_{database_};
   UnprovenTable unproven_{database_};
+  RemarksTable remarks_{database_};
 };
 
 }  // namespace

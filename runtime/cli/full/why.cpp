@@ -23,6 +23,7 @@ void print_json(const rejudge::EpisodeWhy& why) {
   Json json = {
       {"task", why.task}, {"episode", why.episode}, {"seed", why.seed}, {"steps", why.steps}};
   json["invalid"] = why.invalid ? Json(*why.invalid) : nullptr;
+  json["remark"] = why.remark ? Json(*why.remark) : nullptr;
   for (const rejudge::ClaimWhy& claim : why.claims) {
     json["claims"].push_back({{"text", claim.text},
                               {"object", claim.object},
@@ -177,6 +178,7 @@ int why_verb(const WhyArguments& arguments) {
   }
   put("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
   if (why->invalid) put("invalid: {}\n", *why->invalid);
+  if (why->remark) put("the policy says: {}\n", shown(*why->remark));
   for (const rejudge::ClaimWhy& claim : why->claims) {
     std::string denoted;
     for (const std::string& object : claim.denoted)

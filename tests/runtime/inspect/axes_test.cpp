@@ -128,9 +128,10 @@ TEST_CASE("a copy of a fixture whose joint starts elsewhere differs by the fixtu
   const plan::Plan plan = compiled(R"(
 use "examples/drawer.probe"
 fixture ajar like cabinet { joint top friction 1N damping 5Ns/m start 2cm }
-scene shut_scene like table { fixture cabinet }
-scene ajar_scene like table { fixture ajar }
-task shut like carrot_on_plate { scene shut_scene }
+scene wide like panda_table { surface 90cm area (-40cm, -60cm) .. (40cm, 60cm) }
+scene shut_scene like wide { fixture cabinet }
+scene ajar_scene like wide { fixture ajar }
+task shut like panda_carrot_on_plate { scene shut_scene; layout before_it }
 variant begun of shut { scene ajar_scene }
 suite begun_suite { tasks { shut, begun }; seeds 1 }
 )");

@@ -41,7 +41,9 @@ const TopPart& part(const TopView& view, const std::string& name) {
   return *found;
 }
 
-double low_x(const std::vector<Point>& outline) { return std::ranges::min(outline).x; }
+double high_y(const std::vector<Point>& outline) {
+  return std::ranges::max(outline, {}, &Point::y).y;
+}
 
 }  // namespace
 
@@ -52,15 +54,16 @@ TEST_CASE("parts are seen where their joints begin and where they end, regions w
   const TopPart& drawer = part(shut, "cabinet.top_drawer");
   REQUIRE(drawer.outlines.size() == 6);
   REQUIRE(drawer.open.size() == 6);
-  // The cabinet stands at x = -27 cm; the drawer's floor reaches from -9 cm on, and slides 14 cm.
-  CHECK(low_x(drawer.outlines[0]) == doctest::Approx(-0.36));
-  CHECK(low_x(drawer.open[0]) == doctest::Approx(-0.22));
-  CHECK(low_x(part(ajar, "cabinet.top_drawer").outlines[0]) == doctest::Approx(-0.31));
-  CHECK(low_x(part(ajar, "cabinet.top_drawer").open[0]) == doctest::Approx(-0.22));
+  // The cabinet stands at y = 32 cm and looks along -y; the drawer's floor reaches from 9 cm behind
+  // it on, and slides 14 cm.
+  CHECK(high_y(drawer.outlines[0]) == doctest::Approx(0.41));
+  CHECK(high_y(drawer.open[0]) == doctest::Approx(0.27));
+  CHECK(high_y(part(ajar, "cabinet.top_drawer").outlines[0]) == doctest::Approx(0.36));
+  CHECK(high_y(part(ajar, "cabinet.top_drawer").open[0]) == doctest::Approx(0.27));
   REQUIRE(shut.regions.size() == 1);
   CHECK(shut.regions[0].name == "cabinet.inside_top");
-  CHECK(low_x(shut.regions[0].outline) == doctest::Approx(-0.35));
-  CHECK(low_x(ajar.regions[0].outline) == doctest::Approx(-0.30));
+  CHECK(high_y(shut.regions[0].outline) == doctest::Approx(0.40));
+  CHECK(high_y(ajar.regions[0].outline) == doctest::Approx(0.35));
 }
 
 TEST_CASE("the picture names parts and regions and says which way is left") {

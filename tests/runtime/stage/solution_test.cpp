@@ -111,6 +111,48 @@ variant unsaid of said { solution none; say "put {the source} into the drawer" }
   CHECK(plan.episodes(a)[0].episode_id == plan.episodes(b)[0].episode_id);
 }
 
+TEST_CASE(
+    "what the arm does not reach or the hand cannot hold is not attempted, by skill and reason") {
+  const plan::Plan plan = kitchen_of(R"(
+use "suite/intact.probe"
+fixture near_chest {
+  urdf "fixtures/cabinet/cabinet.urdf"; at (-27cm, 30cm, 87cm)
+  joint top friction 1N damping 5Ns/m
+  part drawer link top_drawer name "drawer"
+}
+fixture far_chest {
+  urdf "fixtures/cabinet/cabinet.urdf"; at (-27cm, 160cm, 87cm)
+  joint top friction 1N damping 5Ns/m
+  part drawer link top_drawer name "drawer"
+}
+scene near_widowx like table { fixture near_chest }
+scene far_widowx like table { fixture far_chest }
+metrics near_open { success = at end opened(near_chest.drawer) }
+metrics far_open { success = at end opened(far_chest.drawer) }
+task thin like carrot_on_plate { scene near_widowx; metrics near_open; say "open the drawer" }
+task far like carrot_on_plate { scene far_widowx; metrics far_open; say "open the drawer" }
+)");
+  const auto refusal = [&](const char* name) {
+    const std::uint32_t tasks[] = {plan.find_task(name).value()};
+    const auto loaded = SharedAssets::load(plan, VLAPROBE_SOURCE_DIR "/assets", tasks);
+    REQUIRE(loaded.ok());
+    const auto stage = Stage::create(plan, tasks[0], *loaded, {{}, false});
+    REQUIRE(stage.ok());
+    const auto expert = expert::make_expert({});
+    REQUIRE((*stage)->reset(0).ok());
+    REQUIRE((*expert)->begin((*stage)->introduction()).ok());
+    const auto action = (*expert)->act(*(*stage)->observe());
+    REQUIRE_FALSE(action.ok());
+    CHECK(policy::was_not_attempted(action.failure()));
+    return action.failure().message;
+  };
+  CHECK(refusal("thin") ==
+        "skill 1 `open near_chest.drawer`: closed fingers stay 1.2 cm apart, and what they could "
+        "hold is thinner");
+  CHECK(refusal("far").starts_with(
+      "skill 1 `open far_chest.drawer`: it is out of the arm's reach ("));
+}
+
 TEST_CASE("the expert opens a drawer, puts the carrot in and closes it") {
   const plan::Plan plan = kitchen_of(R"(
 metrics away { success = at end (closed(cabinet.top_drawer) and put_in(source, cabinet.inside_top)) }

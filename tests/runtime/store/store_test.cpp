@@ -48,6 +48,32 @@ TEST_CASE("rows come back in order, with an absolute trace path") {
   CHECK(read_run_record(dir)->identity == record_of().identity);
 }
 
+TEST_CASE("what a policy says of an episode is kept with its row, and goes when it is run again") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  const std::string said = "skill 1 `open cabinet.top_drawer`: there is no hold";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    REQUIRE(store_episode(**store, row_of(0)).ok());
+    ResultRow row = row_of(1);
+    row.remark = said;
+    REQUIRE(store_episode(**store, row).ok());
+  }
+  const auto rows = read_results(dir);
+  REQUIRE(rows.ok());
+  CHECK_FALSE(rows->at(0).remark);
+  CHECK(rows->at(1).remark == said);
+  const Json json = Json::parse(results_to_json(*rows));
+  CHECK_FALSE(json[0].contains("remark"));
+  CHECK(json[1]["remark"] == said);
+  CHECK(results_to_csv(*rows).find(",trace,remark\n") != std::string::npos);
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
+  REQUIRE(store_episode(**store, row_of(1)).ok());
+  CHECK_FALSE(read_results(dir)->at(1).remark);
+}
+
 TEST_CASE("valid rows are kept, invalid ones and lost traces are run again") {
   TemporaryFolder folder;
   const std::string dir = folder / "run";

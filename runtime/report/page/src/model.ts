@@ -20,7 +20,7 @@ export interface Task {
 }
 export interface Episodes {
   count: number; policy: number[]; task: number[]; start: number[]; seed: number[]; bits: number[]; more_bits?: number[][]; steps: number[];
-  reason: number[]; prompt: number[]; video?: number[]; numbers?: Record<string, (number | null)[]>;
+  reason: number[]; prompt: number[]; video?: number[]; remarks?: Record<string, number>; numbers?: Record<string, (number | null)[]>;
 }
 // A number holds 52 of an episode's truths exactly.
 export function isTrue(e: Episodes, row: number, m: number): boolean {
