@@ -24,10 +24,10 @@ Result<std::unique_ptr<Sink>> open_sink(const std::string& path, const std::stri
 }
 
 Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportOptions& options) {
-  PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  PROBE_ASSIGN(auto rows, store::read_results(dir));
   PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
   ExportReport report;
-  for (const store::ResultRow& row : rows) {
+  for (store::ResultRow& row : rows) {
     if (!matches_glob(options.tasks, row.task)) continue;
     const auto trace = store::prove(plan, row);
     if (!trace) {
@@ -35,6 +35,7 @@ Result<ExportReport> write_all(Sink& sink, const std::string& dir, const ExportO
                                " is left out: " + to_text(trace.failure()));
       continue;
     }
+    store::add_task(plan, *trace, row);
     PROBE_TRY(sink.episode(row, *trace));
     ++report.episodes;
     report.steps += static_cast<int>(trace->steps.size());

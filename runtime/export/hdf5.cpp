@@ -78,6 +78,8 @@ class Hdf5 final : public Sink {
     number(group, "seed", header.seed);
     number(group, "horizon", header.horizon);
     number(group, "control_hz", header.control_hz);
+    number(group, "idle", row.idle);
+    number(group, "delay", row.delay);
     texts(group, "bodies", header.bodies);
     texts(group, "joints", header.joints);
     std::vector<std::string> names;

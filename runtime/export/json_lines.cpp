@@ -87,6 +87,8 @@ Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
   json["steps"] = trace.steps.size();
   json["invalid"] = row.invalid ? Json(*row.invalid) : Json(nullptr);
   json["live"] = header.live ? terms_json(*header.live) : Json(nullptr);
+  json["idle"] = row.idle;
+  json["delay"] = row.delay;
   json["bodies"] = header.bodies;
   json["joints"] = header.joints;
   Json metrics = Json::object();
@@ -95,6 +97,9 @@ Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
         row.invalid ? Json(nullptr) : metric_json({metric.name, metric.is_bool}, metric.value);
   }
   json["metrics"] = std::move(metrics);
+  json["fixture_joints"] = Json::object();
+  for (const store::JointValue& joint : row.joints)
+    json["fixture_joints"][joint.name] = joint.position;
   json["start"] = nullptr;
   if (trace.start) {
     Json start;

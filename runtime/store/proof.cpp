@@ -72,6 +72,16 @@ std::string terms_of(const Trace& trace) {
 
 }  // namespace
 
+void add_task(const plan::Plan& plan, const Trace& trace, ResultRow& row) {
+  const plan::TaskRecord& task = plan.tasks()[*plan.find_task(row.task)];
+  row.idle = static_cast<int>(task.idle);
+  row.delay = static_cast<int>(task.delay);
+  if (row.invalid || trace.steps.empty()) return;
+  const std::size_t robots = plan.robots()[plan.scenes()[task.scene].robot].drives.count;
+  for (std::size_t j = robots; j < trace.header.joints.size(); ++j)
+    row.joints.push_back({trace.header.joints[j], trace.steps.back().q[j]});
+}
+
 policy::LiveFigures live_figures(const Trace& trace) {
   policy::LiveFigures figures;
   for (std::size_t i = 0; i < trace.steps.size(); ++i) {
@@ -108,8 +118,9 @@ Result<ProvenResults> read_proven_results(const std::string& dir) {
                                ", that of its run " +
                                (proven.live_terms.empty() ? "waits" : "is " + proven.live_terms),
                            rows[i].trace};
-      } else if (!rows[i].invalid) {
-        live[i] = live_figures(*trace);
+      } else {
+        if (!rows[i].invalid) live[i] = live_figures(*trace);
+        add_task(plan, *trace, rows[i]);
       }
     }
   };

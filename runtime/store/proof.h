@@ -17,10 +17,14 @@ namespace probe::store {
 // long as the task, with verdicts that the plan's metrics give for its measurements at every step.
 Result<Trace> prove(const plan::Plan& plan, const ResultRow& row);
 
+// What a row has of its task and of the last step of its trace, which bears it: `idle`, `delay`,
+// `joints`.
+void add_task(const plan::Plan& plan, const Trace& trace, ResultRow& row);
+
 policy::LiveFigures live_figures(const Trace& trace);
 
 struct ProvenResults {
-  std::vector<ResultRow> rows;       // as read_results has them
+  std::vector<ResultRow> rows;       // as read_results has them, with `idle`, `delay`, `joints`
   std::vector<std::string> refused;  // a sentence each: which episode, and what is wrong
   // Of a run whose world does not wait: its terms, and how often and how late its policy answered
   // in valid episodes. Empty: it waits.

@@ -47,7 +47,18 @@ constexpr std::string_view kBehind[] = {"steps",
                                         "trace"};
 
 // Behind those, where there is something to say.
-constexpr std::string_view kRareFields[] = {"live", "remark"};
+struct RareField {
+  std::string_view name;
+  std::string (*cell)(const ResultRow& row);  // empty: nothing to say
+};
+std::string steps_cell(int steps) { return steps == 0 ? "" : std::to_string(steps); }
+constexpr RareField kRareFields[] = {
+    {"live", [](const ResultRow& row) { return row.live; }},
+    {"remark", [](const ResultRow& row) { return row.remark.value_or(""); }},
+    {"idle", [](const ResultRow& row) { return steps_cell(row.idle); }},
+    {"delay", [](const ResultRow& row) { return steps_cell(row.delay); }},
+};
+constexpr std::string_view kJoints = "joints", kJointPrefix = "joint.";
 
 // A metric is called as in the text, and `metric.NAME` where a row has a field NAME: names in texts
 // have no dots, and those of a foreign plan that do are prefixed too.
@@ -56,7 +67,10 @@ std::string column_of(const std::string& metric) {
   const auto has = [&](const auto& fields) {
     return std::find(std::begin(fields), std::end(fields), metric) != std::end(fields);
   };
-  return has(kBefore) || has(kBehind) || has(kRareFields) || metric.starts_with(kPrefix)
+  return has(kBefore) || has(kBehind) || metric == kJoints || metric.starts_with(kJointPrefix) ||
+                 std::ranges::find(kRareFields, metric, &RareField::name) !=
+                     std::end(kRareFields) ||
+                 metric.starts_with(kPrefix)
              ? std::string(kPrefix) + metric
              : metric;
 }
@@ -71,6 +85,17 @@ std::vector<std::string> metric_names(std::span<const ResultRow> rows) {
       if (std::find(names.begin(), names.end(), metric.name) == names.end()) {
         names.push_back(metric.name);
       }
+    }
+  }
+  return names;
+}
+
+// Every joint that some row has, in order of first use.
+std::vector<std::string> joint_names(std::span<const ResultRow> rows) {
+  std::vector<std::string> names;
+  for (const ResultRow& row : rows) {
+    for (const JointValue& joint : row.joints) {
+      if (std::ranges::find(names, joint.name) == names.end()) names.push_back(joint.name);
     }
   }
   return names;
@@ -109,6 +134,10 @@ std::string results_to_json(std::span<const ResultRow> rows) {
     json["trace"] = row.trace;
     if (!row.live.empty()) json["live"] = row.live;
     if (row.remark) json["remark"] = *row.remark;
+    if (row.idle != 0) json["idle"] = row.idle;
+    if (row.delay != 0) json["delay"] = row.delay;
+    for (const JointValue& joint : row.joints)
+      json[std::string(kJoints)][joint.name] = joint.position;
     array.push_back(std::move(json));
   }
   // A policy's error text may hold any bytes; what is not UTF-8 is replaced, never thrown.
@@ -120,12 +149,15 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
   std::vector<std::string> header(std::begin(kBefore), std::end(kBefore));
   for (const std::string& name : names) header.push_back(column_of(name));
   header.insert(header.end(), std::begin(kBehind), std::end(kBehind));
-  const bool has_live =
-      std::ranges::any_of(rows, [](const ResultRow& row) { return !row.live.empty(); });
-  const bool has_remark =
-      std::ranges::any_of(rows, [](const ResultRow& row) { return row.remark.has_value(); });
-  if (has_live) header.emplace_back(kRareFields[0]);
-  if (has_remark) header.emplace_back(kRareFields[1]);
+  std::vector<RareField> rare;
+  for (const RareField& field : kRareFields) {
+    if (std::ranges::all_of(rows, [&](const ResultRow& row) { return field.cell(row).empty(); }))
+      continue;
+    rare.push_back(field);
+    header.emplace_back(field.name);
+  }
+  const std::vector<std::string> joints = joint_names(rows);
+  for (const std::string& joint : joints) header.push_back(std::string(kJointPrefix) + joint);
   std::string text = line_of(header);
   for (const ResultRow& row : rows) {
     std::vector<std::string> cells = {row.task, std::to_string(row.episode),
@@ -138,8 +170,11 @@ std::string results_to_csv(std::span<const ResultRow> rows) {
           row.episode_id, row.start_id, row.trace}) {
       cells.push_back(value);
     }
-    if (has_live) cells.push_back(row.live);
-    if (has_remark) cells.push_back(row.remark.value_or(""));
+    for (const RareField& field : rare) cells.push_back(field.cell(row));
+    for (const std::string& joint : joints) {
+      const auto at = std::ranges::find(row.joints, joint, &JointValue::name);
+      cells.push_back(at == row.joints.end() ? "" : exact_text(at->position));
+    }
     text += line_of(cells);
   }
   return text;

@@ -19,6 +19,12 @@ struct MetricValue {
   bool operator==(const MetricValue&) const = default;
 };
 
+struct JointValue {
+  std::string name;  // "cabinet.top"
+  double position = 0;
+  bool operator==(const JointValue&) const = default;
+};
+
 struct ResultRow {
   std::string task;  // the plan's name, without a suite's prefix
   int episode = 0;
@@ -38,6 +44,10 @@ struct ResultRow {
   // What the policy, one of ours, says kept it from doing what it meant to: "skill 1 `open
   // cabinet.top_drawer`: ...". None of what it did, and of other policies.
   std::optional<std::string> remark = {};
+  // Of read_proven_results, control steps: before the policy's first, and until an action acts.
+  int idle = 0, delay = 0;
+  // Of read_proven_results: where the joints of the scene's fixtures were at the end, m or rad.
+  std::vector<JointValue> joints = {};
   // RunIdentity::live of its run; empty in one whose world waits. Of read_results.
   std::string live = {};
   bool operator==(const ResultRow&) const = default;
@@ -55,10 +65,11 @@ inline bool is_not_attempted(const ResultRow& row) {
 Result<std::vector<ResultRow>> read_results(const std::string& dir);
 
 // A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.
-// Rows of a live run have a key `live` behind `trace`, and those of which the policy says something
-// a key `remark`.
+// Behind `trace` stand, where there is something to say, `live`, `remark`, `idle` and `delay`
+// (control steps) and `joints`, an object.
 std::string results_to_json(std::span<const ResultRow> rows);
-// The same as comma-separated values with a header line; truths as true/false.
+// The same as comma-separated values with a header line; truths as true/false. What some rows have
+// to say has a column, and each joint one: `joint.cabinet.top`.
 std::string results_to_csv(std::span<const ResultRow> rows);
 
 }  // namespace probe::store

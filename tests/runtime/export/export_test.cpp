@@ -30,6 +30,9 @@ Recorded recorded(const TemporaryFolder& folder) {
   out.row.task = out.trace.header.task;
   out.row.metrics = out.trace.end->metrics;
   out.row.trace_sha256 = to_hex(out.trace.hash);
+  out.row.idle = 10;
+  out.row.delay = 2;
+  out.row.joints = {{"cabinet.top", 0.125}};
   return out;
 }
 
@@ -60,6 +63,15 @@ std::string read_text(hid_t file, const std::string& group, const char* name) {
   return value;
 }
 
+double read_number(hid_t file, const std::string& group, const char* name) {
+  const hid_t attribute = H5Aopen_by_name(file, group.c_str(), name, H5P_DEFAULT, H5P_DEFAULT);
+  REQUIRE_MESSAGE(attribute >= 0, name);
+  double value = 0;
+  CHECK(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value) >= 0);
+  H5Aclose(attribute);
+  return value;
+}
+
 TEST_CASE("an HDF5 file has a group an episode with every number of its trace") {
   const TemporaryFolder folder;
   const Recorded in = recorded(folder);
@@ -75,6 +87,8 @@ TEST_CASE("an HDF5 file has a group an episode with every number of its trace") 
   CHECK(read_text(file, group, "start_id") == to_hex(in.trace.header.start_id));
   CHECK(read_text(file, group, "invalid").empty());
   CHECK(read_text(file, group, "live").empty());
+  CHECK(read_number(file, group, "idle") == 10);
+  CHECK(read_number(file, group, "delay") == 2);
   std::vector<hsize_t> shape;
   const auto action = read_reals(file, group + "/action", shape);
   CHECK(shape == std::vector<hsize_t>{4, 7});
@@ -112,6 +126,9 @@ TEST_CASE("JSON lines have an episode line and a line a step with exact numbers"
   CHECK(lines[0]["kind"] == "episode");
   CHECK(lines[0]["metrics"]["success"] == true);
   CHECK(lines[0]["start"]["q"][0] == 0.5);
+  CHECK(lines[0]["idle"] == 10);
+  CHECK(lines[0]["delay"] == 2);
+  CHECK(lines[0]["fixture_joints"]["cabinet.top"] == 0.125);
   CHECK(lines[2]["kind"] == "step");
   CHECK(lines[2]["step"] == 2.0);
   CHECK(lines[0]["live"].is_null());  // its world waited

@@ -74,6 +74,24 @@ TEST_CASE("what a policy says of an episode is kept with its row, and goes when 
   CHECK_FALSE(read_results(dir)->at(1).remark);
 }
 
+TEST_CASE("rows say idle steps, late actions and joints where a task has them") {
+  std::vector<ResultRow> rows = {row_of(0), row_of(1)};
+  rows[1].idle = 10;
+  rows[1].delay = 2;
+  rows[1].joints = {{"cabinet.top", 0.125}};
+  rows[1].metrics.push_back({"delay", true, 1});
+  const Json json = Json::parse(results_to_json(rows));
+  for (const char* key : {"idle", "delay", "joints"}) CHECK_FALSE(json[0].contains(key));
+  CHECK(json[1]["idle"] == 10);
+  CHECK(json[1]["delay"] == 2);
+  CHECK(json[1]["joints"]["cabinet.top"] == 0.125);
+  CHECK(json[1]["metric.delay"] == true);
+  const std::string csv = results_to_csv(rows);
+  CHECK(csv.find(",trace,idle,delay,joint.cabinet.top\n") != std::string::npos);
+  CHECK(csv.ends_with(",10,2,0.125\n"));
+  CHECK(results_to_csv(std::span(rows).first(1)).find("idle") == std::string::npos);
+}
+
 TEST_CASE("valid rows are kept, invalid ones and lost traces are run again") {
   TemporaryFolder folder;
   const std::string dir = folder / "run";
