@@ -12,6 +12,7 @@
 #include "compiler/audit/rules.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/skills.h"
+#include "runtime/vm/derived_solution.h"
 
 namespace probe::audit {
 namespace {
@@ -28,7 +29,7 @@ struct KindName {
   Kind kind;
   std::string_view name, title;
 };
-constexpr std::array<KindName, 22> kKinds = {{
+constexpr std::array<KindName, 23> kKinds = {{
     {Kind::kConfounded, "confounded", "comparisons that move more than one axis"},
     {Kind::kAcrossScenes, "across_scenes", "comparisons across scenes"},
     {Kind::kAcrossLayouts, "across_layouts", "comparisons across layouts"},
@@ -48,6 +49,7 @@ constexpr std::array<KindName, 22> kKinds = {{
      "success of an object that lies on a fixture beside the target"},
     {Kind::kHeld, "held", "success of an object that is still held above the target"},
     {Kind::kHoldsAtStart, "holds_at_start", "success that holds before anything moves"},
+    {Kind::kSolution, "solution", "solutions that do not do what success asks for"},
     {Kind::kNamesAnswer, "names_answer", "questions whose words name the answer"},
     {Kind::kOneAnswer, "one_answer", "questions with one answer throughout"},
     {Kind::kOneLetter, "one_letter", "questions whose right option stands at one place"},
@@ -319,6 +321,15 @@ class Auditor {
         if (held) add_rule(kHeld, index);
         PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success));
         if (begun) add_rule(kBegun, index);
+        PROBE_ASSIGN(std::string flaw, vm::flaw_of_solution(plan_, index));
+        if (!flaw.empty()) {
+          Finding finding;
+          finding.kind = Kind::kSolution;
+          finding.tasks = {name_of(index)};
+          finding.message = std::move(flaw);
+          finding.place = task_place(index);
+          add(std::move(finding));
+        }
       }
     }
     return {};

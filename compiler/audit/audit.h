@@ -33,6 +33,7 @@ enum class Kind : std::uint8_t {
   kOnFixture,
   kHeld,
   kHoldsAtStart,
+  kSolution,
   kNamesAnswer,
   kOneAnswer,
   kOneLetter,

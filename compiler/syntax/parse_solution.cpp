@@ -15,7 +15,11 @@ TaskStmt Parser::task_solution() {
   };
   SolutionStmt out;
   if (accept_word("none")) return out;
+  const std::uint32_t begin = mark();
   out.skills = body<SkillNode>(kRules, "a skill");
+  if (!failed_ && out.skills.empty())
+    fail(Code::P0101, since(begin),
+         "a solution without skills; `solution none` leaves it to the expert to find one");
   return out;
 }
 

@@ -1,7 +1,7 @@
 #include "runtime/stage/goal.h"
 
 #include "runtime/plan/roles.h"
-#include "runtime/stage/derived_solution.h"
+#include "runtime/vm/derived_solution.h"
 #include "runtime/vm/made_up.h"
 
 namespace probe::stage {
@@ -48,7 +48,7 @@ Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task) {
   PROBE_ASSIGN(const bool held, holds_of(plan, task, *success, {0, kAside, 0}));
   if (held) return Goal::kAway;
   // Rather skills that make it than the usual task.
-  PROBE_ASSIGN(const auto skills, derive_solution(plan, task));
+  PROBE_ASSIGN(const auto skills, vm::derive_solution(plan, task));
   return skills.empty() ? else_goal : Goal::kOther;
 }
 

@@ -7,10 +7,10 @@
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
-#include "runtime/stage/derived_solution.h"
 #include "runtime/stage/goal.h"
 #include "runtime/stage/robot_of.h"
 #include "runtime/stage/solution.h"
+#include "runtime/vm/derived_solution.h"
 
 namespace probe::stage {
 namespace {
@@ -119,7 +119,7 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
   const auto said = plan::skills_of(plan.tables(), task_index);
   std::vector<plan::SkillRecord> skills(said.begin(), said.end());
   if (skills.empty() && view.goal == policy::Goal::kOther) {
-    PROBE_ASSIGN(skills, derive_solution(plan, task_index));
+    PROBE_ASSIGN(skills, vm::derive_solution(plan, task_index));
   }
   view.solution = solution_of(plan, skills, bodies);
   return view;

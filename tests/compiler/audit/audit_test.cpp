@@ -93,6 +93,56 @@ TEST_CASE("the published suite: comparisons of several axes are found, with axes
   }
 }
 
+TEST_CASE("a solution that does not do what success asks for is found, with what would") {
+  const Audited suite = audit_text(R"(
+use "std/fixtures.probe"
+fixture chest {
+  urdf "fixtures/cabinet/cabinet.urdf"; at (-27cm, 30cm, 87cm)
+  joint top friction 1N damping 5Ns/m
+  joint bottom friction 1N damping 5Ns/m
+  part top_drawer link top_drawer
+  part bottom_drawer link bottom_drawer
+  region inside of top_drawer box (-8cm, -12cm, -3cm) .. (10cm, 12cm, 2cm)
+}
+scene with_chest like table { fixture chest }
+layout corner like grid_24 { cells corners = grid 2 x 2 at (-16cm, -5cm) spread (7.5cm, 7.5cm) }
+metrics tidied { success = at end (put_in(source, chest.inside) and closed(chest.top_drawer)) }
+metrics both { success = at end (opened(chest.top_drawer) and opened(chest.bottom_drawer)) }
+abstract task tidy like carrot_on_plate {
+  scene with_chest; layout corner; metrics tidied; say "put {the source} away"
+}
+task whole like tidy {
+  solution { open chest.top_drawer; put source in chest.inside; close chest.top_drawer }
+}
+task shut like tidy { solution { put source in chest.inside } }
+task left_open like tidy { solution { open chest.top_drawer; put source in chest.inside } }
+task wrong_one like tidy {
+  solution { open chest.top_drawer; put target in chest.inside; close chest.top_drawer }
+}
+task one_of_two like carrot_on_plate {
+  scene with_chest; layout corner; metrics both; say "open both drawers"
+  solution { open chest.top_drawer }
+}
+suite own_solutions trained on bridge_v2 {
+  tasks { whole, shut, left_open, wrong_one, one_of_two }; seeds 42
+}
+)");
+  CHECK(suite.find(Kind::kSolution, "whole") == nullptr);
+  const auto said = [&](const char* task) {
+    const audit::Finding* finding = suite.find(Kind::kSolution, task);
+    return finding == nullptr ? std::string("nothing") : finding->message;
+  };
+  CHECK(said("shut") == "`put carrot in chest.inside` goes into what is closed then");
+  const std::string all =
+      "when it is done `success` is not true; `open chest.top_drawer; put carrot in chest.inside; "
+      "close chest.top_drawer` makes it so";
+  CHECK(said("left_open") == all);
+  CHECK(said("wrong_one") == all);
+  CHECK(said("one_of_two") ==
+        "when it is done `success` is not true; `open chest.top_drawer; open chest.bottom_drawer` "
+        "makes it so");
+}
+
 TEST_CASE("the published suite: success by another rule than the canonical task's is found") {
   for (const char* task : {"spoon_on_towel_distract", "spoon_on_towel_lang_common_distract"}) {
     const audit::Finding* finding = published().find(Kind::kSuccessRule, task);

@@ -1,9 +1,12 @@
-#include "runtime/stage/derived_solution.h"
+#include "runtime/vm/derived_solution.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "runtime/plan/fixtures.h"
@@ -12,11 +15,12 @@
 #include "runtime/plan/skills.h"
 #include "runtime/vm/made_up.h"
 
-namespace probe::stage {
+namespace probe::vm {
 namespace {
 
 constexpr double kAngleStep = std::numbers::pi / 36;  // rad: how finely a wanted turn is found
 constexpr double kTurnRoom = 2;                       // steps more than the least that is enough
+constexpr double kInner = 5e-3;                       // m: of a hollow thing
 constexpr double kHalfOpen = 0.5;  // of the way: what is less open is opened to put something in
 
 // A part's joint at one of its ends, or turned by an angle.
@@ -34,11 +38,22 @@ struct Place {
   plan::SkillRelation relation = plan::SkillRelation::kOn;
 };
 
+// Where things are when skills are done: each object in its place, joints where they were moved to.
+struct Arranged {
+  std::vector<std::pair<std::uint32_t, Place>> objects;
+  std::vector<JointMove> joints;
+};
+
 struct Bundle {
   std::vector<std::uint32_t> objects;
   Place place;
   std::vector<JointMove> joints;
   std::size_t size() const { return objects.size() + joints.size(); }
+  Arranged arranged() const {
+    Arranged out{{}, joints};
+    for (const std::uint32_t object : objects) out.objects.emplace_back(object, place);
+    return out;
+  }
 };
 
 class Deriver {
@@ -49,7 +64,7 @@ class Deriver {
         success_(success),
         record_(plan.tasks()[task]),
         roles_(plan::roles_of(plan.tables(), record_)),
-        still_(vm::make_up_world(plan, task)),
+        still_(make_up_world(plan, task)),
         joints_(plan::joints_of(plan.tables(), plan.scenes()[record_.scene])) {}
 
   Result<std::vector<plan::SkillRecord>> run() {
@@ -66,7 +81,101 @@ class Deriver {
     return none;
   }
 
+  // What is amiss with skills that were said; empty where nothing is, or where that cannot be found
+  // out.
+  Result<std::string> flaw(std::span<const plan::SkillRecord> said) {
+    if (plan_.episodes(record_).empty()) return std::string();
+    find_joint_moves();
+    Arranged done;
+    for (const plan::SkillRecord& skill : said) {
+      const auto place =
+          std::ranges::find(done.objects, skill.body, &std::pair<std::uint32_t, Place>::first);
+      switch (static_cast<plan::Skill>(skill.skill)) {
+        case plan::Skill::kPick:
+          if (place != done.objects.end()) done.objects.erase(place);
+          break;
+        case plan::Skill::kPut: {
+          if (goes_into_closed(skill, done))
+            return fmt::format("`{}` goes into what is closed then",
+                               plan::skill_text(plan_.tables(), skill));
+          if (place != done.objects.end()) done.objects.erase(place);
+          done.objects.push_back(
+              {skill.body,
+               {skill.to, skill.region, static_cast<plan::SkillRelation>(skill.relation)}});
+          break;
+        }
+        case plan::Skill::kOpen:
+        case plan::Skill::kClose:
+        case plan::Skill::kTurn: {
+          const auto move = move_of(skill, done);
+          if (!move) return std::string();
+          std::erase_if(done.joints,
+                        [&](const JointMove& other) { return other.joint == move->joint; });
+          done.joints.push_back(*move);
+          break;
+        }
+        case plan::Skill::kPress:
+        case plan::Skill::kPush:
+          return std::string();  // where things are then is not known
+      }
+    }
+    // What is held at the end is where the hand is.
+    if (static_cast<plan::Skill>(said.back().skill) == plan::Skill::kPick) return std::string();
+    for (const bool handled : {false, true}) {
+      PROBE_ASSIGN(const bool is_success, holds_with(done, handled));
+      if (is_success) return std::string();
+    }
+    moves_.clear();
+    places_.clear();
+    PROBE_ASSIGN(const auto derived, run());
+    if (derived.empty()) return std::string();
+    std::string other;
+    for (const plan::SkillRecord& skill : derived)
+      other += (other.empty() ? "" : "; ") + plan::skill_text(plan_.tables(), skill);
+    return fmt::format("when it is done `success` is not true; `{}` makes it so", other);
+  }
+
  private:
+  double position_of(std::size_t joint, const Arranged& done) const {
+    const auto moved = std::ranges::find(done.joints, joint, &JointMove::joint);
+    if (moved != done.joints.end()) return moved->position;
+    return still_.sample.joints[still_.sample.joints.size() - joints_.size() + joint].position;
+  }
+
+  // Into a region of a part that is less than half open.
+  bool goes_into_closed(const plan::SkillRecord& put, const Arranged& done) const {
+    if (put.region == plan::kNone ||
+        static_cast<plan::SkillRelation>(put.relation) != plan::SkillRelation::kIn)
+      return false;
+    const auto owner = owner_of(plan_.regions()[put.region]);
+    return owner && std::ranges::any_of(moves_, [&](const JointMove& move) {
+             if (move.body != *owner || move.skill != plan::Skill::kOpen) return false;
+             const plan::FixtureJointRecord& joint = *joints_[move.joint];
+             const double left = std::abs(move.position - position_of(move.joint, done));
+             return left / (joint.upper - joint.lower) > kHalfOpen;
+           });
+  }
+
+  // Nothing of what has no ends.
+  std::optional<JointMove> move_of(const plan::SkillRecord& skill, const Arranged& done) const {
+    const auto kind = static_cast<plan::Skill>(skill.skill);
+    const auto of = [&](plan::Skill wanted) {
+      return std::ranges::find_if(moves_, [&](const JointMove& move) {
+        return move.body == skill.body && move.skill == wanted;
+      });
+    };
+    const auto close = of(plan::Skill::kClose), open = of(plan::Skill::kOpen);
+    if (close == moves_.end() || open == moves_.end()) return std::nullopt;
+    if (kind == plan::Skill::kOpen) return *open;
+    if (kind == plan::Skill::kClose) return *close;
+    JointMove turn = *open;
+    turn.skill = kind;
+    const double sign = open->position > close->position ? 1 : -1;
+    const bool is_by = static_cast<plan::SkillRelation>(skill.relation) == plan::SkillRelation::kBy;
+    turn.position = (is_by ? position_of(turn.joint, done) : close->position) + sign * skill.amount;
+    return turn;
+  }
+
   // Smaller ones first, so that the first that is enough says little too much.
   std::vector<Bundle> bundles() const {
     std::vector<std::vector<JointMove>> joints = {{}};
@@ -96,7 +205,8 @@ class Deriver {
         if (std::ranges::find(put, place.to) != put.end()) continue;
         for (const auto& moves : joints) {
           // Every pair of joints beside every put would be too many to ask about.
-          if (!put.empty() && moves.size() > 1) continue;
+          const bool is_source = put.size() == 1 && roles_.has_source() && put[0] == roles_.source;
+          if (!put.empty() && moves.size() > 1 && !is_source) continue;
           Bundle bundle{put, place, moves};
           if (bundle.size() > 0) all.push_back(std::move(bundle));
         }
@@ -133,6 +243,8 @@ class Deriver {
       if (owner_of(plan_.regions()[r]))
         places_.push_back({plan::kNone, r, plan::SkillRelation::kIn});
     }
+    for (std::uint32_t o = 0; o < roles_.objects; ++o)
+      places_.push_back({o, plan::kNone, plan::SkillRelation::kIn});
     // Only where nothing else makes success.
     for (std::uint32_t o = 0; o < roles_.objects; ++o)
       places_.push_back({o, plan::kNone, plan::SkillRelation::kBeside});
@@ -169,15 +281,15 @@ class Deriver {
   // Whether success holds when all of a bundle is done and nothing is held; or, if not, while the
   // fingers are at the parts that were moved.
   Result<bool> holds(const Bundle& bundle) const {
-    PROBE_ASSIGN(const bool alone, holds_with(bundle, false));
+    PROBE_ASSIGN(const bool alone, holds_with(bundle.arranged(), false));
     if (alone || bundle.joints.empty() || !bundle.objects.empty()) return alone;
-    return holds_with(bundle, true);
+    return holds_with(bundle.arranged(), true);
   }
 
-  Result<bool> holds_with(const Bundle& bundle, bool handled) const {
-    vm::MadeUpWorld world = still_;
+  Result<bool> holds_with(const Arranged& bundle, bool handled) const {
+    MadeUpWorld world = still_;
     double along = 0;
-    for (const std::uint32_t object : bundle.objects) put(object, bundle.place, along++, &world);
+    for (const auto& [object, place] : bundle.objects) put(object, place, along++, &world);
     const std::size_t first =
         world.sample.joints.size() - joints_.size();  // the robot's stand before
     for (const JointMove& move : bundle.joints) {
@@ -185,21 +297,21 @@ class Deriver {
       if (!handled) continue;
       for (const std::uint16_t finger : world.fingers)
         world.sample.contacts.push_back(
-            {finger, static_cast<std::uint16_t>(move.body), {0, vm::kMadeUpContact, 0}});
+            {finger, static_cast<std::uint16_t>(move.body), {0, kMadeUpContact, 0}});
     }
     // Each pair once, ascending, as judges are told of contacts.
     auto& contacts = world.sample.contacts;
-    const auto pair = [](const vm::ContactSample& c) { return std::pair(c.a, c.b); };
+    const auto pair = [](const ContactSample& c) { return std::pair(c.a, c.b); };
     std::ranges::stable_sort(contacts, {}, pair);
-    const auto is_same = [&](const vm::ContactSample& a, const vm::ContactSample& b) {
+    const auto is_same = [&](const ContactSample& a, const ContactSample& b) {
       return pair(a) == pair(b);
     };
     contacts.erase(std::unique(contacts.begin(), contacts.end(), is_same), contacts.end());
-    return vm::judge_world(plan_, task_, success_, std::move(world));
+    return judge_world(plan_, task_, success_, std::move(world));
   }
 
   // Several things lie side by side, a millimetre apart: rules look at each alone.
-  void put(std::uint32_t object, const Place& place, double along, vm::MadeUpWorld* world) const {
+  void put(std::uint32_t object, const Place& place, double along, MadeUpWorld* world) const {
     const Vec3 aside(0.001 * along, 0, 0);
     const Vec3& half = world->starts[object].half;
     std::uint32_t below = place.to;
@@ -219,8 +331,10 @@ class Deriver {
         at = Vec3(to.x(), to.y() + apart, to.z() - half_below.z() + half.z());
         below = world->surface;
       } else {
-        at = to + Vec3(0, 0, half.z() + half_below.z());
-        touch(place.to, world->surface, world);
+        // In a hollow thing it lies on the floor.
+        const bool is_in = place.relation == plan::SkillRelation::kIn;
+        at = to + Vec3(0, 0, half.z() + (is_in ? kInner - half_below.z() : half_below.z()));
+        if (place.to < roles_.objects) touch(place.to, world->surface, world);
       }
     }
     world->put(object, at + aside);
@@ -228,10 +342,10 @@ class Deriver {
   }
 
   // `above` presses `below`, whichever has the lower number.
-  static void touch(std::uint32_t above, std::uint32_t below, vm::MadeUpWorld* world) {
+  static void touch(std::uint32_t above, std::uint32_t below, MadeUpWorld* world) {
     const auto a = static_cast<std::uint16_t>(above), b = static_cast<std::uint16_t>(below);
     if (a < b) return world->press_down(a, b);
-    world->sample.contacts.push_back({b, a, {0, 0, vm::kMadeUpContact}});
+    world->sample.contacts.push_back({b, a, {0, 0, kMadeUpContact}});
   }
 
   Result<Bundle> without_needless(Bundle bundle) const {
@@ -310,7 +424,10 @@ class Deriver {
       put.region = bundle.place.region;
       puts.push_back(put);
     }
-    for (const JointMove& move : joints) after.push_back(record_of(move));
+    for (const JointMove& move : joints) {
+      const bool is_first = move.skill == plan::Skill::kOpen;
+      (is_first ? before : after).push_back(record_of(move));
+    }
     std::vector<plan::SkillRecord> all = std::move(before);
     all.insert(all.end(), puts.begin(), puts.end());
     all.insert(all.end(), after.begin(), after.end());
@@ -321,7 +438,7 @@ class Deriver {
   const std::uint32_t task_, success_;
   const plan::TaskRecord& record_;
   const plan::TaskRoles roles_;
-  const vm::MadeUpWorld still_;
+  const MadeUpWorld still_;
   const std::vector<const plan::FixtureJointRecord*> joints_;
   std::vector<JointMove> moves_;
   std::vector<Place> places_;
@@ -335,4 +452,11 @@ Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, s
   return Deriver(plan, task, *success).run();
 }
 
-}  // namespace probe::stage
+Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task) {
+  const auto said = plan::skills_of(plan.tables(), task);
+  const auto success = plan.find_metric(plan.tasks()[task], "success");
+  if (said.empty() || !success) return std::string();
+  return Deriver(plan, task, *success).flaw(said);
+}
+
+}  // namespace probe::vm

@@ -3,12 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 
-namespace probe::stage {
+namespace probe::vm {
 
 // The skills that make success together, none of which could be left out, in the order in which
 // they can be done: a part that something is put into is opened before, and closed after where it
@@ -16,4 +17,10 @@ namespace probe::stage {
 // Empty where no such bundle makes success, and where nothing has to be done.
 Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, std::uint32_t task);
 
-}  // namespace probe::stage
+// What is amiss with the skills that the task's text says, by the same made-up worlds: they put
+// something into what is closed, or `success` is not true when they are done, where other skills
+// would make it so. Empty where nothing is amiss, where the text says none, and where it cannot be
+// told: of what is pressed, pushed or held at the end.
+Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task);
+
+}  // namespace probe::vm
