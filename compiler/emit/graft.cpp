@@ -38,12 +38,12 @@ class Graft {
       PROBE_ASSIGN(records.tasks[t].program, program_of(t));
     }
     for (const MetricLeftOut& out : left_out_) {
-      if (out.tasks == stored_.tasks().size()) ++nowhere_;
+      if (out.tasks.size() == stored_.tasks().size()) ++nowhere_;
     }
     if (nowhere_ == metrics_.size()) {
       return Failure{Fault::kUsage,
                      fmt::format("metric `{}` fits no task of the plan: {}",
-                                 left_out_.front().metric, left_out_.front().why),
+                                 left_out_.front().metric, left_out_.front().tasks.front().why),
                      text_.compilation.sources.file(metrics_.front().span.file).name()};
     }
     Grafted out;
@@ -149,12 +149,9 @@ class Graft {
   }
 
   void leave_out(const std::string& metric, std::uint32_t task, const std::string& why) {
-    const auto known = std::ranges::find(left_out_, metric, &MetricLeftOut::metric);
-    if (known != left_out_.end()) {
-      ++known->tasks;
-      return;
-    }
-    left_out_.push_back({metric, std::string(stored_.text(stored_.tasks()[task].name)), why, 1});
+    auto known = std::ranges::find(left_out_, metric, &MetricLeftOut::metric);
+    if (known == left_out_.end()) known = left_out_.insert(known, {metric, {}});
+    known->tasks.push_back({std::string(stored_.text(stored_.tasks()[task].name)), why});
   }
 
   const plan::Plan& stored_;

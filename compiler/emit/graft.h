@@ -13,11 +13,13 @@
 
 namespace probe {
 
-// A metric that could not be measured in some of the plan's tasks, and why in the first of them.
+// A metric that could not be measured in some of the plan's tasks.
 struct MetricLeftOut {
+  struct Task {
+    std::string name, why;
+  };
   std::string metric;
-  std::string task, why;
-  std::size_t tasks = 0;  // how many
+  std::vector<Task> tasks;  // in the plan's order
 };
 
 struct Grafted {

@@ -51,11 +51,20 @@ Result<GraftedPlan> graft(const plan::Plan& stored, AnalyzedText text) {
   return GraftedPlan{std::move(plan), std::move(metrics), std::move(grafted.left_out)};
 }
 
+std::vector<MetricLeftOut> of_tasks(std::vector<MetricLeftOut> left_out,
+                                    const std::set<std::string>& tasks) {
+  for (MetricLeftOut& out : left_out)
+    std::erase_if(out.tasks, [&](const auto& task) { return !tasks.contains(task.name); });
+  std::erase_if(left_out, [](const MetricLeftOut& out) { return out.tasks.empty(); });
+  return left_out;
+}
+
 std::string to_text(const MetricLeftOut& out) {
-  return out.tasks == 1
-             ? fmt::format("metric `{}` is left out of {}: {}", out.metric, out.task, out.why)
+  const MetricLeftOut::Task& first = out.tasks.front();
+  return out.tasks.size() == 1
+             ? fmt::format("metric `{}` is left out of {}: {}", out.metric, first.name, first.why)
              : fmt::format("metric `{}` is left out of {} tasks, such as {}: {}", out.metric,
-                           out.tasks, out.task, out.why);
+                           out.tasks.size(), first.name, first.why);
 }
 
 }  // namespace probe::cli

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "compiler/emit/graft.h"
 #include "runtime/cli/verbs.h"
@@ -24,6 +26,10 @@ struct GraftedPlan {
   std::vector<MetricLeftOut> left_out;  // by tasks that lack what they measure
 };
 Result<GraftedPlan> graft(const plan::Plan& stored, AnalyzedText text);
+
+// Of these tasks alone, by name: nobody wants to hear of those that are not told of.
+std::vector<MetricLeftOut> of_tasks(std::vector<MetricLeftOut> left_out,
+                                    const std::set<std::string>& tasks);
 
 // "metric `placed_it` is left out of 3 tasks, such as open_top: ...".
 std::string to_text(const MetricLeftOut& out);

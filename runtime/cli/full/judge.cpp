@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
@@ -11,6 +12,7 @@
 #include "runtime/cli/load.h"
 #include "runtime/rejudge/readings.h"
 #include "runtime/rejudge/rejudge.h"
+#include "runtime/store/results.h"
 #include "runtime/store/run_plan.h"
 
 namespace probe::cli {
@@ -214,7 +216,11 @@ LoadedPlan judging_plan(const JudgeArguments& arguments) {
     loaded.exit = report(grafted.failure());
     return loaded;
   }
-  for (const MetricLeftOut& out : grafted->left_out) say("{}\n", to_text(out));
+  std::set<std::string> tasks;  // that are judged
+  if (const auto rows = store::read_results(arguments.dir)) {
+    for (const store::ResultRow& row : *rows) tasks.insert(row.task);
+  }
+  for (const MetricLeftOut& out : of_tasks(grafted->left_out, tasks)) say("{}\n", to_text(out));
   loaded.plan = std::move(grafted->plan);
   return loaded;
 }

@@ -34,7 +34,7 @@ void Progress::add(const run::RunProgress& progress) {
   total_ = progress.total;
   if (progress.row == nullptr) return;
   if (progress.row->invalid) {
-    ++invalid_;
+    ++(store::is_not_attempted(*progress.row) ? not_attempted_ : invalid_);
     return;
   }
   for (const std::string_view name : kShown) {
@@ -55,6 +55,7 @@ void Progress::add(const run::RunProgress& progress) {
 std::string Progress::counts() const {
   std::string text = fmt::format("{}/{} episodes", finished(), total_);
   if (skipped_ > 0) text += fmt::format(" ({} were there)", skipped_);
+  if (not_attempted_ > 0) text += fmt::format(", {} not attempted", not_attempted_);
   if (invalid_ > 0) text += fmt::format(", {} invalid", invalid_);
   return text;
 }

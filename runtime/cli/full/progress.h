@@ -39,7 +39,7 @@ class Progress {
 
   double begun_;
   std::optional<double> logged_;
-  int done_ = 0, skipped_ = 0, total_ = 0, invalid_ = 0;
+  int done_ = 0, skipped_ = 0, total_ = 0, invalid_ = 0, not_attempted_ = 0;
   std::vector<Rate> rates_;  // of this call's valid episodes
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "runtime/ask/answers.h"
 #include "runtime/base/say.h"
@@ -100,7 +101,9 @@ int events_verb(ResultsArguments arguments) {
   if (!grafted) return report(grafted.failure());
   int exit = kFine;
   std::vector<rejudge::EventRow> told;
+  std::set<std::string> tasks;  // that are told of
   for (store::ResultRow& row : *rows) {
+    tasks.insert(row.task);
     rejudge::EventRow& out = told.emplace_back();
     const auto task = stored->find_task(row.task);
     const auto trace = store::prove(*stored, row);
@@ -121,7 +124,7 @@ int events_verb(ResultsArguments arguments) {
   } else {
     put("{}", rejudge::event_tally(told));
   }
-  for (const MetricLeftOut& out : grafted->left_out) say("{}\n", to_text(out));
+  for (const MetricLeftOut& out : of_tasks(grafted->left_out, tasks)) say("{}\n", to_text(out));
   return exit;
 }
 

@@ -201,8 +201,9 @@ TEST_CASE("a metric that no task can be measured by is refused, one that some la
   const Judging judging = grafted(stored, some.path);
   REQUIRE(judging.left_out.size() == 1);
   CHECK(judging.left_out[0].metric == "helped");
-  CHECK(judging.left_out[0].why == "this is not in the scene (`helper`)");
-  CHECK(judging.left_out[0].tasks == stored.tasks().size());
+  REQUIRE(judging.left_out[0].tasks.size() == stored.tasks().size());
+  CHECK(judging.left_out[0].tasks[0].why == "this is not in the scene (`helper`)");
+  CHECK(judging.left_out[0].tasks[0].name == stored.text(stored.tasks()[0].name));
   const TextFile none("role helper\nmetrics mine { helped = max height(helper) }\n");
   const auto refused = graft_metrics(stored, analyzed(none.path));
   REQUIRE(!refused.ok());

@@ -42,6 +42,15 @@ TEST_CASE("what does not fit a narrow terminal is left out from the right, then 
   CHECK(progress.terminal_line(1060, 10, false) == "30/120 epi");
 }
 
+TEST_CASE("what a policy does not attempt is not called invalid") {
+  Progress progress = quarter_done();
+  store::ResultRow one = row(false, false);
+  one.invalid = "not attempted: no solution in skills for this goal";
+  progress.add({31, 0, 120, &one});
+  CHECK(progress.terminal_line(1060, 60, false) ==
+        "31/120 episodes, 1 not attempted, 1 invalid  3 min left");
+}
+
 TEST_CASE("color is only in the bar and only when asked for") {
   const Progress progress = quarter_done();
   CHECK(progress.terminal_line(1060, 80, true).find("\033[32m=====\033[0m") == 1);
