@@ -22,6 +22,14 @@ struct Checked {
   std::string asset_root;
 };
 
+// Reports at Task::place; where that is not what was said, a label leads there.
+inline Diagnostic& report_of(Reporter& reporter, auto what, const Task& task, const Span& said,
+                             std::string message) {
+  Diagnostic& diagnostic = reporter.report(what, task.place(said), std::move(message));
+  if (!(said.file == task.file)) diagnostic.label(said, "said here");
+  return diagnostic;
+}
+
 // In: the model that define_model() made. Out: words to the reporter, each thing once. Language
 // comes before places because a mistake in either may be why the other is odd; sizes and unused
 // names are looked at only when nothing else is wrong.
@@ -30,7 +38,8 @@ void check_model(const Checked& checked, Reporter& reporter);
 void check_comparisons(const Model& model, Reporter& reporter);  // P0701-P0703
 void check_phrases(const Model& model, const std::string& asset_root,
                    Reporter& reporter);                            // P0401-P0407
-void check_spatial_words(const Model& model, Reporter& reporter);  // P1202
+void check_spatial_words(const Model& model, Reporter& reporter);  // P1202 of phrases
+void check_goal_words(const Model& model, Reporter& reporter);     // P1202 of instructions
 void check_look_words(const Model& model, Reporter& reporter);     // P1510
 void check_poses(const Model& model, Reporter& reporter);          // P0404 of `pose`
 void check_mentions(const Model& model, Reporter& reporter);       // P0404 of words

@@ -30,10 +30,9 @@ void check_task(const Model& model, const Task& task, Reporter& reporter) {
   // What is chosen of a layout is not all that it has.
   if (!layout.expect || !task.clear.empty() || *layout.expect == task.starts.size()) return;
   const About about(reporter, task.decl_span);
-  reporter
-      .report(Code::P0504, layout.expect_span,
-              "`" + task.name + "` has " + std::to_string(task.starts.size()) + " episodes" +
-                  factors(task.starts) + ", not " + std::to_string(*layout.expect))
+  report_of(reporter, Code::P0504, task, layout.expect_span,
+            "`" + task.name + "` has " + std::to_string(task.starts.size()) + " episodes" +
+                factors(task.starts) + ", not " + std::to_string(*layout.expect))
       .label(task.layout_span, "used here");
 }
 

@@ -160,10 +160,10 @@ void check_mentions(const Model& model, Reporter& reporter) {
     for (const ObjectId named : mentions.in(task.say)) {
       if (!mentions.is_absent(task, named)) continue;
       const Object& object = model.objects[named];
-      Diagnostic& absent = reporter.report(
-          Situation::kAbsentWord, task.say_span.is_none() ? task.span : task.say_span,
-          "\"" + object.text.text + "\" names an object that is not in the scene of `" + task.name +
-              "`");
+      Diagnostic& absent =
+          reporter.report(Situation::kAbsentWord, task.place(task.say_span),
+                          "\"" + object.text.text +
+                              "\" names an object that is not in the scene of `" + task.name + "`");
       absent.label(model.templates[task.say].span, "said here")
           .help("add `distractors " + object.name + "`, or write `{the " + object.name +
                 "}` so that the words follow the object");

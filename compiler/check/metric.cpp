@@ -70,8 +70,8 @@ void check_fingers(const Model& model, Reporter& reporter, const Task& task,
     finder.visit(metric.expr);
     if (finder.found == nullptr) continue;
     if (!reported.insert({metric.span.file.value, metric.span.begin}).second) continue;
-    Diagnostic& said = reporter.report(
-        Situation::kFingersAskedFor, metric.span,
+    Diagnostic& said = report_of(
+        reporter, Situation::kFingersAskedFor, task, metric.span,
         "metric `" + metric.name + "` asks for fingers, which `" + robot.name + "` has not");
     said.label(finder.found->span, "by " + finder.what).label(task.span, "judged by it");
     said.help("`links` are all parts of a robot; judge `" + task.name +
@@ -219,9 +219,8 @@ void check_metrics(const Model& model, Reporter& reporter) {
       finder.visit(metric.expr);
       for (const ExprRef hold : finder.too_long) {
         if (!reported.insert({hold, task.horizon}).second) continue;
-        reporter
-            .report(Code::P0604, model.exprs.nodes[hold].span,
-                    "metric `" + metric.name + "` can never become true in `" + task.name + "`")
+        report_of(reporter, Code::P0604, task, model.exprs.nodes[hold].span,
+                  "metric `" + metric.name + "` can never become true in `" + task.name + "`")
             .point("the horizon is " + std::to_string(task.horizon) + " steps")
             .label(task.horizon_span, "set here");
       }

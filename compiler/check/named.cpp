@@ -21,18 +21,16 @@ void check_named(const Model& model, Reporter& reporter) {
       if (std::find(objects.begin(), objects.end(), id) != objects.end()) continue;
       if (!said.insert({span.file.value, span.begin}).second) continue;
       const std::string& name = model.objects[id].name;
-      reporter
-          .report(Situation::kNotInScene, span,
-                  "object `" + name + "` is not in the scene of `" + task.name + "`")
+      report_of(reporter, Situation::kNotInScene, task, span,
+                "object `" + name + "` is not in the scene of `" + task.name + "`")
           .label(task.span, "judged by this; its scene has " + objects_text(model, task))
           .help("place it there: `place " + name + " at (..)` in the layout, or `distractors " +
                 name + "`");
     }
     if (!found.fixture || model.scenes[task.scene].fixture) continue;
     if (!said.insert({found.fixture->file.value, found.fixture->begin}).second) continue;
-    reporter
-        .report(Situation::kNotInScene, *found.fixture,
-                "no fixture is in the scene of `" + task.name + "`")
+    report_of(reporter, Situation::kNotInScene, task, *found.fixture,
+              "no fixture is in the scene of `" + task.name + "`")
         .label(task.span, "judged by this");
   }
 }

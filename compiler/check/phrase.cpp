@@ -27,16 +27,18 @@ struct TaskLanguage {
   Unfit& unfit;
   Relations& relations;
 
-  const Span& place(RoleId role) const {
+  // Where the words for a role are chosen, here or in what is copied.
+  const Span& chosen(RoleId role) const {
     const Spelled* refer = task.refer_of(role);
-    return refer != nullptr ? refer->span : task.say_span.is_none() ? task.span : task.say_span;
+    return refer != nullptr ? refer->span : task.say_span;
   }
+  const Span& place(RoleId role) const { return task.place(chosen(role)); }
 
   // What made `other` a rival of the words for a role: the newcomer when the words were there
   // before it, else the words.
   Span rivalry(RoleId role, ObjectId other) const {
-    if (is_within(place(role), task.decl_span)) return place(role);
-    return entry_of(task, other).value_or(task.span);
+    if (chosen(role).is_none() || is_within(chosen(role), task.decl_span)) return place(role);
+    return task.place(entry_of(task, other).value_or(task.span));
   }
 
   // An attribute or fact that would tell the two apart: a hint that certainly helps.
@@ -211,7 +213,7 @@ struct TaskLanguage {
       return;
     }
     reporter
-        .report(Code::P0407, task.say_span.is_none() ? task.span : task.say_span,
+        .report(Code::P0407, task.place(task.say_span),
                 "`" + object.name + "` is no `" + slot.category->text + "`")
         .label(slot.span, "this slot wants one");
   }
@@ -223,8 +225,8 @@ struct TaskLanguage {
              (id != ObjectId::kNone && slot.name.text == model.objects[id].name);
     };
     if (is(RoleId::kSource, task.source)) {
-      reporter.report(Situation::kAvoidsSource, slot.span,
-                      "the source cannot be the object to avoid");
+      report_of(reporter, Situation::kAvoidsSource, task, slot.span,
+                "the source cannot be the object to avoid");
       return false;
     }
     if (!is(RoleId::kTarget, task.target) || task.baseline == TaskId::kNone) return true;
@@ -232,10 +234,9 @@ struct TaskLanguage {
     if (!baseline.complete || baseline.abstract || has_negation(model.templates[baseline.say]) ||
         plan::moves(task.axes, plan::Axis::kGoal))
       return true;
-    reporter
-        .report(Situation::kAvoidsTarget, slot.span,
-                "`" + task.name + "` says to avoid the target and is judged as `" + baseline.name +
-                    "` is")
+    report_of(
+        reporter, Situation::kAvoidsTarget, task, slot.span,
+        "`" + task.name + "` says to avoid the target and is judged as `" + baseline.name + "` is")
         .help("change the goal with the words, or avoid a distractor");
     return false;
   }
@@ -258,8 +259,7 @@ struct TaskLanguage {
     if (is_noun)
       why = "`" + model.objects[counted.other].name + "` of `" + task.name +
             "` is called so, too, and is not of `" + slot.name.text + "`";
-    Diagnostic& said = reporter.report(
-        Code::P1104, task.say_span.is_none() ? task.span : task.say_span, std::move(why));
+    Diagnostic& said = reporter.report(Code::P1104, task.place(task.say_span), std::move(why));
     said.label(slot.span, "these words");
     if (is_noun) {
       said.label(entry_of(task, counted.other).value_or(task.span), "it is in the scene");
@@ -301,18 +301,17 @@ struct TaskLanguage {
       if (std::ranges::find(here, object.of->fixture) != here.end())
         return check_category(slot, object);
       const std::string& fixture = model.fixtures[object.of->fixture].name;
-      reporter
-          .report(Situation::kAbsentSlot, slot.span,
-                  "\"" + object.text.text + "\" names a part of `" + fixture +
-                      "`, which is not in the scene of `" + task.name + "`")
+      report_of(reporter, Situation::kAbsentSlot, task, slot.span,
+                "\"" + object.text.text + "\" names a part of `" + fixture +
+                    "`, which is not in the scene of `" + task.name + "`")
           .help("a scene names its fixtures: `fixture " + fixture + "`");
       return;
     }
     const std::string words = (slot.avoid ? "not " : "") +
                               std::string(slot.the && !object.bare ? "the " : "") +
                               object.text.text;
-    Diagnostic& diagnostic = reporter.report(
-        Situation::kAbsentSlot, slot.span,
+    Diagnostic& diagnostic = report_of(
+        reporter, Situation::kAbsentSlot, task, slot.span,
         "\"" + words + "\" names an object that is not in the scene of `" + task.name + "`");
     const std::string other =
         task_with(objects.id(static_cast<std::size_t>(missing - objects.begin())));
@@ -338,7 +337,7 @@ struct TaskLanguage {
   void check_sentence() const {
     const PromptFault fault = fault_of_prompt(task.prompt);
     if (fault == PromptFault::kNone) return;
-    const Span& span = task.say_span.is_none() ? task.span : task.say_span;
+    const Span& span = task.place(task.say_span);
     const std::string of_task = "the instruction of `" + task.name + "`";
     switch (fault) {
       case PromptFault::kNone:

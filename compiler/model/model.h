@@ -541,6 +541,11 @@ struct Task {
     return source != ObjectId::kNone && target != ObjectId::kNone && is_object(source) &&
            is_object(target);
   }
+  // Where to point for what holds of this task: at what was said, unless another file says it, whose
+  // author is not the one who chose it here.
+  const Span& place(const Span& said) const {
+    return said.is_none() || !(said.file == file) ? span : said;
+  }
   const Spelled* refer_of(RoleId role) const {
     const auto at = refer.find(role);
     return at == refer.end() ? nullptr : &at->second;

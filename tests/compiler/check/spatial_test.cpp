@@ -58,39 +58,6 @@ TEST_CASE("what the words denote in that start is said, and what they lack in th
         std::string::npos);
 }
 
-TEST_CASE("words for a joint go the way that success goes") {
-  const auto told = [](const std::string& words) {
-    return test::analyze_with_suite(std::string(test::kChest) +
-                                    "metrics far { success = at end travel(chest.slide) > 10cm }\n"
-                                    "task t like red_on_tray { scene room; metrics far; say \"" +
-                                    words + " with {the source}, before {the target}\" }\n")
-        ->codes();
-  };
-  CHECK(told("open the drawer") == "");
-  CHECK(told("close the drawer") == "P1202");
-  CHECK(told("close the door and open the drawer") == "");
-  CHECK(told("turn on the stove") == "");
-  CHECK(told("turn off the stove") == "P1202");
-  CHECK(told("switch off the stove") == "P1202");
-}
-
-TEST_CASE("words for a part are those of one that success measures") {
-  const auto said_of = [](const std::string& words) {
-    return test::analyze_with_suite(
-               std::string(test::kChest) +
-               "metrics far { success = at end travel(chest.slide) > 10cm }\n"
-               "task t like red_on_tray { scene room; metrics far; say \"open " +
-               words + " with {the source}, before {the target}\" }\n")
-        ->codes();
-  };
-  CHECK(said_of("the drawer") == "");
-  CHECK(said_of("{the chest.drawer}") == "");
-  CHECK(said_of("{the chest.door}") == "P1202");
-  CHECK(said_of("the door") == "P1202");
-  CHECK(said_of("what opens") == "");
-  CHECK(said_of("the drawer beside the door") == "");
-}
-
 TEST_CASE("where it does not hold, or of another one too, the start is named and drawn") {
   const std::string wrong = said(row("20cm", "-20cm"), "side");
   CHECK(first_line(wrong) ==

@@ -1,0 +1,318 @@
+#include "compiler/check/goal.h"
+
+#include <algorithm>
+
+namespace probe::sema {
+namespace {
+
+using Given = std::vector<Things>;  // by variable of a predicate or metric
+
+class Reader {
+ public:
+  Reader(const Model& model, const Task& task, Goal& goal)
+      : model_(model), task_(task), goal_(goal) {}
+
+  void read(const Metric& metric) {
+    const Given given(metric.variables);
+    measure(metric.expr, given);
+    ask(metric.expr, given);
+    if (metric.readout == plan::Readout::kOnce) order_within(metric.expr, given);
+    order(metric.expr, given);
+  }
+
+ private:
+  const ExprNode& at(ExprRef ref) const { return model_.exprs.nodes[ref]; }
+
+  // Of what an expression speaks, but for what is inside the predicates that it calls.
+  Things things(ExprRef ref, const Given& given) const {
+    if (ref == kNoExpr) return {};
+    const ExprNode& node = at(ref);
+    Things found;
+    const auto fixture = static_cast<FixtureId>(node.a);
+    switch (node.op) {
+      case ExprOp::kRole: {
+        const auto filled = task_.objects_in(static_cast<RoleId>(node.a));
+        found.insert(filled.begin(), filled.end());
+        break;
+      }
+      case ExprOp::kObject:
+        found.insert(static_cast<ObjectId>(node.a));
+        break;
+      case ExprOp::kPart:
+        found.insert(model_.fixtures[fixture].parts[node.b].thing);
+        break;
+      case ExprOp::kRegion:
+        found.insert(model_.fixtures[fixture].regions[node.b].thing);
+        break;
+      case ExprOp::kJoint:
+        for (const Fixture::Part& part : model_.fixtures[fixture].parts) {
+          if (part.joint == node.b) found.insert(part.thing);
+        }
+        break;
+      case ExprOp::kVariable:
+        if (node.a < given.size()) found = given[node.a];
+        break;
+      case ExprOp::kAny:
+      case ExprOp::kAll:
+      case ExprOp::kNo: {
+        Given inner = given;
+        bind(inner, node.a, things_in(node.set, given));
+        found = things(node.args[0], inner);
+        break;
+      }
+      default:
+        for (const ExprRef arg : node.args) found.merge(things(arg, given));
+    }
+    found.erase(ObjectId::kNone);
+    return found;
+  }
+
+  // Of a set that names what is in it; of all other bodies nothing is certain.
+  Things things_in(SetRef ref, const Given& given) const {
+    const SetNode& set = model_.exprs.sets[ref];
+    Things found;
+    if (set.op == SetOp::kRole) {
+      const auto filled = task_.objects_in(set.role);
+      found.insert(filled.begin(), filled.end());
+    }
+    for (const ExprRef body : set.bodies) found.merge(things(body, given));
+    if (set.op == SetOp::kUnion) {
+      found = things_in(set.left, given);
+      found.merge(things_in(set.right, given));
+    }
+    return found;
+  }
+
+  static void bind(Given& given, std::uint32_t variable, Things to) {
+    if (variable >= given.size()) given.resize(variable + 1);
+    given[variable] = std::move(to);
+  }
+
+  Given given_to(const ExprNode& call, const Given& given) const {
+    Given inner(model_.predicates[call.predicate].variables);
+    for (std::uint32_t i = 0; i < call.args.size(); ++i)
+      bind(inner, i, things(call.args[i], given));
+    return inner;
+  }
+
+  // Whether this call has not been looked at yet, for one purpose.
+  using Calls = std::set<std::pair<PredicateId, Given>>;
+  static bool is_new(Calls& calls, const ExprNode& call, const Given& inner) {
+    return calls.insert({call.predicate, inner}).second;
+  }
+
+  // What is measured at all, of whatever condition.
+  void measure(ExprRef ref, const Given& given) {
+    if (ref == kNoExpr) return;
+    const ExprNode& node = at(ref);
+    switch (node.op) {
+      case ExprOp::kVector:
+      case ExprOp::kRegion:
+      case ExprOp::kRegionOf:
+        goal_.tells_sides = true;
+        break;
+      case ExprOp::kMeasure:
+        goal_.tells_sides = goal_.tells_sides || tells_sides(node.measure);
+        if (node.args.size() > 1) compare(things(ref, given));
+        break;
+      case ExprOp::kLess:
+      case ExprOp::kLessEqual:
+      case ExprOp::kEqual:
+        compare(things(ref, given));
+        break;
+      case ExprOp::kCall: {
+        const Given inner = given_to(node, given);
+        // A number of two things is measured inside.
+        if (is_new(measured_, node, inner)) measure(model_.predicates[node.predicate].body, inner);
+        break;
+      }
+      case ExprOp::kAny:
+      case ExprOp::kAll:
+      case ExprOp::kNo: {
+        Given inner = given;
+        bind(inner, node.a, things_in(node.set, given));
+        measure(node.args[0], inner);
+        return;
+      }
+      default:
+        break;
+    }
+    for (const ExprRef arg : node.args) measure(arg, given);
+  }
+
+  static bool tells_sides(Measure measure) {
+    switch (measure) {
+      case Measure::kX:
+      case Measure::kY:
+      case Measure::kViewX:
+      case Measure::kViewY:
+      case Measure::kRobotX:
+      case Measure::kRobotY:
+      case Measure::kAxisX:
+      case Measure::kAxisY:
+      case Measure::kTravel:
+      case Measure::kRate:
+      case Measure::kSlide:
+      case Measure::kTurn:
+      case Measure::kWithin:
+      case Measure::kLocal:
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  void compare(const Things& of) {
+    for (auto a = of.begin(); a != of.end(); ++a) {
+      for (auto b = std::next(a); b != of.end(); ++b) goal_.compared.insert({*a, *b});
+    }
+  }
+
+  // What has to hold for certain.
+  void ask(ExprRef ref, const Given& given) {
+    if (ref == kNoExpr) return;
+    const ExprNode& node = at(ref);
+    switch (node.op) {
+      case ExprOp::kAnd:
+      case ExprOp::kHold:
+      case ExprOp::kOnce:
+      case ExprOp::kAlways:
+        for (const ExprRef arg : node.args) ask(arg, given);
+        return;
+      case ExprOp::kAll: {
+        Given inner = given;
+        for (const ObjectId one : things_in(node.set, given)) {
+          bind(inner, node.a, {one});
+          ask(node.args[0], inner);
+        }
+        return;
+      }
+      case ExprOp::kCall: {
+        const Given inner = given_to(node, given);
+        const std::size_t count = std::min(node.args.size(), inner.size());
+        goal_.asked.insert(
+            {node.predicate, {inner.begin(), inner.begin() + static_cast<std::ptrdiff_t>(count)}});
+        if (is_new(asked_, node, inner)) ask(model_.predicates[node.predicate].body, inner);
+        return;
+      }
+      default:
+        return;
+    }
+  }
+
+  // One of several conditions that hold together.
+  struct Part {
+    enum Kind : std::uint8_t { kNow, kBefore, kNot } kind = kNow;
+    Things of;
+    PredicateId predicate = PredicateId::kNone;  // called, of kNow and kNot
+  };
+
+  void collect_parts(ExprRef ref, const Given& given, std::vector<Part>& parts) const {
+    const ExprNode& node = at(ref);
+    const auto called = [&](ExprRef one) {
+      return at(one).op == ExprOp::kCall ? at(one).predicate : PredicateId::kNone;
+    };
+    switch (node.op) {
+      case ExprOp::kAnd:
+      case ExprOp::kHold:
+        for (const ExprRef arg : node.args) collect_parts(arg, given, parts);
+        return;
+      case ExprOp::kOnce:
+        parts.push_back({Part::kBefore, things(node.args[0], given)});
+        return;
+      case ExprOp::kNot:
+        parts.push_back({Part::kNot, things(node.args[0], given), called(node.args[0])});
+        return;
+      case ExprOp::kCall: {
+        // One that says itself what was before is several conditions.
+        const ExprRef body = model_.predicates[node.predicate].body;
+        const auto is_before = [&](ExprRef one) { return at(one).op == ExprOp::kOnce; };
+        if (body != kNoExpr && (is_before(body) || (at(body).op == ExprOp::kAnd &&
+                                                    std::any_of(at(body).args.begin(),
+                                                                at(body).args.end(), is_before)))) {
+          collect_parts(body, given_to(node, given), parts);
+          return;
+        }
+        break;
+      }
+      default:
+        break;
+    }
+    parts.push_back({Part::kNow, things(ref, given), called(ref)});
+  }
+
+  void put_in_order(const Things& first, const Things& second) {
+    Things before, after;
+    std::set_difference(first.begin(), first.end(), second.begin(), second.end(),
+                        std::inserter(before, before.end()));
+    std::set_difference(second.begin(), second.end(), first.begin(), first.end(),
+                        std::inserter(after, after.end()));
+    if (!before.empty() && !after.empty()) goal_.order.insert({before, after});
+  }
+
+  // At one step all of it holds: what was before is done before what is now, and what is now before
+  // the same that is not yet.
+  void order_within(ExprRef ref, const Given& given) {
+    std::vector<Part> parts;
+    collect_parts(ref, given, parts);
+    for (const Part& now : parts) {
+      if (now.kind != Part::kNow) continue;
+      for (const Part& other : parts) {
+        if (other.kind == Part::kBefore) put_in_order(other.of, now.of);
+        if (other.kind == Part::kNot && other.predicate == now.predicate &&
+            other.predicate != PredicateId::kNone)
+          put_in_order(now.of, other.of);
+      }
+    }
+  }
+
+  void order(ExprRef ref, const Given& given) {
+    if (ref == kNoExpr) return;
+    const ExprNode& node = at(ref);
+    const auto is_latest = [&](ExprRef one) {
+      return at(one).op == ExprOp::kMeasure && at(one).measure == Measure::kLatest;
+    };
+    switch (node.op) {
+      case ExprOp::kOnce:
+        order_within(node.args[0], given);
+        break;
+      case ExprOp::kLess:
+      case ExprOp::kLessEqual:
+        // When the one was last so, or not yet, and when the other was.
+        if (is_latest(node.args[0]) && is_latest(node.args[1]))
+          put_in_order(things(at(node.args[0]).args[1], given),
+                       things(at(node.args[1]).args[1], given));
+        return;
+      case ExprOp::kAnd:
+      case ExprOp::kHold:
+      case ExprOp::kAlways:
+        break;
+      case ExprOp::kCall: {
+        const Given inner = given_to(node, given);
+        if (is_new(ordered_, node, inner)) order(model_.predicates[node.predicate].body, inner);
+        return;
+      }
+      default:
+        return;
+    }
+    for (const ExprRef arg : node.args) order(arg, given);
+  }
+
+  const Model& model_;
+  const Task& task_;
+  Goal& goal_;
+  Calls measured_, asked_, ordered_;
+};
+
+}  // namespace
+
+Goal goal_of(const Model& model, const Task& task) {
+  Goal goal;
+  Reader reader(model, task, goal);
+  for (const Metric& metric : task.judged) {
+    if (metric.name == "success") reader.read(metric);
+  }
+  return goal;
+}
+
+}  // namespace probe::sema

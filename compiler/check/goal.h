@@ -1,0 +1,37 @@
+// What success asks of one task: of which objects, which way, in which order. As far as it is
+// certain; where a goal leaves something open, nothing is said of it here.
+#pragma once
+
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "compiler/model/model.h"
+
+namespace probe::sema {
+
+using Things = std::set<ObjectId>;  // objects, parts and regions of fixtures
+
+struct Goal {
+  // A predicate that has to hold, with what each of its parameters is of.
+  struct Asked {
+    PredicateId predicate = PredicateId::kNone;
+    std::vector<Things> of;
+    bool operator<(const Asked& other) const {
+      return std::pair(predicate, of) < std::pair(other.predicate, other.of);
+    }
+  };
+  std::set<Asked> asked;
+  // Two things that one comparison measures, the lower id first.
+  std::set<std::pair<ObjectId, ObjectId>> compared;
+  // What is done with the first is done before what is done with the second.
+  std::set<std::pair<Things, Things>> order;
+  // Something is measured that is one way on the left and another on the right: a coordinate, a
+  // region, a direction, a joint.
+  bool tells_sides = false;
+};
+
+// In: a complete task. Bounded by the text: a predicate is looked at once for what it is given.
+Goal goal_of(const Model& model, const Task& task);
+
+}  // namespace probe::sema

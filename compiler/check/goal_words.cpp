@@ -1,0 +1,523 @@
+// P1202 of instructions: words that ask for something are held to what success is.
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "compiler/check/check.h"
+#include "compiler/check/goal.h"
+#include "compiler/check/relation_words.h"
+#include "compiler/check/said.h"
+#include "compiler/define/wording.h"
+#include "runtime/base/nouns.h"
+#include "runtime/base/utf8.h"
+#include "runtime/base/words.h"
+
+namespace probe::sema {
+namespace {
+
+// The relations that a metric measures, through the predicates that it calls.
+void collect_relations(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
+                       std::set<PredicateId>& out) {
+  if (ref == kNoExpr || !seen.insert(ref).second) return;
+  const ExprNode& node = model.exprs.nodes[ref];
+  for (const ExprRef arg : node.args) collect_relations(model, arg, seen, out);
+  if (node.op != ExprOp::kCall) return;
+  if (model.predicates[node.predicate].is_relation) {
+    out.insert(node.predicate);
+  } else {
+    collect_relations(model, model.predicates[node.predicate].body, seen, out);
+  }
+}
+
+// What an instruction says beside its slots.
+std::string literal_text(const Model& model, const Task& task) {
+  std::string text;
+  for (const Template::Part& part : model.templates[task.say].parts) text += part.literal + " ";
+  return text;
+}
+
+// The first words of a relation between things that are said where none that is judged is; empty
+// where there are none.
+std::string other_relation(const Model& model, const std::set<PredicateId>& judged,
+                           std::string_view text) {
+  for (const PredicateId id : judged) {
+    if (says(text, model.predicates[id])) return {};
+  }
+  for (const Predicate& relation : model.predicates) {
+    if (!relation.is_relation || relation.objects < 2) continue;
+    for (const std::string& words : relation.words) {
+      if (has_words(text, words)) return words;
+    }
+  }
+  return {};
+}
+
+// An instruction that says the opposite of what success is, or another relation alone.
+bool says_other_relation(const Model& model, const Task& task, Reporter& reporter) {
+  std::set<PredicateId> judged;
+  std::set<ExprRef> seen;
+  for (const Metric& metric : task.judged) {
+    if (metric.name == "success") collect_relations(model, metric.expr, seen, judged);
+  }
+  if (judged.empty()) return false;
+  const std::string text = fold_case(literal_text(model, task));
+  const std::string elsewhere = other_relation(model, judged, text);
+  bool is_said = false;
+  for (const PredicateId id : judged) {
+    const Predicate& relation = model.predicates[id];
+    if (says(text, relation)) continue;
+    std::string other = opposite_in(text, relation.words);
+    if (other.empty()) other = elsewhere;
+    if (other.empty()) continue;
+    is_said = true;
+    report_of(reporter, Code::P1202, task, task.say_span,
+              "`" + task.name + "` says \"" + other + "\" and is judged by `" + relation.name + "`")
+        .point("that is said by " + listed(relation.words))
+        .label(relation.span, "declared here");
+  }
+  return is_said;
+}
+
+// Which way success goes: a joint's travel at least so much, or at most.
+struct JointGoal {
+  const Model& model;
+  bool opens = false, closes = false, is_open_ended = false;
+  std::set<ExprRef> seen = {};
+
+  bool has_travel(ExprRef ref) const {
+    const ExprNode& node = model.exprs.nodes[ref];
+    if (node.op == ExprOp::kMeasure &&
+        (node.measure == Measure::kTravel || node.measure == Measure::kSlide ||
+         node.measure == Measure::kTurn))
+      return true;
+    return std::ranges::any_of(node.args, [&](ExprRef arg) { return has_travel(arg); });
+  }
+  void look(ExprRef ref) {
+    if (ref == kNoExpr || !seen.insert(ref).second) return;
+    const ExprNode& node = model.exprs.nodes[ref];
+    // What is denied, latched or one of several ways says nothing for certain.
+    is_open_ended = is_open_ended || node.op == ExprOp::kNot || node.op == ExprOp::kOr ||
+                    node.op == ExprOp::kOnce || node.op == ExprOp::kNo;
+    if (node.op == ExprOp::kLess || node.op == ExprOp::kLessEqual) {
+      const bool less = has_travel(node.args[0]), more = has_travel(node.args[1]);
+      closes = closes || (less && !more);
+      opens = opens || (more && !less);
+      return;
+    }
+    for (const ExprRef arg : node.args) look(arg);
+    if (node.op == ExprOp::kCall) look(model.predicates[node.predicate].body);
+  }
+};
+
+// What each of the table's words asks of a goal; empty where that is there.
+enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter };
+struct GoalWords {
+  std::string_view words;
+  Asks asks;
+};
+constexpr auto kGoalWords = std::to_array<GoalWords>({
+#define PROBE_GOAL_WORDS(words, asks) {words, Asks::asks},
+#include "compiler/check/goal_words.def"
+});
+
+// What a task says and what it is judged by, read when some word asks for it.
+class Told {
+ public:
+  Told(const Model& model, const Task& task)
+      : model_(model), task_(task), text_(fold_case(literal_text(model, task))) {}
+
+  const Said& said() {
+    if (!said_) said_ = said_by(model_, task_);
+    return *said_;
+  }
+  const Goal& goal() {
+    if (!goal_) goal_ = goal_of(model_, task_);
+    return *goal_;
+  }
+
+  // Those of the table that are said.
+  std::vector<GoalWords> words() const {
+    std::vector<GoalWords> found;
+    for (const GoalWords& one : kGoalWords) {
+      if (has_words(text_, one.words)) found.push_back(one);
+    }
+    return found;
+  }
+
+  // Why success is not what the words ask for; none where it is, or nothing is certain.
+  std::optional<std::string> lack_of(const GoalWords& one) {
+    switch (one.asks) {
+      case Asks::kOpens:
+      case Asks::kCloses:
+        return joint_lack(one.asks);
+      case Asks::kAmong:
+        return among_lack(one);
+      case Asks::kSides:
+        return side_lack(one);
+      case Asks::kThen:
+      case Asks::kAfter:
+        return order_lack(one);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  bool says(Asks asks) const {
+    return std::any_of(kGoalWords.begin(), kGoalWords.end(), [&](const GoalWords& one) {
+      return one.asks == asks && has_words(text_, one.words);
+    });
+  }
+
+  // "close the drawer" of which success is that it is open.
+  std::optional<std::string> joint_lack(Asks asks) const {
+    JointGoal travels{model_};
+    for (const Metric& metric : task_.judged) {
+      if (metric.name == "success") travels.look(metric.expr);
+    }
+    if (travels.opens == travels.closes || travels.is_open_ended) return std::nullopt;
+    if (says(Asks::kOpens) == says(Asks::kCloses) || travels.opens == (asks == Asks::kOpens))
+      return std::nullopt;
+    return std::string("succeeds when a joint's travel is ") +
+           (travels.opens ? "at least so much" : "at most so much");
+  }
+
+  // "between A and B" of which success is that it lies on A.
+  std::optional<std::string> among_lack(const GoalWords& one) {
+    if (goal().tells_sides) return std::nullopt;
+    const auto at = said().find(one.words);
+    if (!at) return std::nullopt;
+    std::vector<Things> behind;
+    for (std::size_t i = *at + 1; i < said().words.size() && behind.size() < 2; ++i) {
+      if (!said().words[i].of.empty()) behind.push_back(said().words[i].of);
+    }
+    if (behind.empty()) return std::nullopt;
+    const Things& a = behind.front();
+    const Things& b = behind.back();  // of several that one slot means they are the same
+    const auto is_compared = [&](ObjectId thing, const Things& with) {
+      return std::any_of(with.begin(), with.end(), [&](ObjectId other) {
+        return goal().compared.contains(std::minmax(thing, other));
+      });
+    };
+    const std::vector<ObjectId> there = nameable(model_, task_);
+    if (std::any_of(there.begin(), there.end(), [&](ObjectId thing) {
+          return !a.contains(thing) && !b.contains(thing) && is_compared(thing, a) &&
+                 is_compared(thing, b);
+        }))
+      return std::nullopt;
+    return "its success measures nothing to both of what that stands before";
+  }
+
+  // "to the left of the plate" of which success is that it lies on the plate.
+  std::optional<std::string> side_lack(const GoalWords& one) {
+    if (goal().tells_sides) return std::nullopt;
+    const std::size_t length = folded_words(one.words).size();
+    for (auto at = said().find(one.words); at; at = said().find(one.words, *at + 1)) {
+      // "next to the left knob" says of a knob which it is.
+      const std::size_t next = *at + length;
+      const bool is_side = one.words.ends_with("left") || one.words.ends_with("right");
+      if (is_side && next < said().words.size()) {
+        const std::string& word = said().words[next].text;
+        if (word != "of" && word != "and" && word != "then" && word != "side") continue;
+      }
+      return "its success measures nothing that tells one side from another";
+    }
+    return std::nullopt;
+  }
+
+  // "first A, then B" of which success is that B was done first.
+  std::optional<std::string> order_lack(const GoalWords& one) {
+    for (const auto& [first, second] : goal().order) {
+      const auto a = earliest(first), b = earliest(second);
+      if (!a || !b || *a == *b) continue;
+      // Between the two, else at the beginning, where "then" and "afterwards" ask for nothing.
+      auto at = said().find(one.words, std::min(*a, *b));
+      const bool is_between = at && *at < std::max(*a, *b);
+      if (!is_between && one.words != "before" && one.words != "after") continue;
+      if (!is_between) at = said().find(one.words);
+      if (!at || (!is_between && *at > std::min(*a, *b))) continue;
+      const bool is_forward = (one.asks == Asks::kThen) == is_between;
+      if ((*a < *b) == is_forward) continue;
+      return "succeeds when " + name_of(first) + " comes before " + name_of(second);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<std::size_t> earliest(const Things& things) {
+    std::optional<std::size_t> found;
+    for (const ObjectId thing : things) {
+      const auto at = said().first(thing);
+      if (at && (!found || *at < *found)) found = at;
+    }
+    return found;
+  }
+
+  std::string name_of(const Things& things) const {
+    return "`" + model_.objects[*things.begin()].name + "`";
+  }
+
+  const Model& model_;
+  const Task& task_;
+  std::string text_;
+  std::optional<Said> said_;
+  std::optional<Goal> goal_;
+};
+
+// Words of the table that success is not about.
+bool says_other_goal(const Model& model, const Task& task, Told& told, Reporter& reporter) {
+  for (const GoalWords& one : told.words()) {
+    const std::optional<std::string> lack = told.lack_of(one);
+    if (!lack) continue;
+    report_of(reporter, Code::P1202, task, task.say_span,
+              "`" + task.name + "` says \"" + std::string(one.words) + "\" and " + *lack)
+        .label(model.metrics[task.metrics].span, "judged by these");
+    return true;
+  }
+  return false;
+}
+
+// Whether the words could speak of a thing in a way that is not its name: by a noun of a phrase, by
+// a value of an attribute, or of several at once.
+bool may_speak_of(const Model& model, const Said& said, ObjectId thing) {
+  constexpr auto kSeveral = std::to_array<std::string_view>(
+      {"all", "both", "each", "every", "everything", "them", "these", "those", "things", "objects",
+       "items", "others", "other", "rest", "two", "three", "four", "together"});
+  const Object& object = model.objects[thing];
+  std::vector<std::string> nouns;
+  const auto add_noun = [&](const std::string& text) {
+    const std::vector<std::string> words = folded_words(text);
+    if (!words.empty()) nouns.push_back(words.back());
+  };
+  add_noun(object.text.text);
+  for (const Phrase& phrase : object.phrases) add_noun(phrase.text.text);
+  for (std::size_t i = 0; i < object.values.size(); ++i) {
+    for (const std::uint32_t value : object.values[i])
+      add_noun(model.attributes[model.attributes.id(i)].values[value]);
+  }
+  return std::any_of(said.words.begin(), said.words.end(), [&](const Said::Word& word) {
+    if (word.of.contains(thing)) return true;
+    if (word.text.empty()) return false;
+    return std::find(kSeveral.begin(), kSeveral.end(), word.text) != kSeveral.end() ||
+           std::any_of(nouns.begin(), nouns.end(),
+                       [&](const std::string& noun) { return is_same_noun(word.text, noun); });
+  });
+}
+
+// Whether some predicate may be asked of two things, before a task says of which.
+class AskedTwice {
+ public:
+  explicit AskedTwice(const Model& model) : model_(model) {}
+
+  bool operator()(const Task& task) {
+    return std::any_of(task.judged.begin(), task.judged.end(), [&](const Metric& metric) {
+      if (metric.name != "success") return false;
+      const auto [at, is_new] = known_.try_emplace(metric.expr, false);
+      if (is_new) {
+        std::set<PredicateId> called;
+        at->second = look(metric.expr, called);
+      }
+      return at->second;
+    });
+  }
+
+ private:
+  bool look(ExprRef ref, std::set<PredicateId>& called) const {
+    if (ref == kNoExpr) return false;
+    const ExprNode& node = model_.exprs.nodes[ref];
+    if (node.op == ExprOp::kAll) return true;
+    if (node.op == ExprOp::kCall) {
+      if (!called.insert(node.predicate).second) return true;
+      return look(model_.predicates[node.predicate].body, called);
+    }
+    const bool is_certain = node.op == ExprOp::kAnd || node.op == ExprOp::kHold ||
+                            node.op == ExprOp::kOnce || node.op == ExprOp::kAlways;
+    return is_certain && std::any_of(node.args.begin(), node.args.end(),
+                                     [&](ExprRef arg) { return look(arg, called); });
+  }
+
+  const Model& model_;
+  std::map<ExprRef, bool> known_;
+};
+
+// "put A on the plate" of which success is that A and B lie on it: what is asked of two, of two
+// things each, is said of both or of none.
+bool leaves_one_out(const Model& model, const Task& task, Told& told, Reporter& reporter) {
+  const auto is_given = [](const Goal::Asked& asked, ObjectId thing) {
+    return std::any_of(asked.of.begin() + 1, asked.of.end(),
+                       [&](const Things& of) { return of.contains(thing); });
+  };
+  const auto& asked = told.goal().asked;
+  for (const Goal::Asked& one : asked) {
+    if (one.of.size() < 2 || one.of[0].size() != 1 || one.of[1].empty()) continue;
+    const ObjectId left_out = *one.of[0].begin();
+    if (may_speak_of(model, told.said(), left_out)) continue;
+    for (const Goal::Asked& other : asked) {
+      if (other.predicate != one.predicate || other.of[0].size() != 1 || other.of[1].empty())
+        continue;
+      const ObjectId said = *other.of[0].begin();
+      if (said == left_out || is_given(one, said) || is_given(other, left_out) ||
+          !told.said().first(said))
+        continue;
+      report_of(reporter, Code::P1202, task, task.say_span,
+                "`" + task.name + "` says `" + model.objects[said].name + "` and not `" +
+                    model.objects[left_out].name + "`, of which success asks `" +
+                    model.predicates[one.predicate].name + "` as well")
+          .label(model.metrics[task.metrics].span, "judged by these");
+      return true;
+    }
+  }
+  return false;
+}
+
+using PartOf = std::pair<FixtureId, std::uint32_t>;
+
+// The parts that success measures: by themselves, by their joint or by a region of theirs.
+void collect_parts(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
+                   std::set<PartOf>& out) {
+  if (ref == kNoExpr || !seen.insert(ref).second) return;
+  const ExprNode& node = model.exprs.nodes[ref];
+  const auto fixture = static_cast<FixtureId>(node.a);
+  if (node.op == ExprOp::kPart) out.insert({fixture, node.b});
+  if (node.op == ExprOp::kRegion)
+    out.insert({fixture, model.fixtures[fixture].regions[node.b].part});
+  if (node.op == ExprOp::kJoint) {
+    const auto& parts = model.fixtures[fixture].parts;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+      if (parts[i].joint == node.b) out.insert({fixture, i});
+    }
+  }
+  if (node.op == ExprOp::kAny || node.op == ExprOp::kAll || node.op == ExprOp::kNo) {
+    for (const ExprRef body : model.exprs.sets[node.set].bodies)
+      collect_parts(model, body, seen, out);
+  }
+  for (const ExprRef arg : node.args) collect_parts(model, arg, seen, out);
+  if (node.op == ExprOp::kCall)
+    collect_parts(model, model.predicates[node.predicate].body, seen, out);
+}
+
+// What the task does with parts: what fills its roles, what success measures, what its solution
+// handles on the way.
+std::set<PartOf> parts_meant(const Model& model, const Task& task) {
+  std::set<PartOf> meant;
+  for (const auto& [role, id] : task.things())
+    meant.insert({model.objects[id].of->fixture, model.objects[id].of->part});
+  std::set<ExprRef> seen;
+  for (const Metric& metric : task.judged) {
+    if (metric.name == "success") collect_parts(model, metric.expr, seen, meant);
+  }
+  if (meant.empty()) return meant;
+  for (const SkillUse& skill : task.solution) {
+    for (const SkillOperand& operand : {skill.what, skill.to}) {
+      const std::string name = operand.owner.text + "." + operand.name.text;
+      for (const Object& thing : model.objects) {
+        if (thing.of && thing.name == name) meant.insert({thing.of->fixture, thing.of->part});
+      }
+    }
+  }
+  return meant;
+}
+
+// "open the middle drawer" of which success is that the top drawer is open.
+bool says_other_part(const Model& model, const Task& task, Reporter& reporter) {
+  if (has_negation(model.templates[task.say])) return false;
+  const std::set<PartOf> meant = parts_meant(model, task);
+  if (meant.empty()) return false;
+  const auto is_meant = [&](const Object& thing) {
+    return meant.contains({thing.of->fixture, thing.of->part});
+  };
+  const std::string text = fold_case(literal_text(model, task));
+  const auto& parts = model.templates[task.say].parts;
+  const auto is_said = [&](const Object& thing) {
+    const std::string words = fold_case(thing.text.text);
+    return has_words(text, words) ||
+           std::any_of(parts.begin(), parts.end(), [&](const Template::Part& part) {
+             if (!part.slot) return false;
+             if (part.slot->role == RoleId::kNone) return part.slot->name.text == thing.name;
+             const auto things = task.things();
+             return std::any_of(things.begin(), things.end(), [&](const auto& filled) {
+               return filled.first == part.slot->role && &model.objects[filled.second] == &thing;
+             });
+           });
+  };
+  // Whose part is meant may speak of others as well, as of the way there.
+  if (std::any_of(model.objects.begin(), model.objects.end(), [&](const Object& thing) {
+        return thing.of && is_meant(thing) && is_said(thing);
+      }))
+    return false;
+  const auto& fixtures = model.scenes[task.scene].fixtures;
+  for (const Object& thing : model.objects) {
+    if (!thing.of || is_meant(thing) || !is_said(thing) ||
+        std::find(fixtures.begin(), fixtures.end(), thing.of->fixture) == fixtures.end())
+      continue;
+    report_of(reporter, Code::P1202, task, task.say_span,
+              "`" + task.name + "` says `" + thing.name + "`, which its success does not measure")
+        .label(model.metrics[task.metrics].span, "judged by these");
+    return true;
+  }
+  return false;
+}
+
+bool has_fixtures(const Model& model, const Task& task) {
+  return !model.scenes[task.scene].fixtures.empty();
+}
+
+// "open the drawer" where the scene has three: P0402, as of a phrase. Which one is meant may be
+// said elsewhere, or behind it.
+bool leaves_part_open(const Model& model, const Task& task, Told& told, Reporter& reporter) {
+  constexpr auto kSaysMore = std::to_array<std::string_view>(
+      {"of",      "on",   "in",     "at",      "under",  "above", "below",
+       "with",    "that", "which",  "whose",   "to",     "near",  "nearest",
+       "closest", "next", "beside", "between", "behind", "left",  "right"});
+  const auto& words = told.said().words;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string& noun = words[i].text;
+    if (noun.empty() || (i != 1 && words[i - 1].text != "the")) continue;
+    if (i + 1 < words.size() &&
+        std::find(kSaysMore.begin(), kSaysMore.end(), words[i + 1].text) != kSaysMore.end())
+      continue;
+    std::vector<ObjectId> parts;
+    for (const ObjectId id : nameable(model, task)) {
+      const Object& thing = model.objects[id];
+      const std::vector<std::string> name = folded_words(thing.text.text);
+      if (thing.of && !name.empty() && name.back() == noun) parts.push_back(id);
+    }
+    if (parts.size() < 2) continue;
+    const bool is_told_apart = std::any_of(words.begin(), words.end(), [&](const Said::Word& word) {
+      return word.of.size() == 1 &&
+             std::find(parts.begin(), parts.end(), *word.of.begin()) != parts.end();
+    });
+    if (is_told_apart) continue;
+    std::string names;
+    for (const ObjectId id : parts)
+      names += (names.empty() ? "`" : ", `") + model.objects[id].name + "`";
+    report_of(reporter, Code::P0402, task, task.say_span,
+              "\"" + noun + "\" denotes " + std::to_string(parts.size()) +
+                  " parts of fixtures in `" + task.name + "`")
+        .label(model.templates[task.say].span, "said here")
+        .help("they are " + names + ": say \"" + model.objects[parts.front()].text.text +
+              "\", or `{the target}` of a task that is about one");
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void check_goal_words(const Model& model, Reporter& reporter) {
+  AskedTwice asks_twice(model);
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    const About about(reporter, task.decl_span);
+    Told told(model, task);
+    // One thing is said of a task: the others may follow from it.
+    if (says_other_relation(model, task, reporter)) continue;
+    if (says_other_goal(model, task, told, reporter)) continue;
+    if (says_other_part(model, task, reporter)) continue;
+    if (has_fixtures(model, task) && leaves_part_open(model, task, told, reporter)) continue;
+    if (asks_twice(task)) leaves_one_out(model, task, told, reporter);
+  }
+}
+
+}  // namespace probe::sema

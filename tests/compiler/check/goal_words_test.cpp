@@ -1,0 +1,192 @@
+// Words of instructions, held to what success is.
+#include <doctest/doctest.h>
+
+#include "tests/compiler/small_suite.h"
+
+using namespace probe;
+
+namespace {
+
+// Two things that are put on the tray, in an order that `goal` may judge, and the words for it.
+std::string said_of_two(const std::string& goal, const std::string& words,
+                        const std::string& more = "") {
+  return test::analyze_with_suite(
+             "role helper\n"
+             "predicate over(a: object, b: object) = height(a) > height(b) and distance_xy(a, b) < "
+             "5cm\n"
+             "predicate done(a: object) = over(a, target)\n" +
+             more +
+             "layout row { place source at (0cm, -20cm); place target at (0cm, 0cm)\n"
+             "place helper at (0cm, 20cm); orient by rest; drop 10cm settle 0.5s }\n"
+             "metrics m { success = " +
+             goal +
+             " }\n"
+             "task t like base { layout row; source red; helper blue; target tray; metrics m; say "
+             "\"" +
+             words + "\" }\n")
+      ->said();
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+TEST_CASE("words for a joint go the way that success goes") {
+  const auto told = [](const std::string& words) {
+    return test::analyze_with_suite(std::string(test::kChest) +
+                                    "metrics far { success = at end travel(chest.slide) > 10cm }\n"
+                                    "task t like red_on_tray { scene room; metrics far; say \"" +
+                                    words + " with {the source}, before {the target}\" }\n")
+        ->codes();
+  };
+  CHECK(told("open the drawer") == "");
+  CHECK(told("close the drawer") == "P1202");
+  CHECK(told("close the door and open the drawer") == "");
+  CHECK(told("turn on the stove") == "");
+  CHECK(told("turn off the stove") == "P1202");
+  CHECK(told("switch off the stove") == "P1202");
+}
+
+TEST_CASE("words for a part are those of one that success measures") {
+  const auto said_of = [](const std::string& words) {
+    return test::analyze_with_suite(
+               std::string(test::kChest) +
+               "metrics far { success = at end travel(chest.slide) > 10cm }\n"
+               "task t like red_on_tray { scene room; metrics far; say \"open " +
+               words + " with {the source}, before {the target}\" }\n")
+        ->codes();
+  };
+  CHECK(said_of("the drawer") == "");
+  CHECK(said_of("{the chest.drawer}") == "");
+  CHECK(said_of("{the chest.door}") == "P1202");
+  CHECK(said_of("the door") == "P1202");
+  CHECK(said_of("what opens") == "");
+  CHECK(said_of("the drawer beside the door") == "");
+}
+
+TEST_CASE("words that put two things in an order say the one that success judges") {
+  const std::string wrong =
+      "error[P1202]: `t` says \"then\" and succeeds when `red` comes before `blue`";
+  const std::string forward = "put {the source} on {the target}, then put {the helper} there",
+                    backward =
+                        "first put {the helper} on {the target}, then put {the source} there";
+  for (const std::string goal :
+       {"once (over(helper, target) and once over(source, target))",
+        "at end (done(helper) and done(source) and once (done(helper) and once done(source)))",
+        "at end (done(source) and done(helper) and once (done(source) and not done(helper)))",
+        "at end (done(source) and done(helper) and latest(step, not done(source)) < latest(step, "
+        "not done(helper)))"}) {
+    CAPTURE(goal);
+    CHECK(said_of_two(goal, forward) == "");
+    CHECK(first_line(said_of_two(goal, backward)) == wrong);
+  }
+  const std::string judged = "once (done(helper) and once done(source))";
+  CHECK(said_of_two(judged, "put {the source} on {the target} before you put {the helper} there") ==
+        "");
+  CHECK(said_of_two(judged, "put {the helper} on {the target} after {the source}") == "");
+  CHECK(said_of_two(judged,
+                    "before you put {the helper} on {the target}, put {the source} there") == "");
+  CHECK(first_line(said_of_two(
+            judged, "put {the helper} on {the target} before you put {the source} there")) ==
+        "error[P1202]: `t` says \"before\" and succeeds when `red` comes before `blue`");
+  CHECK(first_line(said_of_two(judged, "put the red block on {the target} after {the helper}")) ==
+        "error[P1202]: `t` says \"after\" and succeeds when `red` comes before `blue`");
+  CHECK(first_line(said_of_two(
+            "once follows(helper, source)", backward,
+            "predicate follows(a: object, b: object) = done(a) and once done(b)\n")) == wrong);
+  // No order is judged, or none is said.
+  CHECK(said_of_two("at end (done(source) and done(helper))", backward) == "");
+  CHECK(said_of_two(judged, "put {the helper} and {the source} on {the target}") == "");
+}
+
+TEST_CASE("what success asks of two things is said of both") {
+  const std::string both = "at end (over(source, target) and over(helper, target))";
+  CHECK(first_line(said_of_two(both, "put {the source} on {the target}")) ==
+        "error[P1202]: `t` says `red` and not `blue`, of which success asks `over` as well");
+  CHECK(said_of_two(both, "put {the source} on {the target} with {the helper}") == "");
+  CHECK(said_of_two(both, "put {the source} and the blue block on {the target}") == "");
+  CHECK(said_of_two(both, "put both blocks on {the target}") == "");
+  CHECK(said_of_two(both, "tidy up") == "");
+  CHECK(first_line(said_of_two("at end (all o in {source, helper}: over(o, target))",
+                               "put {the helper} on {the target}")) ==
+        "error[P1202]: `t` says `blue` and not `red`, of which success asks `over` as well");
+  // What is asked otherwise, or denied, is no part of what is to be done.
+  CHECK(said_of_two("at end (over(source, target) and not over(helper, target))",
+                    "put {the source} on {the target}") == "");
+  CHECK(said_of_two("at end (over(source, target) or over(helper, target))",
+                    "put {the source} on {the target}") == "");
+}
+
+TEST_CASE("between two is measured to both") {
+  const std::string words = "put {the source} between {the target} and {the helper}";
+  CHECK(first_line(said_of_two("at end over(source, target)", words)) ==
+        "error[P1202]: `t` says \"between\" and its success measures nothing to both of what that "
+        "stands before");
+  CHECK(said_of_two("at end (distance_xy(source, target) + distance_xy(source, helper) < 30cm)",
+                    words) == "");
+  CHECK(said_of_two("at end (distance(source, target) < 9cm and distance(source, helper) < 9cm)",
+                    words) == "");
+  CHECK(first_line(said_of_two("at end (over(source, target) and over(helper, target))", words)) ==
+        "error[P1202]: `t` says \"between\" and its success measures nothing to both of what that "
+        "stands before");
+  CHECK(said_of_two("at end y(source) > 0cm", words) == "");
+}
+
+TEST_CASE("a side that is said is one that success can tell") {
+  const auto told = [](const std::string& goal, const std::string& words) {
+    return first_line(said_of_two("at end " + goal, words + " and leave {the helper} alone"));
+  };
+  const std::string to_the_left = "put {the source} to the left of {the target}";
+  CHECK(told("over(source, target)", to_the_left) ==
+        "error[P1202]: `t` says \"left of\" and its success measures nothing that tells one side "
+        "from another");
+  CHECK(told("y(source) < y(target)", to_the_left) == "");
+  CHECK(told("over(source, target)", "put {the source} behind {the target}") ==
+        "error[P1202]: `t` says \"behind\" and its success measures nothing that tells one side "
+        "from another");
+  CHECK(told("over(source, target)", "put {the source} on the right") ==
+        "error[P1202]: `t` says \"on the right\" and its success measures nothing that tells one "
+        "side from another");
+  CHECK(told("over(source, target)", "put {the source} next to the left knob") == "");
+}
+
+TEST_CASE("a noun of several parts says which of them") {
+  const auto told = [](const std::string& words, const std::string& more = "") {
+    return test::analyze_with_suite(std::string(test::kChest) + R"(
+fixture pair like chest {
+  part drawer link drawer name "upper drawer"
+  part door link door name "lower drawer"
+}
+scene both like bench { fixture pair }
+metrics far { success = at end travel(pair.drawer) > 10cm }
+)" + more + "task t like red_on_tray { scene both; metrics far; say \"" +
+                                    words + "\" }\n")
+        ->said();
+  };
+  CHECK(first_line(told("open the drawer with {the source} at {the target}")) == "");
+  CHECK(first_line(told("open the drawer, {the source} to {the target}")) ==
+        "error[P0402]: \"drawer\" denotes 2 parts of fixtures in `t`");
+  CHECK(told("open the upper drawer and close the drawer, {the source} on {the target}") == "");
+  CHECK(told("open {the pair.drawer}, then close the drawer, {the source} on {the target}") == "");
+  CHECK(told("open a drawer, {the source} to {the target}") == "");
+}
+
+TEST_CASE("a fault of a task is shown in its own file, whatever the used one says") {
+  test::Analysis a;
+  const std::string used = std::string(test::kSmallSuite) +
+                           "template told \"put {the source} to the left of {the target}\"\n"
+                           "metrics left { success = at end y(source) < y(target) }\n"
+                           "task lefts like red_on_tray { metrics left; say told }\n";
+  const std::string own = "variant mine of lefts { metrics plain }\n";
+  for (const std::string& text : {used, own}) {
+    const FileId id = a.sources.add(text == own ? "own.probe" : "used.probe", text);
+    a.files.push_back(syntax::parse(a.sources, id, a.diagnostics));
+  }
+  const FileId root = a.files[1].file.id;
+  a.model = sema::analyze(a.sources, {&a.files[0].file, &a.files[1].file}, test::asset_root(),
+                          a.diagnostics, {root});
+  REQUIRE_MESSAGE(a.codes() == "P1202", a.said());
+  CHECK(a.underlined() == "mine");
+  REQUIRE(!a.diagnostics.items().front().labels.empty());
+  CHECK(a.sources.text(a.diagnostics.items().front().labels.front().span) == "say told");
+}
