@@ -8,6 +8,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_phrases(model, checked.asset_root, reporter);
   check_spatial_words(model, reporter);
   check_goal_words(model, reporter);
+  check_place_words(model, reporter);
   check_mentions(model, reporter);
   check_look_words(model, reporter);
   check_poses(model, reporter);

@@ -40,6 +40,7 @@ void check_phrases(const Model& model, const std::string& asset_root,
                    Reporter& reporter);                            // P0401-P0407
 void check_spatial_words(const Model& model, Reporter& reporter);  // P1202 of phrases
 void check_goal_words(const Model& model, Reporter& reporter);     // P1202 of instructions
+void check_place_words(const Model& model, Reporter& reporter);    // P1203
 void check_look_words(const Model& model, Reporter& reporter);     // P1510
 void check_poses(const Model& model, Reporter& reporter);          // P0404 of `pose`
 void check_mentions(const Model& model, Reporter& reporter);       // P0404 of words
