@@ -52,6 +52,7 @@ void check_frame(const TaskStarts& starts) {
                                                 std::to_string(bad) + " of " + std::to_string(all) +
                                                 " objects are mostly out of view in this task");
   said.severity = Severity::kWarning;
+  said.cause = cause_of(starts.layout.span, {camera.name, starts.object(*worst).name});
   said.point("episode " + std::to_string(episode) + ": " + at(starts.object(*worst), *worst))
       .label(camera.span, "the camera")
       .label(starts.layout.span, "the layout");

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "compiler/check/check.h"
 #include "compiler/check/starts.h"
 #include "compiler/define/motion.h"
 #include "compiler/define/support.h"
@@ -53,10 +55,23 @@ class MotionCheck {
   }
 
   void run() const {
+    std::vector<std::pair<ObjectId, ObjectId>> crossed;  // each crossing is of two
     for (std::size_t m = 0; m < movers_.size(); ++m) {
+      std::optional<Meeting> first;
+      CountedStarts counted{0, starts_.task.starts.size()};
       for (std::size_t e = 0; e < starts_.task.starts.size(); ++e) {
-        if (!is_free(m, e)) break;
+        const std::optional<Meeting> met = meeting(m, e);
+        if (!met) continue;
+        counted.add(e);
+        if (!first) first = met;
       }
+      if (!first) continue;
+      if (first->crosses) {
+        const std::pair back{movers_[m].object, *first->crosses};
+        if (std::ranges::find(crossed, back) != crossed.end()) continue;
+        crossed.emplace_back(*first->crosses, movers_[m].object);
+      }
+      report(movers_[m], counted, *first);
     }
   }
 
@@ -95,45 +110,48 @@ class MotionCheck {
     });
   }
 
-  // In one start; what was found is reported.
-  bool is_free(std::size_t m, std::size_t episode) const {
+  // What comes first in one start.
+  struct Meeting {
+    std::string what;
+    std::optional<ObjectId> crosses = std::nullopt;  // another that moves
+  };
+  std::optional<Meeting> meeting(std::size_t m, std::size_t episode) const {
     const Mover& mover = movers_[m];
     const Start::Placed begin = placed(episode, mover.object);
     for (const std::array<double, 2>& by : ways_[m]) {
       const Start::Placed at = moved(begin, by);
-      if (is_over_edge(starts_, at))
-        return report(mover, episode, "runs over the edge of `" + scene_.name + "`");
+      if (is_over_edge(starts_, at)) return Meeting{"runs over the edge of `" + scene_.name + "`"};
       for (const Standing& other : standing_) {
         if (overlap(other.box.solid, solid_of(starts_, at)) > kRounding)
-          return report(mover, episode, "runs into `" + other.name + "`");
+          return Meeting{"runs into `" + other.name + "`"};
       }
       for (const Start::Placed& other : starts_.task.starts[episode].placed) {
         if (other.object == mover.object || rides(other.object, mover.object)) continue;
         const auto moves = std::ranges::find(movers_, other.object, &Mover::object);
         const std::string name = "`" + starts_.object(other).name + "`";
         if (moves == movers_.end()) {
-          if (meets(at, other)) return report(mover, episode, "runs into " + name);
+          if (meets(at, other)) return Meeting{"runs into " + name};
           continue;
         }
         const auto& way = ways_[static_cast<std::size_t>(moves - movers_.begin())];
         const bool crosses = std::ranges::any_of(way, [&](const std::array<double, 2>& there) {
           return meets(at, moved(other, there));
         });
-        if (crosses) return report(mover, episode, "crosses the way of " + name);
+        if (crosses) return Meeting{"crosses the way of " + name, other.object};
       }
     }
-    return true;
+    return std::nullopt;
   }
 
-  bool report(const Mover& mover, std::size_t episode, const std::string& what) const {
-    const Start::Placed begin = placed(episode, mover.object);
-    starts_.reporter
-        .report(Situation::kMoveMeets, mover.motion->span,
-                "`" + starts_.model.objects[mover.object].name + "` " + what + " on its way in `" +
-                    starts_.task.name + "`")
-        .point(fmt::format("episode {}: {}", episode, at(starts_.object(begin), begin)))
-        .label(starts_.layout.span, "the layout");
-    return false;
+  void report(const Mover& mover, const CountedStarts& counted, const Meeting& met) const {
+    const Start::Placed begin = placed(counted.first, mover.object);
+    const Object& object = starts_.model.objects[mover.object];
+    report_of(starts_.reporter, Situation::kMoveMeets, starts_.task, mover.motion->span,
+              "`" + object.name + "` " + met.what + " on its way " + counted.text() + " `" +
+                  starts_.task.name + "`")
+        .point(counted.first_words(at(object, begin)))
+        .label(starts_.layout.span, "the layout")
+        .cause = cause_of(mover.motion->span, {object.name, met.what});
   }
 
   const TaskStarts& starts_;

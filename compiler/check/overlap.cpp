@@ -82,37 +82,44 @@ double overlap_of(const TaskStarts& starts, const Start::Placed& a, const Start:
 }  // namespace
 
 void check_overlap(const TaskStarts& starts) {
-  std::size_t pairs = 0, bad = 0, first_episode = 0;
-  double depth = 0;
-  const Start::Placed* first[2] = {};
+  // By pair of objects, in the order in which they are found.
+  struct Pair {
+    const Start::Placed *one, *other;  // in the first start in which they overlap
+    double depth;
+    CountedStarts counted;
+  };
+  std::vector<Pair> pairs;
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     const auto& placed = starts.task.starts[e].placed;
     for (std::size_t i = 0; i < placed.size(); ++i) {
       for (std::size_t j = i + 1; j < placed.size(); ++j) {
-        ++pairs;
         // Boxes may touch: less than a micrometre is rounding.
         const double now = overlap_of(starts, placed[i], placed[j]);
         if (now <= 1e-6) continue;
-        if (bad++ != 0) continue;
-        depth = now;
-        first_episode = e;
-        first[0] = &placed[i];
-        first[1] = &placed[j];
+        auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const Pair& known) {
+          return known.one->object == placed[i].object && known.other->object == placed[j].object;
+        });
+        if (pair == pairs.end())
+          pair = pairs.insert(pair, {&placed[i], &placed[j], now, {0, starts.task.starts.size()}});
+        pair->counted.add(e);
       }
     }
   }
-  if (bad == 0) return;
+  if (pairs.empty()) return;
+  const Pair& first = pairs.front();
+  const Object &one = starts.object(*first.one), &other = starts.object(*first.other);
   Diagnostic& said =
       starts.reporter
-          .report(Code::P0501, starts.place({first[0]->object, first[1]->object}),
-                  "`" + starts.object(*first[0]).name + "` and `" + starts.object(*first[1]).name +
-                      "` overlap by " + centimetres(depth) + " in `" + starts.task.name + "`; " +
-                      std::to_string(bad) + " of " + std::to_string(pairs) +
-                      " object pairs overlap in this task")
-          .point("episode " + std::to_string(first_episode) + ": " +
-                 at(starts.object(*first[0]), *first[0]) + ", " +
-                 at(starts.object(*first[1]), *first[1]));
+          .report(Code::P0501, starts.place({first.one->object, first.other->object}),
+                  "`" + one.name + "` and `" + other.name + "` overlap by " +
+                      centimetres(first.depth) + " " + first.counted.text() + " `" +
+                      starts.task.name + "`")
+          .point(first.counted.first_words(at(one, *first.one) + ", " + at(other, *first.other)));
+  said.cause = cause_of(starts.layout.span, {one.name, other.name});
   if (!advise_spread(starts, said)) said.label(starts.layout.span, "the layout");
+  if (pairs.size() > 1)
+    said.note("so do " + std::to_string(pairs.size() - 1) + " other pair" +
+              (pairs.size() > 2 ? "s" : "") + " of its objects");
 }
 
 }  // namespace probe::sema

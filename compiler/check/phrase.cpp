@@ -241,6 +241,21 @@ struct TaskLanguage {
     return false;
   }
 
+  // What fits instead.
+  std::string count_advice(const SlotRef& slot, std::size_t number, bool is_noun) const {
+    using syntax::SlotCount;
+    const std::string& goods = slot.name.text;
+    const std::string lists = "`{the " + goods + "}`, which lists them";
+    if (is_noun) return "say " + lists + ", or take the other one out of the scene";
+    if (slot.count == SlotCount::kOther)
+      return "name all but one of them before it, or say " + lists;
+    if (number < 2) return "say `{the " + goods + "}`";
+    std::string word(number_word(number));
+    const std::string counted = number == 2 ? "both " + goods : "all " + word + " " + goods;
+    if (word.empty()) return "say " + lists;
+    return "of " + word + " one says `{" + counted + "}`, or " + lists;
+  }
+
   // Words that count, held against how many there are: of the role, and in the scene where one noun
   // stands for all.
   bool check_count(const SlotRef& slot, const std::vector<ObjectId>& meant) const {
@@ -261,11 +276,9 @@ struct TaskLanguage {
             "` is called so, too, and is not of `" + slot.name.text + "`";
     Diagnostic& said = reporter.report(Code::P1104, task.place(task.say_span), std::move(why));
     said.label(slot.span, "these words");
-    if (is_noun) {
+    if (is_noun)
       said.label(entry_of(task, counted.other).value_or(task.span), "it is in the scene");
-    } else if (slot.count == SlotCount::kAll && slot.number == 0 && number == 2) {
-      said.help("of two one says `{both " + slot.name.text + "}`");
-    }
+    said.help(count_advice(slot, number, is_noun));
     return false;
   }
 

@@ -39,6 +39,8 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
               " and " + degrees + "deg away");
       said.point("episode " + std::to_string(e) + ": " + at(starts.object(placed[i]), placed[i]))
           .label(starts.layout.span, "the layout");
+      said.cause = cause_of(starts.layout.span, {scene.name, starts.object(placed[0]).name,
+                                                 starts.object(placed[i]).name});
       constexpr double kThere = 0.001, kAskew = 0.05;  // m, rad
       if (miss->position < kThere && miss->rotation > kAskew && robot.points_span.is_none()) {
         said.help("the tool is taken to point along +x of `" + robot.tcp.text + "`; `tcp " +
@@ -55,22 +57,34 @@ bool check_reach(const TaskStarts& starts, Arms& arms) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
   if (scene.robot == RobotId::kNone) return true;
   const Robot& robot = starts.model.robots[scene.robot];
+  const Start::Placed* first = nullptr;
+  double first_away = 0;
+  CountedStarts counted{0, starts.task.starts.size()};
   for (std::size_t e = 0; robot.reach_max != 0 && e < starts.task.starts.size(); ++e) {
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
       const double dx = placed.x - scene.base_position[0];
       const double dy = placed.y - scene.base_position[1];
       const double away = std::sqrt(dx * dx + dy * dy);
       if (away >= robot.reach_min && away <= robot.reach_max) continue;
-      starts.reporter
-          .report(Situation::kOutOfAnnulus, starts.place({placed.object}),
-                  "`" + starts.object(placed).name + "` is " + centimetres(away) +
-                      " from the base of `" + robot.name + "` in `" + starts.task.name +
-                      "`, which reaches " + centimetres(robot.reach_min) + " to " +
-                      centimetres(robot.reach_max))
-          .point("episode " + std::to_string(e) + ": " + at(starts.object(placed), placed))
-          .label(starts.layout.span, "the layout");
-      return false;
+      if (first == nullptr) {
+        first = &placed;
+        first_away = away;
+      }
+      if (placed.object == first->object) counted.add(e);
     }
+  }
+  if (first != nullptr) {
+    const Object& object = starts.object(*first);
+    starts.reporter
+        .report(Situation::kOutOfAnnulus, starts.place({first->object}),
+                "`" + object.name + "` is " + centimetres(first_away) + " from the base of `" +
+                    robot.name + "`, which reaches " + centimetres(robot.reach_min) + " to " +
+                    centimetres(robot.reach_max) + "; too near or too far " + counted.text() +
+                    " `" + starts.task.name + "`")
+        .point(counted.first_words(at(object, *first)))
+        .label(starts.layout.span, "the layout")
+        .cause = cause_of(starts.layout.span, {scene.name, object.name});
+    return false;
   }
   return check_grasps(starts, arms, scene, robot);
 }

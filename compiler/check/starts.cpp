@@ -16,11 +16,27 @@
 namespace probe::sema {
 
 Span TaskStarts::place(std::initializer_list<ObjectId> objects) const {
-  if (!like_is_fine || is_within(task.layout_span, task.decl_span)) return task.layout_span;
+  if (!like_is_fine || is_within(task.layout_span, task.decl_span))
+    return task.place(task.layout_span);
   for (const ObjectId id : objects) {
-    if (const auto span = entry_of(task, id)) return *span;
+    if (const auto span = entry_of(task, id)) return task.place(*span);
   }
   return task.span;
+}
+
+std::string CountedStarts::text() const {
+  return "in " + std::to_string(bad) + " of " + std::to_string(all) +
+         (all == 1 ? " start of" : " starts of");
+}
+
+std::string CountedStarts::first_words(const std::string& what) const {
+  return "first in start " + std::to_string(first) + ": " + what;
+}
+
+std::string cause_of(const Span& place, std::initializer_list<std::string_view> names) {
+  std::string cause = std::to_string(place.file.value) + ":" + std::to_string(place.begin);
+  for (const std::string_view name : names) cause += " " + std::string(name);
+  return cause;
 }
 
 std::string centimetres(double metres) {

@@ -74,6 +74,18 @@ void check_travel(const TaskStarts& starts, Travels& travels);                  
 void check_motion(const TaskStarts& starts, Travels& travels);                        // P1511
 void check_fixture_places(const Model& model, Travels& travels, Reporter& reporter);  // P1302
 
+// In how many of a task's starts something is so, from the first of them on.
+struct CountedStarts {
+  std::size_t bad = 0, all = 0, first = 0;
+  void add(std::size_t start) {
+    if (bad++ == 0) first = start;
+  }
+  std::string text() const;                                // "in 8 of 24 starts of"
+  std::string first_words(const std::string& what) const;  // "first in start 3: .."
+};
+// What tells one cause from another, of whatever task: names and the place that is to blame.
+std::string cause_of(const Span& place, std::initializer_list<std::string_view> names);
+
 std::string centimetres(double metres);  // "7.5cm"
 // "carrot at (7.5cm, -2cm)".
 std::string at(const Object& object, const Start::Placed& placed);

@@ -21,23 +21,39 @@ bool check_surface(const TaskStarts& starts) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
   // What is put into a fixture or onto another object stands on that.
   const std::vector<Put> puts = puts_of(starts.model, starts.task);
+  const Start::Placed* first = nullptr;
+  CountedStarts counted{0, starts.task.starts.size()};
+  std::vector<std::string> others;
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
       if (std::ranges::find(puts, placed.object, &Put::object) != puts.end()) continue;
       if (!is_over_edge(starts, placed)) continue;
-      starts.reporter
-          .report(Situation::kOverEdge, starts.place({placed.object}),
-                  "`" + starts.object(placed).name + "` stands over the edge of `" + scene.name +
-                      "` in `" + starts.task.name + "`")
-          .point("episode " + std::to_string(e) + ": " + at(starts.object(placed), placed))
-          .label(starts.layout.span, "the layout")
-          .label(scene.span, "the surface is x " + centimetres(scene.area[0]) + " .. " +
-                                 centimetres(scene.area[2]) + ", y " + centimetres(scene.area[1]) +
-                                 " .. " + centimetres(scene.area[3]));
-      return false;
+      if (first == nullptr) first = &placed;
+      const std::string name = "`" + starts.object(placed).name + "`";
+      if (placed.object == first->object) {
+        counted.add(e);
+      } else if (std::ranges::find(others, name) == others.end()) {
+        others.push_back(name);
+      }
     }
   }
-  return true;
+  if (first == nullptr) return true;
+  const std::string& name = starts.object(*first).name;
+  Diagnostic& said =
+      starts.reporter.report(Situation::kOverEdge, starts.place({first->object}),
+                             "`" + name + "` stands over the edge of `" + scene.name + "` " +
+                                 counted.text() + " `" + starts.task.name + "`");
+  said.cause = cause_of(starts.layout.span, {scene.name, name});
+  said.point(counted.first_words(at(starts.object(*first), *first)))
+      .label(starts.layout.span, "the layout")
+      .label(scene.span, "the surface is x " + centimetres(scene.area[0]) + " .. " +
+                             centimetres(scene.area[2]) + ", y " + centimetres(scene.area[1]) +
+                             " .. " + centimetres(scene.area[3]));
+  if (others.empty()) return false;
+  std::string also;
+  for (const std::string& other : others) also += (also.empty() ? "" : ", ") + other;
+  said.note(std::string(others.size() == 1 ? "so does " : "so do ") + also);
+  return false;
 }
 
 }  // namespace probe::sema

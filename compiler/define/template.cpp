@@ -92,10 +92,6 @@ std::vector<std::string> words_in(const std::string& text) {
   return words;
 }
 
-constexpr std::array<std::string_view, 13> kNumbers = {"",     "",       "two",   "three", "four",
-                                                       "five", "six",    "seven", "eight", "nine",
-                                                       "ten",  "eleven", "twelve"};
-
 // Several objects as one slot says them: "the carrot and the spoon", "both cubes".
 std::string words_for(const Model& model, const Task& task, const SlotRef& slot,
                       const std::vector<ObjectId>& objects) {
@@ -113,7 +109,7 @@ std::string words_for(const Model& model, const Task& task, const SlotRef& slot,
   if (slot.count == SlotCount::kBoth) return "both " + (noun ? *noun : list_of(whole));
   if (!noun) return list_of(whole);
   if (slot.count != SlotCount::kAll) return (slot.the ? "the " : "") + *noun;
-  const std::string_view number = slot.number < kNumbers.size() ? kNumbers[slot.number] : "";
+  const std::string_view number = number_word(slot.number);
   return "all " + std::string(number) + (number.empty() ? "" : " ") + *noun;
 }
 
@@ -127,6 +123,13 @@ std::string words_for_other(const Model& model, const Task& task, const SlotRef&
 }
 
 }  // namespace
+
+std::string_view number_word(std::size_t number) {
+  constexpr std::array<std::string_view, 13> kNumbers = {"",     "",       "two",   "three", "four",
+                                                         "five", "six",    "seven", "eight", "nine",
+                                                         "ten",  "eleven", "twelve"};
+  return number < kNumbers.size() ? kNumbers[number] : "";
+}
 
 std::optional<std::string> common_noun(const std::vector<std::string>& words) {
   if (words.empty()) return std::nullopt;

@@ -29,6 +29,9 @@ Referring referring(const Model& model, const Task& task, RoleId role);
 std::vector<ObjectId> meant_by(const Model& model, const Task& task, const Template& say,
                                const SlotRef& slot);
 
+// "two" to "twelve"; empty of other numbers.
+std::string_view number_word(std::size_t number);
+
 // What counted words say of several objects: one noun that all their words end with, in the
 // plural; nothing where they have none in common.
 std::optional<std::string> common_noun(const std::vector<std::string>& words);

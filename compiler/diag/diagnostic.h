@@ -73,6 +73,7 @@ struct Diagnostic {
   Severity severity = Severity::kError;
   std::string message;
   std::string subject;  // the name that is not known; the same one is missed once
+  std::string cause;    // of what is said of tasks: the same one is said of the first
   Span primary;
   std::string primary_label;  // behind the carets; may be empty
   std::vector<Label> labels;

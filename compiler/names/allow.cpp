@@ -100,6 +100,7 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
   std::map<std::tuple<Code, std::uint32_t, std::uint32_t, std::uint32_t>, Said> places;
   // A name that is declared nowhere is missed once, however often it is used.
   std::map<std::string, Said> unknown;
+  std::map<std::pair<Code, std::string>, Said> causes;
   std::size_t index = 0;
   for (const Diagnostic& diagnostic : context.diagnostics.items()) {
     const std::size_t at = index++;
@@ -124,6 +125,11 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
       }
       continue;
     }
+    if (!diagnostic.cause.empty()) {
+      Said& cause = causes[{diagnostic.code, diagnostic.cause}];
+      if (cause.count++ == 0) cause.last = &out.add(diagnostic);
+      continue;
+    }
     if (!context.reporter.about.contains(at)) {
       out.add(diagnostic);
       continue;
@@ -133,10 +139,15 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
     if (place.count == 0 && is_in_derive(context, span)) place.limit = 1;
     if (++place.count <= place.limit) place.last = &out.add(diagnostic);
   }
+  const auto note_more = [](Diagnostic& last, std::size_t tasks) {
+    last.note("the same holds for " + std::to_string(tasks) + " more task" +
+              (tasks == 1 ? "" : "s"));
+  };
   for (auto& [key, place] : places) {
-    if (place.count > place.limit)
-      place.last->note("the same holds for " + std::to_string(place.count - place.limit) +
-                       " more tasks");
+    if (place.count > place.limit) note_more(*place.last, place.count - place.limit);
+  }
+  for (auto& [key, cause] : causes) {
+    if (cause.count > 1) note_more(*cause.last, cause.count - 1);
   }
   for (auto& [subject, name] : unknown) {
     if (name.count > 1)

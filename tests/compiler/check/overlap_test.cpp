@@ -12,7 +12,8 @@ TEST_CASE(
       "variant v of red_on_tray { layout tight }");
   CHECK_MESSAGE(a->codes() == "P0501", a->said());
   CHECK(a->diagnostics.items().front().message ==
-        "`red` and `tray` overlap by 1cm in `v`; 8 of 24 object pairs overlap in this task");
+        "`red` and `tray` overlap by 1cm in 8 of 24 starts of `v`");
+  CHECK(a->diagnostics.items().front().primary_label.starts_with("first in start "));
   // A block of 4cm x 2cm and a tray of 6cm square, side by side along the block: 2cm + 3cm apart.
   const Label& label = a->diagnostics.items().front().labels.front();
   CHECK(a->sources.text(label.span) == "(2cm, 2cm)");
@@ -34,4 +35,23 @@ TEST_CASE("the advised spread keeps the shape of the grid, and there is none for
       "variant v of red_on_tray { layout l }");
   REQUIRE(fixed->codes() == "P0501");
   CHECK(fixed->diagnostics.items().front().labels.front().text == "the layout");
+}
+
+TEST_CASE("one cause is one error, with the number of tasks that it spoils") {
+  const auto a = analyze_with_suite(
+      "layout tight like pairs { cells spots = grid 2 x 2 at (0cm, 0cm) spread (2cm, 2cm) }\n"
+      "variant u of red_on_tray { layout tight }\nvariant v of u { light night }\n"
+      "variant w of u { say take }\n");
+  CHECK_MESSAGE(a->codes() == "P0501", a->said());
+  CHECK(a->said().find("note: the same holds for 2 more tasks") != std::string::npos);
+}
+
+TEST_CASE("other pairs that overlap are counted behind the first") {
+  const auto a = analyze_with_suite(
+      "layout l { place source at (0cm, 0cm); place target at (1cm, 0cm); place blue at (2cm, "
+      "0cm); "
+      "drop 1cm settle 1s }\ntask v like red_on_tray { layout l; distractors blue }");
+  REQUIRE_MESSAGE(a->codes() == "P0501", a->said());
+  CHECK(a->diagnostics.items().front().message.ends_with(" in 1 of 1 start of `v`"));
+  CHECK(a->said().find("note: so do 2 other pairs of its objects") != std::string::npos);
 }

@@ -27,6 +27,9 @@ TEST_CASE("a start over the edge says where the surface ends, unmet starts say t
       "scene s like bench { surface 80cm area (-10cm, -12cm) .. (10cm, 10cm) }\n"
       "task t like red_on_tray { scene s }");
   REQUIRE(edge->codes() == "P0505");
+  CHECK(edge->diagnostics.items().front().message ==
+        "`red` stands over the edge of `s` in 24 of 24 starts of `t`");
+  CHECK(edge->said().find("note: so does `tray`") != std::string::npos);
   CHECK(edge->diagnostics.items().front().labels.back().text ==
         "the surface is x -10cm .. 10cm, y -12cm .. 10cm");
   const auto unmet = analyze_with_suite(
