@@ -138,7 +138,12 @@ void put_region(std::vector<Region>& regions, Region region) {
   regions.push_back(std::move(region));
 }
 
-bool read_start(Context& context, const syntax::StartStmt& stmt, std::vector<JointStart>& starts) {
+bool read_start(Context& context, const syntax::StartStmt& stmt, const Span& decl,
+                std::vector<JointStart>& starts) {
+  if (stmt.fixture.text.empty()) {
+    std::erase_if(starts, [&](const JointStart& old) { return !is_within(old.span, decl); });
+    return true;
+  }
   const auto index = context.symbols.fixtures.find(stmt.fixture, context.diagnostics);
   if (!index) return false;
   const auto id = static_cast<FixtureId>(*index);
@@ -149,6 +154,11 @@ bool read_start(Context& context, const syntax::StartStmt& stmt, std::vector<Joi
     const Fixture::Joint& joint = fixture.joints[i];
     names.push_back(joint.name);
     if (joint.name != stmt.joint.text) continue;
+    const auto is_it = [&](const JointStart& old) { return old.fixture == id && old.joint == i; };
+    if (stmt.none) {
+      std::erase_if(starts, is_it);
+      return true;
+    }
     const auto value = read_si(
         context, stmt.value, joint.slides ? dim::kLength : dim::kAngle,
         {joint.slides ? "this joint slides" : "this joint turns", plan::Magnitude::kJointPosition});
@@ -157,8 +167,7 @@ bool read_start(Context& context, const syntax::StartStmt& stmt, std::vector<Joi
       outside(context, stmt.value.span, joint, *value);
       return false;
     }
-    std::erase_if(starts,
-                  [&](const JointStart& old) { return old.fixture == id && old.joint == i; });
+    std::erase_if(starts, is_it);
     starts.push_back({id, i, *value, stmt.span});
     return true;
   }

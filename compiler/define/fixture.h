@@ -14,7 +14,9 @@ std::optional<Region> read_region(Context& context, const syntax::RegionStmt& st
 void put_region(std::vector<Region>& regions, Region region);
 
 // `start cabinet.top 4cm`, over what was said before of the same joint. False when reported.
-bool read_start(Context& context, const syntax::StartStmt& stmt, std::vector<JointStart>& starts);
+// `decl`: the declaration it stands in, which does not take away what it says itself.
+bool read_start(Context& context, const syntax::StartStmt& stmt, const Span& decl,
+                std::vector<JointStart>& starts);
 
 // Where the joints of the scene's fixtures begin in this task (m, rad), in the scene's order: as
 // the task says, else its layout, else the fixture.

@@ -42,6 +42,7 @@ double grid_coordinate(const Decimal& centre, const Decimal& spread, std::uint64
 struct LayoutReader {
   Context& context;
   Layout& layout;
+  Span decl;
   bool has_orient = false;
   std::map<std::string, Span, std::less<>> placed = {};  // here, not in what is copied
   std::optional<Span> placing = {};  // the first statement here that says where something stands
@@ -212,7 +213,9 @@ struct LayoutReader {
     context.report(Situation::kNegative, stmt.value.span, "expected a jitter of 0 or more");
     layout.joints_jitter = 0;
   }
-  void operator()(const syntax::StartStmt& stmt) { read_start(context, stmt, layout.joint_starts); }
+  void operator()(const syntax::StartStmt& stmt) {
+    read_start(context, stmt, decl, layout.joint_starts);
+  }
   void operator()(const syntax::DropStmt& stmt) {
     layout.has_drop = true;
     layout.drop = read_si(context, stmt.height, dim::kLength,
@@ -257,7 +260,7 @@ void require_rest(Context& context, const Layout& layout) {
 
 void define_layouts(Context& context) {
   const auto read = [&](const Declared<syntax::LayoutDecl>& declared, Layout& layout) {
-    LayoutReader reader{context, layout};
+    LayoutReader reader{context, layout, declared.decl->span};
     const syntax::StartsStmt* starts = nullptr;
     for (const syntax::LayoutStmt& stmt : declared.node->body) {
       if (const auto* given = std::get_if<syntax::StartsStmt>(&stmt)) {

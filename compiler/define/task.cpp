@@ -292,10 +292,12 @@ struct TaskReader {
   }
   void operator()(const syntax::StartStmt& stmt) {
     syntax::StartStmt said = stmt;
-    const auto value = bound(stmt.value);
-    if (!value) return;
-    said.value = *value;
-    poisoned = !read_start(context, said, task.joint_starts) || poisoned;
+    if (!stmt.none) {
+      const auto value = bound(stmt.value);
+      if (!value) return;
+      said.value = *value;
+    }
+    poisoned = !read_start(context, said, task.decl_span, task.joint_starts) || poisoned;
   }
   void operator()(const syntax::HorizonStmt& stmt) {
     task.horizon_span = stmt.span;

@@ -31,6 +31,7 @@ struct KeyOf {
   Key operator()(const syntax::FixtureStmt&) const { return "fixture \"...\""; }
   Key operator()(const syntax::SceneFixturesStmt&) const { return "fixture"; }
   Key operator()(const syntax::StartStmt& stmt) const {
+    if (stmt.fixture.text.empty()) return "start none";
     return "start " + std::string(stmt.fixture.text) + "." + std::string(stmt.joint.text);
   }
 

@@ -534,7 +534,7 @@ struct LensStmt {
   std::vector<Quantity> values;
 };
 struct SensorStmt {  // `sensor noise 0.02 blur 1.5px exposure 0.7 patch (..) .. (..) dropped 0.1`
-  Span span;
+  Span span;         // `none`: nothing of it
   std::optional<Quantity> noise, blur, exposure, dropped;
   std::optional<Point> patch_low, patch_high;
   bool mirrored = false;
@@ -694,8 +694,9 @@ struct JointsJitterStmt {  // `joints jitter 2deg`
 };
 struct StartStmt {  // `start cabinet.top 4cm`: where a fixture's joint begins
   Span span;
-  Name fixture, joint;
+  Name fixture, joint;  // empty: every copied one
   Quantity value;
+  bool none = false;  // a copied one is taken away
 };
 struct DropStmt {
   Span span;

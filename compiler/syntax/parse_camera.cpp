@@ -56,6 +56,7 @@ CameraStmt Parser::camera_sensor() {
     return true;
   };
   const auto mirror = [&] { return !out.mirrored && (out.mirrored = accept_word("mirrored")); };
+  if (accept_word("none")) return out;
   bool any = false;
   while (number("noise", out.noise) || number("blur", out.blur) ||
          number("exposure", out.exposure) || patch() || number("dropped", out.dropped) ||

@@ -79,9 +79,15 @@ RegionStmt Parser::region(bool has_owner) {
 
 StartStmt Parser::joint_start(bool may_be_bound) {
   StartStmt out;
+  const bool is_all = text_ahead(1) != ".";  // a fixture may be called so
+  if (is_all && accept_word("none")) {
+    out.none = true;
+    return out;
+  }
   out.fixture = name();
   expect(TokenKind::kDot);
   out.joint = name();
+  if ((out.none = accept_word("none"))) return out;
   out.value = may_be_bound ? bound_quantity() : quantity();
   return out;
 }

@@ -2,6 +2,7 @@
 // holds.
 #include <doctest/doctest.h>
 
+#include "compiler/define/fixture.h"
 #include "runtime/plan/fixtures.h"
 #include "tests/dsl/built.h"
 
@@ -85,4 +86,34 @@ TEST_CASE("predicate: travels of parameters are compared only where both slide o
   CHECK(said("more(chest.drawer, chest.drawer)") == "");
   CHECK(said("fuller(chest.drawer, chest.door)") == "");
   CHECK(said("more(chest.drawer, chest.door)").find("error[P0601]") != std::string::npos);
+}
+
+TEST_CASE(
+    "task_st, layout_st: `start none` takes copied starts away, and `none` behind a joint that "
+    "one") {
+  const auto a =
+      test::clean(std::string(test::kChest) +
+                  "layout ajar like pairs { start chest.slide 10cm; start chest.hinge -45deg }\n"
+                  "layout shut like ajar { start none; start chest.hinge -30deg }\n"
+                  "layout half like ajar { start chest.slide none }\n"
+                  "task u like red_on_tray { scene room; layout ajar; start chest.slide 2cm }\n"
+                  "task v like u { start none }\n"
+                  "task w like u { layout shut; start chest.slide none }\n"
+                  "task x like v { layout half; start chest.hinge -10deg; start none }\n");
+  const auto begins = [&](const char* task) {
+    std::string text;
+    for (const double at : sema::joint_starts_of(a->model, a->task(task)))
+      text += (text.empty() ? "" : " ") + test::number_text(at);
+    return text;
+  };
+  CHECK(begins("u") == "0.02 -0.785398 0");
+  CHECK(begins("v") == "0.1 -0.785398 0");
+  CHECK(begins("w") == "0.04 -0.523599 0");
+  CHECK(begins("x") == "0.04 -0.174533 0");
+  CHECK(analyze_with_suite(std::string(test::kChest) +
+                           "task t like red_on_tray { scene room; start none; start none }\n")
+            ->codes() == "P0203");
+  CHECK(analyze_with_suite(std::string(test::kChest) +
+                           "task t like red_on_tray { scene room; start none.slide none }\n")
+            ->codes() == "P0201");
 }

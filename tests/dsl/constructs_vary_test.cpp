@@ -115,6 +115,20 @@ TEST_CASE("camera_st, sensor: in any order, each once; the lens is the same") {
               .find("P0101") != std::string::npos);
 }
 
+TEST_CASE("camera_st: `sensor none` takes a copied one away") {
+  const Built built(
+      "camera c like eye { sensor noise 0.02 }\ncamera d like c { sensor none }\n"
+      "variants of red_on_tray { v { camera c } }\nvariant w of v { camera d }\n");
+  CHECK(built.task("w").axes == bit(plan::Axis::kSensor));
+  CHECK(built.plan().sensor(built.plan().cameras()[built.task("w").camera]) == nullptr);
+  CHECK(analyze_with_suite("camera c like eye { sensor none; sensor noise 0.1 }\n")
+            ->codes()
+            .find("P0203") != std::string::npos);
+  CHECK(
+      analyze_with_suite("camera c like eye { sensor none noise 0.1 }\n")->codes().find("P0101") !=
+      std::string::npos);
+}
+
 TEST_CASE(
     "layout_st: with `joints jitter` turning joints begin elsewhere, as the start's number says") {
   const Built built(

@@ -188,3 +188,22 @@ TEST_CASE("a file of rubbish is given up after a bounded number of messages") {
   CHECK(parsed.diagnostics.size() <= kMaxSyntaxErrors);
   CHECK(parsed.diagnostics.items().back().code == Code::P0107);
 }
+
+TEST_CASE("a torn `start` or `sensor` costs its own line, and `none` is whole") {
+  const Parsed parsed(
+      "task a {\n  start\n  start cabinet\n  start cabinet.top\n  start none\n  start cabinet.top "
+      "none\n}\n"
+      "camera c {\n  sensor\n  sensor none\n}\n");
+  CHECK(parsed.messages() ==
+        "2:8 P0101 found end of line, expected `none` or a name\n"
+        "3:16 P0101 found end of line, expected `.`\n"
+        "4:20 P0101 found end of line, expected `none`, a name or a number\n"
+        "9:9 P0101 found end of line, expected something else\n");
+  REQUIRE(parsed.get<TaskDecl>().body.size() == 2);
+  const auto& all = std::get<StartStmt>(parsed.get<TaskDecl>().body[0]);
+  CHECK(all.none);
+  CHECK(all.fixture.text.empty());
+  const auto& one = std::get<StartStmt>(parsed.get<TaskDecl>().body[1]);
+  CHECK(one.none);
+  CHECK(one.joint.text == "top");
+}
