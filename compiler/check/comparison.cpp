@@ -1,6 +1,10 @@
 // P07xx: is every variant compared with something that it differs from in one way?
 #include <algorithm>
 #include <bit>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "compiler/check/check.h"
 #include "compiler/define/axes.h"
@@ -108,6 +112,51 @@ void check_edge(const Model& model, const Task& task, Reporter& reporter) {
       .note("to keep it, put @allow(confounded, \"why\") above the declaration");
 }
 
+// What two variants of a sweep have to share before anything else of them is compared.
+struct Sweep {
+  Span decl;
+  TaskId baseline = TaskId::kNone;
+  std::string prompt;
+  const Start* starts = nullptr;
+  std::uint64_t horizon = 0;
+  std::uint32_t idle = 0, delay = 0;
+  auto key() const {
+    return std::tuple(decl.file.value, decl.begin, baseline, prompt, starts, horizon, idle, delay);
+  }
+  bool operator<(const Sweep& other) const { return key() < other.key(); }
+};
+
+// Of those that a `derive` makes of one task none is another: an experiment that is counted twice.
+void check_twins(const Model& model, Reporter& reporter) {
+  std::map<Sweep, std::vector<const Task*>> sweeps;
+  for (const Task& task : model.tasks) {
+    if (!task.derived || !task.complete || task.axes == 0 || task.baseline == TaskId::kNone)
+      continue;
+    auto& alike = sweeps[{task.decl_span, task.baseline, task.prompt, task.starts.data(),
+                          task.horizon, task.idle, task.delay}];
+    const auto twin = std::find_if(alike.begin(), alike.end(), [&](const Task* other) {
+      return axes_between(model, task, *other) == 0;
+    });
+    if (twin == alike.end()) {
+      alike.push_back(&task);
+      continue;
+    }
+    // Of a binder that is used nowhere this follows.
+    const auto& said = reporter.diagnostics.items();
+    if (std::any_of(said.begin(), said.end(), [&](const Diagnostic& item) {
+          return item.code == Code::P0205 && is_within(item.primary, task.decl_span);
+        }))
+      continue;
+    const About about(reporter, task.decl_span);
+    reporter
+        .report(Code::P0702, task.span,
+                "`" + task.name + "` does not differ from `" + (*twin)->name +
+                    "`, which is made of `" + model.tasks[task.baseline].name + "` as well")
+        .cause = "twins " + std::to_string(task.decl_span.file.value) + ":" +
+                 std::to_string(task.decl_span.begin);
+  }
+}
+
 }  // namespace
 
 void check_comparisons(const Model& model, Reporter& reporter) {
@@ -115,6 +164,7 @@ void check_comparisons(const Model& model, Reporter& reporter) {
     if (!task.abstract && task.complete && task.baseline != TaskId::kNone)
       check_edge(model, task, reporter);
   }
+  check_twins(model, reporter);
 }
 
 }  // namespace probe::sema

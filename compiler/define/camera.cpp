@@ -123,6 +123,14 @@ struct CameraReader {
       to = *value;
     };
     share(stmt.noise, 1, sensor.noise);
+    // What is less than that no policy sees: a level of a picture, a hundredth of a pixel.
+    constexpr double kLevel = 1.0 / 255, kLeastBlur = 0.01;
+    if (sensor.noise > 0 && sensor.noise < kLevel)
+      context
+          .report(
+              Situation::kNoEffect, stmt.noise->span,
+              "a noise of less than 1/255, which is 0.00392, is less than one level of a picture")
+          .help("write `sensor none` for a camera without any");
     share(stmt.dropped, 1, sensor.dropped);
     sensor.mirrored = stmt.mirrored ? 1 : 0;
     share(stmt.exposure, plan::kMaxExposure, sensor.exposure);
@@ -136,6 +144,12 @@ struct CameraReader {
       if (blur && *blur > plan::kMaxBlur)
         context.report(Situation::kColorRange, stmt.blur->span,
                        fmt::format("expected a blur of at most {}px", plan::kMaxBlur));
+      if (blur && *blur < kLeastBlur)
+        context
+            .report(
+                Situation::kNoEffect, stmt.blur->span,
+                fmt::format("a blur of less than {}px moves no light to another pixel", kLeastBlur))
+            .help("write `sensor none` for a camera without any");
       sensor.blur = blur.value_or(0);
     }
     if (stmt.patch_low && stmt.patch_high) patch(*stmt.patch_low, *stmt.patch_high);

@@ -14,6 +14,7 @@
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
 #include "compiler/define/views.h"
+#include "compiler/syntax/lexer.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::sema {
@@ -29,7 +30,8 @@ bool is_identifier(const std::string& text) {
 // A number in a name: "0.8" is 0_8 and "-3cm" m3cm.
 std::string as_name(std::string_view value) {
   std::string name(value);
-  std::ranges::replace_if(name, [](char c) { return c == '.' || c == '/'; }, '_');
+  std::ranges::replace_if(
+      name, [](char c) { return c == '.' || c == '/'; }, '_');
   std::ranges::replace(name, '-', 'm');
   return name;
 }
@@ -42,6 +44,7 @@ class Derive {
   // False when the limit is reached.
   bool expand() {
     if (!declared_.decl->complete || !check_binders() || !check_name()) return true;
+    check_used();
     SetReader reader(context_, SetReader::Mode::kPreview);
     const auto& over = std::get<syntax::BinderTasks>(tasks_->over);
     const std::vector<TaskId> members = reader.read(*declared_.file, over.tasks);
@@ -212,6 +215,33 @@ class Derive {
       }
     }
     return fits;
+  }
+
+  // Whether a statement says the word, or a slot in its text.
+  bool is_said_in_body(std::string_view word) const {
+    const auto says = [&](const auto& stmt) {
+      const std::string_view text = context_.sources.text(stmt.span);
+      for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+        const std::size_t end = at + word.size();
+        const bool begins = at == 0 || !syntax::is_word(text[at - 1]);
+        if (begins && (end == text.size() || !syntax::is_word(text[end]))) return true;
+      }
+      return false;
+    };
+    return std::ranges::any_of(
+        node_.body, [&](const syntax::TaskStmt& stmt) { return std::visit(says, stmt); });
+  }
+
+  // What varies nothing makes variants that are the same, or as many as there are names.
+  void check_used() {
+    for (const syntax::Binder& binder : node_.binders) {
+      if (&binder == tasks_ || is_said_in_body(binder.name.text)) continue;
+      context_
+          .report(
+              Code::P0205, binder.name.span,
+              "`" + std::string(binder.name.text) + "` is used in no statement of this `derive`")
+          .help("without it the variants differ in nothing but their names");
+    }
   }
 
   void report_empty(bool no_members, bool any_fits) {

@@ -33,3 +33,16 @@ TEST_CASE("a camera takes 1, 4 or 16 samples a pixel, ambient light up to 16 ray
   CHECK(codes("light l { ambient 0.3 occlusion 8 }\n").find("P0304") == std::string::npos);
   CHECK(codes("light l { ambient 0.3 occlusion }\n").find("P0101") != std::string::npos);
 }
+
+TEST_CASE("noise and blur that nobody sees are refused with the least that is seen") {
+  const auto said = [](const std::string& sensor) {
+    const auto a = analyze_with_suite("camera c like eye { sensor " + sensor + " }\n");
+    return a->codes().find("P0304") == std::string::npos ? "" : a->diagnostics.items()[0].message;
+  };
+  CHECK(said("noise 0.003") ==
+        "a noise of less than 1/255, which is 0.00392, is less than one level of a picture");
+  CHECK(said("noise 0.004") == "");
+  CHECK(said("noise 0") == "");
+  CHECK(said("blur 0.009px") == "a blur of less than 0.01px moves no light to another pixel");
+  CHECK(said("blur 0.01px") == "");
+}

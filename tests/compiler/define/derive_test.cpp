@@ -162,3 +162,29 @@ TEST_CASE("a derived name begins with a letter, as every name does") {
   const auto a = analyze_with_suite("derive \"_{t}\" for t in { red_on_tray } { light night }");
   CHECK(a->codes() == "P0101");
 }
+
+TEST_CASE("a binder that no statement says varies nothing") {
+  const auto unused = analyze_with_suite(
+      "derive \"{t}_{k}\" for t in { red_on_tray }, k in 1 .. 2 { light night }");
+  CHECK_MESSAGE(unused->codes() == "P0205", unused->said());
+  CHECK(unused->underlined() == "k");
+  CHECK(analyze_with_suite("derive \"{t}_{o}\" for t in { red_on_tray }, o in objects (blue) { say "
+                           "\"put {source} on "
+                           "{the target}, not {avoid the o}\"; distractors blue }")
+            ->codes()
+            .find("P0205") == std::string::npos);
+}
+
+TEST_CASE("variants of one sweep that are the same are named") {
+  // At 5 Hz both are one step late.
+  const auto late = analyze_with_suite(
+      "derive \"{t}_{d}\" for t in { red_on_tray }, d in 200ms, 0.2s, 400ms { delay d }");
+  REQUIRE_MESSAGE(late->codes() == "P0702", late->said());
+  CHECK(
+      late->diagnostics.items().front().message ==
+      "`red_on_tray_0_2s` does not differ from `red_on_tray_200ms`, which is made of `red_on_tray` "
+      "as well");
+  CHECK(analyze_with_suite(
+            "derive \"{t}_{d}\" for t in { red_on_tray }, d in 200ms, 400ms { delay d }")
+            ->codes() == "");
+}
