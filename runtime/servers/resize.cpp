@@ -66,32 +66,67 @@ Weights weights_of(int in, int out, const Filter& filter) {
   return weights;
 }
 
-std::uint8_t clipped(int sum) {
-  return static_cast<std::uint8_t>(std::clamp(sum >> kPrecision, 0, 255));
+// Four bytes side by side, each with a sum of its own: three are a pixel, of a line all are.
+using Int4 = int __attribute__((vector_size(16)));
+using Byte16 = std::uint8_t __attribute__((vector_size(16)));
+constexpr std::size_t kLanes = 4;
+
+Int4 load_bytes(const std::uint8_t* from) {
+  int four = 0;
+  std::memcpy(&four, from, sizeof four);
+  const Int4 low = {four, 0, 0, 0};
+  Byte16 bytes;
+  std::memcpy(&bytes, &low, sizeof bytes);
+  const Byte16 apart =
+      __builtin_shufflevector(bytes, bytes, 0, 4, 4, 4, 1, 4, 4, 4, 2, 4, 4, 4, 3, 4, 4, 4);
+  Int4 numbers;
+  std::memcpy(&numbers, &apart, sizeof numbers);
+  return numbers;
 }
 
-// `lines` lines of `in` pixels become lines of `weights.first.size()`; `step` bytes from a pixel to
-// the next, `stride` from a line to the next.
-struct Axis {
-  std::size_t lines = 0, in_step = 0, in_stride = 0, out_step = 0, out_stride = 0;
-};
-void resample(const std::uint8_t* in, const Weights& weights, const Axis& axis, std::uint8_t* out) {
-  for (std::size_t line = 0; line < axis.lines; ++line) {
-    for (std::size_t i = 0; i < weights.first.size(); ++i) {
-      const int* weight = weights.values.data() + i * weights.width;
-      const std::uint8_t* from =
-          in + line * axis.in_stride + static_cast<std::size_t>(weights.first[i]) * axis.in_step;
-      int red = 1 << (kPrecision - 1), green = red, blue = red;
-      for (int x = 0; x < weights.count[i]; ++x, from += axis.in_step) {
-        red += from[0] * weight[x];
-        green += from[1] * weight[x];
-        blue += from[2] * weight[x];
-      }
-      std::uint8_t* to = out + line * axis.out_stride + i * axis.out_step;
-      to[0] = clipped(red);
-      to[1] = clipped(green);
-      to[2] = clipped(blue);
+void store_clipped(Int4 sum, std::uint8_t* to) {
+  const Int4 least = {0, 0, 0, 0}, most = {255, 255, 255, 255};
+  Int4 value = sum >> kPrecision;
+  value = value < least ? least : value;
+  value = value > most ? most : value;
+  Byte16 bytes;
+  std::memcpy(&bytes, &value, sizeof bytes);
+  bytes = __builtin_shufflevector(bytes, bytes, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12, 0, 4, 8, 12);
+  std::memcpy(to, &bytes, kLanes);
+}
+
+// The weighted sums of `count` times four bytes, `step` bytes apart.
+Int4 weighted(const std::uint8_t* from, std::size_t step, const int* weight, int count) {
+  constexpr int kHalf = 1 << (kPrecision - 1);
+  Int4 sum = {kHalf, kHalf, kHalf, kHalf};
+  for (int k = 0; k < count; ++k, from += step) {
+    const int w = weight[k];
+    sum += load_bytes(from) * Int4{w, w, w, w};
+  }
+  return sum;
+}
+
+// Lines of `width` pixels become lines of as many as there are weights. Both passes read and write
+// up to three bytes behind the last pixel.
+void resample_lines(const std::uint8_t* in, std::size_t width, std::size_t lines,
+                    const Weights& weights, std::uint8_t* out) {
+  for (std::size_t line = 0; line < lines; ++line, in += 3 * width) {
+    for (std::size_t i = 0; i < weights.first.size(); ++i, out += 3) {
+      store_clipped(weighted(in + 3 * static_cast<std::size_t>(weights.first[i]), 3,
+                             weights.values.data() + i * weights.width, weights.count[i]),
+                    out);
     }
+  }
+}
+
+// Lines of `bytes` bytes become as many as there are weights.
+void resample_columns(const std::uint8_t* in, std::size_t bytes, const Weights& weights,
+                      std::uint8_t* out) {
+  for (std::size_t i = 0; i < weights.first.size(); ++i, out += bytes) {
+    const std::uint8_t* from = in + static_cast<std::size_t>(weights.first[i]) * bytes;
+    const int* weight = weights.values.data() + i * weights.width;
+    for (std::size_t at = 0; at < bytes; at += kLanes)
+      store_clipped(weighted(from + at, bytes, weight, weights.count[i]), out + at);
   }
 }
 
@@ -146,20 +181,26 @@ wire::Array to_chw_f32(const wire::Bytes& rgb, int width, int height) {
 }
 
 wire::Bytes resampled(const policy::Image& image, int width, int height, const Filter& filter) {
-  wire::Bytes across(image.rgb.begin(), image.rgb.end());
+  wire::Bytes across;
   if (width != image.width) {
-    wire::Bytes out(bytes_of(width, image.height));
-    resample(across.data(), weights_of(image.width, width, filter),
-             {static_cast<std::size_t>(image.height), 3, bytes_of(image.width, 1), 3,
-              bytes_of(width, 1)},
-             out.data());
-    across = std::move(out);
+    wire::Bytes in(bytes_of(image.width, image.height) + kLanes);
+    std::memcpy(in.data(), image.rgb.data(), in.size() - kLanes);
+    across.resize(bytes_of(width, image.height) + kLanes);
+    resample_lines(in.data(), static_cast<std::size_t>(image.width),
+                   static_cast<std::size_t>(image.height), weights_of(image.width, width, filter),
+                   across.data());
+  } else {
+    across.assign(image.rgb.begin(), image.rgb.end());
+    across.resize(across.size() + kLanes);
   }
-  if (height == image.height) return across;
-  wire::Bytes out(bytes_of(width, height));
-  resample(across.data(), weights_of(image.height, height, filter),
-           {static_cast<std::size_t>(width), bytes_of(width, 1), 3, bytes_of(width, 1), 3},
-           out.data());
+  if (height == image.height) {
+    across.resize(across.size() - kLanes);
+    return across;
+  }
+  wire::Bytes out(bytes_of(width, height) + kLanes);
+  resample_columns(across.data(), bytes_of(width, 1), weights_of(image.height, height, filter),
+                   out.data());
+  out.resize(out.size() - kLanes);
   return out;
 }
 
