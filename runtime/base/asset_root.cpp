@@ -3,18 +3,11 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "runtime/base/own_folder.h"
+
 namespace probe {
-namespace {
 
 namespace fs = std::filesystem;
-
-std::string folder_of_program() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? std::string() : program.parent_path().string();
-}
-
-}  // namespace
 
 Result<std::string> find_asset_root(std::string_view chosen) {
   // A place that somebody named is the only one looked at.
@@ -28,7 +21,7 @@ Result<std::string> find_asset_root(std::string_view chosen) {
     return only(named, "VLAPROBE_ASSETS");
   }
   std::string looked;
-  const std::string beside = folder_of_program();
+  const std::string beside = folder_of_code().string();
   for (const std::string& place : {beside.empty() ? beside : beside + "/../assets",
                                    std::string(VLAPROBE_BUILT_FROM) + "/assets"}) {
     if (place.empty()) continue;

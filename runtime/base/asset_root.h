@@ -9,8 +9,8 @@
 namespace probe {
 
 // The folder that the plan's asset paths are relative to: `chosen` if not empty, else the
-// environment's VLAPROBE_ASSETS, else `assets` beside the program's folder, else that of the source
-// tree it was built from. Fails (kAsset) naming every place it looked at.
+// environment's VLAPROBE_ASSETS, else `assets` beside the folder of the program (or of our library,
+// in somebody else's program), else that of the source tree it was built from. Fails (kAsset) naming every place it looked at.
 Result<std::string> find_asset_root(std::string_view chosen = {});
 
 }  // namespace probe

@@ -5,6 +5,9 @@
 
 namespace probe::cli {
 
+// In the environment of what the small program becomes, so that it does not become itself again.
+inline constexpr const char* kHandedOver = "VLAPROBE_HANDED_OVER";
+
 // The verbs of a program, added in the order in which --help lists them.
 using AddVerbs = void (*)(Verb program, int& exit);
 

@@ -8,7 +8,7 @@
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
-#include "runtime/cli/library.h"
+#include "runtime/compile/library.h"
 #include "runtime/cli/load.h"
 
 namespace probe::cli {
@@ -23,7 +23,7 @@ struct AuditArguments {
 int audit_verb(const AuditArguments& arguments) {
   const auto root = find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
-  const auto library = find_library_folders(arguments.assets.library);
+  const auto library = compile::find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());
   const std::span<const std::string> files(&arguments.file, 1);
   auto compiled = build(files, {.asset_root = *root, .library_folders = *library});

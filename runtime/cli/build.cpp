@@ -1,11 +1,11 @@
 // vlaprobe build
 #include <fmt/format.h>
 
+#include "runtime/assets/output_file.h"
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/compile.h"
-#include "runtime/cli/output.h"
 #include "runtime/plan/plan.h"
 #include "runtime/plan/writer.h"
 
@@ -44,7 +44,8 @@ void add_build(Verb app, int& exit) {
     CompiledText text = compile_text(arguments->files, arguments->assets, arguments->suite, true);
     exit = text.exit;
     if (exit != kFine) return;
-    if (auto spared = check_output(arguments->out, text.files, Writes::kPlan); !spared) {
+    if (auto spared = assets::check_output(arguments->out, text.files, assets::Writes::kPlan);
+        !spared) {
       exit = report(spared.failure());
       return;
     }

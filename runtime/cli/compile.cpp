@@ -3,17 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "compiler/diag/json.h"
 #include "compiler/diag/text.h"
-#include "compiler/emit/compile.h"
-#include "runtime/assets/asset_check.h"
-#include "runtime/base/asset_root.h"
-#include "runtime/base/glob.h"
 #include "runtime/base/say.h"
-#include "runtime/cli/library.h"
+#include "runtime/compile/files.h"
 
 namespace probe::cli {
 
@@ -21,32 +16,11 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
                              const std::string& suite, bool want_plan, bool json,
                              bool chosen_only) {
   CompiledText text;
-  auto root = find_asset_root(assets.root);
-  if (!root) {
-    text.exit = report(root.failure());
-    return text;
-  }
-  auto library = find_library_folders(assets.library);
-  if (!library) {
-    text.exit = report(library.failure());
-    return text;
-  }
-  auto inspect = assets::AssetCheck::open(*root);
-  if (!inspect) {
-    text.exit = report(inspect.failure());
-    return text;
-  }
-  CompileOptions options{.asset_root = *root,
-                         .suite = suite,
-                         .library_folders = *library,
-                         .inspect_asset = *std::move(inspect)};
-  if (chosen_only) {
-    options.wants_task = [glob = assets.tasks](std::string_view name) {
-      // A task may be asked for with its suite's prefix before it.
-      return matches_glob(glob, name) || glob.ends_with("_" + std::string(name));
-    };
-  }
-  auto compiled = want_plan ? build(files, options) : check(files, options);
+  auto compiled = compile::compile_files(files, {.assets = assets.root,
+                                                 .library = assets.library,
+                                                 .suite = suite,
+                                                 .tasks = chosen_only ? assets.tasks : "",
+                                                 .wants_plan = want_plan});
   if (!compiled) {
     text.exit = report(compiled.failure());
     return text;
@@ -54,12 +28,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
   const Diagnostics& diagnostics = compiled->diagnostics;
   text.errors = diagnostics.error_count();
   text.warnings = diagnostics.size() - text.errors;
-  text.only_assets_missing =
-      text.errors > 0 && std::all_of(diagnostics.items().begin(), diagnostics.items().end(),
-                                     [](const Diagnostic& said) {
-                                       return said.severity != Severity::kError ||
-                                              said.code == Code::P0202;
-                                     });
+  text.only_assets_missing = compile::lacks_only_assets(diagnostics);
   for (std::size_t i = 0; i < compiled->sources.size(); ++i) {
     text.files.push_back(compiled->sources.file(FileId{static_cast<std::uint32_t>(i)}).name());
   }

@@ -5,10 +5,10 @@
 
 #include <span>
 
+#include "runtime/assets/output_file.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
-#include "runtime/cli/output.h"
 #include "runtime/inspect/svg.h"
 #include "runtime/inspect/top_view.h"
 
@@ -18,7 +18,8 @@ namespace {
 int draw_verb(const DrawArguments& arguments, PhraseDrawing draw_phrases) {
   if (arguments.phrases && draw_phrases == nullptr) return kHandOver;
   const std::string inputs[] = {arguments.file};
-  if (auto spared = check_output(arguments.out, inputs); !spared) return report(spared.failure());
+  if (auto spared = assets::check_output(arguments.out, inputs); !spared)
+    return report(spared.failure());
   AssetOptions assets = arguments.assets;
   assets.tasks = arguments.task;
   LoadedPlan loaded = load_plan(arguments.file, assets);

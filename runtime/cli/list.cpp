@@ -5,7 +5,7 @@
 #include "compiler/emit/compile.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/say.h"
-#include "runtime/cli/library.h"
+#include "runtime/compile/library.h"
 #include "runtime/cli/load.h"
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/task_json.h"
@@ -23,7 +23,7 @@ struct ListArguments {
 int count_text(const ListArguments& arguments) {
   const auto root = find_asset_root(arguments.assets.root);
   if (!root) return report(root.failure());
-  const auto library = find_library_folders(arguments.assets.library);
+  const auto library = compile::find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());
   const auto counted =
       count(std::span<const std::string>(&arguments.file, 1),

@@ -11,13 +11,13 @@
 #include "compiler/emit/analyzed.h"
 #include "compiler/rephrase/published.h"
 #include "compiler/rephrase/table.h"
+#include "runtime/assets/output_file.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/base/glob.h"
 #include "runtime/base/say.h"
-#include "runtime/cli/library.h"
 #include "runtime/cli/load.h"
-#include "runtime/cli/output.h"
+#include "runtime/compile/library.h"
 
 namespace probe::cli {
 namespace {
@@ -41,7 +41,7 @@ Analysed analyse(const std::string& file, const AssetOptions& assets,
                  const std::string& suite = {}) {
   const auto root = find_asset_root(assets.root);
   if (!root) return {std::nullopt, report(root.failure())};
-  const auto library = find_library_folders(assets.library);
+  const auto library = compile::find_library_folders(assets.library);
   if (!library) return {std::nullopt, report(library.failure())};
   auto text = analyze_text(std::span(&file, 1),
                            {.asset_root = *root, .suite = suite, .library_folders = *library});
@@ -172,7 +172,8 @@ int rephrase_verb(const RephraseArguments& arguments) {
   }
   std::vector<std::string> inputs = arguments.not_in;
   inputs.push_back(arguments.file);
-  if (const auto fits = check_output(arguments.out, inputs); !fits) return report(fits.failure());
+  if (const auto fits = assets::check_output(arguments.out, inputs); !fits)
+    return report(fits.failure());
   if (const auto root = find_asset_root(arguments.assets.root)) options->asset_root = *root;
   const Analysed analysed = analyse(arguments.file, arguments.assets, arguments.suite);
   if (!analysed.text) return analysed.exit;

@@ -1,12 +1,11 @@
 // vlaprobe compare
-#include "runtime/report/compare.h"
+#include "runtime/report/compare_folders.h"
 
 #include <fmt/format.h>
 
 #include "runtime/base/say.h"
 #include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
-#include "runtime/report/knowledge.h"
 
 namespace probe::cli {
 namespace {
@@ -18,30 +17,17 @@ struct CompareArguments {
 };
 
 int compare_verb(const CompareArguments& arguments) {
-  const std::vector<std::string> dirs = {arguments.a, arguments.b};
-  auto benchmark = report::load(dirs, {.sets = arguments.sets, .join = false, .prove = true});
-  if (!benchmark) return report(benchmark.failure());
-  if (benchmark->models.size() == 1 && benchmark->policies.size() == 1) {
-    return report(Failure{Fault::kUsage,
-                          "one folder holds a run and the other a model's answers: `vlaprobe "
-                          "report A B` sets them beside each other",
-                          arguments.b});
-  }
-  if (!benchmark->models.empty()) *benchmark = report::models_as_policies(*benchmark);
-  if (benchmark->policies.size() < 2) {
-    return report(Failure{Fault::kUsage, "is the same folder twice: there is nothing to compare",
-                          arguments.a});
-  }
-  const auto compared = report::compare(*benchmark, 0, 1, {.metrics = arguments.metrics});
+  const auto compared = report::compare_folders(
+      arguments.a, arguments.b, {.metrics = arguments.metrics, .sets = arguments.sets});
   if (!compared) return report(compared.failure());
   // Rows that their traces do not bear are in no number, in JSON neither.
-  for (const report::Note& note : benchmark->notes) {
+  for (const report::Note& note : compared->benchmark.notes) {
     if (note.level == "bad") say_notes({&note, 1});
   }
   if (arguments.json) {
-    put("{}\n", report::to_json(*benchmark, *compared).dump(1));
+    put("{}\n", report::to_json(compared->benchmark, compared->comparison).dump(1));
   } else {
-    put("{}", report::to_text(*benchmark, *compared));
+    put("{}", report::to_text(compared->benchmark, compared->comparison));
   }
   return kFine;
 }

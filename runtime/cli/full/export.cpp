@@ -6,10 +6,10 @@
 
 #include <chrono>
 
+#include "runtime/assets/output_file.h"
 #include "runtime/base/clock.h"
 #include "runtime/cli/full/drawn_line.h"
 #include "runtime/cli/full/verbs.h"
-#include "runtime/cli/output.h"
 #include "runtime/export/dataset/check.h"
 #include "runtime/export/dataset/dataset.h"
 
@@ -98,7 +98,7 @@ int export_verb(const ExportArguments& arguments) {
   }
   if (arguments.runs.empty()) return report({Fault::kUsage, "which run is exported?", "RUN"});
   if (arguments.out.empty()) return report({Fault::kUsage, "where to write to?", "-o"});
-  if (auto spared = check_output(arguments.out, arguments.runs); !spared)
+  if (auto spared = assets::check_output(arguments.out, arguments.runs); !spared)
     return report(spared.failure());
   if (arguments.format == "lerobot") return export_dataset(arguments, dataset::Format::kLerobot);
   if (arguments.format == "robomimic")

@@ -7,9 +7,9 @@
 
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
-#include "runtime/cli/full/grafted.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
+#include "runtime/compile/grafted.h"
 #include "runtime/rejudge/readings.h"
 #include "runtime/rejudge/rejudge.h"
 #include "runtime/store/results.h"
@@ -203,7 +203,8 @@ int judge_under_several(const JudgeArguments& arguments, const plan::Plan& plan)
 
 // The plan that `--with` names, or the stored one with the metrics of a text that has no tasks.
 LoadedPlan judging_plan(const JudgeArguments& arguments) {
-  auto text = metrics_text(arguments.with, arguments.assets);
+  auto text =
+      compile::metrics_text(arguments.with, arguments.assets.root, arguments.assets.library);
   if (!text) return load_plan(arguments.with, arguments.assets);
   LoadedPlan loaded;
   const auto stored = store::open_run_plan(arguments.dir);
@@ -211,7 +212,7 @@ LoadedPlan judging_plan(const JudgeArguments& arguments) {
     loaded.exit = report(stored.failure());
     return loaded;
   }
-  auto grafted = graft(*stored, *std::move(text));
+  auto grafted = compile::graft(*stored, *std::move(text));
   if (!grafted) {
     loaded.exit = report(grafted.failure());
     return loaded;
@@ -220,7 +221,7 @@ LoadedPlan judging_plan(const JudgeArguments& arguments) {
   if (const auto rows = store::read_results(arguments.dir)) {
     for (const store::ResultRow& row : *rows) tasks.insert(row.task);
   }
-  for (const MetricLeftOut& out : of_tasks(grafted->left_out, tasks)) say("{}\n", to_text(out));
+  for (const MetricLeftOut& out : compile::of_tasks(grafted->left_out, tasks)) say("{}\n", compile::to_text(out));
   loaded.plan = std::move(grafted->plan);
   return loaded;
 }

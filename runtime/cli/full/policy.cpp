@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
+#include "runtime/assets/output_file.h"
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/until_ended.h"
 #include "runtime/cli/full/verbs.h"
-#include "runtime/cli/output.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/profile_library.h"
@@ -41,7 +41,8 @@ int record_verb(const PolicyArguments& arguments) {
   const auto choice = run::server_choice(arguments.policy, arguments.insecure);
   if (!choice) return report(choice.failure());
   if (arguments.insecure) warn_of_insecure(arguments.policy);
-  if (auto spared = check_output(arguments.transcript); !spared) return report(spared.failure());
+  if (auto spared = assets::check_output(arguments.transcript); !spared)
+    return report(spared.failure());
   const auto recorded = servers::record(*choice);
   if (!recorded) return report(recorded.failure());
   std::size_t lines = 0;

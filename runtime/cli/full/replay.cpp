@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/assets/output_file.h"
 #include "runtime/cli/full/verbs.h"
-#include "runtime/cli/output.h"
 
 namespace probe::cli {
 namespace {
@@ -22,7 +22,7 @@ int replay_verb(const ReplayArguments& arguments) {
   run::ReplayOptions options = arguments.options;
   options.assets = arguments.assets.root;
   for (const std::string& out : {options.video, options.png}) {
-    if (auto spared = check_output(out); !spared) return report(spared.failure());
+    if (auto spared = assets::check_output(out); !spared) return report(spared.failure());
   }
   auto report_or =
       run::replay(arguments.dir, arguments.task, arguments.episode, arguments.seed, options);

@@ -1,21 +1,16 @@
 // vlaprobe report
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <thread>
+#include <span>
+#include <utility>
 
+#include "runtime/assets/output_file.h"
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
-#include "runtime/cli/full/grafted.h"
 #include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
-#include "runtime/cli/output.h"
-#include "runtime/report/episode_documents.h"
-#include "runtime/report/event_tables.h"
 #include "runtime/report/page_data.h"
-#include "runtime/report/page_writer.h"
-#include "runtime/report/published_match.h"
+#include "runtime/report/report_page.h"
 #include "runtime/report/table_text.h"
 
 namespace probe::cli {
@@ -29,106 +24,41 @@ struct ReportArguments {
   std::string command;  // as it was called
 };
 
-std::string dump(const Json& json, int indent = -1) { return json.dump(indent); }
-
-// The plans of the runs with std/events.probe behind their metrics, in the benchmark's order; none
-// when there is no standard library, or one of them cannot be asked: a note then.
-struct EventPlans {
-  std::vector<plan::Plan> plans;
-  rejudge::EventMetrics metrics;
-  std::string note;
-};
-EventPlans event_plans(const report::Benchmark& benchmark) {
-  EventPlans out;
-  for (const plan::Plan& stored : benchmark.plan_files) {
-    auto text = metrics_text(kEventsText, {});
-    if (!text) {
-      return {.plans = {},
-              .metrics = {},
-              .note =
-                  "no events are told: std/events.probe is not "
-                  "there, or has a mistake"};
-    }
-    auto grafted = graft(stored, *std::move(text));
-    if (!grafted) {
-      return {
-          .plans = {}, .metrics = {}, .note = "no events are told: " + to_text(grafted.failure())};
-    }
-    out.plans.push_back(std::move(grafted->plan));
-    out.metrics = std::move(grafted->metrics);
-  }
-  return out;
-}
-
-report::EpisodeDocuments read_traces(const report::Benchmark& benchmark, const EventPlans& events,
-                                     const ReportArguments& arguments) {
-  std::vector<report::EpisodeTrace> episodes;
-  episodes.reserve(benchmark.episodes.size());
-  for (const report::Episode& e : benchmark.episodes) {
-    const auto plan = static_cast<std::size_t>(e.plan);
-    episodes.push_back({.row = &e.row,
-                        .plan = &benchmark.plan_files[plan],
-                        .task = e.task,
-                        .events = events.plans.empty() ? nullptr : &events.plans[plan]});
-  }
-  std::vector<std::string> metrics;
-  for (const report::Metric& metric : benchmark.metrics) metrics.push_back(metric.name);
-  const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return report::episode_documents(episodes, metrics, benchmark.tasks.size(),
-                                   {.jobs = arguments.jobs > 0 ? arguments.jobs : all,
-                                    .traces = !arguments.no_traces,
-                                    .events = events.metrics});
-}
-
 Status write_report(const ReportArguments& arguments) {
   std::vector<std::string> inputs = arguments.published;
   inputs.push_back(arguments.floors);
-  PROBE_TRY(check_output(arguments.out, inputs));
-  PROBE_ASSIGN(report::Benchmark benchmark,
-               report::load(arguments.dirs, {.sets = arguments.sets, .prove = true}));
-  report::PageOptions options{.title = arguments.title,
-                              .command = arguments.command,
-                              .program = std::string("vlaprobe ") + version(),
-                              .relative_to = "",
-                              .published = {},
-                              .models = true};
-  options.relative_to = std::filesystem::path(arguments.out).parent_path().string();
-  for (const std::string& path : arguments.published) {
-    PROBE_ASSIGN(auto table, report::read_published(path));
-    for (report::Note& note : report::unmatched(benchmark, table))
-      benchmark.notes.push_back(std::move(note));
-    options.published.push_back(std::move(table));
-  }
-  report::Tables tables = report::make_tables(benchmark);
-  if (!arguments.floors.empty()) PROBE_TRY(report::add_floors(arguments.floors, benchmark, tables));
+  PROBE_TRY(assets::check_output(arguments.out, inputs));
+  const report::ReportRequest request{.dirs = arguments.dirs,
+                                      .sets = arguments.sets,
+                                      .published = arguments.published,
+                                      .floors = arguments.floors,
+                                      .title = arguments.title,
+                                      .command = arguments.command,
+                                      .program = std::string("vlaprobe ") + version(),
+                                      .out = arguments.out,
+                                      .traces = !arguments.no_traces,
+                                      .jobs = arguments.jobs};
+  PROBE_ASSIGN(report::LoadedReport loaded, report::load_report(request));
   if (!arguments.format.empty()) {
-    const std::string text = report::table_text(benchmark, tables, options.published,
-                                                *report::table_format(arguments.format));
-    say_notes(benchmark.notes);
+    const std::string text =
+        report::table_text(loaded.benchmark, loaded.tables, loaded.options.published,
+                           *report::table_format(arguments.format));
+    say_notes(loaded.benchmark.notes);
     if (!arguments.out.empty()) return write_file(arguments.out, std::as_bytes(std::span(text)));
     put("{}", text);
     return {};
   }
-  EventPlans events;
-  if (!arguments.no_traces) events = event_plans(benchmark);
-  if (!events.note.empty()) benchmark.notes.push_back({.level = "note", .text = events.note});
-  report::EpisodeDocuments episodes = read_traces(benchmark, events, arguments);
-  options.events = report::events_json(benchmark, {events.metrics, std::move(episodes.events)});
+  report::EpisodeDocuments episodes = report::read_episodes(loaded, request);
   if (arguments.json) {
-    put("{}\n", dump(report::page_data(benchmark, tables, options), 1));
+    put("{}\n", report::page_data(loaded.benchmark, loaded.tables, loaded.options).dump(1));
     if (arguments.out.empty()) return {};
   }
-  for (std::string& note : episodes.notes)
-    benchmark.notes.push_back({.level = "warn", .text = std::move(note)});
-  const std::string page =
-      report::write_page({.data = dump(report::page_data(benchmark, tables, options)),
-                          .timelines = std::move(episodes.timelines),
-                          .whys = std::move(episodes.whys)});
+  const std::string page = report::page_text(loaded, std::move(episodes));
   PROBE_TRY(write_file(arguments.out, std::as_bytes(std::span(page))));
-  say_notes(benchmark.notes);
-  say("{}: {} {}, {} episodes, {:.1f} MB\n", arguments.out, benchmark.policies.size(),
-      benchmark.policies.size() == 1 ? "policy" : "policies", benchmark.episodes.size(),
-      static_cast<double>(page.size()) / 1e6);
+  say_notes(loaded.benchmark.notes);
+  say("{}: {} {}, {} episodes, {:.1f} MB\n", arguments.out, loaded.benchmark.policies.size(),
+      loaded.benchmark.policies.size() == 1 ? "policy" : "policies",
+      loaded.benchmark.episodes.size(), static_cast<double>(page.size()) / 1e6);
   return {};
 }
 

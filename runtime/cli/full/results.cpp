@@ -9,9 +9,9 @@
 #include "runtime/ask/answers.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/answer_results.h"
-#include "runtime/cli/full/grafted.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
+#include "runtime/compile/grafted.h"
 #include "runtime/rejudge/event_table.h"
 #include "runtime/rejudge/tally.h"
 #include "runtime/run/delivery.h"
@@ -84,12 +84,13 @@ int delivery_verb(const ResultsArguments& arguments, const store::ProvenResults&
 
 // What happened in the episodes. One whose trace does not bear its row is told of with the reason.
 int events_verb(ResultsArguments arguments) {
-  if (arguments.with.empty()) arguments.with = kEventsText;
+  if (arguments.with.empty()) arguments.with = compile::kEventsText;
   const auto stored = store::open_run_plan(arguments.dir);
   if (!stored) return report(stored.failure());
   auto rows = store::read_results(arguments.dir);
   if (!rows) return report(rows.failure());
-  auto text = metrics_text(arguments.with, arguments.assets);
+  auto text =
+      compile::metrics_text(arguments.with, arguments.assets.root, arguments.assets.library);
   if (!text) {
     const LoadedPlan loaded = load_plan(arguments.with, arguments.assets);
     if (!loaded.plan) return loaded.exit;
@@ -97,7 +98,7 @@ int events_verb(ResultsArguments arguments) {
                    "has tasks of its own; events are told by a text of metrics alone",
                    arguments.with});
   }
-  const auto grafted = graft(*stored, *std::move(text));
+  const auto grafted = compile::graft(*stored, *std::move(text));
   if (!grafted) return report(grafted.failure());
   int exit = kFine;
   std::vector<rejudge::EventRow> told;
@@ -124,7 +125,7 @@ int events_verb(ResultsArguments arguments) {
   } else {
     put("{}", rejudge::event_tally(told));
   }
-  for (const MetricLeftOut& out : of_tasks(grafted->left_out, tasks)) say("{}\n", to_text(out));
+  for (const MetricLeftOut& out : compile::of_tasks(grafted->left_out, tasks)) say("{}\n", compile::to_text(out));
   return exit;
 }
 

@@ -173,7 +173,8 @@ void print_summary(const run::RunSummary& summary) {
   say("{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total, summary.out,
       summary.done, summary.skipped, summary.invalid);
   if (summary.not_attempted > 0)
-    say("{} of them were not attempted: the policy has no solution in skills for them; rows say why\n",
+    say("{} of them were not attempted: the policy has no solution in skills for them; rows say "
+        "why\n",
         summary.not_attempted);
   if (summary.done > 0) say("{}\n", store::to_text(summary.call));
   if (summary.call.retried > 0) {

@@ -3,10 +3,10 @@
 
 #include <optional>
 
+#include "runtime/assets/output_file.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
-#include "runtime/cli/output.h"
 #include "runtime/run/replay.h"
 #include "runtime/show/preview.h"
 
@@ -28,7 +28,7 @@ void add_camera_option(Verb verb, SheetArguments& arguments) {
 // Before anything is drawn; false when `exit` says why not.
 bool may_write(const SheetArguments& arguments, int& exit) {
   const std::string inputs[] = {arguments.input};
-  const Status spared = check_output(arguments.out, inputs);
+  const Status spared = assets::check_output(arguments.out, inputs);
   if (!spared) exit = report(spared.failure());
   return spared.ok();
 }

@@ -1,5 +1,6 @@
 // vlaprobe slurm
 #include "runtime/cluster/slurm.h"
+#include "runtime/base/own_folder.h"
 #include "runtime/base/say.h"
 
 #include <fmt/format.h>
@@ -10,7 +11,6 @@
 #include "runtime/cli/full/ask_options.h"
 #include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/verbs.h"
-#include "runtime/cli/library.h"
 
 namespace probe::cli {
 namespace {

@@ -8,6 +8,7 @@
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/explain.h"
+#include "runtime/rejudge/explain_json.h"
 
 namespace probe::cli {
 namespace {
@@ -18,39 +19,6 @@ struct WhyArguments {
   std::optional<int> seed;
   bool json = false;
 };
-
-void print_json(const rejudge::EpisodeWhy& why) {
-  Json json = {
-      {"task", why.task}, {"episode", why.episode}, {"seed", why.seed}, {"steps", why.steps}};
-  json["invalid"] = why.invalid ? Json(*why.invalid) : nullptr;
-  json["remark"] = why.remark ? Json(*why.remark) : nullptr;
-  for (const rejudge::ClaimWhy& claim : why.claims) {
-    json["claims"].push_back({{"text", claim.text},
-                              {"object", claim.object},
-                              {"denoted", claim.denoted},
-                              {"holds", claim.holds}});
-  }
-  json["metrics"] = Json::array();
-  for (const rejudge::MetricWhy& metric : why.metrics) {
-    Json entry = {{"metric", metric.name},     {"value", metric.value}, {"shown", metric.shown},
-                  {"readout", metric.readout}, {"step", metric.step},   {"when", metric.when},
-                  {"file", metric.file},       {"line", metric.line}};
-    if (metric.is_bool) entry["value"] = metric.value != 0;
-    entry["conditions"] = Json::array();
-    for (const rejudge::Condition& c : metric.conditions) {
-      entry["conditions"].push_back({{"file", c.file},
-                                     {"line", c.line},
-                                     {"text", c.text},
-                                     {"bodies", c.bodies},
-                                     {"measured", c.measured},
-                                     {"truth", c.is_number ? Json(nullptr) : Json(c.truth)},
-                                     {"decides", c.decides},
-                                     {"alike", c.alike}});
-    }
-    json["metrics"].push_back(std::move(entry));
-  }
-  put("{}\n", json.dump(1));
-}
 
 void print_metric(const rejudge::MetricWhy& metric) {
   put("{} = {} {} ({})\n", metric.name, metric.shown, metric.when, metric.readout);
@@ -173,7 +141,7 @@ int why_verb(const WhyArguments& arguments) {
                                 arguments.metric);
   if (!why) return report(why.failure());
   if (arguments.json) {
-    print_json(*why);
+    put("{}\n", rejudge::to_json(*why).dump(1));
     return kFine;
   }
   put("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);

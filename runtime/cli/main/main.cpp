@@ -9,8 +9,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "runtime/base/own_folder.h"
 #include "runtime/cli/app.h"
-#include "runtime/cli/library.h"
 
 int main(int argc, char** argv) {
   using namespace probe;
@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
       argc, argv,
       [](cli::Verb program, int& status) { cli::add_text_verbs(program, status, nullptr); }, false);
   if (exit != cli::kHandOver) return exit;
-  const std::string full = (cli::folder_of_program() / "vlaprobe-full").string();
+  const std::string full = (folder_of_program() / "vlaprobe-full").string();
   // A copy of this program under that name would go on starting itself.
   if (std::getenv(cli::kHandedOver) != nullptr) {
     return cli::report({Fault::kIo, "is the program without the other verbs", full});

@@ -1,5 +1,5 @@
 // What no -o may name.
-#include "runtime/cli/output.h"
+#include "runtime/assets/output_file.h"
 
 #include <doctest/doctest.h>
 
@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string refusal(const fs::path& out, const std::vector<std::string>& inputs = {}) {
-  const Status status = check_output(out.string(), inputs);
+  const Status status = assets::check_output(out.string(), inputs);
   if (status.ok()) return "";
   CHECK(status.failure().code == Fault::kUsage);
   CHECK(status.failure().where == out.string());

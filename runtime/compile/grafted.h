@@ -8,17 +8,18 @@
 #include <vector>
 
 #include "compiler/emit/graft.h"
-#include "runtime/cli/verbs.h"
 #include "runtime/plan/plan.h"
 #include "runtime/rejudge/events.h"
 
-namespace probe::cli {
+namespace probe::compile {
 
 inline constexpr char kEventsText[] = "std/events.probe";
 
 // What `path` says when it is a text of metrics alone, looked for as it is named and then in the
 // standard library; nothing when it is another text or a plan, or has a mistake.
-std::optional<AnalyzedText> metrics_text(const std::string& path, const AssetOptions& assets);
+// `assets` and `library` as of FilesRequest.
+std::optional<AnalyzedText> metrics_text(const std::string& path, const std::string& assets = {},
+                                         const std::string& library = {});
 
 struct GraftedPlan {
   plan::Plan plan;
@@ -34,4 +35,4 @@ std::vector<MetricLeftOut> of_tasks(std::vector<MetricLeftOut> left_out,
 // "metric `placed_it` is left out of 3 tasks, such as open_top: ...".
 std::string to_text(const MetricLeftOut& out);
 
-}  // namespace probe::cli
+}  // namespace probe::compile

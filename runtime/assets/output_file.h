@@ -1,5 +1,5 @@
-// One rule for every verb that writes a file with -o or the like: what was asked about is not what
-// is written over.
+// One rule for everything that writes a file where it is told to: what was asked about is not what is
+// written over.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 #include "runtime/base/result.h"
 
-namespace probe::cli {
+namespace probe::assets {
 
 enum class Writes { kPlan, kOther };
 
@@ -18,4 +18,4 @@ enum class Writes { kPlan, kOther };
 Status check_output(const std::string& out, std::span<const std::string> inputs = {},
                     Writes writes = Writes::kOther);
 
-}  // namespace probe::cli
+}  // namespace probe::assets

@@ -1,4 +1,4 @@
-#include "runtime/cli/full/grafted.h"
+#include "runtime/compile/grafted.h"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "runtime/base/asset_root.h"
-#include "runtime/cli/library.h"
+#include "runtime/compile/library.h"
 
-namespace probe::cli {
+namespace probe::compile {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,11 +26,12 @@ std::string find_text(const std::string& path, const std::vector<std::string>& f
 
 }  // namespace
 
-std::optional<AnalyzedText> metrics_text(const std::string& path, const AssetOptions& assets) {
+std::optional<AnalyzedText> metrics_text(const std::string& path, const std::string& assets,
+                                         const std::string& library) {
   if (!path.ends_with(".probe")) return std::nullopt;
-  const auto folders = find_library_folders(assets.library);
+  const auto folders = find_library_folders(library);
   if (!folders) return std::nullopt;
-  const auto root = find_asset_root(assets.root);  // of metrics alone no asset is read
+  const auto root = find_asset_root(assets);  // of metrics alone no asset is read
   const std::string file = find_text(path, *folders);
   auto text = analyze_text(std::span(&file, 1), {.asset_root = root ? *root : std::string(),
                                                  .library_folders = *folders});
@@ -67,4 +68,4 @@ std::string to_text(const MetricLeftOut& out) {
                            out.tasks.size(), first.name, first.why);
 }
 
-}  // namespace probe::cli
+}  // namespace probe::compile

@@ -1,4 +1,4 @@
-#include "runtime/cli/output.h"
+#include "runtime/assets/output_file.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "runtime/plan/format.h"
 #include "runtime/base/folder_kind.h"
 
-namespace probe::cli {
+namespace probe::assets {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ Status check_output(const std::string& out, std::span<const std::string> inputs,
   return {};
 }
 
-}  // namespace probe::cli
+}  // namespace probe::assets

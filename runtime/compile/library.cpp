@@ -1,9 +1,11 @@
-#include "runtime/cli/library.h"
+#include "runtime/compile/library.h"
 
 #include <cstdlib>
 #include <filesystem>
 
-namespace probe::cli {
+#include "runtime/base/own_folder.h"
+
+namespace probe::compile {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,21 +33,16 @@ Result<std::vector<std::string>> only(std::string_view folder, const char* who) 
 
 }  // namespace
 
-fs::path folder_of_program() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path();
-}
-
 Result<std::vector<std::string>> find_library_folders(std::string_view chosen) {
   if (!chosen.empty()) return only(chosen, "--std");
   if (const char* named = std::getenv("VLAPROBE_STD"); named != nullptr && *named != '\0') {
     return only(named, "VLAPROBE_STD");
   }
   for (const fs::path& place :
-       {folder_of_program() / "../dsl", fs::path(VLAPROBE_BUILT_FROM) / "dsl"}) {
+       {folder_of_code() / "../dsl", fs::path(VLAPROBE_BUILT_FROM) / "dsl"}) {
     if (holds_library(place)) return with_suite(place);
   }
   return std::vector<std::string>();
 }
 
-}  // namespace probe::cli
+}  // namespace probe::compile
