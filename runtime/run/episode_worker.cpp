@@ -41,6 +41,8 @@ Status EpisodeWorker::begin() {
 
 Status EpisodeWorker::run(std::size_t index) {
   const EpisodeJob& job = shared_.jobs[index];
+  const Failure stopped{Fault::kUsage, "stopped; the same call continues", shared_.options.out};
+  if (is_stopped()) return stopped;
   if (!stage_ || stage_->task() != job.task) {
     stage_.reset();  // frees the old before the new is made
     PROBE_ASSIGN(stage_, stage::Stage::create(shared_.plan, job.task, shared_.assets));
@@ -51,10 +53,11 @@ Status EpisodeWorker::run(std::size_t index) {
   for (int attempt = 0;; ++attempt) {
     auto played = write(job, header, path);
     if (policy_->is_earlier_spoiled() && attempt == 0) PROBE_TRY(spoil_last());
-    if (!played) {
+    // What was under way when the end was asked for is nobody's failure.
+    if (!played || is_stopped()) {
       std::error_code ignored;
       fs::remove(path, ignored);
-      return played.failure();
+      return played ? stopped : played.failure();
     }
     if (!is_spoiled(*played) || attempt >= shared_.options.retries || shared_.given_up ||
         is_exchanged()) {

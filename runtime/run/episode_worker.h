@@ -56,6 +56,7 @@ class EpisodeWorker {
   bool is_spoiled(const Played& played) const;
   Status spoil_last();
   bool is_exchanged() const;
+  bool is_stopped() const { return shared_.options.stopped && shared_.options.stopped(); }
   Status commit(const Played& played, int task_order);
   Status drop(const Played& played, const std::string& path);
   Failure give_up(const std::string& last) const;

@@ -72,6 +72,9 @@ struct RunOptions {
   std::string assets;                      // asset root, see find_asset_root
   // Called from worker threads, one call at a time.
   std::function<void(const RunProgress&)> progress;
+  // Asked before and behind each episode, by any worker: true ends the call (kUsage). The episodes
+  // behind which it was true are not stored; the same call continues with them.
+  std::function<bool()> stopped = {};
   std::optional<OwnPolicy> own_policy;  // acts in place of `policy`, which then is only a name
 };
 

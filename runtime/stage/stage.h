@@ -73,6 +73,8 @@ class Stage {
   std::span<const vm::BodyStart> body_starts() const { return world_->starts(); }
   const vm::Judge& judge() const { return judge_; }
   const policy::Privileged& privileged() const { return world_->privileged(); }
+  // What observe() says of the robot, without the pictures.
+  policy::Proprioception proprioception() const { return world_->proprioception(); }
   // The robot's joints in drive order, then those of fixtures: rad and m, rad/s and m/s.
   std::span<const double> q() const { return world_->q(); }
   std::span<const double> u() const { return world_->u(); }
