@@ -1,0 +1,38 @@
+"""Policies of the program's own, and of servers, for worlds that are stepped in Python."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import _vlaprobe
+from .env import Env
+
+
+class Policy:
+    """What ``--policy TEXT`` is to ``vlaprobe run``: "expert", "noisy:0.01", "random", "openpi://HOST:PORT?profile=NAME".
+
+    ::
+
+        expert = vlaprobe.Policy("expert")
+        env.reset(options={"episode": 3})
+        expert.begin(env)
+        env.step(expert.act(env))
+    """
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self._policy = _vlaprobe.Policy(text)
+
+    def begin(self, env: Env, seed: int = 0) -> None:
+        """Behind env.reset(): the policy is told of the episode. `seed` is what it draws from, with the episode."""
+        self._policy.begin(env._open(), seed)
+
+    def act(self, env: Env) -> np.ndarray:
+        """float64 (7,): what the policy does about what the environment shows now."""
+        return self._policy.act(env._open())
+
+    def close(self) -> None:
+        self._policy.close()
+
+    def __repr__(self) -> str:
+        return f"vlaprobe.Policy({self.text!r})"

@@ -1,0 +1,39 @@
+// The Python package, by tests in Python: each file of the folder `python`, run by Debian's Python
+// with the module as it was built.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/runtime/cli/program.h"
+
+namespace probe {
+namespace {
+
+constexpr const char* kPython = "/usr/bin/python3";
+
+void run(const std::string& file) {
+#if defined(__SANITIZE_ADDRESS__)
+  MESSAGE("SKIPPED: Python is not built with the address sanitizer that the module wants");
+  return;
+#endif
+  REQUIRE_MESSAGE(std::filesystem::exists(VLAPROBE_BINARY_DIR "/python/vlaprobe/__init__.py"),
+                  "python3-dev and pybind11-dev are installed, so that the module is built");
+  const test::Sandbox sandbox;
+  const std::string folder = VLAPROBE_SOURCE_DIR "/tests/runtime/api/python";
+  const test::Outcome ran = sandbox.run(
+      "env VLAPROBE_SOURCE_DIR='" VLAPROBE_SOURCE_DIR "' VLAPROBE_BINARY_DIR='" VLAPROBE_BINARY_DIR
+      "' PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" VLAPROBE_BINARY_DIR "/python:" +
+      folder + "' " + kPython + " '" + folder + "/" + file + "'");
+  CHECK_MESSAGE(ran.exit == 0, ran.err);
+  CHECK_MESSAGE(ran.err.find("\nOK") != std::string::npos, ran.err);
+}
+
+TEST_CASE("plans from Python") { run("plan_test.py"); }
+TEST_CASE("one world from Python keeps gymnasium's rules") { run("env_test.py"); }
+TEST_CASE("worlds side by side keep gymnasium's rules") { run("vec_test.py"); }
+TEST_CASE("the recipes of the Python package's README run") { run("readme_test.py"); }
+TEST_CASE("callables are evaluated by the program's runner") { run("evaluate_test.py"); }
+
+}  // namespace
+}  // namespace probe
