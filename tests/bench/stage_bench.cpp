@@ -1,8 +1,12 @@
-// What a change of task costs: one worker that plays two tasks of different scenes in turns.
+// What a change of task costs, one worker that plays two tasks of different scenes in turns; and
+// what a control step does.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <memory>
+#include <vector>
 
 #include "runtime/stage/stage.h"
 #include "tests/bench/plan_fixture.h"
@@ -33,6 +37,30 @@ void two_tasks(benchmark::State& state) {
                                                  benchmark::Counter::kIsRate);
 }
 
+// The median control step without pictures, of the actions that python_bench.py gives, too.
+void step(benchmark::State& state) {
+  const auto stage =
+      need(probe::stage::Stage::create(probe::bench::suite_plan(), probe::bench::bench_task(),
+                                       probe::bench::suite_assets(), {.pictures = false}));
+  std::vector<double> microseconds;
+  for (auto _ : state) {
+    state.PauseTiming();
+    need(stage->reset(0));
+    state.ResumeTiming();
+    for (int number = 0; number < 60; ++number) {
+      const auto begin = std::chrono::steady_clock::now();
+      need(stage->step({number % 20 < 10 ? 0.005 : -0.005, 0, 0.001, 0, 0, 0, 1}));
+      microseconds.push_back(
+          std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin)
+              .count());
+    }
+  }
+  const auto middle = microseconds.begin() + static_cast<std::ptrdiff_t>(microseconds.size() / 2);
+  std::nth_element(microseconds.begin(), middle, microseconds.end());
+  state.counters["median_us"] = *middle;
+}
+
 BENCHMARK(two_tasks)->Name("stage/two_tasks")->Unit(benchmark::kMillisecond)->MinTime(1);
+BENCHMARK(step)->Name("stage/step")->Unit(benchmark::kMillisecond)->Iterations(10);
 
 }  // namespace
