@@ -79,6 +79,8 @@ Status give_column(const api::Worlds& worlds, const api::Columns& columns, std::
       return give(worlds.truncated(), {n});
     case VLAPROBE_FIELD_BEGUN:
       return give(worlds.begun(), {n});
+    case VLAPROBE_FIELD_ENDED:
+      return give(worlds.ended(), {n});
     default:
       return api::usage("there is no field " + std::to_string(field));
   }

@@ -339,7 +339,8 @@ typedef enum vlaprobe_field {
   VLAPROBE_FIELD_SUCCESS = 9,     /* U8 (worlds) */
   VLAPROBE_FIELD_TERMINATED = 10, /* U8 (worlds): by the last step; behind a reset 0 */
   VLAPROBE_FIELD_TRUNCATED = 11,  /* U8 (worlds) */
-  VLAPROBE_FIELD_BEGUN = 12       /* U8 (worlds): the last step began an episode */
+  VLAPROBE_FIELD_BEGUN = 12,      /* U8 (worlds): the last step began an episode */
+  VLAPROBE_FIELD_ENDED = 13       /* U8 (worlds): it ended one that counts */
 } vlaprobe_field;
 /* What is now: behind the last reset or step. `camera` is read for pictures alone. */
 VLAPROBE_EXPORT int32_t vlaprobe_batch_array(const vlaprobe_batch* batch, int32_t field,

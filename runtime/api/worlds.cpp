@@ -31,6 +31,7 @@ Worlds::Worlds(std::shared_ptr<const SharedPlan> plan, std::vector<std::uint32_t
       terminated_(options.worlds),
       truncated_(options.worlds),
       begun_(options.worlds),
+      ended_(options.worlds),
       faults_(options.worlds),
       crew_(options.threads) {}
 
@@ -169,7 +170,7 @@ Status Worlds::reset(std::span<const std::uint8_t> mask, std::span<const vlaprob
   }
   std::vector<std::optional<Failure>> failed(count());
   crew_.each(count(), [&](std::size_t world) {
-    begun_[world] = terminated_[world] = truncated_[world] = 0;
+    begun_[world] = ended_[world] = terminated_[world] = truncated_[world] = 0;
     faults_[world].reset();
     if (!is_meant(world)) return;
     try {
@@ -216,7 +217,7 @@ Status Worlds::step(std::span<const double> actions, std::span<const vlaprobe_st
 
 void Worlds::move(std::size_t world, const policy::Action& action, const vlaprobe_start* next) {
   faults_[world].reset();
-  begun_[world] = terminated_[world] = truncated_[world] = 0;
+  begun_[world] = ended_[world] = terminated_[world] = truncated_[world] = 0;
   if (over_[world] != 0) {
     if (auto begun = begin(world, *next); !begun) spoil(world, begun.failure());
     return;
@@ -228,9 +229,10 @@ void Worlds::move(std::size_t world, const policy::Action& action, const vlaprob
   const bool goes_on_at_once = ends && options_.autoreset == VLAPROBE_SAME_STEP;
   if (auto shown = show(world, goes_on_at_once ? final_ : now_); !shown)
     return spoil(world, shown.failure());
-  over_[world] = ends ? 1 : 0;
+  over_[world] = ended_[world] = ends ? 1 : 0;
   if (goes_on_at_once) {
-    if (auto begun = begin(world, *next); !begun) return spoil(world, begun.failure());
+    // What has ended has ended, whether or not the next one begins.
+    if (auto begun = begin(world, *next); !begun) spoil(world, begun.failure());
   }
   terminated_[world] = terminated ? 1 : 0;
   truncated_[world] = truncated ? 1 : 0;

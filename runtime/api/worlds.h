@@ -58,6 +58,8 @@ class Worlds {
   const std::vector<std::uint8_t>& terminated() const { return terminated_; }
   const std::vector<std::uint8_t>& truncated() const { return truncated_; }
   const std::vector<std::uint8_t>& begun() const { return begun_; }
+  // The last step ended an episode that counts, whatever came of the next one.
+  const std::vector<std::uint8_t>& ended() const { return ended_; }
   // What went wrong with a world in the last step; null: nothing.
   const std::string* fault(std::size_t world) const {
     return faults_[world] ? &*faults_[world] : nullptr;
@@ -86,8 +88,8 @@ class Worlds {
   std::size_t joints_ = 0;
   std::vector<std::unique_ptr<World>> worlds_;
   Columns now_, final_;
-  std::vector<std::uint8_t> over_;                            // whose next turn is to begin anew
-  std::vector<std::uint8_t> terminated_, truncated_, begun_;  // of the last step
+  std::vector<std::uint8_t> over_;  // whose next turn is to begin anew
+  std::vector<std::uint8_t> terminated_, truncated_, begun_, ended_;  // of the last step
   std::vector<std::optional<std::string>> faults_;
   Crew crew_;  // the last: its threads end before what they work on
 };

@@ -24,6 +24,7 @@ FIELD_SUCCESS: int
 FIELD_TERMINATED: int
 FIELD_TRUNCATED: int
 FIELD_BEGUN: int
+FIELD_ENDED: int
 
 class Plan:
     root: str

@@ -178,13 +178,15 @@ class VectorEnv(_gym.VectorEnv):
         faults = [batch.fault(i) for i in range(self.num_envs)]
         failed = np.array([fault is not None for fault in faults])
         ended = terminations | truncations
-        at_end = ended & ~failed if self._mode is AutoresetMode.SAME_STEP else np.zeros(self.num_envs, bool)
+        at_end = np.zeros(self.num_envs, bool)
+        if self._mode is AutoresetMode.SAME_STEP:
+            at_end = self._flags(_vlaprobe.FIELD_ENDED)  # whether or not the next episode could begin
         achieved = success
         if at_end.any():
             final = batch.final(_vlaprobe.FIELD_SUCCESS, 0, True).astype(bool)
             achieved = np.where(at_end, final, success)
         rewards = achieved.astype(np.float64) - self._success
-        rewards[(begun & ~at_end) | failed] = 0.0
+        rewards[(begun | failed) & ~at_end] = 0.0
         observations = self._observations(batch.array)
         infos = self._infos(batch.array, every)
         if failed.any():

@@ -24,6 +24,21 @@ def program(*words: str) -> subprocess.CompletedProcess:
     return subprocess.run([os.path.join(BINARY, "vlaprobe"), *words], capture_output=True, text=True, check=False)
 
 
+@functools.lru_cache(maxsize=None)
+def sky_plan() -> vlaprobe.Plan:
+    """`carrot_on_plate`, and `carrot_from_the_sky`, whose carrot is dropped from farther than a world reaches."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "high.probe")
+        with open(path, "w") as file:
+            file.write(
+                f'use "{SUITE}"\n'
+                "layout high like grid_24 { drop 900m settle 10s }\n"
+                "variant carrot_from_the_sky of carrot_on_plate { layout high }\n"
+                "suite high { tasks { carrot_on_plate, carrot_from_the_sky }; seeds 42 }\n"
+            )
+        return vlaprobe.compile(path, suite="high")
+
+
 def small_env(**options):
     """Pictures that cost little."""
     return vlaprobe.make(suite_plan(), options.pop("task", TASK), width=64, height=48, **options)

@@ -7,7 +7,7 @@ import unittest
 
 import numpy as np
 import vlaprobe
-from common import TASK, Case, act, small_env, suite_plan
+from common import TASK, Case, act, sky_plan, small_env, suite_plan
 
 
 class EnvTest(Case):
@@ -210,6 +210,17 @@ class EnvTest(Case):
         self.assertSays(raised.exception, "over", "60")
         env.reset()
         env.step(act(0))
+
+    def test_a_start_that_fails_is_raised_with_its_place(self):
+        env = vlaprobe.make(sky_plan(), "carrot_from_the_sky", cameras=False)
+        with self.assertRaises(vlaprobe.Error) as raised:
+            env.reset(options={"episode": 2})
+        self.assertSays(raised.exception, "carrot_from_the_sky", "episode 2", "farther than 100 m")
+        self.assertEqual(raised.exception.code, "world")
+        for call in (lambda: env.step(act(0)), env.save, env.state_hash):
+            with self.assertRaises(vlaprobe.UsageError) as raised:
+                call()
+            self.assertSays(raised.exception, "failed", "reset")
 
     def test_a_closed_env_says_so(self):
         env = small_env()

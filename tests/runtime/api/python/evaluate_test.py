@@ -11,7 +11,7 @@ import unittest
 
 import numpy as np
 import vlaprobe
-from common import SUITE, TASK, Case, act, program, suite_plan
+from common import SUITE, TASK, Case, act, program, sky_plan, suite_plan
 
 
 def reach(batch):
@@ -187,6 +187,19 @@ class EvaluateTest(Case):
         self.assertNotIn("runs.py", rows[0]["invalid"])
         self.assertIsNone(rows[5]["invalid"])
         self.assertEqual(run.results().counts(), {TASK: (0, 1)})
+
+    def test_a_start_that_fails_is_a_row_with_its_reason(self):
+        asked = []
+
+        def reached(batch):
+            asked.extend(batch["task"])
+            return reach(batch)
+
+        run = vlaprobe.evaluate(reached, sky_plan(), episodes=0, out=self.folder() + "/run", progress=False)
+        self.assertEqual((run.total, run.invalid), (2, 1))
+        self.assertEqual(set(asked), {TASK})
+        (row,) = [row for row in run.results() if row["invalid"]]
+        self.assertSays(row["invalid"], "world:", "farther than 100 m")
 
     def test_progress_is_told_and_can_end_the_run(self):
         told = []

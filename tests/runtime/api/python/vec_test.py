@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 import vlaprobe
-from common import TASK, Case, act, small_env, suite_plan
+from common import TASK, Case, act, sky_plan, small_env, suite_plan
 from vlaprobe._gym import AutoresetMode
 
 
@@ -115,6 +115,35 @@ class VecTest(Case):
         for mask in ([True, False], np.zeros(3, bool), np.ones(3)):
             with self.assertRaises(vlaprobe.UsageError):
                 env.reset(options={"reset_mask": mask})
+
+    def test_a_world_that_fails_is_invalid_and_the_others_go_on(self):
+        for autoreset in ("next_step", "same_step"):
+            env = vlaprobe.make_vec(
+                sky_plan(), [TASK, "carrot_from_the_sky"], num_envs=2, threads=2, cameras=False, autoreset=autoreset
+            )
+            with self.assertRaises(vlaprobe.Error) as raised:
+                env.reset(seed=0)
+            self.assertSays(raised.exception, "world 1", "carrot_from_the_sky", "farther than 100 m")
+            _, infos = env.reset(seed=0, options={"task": TASK})
+            for step in range(60 if autoreset == "next_step" else 59):
+                *_, infos = env.step(actions(2, step))
+                self.assertNotIn("invalid", infos)
+            for again in range(2):  # world 1 is given no other task
+                _, rewards, terminations, truncations, infos = env.step(actions(2, 59))
+                np.testing.assert_array_equal(infos["_invalid"], [False, True])
+                self.assertSays(infos["invalid"][1], "world 1", "farther than 100 m")
+                self.assertTrue(truncations[1] and not terminations[1])
+                self.assertEqual((rewards[1], infos["is_success"][1]), (0, False))
+                # The episode that ended before counts, although the next one could not begin.
+                counted = autoreset == "same_step" and again == 0
+                self.assertEqual("final_info" in infos, counted)
+                if counted:
+                    np.testing.assert_array_equal(infos["_final_info"], [True, True])
+                    self.assertEqual(infos["final_info"]["steps"].tolist(), [60, 60])
+                np.testing.assert_array_equal(infos["metrics"]["_success"], [True, False])
+            self.assertIsNone(infos["invalid"][0])
+            self.assertEqual(infos["steps"][0], 1)
+            env.close()
 
     def test_several_tasks_share_one_batch(self):
         env = make(tasks="carrot_on_plate_lang_*", num_envs=4, cameras=False)
