@@ -21,6 +21,11 @@ Result<run::RunOptions> options_of(DemosArguments arguments) {
   arguments.run.policy = "pushed:" + arguments.noise;
   PROBE_ASSIGN(run::RunOptions options, to_options(arguments.run));
   PROBE_ASSIGN(const run::Actor actor, run::choose_actor(options));
+  constexpr int kMost = 1'000'000'000;
+  if (arguments.per_start < 1 || arguments.per_start > 100'000)
+    return Failure{Fault::kUsage, "1 to 100,000 demonstrations of each start", "--per-start"};
+  if (arguments.seed < 0 || arguments.seed > kMost)
+    return Failure{Fault::kUsage, "a seed is a whole number from 0", "--seed"};
   if (!actor.traits.draws && arguments.per_start > 1)
     return Failure{Fault::kUsage, "without noise every demonstration of a start is the same",
                    "--per-start"};
@@ -52,20 +57,14 @@ void add_demos(Verb app, int& exit) {
   RunArguments& run = arguments->run;
   Verb verb = app.add_subcommand("demos", "demonstrations of the expert, to train on");
   verb.footer(
-      "The expert is pushed off its way in one step of eight and finds back; what succeeds is "
-      "kept,\n"
-      "as a results folder of the policy `pushed:SIGMA`. The same command again continues.\n"
-      "example: vlaprobe demos suite/intact.probe --tasks carrot_on_plate --per-start 4 -o "
-      "runs/demos\n"
-      "         vlaprobe export runs/demos --format lerobot --size 224x224 -o demos");
+      "the expert, pushed off its way in one step of eight; what succeeds is kept for `export`\n"
+      "example: vlaprobe demos suite/intact.probe --tasks carrot_on_plate --per-start 4 -o demos");
   verb.add_option("F", run.file, ".probe text or .plan file").required();
   verb.add_option("-o,--out", run.out, "results folder").required();
-  verb.add_option("--per-start", arguments->per_start, "demonstrations of each start (1)")
-      .between(1, 100000);
+  verb.add_option("--per-start", arguments->per_start, "demonstrations of each start (1)");
   verb.add_option("--noise", arguments->noise,
                   "SIGMA of a push: m of place, 2 SIGMA rad of rotation (0.02)");
-  verb.add_option("--seed", arguments->seed, "of a start's first demonstration (0)")
-      .between(0, 1000000000);
+  verb.add_option("--seed", arguments->seed, "of a start's first demonstration (0)");
   verb.add_option("--suite", run.suite, "which suite (default: the first that F itself declares)");
   verb.add_option("--tasks", run.tasks, "glob over task names");
   verb.add_option("--episodes", run.episodes, "A-B, first and last start of each task");
@@ -73,7 +72,8 @@ void add_demos(Verb app, int& exit) {
   verb.add_option("--if-changed", run.if_changed,
                   "refuse, fork (into DIR-2) or continue over another build")
       .one_of({"refuse", "fork", "continue"});
-  add_asset_option(verb, run.assets);
+  verb.add_option("--assets", run.assets.root, "");
+  verb.add_option("--std", run.assets.library, "");
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = demos_verb(*arguments); });
 }

@@ -114,10 +114,8 @@ void add_export(Verb app, int& exit) {
   dataset::DatasetOptions& options = arguments->dataset;
   Verb verb = app.add_subcommand("export", "stored traces for other tools, and as training data");
   verb.footer(
-      "X.jsonl holds a line for each episode and each step, X.h5 a group for each episode;\n"
       "a dataset has the pictures as well, rendered again bit for bit\n"
-      "example: vlaprobe export runs/expert -o expert.h5\n"
-      "         vlaprobe export runs/demos --format lerobot --size 224x224 --jobs 2 -o demos");
+      "example: vlaprobe export runs/demos --format lerobot --size 224x224 --jobs 2 -o demos");
   verb.add_option("RUN", arguments->runs, "results folders");
   verb.add_option("-o,--out", arguments->out,
                   "file to write: .jsonl, .h5 or .hdf5; of a dataset a new folder");
@@ -132,16 +130,13 @@ void add_export(Verb app, int& exit) {
       .one_each();
   verb.add_option("--rephrase", options.rephrase,
                   "X.jsonl of `vlaprobe rephrase`: tell in its words, split train");
-  verb.add_option("--wordings", options.wordings, "wordings a demonstration, an episode each")
-      .between(1, 1000);
-  verb.add_option("--fps", options.fps, "frames a second that are written (default: control rate)")
-      .between(1, 1000);
+  verb.add_option("--wordings", options.wordings, "wordings a demonstration, an episode each (1)");
+  verb.add_option("--fps", options.fps, "frames a second that are written (default: control rate)");
   verb.add_option("--jobs", options.jobs, "threads; the bytes do not depend on it")
       .between(1, 1024);
   verb.add_option("--check", arguments->check,
                   "DIR: hold this dataset against its traces (RUN: where its runs are now)");
-  verb.add_option("--assets", options.assets,
-                  "asset folder (default: $VLAPROBE_ASSETS, then the one beside the program)");
+  verb.add_option("--assets", options.assets, "");
   verb.callback([arguments, &exit] { exit = export_verb(*arguments); });
 }
 

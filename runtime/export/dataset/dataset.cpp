@@ -36,7 +36,10 @@ Status check_options(const DatasetOptions& options) {
   if ((options.width == 0) != (options.height == 0) || options.width < 0 || options.height < 0 ||
       options.width > 4096 || options.height > 4096)
     return Failure{Fault::kUsage, "a size is WIDTHxHEIGHT, 1 to 4096 each", "--size"};
-  if (options.wordings < 1) return Failure{Fault::kUsage, "at least one wording", "--wordings"};
+  if (options.wordings < 1 || options.wordings > 1000)
+    return Failure{Fault::kUsage, "1 to 1000 wordings a demonstration", "--wordings"};
+  if (options.fps < 0 || options.fps > 1000)
+    return Failure{Fault::kUsage, "1 to 1000 frames a second", "--fps"};
   return {};
 }
 

@@ -212,7 +212,7 @@ TEST_CASE("a picture goes to stdout or, whole, into a file") {
 TEST_CASE("the help of each verb fits a screen and has an example") {
   Sandbox box;
   for (const char* verb : {"list", "show", "diff", "coverage", "graph", "draw", "check", "rephrase",
-                           "ask", "slurm-ask"}) {
+                           "ask", "slurm-ask", "demos", "export"}) {
     const Outcome help = box.vlaprobe(std::string(verb) + " --help");
     CHECK(help.exit == 0);
     CHECK(std::count(help.out.begin(), help.out.end(), '\n') <= 24);
