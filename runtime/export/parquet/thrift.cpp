@@ -92,8 +92,8 @@ Writer& Writer::raw(std::string_view bytes) {
 }
 
 const Value* Value::find(int id) const {
-  for (const auto& field : fields) {
-    if (field.first == id) return &field.second;
+  for (const Value& one : fields) {
+    if (one.field == id) return &one;
   }
   return nullptr;
 }
@@ -177,8 +177,9 @@ class StructReader {
       if (!ok_) return false;
       if (head == 0) return true;
       id = head >> 4 == 0 ? static_cast<int>(zigzag() & 0xffff) : id + (head >> 4);
-      to.fields.emplace_back(id, Value());
-      if (!read(to.fields.back().second, static_cast<Kind>(head & 15), depth + 1)) return false;
+      Value& next = to.fields.emplace_back();
+      next.field = id;
+      if (!read(next, static_cast<Kind>(head & 15), depth + 1)) return false;
     }
   }
   std::uint8_t byte() {

@@ -57,11 +57,12 @@ class Writer {
 
 // A struct as it was read: whatever has no name for the reader is carried along.
 struct Value {
+  int field = 0;  // the id, of a field
   Kind kind = Kind::kStruct;
-  std::int64_t whole = 0;                     // numbers and truths
-  std::string bytes;                          // of kBinary
-  std::vector<std::pair<int, Value>> fields;  // of kStruct
-  std::vector<Value> elements;                // of kList
+  std::int64_t whole = 0;       // numbers and truths
+  std::string bytes;            // of kBinary
+  std::vector<Value> fields;    // of kStruct
+  std::vector<Value> elements;  // of kList
 
   const Value* find(int id) const;
   std::optional<std::int64_t> whole_at(int id) const;
