@@ -202,14 +202,18 @@ void check_told(Context& context, const Family& family) {
       .help("say the `{instruction}`, or describe it: `{phrase of " + right.text + "}`");
 }
 
-// What lies somewhere at the start may have left the picture by the end, and metrics are read there.
+// What lies somewhere at the start may have left the picture by the end, and metrics are read
+// there.
 void check_moment(Context& context, const Family& family) {
   if (family.answer.kind == QuestionAnswer::kMetric &&
       family.moment == plan::QuestionMoment::kStart) {
     context
         .report(Code::P0904, family.answer.span,
-                "`" + family.answer.truth.name + "` is read at the end of an episode")
-        .help("ask `at end`, or answer a condition of the start, such as `closed(target)`");
+                "`" + family.answer.truth.name +
+                    "` is no condition of the start; metrics are read at the end of an episode")
+        .help(
+            "answer `present(source)`, `left(source, target)` or a condition such as "
+            "`closed(target)`, or ask `at end`");
     return;
   }
   const bool is_place = family.answer.kind == QuestionAnswer::kPresent ||
@@ -290,17 +294,17 @@ bool asks_for_source(const QuestionAnswer& answer) {
 bool asks_of_opened(const QuestionAnswer& answer) { return answer.called == "opened"; }
 bool asks_of_closed(const QuestionAnswer& answer) { return answer.called == "closed"; }
 constexpr TurnedWords kTurnedWords[] = {
-    {"closed", asks_of_opened},       {"shut", asks_of_opened},
-    {"open", asks_of_closed},         {"not", asks_of_opened},
-    {"not", asks_of_closed},
-    {"absent", asks_of_presence},     {"missing", asks_of_presence},
-    {"not", asks_of_presence},        {"no longer", asks_of_presence},
-    {"gone", asks_of_presence},       {"fail", asks_of_success},
-    {"fails", asks_of_success},       {"failed", asks_of_success},
-    {"not", asks_of_success},         {"not touch", asks_for_source},
-    {"not pick", asks_for_source},    {"not take", asks_for_source},
-    {"not move", asks_for_source},    {"avoid", asks_for_source},
-    {"leave alone", asks_for_source}, {"where", asks_for_source},
+    {"closed", asks_of_opened},      {"shut", asks_of_opened},
+    {"open", asks_of_closed},        {"not", asks_of_opened},
+    {"not", asks_of_closed},         {"absent", asks_of_presence},
+    {"missing", asks_of_presence},   {"not", asks_of_presence},
+    {"no longer", asks_of_presence}, {"gone", asks_of_presence},
+    {"fail", asks_of_success},       {"fails", asks_of_success},
+    {"failed", asks_of_success},     {"not", asks_of_success},
+    {"not touch", asks_for_source},  {"not pick", asks_for_source},
+    {"not take", asks_for_source},   {"not move", asks_for_source},
+    {"avoid", asks_for_source},      {"leave alone", asks_for_source},
+    {"where", asks_for_source},
 };
 
 // "Is X missing?" with the answer present(X): right answers would be judged wrong. So a point at

@@ -141,7 +141,9 @@ TEST_CASE("words that ask for something else are another action, not a paraphras
   const auto moved = [](const std::string& from, const std::string& to) {
     const auto a = analyze_with_suite("task t like red_on_tray { distractors blue; say \"" + from +
                                       "\" }\nvariant v of t { say \"" + to + "\" }");
-    CHECK_MESSAGE(a->codes() == "", a->said());
+    // Success here knows no sides, which is said of these words and is another matter.
+    const std::string codes = a->codes();
+    CHECK_MESSAGE((codes == "" || codes == "P1202" || codes == "P1202 P1202"), a->said());
     return axes(a->task("v"));
   };
   CHECK(moved("put {source} left of {target}", "put {source} right of {target}") ==

@@ -188,10 +188,12 @@ TEST_CASE("at the start, any condition is judged where things have come to rest"
   REQUIRE(a->model.asked.size() == 1);
   CHECK(a->model.asked[0].truth == plan::QuestionTruth::kSettled);
   CHECK(a->model.asked[0].judged->name == "high");
+  CHECK(ask(R"(yesno it "Is it?" answer source)")->said().find("`present(source)`") !=
+        std::string::npos);
   // What is read behind the last step is not known there.
   const auto early = ask(R"(yesno done "Done?" answer success)");
   CHECK_MESSAGE(early->codes() == "P0904", early->said());
-  CHECK(early->said().find("`success` is read at the end of an episode") != std::string::npos);
+  CHECK(early->said().find("`success` is no condition of the start") != std::string::npos);
 }
 
 TEST_CASE("a question whether something is open is not answered by whether it is closed") {

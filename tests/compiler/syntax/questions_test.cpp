@@ -43,7 +43,6 @@ TEST_CASE("what a form cannot be answered by is said at the answer") {
     return Parsed("questions q {\n" + statement + "\n}\n").messages();
   };
   CHECK(said(R"(choice a "x" answer source)").find("`among`") != std::string::npos);
-  CHECK(said(R"(yesno a "x" answer source)").find("`present`") != std::string::npos);
   CHECK(said(R"(number a "x" answer 3)").find("`count`") != std::string::npos);
   CHECK(said(R"(free a "x" answer mentions(source))") != "");
   CHECK(said(R"(riddle a "x" answer source)").find("`choice`") != std::string::npos);

@@ -141,10 +141,11 @@ TEST_CASE("a trace says of each step where the motion of what moves by itself ha
     REQUIRE_FALSE(wrong.ok());
     return wrong.failure().message.find("a step in which other things move by themselves") == 0;
   };
-  CHECK(refused({{{2, {}}}}));
-  CHECK(refused({{{1, {}}, {0, {}}}}));
-  CHECK(refused({{{1, {}}}, {}}));
-  CHECK(refused({{}, {{1, {}}}}));
+  const vm::OwnPlace first{0, Vec3::Zero()}, second{1, Vec3::Zero()}, third{2, Vec3::Zero()};
+  CHECK(refused({{third}}));
+  CHECK(refused({{second, first}}));
+  CHECK(refused({{second}, {}}));
+  CHECK(refused({{}, {second}}));
 }
 
 TEST_CASE("the hash covers everything but the clock") {
