@@ -16,8 +16,10 @@ TaskStmt Parser::task_solution() {
   SolutionStmt out;
   if (accept_word("none")) return out;
   const std::uint32_t begin = mark();
+  const bool is_empty =
+      kind_ahead(1) == TokenKind::kRightBrace;  // of skills with mistakes one is said
   out.skills = body<SkillNode>(kRules, "a skill");
-  if (!failed_ && out.skills.empty())
+  if (!failed_ && is_empty)
     fail(Code::P0101, since(begin),
          "a solution without skills; `solution none` leaves it to the expert to find one");
   return out;

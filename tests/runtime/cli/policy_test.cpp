@@ -11,7 +11,7 @@ TEST_CASE("ready profiles are listed, and the one to copy is read back") {
   const Outcome list = sandbox.vlaprobe("policy profiles");
   CHECK(list.exit == 0);
   CHECK(list.out.find("pi0_bridge ") != std::string::npos);
-  CHECK(list.out.find("gr00t_bridge_as_published  gr00t ") != std::string::npos);
+  CHECK(list.out.find("gr00t_bridge_as_published    gr00t ") != std::string::npos);
   const Outcome copy = sandbox.vlaprobe("policy profiles copy_me");
   REQUIRE(copy.exit == 0);
   write_file(sandbox / "mine.profile", copy.out);
