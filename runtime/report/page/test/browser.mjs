@@ -168,7 +168,7 @@ const kCases = {
     console.log(`6 policies, 21,840 episodes: complete after ${(ready / 1000).toFixed(2)} s`);
     expect(ready < 15000, `the page needed ${ready} ms`);
     await checkPanels(page);
-    await page.pdf({ path: join(out, "large.pdf"), preferCSSPageSize: true, printBackground: true });
+    await page.pdf({ path: join(out, "large.pdf"), preferCSSPageSize: true, printBackground: true, timeout: 120000 });
     expect(readFileSync(join(out, "large.pdf")).length > 50000, "the printed page is empty");
   },
   async light() {
