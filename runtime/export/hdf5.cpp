@@ -5,26 +5,12 @@
 #include <span>
 
 #include "runtime/export/export.h"
+#include "runtime/export/hdf5_handle.h"
 
 namespace probe::exporting {
 namespace {
 
-// Any HDF5 identifier; closed by the function of its kind. Negative ones are failures.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT: it stands for the identifier everywhere
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
+using Handle = Hdf5Handle;
 using Shape = std::vector<hsize_t>;
 
 class Hdf5 final : public Sink {

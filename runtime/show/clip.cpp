@@ -6,31 +6,23 @@
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
-#include <libavutil/imgutils.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
 
 #include <cmath>
 #include <cstring>
 #include <utility>
 
+#include "runtime/show/yuv_frame.h"
+
 namespace probe::show {
 namespace {
-
-Failure clip_failure(const std::string& what, int code, const std::string& where) {
-  char text[AV_ERROR_MAX_STRING_SIZE] = {};
-  if (code != 0) av_strerror(code, text, sizeof text);
-  return {Fault::kVideo, code == 0 ? what : what + ": " + text, where};
-}
 
 class X264Clip final : public ClipEncoder {
  public:
   explicit X264Clip(const ClipFormat& format) { clip_.format = format; }
   ~X264Clip() override {
-    sws_freeContext(scaler_);
     av_packet_free(&packet_);
-    av_frame_free(&frame_);
     avcodec_free_context(&codec_);
   }
 
@@ -41,9 +33,8 @@ class X264Clip final : public ClipEncoder {
     const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
     if (encoder == nullptr) return failed("libavcodec has no libx264", 0);
     codec_ = avcodec_alloc_context3(encoder);
-    frame_ = av_frame_alloc();
     packet_ = av_packet_alloc();
-    if (codec_ == nullptr || frame_ == nullptr || packet_ == nullptr) return failed("no memory", 0);
+    if (codec_ == nullptr || packet_ == nullptr) return failed("no memory", 0);
     codec_->width = format.width;
     codec_->height = format.height;
     codec_->pix_fmt = AV_PIX_FMT_YUV420P;
@@ -64,44 +55,23 @@ class X264Clip final : public ClipEncoder {
     int code = avcodec_open2(codec_, encoder, nullptr);
     if (code < 0) return failed("libx264 does not open", code);
     clip_.header.assign(codec_->extradata, codec_->extradata + codec_->extradata_size);
-    frame_->format = codec_->pix_fmt;
-    frame_->width = format.width;
-    frame_->height = format.height;
-    code = av_frame_get_buffer(frame_, 0);
-    if (code < 0) return failed("no memory", code);
-    scaler_ =
-        sws_getContext(format.width, format.height, AV_PIX_FMT_RGB24, format.width, format.height,
-                       AV_PIX_FMT_YUV420P, SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr,
-                       nullptr, nullptr);
-    if (scaler_ == nullptr) return failed("no colour conversion", 0);
-    padded_.resize(rgb_bytes() + 64);
-    return {};
+    return picture_.begin(format.width, format.height, "");
   }
 
   Status add(std::span<const std::uint8_t> rgb) override {
-    if (rgb.size() != rgb_bytes()) return failed("a frame of another size", 0);
-    const int code = av_frame_make_writable(frame_);
-    if (code < 0) return failed("no memory", code);
-    std::memcpy(padded_.data(), rgb.data(), rgb.size());
-    const std::uint8_t* rows[] = {padded_.data()};
-    const int strides[] = {3 * codec_->width};
-    sws_scale(scaler_, rows, strides, 0, codec_->height, frame_->data, frame_->linesize);
-    frame_->pts = frames_++;
-    return encode(frame_);
+    PROBE_TRY(picture_.fill(rgb));
+    return encode(picture_.frame());
   }
 
   Result<Clip> finish() override {
     PROBE_TRY(encode(nullptr));
-    if (clip_.packets.size() != static_cast<std::size_t>(frames_))
+    if (clip_.packets.size() != static_cast<std::size_t>(picture_.count()))
       return failed("the encoder gave another number of frames than it got", 0);
     return std::move(clip_);
   }
 
  private:
-  std::size_t rgb_bytes() const {
-    return 3 * static_cast<std::size_t>(codec_->width) * static_cast<std::size_t>(codec_->height);
-  }
-  Failure failed(const std::string& what, int code) const { return clip_failure(what, code, ""); }
+  Failure failed(const std::string& what, int code) const { return av_failure(what, code, ""); }
 
   Status encode(const AVFrame* frame) {
     int code = avcodec_send_frame(codec_, frame);
@@ -119,11 +89,8 @@ class X264Clip final : public ClipEncoder {
 
   Clip clip_;
   AVCodecContext* codec_ = nullptr;
-  AVFrame* frame_ = nullptr;
   AVPacket* packet_ = nullptr;
-  SwsContext* scaler_ = nullptr;
-  std::vector<std::uint8_t> padded_;  // one frame; the scaler reads a few bytes behind its end
-  std::int64_t frames_ = 0;
+  YuvFrame picture_;
 };
 
 class Mp4Joiner final : public ClipJoiner {
@@ -195,9 +162,7 @@ class Mp4Joiner final : public ClipJoiner {
   }
 
  private:
-  Failure failed(const std::string& what, int code) const {
-    return clip_failure(what, code, path_);
-  }
+  Failure failed(const std::string& what, int code) const { return av_failure(what, code, path_); }
 
   std::string path_;
   ClipFormat clip_format_;
@@ -243,11 +208,11 @@ Result<VideoFacts> read_video_facts(const std::string& path) {
   av_log_set_level(AV_LOG_ERROR);
   OpenVideo video;
   int code = avformat_open_input(&video.format, path.c_str(), nullptr, nullptr);
-  if (code < 0) return clip_failure("cannot be opened", code, path);
+  if (code < 0) return av_failure("cannot be opened", code, path);
   code = avformat_find_stream_info(video.format, nullptr);
-  if (code < 0) return clip_failure("cannot be read", code, path);
+  if (code < 0) return av_failure("cannot be read", code, path);
   const int index = av_find_best_stream(video.format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
-  if (index < 0) return clip_failure("has no pictures", 0, path);
+  if (index < 0) return av_failure("has no pictures", 0, path);
   const AVStream& stream = *video.format->streams[index];
   VideoFacts facts;
   facts.codec = avcodec_get_name(stream.codecpar->codec_id);
@@ -265,7 +230,7 @@ Result<VideoFacts> read_video_facts(const std::string& path) {
     }
     av_packet_unref(video.packet);
   }
-  if (code != AVERROR_EOF) return clip_failure("cannot be read to its end", code, path);
+  if (code != AVERROR_EOF) return av_failure("cannot be read to its end", code, path);
   return facts;
 }
 

@@ -5,30 +5,19 @@
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
-#include <libavutil/imgutils.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
 
-#include <cstring>
-#include <vector>
+#include "runtime/show/yuv_frame.h"
 
 namespace probe::show {
 namespace {
-
-std::string said(int code) {
-  char text[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(code, text, sizeof text);
-  return text;
-}
 
 class Mp4Writer final : public VideoWriter {
  public:
   explicit Mp4Writer(std::string path) : path_(std::move(path)) {}
   ~Mp4Writer() override {
-    sws_freeContext(scaler_);
     av_packet_free(&packet_);
-    av_frame_free(&frame_);
     avcodec_free_context(&codec_);
     if (format_ != nullptr && format_->pb != nullptr) avio_closep(&format_->pb);
     avformat_free_context(format_);
@@ -44,10 +33,9 @@ class Mp4Writer final : public VideoWriter {
     const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
     if (encoder == nullptr) return failed("libavcodec has no libx264", 0);
     codec_ = avcodec_alloc_context3(encoder);
-    frame_ = av_frame_alloc();
     packet_ = av_packet_alloc();
     stream_ = avformat_new_stream(format_, nullptr);
-    if (codec_ == nullptr || frame_ == nullptr || packet_ == nullptr || stream_ == nullptr) {
+    if (codec_ == nullptr || packet_ == nullptr || stream_ == nullptr) {
       return failed("no memory", 0);
     }
     codec_->width = width;
@@ -70,16 +58,7 @@ class Mp4Writer final : public VideoWriter {
     code = avcodec_parameters_from_context(stream_->codecpar, codec_);
     if (code < 0) return failed("stream parameters", code);
 
-    frame_->format = codec_->pix_fmt;
-    frame_->width = width;
-    frame_->height = height;
-    code = av_frame_get_buffer(frame_, 0);
-    if (code < 0) return failed("no memory", code);
-    scaler_ =
-        sws_getContext(width, height, AV_PIX_FMT_RGB24, width, height, AV_PIX_FMT_YUV420P,
-                       SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
-    if (scaler_ == nullptr) return failed("no colour conversion", 0);
-    padded_.resize(rgb_bytes() + 64);
+    PROBE_TRY(picture_.begin(width, height, path_));
 
     code = avio_open(&format_->pb, path_.c_str(), AVIO_FLAG_WRITE);
     if (code < 0) return failed("cannot be made", code);
@@ -92,15 +71,8 @@ class Mp4Writer final : public VideoWriter {
   }
 
   Status add(std::span<const std::uint8_t> rgb) override {
-    if (rgb.size() != rgb_bytes()) return failed("a frame of another size", 0);
-    int code = av_frame_make_writable(frame_);
-    if (code < 0) return failed("no memory", code);
-    std::memcpy(padded_.data(), rgb.data(), rgb.size());
-    const std::uint8_t* rows[] = {padded_.data()};
-    const int strides[] = {3 * codec_->width};
-    sws_scale(scaler_, rows, strides, 0, codec_->height, frame_->data, frame_->linesize);
-    frame_->pts = next_++;
-    return encode(frame_);
+    PROBE_TRY(picture_.fill(rgb));
+    return encode(picture_.frame());
   }
 
   Status finish() override {
@@ -113,14 +85,7 @@ class Mp4Writer final : public VideoWriter {
   }
 
  private:
-  std::size_t rgb_bytes() const {
-    return 3 * static_cast<std::size_t>(codec_->width) * static_cast<std::size_t>(codec_->height);
-  }
-
-  Failure failed(const char* what, int code) const {
-    return {Fault::kVideo, code == 0 ? std::string(what) : std::string(what) + ": " + said(code),
-            path_};
-  }
+  Failure failed(const char* what, int code) const { return av_failure(what, code, path_); }
 
   Status encode(const AVFrame* frame) {
     int code = avcodec_send_frame(codec_, frame);
@@ -141,11 +106,8 @@ class Mp4Writer final : public VideoWriter {
   AVFormatContext* format_ = nullptr;
   AVCodecContext* codec_ = nullptr;
   AVStream* stream_ = nullptr;
-  AVFrame* frame_ = nullptr;
   AVPacket* packet_ = nullptr;
-  SwsContext* scaler_ = nullptr;
-  std::vector<std::uint8_t> padded_;  // one frame; the scaler reads a few bytes behind its end
-  std::int64_t next_ = 0;
+  YuvFrame picture_;
 };
 
 }  // namespace

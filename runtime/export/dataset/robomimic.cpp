@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "runtime/base/json.h"
+#include "runtime/export/hdf5_handle.h"
 #include "runtime/store/episode_key.h"
 
 namespace probe::dataset::robomimic {
@@ -21,21 +22,7 @@ constexpr int kEffort = 1;
 // robomimic's EnvType of a gym environment; its own programs make none of ours.
 constexpr int kGymType = 2;
 
-class Id {
- public:
-  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Id() {
-    if (id_ >= 0) close_(id_);
-  }
-  Id(const Id&) = delete;
-  Id& operator=(const Id&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT: it stands for the identifier everywhere
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
+using Id = exporting::Hdf5Handle;
 using Sides = std::vector<hsize_t>;
 using Deflated = std::vector<std::uint8_t>;
 

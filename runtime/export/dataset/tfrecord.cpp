@@ -1,12 +1,8 @@
 #include "runtime/export/dataset/tfrecord.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <cstring>
 #include <utility>
-
-#include "runtime/base/io_failure.h"
 
 namespace probe::dataset {
 namespace {
@@ -97,33 +93,15 @@ std::string ExampleMessage::finish() const {
 }
 
 Result<std::unique_ptr<RecordFile>> RecordFile::create(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) return io_failure("cannot be made", path);
-  return std::unique_ptr<RecordFile>(new RecordFile(file, path));
-}
-
-RecordFile::~RecordFile() {
-  if (file_ != nullptr) std::fclose(file_);
+  PROBE_ASSIGN(FileStream file, FileStream::create(path));
+  return std::unique_ptr<RecordFile>(new RecordFile(std::move(file)));
 }
 
 Status RecordFile::add(std::string_view payload) {
   const std::string size = as_bytes(static_cast<std::uint64_t>(payload.size()));
-  const std::string head = size + as_bytes(masked_crc32c(size));
-  const std::string tail = as_bytes(masked_crc32c(payload));
-  for (const std::string_view part : {std::string_view(head), payload, std::string_view(tail)}) {
-    if (std::fwrite(part.data(), 1, part.size(), file_) != part.size())
-      return io_failure("cannot be written", path_);
-  }
-  return {};
-}
-
-Status RecordFile::finish() {
-  const bool is_there = std::fflush(file_) == 0 && ::fsync(::fileno(file_)) == 0;
-  const int error = errno;
-  const bool is_closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-  if (!is_there) return io_failure("cannot be written", error, path_);
-  if (!is_closed) return io_failure("cannot be written", path_);
-  return {};
+  PROBE_TRY(file_.write(size + as_bytes(masked_crc32c(size))));
+  PROBE_TRY(file_.write(payload));
+  return file_.write(as_bytes(masked_crc32c(payload)));
 }
 
 }  // namespace probe::dataset

@@ -4,13 +4,14 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
+#include "runtime/base/file_stream.h"
 #include "runtime/base/result.h"
 
 namespace probe::dataset {
@@ -35,17 +36,13 @@ class RecordFile {
  public:
   // Fails (kIo, where = path).
   static Result<std::unique_ptr<RecordFile>> create(const std::string& path);
-  ~RecordFile();
-  RecordFile(const RecordFile&) = delete;
-  RecordFile& operator=(const RecordFile&) = delete;
 
   Status add(std::string_view payload);
-  Status finish();  // the bytes are then on the disk
+  Status finish() { return file_.finish(); }  // the bytes are then on the disk
 
  private:
-  RecordFile(std::FILE* file, std::string path) : file_(file), path_(std::move(path)) {}
-  std::FILE* file_;
-  std::string path_;
+  explicit RecordFile(FileStream file) : file_(std::move(file)) {}
+  FileStream file_;
 };
 
 }  // namespace probe::dataset

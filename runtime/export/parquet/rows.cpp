@@ -80,40 +80,35 @@ void Rows::put_shape(Gathered& to, const Column& column, std::span<const std::si
   to.count += count;
 }
 
-Rows& Rows::flag(bool value) {
-  Gathered& to = next(Type::kFlag, 0);
-  to.values.push_back(value ? 1 : 0);
+Rows& Rows::end_one(Gathered& to) {
   add_level(to.definitions, 1);
   ++to.count;
   end_value();
   return *this;
+}
+
+Rows& Rows::flag(bool value) {
+  Gathered& to = next(Type::kFlag, 0);
+  to.values.push_back(value ? 1 : 0);
+  return end_one(to);
 }
 
 Rows& Rows::whole(std::int64_t value) {
   Gathered& to = next(Type::kWhole, 0);
   append(to.values, value);
-  add_level(to.definitions, 1);
-  ++to.count;
-  end_value();
-  return *this;
+  return end_one(to);
 }
 
 Rows& Rows::real(double value) {
   Gathered& to = next(Type::kReal64, 0);
   put_real(to, schema_[at_].type, value);
-  add_level(to.definitions, 1);
-  ++to.count;
-  end_value();
-  return *this;
+  return end_one(to);
 }
 
 Rows& Rows::text(std::string_view value) {
   Gathered& to = next(Type::kText, 0);
   append_text(to.values, value);
-  add_level(to.definitions, 1);
-  ++to.count;
-  end_value();
-  return *this;
+  return end_one(to);
 }
 
 Rows& Rows::wholes(std::span<const std::int64_t> values) {

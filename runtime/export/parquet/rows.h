@@ -52,6 +52,7 @@ class Rows {
   void put_real(Gathered& to, Type type, double value);
   void put_shape(Gathered& to, const Column& column, std::span<const std::size_t> shape);
   void end_value();
+  Rows& end_one(Gathered& to);  // of a column of single values
 
   Schema schema_;
   std::vector<Gathered> columns_;

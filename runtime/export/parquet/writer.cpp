@@ -1,9 +1,6 @@
 #include "runtime/export/parquet/writer.h"
 
-#include <unistd.h>
-
 #include "runtime/base/check.h"
-#include "runtime/base/io_failure.h"
 #include "runtime/export/parquet/format.h"
 #include "runtime/export/parquet/thrift.h"
 
@@ -109,27 +106,21 @@ void put_chunk(thrift::Writer& out, const Column& column, const Chunk& chunk) {
 
 }  // namespace
 
-Writer::Writer(std::FILE* file, std::string path, Schema schema,
+Writer::Writer(FileStream file, Schema schema,
                std::vector<std::pair<std::string, std::string>> notes)
-    : file_(file), path_(std::move(path)), schema_(std::move(schema)), notes_(std::move(notes)) {}
-
-Writer::~Writer() {
-  if (file_ != nullptr) std::fclose(file_);
-}
+    : file_(std::move(file)), schema_(std::move(schema)), notes_(std::move(notes)) {}
 
 Result<std::unique_ptr<Writer>> Writer::create(
     const std::string& path, Schema schema,
     std::vector<std::pair<std::string, std::string>> notes) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) return io_failure("cannot be made", path);
-  std::unique_ptr<Writer> writer(new Writer(file, path, std::move(schema), std::move(notes)));
+  PROBE_ASSIGN(FileStream file, FileStream::create(path));
+  std::unique_ptr<Writer> writer(new Writer(std::move(file), std::move(schema), std::move(notes)));
   PROBE_TRY(writer->put(format::kMagic));
   return Result<std::unique_ptr<Writer>>(std::move(writer));
 }
 
 Status Writer::put(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
-    return io_failure("cannot be written", path_);
+  PROBE_TRY(file_.write(bytes));
   at_ += bytes.size();
   return {};
 }
@@ -174,12 +165,7 @@ Status Writer::finish() {
   put_u32(tail, out.bytes().size());
   PROBE_TRY(put(tail));
   PROBE_TRY(put(format::kMagic));
-  const bool is_there = std::fflush(file_) == 0 && ::fsync(::fileno(file_)) == 0;
-  const int error = errno;
-  const bool is_closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-  if (!is_there) return io_failure("cannot be written", error, path_);
-  if (!is_closed) return io_failure("cannot be written", path_);
-  return {};
+  return file_.finish();
 }
 
 }  // namespace probe::parquet

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "runtime/base/file_stream.h"
 #include "runtime/base/result.h"
 #include "runtime/export/parquet/rows.h"
 #include "runtime/export/parquet/schema.h"
@@ -20,9 +20,6 @@ class Writer {
   static Result<std::unique_ptr<Writer>> create(
       const std::string& path, Schema schema,
       std::vector<std::pair<std::string, std::string>> notes = {});
-  ~Writer();
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
 
   // A row group of all of `rows`, whose schema is the file's; none of no rows. Fails (kIo, where =
   // path).
@@ -34,12 +31,10 @@ class Writer {
   std::uint64_t bytes() const { return at_; }  // written so far
 
  private:
-  Writer(std::FILE* file, std::string path, Schema schema,
-         std::vector<std::pair<std::string, std::string>> notes);
+  Writer(FileStream file, Schema schema, std::vector<std::pair<std::string, std::string>> notes);
   Status put(std::string_view bytes);
 
-  std::FILE* file_;
-  std::string path_;
+  FileStream file_;
   Schema schema_;
   std::vector<std::pair<std::string, std::string>> notes_;
   std::string groups_;  // Thrift, one element each
