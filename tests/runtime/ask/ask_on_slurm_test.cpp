@@ -63,7 +63,7 @@ TEST_CASE("without --submit the job of asking is written, with every word that c
 TEST_CASE("a job into a folder of another model or plan is refused before anything is written") {
   TemporaryFolder folder;
   const plan::Plan plan = asking_plan(1);
-  REQUIRE(ask(plan, asking("first", folder / "answers")).ok());
+  REQUIRE(ask::ask(plan, asking("first", folder / "answers")).ok());
   const auto other = ask_on_slurm(plan, asking("random", folder / "answers"), written_only());
   REQUIRE(!other.ok());
   CHECK(other.failure().message.starts_with("holds answers of model `first`, not `random`"));
@@ -100,7 +100,7 @@ TEST_CASE("what a folder lacks is counted by the shard that would ask it") {
     AskOptions part = asking("truth", folder / ("part" + std::to_string(shard)));
     part.choice.shard = shard;
     part.choice.shards = kTasks;
-    const auto asked = ask(plan, part);
+    const auto asked = ask::ask(plan, part);
     REQUIRE_MESSAGE(asked.ok(), to_text(asked.failure()));
     if (!all.contains(shard)) {
       CHECK(asked->total == 0);

@@ -24,7 +24,7 @@ AskOptions asking_options(const std::string& model, const std::string& out) {
 }
 
 AskSummary must_ask(const plan::Plan& plan, const AskOptions& options) {
-  auto summary = ask(plan, options);
+  auto summary = ask::ask(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   return *summary;
 }
@@ -111,11 +111,11 @@ TEST_CASE("a folder is of one model, one plan and one way of asking") {
   TemporaryFolder folder;
   const plan::Plan plan = asking_plan(1);
   must_ask(plan, asking_options("first", folder / "answers"));
-  const auto other = ask(plan, asking_options("random", folder / "answers"));
+  const auto other = ask::ask(plan, asking_options("random", folder / "answers"));
   REQUIRE(!other.ok());
   CHECK(other.failure().message.starts_with("holds answers of model `first`, not `random`, and "));
   const plan::Plan more = asking_plan(2);
-  const auto grown = ask(more, asking_options("first", folder / "answers"));
+  const auto grown = ask::ask(more, asking_options("first", folder / "answers"));
   REQUIRE(!grown.ok());
   CHECK(grown.failure().message.starts_with("holds answers to another plan's questions (root "));
   AskOptions fork = asking_options("random", folder / "answers");
@@ -128,19 +128,19 @@ TEST_CASE("questions, tasks and suites that are not there are told, with the nea
   const plan::Plan plan = asking_plan(1);
   AskOptions options = asking_options("truth", folder / "answers");
   options.choice.questions = {"understanding.sorce"};
-  auto asked = ask(plan, options);
+  auto asked = ask::ask(plan, options);
   REQUIRE(!asked.ok());
   CHECK(asked.failure().message ==
         "no questions are called `understanding.sorce`, did you mean `understanding.source`?");
   options.choice.questions = {"understanding.source"};
   CHECK(must_ask(plan, options).done == 3);
   options.model = "truht";
-  asked = ask(plan, options);
+  asked = ask::ask(plan, options);
   REQUIRE(!asked.ok());
   CHECK(asked.failure().message.starts_with("unknown model `truht`, did you mean `truth`?"));
   options = asking_options("truth", folder / "blind");
   options.choice.arms = {Arm::kBlind};
-  asked = ask(plan, options);
+  asked = ask::ask(plan, options);
   REQUIRE(!asked.ok());
   CHECK(asked.failure().where == "--arms");
   CHECK(!holds_answers(folder / "blind"));
@@ -150,7 +150,7 @@ TEST_CASE("the end of a recorded episode is drawn again, and its program knows t
   TemporaryFolder folder;
   const plan::Plan plan = asking_plan(2, ask_done);
   AskOptions options = asking_options("truth", folder / "answers");
-  const auto without = ask(plan, options);
+  const auto without = ask::ask(plan, options);
   REQUIRE(!without.ok());
   CHECK(without.failure().where == "--frames");
   run::RunOptions run;
@@ -190,7 +190,7 @@ TEST_CASE("the end of a recorded episode is drawn again, and its program knows t
     ++writer.records.tasks[0].horizon;
   });
   options.out = folder / "of-longer";
-  const auto late = ask(longer, options);
+  const auto late = ask::ask(longer, options);
   REQUIRE(!late.ok());
   CHECK(late.failure().where == "--frames");
   CHECK(late.failure().message.starts_with("`carrot_on_plate` of "));
@@ -202,7 +202,7 @@ TEST_CASE("the end of a recorded episode is drawn again, and its program knows t
   run.out = folder / "other";
   REQUIRE(run::run(plan, run).ok());
   options.frames = folder / "other";
-  const auto other = ask(plan, options);
+  const auto other = ask::ask(plan, options);
   REQUIRE(!other.ok());
   CHECK(other.failure().message.starts_with("holds answers about the ends of the run `random, "));
 }

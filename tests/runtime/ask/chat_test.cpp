@@ -48,7 +48,7 @@ TEST_CASE("a model that always says A is right in one order of three, and keeps 
   AskOptions options = asking_at(address_of(server, "always_a", "&size=224x168"), folder / "a");
   options.choice.arms = {Arm::kPicture, Arm::kBlind};
   options.jobs = 3;
-  const auto summary = ask(plan, options);
+  const auto summary = ask::ask(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   CHECK(summary->total == 2 * 3 * 2);
   CHECK(summary->right == 4);
@@ -70,11 +70,11 @@ TEST_CASE("a model that always says A is right in one order of three, and keeps 
   // Its server may move: what was asked is the same.
   const PythonServer other("chat_server.py", {"always_a"});
   options.model = address_of(other, "always_a", "&size=224x168");
-  const auto again = ask(plan, options);
+  const auto again = ask::ask(plan, options);
   REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
   CHECK(again->done == 0);
   options.model = address_of(other, "always_a", "&size=112x84");
-  const auto smaller = ask(plan, options);
+  const auto smaller = ask::ask(plan, options);
   REQUIRE(!smaller.ok());
   CHECK(smaller.failure().message.starts_with("was begun by asking in another way"));
 }
@@ -86,7 +86,7 @@ TEST_CASE("a server that asks for time gets it, and the answer counts its attemp
   const plan::Plan plan = asking_plan(1);
   AskOptions options = asking_at(address_of(server, "always_a"), folder / "answers");
   options.retries = 0;
-  const auto summary = ask(plan, options);
+  const auto summary = ask::ask(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   CHECK(summary->invalid == 0);
   for (const AnswerRow& row : answers_in(folder / "answers")) CHECK(row.attempts == 3);
@@ -98,7 +98,7 @@ TEST_CASE("the prior arm shows the picture of another start, and the row says wh
   const plan::Plan plan = asking_plan(3);
   AskOptions options = asking_at(address_of(server, "always_a", "&size=64x48"), folder / "answers");
   options.choice.arms = {Arm::kPicture, Arm::kPrior};
-  const auto summary = ask(plan, options);
+  const auto summary = ask::ask(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   std::map<std::string, std::string> pictures;  // by start
   const auto rows = answers_in(folder / "answers");
@@ -128,7 +128,7 @@ TEST_CASE("what cannot be asked at all is told before there is a row") {
   const TemporaryFolder folder;
   const plan::Plan plan = asking_plan(1);
   const auto refusal = [&](const std::string& address) {
-    const auto summary = ask(plan, asking_at(address, folder / "answers"));
+    const auto summary = ask::ask(plan, asking_at(address, folder / "answers"));
     REQUIRE(!summary.ok());
     CHECK(!holds_answers(folder / "answers"));
     return summary.failure().message;
@@ -151,7 +151,7 @@ TEST_CASE("a server that sends elsewhere is told where to, and one without TLS t
   const TemporaryFolder folder;
   const plan::Plan plan = asking_plan(1);
   const PythonServer moved("chat_server.py", {"always_a", "fault=moved"});
-  const auto sent = ask(plan, asking_at(address_of(moved, "always_a"), folder / "answers"));
+  const auto sent = ask::ask(plan, asking_at(address_of(moved, "always_a"), folder / "answers"));
   REQUIRE(!sent.ok());
   CHECK(sent.failure().message ==
         "answered with HTTP status 307, which sends to "
@@ -161,7 +161,7 @@ TEST_CASE("a server that sends elsewhere is told where to, and one without TLS t
   const std::string address =
       "https://127.0.0.1:" + plain.port() + "?model=always_a&timeout.wait_s=60";
   const auto begun = std::chrono::steady_clock::now();
-  const auto refused = ask(plan, asking_at(address, folder / "answers"));
+  const auto refused = ask::ask(plan, asking_at(address, folder / "answers"));
   REQUIRE(!refused.ok());
   CHECK_MESSAGE(refused.failure().message.find("speak TLS") != std::string::npos,
                 refused.failure().message);
@@ -174,16 +174,16 @@ TEST_CASE("answers that were asked for in two ways are never mixed, whatever is 
   const PythonServer server("chat_server.py", {"always_a"});
   const plan::Plan plan = asking_plan(1);
   const std::string small = address_of(server, "always_a", "&size=224x168");
-  REQUIRE(ask(plan, asking_at(small, folder / "answers")).ok());
+  REQUIRE(ask::ask(plan, asking_at(small, folder / "answers")).ok());
   AskOptions other = asking_at(address_of(server, "always_a", "&size=320x240"), folder / "answers");
   other.if_changed = run::IfChanged::kContinue;
-  const auto mixed = ask(plan, other);
+  const auto mixed = ask::ask(plan, other);
   REQUIRE(!mixed.ok());
   CHECK(mixed.failure().message.starts_with("was begun by asking in another way (recorded chat"));
   CHECK(mixed.failure().message.find("--if-changed fork") != std::string::npos);
   CHECK(mixed.failure().message.find("--if-changed continue") == std::string::npos);
   other.if_changed = run::IfChanged::kFork;
-  const auto forked = ask(plan, other);
+  const auto forked = ask::ask(plan, other);
   REQUIRE_MESSAGE(forked.ok(), to_text(forked.failure()));
   CHECK(forked->out == (folder / "answers") + "-2");
 }
@@ -197,12 +197,12 @@ TEST_CASE("a call gives up after so many lost questions, and the same call goes 
     AskOptions options = asking_at(address_of(server, "always_a"), folder / "answers");
     options.retries = 0;
     options.give_up_after = 3;
-    const auto summary = ask(plan, options);
+    const auto summary = ask::ask(plan, options);
     REQUIRE(!summary.ok());
     CHECK(summary.failure().message.starts_with("the model failed with 3 questions in a row, "));
   }
   const PythonServer server("chat_server.py", {"always_a"});
-  const auto summary = ask(plan, asking_at(address_of(server, "always_a"), folder / "answers"));
+  const auto summary = ask::ask(plan, asking_at(address_of(server, "always_a"), folder / "answers"));
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   CHECK(summary->done == 6);
   CHECK(answers_in(folder / "answers").size() == 6);

@@ -73,7 +73,7 @@ AskOptions options_for(const std::string& model, const std::string& out) {
 }
 
 std::vector<AnswerRow> asked_rows(const plan::Plan& plan, const AskOptions& options) {
-  const auto summary = ask(plan, options);
+  const auto summary = ask::ask(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   auto rows = read_answers(options.out);
   REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
@@ -311,7 +311,7 @@ TEST_CASE("a server that takes no pictures is refused before anything is asked")
   const PythonServer server("chat_server.py", {"always_a", "fault=no_vision"});
   const AskOptions options =
       options_for("openai://127.0.0.1:" + server.port() + "?model=always_a", folder / "answers");
-  const auto asked = ask(plan, options);
+  const auto asked = ask::ask(plan, options);
   REQUIRE_FALSE(asked.ok());
   CHECK(asked.failure().message.find("is no model that sees") != std::string::npos);
   CHECK(asked.failure().message.find("not a multimodal model") != std::string::npos);
@@ -323,7 +323,7 @@ TEST_CASE("a key is sent from the environment alone and stands in no row") {
   const PythonServer server("chat_server.py", {"always_a", "key=s3cret-of-the-test"});
   const AskOptions options =
       options_for("openai://127.0.0.1:" + server.port() + "?model=always_a", folder / "answers");
-  const auto without = ask(plan, options);
+  const auto without = ask::ask(plan, options);
   REQUIRE_FALSE(without.ok());
   CHECK(without.failure().message.find("401") != std::string::npos);
   ::setenv("VLAPROBE_API_KEY", "s3cret-of-the-test", 1);

@@ -30,7 +30,7 @@ AskOptions options_for(const std::string& out) {
 }
 
 void must_answer(const plan::Plan& plan, const std::string& out) {
-  const auto summary = ask(plan, options_for(out));
+  const auto summary = ask::ask(plan, options_for(out));
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   REQUIRE(summary->right == kQueries);
 }
@@ -138,7 +138,7 @@ TEST_CASE("a row that does not follow from its words or from the plan is invalid
     // The next call asks it again; what stood under another key stays what it is.
     constexpr std::size_t kAskedAgain = 7;  // every so many: each draws a picture
     if (i % kAskedAgain != 0) continue;
-    const auto again = ask(plan, options_for(dir));
+    const auto again = ask::ask(plan, options_for(dir));
     REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
     CHECK(again->done == 1);
     const auto after = rows_of(dir);

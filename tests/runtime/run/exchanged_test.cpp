@@ -133,7 +133,7 @@ TEST_CASE("who answers is asked again after each lost connection, before an epis
   options.progress = [&](const RunProgress& progress) {
     if (progress.done == 2) server.exchange("fine");  // restarted
   };
-  const auto restarted = run(plan, options);
+  const auto restarted = run::run(plan, options);
   REQUIRE_MESSAGE(restarted.ok(), to_text(restarted.failure()));
   CHECK(valid_rows(folder / "run") == 4);
   // Another one that answered in between, and was gone when the call would have ended.
@@ -141,7 +141,7 @@ TEST_CASE("who answers is asked again after each lost connection, before an epis
   options.progress = [&](const RunProgress& progress) {
     if (progress.done == 2) server.exchange("numb");
   };
-  const auto spoiled = run(plan, options);
+  const auto spoiled = run::run(plan, options);
   REQUIRE_FALSE(spoiled.ok());
   CHECK(spoiled.failure().code == Fault::kPolicy);
   CHECK(spoiled.failure().message.find("another policy answers than at the beginning") !=
@@ -150,7 +150,7 @@ TEST_CASE("who answers is asked again after each lost connection, before an epis
   CHECK(last_call(folder / "other").reading->at_end == policy::AtEnd::kOther);
   server.exchange("fine");
   options.progress = nullptr;
-  REQUIRE(run(plan, options).ok());
+  REQUIRE(run::run(plan, options).ok());
   CHECK(hashes_of(folder / "other") == hashes_of(folder / "run"));
 }
 
@@ -166,18 +166,18 @@ TEST_CASE(
     options.progress = [&](const RunProgress& progress) {
       if (progress.done == 1) server.leave();
     };
-    CHECK_FALSE(run(plan, options).ok());
+    CHECK_FALSE(run::run(plan, options).ok());
     CHECK(valid_rows(folder / "run") == 1);
     server.exchange(is_other ? "numb" : "fine");
     options.progress = nullptr;
-    const auto again = run(plan, options);
+    const auto again = run::run(plan, options);
     CHECK(again.ok() == !is_other);
     CHECK(valid_rows(folder / "run") == (is_other ? 0 : 3));
     if (!is_other) continue;
     CHECK(again.failure().code == Fault::kStore);
     // Not beside those of another, either.
     options.if_changed = IfChanged::kContinue;
-    CHECK(run(plan, options).ok());
+    CHECK(run::run(plan, options).ok());
     CHECK(valid_rows(folder / "run") == 3);
   }
 }
@@ -190,7 +190,7 @@ TEST_CASE("a policy that draws at the end and did not when the call began spoils
   options.progress = [&](const RunProgress& progress) {
     if (progress.done == 2) server.exchange("noise");
   };
-  const auto spoiled = run(plan, options);
+  const auto spoiled = run::run(plan, options);
   REQUIRE_FALSE(spoiled.ok());
   CHECK(spoiled.failure().message.find("the 2 episodes of this call are invalid") !=
         std::string::npos);
@@ -202,13 +202,13 @@ TEST_CASE("a policy that draws at the end and did not when the call began spoils
   options.progress = [&](const RunProgress& progress) {
     if (progress.done == 2) server.leave();
   };
-  const auto gone = run(plan, options);
+  const auto gone = run::run(plan, options);
   REQUIRE_MESSAGE(gone.ok(), to_text(gone.failure()));
   CHECK(last_call(folder / "gone").reading->at_end == policy::AtEnd::kUnclear);
   CHECK(valid_rows(folder / "gone") == 2);
   server.exchange("numb");
   options.progress = nullptr;
-  CHECK_FALSE(run(plan, options).ok());
+  CHECK_FALSE(run::run(plan, options).ok());
   CHECK(valid_rows(folder / "gone") == 0);
 }
 
@@ -217,13 +217,13 @@ TEST_CASE("first questions that fail are asked again, and of a server that stays
   const plan::Plan plan = table_plan(1, 4);
   {
     const Exchangeable server("fine", "warm=2");
-    const auto ran = run(plan, server.options(folder / "warm"));
+    const auto ran = run::run(plan, server.options(folder / "warm"));
     REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
     CHECK(last_call(folder / "warm").reading->is_steady);
     CHECK(last_call(folder / "warm").reading->at_end == policy::AtEnd::kSame);
   }
   const Exchangeable server("fine", "warm=1000");
-  const auto refused = run(plan, server.options(folder / "cold", "0.3"));
+  const auto refused = run::run(plan, server.options(folder / "cold", "0.3"));
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.failure().code == Fault::kPolicy);
   CHECK(refused.failure().message.find("warming up") != std::string::npos);
@@ -235,7 +235,7 @@ TEST_CASE("of a policy that draws it is said that nothing shows it to be one, or
   const plan::Plan plan = table_plan(2, 4);
   Exchangeable server("noise", R"(meta={"checkpoint": "A"})");
   RunOptions options = server.options(folder / "run");
-  const auto ran = run(plan, options);
+  const auto ran = run::run(plan, options);
   REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
   const auto reading = *last_call(folder / "run").reading;
   CHECK(reading.draws);
@@ -249,7 +249,7 @@ TEST_CASE("of a policy that draws it is said that nothing shows it to be one, or
   options.progress = [&](const RunProgress& progress) {
     if (progress.done == 1) server.exchange("noise");
   };
-  const auto other = run(plan, options);
+  const auto other = run::run(plan, options);
   REQUIRE_FALSE(other.ok());
   CHECK(valid_rows(folder / "other") == 0);
 }
@@ -258,10 +258,10 @@ TEST_CASE("answers that are one too old spoil their episode, which is done again
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(2, 12);
   const Exchangeable plain("fine");
-  const auto meant = run(plan, plain.options(folder / "plain"));
+  const auto meant = run::run(plan, plain.options(folder / "plain"));
   REQUIRE_MESSAGE(meant.ok(), to_text(meant.failure()));
   const Exchangeable lagging("fine", "lag=7");
-  const auto ran = run(plan, lagging.options(folder / "lag"));
+  const auto ran = run::run(plan, lagging.options(folder / "lag"));
   REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
   CHECK(ran->call.retried >= 1);
   CHECK(hashes_of(folder / "lag") == hashes_of(folder / "plain"));
@@ -276,7 +276,7 @@ TEST_CASE("a run does not go on at a server whose policy behind the same name is
     RunOptions options = served_options(out, server, "&model=/m");
     options.episodes = {0, last};
     options.if_changed = if_changed;
-    return run(plan, options);
+    return run::run(plan, options);
   };
   const auto begun = call("fine", 0, IfChanged::kRefuse);
   REQUIRE_MESSAGE(begun.ok(), to_text(begun.failure()));
@@ -303,7 +303,7 @@ TEST_CASE("answers that are drawn say nothing of another policy") {
     const test::PythonServer server("openpi_server.py", {"intact", "seen=noise"});
     RunOptions options = served_options(folder / "run", server, "&model=/m");
     options.episodes = {0, last};
-    const auto ran = run(plan, options);
+    const auto ran = run::run(plan, options);
     REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
     CHECK_FALSE(last_call(folder / "run").reading->is_steady);
     CHECK(last_call(folder / "run").reading->at_end == policy::AtEnd::kNotAsked);
@@ -322,7 +322,7 @@ TEST_CASE(
   RunOptions options = served_options(folder / "run", server, "");
   options.policy = "lerobot://127.0.0.1:" + server.port() + "?" + meant + "/m";
   options.out = folder / "alone";
-  const auto alone = run(plan, options);
+  const auto alone = run::run(plan, options);
   REQUIRE_MESSAGE(alone.ok(), to_text(alone.failure()));
   CHECK(alone->call.retried == 0);
   options.out = folder / "run";
@@ -330,7 +330,7 @@ TEST_CASE(
     if (progress.done == 1)
       load_other(servers::Protocol::kLeRobot, server.port(), meant + "/other");
   };
-  const auto ran = run(plan, options);
+  const auto ran = run::run(plan, options);
   REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
   CHECK(ran->call.retried >= 1);
   CHECK(last_call(folder / "run").reading->at_end == policy::AtEnd::kSame);
@@ -358,7 +358,7 @@ TEST_CASE(
     options.seeds = {42};
     options.assets = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
     options.out = folder / "plain";
-    const auto plain = run(plan, options);
+    const auto plain = run::run(plan, options);
     REQUIRE_MESSAGE(plain.ok(), to_text(plain.failure()));
     // Four as the call begins, one over the connection, one behind the second, fourth and sixth
     // episode each, and three as it ends.
@@ -369,7 +369,7 @@ TEST_CASE(
       if (progress.done == 3) state->model = 1;
       if (progress.done == 5) state->model = 0;
     };
-    const auto spoiled = run(plan, options);
+    const auto spoiled = run::run(plan, options);
     REQUIRE_FALSE(spoiled.ok());
     CHECK(spoiled.failure().code == Fault::kPolicy);
     CHECK(spoiled.failure().message.find(
@@ -378,7 +378,7 @@ TEST_CASE(
     CHECK(last_call(folder / "run").reading->at_end == policy::AtEnd::kOther);
     CHECK(valid_rows(folder / "run") == 2);
     options.progress = nullptr;
-    const auto again = run(plan, options);
+    const auto again = run::run(plan, options);
     REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
     CHECK(hashes_of(folder / "run") == hashes_of(folder / "plain"));
   }
@@ -390,13 +390,13 @@ TEST_CASE("a policy that is exchanged in the middle of a run spoils what the cal
   const test::PythonServer server("openpi_digest_server.py");
   RunOptions options = served_options(folder / "run", server, "&model=/m");
   options.episodes = {0, 0};
-  REQUIRE(run(plan, options).ok());
+  REQUIRE(run::run(plan, options).ok());
   options.episodes.reset();
   options.progress = [&](const RunProgress& progress) {
     if (progress.done == 1)
       load_other(servers::Protocol::kIntact, server.port(), "model=/other&worlds=many");
   };
-  const auto spoiled = run(plan, options);
+  const auto spoiled = run::run(plan, options);
   REQUIRE_FALSE(spoiled.ok());
   CHECK(spoiled.failure().code == Fault::kPolicy);
   CHECK(spoiled.failure().message.find("the 2 episodes of this call are invalid") !=
@@ -408,7 +408,7 @@ TEST_CASE("a policy that is exchanged in the middle of a run spoils what the cal
   CHECK(summary.findings.back().find("another policy was loaded") != std::string::npos);
   // Invalid rows and their whole traces go together, and the same command does them again.
   options.progress = nullptr;
-  const auto again = run(plan, options);
+  const auto again = run::run(plan, options);
   REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
   CHECK(again->done == 2);
   CHECK(valid_rows(folder / "run") == 3);

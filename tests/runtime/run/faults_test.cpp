@@ -96,7 +96,7 @@ TEST_CASE("a server that is gone ends the run with words that help, and the run 
   RunOptions options = server.options(folder / "run", gone);
   options.retries = 1;
   options.give_up_after = 3;
-  const auto stopped = run(plan, options);
+  const auto stopped = run::run(plan, options);
   REQUIRE_FALSE(stopped.ok());
   CHECK(stopped.failure().code == Fault::kPolicy);
   CHECK(stopped.failure().where == "served");
@@ -154,7 +154,7 @@ TEST_CASE("two policies of this process under one name are not one run") {
   must_run(plan, options);
   CHECK(must_run(plan, options).skipped == 2);
   options.policy = "random";
-  const auto mixed = run(plan, options);
+  const auto mixed = run::run(plan, options);
   REQUIRE_FALSE(mixed.ok());
   CHECK(mixed.failure().message.starts_with(
       "was begun with another policy (recorded policy null, now policy random); "));
@@ -167,7 +167,7 @@ TEST_CASE("another plan, profile or build is refused, forked or continued, as th
   const RunOptions first = server.options(folder / "run", never);
   must_run(plan, first);
   const auto refusal = [&](const plan::Plan& asked, const RunOptions& options) {
-    const auto summary = run(asked, options);
+    const auto summary = run::run(asked, options);
     REQUIRE_FALSE(summary.ok());
     CHECK(summary.failure().code == Fault::kStore);
     CHECK(summary.failure().where == folder / "run");
@@ -213,7 +213,7 @@ TEST_CASE("another build is refused until the user wants it") {
                         {42},
                         {{{"program", "another"}}}};
   REQUIRE(Store::open(folder / "run", begun, plan.bytes()).ok());
-  const auto refused = run(plan, options);
+  const auto refused = run::run(plan, options);
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.failure().message.starts_with("was begun by another build or machine (assets: "));
   CHECK(refused.failure().message.find("program: recorded another, here ") != std::string::npos);
@@ -271,7 +271,7 @@ TEST_CASE("a server that moves continues its run, and the rows keep the first na
   }
   RunOptions other = server.options(folder / "run", never, "profile b sha256 1");
   other.policy = options.policy;
-  CHECK_FALSE(run(plan, other).ok());
+  CHECK_FALSE(run::run(plan, other).ok());
 }
 
 TEST_CASE("rows carry the name that the user gives the policy") {

@@ -54,7 +54,7 @@ TEST_CASE("ten kills at random moments: each episode once, with the undisturbed 
   for (int round = 0; round < 10; ++round) {
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
-    if (child == 0) ::_exit(run(plan, options).ok() ? 0 : 1);
+    if (child == 0) ::_exit(run::run(plan, options).ok() ? 0 : 1);
     ::usleep(static_cast<useconds_t>(100'000 + 300'000 * draws.uniform()));
     ::kill(child, SIGKILL);
     int status = 0;
@@ -62,10 +62,10 @@ TEST_CASE("ten kills at random moments: each episode once, with the undisturbed 
     if (WIFSIGNALED(status)) ++killed;
   }
   CHECK(killed > 0);
-  const auto summary = run(plan, options);
+  const auto summary = run::run(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   CHECK(summary->total == 24);
-  const auto undisturbed = run(plan, options_for(folder / "calm"));
+  const auto undisturbed = run::run(plan, options_for(folder / "calm"));
   REQUIRE_MESSAGE(undisturbed.ok(), to_text(undisturbed.failure()));
   CHECK(rows_of(folder / "killed") == rows_of(folder / "calm"));
   for (const auto& entry : fs::recursive_directory_iterator(folder / "killed")) {
@@ -124,7 +124,7 @@ TEST_CASE("who was killed in an episode leaves no words to the next one at a ser
     return options;
   };
   const auto must = [&](const RunOptions& options) {
-    const auto ran = run(plan, options);
+    const auto ran = run::run(plan, options);
     REQUIRE_MESSAGE(ran.ok(), to_text(ran.failure()));
     const auto rows = rows_of(options.out);
     REQUIRE(rows.size() == 1);
@@ -141,7 +141,7 @@ TEST_CASE("who was killed in an episode leaves no words to the next one at a ser
   if (wrapper.child == 0) {
     char port[8] = {};
     if (::read(pipe[0], port, sizeof port - 1) <= 0) ::_exit(2);
-    ::_exit(run(plan, options_at(port, "carrot", "carrot_on_plate")).ok() ? 0 : 1);
+    ::_exit(run::run(plan, options_at(port, "carrot", "carrot_on_plate")).ok() ? 0 : 1);
   }
   serving.policy = [&] { return std::make_unique<Keeping>(wrapper); };
   const auto server = servers::serve(servers::Protocol::kIntact, serving);
@@ -198,7 +198,7 @@ TEST_CASE("a full disk ends the run with its reason and loses nothing that was s
   std::size_t stored = 0;
   for (const char* size : {"140k", "180k", "220k"}) {
     disk.grow(size);
-    const auto full = run(plan, options);
+    const auto full = run::run(plan, options);
     REQUIRE_FALSE(full.ok());
     CHECK_MESSAGE(full.failure().code == Fault::kStore, to_text(full.failure()));
     const auto rows = read_results(options.out);
@@ -213,10 +213,10 @@ TEST_CASE("a full disk ends the run with its reason and loses nothing that was s
   CHECK(stored > 0);
   CHECK(stored < 16);
   disk.grow("64m");
-  const auto summary = run(plan, options);
+  const auto summary = run::run(plan, options);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   CHECK(summary->skipped == static_cast<int>(stored));
-  const auto undisturbed = run(plan, options_for(folder / "calm"));
+  const auto undisturbed = run::run(plan, options_for(folder / "calm"));
   REQUIRE_MESSAGE(undisturbed.ok(), to_text(undisturbed.failure()));
   CHECK(rows_of(options.out) == rows_of(folder / "calm"));
 }

@@ -325,7 +325,7 @@ TEST_CASE("a live run that was killed goes on, with the traces of one that was n
     options.progress = [](const RunProgress& progress) {
       if (progress.done == 2) kill(getpid(), SIGKILL);
     };
-    const auto ran = run(plan, options);
+    const auto ran = run::run(plan, options);
     _exit(ran.ok() ? 0 : 1);
   }
   int status = 0;
@@ -346,7 +346,7 @@ TEST_CASE("live rows never stand beside rows of a world that waits") {
   must_run(plan, live_options(folder / "live", "null", 0.2));
   const auto refusal = [&](RunOptions options, const std::string& out) {
     options.out = out;
-    const auto ran = run(plan, options);
+    const auto ran = run::run(plan, options);
     return ran.ok() ? std::string() : ran.failure().message;
   };
   CHECK(refusal(waits, folder / "live")
@@ -378,7 +378,7 @@ TEST_CASE("what cannot be live, or not measured so, is refused before anything r
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(1, 3);
   const auto refusal = [&](RunOptions options) {
-    const auto ran = run(plan, options);
+    const auto ran = run::run(plan, options);
     REQUIRE_FALSE(ran.ok());
     CHECK(ran.failure().code == Fault::kUsage);
     return ran.failure().message;

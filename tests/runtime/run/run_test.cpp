@@ -196,7 +196,7 @@ TEST_CASE("a replayed run has the episodes and seeds of the other, neither more 
   CHECK(rows->at(1).seed == 42);
   CHECK_FALSE(rows->at(1).invalid);
   copy.seeds = {7};
-  CHECK(run(plan, copy).failure().message.find("holds none of the chosen") != std::string::npos);
+  CHECK(run::run(plan, copy).failure().message.find("holds none of the chosen") != std::string::npos);
 }
 
 TEST_CASE("a damaged trace is run again with a note, and videos that were not made are noted") {
@@ -252,7 +252,7 @@ TEST_CASE("what cannot run is told before anything is written") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(1, 3);
   const auto refused = [&](const RunOptions& options) {
-    const auto summary = run(plan, options);
+    const auto summary = run::run(plan, options);
     REQUIRE_FALSE(summary.ok());
     CHECK_FALSE(fs::exists(options.out));
     return to_text(summary.failure());
@@ -324,7 +324,7 @@ TEST_CASE("a disk that fills up is told, leaves no partial file, and the run con
     ::signal(SIGXFSZ, SIG_IGN);
     const rlimit size{limit, limit};
     ::setrlimit(RLIMIT_FSIZE, &size);
-    const auto summary = run(plan, options);
+    const auto summary = run::run(plan, options);
     ::_exit(summary.ok() ? 0 : summary.failure().code == Fault::kStore ? 42 : 1);
   }
   int status = 0;

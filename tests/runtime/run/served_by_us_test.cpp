@@ -82,7 +82,7 @@ TEST_CASE("of a policy that draws one seed is served, and runs of others are ref
   RunOptions asked =
       options_for(folder / "asked", address_of(servers::Protocol::kIntact, **listener, served));
   asked.seeds = {7, 8};
-  const auto refused = run(plan, asked);
+  const auto refused = run::run(plan, asked);
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.failure().code == Fault::kUsage);
   CHECK(refused.failure().message ==

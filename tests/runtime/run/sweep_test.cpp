@@ -121,13 +121,13 @@ TEST_CASE("several worlds at a server that keeps one episode's words are refused
   const plan::Plan plan = table_plan(2, 2);
   RunOptions options = options_for(folder / "run").run;
   options.policy = "intact://127.0.0.1:1?profile=octo_bridge&model=/m&timeout.wait_s=0.05";
-  const auto refused = run(plan, options);
+  const auto refused = run::run(plan, options);
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.failure().code == Fault::kUsage);
   CHECK(refused.failure().message.find("`worlds = one`") != std::string::npos);
   CHECK_FALSE(fs::exists(folder / "run"));
   options.jobs = 1;
-  const auto absent = run(plan, options);  // nobody listens there
+  const auto absent = run::run(plan, options);  // nobody listens there
   REQUIRE_FALSE(absent.ok());
   CHECK(absent.failure().code == Fault::kPolicy);
 }

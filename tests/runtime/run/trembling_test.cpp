@@ -19,7 +19,7 @@ TEST_CASE("an expert that trembles its fingers into the table comes to the end o
   options.episodes = {19, 19};
   options.seeds = {42};
   options.assets = VLAPROBE_SOURCE_DIR "/assets";
-  const auto summary = run(test::suite_plan(), options);
+  const auto summary = run::run(test::suite_plan(), options);
   REQUIRE_MESSAGE(summary.ok(), (summary.ok() ? "" : to_text(summary.failure())));
   CHECK(summary->done == 1);
   const auto rows = read_results(options.out);
