@@ -151,12 +151,16 @@ int32_t vlaprobe_run(const vlaprobe_plan* plan, const vlaprobe_run_options* opti
       wanted.progress = [&](const run::RunProgress& progress) { tell(progress, given, stop); };
     PROBE_ASSIGN(const run::RunSummary made, run::run(plan->shared->plan(), wanted));
     const std::string out = made.out.empty() ? wanted.out : made.out;
+    Json reasons = Json::array();
+    for (const auto& reason : made.not_attempted.reasons())
+      reasons.push_back({{"reason", reason.text}, {"episodes", reason.episodes}});
     return give({{"out", out},
                  {"total", made.total},
                  {"done", made.done},
                  {"skipped", made.skipped},
                  {"invalid", made.invalid},
-                 {"not_attempted", made.not_attempted},
+                 {"not_attempted", made.not_attempted.count()},
+                 {"not_attempted_reasons", std::move(reasons)},
                  {"notes", made.notes},
                  {"speed", made.done > 0 ? store::to_text(made.call) : ""}},
                 summary);

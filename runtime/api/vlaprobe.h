@@ -458,9 +458,10 @@ typedef struct vlaprobe_run_options {
   int32_t (*stopped)(void* user);
 } vlaprobe_run_options;
 
-/* `summary` is JSON: {"out", "total", "done", "skipped", "invalid", "not_attempted", "notes":
- * [sentences], "speed"}; it may be NULL. Episodes that fail are rows that are invalid, not failures
- * of the run. */
+/* `summary` is JSON: {"out", "total", "done", "skipped", "invalid", "not_attempted",
+ * "not_attempted_reasons": [{"reason", "episodes"}], the most frequent first, "notes": [sentences],
+ * "speed"}; it may be NULL. Episodes that fail are rows that are invalid, not failures of the run.
+ */
 VLAPROBE_EXPORT int32_t vlaprobe_run(const vlaprobe_plan* plan, const vlaprobe_run_options* options,
                                      char** summary, vlaprobe_error* error);
 

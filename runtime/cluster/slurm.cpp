@@ -16,6 +16,7 @@
 #include "runtime/base/paths.h"
 #include "runtime/cluster/program.h"
 #include "runtime/run/selection.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/store.h"
 
 namespace probe::cluster {
@@ -244,7 +245,7 @@ class RunWork final : public ArrayWork {
     if (has_rows) {
       PROBE_ASSIGN(const auto rows, store::read_results(dir));
       for (const store::ResultRow& row : rows) {
-        if (!row.invalid) left.erase(store::key_of(row));
+        if (!store::is_open(row)) left.erase(store::key_of(row));
       }
     }
     std::map<int, std::int64_t> lacking;

@@ -34,7 +34,7 @@ class Expert final : public policy::Policy {
     if (start.robot == nullptr) {
       return Failure{Fault::kPolicy, "the expert was told of no robot", ""};
     }
-    if (start.delay > 0) return Failure{Fault::kPolicy, std::string(policy::kLateActions), ""};
+    if (start.delay > 0) return Failure{Fault::kNoSkill, std::string(policy::kLateActions), ""};
     PROBE_ASSIGN(Reach reach, Reach::create(*start.robot));
     reach_ = std::move(reach);
     horizon_ = start.horizon;
@@ -105,7 +105,7 @@ class Expert final : public policy::Policy {
         solution_.empty() ? hand_.act(scene, means) : act_by_solution(observation, means);
     note_hand();
     // What cannot be begun where the episode begins is not attempted, and no failed start.
-    if (may_refuse && !lack_.empty()) return Failure{Fault::kPolicy, lack_, ""};
+    if (may_refuse && !lack_.empty()) return Failure{Fault::kNoSkill, lack_, ""};
     return action;
   }
 
@@ -138,7 +138,7 @@ class Expert final : public policy::Policy {
       }
       if (beyond <= 0) continue;
       return Failure{
-          Fault::kPolicy,
+          Fault::kNoSkill,
           fmt::format("{}: it is out of the arm's reach ({:.1f} cm)", skill.name, 100 * beyond),
           ""};
     }
@@ -287,7 +287,7 @@ class Expert final : public policy::Policy {
                      ""};
     }
     if (view.object_of(options_.source) < 0 || lacks_target || is_other)
-      return Failure{Fault::kPolicy, std::string(policy::kNoSolution), ""};
+      return Failure{Fault::kNoSkill, std::string(policy::kNoSolution), ""};
     return check_joints(observation);
   }
 

@@ -15,7 +15,7 @@ namespace probe::expert {
 
 Result<Reach> Reach::create(const robot::Robot& robot) {
   if (!robot.hand) {
-    return Failure{Fault::kPolicy,
+    return Failure{Fault::kNoSkill,
                    fmt::format("{}; the robot `{}` has {}", policy::kOtherHand, robot.name,
                                robot.fingers.empty() ? "no fingers" : "others"),
                    ""};

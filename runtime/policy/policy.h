@@ -39,7 +39,7 @@ struct Proprioception {
   std::size_t arm_joints() const { return joints.size() - std::min(finger_joints, joints.size()); }
 };
 
-// How a scripted policy fails (kPolicy) in a task that asks for what it has no skill for: a status
+// How a scripted policy fails (kNoSkill) in a task that asks for what it has no skill for: a status
 // of its own, and no failed start.
 inline constexpr std::string_view kNoSolution = "no solution in skills for this goal";
 // How it begins to say that the robot's hand is none that it has skills for: the same status.
@@ -51,10 +51,6 @@ inline constexpr std::string_view kLateActions = "the expert does not plan ahead
 // How it begins to say that a skill of the solution cannot be done where the episode begins: the
 // arm does not reach it, or the hand finds no hold.
 inline constexpr std::string_view kSkillCannot = "skill ";
-inline bool was_not_attempted(const Failure& failure) {
-  return failure.message == kNoSolution || failure.message == kLateActions ||
-         failure.message.starts_with(kOtherHand) || failure.message.starts_with(kSkillCannot);
-}
 
 // An object's collision hulls and where it is; all but the last two are fixed in an episode.
 struct PrivilegedObject {

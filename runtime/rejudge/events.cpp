@@ -6,6 +6,7 @@
 #include "runtime/plan/readouts.h"
 #include "runtime/rejudge/program_view.h"
 #include "runtime/rejudge/rescore.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/vm/judge.h"
 
 namespace probe::rejudge {
@@ -175,7 +176,8 @@ Result<EpisodeEvents> events_of(const plan::Plan& plan, std::uint32_t task,
   PROBE_ASSIGN(const Rescored score, rescore(plan, task, trace));
   EpisodeEvents untold;
   if (score.invalid || !trace.start) {
-    untold.untold = "invalid: " + score.invalid.value_or("it never began");
+    const std::string why = score.invalid.value_or("it never began");
+    untold.untold = (why.starts_with(store::kNotAttempted) ? "" : "invalid: ") + why;
     return untold;
   }
   PROBE_ASSIGN(EpisodeEvents out, Watch(plan, task, metrics).run(trace, score.steps.size()));

@@ -46,6 +46,10 @@ void count_row(const plan::Plan& plan, const store::Trace& trace, const Rescored
   const Job& job = suite.jobs[suite.next];
   Reading& reading = suite.reading;
   const store::ResultRow row = judged_row(plan, job, score, trace);
+  if (store::is_not_attempted(row)) {
+    reading.not_attempted.add(row);
+    return;
+  }
   if (row.invalid || job.row->invalid) {
     ++reading.invalid;
     return;

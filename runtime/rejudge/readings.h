@@ -9,6 +9,7 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/rejudge/changes.h"
+#include "runtime/store/not_attempted.h"
 
 namespace probe::rejudge {
 
@@ -20,6 +21,7 @@ struct TaskReading {
 struct Reading {
   std::string suite;
   int valid = 0, invalid = 0;
+  store::NotAttempted not_attempted;  // among neither
   std::vector<MetricChange> metrics;
   std::vector<TaskReading> tasks;     // in the stored order
   std::vector<std::string> left_out;  // stored tasks that the suite does not judge

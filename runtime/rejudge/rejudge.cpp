@@ -76,7 +76,9 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
       PROBE_TRY(store->commit(row, static_cast<int>(job.match.task)));
       row.trace = absolute_path(store::trace_path(options.out, store::key_of(row)));
     }
-    if (row.invalid || job.row->invalid) {
+    if (store::is_not_attempted(row)) {
+      report.not_attempted.add(row);
+    } else if (row.invalid || job.row->invalid) {
       ++report.invalid;
     } else {
       ++report.valid;

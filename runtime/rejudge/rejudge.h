@@ -7,6 +7,7 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/rejudge/changes.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/results.h"
 
 namespace probe::rejudge {
@@ -21,6 +22,7 @@ struct RejudgeReport {
   std::vector<store::ResultRow> rows;  // as judged now, in the stored order
   std::vector<MetricChange> metrics;   // the stored plan's, then those that are new
   int valid = 0, invalid = 0;
+  store::NotAttempted not_attempted;  // among neither
   std::vector<std::string> left_out;  // stored tasks that the plan does not judge
   bool same_plan = false;             // judged under the plan they were made with
 };

@@ -10,6 +10,7 @@
 #include "runtime/base/printable.h"
 #include "runtime/plan/readouts.h"
 #include "runtime/rejudge/dimension.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 
@@ -33,9 +34,9 @@ struct Remark {
 };
 
 struct Tally {
-  int valid = 0, invalid = 0, not_attempted = 0;
+  int valid = 0, invalid = 0;
+  store::NotAttempted not_attempted;
   std::string first_invalid;  // which, and why
-  std::string why_not;        // attempted
   std::vector<Remark> remarks;
   std::vector<Column> columns;
 };
@@ -58,8 +59,7 @@ MetricKind kind_of(const plan::Plan* plan, const std::string& task, const std::s
 
 void add(Tally& tally, const store::ResultRow& row) {
   if (store::is_not_attempted(row)) {
-    ++tally.not_attempted;
-    tally.why_not = row.invalid->substr(store::kNotAttempted.size());
+    tally.not_attempted.add(row);
     return;
   }
   if (row.invalid) {
@@ -124,9 +124,11 @@ std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan*
   const auto out = std::back_inserter(text);
   for (const std::string& task : order) {
     const Tally& tally = tallies[task];
-    fmt::format_to(out, "{}: {} episodes", task, tally.valid + tally.invalid + tally.not_attempted);
-    if (tally.not_attempted > 0)
-      fmt::format_to(out, ", {} not attempted ({})", tally.not_attempted, tally.why_not);
+    fmt::format_to(out, "{}: {} episodes", task,
+                   tally.valid + tally.invalid + tally.not_attempted.count());
+    if (tally.not_attempted.count() > 0)
+      fmt::format_to(out, ", {} not attempted ({})", tally.not_attempted.count(),
+                     store::to_text(tally.not_attempted));
     if (tally.invalid > 0)
       fmt::format_to(out, ", {} invalid ({})", tally.invalid, tally.first_invalid);
     text += '\n';

@@ -67,11 +67,12 @@ void note_two_meanings(Benchmark& benchmark, const std::vector<std::string>& nam
 
 void note_runs(Benchmark& benchmark) {
   for (const Policy& policy : benchmark.policies) {
-    int done = 0, invalid = 0, not_attempted = 0, expected = 0;
+    int done = 0, invalid = 0, expected = 0;
+    store::NotAttempted not_attempted;
     for (const RunInfo& run : policy.runs) {
       done += run.done;
       invalid += run.invalid;
-      not_attempted += run.not_attempted;
+      not_attempted.add(run.not_attempted);
       expected = std::max(expected, run.expected);
     }
     if (done < expected) {
@@ -80,11 +81,10 @@ void note_runs(Benchmark& benchmark) {
                        "that both sides have are compared",
                        policy.label, done, expected));
     }
-    if (not_attempted > 0) {
+    if (not_attempted.count() > 0) {
       note(benchmark, "note",
-           fmt::format("`{}`: {} of {} episodes were not attempted: no solution in skills "
-                       "for them",
-                       policy.label, not_attempted, done));
+           fmt::format("`{}`: {} of {} episodes were not attempted: {}", policy.label,
+                       not_attempted.count(), done, store::to_text(not_attempted)));
     }
     if (invalid > 0) {
       note(benchmark, invalid == done ? "bad" : "warn",

@@ -13,6 +13,7 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/report/asked_model.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/results.h"
 #include "runtime/store/run_record.h"
 
@@ -82,11 +83,11 @@ struct RunInfo {
   int plan = 0, fingerprint = 0;
   std::vector<int> seeds;
   int done = 0, expected = 0, invalid = 0, videos = 0;
-  int not_attempted = 0;               // a policy of ours had no skill for them
-  int tasks = 0;                       // that have an episode
-  store::ReadingSummary reading = {};  // of a policy server
-  std::string content = {};            // RunIdentity::policy_content
-  std::string live = {};               // of a world that does not wait: how the policy answered
+  store::NotAttempted not_attempted = {};  // not among the invalid
+  int tasks = 0;                           // that have an episode
+  store::ReadingSummary reading = {};      // of a policy server
+  std::string content = {};                // RunIdentity::policy_content
+  std::string live = {};                   // of a world that does not wait: how the policy answered
 };
 
 enum class Role : std::uint8_t { kModel, kCeiling, kFloor, kRandom, kProbe };

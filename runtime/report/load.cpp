@@ -11,6 +11,7 @@
 #include "runtime/base/printable.h"
 #include "runtime/report/arrange.h"
 #include "runtime/run/delivery.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
@@ -160,7 +161,8 @@ class FolderLoader {
       episode.plan = plan;
       if (row.invalid) {
         episode.reason = index_in(benchmark_.reasons, printable(*row.invalid, kLongestText));
-        ++(store::is_not_attempted(row) ? info.not_attempted : info.invalid);
+        info.not_attempted.add(row);
+        if (store::is_open(row)) ++info.invalid;
       } else {
         for (const store::MetricValue& value : row.metrics) {
           const int m = plans_.metric(value.name, value.is_bool);

@@ -42,7 +42,7 @@ Json policies_json(const Benchmark& benchmark, const PageOptions& options) {
                       {"expected", run.expected},
                       {"invalid", run.invalid},
                       {"videos", run.videos}});
-      if (run.not_attempted > 0) runs.back()["not_attempted"] = run.not_attempted;
+      if (run.not_attempted.count() > 0) runs.back()["not_attempted"] = run.not_attempted.count();
     }
     policies.push_back({{"name", policy.name},
                         {"label", policy.label},

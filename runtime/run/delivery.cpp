@@ -7,6 +7,7 @@
 #include "runtime/base/json.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/plan.h"
+#include "runtime/store/not_attempted.h"
 
 namespace probe::run {
 namespace {

@@ -8,6 +8,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/hash_number.h"
 #include "runtime/base/percent.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/vm/claims.h"
 
 namespace probe::run {
@@ -29,7 +30,7 @@ struct Outcome {
 Outcome policy_failed(const Failure& failure) {
   // Of a world that does not wait and cannot keep up.
   if (failure.code == Fault::kWorld) return {reason("world", failure), {}};
-  if (policy::was_not_attempted(failure))
+  if (failure.code == Fault::kNoSkill)
     return {std::string(store::kNotAttempted) + to_text(failure), {}, failure.code};
   return {reason("policy", failure), {}, failure.code};
 }

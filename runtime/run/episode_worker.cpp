@@ -7,6 +7,7 @@
 #include "runtime/run/recorded.h"
 #include "runtime/servers/identity.h"
 #include "runtime/show/episode_video.h"
+#include "runtime/store/not_attempted.h"
 
 namespace probe::run {
 namespace {
@@ -20,7 +21,7 @@ void add_once(std::vector<std::string>& notes, std::string note) {
 }  // namespace
 
 bool has_failed(const store::ResultRow& row) {
-  if (row.invalid) return !store::is_not_attempted(row);
+  if (row.invalid) return store::is_open(row);
   for (const store::MetricValue& metric : row.metrics) {
     if (metric.name == "success") return metric.value == 0;
   }
@@ -126,11 +127,8 @@ Status EpisodeWorker::commit(const Played& played, int task_order) {
   ++shared_.summary.done;
   shared_.summary.call.observations += row.steps;
   for (std::string& note : policy_->notes()) add_once(shared_.summary.notes, std::move(note));
-  if (store::is_not_attempted(row)) {
-    ++shared_.summary.not_attempted;
-  } else if (row.invalid) {
-    ++shared_.summary.invalid;
-  }
+  shared_.summary.not_attempted.add(row);
+  if (store::is_open(row)) ++shared_.summary.invalid;
   if (shared_.options.progress) {
     shared_.options.progress(
         {shared_.summary.done, shared_.summary.skipped, shared_.summary.total, &row});
@@ -167,7 +165,8 @@ Status EpisodeWorker::drop(const Played& played, const std::string& path) {
 
 Failure EpisodeWorker::give_up(const std::string& last) const {
   const RunSummary& summary = shared_.summary;
-  const int stored = summary.skipped + summary.done - summary.invalid - summary.not_attempted;
+  const int stored =
+      summary.skipped + summary.done - summary.invalid - summary.not_attempted.count();
   return {Fault::kPolicy,
           "the policy failed in " + std::to_string(shared_.lost_in_a_row) +
               " episodes in a row, the last time so: " + last + "\n  " + std::to_string(stored) +

@@ -18,6 +18,7 @@
 #include "runtime/stage/assets.h"
 #include "runtime/stage/robot_of.h"
 #include "runtime/store/fingerprint.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/store.h"
 
 namespace probe::run {

@@ -14,6 +14,7 @@
 #include "runtime/base/result.h"
 #include "runtime/policy/live.h"
 #include "runtime/run/policies.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/results.h"
 #include "runtime/store/run_record.h"
 
@@ -80,11 +81,11 @@ struct RunOptions {
 
 struct RunSummary {
   int total = 0, done = 0, skipped = 0, invalid = 0;
-  int not_kept = 0;                // no success, where only successes are stored
-  int not_attempted = 0;           // a policy of ours has no skill for them; not among the invalid
-  std::vector<std::string> notes;  // sentences for stderr, such as why seeds were dropped
-  std::string out;                 // the folder that was written
-  store::RunCall call;             // speed, and how busy server and simulators were
+  int not_kept = 0;                   // no success, where only successes are stored
+  store::NotAttempted not_attempted;  // not among the invalid
+  std::vector<std::string> notes;     // sentences for stderr, such as why seeds were dropped
+  std::string out;                    // the folder that was written
+  store::RunCall call;                // speed, and how busy server and simulators were
 };
 
 // Who acts, in each of a run's worlds.

@@ -246,7 +246,8 @@ Result<MergeSummary> merge(const MergeOptions& options) {
   PROBE_TRY(take_calls(sources, *store, options.out));
   for (const auto& [key, best] : chosen) {
     ++summary.rows;
-    if (best.row.invalid) ++summary.invalid;
+    summary.not_attempted.add(best.row);
+    if (is_open(best.row)) ++summary.invalid;
     if (there && best.source == &sources.front()) continue;
     const auto task = plan.find_task(best.row.task);
     if (!task) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/store/not_attempted.h"
 
 namespace probe::store {
 
@@ -19,8 +20,9 @@ struct MergeSummary {
   int rows = 0;        // in `out` now
   int added = 0;       // of them new or better than what was there
   int duplicates = 0;  // rows that another folder had too, or had valid
-  int invalid = 0;     // rows in `out` that are not valid
-  int left_out = 0;    // rows that their traces do not show, each named in `notes`
+  int invalid = 0;     // rows in `out` that are neither valid nor
+  NotAttempted not_attempted;
+  int left_out = 0;  // rows that their traces do not show, each named in `notes`
   std::vector<std::string> notes;
 };
 

@@ -53,13 +53,6 @@ struct ResultRow {
   bool operator==(const ResultRow&) const = default;
 };
 
-// How `invalid` begins where a policy of ours says that it has no skill for what the task asks: a
-// status of its own, since asking again changes nothing and no start was failed.
-inline constexpr std::string_view kNotAttempted = "not attempted: ";
-inline bool is_not_attempted(const ResultRow& row) {
-  return row.invalid && row.invalid->starts_with(kNotAttempted);
-}
-
 // The rows stored in `dir`, ascending by the plan's task order, episode and seed. Fails
 // (kStore) if there is no run in `dir`.
 Result<std::vector<ResultRow>> read_results(const std::string& dir);

@@ -51,6 +51,7 @@ void print_json(const rejudge::RejudgeReport& report, const plan::Plan& plan) {
                      {"same_plan", report.same_plan},
                      {"valid", report.valid},
                      {"invalid", report.invalid},
+                     {"not_attempted", report.not_attempted.count()},
                      {"left_out", report.left_out},
                      {"metrics", changes_json(report.metrics)},
                      {"episodes", Json::parse(store::results_to_json(report.rows))}};
@@ -66,6 +67,7 @@ void print_json(const std::vector<rejudge::Reading>& readings, const plan::Plan&
     json["suites"].push_back({{"suite", reading.suite},
                               {"valid", reading.valid},
                               {"invalid", reading.invalid},
+                              {"not_attempted", reading.not_attempted.count()},
                               {"left_out", reading.left_out},
                               {"metrics", changes_json(reading.metrics)},
                               {"tasks", std::move(tasks)}});
@@ -221,7 +223,8 @@ LoadedPlan judging_plan(const JudgeArguments& arguments) {
   if (const auto rows = store::read_results(arguments.dir)) {
     for (const store::ResultRow& row : *rows) tasks.insert(row.task);
   }
-  for (const MetricLeftOut& out : compile::of_tasks(grafted->left_out, tasks)) say("{}\n", compile::to_text(out));
+  for (const MetricLeftOut& out : compile::of_tasks(grafted->left_out, tasks))
+    say("{}\n", compile::to_text(out));
   loaded.plan = std::move(grafted->plan);
   return loaded;
 }
@@ -251,6 +254,9 @@ int judge_verb(JudgeArguments arguments) {
   for (const std::string& task : judged->left_out)
     say("left out: the judging plan has no task for `{}`\n", task);
   say("{} episodes judged, {} of them invalid\n", judged->rows.size(), judged->invalid);
+  if (judged->not_attempted.count() > 0)
+    say("{} of them were not attempted: {}\n", judged->not_attempted.count(),
+        store::to_text(judged->not_attempted));
   if (!arguments.options.out.empty()) say("results and traces: {}\n", arguments.options.out);
   return kFine;
 }

@@ -19,6 +19,9 @@ int merge_verb(const store::MergeOptions& options) {
   say("{} {} in {}: {} added now, {} duplicates dropped, {} invalid\n", summary->rows,
       are_answers ? "answers" : "episodes", options.out, summary->added, summary->duplicates,
       summary->invalid);
+  if (summary->not_attempted.count() > 0)
+    say("{} of them were not attempted: {}\n", summary->not_attempted.count(),
+        store::to_text(summary->not_attempted));
   if (summary->left_out == 0) return kFine;
   say("vlaprobe: {} rows were left out, because their traces do not show them\n",
       summary->left_out);

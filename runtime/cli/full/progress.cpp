@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "runtime/base/percent.h"
+#include "runtime/store/not_attempted.h"
 
 namespace probe::cli {
 namespace {

@@ -10,6 +10,7 @@
 #include "runtime/base/say.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/api_key.h"
+#include "runtime/store/not_attempted.h"
 
 namespace probe::cli {
 namespace {
@@ -172,10 +173,9 @@ void print_summary(const run::RunSummary& summary) {
   if (summary.total == 0) return;
   say("{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total, summary.out,
       summary.done, summary.skipped, summary.invalid);
-  if (summary.not_attempted > 0)
-    say("{} of them were not attempted: the policy has no solution in skills for them; rows say "
-        "why\n",
-        summary.not_attempted);
+  if (summary.not_attempted.count() > 0)
+    say("{} of them were not attempted: {}\n", summary.not_attempted.count(),
+        store::to_text(summary.not_attempted));
   if (summary.done > 0) say("{}\n", store::to_text(summary.call));
   if (summary.call.retried > 0) {
     say("{} attempts that the server spoiled were made again\n", summary.call.retried);

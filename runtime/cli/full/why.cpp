@@ -9,6 +9,7 @@
 #include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/explain.h"
 #include "runtime/rejudge/explain_json.h"
+#include "runtime/store/not_attempted.h"
 
 namespace probe::cli {
 namespace {
@@ -145,7 +146,9 @@ int why_verb(const WhyArguments& arguments) {
     return kFine;
   }
   put("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
-  if (why->invalid) put("invalid: {}\n", *why->invalid);
+  if (why->invalid)
+    put("{}{}\n",
+        why->invalid->starts_with(store::kNotAttempted) ? "" : "invalid: ", *why->invalid);
   if (why->remark) put("the policy says: {}\n", shown(*why->remark));
   for (const rejudge::ClaimWhy& claim : why->claims) {
     std::string denoted;

@@ -10,6 +10,7 @@
 
 #include "runtime/base/glob.h"
 #include "runtime/store/episode_key.h"
+#include "runtime/store/not_attempted.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 
@@ -124,8 +125,9 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
   }
   source.tasks.assign(tasks.begin(), tasks.end());
   for (const auto& [why, of] : invalid)
-    left_out.push_back(fmt::format("{} of `{}`, {} the first: invalid, {}", counted(of.first), dir,
-                                   of.second, why));
+    left_out.push_back(fmt::format("{} of `{}`, {} the first: {}{}", counted(of.first), dir,
+                                   of.second,
+                                   why.starts_with(store::kNotAttempted) ? "" : "invalid, ", why));
   if (failed > 0) left_out.push_back(fmt::format("{} of `{}`: no success", counted(failed), dir));
   if (empty > 0)
     left_out.push_back(

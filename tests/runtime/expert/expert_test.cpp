@@ -183,7 +183,8 @@ TEST_CASE("where actions are late the expert attempts nothing") {
   start.delay = 1;
   const auto begun = expert()->begin(start);
   REQUIRE_FALSE(begun.ok());
-  CHECK(policy::was_not_attempted(begun.failure()));
+  CHECK(begun.failure().code == Fault::kNoSkill);
+  CHECK(begun.failure().message == policy::kLateActions);
 }
 
 TEST_CASE("a goal that picking and placing does not reach is not attempted") {
@@ -191,7 +192,7 @@ TEST_CASE("a goal that picking and placing does not reach is not attempted") {
   table.set_goal(policy::Goal::kOther);
   const auto policy = expert();
   REQUIRE(policy->begin(table.start()).ok());
-  CHECK(refusal(policy->act(table.observe(0))) == policy::kNoSolution);
+  CHECK(refusal(policy->act(table.observe(0)), Fault::kNoSkill) == policy::kNoSolution);
   // What only goes there needs no goal.
   const auto reach = expert({.source = 0, .target = -1, .close = false});
   REQUIRE(reach->begin(table.start()).ok());
@@ -233,11 +234,11 @@ TEST_CASE("a robot without two fingers that close on each other is refused by na
   robot::Robot robot = test::widowx();
   start.robot = &robot;
   robot.hand.reset();
-  CHECK(refusal(policy->begin(start)) ==
+  CHECK(refusal(policy->begin(start), Fault::kNoSkill) ==
         "the expert grasps with two fingers that close on each other; the robot `wx250s` has "
         "others");
   robot.fingers.clear();
-  CHECK(refusal(policy->begin(start)) ==
+  CHECK(refusal(policy->begin(start), Fault::kNoSkill) ==
         "the expert grasps with two fingers that close on each other; the robot `wx250s` has no "
         "fingers");
 }

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "runtime/store/not_attempted.h"
+
 using namespace probe;
 
 namespace {
@@ -30,6 +32,19 @@ TEST_CASE(
         "b: 1 episodes\n"
         "  success         1 of 1\n"
         "  top          mean 2, 2 .. 2\n");
+}
+
+TEST_CASE("what was not attempted is told with all its reasons, the most frequent first") {
+  std::vector<store::ResultRow> rows;
+  const char* const reasons[] = {"too late", "skill 1: far", "skill 1: far", "a", "b", "b"};
+  for (const char* reason : reasons) {
+    rows.push_back(row("a", static_cast<int>(rows.size()), 0, 0));
+    rows.back().invalid = std::string(store::kNotAttempted) + reason;
+  }
+  CHECK(rejudge::tally_text(std::span(rows).first(1), nullptr) ==
+        "a: 1 episodes, 1 not attempted (too late)\n");
+  CHECK(rejudge::tally_text(rows, nullptr) ==
+        "a: 6 episodes, 6 not attempted (2: skill 1: far; 2: b; 1: too late; 1 for other ones)\n");
 }
 
 TEST_CASE("a run without a valid episode says only that") {

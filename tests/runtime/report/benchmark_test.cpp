@@ -107,6 +107,21 @@ TEST_CASE("invalid episodes count neither way, and tasks with no other have no n
   CHECK(data["reasons"][0] == "policy: no answer");
 }
 
+TEST_CASE("why episodes were not attempted is said as it was, whatever the reason") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  fake_run(folder / "a", plan, "expert", {.tasks = {kFour[0]}, .last = 2},
+           [](const std::string&, int episode, int) {
+             Outcome outcome{.success = true};
+             if (episode < 2) outcome.invalid = "not attempted: the expert does not plan ahead";
+             return outcome;
+           });
+  const Benchmark benchmark = loaded({folder / "a"});
+  CHECK(says(benchmark, "2 of 3 episodes were not attempted: the expert does not plan ahead"));
+  CHECK_FALSE(says(benchmark, "skills"));
+  CHECK_FALSE(says(benchmark, "invalid"));
+}
+
 TEST_CASE("runs of different plans are joined where tasks agree and kept apart where they do not") {
   const plan::Plan published = suite_plan();
   const plan::Plan repaired = suite_plan("intact_clean.probe");

@@ -7,6 +7,7 @@
 
 #include "compiler/emit/compile.h"
 #include "runtime/plan/plan.h"
+#include "runtime/store/not_attempted.h"
 #include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::run {

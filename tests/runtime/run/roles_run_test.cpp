@@ -8,6 +8,7 @@
 #include "runtime/rejudge/tally.h"
 #include "runtime/run/replay.h"
 #include "runtime/stage/goal.h"
+#include "runtime/store/not_attempted.h"
 #include "tests/runtime/run/plan_of_text.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/temporary_folder.h"
@@ -47,7 +48,7 @@ TEST_CASE("a can is picked up without a target, judged and repeated bit for bit"
   const RunOptions options = one_start(folder / "run", "expert", "pick_can");
   const RunSummary summary = must_run(roles_plan(), options);
   CHECK(summary.done == 1);
-  CHECK(summary.invalid + summary.not_attempted == 0);
+  CHECK(summary.invalid + summary.not_attempted.count() == 0);
   const auto rows = read_results(folder / "run");
   REQUIRE(rows.ok());
   for (const MetricValue& metric : rows->front().metrics) {
@@ -61,12 +62,26 @@ TEST_CASE("a can is picked up without a target, judged and repeated bit for bit"
   CHECK_MESSAGE(again->identical, again->difference);
 }
 
+// What no skill does with things that no role of the expert's is filled with.
+const plan::Plan& toppling_plan() {
+  static const plan::Plan plan = plan_of_text(R"(use "examples/roles.probe"
+metrics toppled { success = at end all g in goods: angle(axis_z(g), up) > 60deg }
+task topple {
+  scene table; layout around; metrics toppled; horizon 60 steps
+  goods green_cube, yellow_cube, blue_cube; say "topple {all three goods}"
+}
+suite mine trained on bridge_v2 { tasks { topple }; seeds 42 }
+)");
+  return plan;
+}
+
 TEST_CASE("what the expert has no skill for is not attempted: neither invalid nor failed") {
   TemporaryFolder folder;
-  const RunOptions options = one_start(folder / "run", "expert", "cubes_in_basket");
-  const RunSummary summary = must_run(roles_plan(), options);
+  const RunOptions options = one_start(folder / "run", "expert", "topple");
+  const RunSummary summary = must_run(toppling_plan(), options);
   CHECK(summary.done == 1);
-  CHECK(summary.not_attempted == 1);
+  CHECK(summary.not_attempted.count() == 1);
+  CHECK(store::to_text(summary.not_attempted) == "no solution in skills for this goal");
   CHECK(summary.invalid == 0);
   const auto rows = read_results(folder / "run");
   REQUIRE(rows.ok());
@@ -74,14 +89,50 @@ TEST_CASE("what the expert has no skill for is not attempted: neither invalid no
     CHECK(is_not_attempted(row));
     CHECK(row.invalid == "not attempted: no solution in skills for this goal");
   }
-  const std::string tally = rejudge::tally_text(*rows, &roles_plan());
-  CHECK(tally.find("cubes_in_basket: 1 episodes, 1 not attempted (no solution in skills for this "
-                   "goal)") != std::string::npos);
+  const std::string tally = rejudge::tally_text(*rows, &toppling_plan());
+  CHECK(tally.find("topple: 1 episodes, 1 not attempted (no solution in skills for this goal)") !=
+        std::string::npos);
   CHECK(tally.find("invalid") == std::string::npos);
   // Asking again would change nothing.
-  const RunSummary again = must_run(roles_plan(), options);
+  const RunSummary again = must_run(toppling_plan(), options);
   CHECK(again.done == 0);
   CHECK(again.skipped == 1);
+}
+
+TEST_CASE("where actions are late, that is the reason, and not that there is no solution") {
+  TemporaryFolder folder;
+  const plan::Plan late = plan_of_text(R"(use "examples/roles.probe"
+variant late of pick_can { delay 2 steps }
+suite mine trained on bridge_v2 { tasks { pick_can, late }; seeds 42 }
+)");
+  const RunSummary summary = must_run(late, one_start(folder / "run", "expert", "late"));
+  CHECK(summary.invalid == 0);
+  CHECK(summary.not_attempted.count() == 1);
+  CHECK(store::to_text(summary.not_attempted) == "the expert does not plan ahead of late actions");
+}
+
+// Fails as policies of users do, in words that ours might have said.
+class Unskilled final : public policy::Policy {
+ public:
+  Status begin(const policy::EpisodeStart&) override {
+    return Failure{Fault::kPolicy, "skill library is empty", ""};
+  }
+  Result<policy::Action> act(const policy::Observation&) override {
+    return policy::Action{0, 0, 0, 0, 0, 0, 1};
+  }
+};
+
+TEST_CASE("what a policy of somebody else says, in whatever words, makes an episode invalid") {
+  TemporaryFolder folder;
+  RunOptions options = one_start(folder / "run", "theirs", "pick_can");
+  options.own_policy =
+      OwnPolicy{{}, [](const PolicyContext&) -> Result<std::unique_ptr<policy::Policy>> {
+                  return std::unique_ptr<policy::Policy>(std::make_unique<Unskilled>());
+                }};
+  const RunSummary summary = must_run(roles_plan(), options);
+  CHECK(summary.invalid == 1);
+  CHECK(summary.not_attempted.count() == 0);
+  CHECK(read_results(folder / "run")->front().invalid == "policy: skill library is empty");
 }
 
 TEST_CASE("scripted policies run through tasks that lack what they go for") {
@@ -89,13 +140,13 @@ TEST_CASE("scripted policies run through tasks that lack what they go for") {
   for (const char* policy : {"null", "wrong"}) {
     CAPTURE(policy);
     const RunSummary summary =
-        must_run(roles_plan(), one_start(folder / policy, policy, "cubes_in_basket"));
+        must_run(toppling_plan(), one_start(folder / policy, policy, "topple"));
     CHECK(summary.done == 1);
-    CHECK(summary.invalid + summary.not_attempted == 0);
+    CHECK(summary.invalid + summary.not_attempted.count() == 0);
   }
   const RunSummary reach =
-      must_run(roles_plan(), one_start(folder / "reach", "reach", "cubes_in_basket"));
-  CHECK(reach.not_attempted == 1);
+      must_run(toppling_plan(), one_start(folder / "reach", "reach", "topple"));
+  CHECK(reach.not_attempted.count() == 1);
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ task far like carrot_on_plate { scene far_widowx; metrics far_open; say "open th
     REQUIRE((*expert)->begin((*stage)->introduction()).ok());
     const auto action = (*expert)->act(*(*stage)->observe());
     REQUIRE_FALSE(action.ok());
-    CHECK(policy::was_not_attempted(action.failure()));
+    CHECK(action.failure().code == Fault::kNoSkill);
     return action.failure().message;
   };
   CHECK(refusal("thin") ==

@@ -17,6 +17,7 @@ from .plan import Path, Plan, PlanLike, Task, plan_of
 
 _IF_CHANGED = {"refuse": 0, "fork": 1, "continue": 2}
 _VIDEOS = {"none": 0, "failures": 1, "all": 2}
+_NOT_ATTEMPTED = "not attempted: "  # how `invalid` begins where a policy of ours has no skill for the task
 _LONGEST_REASON = 8000  # characters of an invalid row
 
 PolicyCallable = Callable[[dict], Any]
@@ -102,9 +103,14 @@ class Results(list):
             raise UsageError("to_pandas() needs pandas, which is not installed; the rows are dicts") from None
         return pandas.DataFrame(list(self))
 
+    def _uncounted(self) -> list[str]:
+        """What no metric counts, in words."""
+        not_attempted = sum((row["invalid"] or "").startswith(_NOT_ATTEMPTED) for row in self)
+        invalid = len(self) - len(self.valid) - not_attempted
+        return [f"{invalid} invalid"] + ([f"{not_attempted} not attempted"] if not_attempted else [])
+
     def __repr__(self) -> str:
-        valid = len(self.valid)
-        return f"<results of {self.policy}: {len(self)} episodes, {len(self) - valid} invalid>"
+        return f"<results of {self.policy}: {len(self)} episodes{''.join(f', {text}' for text in self._uncounted())}>"
 
     def _repr_html_(self) -> str:
         """For notebooks: successes by task."""
@@ -112,8 +118,7 @@ class Results(list):
         rows = "".join(
             f"<tr><td>{html.escape(task)}</td><td>{yes} of {count}</td></tr>" for task, (yes, count) in counts.items()
         )
-        invalid = len(self) - len(self.valid)
-        note = f"<p>{invalid} episodes are invalid and not counted</p>" if invalid else ""
+        note = f"<p>not counted: {', '.join(self._uncounted())}</p>" if len(self.valid) < len(self) else ""
         return f"<p>{html.escape(self.policy)}</p><table><tr><th>task</th><th>success</th></tr>{rows}</table>{note}"
 
 
@@ -124,6 +129,7 @@ class Run:
         folder: where it is.
         total, done, skipped, invalid, not_attempted: episodes of the call of evaluate() that made this object: chosen,
             run now, found in the folder, invalid, without a skill for the task. None behind open_run().
+        not_attempted_reasons: of these, the most frequent first: dicts of `reason` and `episodes`.
         notes: sentences that a reader of the results should know.
     """
 
@@ -135,6 +141,7 @@ class Run:
         self.skipped: Optional[int] = told.get("skipped")
         self.invalid: Optional[int] = told.get("invalid")
         self.not_attempted: Optional[int] = told.get("not_attempted")
+        self.not_attempted_reasons: list[dict[str, Any]] = told.get("not_attempted_reasons", [])
         self.notes: list[str] = told.get("notes", [])
         self.speed: str = told.get("speed", "")
         self._assets = assets
@@ -282,7 +289,7 @@ class _Line:
         self._on_terminal = self._display is None and sys.stderr.isatty()
 
     def __call__(self, told: dict) -> None:
-        self._invalid += told.get("invalid") is not None
+        self._invalid += not (told.get("invalid") or _NOT_ATTEMPTED).startswith(_NOT_ATTEMPTED)
         self._success += bool(told.get("success"))
         there = told["done"] + told["skipped"]
         text = f"{there} of {told['total']} episodes, {self._success} of {told['done']} succeeded"

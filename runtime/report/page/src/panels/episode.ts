@@ -172,7 +172,7 @@ export function episodeView(state: State, row: number): Child {
   const prompt = data.prompts[e.prompt[row] ?? -1];
   return [
     h("h3", { tabindex: -1 }, policyLabel(state, p), ` at start ${start} of ${taskName(data, t)}, seed ${seed}`),
-    bad ? h("p", { class: "bad" }, h("b", {}, "Invalid: "), data.reasons[e.reason[row]!] ?? "") : h("ul", { class: "verdicts", "aria-label": "Verdicts" }, truths.map((m) => h("li", { class: holds(m) ? "yes" : "no" }, h("span", { "aria-hidden": "true" }, holds(m) ? "\u2713" : "\u2013"), data.metrics[m]!.label, h("span", { class: "unseen" }, holds(m) ? ": yes" : ": no")))),
+    bad ? h("p", { class: "bad" }, ...(data.reasons[e.reason[row]!]?.startsWith("not attempted") ? [] : [h("b", {}, "Invalid: ")]), data.reasons[e.reason[row]!] ?? "") : h("ul", { class: "verdicts", "aria-label": "Verdicts" }, truths.map((m) => h("li", { class: holds(m) ? "yes" : "no" }, h("span", { "aria-hidden": "true" }, holds(m) ? "\u2713" : "\u2013"), data.metrics[m]!.label, h("span", { class: "unseen" }, holds(m) ? ": yes" : ": no")))),
     remark ? h("p", { class: "key" }, h("b", {}, "The policy says: "), remark) : null,
     numbers.length ? h("p", { class: "key" }, numbers.join("; ")) : null,
     h("div", { class: "said" }, h("span", { class: "sub" }, "Instruction as sent"), prompt === undefined ? h("p", { class: "nothing" }, "What was sent is not the plan's instruction, and its text was not kept.") : h("q", { class: "prompt" }, prompt)),
