@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "runtime/ask/measured_parts.h"
 #include "runtime/ask/wording.h"
 #include "runtime/base/percent.h"
 #include "runtime/plan/questions.h"
@@ -40,6 +41,11 @@ Truth left_out(std::string why) {
   Truth truth;
   truth.left_out = std::move(why);
   return truth;
+}
+
+Truth hidden(std::string_view name, std::uint32_t pixels, const plan::FamilyRecord& family) {
+  return left_out("hidden: `" + std::string(name) + "` shows " + std::to_string(pixels) + " of " +
+                  std::to_string(family.pixels) + " pixels");
 }
 
 Truth yes_or_no(bool yes) {
@@ -126,8 +132,13 @@ Truth find_truth(const plan::Plan& plan, const plan::QuestionRecord& question, c
     if ((option.flags & plan::kMustBeSeen) == 0) continue;
     const std::uint32_t pixels = seen_of(sent, option.body).pixels;
     if (pixels >= family.pixels && pixels > 0) continue;
-    return left_out("hidden: `" + std::string(plan.text(option.text)) + "` shows " +
-                    std::to_string(pixels) + " of " + std::to_string(family.pixels) + " pixels");
+    return hidden(plan.text(option.text), pixels, family);
+  }
+  for (const MeasuredPart& part : measured_parts(plan, question)) {
+    std::uint32_t pixels = 0;
+    for (const std::uint32_t body : part.bodies) pixels += seen_of(sent, body).pixels;
+    if (pixels >= family.pixels && pixels > 0) continue;
+    return hidden(part.name, pixels, family);
   }
   const auto name = [&](std::uint32_t option) {
     return "`" + std::string(plan.text(options[option].text)) + "`";
