@@ -27,6 +27,7 @@ std::vector<OutputFile> make_all() {
                      make_spoon,
                      make_towel,
                      make_wheel,
+                     make_wicker_basket,
                      make_yellow_cube,
                      make_widowx,
                      make_panda,

@@ -31,6 +31,7 @@ std::vector<OutputFile> make_spoon();
 std::vector<OutputFile> make_towel();
 std::vector<OutputFile> make_tray();
 std::vector<OutputFile> make_wheel();
+std::vector<OutputFile> make_wicker_basket();
 std::vector<OutputFile> make_yellow_cube();
 
 std::vector<OutputFile> make_widowx();            // robots/widowx/meshes/

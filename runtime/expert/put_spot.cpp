@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "runtime/base/trig.h"
@@ -51,7 +52,11 @@ class Spots {
         view_(view),
         skill_(skill),
         leaves_room_(leaves_room),
-        to_base_(view.base.inverse()) {}
+        to_base_(view.base.inverse()) {
+    if (skill.to_object >= 0 && skill.place != policy::Skill::Place::kBeside)
+      carrier_ =
+          footprint_of(view.objects[static_cast<std::size_t>(skill.to_object)].parts, owner());
+  }
 
   std::vector<Wanted> wanted() const {
     if (skill_.place == policy::Skill::Place::kBeside) return ring();
@@ -68,14 +73,20 @@ class Spots {
     return to_base_;
   }
 
-  // What a thing at `at` would stand on, at most `top` high.
+  // What a thing at `at` would stand on, at most `top` high. What goes on or in an object does not
+  // stand on the others that lie there.
   double support(const Vec2& at, double top) const {
     double height = scene_.surface;
-    for (const Footprint* other : others_of(scene_, true)) {
-      for (std::size_t i = 0; i < other->parts.size(); ++i) {
-        if (other->part_tops[i] > top || other->part_tops[i] < height) continue;
-        if (contains(other->parts[i], at)) height = other->part_tops[i];
+    const auto raise = [&](const Footprint& carrier) {
+      for (std::size_t i = 0; i < carrier.parts.size(); ++i) {
+        if (carrier.part_tops[i] > top || carrier.part_tops[i] < height) continue;
+        if (contains(carrier.parts[i], at)) height = carrier.part_tops[i];
       }
+    };
+    if (carrier_) {
+      raise(*carrier_);
+    } else {
+      for (const Footprint* other : others_of(scene_, true)) raise(*other);
     }
     return height;
   }
@@ -188,6 +199,7 @@ class Spots {
   const policy::Skill& skill_;
   bool leaves_room_;
   Pose to_base_;
+  std::optional<Footprint> carrier_;  // the object that it is put on or in
 };
 
 }  // namespace

@@ -295,14 +295,50 @@ TEST_CASE("e_un: every measure") {
                world);
 }
 
-// `predicate` of the library's page of places, judged in worlds made by hand.
-TEST_CASE("the library's beside is on the ground and on_top_of is not") {
+// The library's pages of contacts and places.
+std::string places() {
   std::string library;
   for (const char* page : {"contact.probe", "place.probe"}) {
     std::ifstream file(std::string(VLAPROBE_SOURCE_DIR) + "/dsl/std/" + page);
     for (std::string line; std::getline(file, line);)
       library += (line.starts_with("use ") ? "" : line) + "\n";
   }
+  return library;
+}
+
+TEST_CASE("the library's inside has its middle between the walls, below the rim, off the ground") {
+  const std::string library = places();
+  const Vec3 push = {0, 0, 0.01};
+  // A hollow thing 14 cm across and 4 cm tall, and a cube of 3 cm; `at` from the middle of its
+  // foot.
+  const auto says = [&](const char* what, const Vec3& at, bool is_grounded, double inside) {
+    CAPTURE(what);
+    World world;
+    const Vec3 middle{0.3, 0.1, 0.82};
+    world.at(kTarget, middle);
+    world.at(kSource, middle + at - Vec3(0, 0, 0.02));
+    world.starts[kTarget].half = {0.07, 0.07, 0.02};
+    world.starts[kSource].half = {0.015, 0.015, 0.015};
+    if (is_grounded) world.touch(kSource, kSurface, push);
+    world.touch(kTarget, kSurface, push);
+    check_values({{"at end inside(source, target)", inside}}, world, library);
+  };
+  says("on its floor", {0, 0, 0.019}, false, 1);
+  says("in a corner", {0.045, -0.045, 0.019}, false, 1);
+  says("tipped against a wall", {0.05, 0, 0.022}, false, 1);
+  says("on another that lies there, its middle above the rim", {0, 0, 0.049}, false, 0);
+  says("across the rim", {0, 0, 0.055}, false, 0);
+  says("on a wall, half outside", {0.0675, 0, 0.055}, false, 0);
+  says("on the rim from outside, its far end on the ground", {0.06, 0, 0.03}, true, 0);
+  says("against a wall from outside", {0.085, 0, 0.015}, true, 0);
+  says("against a wall from outside, on something else", {0.085, 0, 0.03}, false, 0);
+  says("held over it", {0, 0, 0.1}, false, 0);
+  says("below a thing without a floor", {0, 0, 0.015}, true, 0);
+}
+
+// `predicate` of the library's page of places, judged in worlds made by hand.
+TEST_CASE("the library's beside is on the ground and on_top_of is not") {
+  const std::string library = places();
   const auto says = [&](const World& world, double beside, double on_top_of) {
     check_values({{"at end beside(source, target)", beside},
                   {"at end on_top_of(source, target)", on_top_of}},

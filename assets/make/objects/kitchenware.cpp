@@ -1,5 +1,5 @@
-// What a kitchen's tasks handle: a bowl, a mug with a handle, a bottle and a tray. Hollow things
-// are felt as a base and a ring of convex segments.
+// What a kitchen's tasks handle: a bowl, a mug with a handle, a bottle, a tray and a basket. Hollow
+// things are felt as a base and a ring of convex segments.
 #include <array>
 #include <cmath>
 
@@ -63,6 +63,69 @@ Image oil_label() {
     }
   }
   return image;
+}
+
+// Bands of canes that go over and under one another.
+Image wicker_texture() {
+  constexpr int kSize = 256;
+  constexpr double kAcross = 140, kBand = 10;  // mm
+  const Colour light = texel_for({206, 162, 98}, kGainUp, 0.004);
+  const Colour dark = texel_for({126, 84, 44}, kGainUp, 0.004);
+  Image image(kSize, kSize);
+  for (int row = 0; row < kSize; ++row) {
+    for (int column = 0; column < kSize; ++column) {
+      const double u = (column + 0.5) / kSize * kAcross / kBand;
+      const double v = (row + 0.5) / kSize * kAcross / kBand;
+      const bool along = (static_cast<int>(std::floor(u)) + static_cast<int>(std::floor(v))) % 2;
+      const double across = along ? v - std::floor(v) : u - std::floor(u);
+      // Four canes to a band, dark between them and towards its sides.
+      const double cane = std::abs(4 * across - std::floor(4 * across) - 0.5);
+      const double side = smooth_step(0.38, 0.5, std::abs(across - 0.5));
+      image.set(column, row, mix(light, dark, std::max(smooth_step(0.25, 0.5, cane), side)));
+    }
+  }
+  return image;
+}
+
+// Hollow and open above, with upright walls; millimetres, centred.
+struct OpenBox {
+  Vec3 half;
+  double floor, wall;  // how thick
+  Image seen_inside;   // lies on the floor
+  Colour rim;
+  double roughness;
+};
+std::vector<OutputFile> open_box(const std::string& name, const OpenBox& shape) {
+  const double x = shape.half.x(), y = shape.half.y(), thick = shape.wall;
+  const double low = -shape.half.z(), floor_top = low + shape.floor, top = shape.half.z();
+  Surface floor =
+      cushion({.half = {x - 1, y - 1, shape.floor / 2}, .corner = 2, .rim = 0.3, .rim_steps = 1},
+              seen_from_above({2 * x, 2 * y}));
+  move_points(floor,
+              [&](const Vec3& p) { return Vec3(p.x(), p.y(), p.z() + low + shape.floor / 2); });
+  floor = in_metres(std::move(floor));
+  smooth_normals(floor, 30);
+  struct Wall {
+    const char* name;
+    Vec3 low, high;
+  };
+  const std::array<Wall, 4> walls{
+      {{"front", {-x, -y, floor_top}, {x, -y + thick, top}},
+       {"back", {-x, y - thick, floor_top}, {x, y, top}},
+       {"left", {-x, thick - y, floor_top}, {-x + thick, y - thick, top}},
+       {"right", {x - thick, thick - y, floor_top}, {x, y - thick, top}}}};
+  std::vector<Polyhedron> parts{hull_mm(box_points({-x, -y, low}, {x, y, floor_top}, 0), "floor")};
+  Surface rim;
+  for (const Wall& wall : walls) {
+    parts.push_back(hull_mm(box_points(wall.low, wall.high, 0), wall.name));
+    // Down to the foot, so that the floor's edge is not seen from the side.
+    const Vec3 foot(wall.low.x(), wall.low.y(), low);
+    add_faces(rim, convex_hull(box_points(foot, wall.high, 0.8), wall.name));
+  }
+  return object_files(name,
+                      {painted_part(std::move(floor), "floor", shape.seen_inside, 0.8),
+                       plain_part(in_metres(std::move(rim)), "rim", shape.rim, shape.roughness)},
+                      parts);
 }
 
 }  // namespace
@@ -142,33 +205,22 @@ std::vector<OutputFile> make_bottle() {
 
 // 26 cm x 18 cm, its rim 2 cm high.
 std::vector<OutputFile> make_tray() {
-  constexpr double kLow = -10, kFloor = -5, kTop = 10, kThick = 7;
-  Surface floor = cushion({.half = {129, 89, 2.5}, .corner = 2, .rim = 0.3, .rim_steps = 1},
-                          seen_from_above({260, 180}));
-  move_points(floor, [](const Vec3& p) { return Vec3(p.x(), p.y(), p.z() + kLow + 2.5); });
-  floor = in_metres(std::move(floor));
-  smooth_normals(floor, 30);
-  struct Wall {
-    const char* name;
-    Vec3 low, high;
-  };
-  const std::array<Wall, 4> walls{{{"front", {-130, -90, kFloor}, {130, -90 + kThick, kTop}},
-                                   {"back", {-130, 90 - kThick, kFloor}, {130, 90, kTop}},
-                                   {"left", {-130, -83, kFloor}, {-130 + kThick, 83, kTop}},
-                                   {"right", {130 - kThick, -83, kFloor}, {130, 83, kTop}}}};
-  std::vector<Polyhedron> parts{
-      hull_mm(box_points({-130, -90, kLow}, {130, 90, kFloor}, 0), "floor")};
-  Surface rim;
-  for (const Wall& wall : walls) {
-    parts.push_back(hull_mm(box_points(wall.low, wall.high, 0), wall.name));
-    // Down to the foot, so that the floor's edge is not seen from the side.
-    const Vec3 foot(wall.low.x(), wall.low.y(), kLow);
-    add_faces(rim, convex_hull(box_points(foot, wall.high, 0.8), wall.name));
-  }
-  return object_files("tray",
-                      {painted_part(std::move(floor), "floor", wood_texture(), 0.8),
-                       plain_part(in_metres(std::move(rim)), "rim", lying({150, 104, 62}), 0.7)},
-                      parts);
+  return open_box("tray", {.half = {130, 90, 10},
+                           .floor = 5,
+                           .wall = 7,
+                           .seen_inside = wood_texture(),
+                           .rim = lying({150, 104, 62}),
+                           .roughness = 0.7});
+}
+
+// 14 cm across and 4 cm tall: what lies in it has its middle below the rim.
+std::vector<OutputFile> make_wicker_basket() {
+  return open_box("wicker_basket", {.half = {70, 70, 20},
+                                    .floor = 4,
+                                    .wall = 5,
+                                    .seen_inside = wicker_texture(),
+                                    .rim = lying({176, 128, 72}),
+                                    .roughness = 0.9});
 }
 
 }  // namespace probe::make

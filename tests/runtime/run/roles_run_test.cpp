@@ -62,6 +62,18 @@ TEST_CASE("a can is picked up without a target, judged and repeated bit for bit"
   CHECK_MESSAGE(again->identical, again->difference);
 }
 
+TEST_CASE("a set is put into a basket side by side, and nothing on what lies there") {
+  TemporaryFolder folder;
+  const RunSummary summary =
+      must_run(roles_plan(), one_start(folder / "run", "expert", "cubes_in_basket"));
+  CHECK(summary.invalid + summary.not_attempted.count() == 0);
+  const auto rows = read_results(folder / "run");
+  REQUIRE(rows.ok());
+  for (const MetricValue& metric : rows->front().metrics) {
+    if (metric.name == "success") CHECK(metric.value == 1);
+  }
+}
+
 // What no skill does with things that no role of the expert's is filled with.
 const plan::Plan& toppling_plan() {
   static const plan::Plan plan = plan_of_text(R"(use "examples/roles.probe"
