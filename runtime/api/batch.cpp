@@ -73,6 +73,8 @@ Status give_column(const api::Worlds& worlds, const api::Columns& columns, std::
       return give(columns.episodes, {n});
     case VLAPROBE_FIELD_SUCCESS:
       return give(columns.success, {n});
+    case VLAPROBE_FIELD_DECIDED:
+      return give(columns.decided, {n});
     case VLAPROBE_FIELD_TERMINATED:
       return give(worlds.terminated(), {n});
     case VLAPROBE_FIELD_TRUNCATED:

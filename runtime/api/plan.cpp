@@ -6,6 +6,7 @@
 #include "compiler/diag/json.h"
 #include "compiler/diag/text.h"
 #include "runtime/api/calls.h"
+#include "runtime/api/folders.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/sha256.h"
 #include "runtime/base/spelling.h"
@@ -77,16 +78,8 @@ std::string task_place(const SharedPlan& plan, std::uint32_t task) {
 
 namespace {
 
-std::string text_of(const char* text) { return text == nullptr ? std::string() : text; }
-
 vlaprobe_plan* handle_of(plan::Plan plan, const vlaprobe_plan_options& options) {
   return new vlaprobe_plan{std::make_shared<SharedPlan>(std::move(plan), text_of(options.assets))};
-}
-
-Status give_text(std::string_view text, char** out) {
-  *out = copy_text(text);
-  if (*out == nullptr) throw std::bad_alloc();
-  return {};
 }
 
 void write_hex(const std::array<std::uint8_t, 32>& id, char (&out)[65]) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "runtime/api/calls.h"
+#include "runtime/api/folders.h"
 #include "runtime/api/plan.h"
 #include "runtime/api/questions.h"
 #include "runtime/assets/output_file.h"
@@ -27,19 +28,11 @@
 
 using namespace probe;
 using api::call;
+using api::give;
+using api::give_text;
+using api::text_of;
 
 namespace {
-
-std::string text_of(const char* text) { return text == nullptr ? std::string() : text; }
-
-Status give_text(std::string_view text, char** out) {
-  if (out == nullptr) return {};
-  *out = api::copy_text(text);
-  if (*out == nullptr) throw std::bad_alloc();
-  return {};
-}
-
-Status give(const Json& json, char** out) { return give_text(json.dump(), out); }
 
 Result<run::RunOptions> read(const vlaprobe_run_options& given, const api::SharedPlan& plan) {
   run::RunOptions options;
@@ -52,12 +45,7 @@ Result<run::RunOptions> read(const vlaprobe_run_options& given, const api::Share
   options.originals = given.originals != 0;
   if (options.out.empty()) return api::usage("a run has a folder to write to: `out`");
   if (given.has_episodes != 0) {
-    if (given.first_episode < 0 || given.last_episode < given.first_episode) {
-      return api::usage("episodes go from a number to one that is no smaller, found " +
-                        std::to_string(given.first_episode) + " to " +
-                        std::to_string(given.last_episode));
-    }
-    options.episodes = {given.first_episode, given.last_episode};
+    PROBE_ASSIGN(options.episodes, api::read_episodes(given.first_episode, given.last_episode));
   }
   for (std::size_t i = 0; i < given.seed_count; ++i) {
     if (given.seeds[i] < 0)
@@ -65,20 +53,14 @@ Result<run::RunOptions> read(const vlaprobe_run_options& given, const api::Share
                         std::to_string(given.seeds[i]));
     options.seeds.push_back(given.seeds[i]);
   }
-  constexpr std::int32_t kMostJobs = 1024;
-  if (given.jobs < 0 || given.jobs > kMostJobs)
-    return api::usage("a run has 1 to 1024 worlds at a time, found " + std::to_string(given.jobs));
-  options.jobs = std::max(given.jobs, 1);
-  if (given.if_changed < VLAPROBE_REFUSE || given.if_changed > VLAPROBE_CONTINUE)
-    return api::usage("there is no `if_changed` " + std::to_string(given.if_changed));
-  options.if_changed = static_cast<run::IfChanged>(given.if_changed);
+  PROBE_ASSIGN(options.jobs, api::read_jobs(given.jobs, "worlds"));
+  PROBE_ASSIGN(options.if_changed, api::read_if_changed(given.if_changed));
   if (given.videos < VLAPROBE_NO_VIDEOS || given.videos > VLAPROBE_ALL_VIDEOS)
     return api::usage("there is no choice of videos " + std::to_string(given.videos));
   options.video = static_cast<run::VideoChoice>(given.videos);
   return options;
 }
 
-static_assert(static_cast<int>(run::IfChanged::kFork) == VLAPROBE_FORK);
 static_assert(static_cast<int>(run::VideoChoice::kFailures) == VLAPROBE_FAILURES);
 
 // A policy of the caller's in place of one of ours.

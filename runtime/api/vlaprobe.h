@@ -340,7 +340,8 @@ typedef enum vlaprobe_field {
   VLAPROBE_FIELD_TERMINATED = 10, /* U8 (worlds): by the last step; behind a reset 0 */
   VLAPROBE_FIELD_TRUNCATED = 11,  /* U8 (worlds) */
   VLAPROBE_FIELD_BEGUN = 12,      /* U8 (worlds): the last step began an episode */
-  VLAPROBE_FIELD_ENDED = 13       /* U8 (worlds): it ended one that counts */
+  VLAPROBE_FIELD_ENDED = 13,      /* U8 (worlds): it ended one that counts */
+  VLAPROBE_FIELD_DECIDED = 14     /* U8 (worlds): as vlaprobe_state.decided */
 } vlaprobe_field;
 /* What is now: behind the last reset or step. `camera` is read for pictures alone. */
 VLAPROBE_EXPORT int32_t vlaprobe_batch_array(const vlaprobe_batch* batch, int32_t field,
@@ -464,6 +465,89 @@ typedef struct vlaprobe_run_options {
  */
 VLAPROBE_EXPORT int32_t vlaprobe_run(const vlaprobe_plan* plan, const vlaprobe_run_options* options,
                                      char** summary, vlaprobe_error* error);
+
+/* ---- asking: a plan's questions to a model that sees and reads, as `vlaprobe ask` puts them */
+
+/* What a model of the caller's is asked. Of no meaning behind the callback's end. */
+typedef struct vlaprobe_asked {
+  const char* text;     /* all words that are sent, options and how to answer among them */
+  vlaprobe_array rgb;   /* U8 (height, width, 3): the picture; data NULL where none is shown */
+  vlaprobe_array png;   /* U8 (bytes): the same as a file */
+  const char* question; /* "SET.FAMILY" */
+  const char* task;
+  const char* arm; /* "picture", "blind", "prior" */
+  int32_t episode, rotation;
+} vlaprobe_asked;
+
+/* Where a callback writes: the last call counts; without one the question has no answer. */
+typedef struct vlaprobe_reply vlaprobe_reply;
+VLAPROBE_EXPORT void vlaprobe_reply_say(vlaprobe_reply* reply, const char* words);
+/* No answer: the row is invalid, with the reason, and asked again by the next call. */
+VLAPROBE_EXPORT void vlaprobe_reply_refuse(vlaprobe_reply* reply, const char* why);
+
+/* Called from threads of the library, from as many at a time as there are jobs. */
+typedef void (*vlaprobe_answer_callback)(void* user, const vlaprobe_asked* asked,
+                                         vlaprobe_reply* reply);
+
+typedef struct vlaprobe_ask_progress {
+  int64_t done, skipped, total; /* answered by this call; found, or left out; chosen */
+  const char* question; /* "SET.FAMILY" of the one just answered; NULL in the first report */
+  const char* task;
+  const char* raw; /* what was said */
+  int32_t episode;
+  int32_t right;       /* 0 where the answer is invalid */
+  const char* invalid; /* why; NULL: valid */
+} vlaprobe_ask_progress;
+/* One call at a time. Not 0 ends the call: vlaprobe_ask() returns VLAPROBE_STOPPED. */
+typedef int32_t (*vlaprobe_ask_progress_callback)(void* user,
+                                                  const vlaprobe_ask_progress* progress);
+
+/* NULL and 0 are the defaults; the options of `vlaprobe ask` say more of those of their names. */
+typedef struct vlaprobe_ask_options {
+  uint32_t size;         /* sizeof(vlaprobe_ask_options) */
+  const char* out;       /* the folder; made if absent, continued if there */
+  const char* model;     /* as after --model; of none where `answer` answers */
+  const char* name;      /* what folder and rows call the model; needed with `answer` */
+  const char* content;   /* with `answer`: what the name does not say */
+  const char* suite;     /* default: the first that is asked something */
+  const char* tasks;     /* glob; default: all */
+  const char* questions; /* SET or SET.FAMILY, with * and ?, commas between; default: all */
+  const char* arms;      /* of picture, blind, prior, commas between; default: picture */
+  const char* frames;    /* folder of a run: its ends are what questions at the end are about */
+  int32_t has_episodes;  /* 1: only those from first_episode to last_episode */
+  int32_t first_episode, last_episode;
+  int32_t shard, shards;       /* this call's share of shards; default: 1 of 1 */
+  int32_t jobs;                /* questions at the model at a time, a thread each; default 1 */
+  int32_t has_retries;         /* 1: `retries` counts; else 2 */
+  int32_t retries;             /* of a question that a server failed, at once */
+  int32_t has_give_up_after;   /* 1: `give_up_after` counts; else 5 */
+  int32_t give_up_after;       /* questions in a row that a server failed; 0: never */
+  int32_t accepts_certificate; /* 1: any certificate of an https:// server; stored and told */
+  int32_t if_changed;          /* vlaprobe_if_changed */
+  int32_t width, height;       /* with `answer`: of its pictures; 0: the camera's own */
+  const char* camera;          /* with `answer`: which one's; default: the task's first */
+  vlaprobe_answer_callback answer;
+  vlaprobe_ask_progress_callback progress;
+  void* user; /* given to the callbacks */
+  /* Asked now and then, from a thread of the library: not 0 ends the call when the questions that
+   * are at the model are answered. */
+  int32_t (*stopped)(void* user);
+} vlaprobe_ask_options;
+
+/* `summary` is JSON: {"out", "total", "done", "skipped", "invalid", "right", "left_out", "notes":
+ * [sentences], "speed"}; it may be NULL. Answers that fail are rows that are invalid; a server that
+ * fails again and again is VLAPROBE_POLICY. */
+VLAPROBE_EXPORT int32_t vlaprobe_ask(const vlaprobe_plan* plan, const vlaprobe_ask_options* options,
+                                     char** summary, vlaprobe_error* error);
+
+/* A JSON object of a folder of answers: "model", "plan_root", "suite", "frames", "notes":
+ * [sentences], "scores": [an object a question and arm], "left_out": [{"question", "why", "count"}],
+ * "rows" as `vlaprobe results DIR --json` has them. Every row is read again from its words. */
+VLAPROBE_EXPORT int32_t vlaprobe_answers(const char* folder, char** json, vlaprobe_error* error);
+/* As `vlaprobe why ANSWERS ... --json`. `seed` of -1: all; `question` NULL: all. */
+VLAPROBE_EXPORT int32_t vlaprobe_why_answers(const char* folder, const char* task, int32_t episode,
+                                             int32_t seed, const char* question, char** json,
+                                             vlaprobe_error* error);
 
 /* ---- what runs found */
 

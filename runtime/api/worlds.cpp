@@ -96,6 +96,7 @@ Columns Worlds::room() const {
   room.tasks.resize(n);
   room.episodes.resize(n);
   room.success.resize(n);
+  room.decided.resize(n);
   return room;
 }
 
@@ -150,6 +151,7 @@ Status Worlds::show(std::size_t world, Columns& out) {
   out.tasks[world] = static_cast<std::int32_t>(own.task());
   out.episodes[world] = own.episode();
   out.success[world] = own.success() ? 1 : 0;
+  out.decided[world] = own.stage().judge().decided() ? 1 : 0;
   return {};
 }
 
@@ -158,6 +160,7 @@ void Worlds::spoil(std::size_t world, const Failure& failure) {
   terminated_[world] = 0;
   truncated_[world] = over_[world] = 1;
   now_.success[world] = 0;
+  now_.decided[world] = 0;
   std::fill_n(now_.metrics.begin() + static_cast<std::ptrdiff_t>(world * metrics_.size()),
               metrics_.size(), std::numeric_limits<double>::quiet_NaN());
 }

@@ -33,7 +33,7 @@ struct Columns {
   std::vector<std::vector<std::uint8_t>> rgb;  // by camera
   std::vector<double> tool, openness, joints, metrics;
   std::vector<std::int32_t> steps, tasks, episodes;
-  std::vector<std::uint8_t> success;
+  std::vector<std::uint8_t> success, decided;
 };
 
 class Worlds {

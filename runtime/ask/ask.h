@@ -23,7 +23,7 @@ class Plan;
 
 namespace probe::ask {
 
-// A model that is not in the table; for tests and benches.
+// A model that is not in the table: a caller's.
 struct OwnModel {
   ModelTraits traits;
   std::function<Result<std::unique_ptr<Model>>()> make;  // one for each asking thread
@@ -52,6 +52,9 @@ struct AskOptions {
   std::string assets;  // asset root, see find_asset_root
   // Called from asking threads, one call at a time.
   std::function<void(const AskProgress&)> progress;
+  // Asked now and then, from a thread of the call's: true ends it once the questions that are at
+  // the model are answered, which is stored.
+  std::function<bool()> stopped;
   std::optional<OwnModel> own_model;  // answers in place of `model`, which then is only a name
 };
 
@@ -71,8 +74,8 @@ Result<std::vector<RecordedEnd>> recorded_ends(const plan::Plan& plan, const std
 // In: a verified plan and what to do with it. Out: the folder, and what to tell of it. The order:
 // all that can be refused before there is a folder (model, selection, run, assets); the folder and
 // its record; which questions are answered; the proof that a server reads; then looks by threads
-// that draw and queries by threads that ask. Fails with kPolicy when it gave up on a server; what
-// was answered until then is stored.
+// that draw and queries by threads that ask. Fails with kPolicy when it gave up on a server or was
+// stopped; what was answered until then is stored.
 Result<AskSummary> ask(const plan::Plan& plan, const AskOptions& options);
 
 }  // namespace probe::ask

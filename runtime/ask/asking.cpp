@@ -1,6 +1,8 @@
 #include "runtime/ask/asking.h"
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <set>
 #include <span>
 #include <thread>
@@ -77,7 +79,10 @@ class Asker {
                            picture,
                            look.picture.width,
                            look.picture.height,
-                           draw_of(key_of(plan, query), row.start_id)};
+                           draw_of(key_of(plan, query), row.start_id),
+                           row.arm,
+                           row.rotation,
+                           row.episode};
     row.text = wording.text;
     row.prompt_sha256 = to_hex(sha256(wording.text));
     if (picture != nullptr) row.image_sha256 = picture->sha256;
@@ -171,7 +176,7 @@ class Drawer {
                  shared_.answers.stored(start_id_of(plan, look.episode)));
     auto made = std::make_shared<PreparedLook>(
         prepare(plan, look, open_queries(plan, shared_.queries, look, stored), shared_.recorded,
-                shared_.traits.picture, shared_.traits.is_server, viewer_));
+                shared_.traits.picture, shared_.traits.is_shown, viewer_));
     PROBE_TRY(leave_out(*made));
     const std::size_t count = made->queries.size();
     for (std::size_t query = 0; query < count; ++query) {
@@ -223,12 +228,48 @@ Result<std::unique_ptr<Model>> make_model(AskingState& shared) {
                                   .has_logprobs = shared.summary.call.proof.has_logprobs});
 }
 
+// Looks, for as long as it lives, whether the caller wants the end, and brings it about.
+class Lookout {
+ public:
+  explicit Lookout(AskingState& shared) {
+    if (shared.options.stopped) thread_ = std::thread([this, &shared] { look(shared); });
+  }
+  ~Lookout() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    }
+    over_.notify_all();
+    if (thread_.joinable()) thread_.join();
+  }
+  Lookout(const Lookout&) = delete;
+  Lookout& operator=(const Lookout&) = delete;
+
+ private:
+  void look(AskingState& shared) {
+    constexpr auto kEvery = std::chrono::milliseconds(50);
+    std::unique_lock lock(mutex_);
+    while (!over_.wait_for(lock, kEvery, [this] { return is_over_; })) {
+      if (!shared.options.stopped()) continue;
+      shared.stopped = true;
+      shared.ready.stop();
+      return;
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable over_;
+  bool is_over_ = false;
+  std::thread thread_;
+};
+
 }  // namespace
 
 Status ask_all(AskingState& shared) {
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   const auto drawers = std::min({cores, static_cast<std::size_t>(shared.options.jobs),
                                  std::max<std::size_t>(shared.looks.size(), 1)});
+  const Lookout lookout(shared);
   Status drawn;
   std::thread drawing([&] {
     const auto make = [&shared]() -> Result<run::Worker> {
@@ -259,7 +300,10 @@ Status ask_all(AskingState& shared) {
       run::run_jobs(static_cast<std::size_t>(shared.options.jobs), shared.options.jobs, make);
   drawing.join();
   PROBE_TRY(asked);
-  return drawn;
+  PROBE_TRY(drawn);
+  const AskSummary& summary = shared.summary;
+  if (!shared.stopped || summary.done + summary.skipped >= summary.total) return {};
+  return Failure{Fault::kPolicy, "the call was stopped; the same one continues", summary.out};
 }
 
 }  // namespace probe::ask

@@ -202,7 +202,7 @@ ModelTraits traits_of(const ChatChoice& choice) {
   if (!choice.wants_logprobs) traits.content += " logprobs=off";
   traits.arms = {Arm::kPicture, Arm::kBlind, Arm::kPrior};
   traits.picture = rule;
-  traits.is_server = true;
+  traits.is_shown = true;
   return traits;
 }
 

@@ -29,6 +29,9 @@ struct AskedQuery {
   const SentPicture* picture;  // null: none is shown
   int width = 0, height = 0;   // of the picture, shown or not
   Sha256 draw = {};            // of the query's key, for the model that draws
+  Arm arm = Arm::kPicture;
+  std::uint32_t rotation = 0;
+  int episode = 0;  // of the task
 };
 
 struct Said {
@@ -55,7 +58,7 @@ struct ModelTraits {
   std::string content;       // AskIdentity::content
   std::vector<Arm> arms;     // that make sense of it
   PictureRule picture = {};  // what it is shown
-  bool is_server = false;    // pictures are sent, it can fail, and it is asked for a proof first
+  bool is_shown = false;     // pictures are made into files for it
 };
 
 // Fails (kUsage, --model) on an unknown model, with the known ones and the nearest, and on options

@@ -91,6 +91,14 @@ Result<run::Selection> select_starts(const plan::Plan& plan, const QueryChoice& 
 
 }  // namespace
 
+Result<Arm> arm_of(std::string_view word) {
+  for (const Arm arm : {Arm::kPicture, Arm::kBlind, Arm::kPrior}) {
+    if (word == word_of(arm)) return arm;
+  }
+  return Failure{Fault::kUsage,
+                 "an arm is picture, blind or prior, found `" + std::string(word) + "`", "--arms"};
+}
+
 std::uint32_t rotations_of(const plan::Plan& plan, const plan::QuestionRecord& question) {
   return plan::form_of(plan.families()[question.family]) == plan::QuestionForm::kChoice
              ? question.options.count

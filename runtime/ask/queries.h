@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -75,6 +76,9 @@ class Queries {
   std::vector<std::string> notes_;
   std::int64_t count_ = 0;
 };
+
+// By word_of()'s word. Fails (kUsage, --arms).
+Result<Arm> arm_of(std::string_view word);
 
 // Letters of a choice's options, or 1: in how many orders a question is asked.
 std::uint32_t rotations_of(const plan::Plan& plan, const plan::QuestionRecord& question);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/ask/answer_row.h"
+#include "runtime/base/json.h"
 #include "runtime/base/result.h"
 
 namespace probe::ask {
@@ -39,5 +40,8 @@ struct StartWhy {
 // on a task, start or family that the plan does not have, (kStore) as read_answers does.
 Result<StartWhy> why_answers(const std::string& dir, const std::string& task, int episode,
                              std::optional<int> seed, const std::string& family);
+
+// As `vlaprobe why ANSWERS ... --json` prints it.
+Json to_json(const StartWhy& why);
 
 }  // namespace probe::ask

@@ -118,6 +118,7 @@ void add_batch(py::module_& module) {
   field("FIELD_TRUNCATED", VLAPROBE_FIELD_TRUNCATED);
   field("FIELD_BEGUN", VLAPROBE_FIELD_BEGUN);
   field("FIELD_ENDED", VLAPROBE_FIELD_ENDED);
+  field("FIELD_DECIDED", VLAPROBE_FIELD_DECIDED);
   py::class_<Batch>(module, "Batch")
       .def(py::init(&make_batch))
       .def("reset", &reset)

@@ -86,4 +86,5 @@ PYBIND11_MODULE(_vlaprobe, module) {
   add_stage(module);
   add_batch(module);
   add_run(module);
+  add_ask(module);
 }

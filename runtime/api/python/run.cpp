@@ -1,26 +1,16 @@
-// Runs, and what is told of them. The run has a thread of its own, so that the caller's can look
-// for Ctrl-C; callbacks take the GIL for as long as they last.
+// Runs, and what is told of them.
 #include <pybind11/stl.h>
 
-#include <atomic>
-#include <chrono>
-#include <condition_variable>
 #include <cstring>
-#include <mutex>
-#include <thread>
 
-#include "runtime/api/python/wrapped.h"
+#include "runtime/api/python/watched.h"
 
 namespace probe::python {
 namespace {
 
 // What the callbacks of one run share.
-struct Caller {
+struct RunCaller : Caller {
   py::object answer, progress;  // Python functions; none
-  std::atomic<bool> stop = false;
-  // The first exception of `progress`, or that ends more than an episode; raised when the run has
-  // ended. Under the GIL.
-  std::optional<py::error_already_set> raised = {};
 };
 
 template <typename T, typename Of>
@@ -85,7 +75,7 @@ void refuse_all(vlaprobe_refusals* refusals, std::size_t count, const std::strin
 
 void act(void* user, const vlaprobe_question* questions, std::size_t count, double* actions,
          vlaprobe_refusals* refusals) {
-  auto* caller = static_cast<Caller*>(user);
+  auto* caller = static_cast<RunCaller*>(user);
   const py::gil_scoped_acquire gil;
   try {
     // An array (n, 7), or the reason why there is none.
@@ -97,18 +87,17 @@ void act(void* user, const vlaprobe_question* questions, std::size_t count, doub
     std::memcpy(actions, numbers.data(), count * VLAPROBE_ACTION_SIZE * sizeof(double));
   } catch (py::error_already_set& error) {
     // sys.exit() in a callback ends the run, not an episode.
-    if (!error.matches(PyExc_Exception) && !caller->raised) {
-      caller->raised.emplace(error);
-      caller->stop = true;
-    }
+    if (!error.matches(PyExc_Exception)) caller->end_with(error);
     refuse_all(refusals, count, error.what());
   } catch (const std::exception& exception) {
     refuse_all(refusals, count, exception.what());
   }
 }
 
+std::int32_t is_stopped(void* user) { return static_cast<RunCaller*>(user)->stop ? 1 : 0; }
+
 std::int32_t progress(void* user, const vlaprobe_progress* told) {
-  auto* caller = static_cast<Caller*>(user);
+  auto* caller = static_cast<RunCaller*>(user);
   const py::gil_scoped_acquire gil;
   if (caller->raised) return 1;
   try {
@@ -128,17 +117,9 @@ std::int32_t progress(void* user, const vlaprobe_progress* told) {
     caller->progress(row);
     return 0;
   } catch (py::error_already_set& error) {
-    caller->raised.emplace(error);
+    caller->end_with(error);
     return 1;
   }
-}
-
-std::int32_t stopped(void* user) { return static_cast<Caller*>(user)->stop ? 1 : 0; }
-
-std::string taken(char* text) {
-  std::string copy = text == nullptr ? "" : text;
-  vlaprobe_free(text);
-  return copy;
 }
 
 // Options as vlaprobe_run_options names them; texts may be None.
@@ -154,7 +135,9 @@ std::string run(const Plan& plan, const py::dict& given, py::object answer, py::
   const auto seeds = given["seeds"].cast<std::vector<std::int32_t>>();
   const auto episodes =
       given["episodes"].cast<std::optional<std::pair<std::int32_t, std::int32_t>>>();
-  Caller caller{std::move(answer), std::move(tell)};
+  RunCaller caller;
+  caller.answer = std::move(answer);
+  caller.progress = std::move(tell);
   vlaprobe_run_options options{};
   options.size = sizeof options;
   options.out = or_null(out);
@@ -180,44 +163,14 @@ std::string run(const Plan& plan, const py::dict& given, py::object answer, py::
   options.gather_s = given["gather_s"].cast<double>();
   if (!caller.progress.is_none()) options.progress = &progress;
   options.user = &caller;
-  options.stopped = &stopped;
+  options.stopped = &is_stopped;
 
   char* summary = nullptr;
-  Error error;
-  std::int32_t code = VLAPROBE_OK;
-  std::mutex mutex;
-  std::condition_variable ended;
-  bool is_over = false;
-  std::optional<py::error_already_set> interrupt;
   const Held<vlaprobe_plan> handle = plan.get();
-  {
-    std::optional<py::gil_scoped_release> release(std::in_place);
-    std::thread worker([&] {
-      code = vlaprobe_run(handle, &options, &summary, error.get());
-      const std::lock_guard lock(mutex);
-      is_over = true;
-      ended.notify_all();
-    });
-    std::unique_lock lock(mutex);
-    while (!ended.wait_for(lock, std::chrono::milliseconds(50), [&] { return is_over; })) {
-      lock.unlock();
-      {
-        const py::gil_scoped_acquire gil;
-        if (!interrupt && PyErr_CheckSignals() != 0) {
-          interrupt.emplace();
-          caller.stop = true;
-        }
-      }
-      lock.lock();
-    }
-    lock.unlock();
-    worker.join();
-  }
-  std::string told = taken(summary);
-  if (interrupt) throw py::error_already_set(*interrupt);
-  if (caller.raised) throw py::error_already_set(*caller.raised);
-  if (code != VLAPROBE_OK) error.raise();
-  return told;
+  call_watched(caller, [&](vlaprobe_error* error) {
+    return vlaprobe_run(handle, &options, &summary, error);
+  });
+  return taken(summary);
 }
 
 std::string results(const std::string& folder) {

@@ -95,6 +95,7 @@ void add_plan(py::module_& module);
 void add_stage(py::module_& module);
 void add_batch(py::module_& module);
 void add_run(py::module_& module);
+void add_ask(py::module_& module);
 
 struct Plan {
   Owned<vlaprobe_plan, vlaprobe_plan_release> handle;

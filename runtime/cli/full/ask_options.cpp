@@ -6,18 +6,6 @@
 #include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
-namespace {
-
-Result<ask::Arm> arm_of(const std::string& word) {
-  for (const ask::Arm arm : {ask::Arm::kPicture, ask::Arm::kBlind, ask::Arm::kPrior}) {
-    if (word == ask::word_of(arm)) return arm;
-  }
-  return Failure{Fault::kUsage, "an arm is picture, blind or prior, found `" + word + "`",
-                 "--arms"};
-}
-
-}  // namespace
-
 Result<ask::AskOptions> ask_options(const AskArguments& arguments) {
   ask::AskOptions options;
   PROBE_TRY(check_name(arguments.name));
@@ -36,7 +24,7 @@ Result<ask::AskOptions> ask_options(const AskArguments& arguments) {
   options.choice.questions = arguments.questions;
   options.choice.arms.clear();
   for (const std::string& word : arguments.arms) {
-    PROBE_ASSIGN(const ask::Arm arm, arm_of(word));
+    PROBE_ASSIGN(const ask::Arm arm, ask::arm_of(word));
     if (std::ranges::find(options.choice.arms, arm) == options.choice.arms.end())
       options.choice.arms.push_back(arm);
   }

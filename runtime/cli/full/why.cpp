@@ -43,47 +43,6 @@ void print_metric(const rejudge::MetricWhy& metric) {
   }
 }
 
-Json to_json(const std::optional<ask::Written>& written) {
-  if (!written) return nullptr;
-  return {{"file", written->file}, {"line", written->line}, {"text", written->text}};
-}
-
-Json to_json(const ask::AnswerRow& row) {
-  Json json = {{"seed", row.seed == -1 ? Json() : Json(row.seed)},
-               {"arm", ask::word_of(row.arm)},
-               {"rotation", row.rotation},
-               {"text", row.text},
-               {"raw", row.raw},
-               {"read_as", ask::word_of(row.reading.verdict)},
-               {"rule", row.reading.rule},
-               {"reader", row.reader},
-               {"expected", row.expected},
-               {"right", row.right ? Json(*row.right) : Json()},
-               {"image_sha256", row.image_sha256}};
-  json["invalid"] = row.invalid ? Json(*row.invalid) : Json();
-  return json;
-}
-
-void print_json(const ask::StartWhy& why) {
-  Json json = {{"task", why.task},
-               {"episode", why.episode},
-               {"model", why.model},
-               {"instruction", why.prompt},
-               {"questions", Json::array()}};
-  for (const ask::AnswerWhy& question : why.questions) {
-    Json one = {{"question", question.question},
-                {"text", question.text},
-                {"truth", question.truth},
-                {"asked_at", to_json(question.asked_at)},
-                {"right_at", to_json(question.right_at)},
-                {"left_out", question.left_out},
-                {"answers", Json::array()}};
-    for (const ask::AnswerRow& row : question.answers) one["answers"].push_back(to_json(row));
-    json["questions"].push_back(std::move(one));
-  }
-  put("{}\n", json.dump(1));
-}
-
 // What a model wrote is shown as text, in one line, whatever it holds.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 200;
@@ -107,7 +66,7 @@ int why_answers_verb(const WhyArguments& arguments) {
                                     arguments.seed, arguments.question);
   if (!why) return report(why.failure());
   if (arguments.json) {
-    print_json(*why);
+    put("{}\n", ask::to_json(*why).dump(1));
     return kFine;
   }
   put("{} episode {}, \"{}\", asked of {}\n", why->task, why->episode, why->prompt,

@@ -344,6 +344,12 @@ static void runs(const vlaprobe_plan* plan, const char* task, const char* folder
   CHECK(vlaprobe_compare(expert, expert, NULL, 0, &json, &error) == VLAPROBE_USAGE &&
         says("twice"));
   const vlaprobe_report_options wanted = {.size = sizeof wanted, .out = page, .title = "two runs"};
+  /* This plan asks nothing. */
+  vlaprobe_ask_options asking = {.size = sizeof asking, .model = "truth"};
+  CHECK(vlaprobe_ask(plan, &asking, &json, &error) == VLAPROBE_USAGE && says("out"));
+  asking.out = page;
+  CHECK(vlaprobe_ask(plan, &asking, &json, &error) == VLAPROBE_USAGE && says("questions"));
+  CHECK(vlaprobe_answers(expert, &json, &error) == VLAPROBE_STORE);
   const char* folders[] = {expert, still};
   CHECK(vlaprobe_report(folders, 2, &wanted, &json, &error) == VLAPROBE_OK);
   CHECK(strstr(json, "\"policies\":2") != NULL);

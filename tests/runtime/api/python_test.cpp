@@ -1,5 +1,6 @@
 // The Python package, by tests in Python: each file of the folder `python`, run by Debian's Python
-// with the module as it was built.
+// with the module as it was built. A PYTHONPATH of the caller's is looked at last: packages that
+// Debian has not, such as gymnasium, are tried with from there.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -24,7 +25,9 @@ void run(const std::string& file) {
   const test::Outcome ran = sandbox.run(
       "env VLAPROBE_SOURCE_DIR='" VLAPROBE_SOURCE_DIR "' VLAPROBE_BINARY_DIR='" VLAPROBE_BINARY_DIR
       "' PYTHONDONTWRITEBYTECODE=1 PYTHONPATH='" VLAPROBE_BINARY_DIR "/python:" +
-      folder + "' " + kPython + " '" + folder + "/" + file + "'");
+      folder + "':\"$PYTHONPATH\" " + kPython + " '" + folder + "/" + file + "' -v");
+  for (std::size_t at = 0; (at = ran.err.find("... skipped", at)) != std::string::npos; ++at)
+    MESSAGE("SKIPPED: " << ran.err.substr(at, ran.err.find('\n', at) - at));
   CHECK_MESSAGE(ran.exit == 0, ran.err);
   CHECK_MESSAGE(ran.err.find("\nOK") != std::string::npos, ran.err);
 }
@@ -33,6 +36,7 @@ TEST_CASE("plans from Python") { run("plan_test.py"); }
 TEST_CASE("one world from Python keeps gymnasium's rules") { run("env_test.py"); }
 TEST_CASE("worlds side by side keep gymnasium's rules") { run("vec_test.py"); }
 TEST_CASE("the recipes of the Python package's README run") { run("readme_test.py"); }
+TEST_CASE("models are asked from Python, callables among them") { run("ask_test.py"); }
 TEST_CASE("callables are evaluated by the program's runner") { run("evaluate_test.py"); }
 
 }  // namespace

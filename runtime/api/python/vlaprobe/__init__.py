@@ -12,6 +12,7 @@ Lengths are metres, angles radians, quaternions w, x, y, z; pictures are uint8 (
 """
 
 from ._vlaprobe import __version__
+from .asking import AnswerRows, Answers, ask, open_answers
 from .env import Env, make
 from .errors import ClosedError, CompileError, Error, StoppedError, UsageError
 from .plan import Episode, Episodes, Placement, Plan, Suite, Task, compile, from_bytes, load
@@ -20,6 +21,8 @@ from .runs import Comparison, Results, Run, compare, evaluate, open_run, report
 from .vec import VectorEnv, make_vec
 
 __all__ = [
+    "AnswerRows",
+    "Answers",
     "ClosedError",
     "Comparison",
     "CompileError",
@@ -38,6 +41,7 @@ __all__ = [
     "UsageError",
     "VectorEnv",
     "__version__",
+    "ask",
     "compare",
     "compile",
     "evaluate",
@@ -45,6 +49,7 @@ __all__ = [
     "load",
     "make",
     "make_vec",
+    "open_answers",
     "open_run",
     "report",
 ]

@@ -5,25 +5,24 @@ from __future__ import annotations
 import html
 import json
 import os
-import sys
 import traceback
 from typing import Any, Callable, Iterable, Optional, Union
 
 import numpy as np
 
 from . import _vlaprobe
+from ._progress import Line
 from .errors import UsageError
 from .plan import Path, Plan, PlanLike, Task, plan_of
 
-_IF_CHANGED = {"refuse": 0, "fork": 1, "continue": 2}
+IF_CHANGED = {"refuse": 0, "fork": 1, "continue": 2}
 _VIDEOS = {"none": 0, "failures": 1, "all": 2}
-_NOT_ATTEMPTED = "not attempted: "  # how `invalid` begins where a policy of ours has no skill for the task
 _LONGEST_REASON = 8000  # characters of an invalid row
 
 PolicyCallable = Callable[[dict], Any]
 
 
-def _reason(summary: str, trace: str = "") -> str:
+def reason(summary: str, trace: str = "") -> str:
     text = summary if not trace else f"{summary}\n{trace}"
     if len(text) <= _LONGEST_REASON:
         return text
@@ -41,12 +40,12 @@ def _checked(policy: PolicyCallable) -> Callable[[dict], Any]:
         except Exception as error:
             # From the callable on: the frame of this function says nothing.
             trace = "".join(traceback.format_exception(type(error), error, error.__traceback__.tb_next))
-            return _reason(f"the callable raised {type(error).__name__}: {error}", trace.rstrip())
+            return reason(f"the callable raised {type(error).__name__}: {error}", trace.rstrip())
         wanted = f"actions of the shape ({n}, 7) were wanted, one row an observation"
         try:
             actions = np.asarray(said)
         except Exception as error:
-            return _reason(f"the callable returned a {type(said).__name__} that is no array: {error}; {wanted}")
+            return reason(f"the callable returned a {type(said).__name__} that is no array: {error}; {wanted}")
         if actions.dtype.kind not in "biuf":
             return f"the callable returned a {type(said).__name__}, which is no array of numbers; {wanted}"
         if actions.shape != (n, 7):
@@ -196,6 +195,11 @@ class Run:
         """One page of this run: report([self], out, ...)."""
         return report([self], out, **options)
 
+    def _repr_html_(self) -> str:
+        """For notebooks: where it is, and its successes by task."""
+        notes = "".join(f"<p>{html.escape(note)}</p>" for note in self.notes)
+        return f"<p><code>{html.escape(self.folder)}</code></p>{self.results()._repr_html_()}{notes}"
+
     def __fspath__(self) -> str:
         return self.folder
 
@@ -271,35 +275,25 @@ def report(
     return json.loads(_vlaprobe.report(paths, os.fspath(out), title, file, traces, int(jobs)))
 
 
-class _Line:
-    """Progress on a terminal or in a notebook; elsewhere nothing."""
+def named(of: Any, name: Optional[str], what: str) -> str:
+    """What rows call a callable."""
+    name = name or getattr(of, "__name__", None) or type(of).__name__
+    if name == "<lambda>":
+        raise UsageError(f"a lambda has no name for the rows: give {what} a `name`")
+    return name
 
-    def __init__(self) -> None:
-        self._display = None
-        try:
-            from IPython import get_ipython
-            from IPython.display import display
 
-            if get_ipython() is not None and "IPKernelApp" in get_ipython().config:
-                self._display = display("...", display_id=True)
-        except ImportError:
-            pass
-        self._invalid = 0
-        self._success = 0
-        self._on_terminal = self._display is None and sys.stderr.isatty()
-
-    def __call__(self, told: dict) -> None:
-        self._invalid += not (told.get("invalid") or _NOT_ATTEMPTED).startswith(_NOT_ATTEMPTED)
-        self._success += bool(told.get("success"))
-        there = told["done"] + told["skipped"]
-        text = f"{there} of {told['total']} episodes, {self._success} of {told['done']} succeeded"
-        if self._invalid:
-            text += f", {self._invalid} invalid"
-        if self._display is not None:
-            self._display.update(text)
-        elif self._on_terminal:
-            end = "\n" if there == told["total"] else ""
-            print(f"\r\033[K{text}", end=end, file=sys.stderr, flush=True)
+def episode_range(episodes: Any) -> Optional[tuple[int, int]]:
+    """The first and the last of a number, a pair or a range; None of None."""
+    if episodes is None:
+        return None
+    if isinstance(episodes, range):
+        if episodes.step != 1 or not len(episodes):
+            raise UsageError(f"episodes are a range without gaps, found {episodes}")
+        return (episodes.start, episodes.stop - 1)
+    if isinstance(episodes, (int, np.integer)):
+        return (int(episodes), int(episodes))
+    return (int(episodes[0]), int(episodes[1]))
 
 
 def evaluate(
@@ -364,18 +358,10 @@ def evaluate(
         if not callable(policy):
             raise UsageError(f"a policy is a callable or the name of one of the program's, found {policy!r}")
         answer = _checked(policy)
-        name = name or getattr(policy, "__name__", None) or type(policy).__name__
-        if name == "<lambda>":
-            raise UsageError("a lambda has no name for the rows: give evaluate() a `name`")
-    for word, known, what in ((if_changed, _IF_CHANGED, "if_changed"), (video, _VIDEOS, "video")):
+        name = named(policy, name, "evaluate()")
+    for word, known, what in ((if_changed, IF_CHANGED, "if_changed"), (video, _VIDEOS, "video")):
         if word not in known:
             raise UsageError(f"{what} is one of {', '.join(known)}, found {word!r}")
-    if isinstance(episodes, range):
-        if episodes.step != 1 or not len(episodes):
-            raise UsageError(f"episodes are a range without gaps, found {episodes}")
-        episodes = (episodes.start, episodes.stop - 1)
-    elif isinstance(episodes, (int, np.integer)):
-        episodes = (int(episodes), int(episodes))
     options = {
         "out": os.fspath(out),
         "policy": policy if isinstance(policy, str) else None,
@@ -384,15 +370,15 @@ def evaluate(
         "suite": suite,
         "tasks": tasks.name if isinstance(tasks, Task) else tasks,
         "originals": originals,
-        "episodes": None if episodes is None else (int(episodes[0]), int(episodes[1])),
+        "episodes": episode_range(episodes),
         "seeds": [] if seeds is None else [int(seed) for seed in seeds],
         "jobs": int(jobs),
-        "if_changed": _IF_CHANGED[if_changed],
+        "if_changed": IF_CHANGED[if_changed],
         "videos": _VIDEOS[video],
         "draws": draws,
         "batch": int(batch),
         "gather_s": float(gather_s),
     }
-    tell = _Line() if progress is True else None if progress is False else progress
+    tell = Line("episodes", "success") if progress is True else None if progress is False else progress
     told = json.loads(_vlaprobe.run(whole._handle, options, answer, tell))
     return Run(told["out"], told, whole.assets)
