@@ -17,6 +17,7 @@ from .env import Env, make
 from .errors import ClosedError, CompileError, Error, StoppedError, UsageError
 from .plan import Episode, Episodes, Placement, Plan, Suite, Task, compile, from_bytes, load
 from .policies import Policy
+from .registry import register_envs, suite_file
 from .runs import Comparison, Results, Run, compare, evaluate, open_run, report
 from .vec import VectorEnv, make_vec
 
@@ -51,5 +52,7 @@ __all__ = [
     "make_vec",
     "open_answers",
     "open_run",
+    "register_envs",
     "report",
+    "suite_file",
 ]

@@ -82,8 +82,8 @@ class Env(_gym.Env):
     success: 1 or 0. Episodes terminate where the task's text ends them (``ends when``), and are truncated at the horizon.
     As in a run, an episode that has succeeded goes on until then: the verdict counts at its end.
 
-    ``info`` has: metrics (a dict, truths as bool), is_success (bool), prompt (str), task (str), episode (int),
-    steps (int), decided (bool: no verdict can change any more).
+    ``info`` has: metrics (a dict, truths as bool), is_success (bool), prompt (str), task (str), episode_index (int: the start,
+    not `episode`, under which gymnasium's wrappers keep statistics), steps (int), decided (bool: no verdict can change any more).
 
     Which episode reset() begins: ``options={"episode": 3}`` if given, else the one the environment was made with, else
     one drawn by ``seed``. Worlds themselves draw nothing: the same episode and actions give the same bits.
@@ -284,7 +284,7 @@ class Env(_gym.Env):
             "is_success": success,
             "prompt": self._task.instruction,
             "task": self._task.name,
-            "episode": episode,
+            "episode_index": episode,
             "steps": steps,
             "decided": decided,
         }

@@ -296,6 +296,12 @@ class Plan:
         """Reads meshes and robots of these tasks now, so that their first environment is made quickly."""
         self._handle.load([task.index for task in self.select(tasks)])
 
+    def __copy__(self) -> "Plan":
+        return self
+
+    def __deepcopy__(self, memo: Any) -> "Plan":
+        return self  # nothing of it changes
+
     def __eq__(self, other: Any) -> bool:
         return isinstance(other, Plan) and self.root == other.root
 

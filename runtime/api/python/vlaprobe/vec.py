@@ -215,7 +215,9 @@ class VectorEnv(_gym.VectorEnv):
     # ---- as gymnasium's own vector environments
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple:
-        """An attribute of every world: task_description, task, _max_episode_steps, spec."""
+        """An attribute of every world: task_description, task, _max_episode_steps, spec; or `render`, called."""
+        if name == "render":
+            return self.render() or (None,) * self.num_envs
         values = self.get_attr(name)
         return tuple(value(*args, **kwargs) if callable(value) else value for value in values)
 
@@ -331,8 +333,9 @@ class VectorEnv(_gym.VectorEnv):
             "is_success": array(_vlaprobe.FIELD_SUCCESS, 0, True).astype(bool) & mask,
             "prompt": np.array([task.instruction if task else None for task in tasks], dtype=object),
             "task": np.array([task.name if task else None for task in tasks], dtype=object),
-            "episode": array(_vlaprobe.FIELD_EPISODE, 0, True),
-            "steps": array(_vlaprobe.FIELD_STEPS, 0, True),
+            "episode_index": array(_vlaprobe.FIELD_EPISODE, 0, True).astype(np.int64),
+            "steps": array(_vlaprobe.FIELD_STEPS, 0, True).astype(np.int64),
+            "decided": array(_vlaprobe.FIELD_DECIDED, 0, True).astype(bool) & mask,
         }
         for name in list(infos):
             infos["_" + name] = mask.copy()

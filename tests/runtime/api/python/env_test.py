@@ -29,10 +29,10 @@ class EnvTest(Case):
         again, info_again = env.reset(seed=123)
         self.assertEqual(env.np_random.bit_generator.state, state)
         self.assertEqual(env.np_random_seed, 123)
-        self.assertEqual(info["episode"], info_again["episode"])
+        self.assertEqual(info["episode_index"], info_again["episode_index"])
         np.testing.assert_array_equal(first["pixels"]["camera"] if "camera" in first["pixels"] else
                                       next(iter(first["pixels"].values())), next(iter(again["pixels"].values())))
-        episodes = {env.reset(seed=seed)[1]["episode"] for seed in range(6)}
+        episodes = {env.reset(seed=seed)[1]["episode_index"] for seed in range(6)}
         self.assertGreater(len(episodes), 1)
         # reset() with options, and step()'s five.
         env.reset(options={})
@@ -47,9 +47,9 @@ class EnvTest(Case):
         self.assertIs(type(terminated), bool)
         self.assertIs(type(truncated), bool)
         self.assertEqual(
-            set(info), {"metrics", "is_success", "prompt", "task", "episode", "steps", "decided"}
+            set(info), {"metrics", "is_success", "prompt", "task", "episode_index", "steps", "decided"}
         )
-        self.assertEqual((info["prompt"], info["episode"], info["steps"]), ("put carrot on plate", 5, 1))
+        self.assertEqual((info["prompt"], info["episode_index"], info["steps"]), ("put carrot on plate", 5, 1))
         frame = env.render()
         self.assertEqual((frame.shape, frame.dtype), ((48, 64, 3), np.uint8))
         # Equal seeds and actions, equal steps.

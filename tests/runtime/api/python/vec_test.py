@@ -34,7 +34,7 @@ class VecTest(Case):
         self.assertEqual((rewards.shape, rewards.dtype), ((3,), np.float64))
         for flags in (terminations, truncations):
             self.assertEqual((flags.shape, flags.dtype), ((3,), bool))
-        for key in ("is_success", "prompt", "task", "episode", "steps", "metrics"):
+        for key in ("is_success", "prompt", "task", "episode_index", "steps", "metrics"):
             self.assertTrue(infos["_" + key].all())
         self.assertEqual(infos["metrics"]["success"].dtype, bool)
         self.assertEqual(len(env.render()), 3)
@@ -49,7 +49,7 @@ class VecTest(Case):
         for world in range(3):
             alone = small_env()
             observation, info = alone.reset(seed=11 + world)
-            self.assertEqual(infos["episode"][world], info["episode"])
+            self.assertEqual(infos["episode_index"][world], info["episode_index"])
             np.testing.assert_array_equal(observations["pixels"][name][world], observation["pixels"][name])
             alone.close()
         alone = small_env()
@@ -67,7 +67,7 @@ class VecTest(Case):
         # The next one is the one that an env would draw.
         _, rewards, terminations, truncations, infos = env.step(actions(3, 0))
         self.assertFalse(terminations.any() or truncations.any() or rewards.any())
-        self.assertEqual(infos["episode"][1], alone.reset()[1]["episode"])
+        self.assertEqual(infos["episode_index"][1], alone.reset()[1]["episode_index"])
         self.assertTrue((infos["steps"] == 0).all())
         self.assertEqual(env.state_hashes()[1], alone.state_hash())
 
@@ -87,7 +87,7 @@ class VecTest(Case):
             np.testing.assert_array_equal(infos["final_obs"][world]["pixels"][name], last["pixels"][name][world])
         self.assertTrue(infos["_final_obs"].all())
         np.testing.assert_equal(infos["final_info"]["metrics"], last_infos["metrics"])
-        np.testing.assert_array_equal(infos["final_info"]["episode"], last_infos["episode"])
+        np.testing.assert_array_equal(infos["final_info"]["episode_index"], last_infos["episode_index"])
         self.assertTrue((infos["steps"] == 0).all())
         begun, *_ = late.step(actions(3, 0))
         np.testing.assert_array_equal(observations["pixels"][name], begun["pixels"][name])
@@ -105,8 +105,8 @@ class VecTest(Case):
             env.step(actions(3, 0))
         self.assertSays(raised.exception, "world 0", "over")
         _, infos = env.reset(options={"reset_mask": np.array([True, False, True]), "episode": 7})
-        np.testing.assert_array_equal(infos["_episode"], [True, False, True])
-        self.assertEqual((infos["episode"][0], infos["episode"][2]), (7, 7))
+        np.testing.assert_array_equal(infos["_episode_index"], [True, False, True])
+        self.assertEqual((infos["episode_index"][0], infos["episode_index"][2]), (7, 7))
         with self.assertRaises(vlaprobe.UsageError) as raised:
             env.step(actions(3, 0))
         self.assertSays(raised.exception, "world 1")
