@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _gym, _vlaprobe
 from ._gym import Box, Dict
+from ._picture import Picture, png_of
 from .errors import ClosedError, UsageError
 from .plan import Plan, PlanLike, Task, plan_of
 
@@ -131,6 +132,7 @@ class Env(_gym.Env):
         all_cameras = self._stage.cameras()
         self._shown = choose_cameras([name for name, _, _ in all_cameras], cameras)
         self._draws = bool(self._shown)
+        self._has_pictures = cameras is not False or render_mode is not None
         self.camera_names: list[str] = [all_cameras[i][0] for i in self._shown]
         self.joint_names: list[str] = self._stage.joint_names()
         self.object_names: list[str] = self._stage.object_names()
@@ -190,7 +192,7 @@ class Env(_gym.Env):
         """What the task's first camera sees now: uint8 (height, width, 3)."""
         if self.render_mode is None:
             return None
-        return self.picture()
+        return np.asarray(self.picture())
 
     def close(self) -> None:
         """Gives the world back. A second time it does nothing; anything else raises ClosedError from then on."""
@@ -209,7 +211,7 @@ class Env(_gym.Env):
         return self._task.name
 
     def picture(self, camera: Optional[str] = None, kind: str = "rgb") -> np.ndarray:
-        """What a camera sees now, an array of its own.
+        """What a camera sees now, an array of its own; one of colours shows itself in a notebook.
 
         Args:
             camera: by name; None: the first.
@@ -225,7 +227,8 @@ class Env(_gym.Env):
         if camera is not None and camera not in names:
             raise UsageError(f"there is no camera `{camera}`; the task has {', '.join(names)}")
         stage.observe()
-        return stage.picture(0 if camera is None else names.index(camera), kinds[kind], True)
+        picture = stage.picture(0 if camera is None else names.index(camera), kinds[kind], True)
+        return picture.view(Picture) if kind == "rgb" else picture
 
     @property
     def body_names(self) -> list[str]:
@@ -289,6 +292,12 @@ class Env(_gym.Env):
             "decided": decided,
         }
         return observation, info, terminated, truncated
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """For notebooks: what the first camera sees now."""
+        if self._stage is None or not self._has_begun or not self._has_pictures:
+            return None
+        return png_of(np.asarray(self.picture()))
 
     def __getstate__(self) -> dict:
         stage = self._open()

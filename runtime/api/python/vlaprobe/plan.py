@@ -8,11 +8,12 @@ import json
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Iterable, Iterator, Optional, Union
 
 from . import _vlaprobe
-from .errors import UsageError
+from ._picture import Picture, image_tag
+from .errors import Error, UsageError
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -48,6 +49,14 @@ class Task:
     horizon: int
     control_hz: float
     _plan: "Plan"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: what is said, and what is seen at the first start."""
+        variant = f", a variant of {html.escape(self.baseline)}" if self.baseline else ""
+        return (
+            f"<p><b>{html.escape(self.name)}</b>{variant}: {html.escape(self.instruction)}<br>{self.episodes} episodes of "
+            f"{self.horizon} steps, {self.control_hz:g} a second</p>{_picture_tag(self._plan.episodes(self)[0])}"
+        )
 
     def describe(self) -> dict[str, Any]:
         """All that the plan says of it: the dict of ``vlaprobe show PLAN TASK --json`` (metres, degrees)."""
@@ -98,6 +107,42 @@ class Episode:
     episode_id: str
     start_id: str
     placements: tuple[Placement, ...]
+    _plan: "Plan" = field(repr=False, compare=False)
+
+    def picture(self, camera: Optional[str] = None, width: Optional[int] = None, height: Optional[int] = None) -> "Picture":
+        """What a policy sees first: uint8 (height, width, 3), which shows itself in a notebook. Makes a world for it.
+
+        Args:
+            camera: by name; None: the first.
+            width, height: both; None: the camera's own.
+
+        Raises:
+            Error: the start cannot be used: its instruction does not hold once things have settled.
+        """
+        from .env import Env
+
+        env = Env(self._plan, self._plan.tasks[self.task], episode=self.index, width=width, height=height)
+        try:
+            env.reset()
+            return env.picture(camera)
+        finally:
+            env.close()
+
+    def _repr_html_(self) -> str:
+        """For notebooks: what is said and seen first."""
+        return (
+            f"<p><b>{html.escape(self.task)}</b> episode {self.index}: {html.escape(self.instruction)}</p>"
+            + _picture_tag(self)
+        )
+
+
+def _picture_tag(episode: Episode, width: int = 320) -> str:
+    """A start's picture within HTML, or why there is none."""
+    words = f"{episode.task} episode {episode.index}"
+    try:
+        return image_tag(episode.picture(), words).replace("<img ", f'<img style="width:{width}px" ')
+    except Error as error:
+        return f"<p>{html.escape(words)}: {html.escape(str(error))}</p>"
 
 
 class Tasks(Mapping):
@@ -162,7 +207,13 @@ class Episodes(Sequence):
         task, index = self._rows[at]
         episode_id, start_id, placements = self._plan._handle.episode(task.index, index)
         return Episode(
-            task.name, index, task.instruction, episode_id, start_id, tuple(Placement(*each) for each in placements)
+            task.name,
+            index,
+            task.instruction,
+            episode_id,
+            start_id,
+            tuple(Placement(*each) for each in placements),
+            self._plan,
         )
 
     def to_dicts(self) -> list[dict[str, Any]]:
@@ -191,6 +242,13 @@ class Episodes(Sequence):
         except ImportError:
             raise UsageError("to_pandas() needs pandas, which is not installed; to_dicts() does not") from None
         return pandas.DataFrame(self.to_dicts())
+
+    def _repr_html_(self) -> str:
+        """For notebooks: the first few, as a policy sees them."""
+        most = 6
+        shown = "".join(_picture_tag(episode, 220) for episode in self[:most])
+        more = f"<p>and {len(self) - most} more</p>" if len(self) > most else ""
+        return f"<p>{len(self)} episodes</p>{shown}{more}"
 
     def __repr__(self) -> str:
         return f"<{len(self)} episodes>"
