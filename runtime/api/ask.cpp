@@ -107,8 +107,7 @@ class Answering final : public ask::Model {
 
   Result<ask::Said> answer(const ask::AskedQuery& asked) override {
     const plan::Plan& plan = asked.plan;
-    const std::string question =
-        plan::family_name(plan, plan.families()[asked.question.family]);
+    const std::string question = plan::family_name(plan, plan.families()[asked.question.family]);
     const std::string task(plan.text(plan.tasks()[asked.question.task].name));
     const std::string arm(ask::word_of(asked.arm));
     vlaprobe_asked told{};
@@ -119,8 +118,8 @@ class Answering final : public ask::Model {
                                {static_cast<std::size_t>(asked.picture->height),
                                 static_cast<std::size_t>(asked.picture->width), 3});
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(asked.picture->png.data());
-      told.png = api::array_of(std::span(bytes, asked.picture->png.size()),
-                               {asked.picture->png.size()});
+      told.png =
+          api::array_of(std::span(bytes, asked.picture->png.size()), {asked.picture->png.size()});
     }
     told.text = asked.wording.text.c_str();
     told.question = question.c_str();
@@ -172,10 +171,8 @@ Status use_callback(const vlaprobe_ask_options& given, ask::AskOptions& options)
   traits.content = "the caller's";
   if (!traits.picture.camera.empty()) traits.content += ", camera " + traits.picture.camera;
   if (given.width != 0)
-    traits.content +=
-        ", size " + std::to_string(given.width) + "x" + std::to_string(given.height);
-  if (const std::string said = text_of(given.content); !said.empty())
-    traits.content += ": " + said;
+    traits.content += ", size " + std::to_string(given.width) + "x" + std::to_string(given.height);
+  if (const std::string said = text_of(given.content); !said.empty()) traits.content += ": " + said;
   options.own_model = ask::OwnModel{
       traits,
       [callback = given.answer, user = given.user]() -> Result<std::unique_ptr<ask::Model>> {
@@ -204,8 +201,7 @@ void tell(const ask::AskProgress& progress, const vlaprobe_ask_options& given,
 }
 
 // What a reader of the answers should know.
-Result<std::vector<std::string>> notes_of(const std::string& folder,
-                                          const ask::RowFindings& rows) {
+Result<std::vector<std::string>> notes_of(const std::string& folder, const ask::RowFindings& rows) {
   std::vector<std::string> notes = rows.sentences();
   PROBE_ASSIGN(const std::vector<ask::AskCall> calls, ask::read_ask_calls(folder));
   if (const std::string missing = ask::missing_shards(calls); !missing.empty())
@@ -288,23 +284,23 @@ int32_t vlaprobe_answers(const char* folder, char** json, vlaprobe_error* error)
       for (const Json& arm : ask::arms_json(plan, row)) scores.push_back(arm);
     }
     std::map<std::pair<std::string, std::string>, std::int64_t> left_out;
-    PROBE_TRY(ask::for_each_left_out(
-        folder, [&](const ask::LeftOut& out, std::uint32_t) -> Status {
-          ++left_out[{plan::family_name(out.set, out.family), out.why}];
-          return {};
-        }));
+    PROBE_TRY(ask::for_each_left_out(folder, [&](const ask::LeftOut& out, std::uint32_t) -> Status {
+      ++left_out[{plan::family_name(out.set, out.family), out.why}];
+      return {};
+    }));
     Json out = Json::array();
     for (const auto& [what, count] : left_out)
       out.push_back({{"question", what.first}, {"why", what.second}, {"count", count}});
     PROBE_ASSIGN(const std::vector<std::string> notes, notes_of(folder, findings));
-    std::string text = Json{{"model", record.identity.model},
-                            {"plan_root", record.identity.plan_root},
-                            {"suite", record.suite},
-                            {"frames", record.identity.frames},
-                            {"notes", notes},
-                            {"scores", std::move(scores)},
-                            {"left_out", std::move(out)}}
-                           .dump();
+    std::string text = Json{
+        {"model", record.identity.model},
+        {"plan_root", record.identity.plan_root},
+        {"suite", record.suite},
+        {"frames", record.identity.frames},
+        {"notes", notes},
+        {"scores", std::move(scores)},
+        {"left_out",
+         std::move(out)}}.dump();
     text.back() = ',';
     text += "\"rows\":[" + rows + "]}";
     return api::give_text(text, json);

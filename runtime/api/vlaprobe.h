@@ -541,8 +541,9 @@ VLAPROBE_EXPORT int32_t vlaprobe_ask(const vlaprobe_plan* plan, const vlaprobe_a
                                      char** summary, vlaprobe_error* error);
 
 /* A JSON object of a folder of answers: "model", "plan_root", "suite", "frames", "notes":
- * [sentences], "scores": [an object a question and arm], "left_out": [{"question", "why", "count"}],
- * "rows" as `vlaprobe results DIR --json` has them. Every row is read again from its words. */
+ * [sentences], "scores": [an object a question and arm], "left_out": [{"question", "why",
+ * "count"}], "rows" as `vlaprobe results DIR --json` has them. Every row is read again from its
+ * words. */
 VLAPROBE_EXPORT int32_t vlaprobe_answers(const char* folder, char** json, vlaprobe_error* error);
 /* As `vlaprobe why ANSWERS ... --json`. `seed` of -1: all; `question` NULL: all. */
 VLAPROBE_EXPORT int32_t vlaprobe_why_answers(const char* folder, const char* task, int32_t episode,

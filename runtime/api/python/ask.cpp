@@ -16,10 +16,9 @@ py::dict dict_of(const vlaprobe_asked& asked) {
   py::dict told;
   told["prompt"] = asked.text;
   told["picture"] = asked.rgb.data == nullptr ? py::object(py::none()) : copy_of(asked.rgb);
-  told["png"] = asked.png.data == nullptr
-                    ? py::object(py::none())
-                    : py::bytes(static_cast<const char*>(asked.png.data),
-                                static_cast<std::size_t>(asked.png.shape[0]));
+  told["png"] = asked.png.data == nullptr ? py::object(py::none())
+                                          : py::bytes(static_cast<const char*>(asked.png.data),
+                                                      static_cast<std::size_t>(asked.png.shape[0]));
   told["question"] = asked.question;
   told["task"] = asked.task;
   told["arm"] = asked.arm;

@@ -136,11 +136,11 @@ class Episode:
         )
 
 
-def _picture_tag(episode: Episode, width: int = 320) -> str:
+def _picture_tag(episode: Episode, most: int = 320) -> str:
     """A start's picture within HTML, or why there is none."""
     words = f"{episode.task} episode {episode.index}"
     try:
-        return image_tag(episode.picture(), words).replace("<img ", f'<img style="width:{width}px" ')
+        return image_tag(episode.picture(), words, most)
     except Error as error:
         return f"<p>{html.escape(words)}: {html.escape(str(error))}</p>"
 

@@ -3,46 +3,17 @@
 import json
 import os
 import signal
-import struct
 import subprocess
 import sys
 import threading
 import unittest
-import zlib
 
 import numpy as np
 import vlaprobe
-from common import SOURCE, TASK, Case, program
+from common import SOURCE, TASK, Case, decoded, program
 
 QUESTIONS = os.path.join(SOURCE, "suite", "questions.probe")
 CHOSEN = dict(tasks=TASK, episodes=(0, 1), questions="understanding.source", progress=False)
-
-
-def unfiltered(png: bytes) -> np.ndarray:
-    """An 8-bit RGB PNG as an array, by the rules of the format."""
-    at, data = 8, b""
-    while at < len(png):
-        size, kind = struct.unpack(">I4s", png[at : at + 8])
-        body = png[at + 8 : at + 8 + size]
-        if kind == b"IHDR":
-            width, height = struct.unpack(">II", body[:8])
-        data += body if kind == b"IDAT" else b""
-        at += 12 + size
-    raw = zlib.decompress(data)
-    rows = np.zeros((height, width * 3), np.uint8)
-    for y in range(height):
-        line = y * (width * 3 + 1)
-        filtered = np.frombuffer(raw, np.uint8, width * 3, line + 1).astype(np.int32)
-        above = rows[y - 1].astype(np.int32) if y else np.zeros(width * 3, np.int32)
-        out = np.zeros(width * 3, np.int32)
-        for x in range(width * 3):
-            left = out[x - 3] if x >= 3 else 0
-            corner = above[x - 3] if x >= 3 else 0
-            guess = left + above[x] - corner
-            paeth = min((abs(guess - left), 0, left), (abs(guess - above[x]), 1, above[x]), (abs(guess - corner), 2, corner))[2]
-            out[x] = (filtered[x] + [0, left, above[x], (left + above[x]) // 2, paeth][raw[line]]) & 255
-        rows[y] = out
-    return rows.reshape(height, width, 3)
 
 
 class AskTest(Case):
@@ -104,7 +75,7 @@ class AskTest(Case):
             self.assertEqual(hashlib.sha256(asked["png"]).hexdigest(), row["image_sha256"])
             self.assertEqual((asked["picture"].shape, asked["picture"].dtype), ((48, 64, 3), np.uint8))
         shown = next(asked for asked in seen if asked["arm"] == "picture")
-        np.testing.assert_array_equal(unfiltered(shown["png"]), shown["picture"])
+        np.testing.assert_array_equal(decoded(shown["png"]), shown["picture"])
         # A is right in one rotation of each start, and not in all.
         self.assertEqual(rows.counts()["understanding.source"], (0, 2))
         self.assertTrue(any(row["right"] for row in rows))
