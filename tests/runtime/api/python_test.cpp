@@ -39,6 +39,7 @@ TEST_CASE("gymnasium's own checks, where it is installed") { run("gymnasium_test
 TEST_CASE("worlds as LeRobot evaluates policies in them") { run("lerobot_test.py"); }
 TEST_CASE("what notebooks and terminals show") { run("notebook_test.py"); }
 TEST_CASE("the wheel works in an empty environment") { run("wheel_test.py"); }
+TEST_CASE("the notebooks show what is stored in them") { run("notebooks_test.py"); }
 TEST_CASE("the recipes of the Python package's README run") { run("readme_test.py"); }
 TEST_CASE("models are asked from Python, callables among them") { run("ask_test.py"); }
 TEST_CASE("callables are evaluated by the program's runner") { run("evaluate_test.py"); }
