@@ -8,6 +8,9 @@ import time
 from typing import Any, Callable
 
 
+_NOT_ATTEMPTED = "not attempted: "  # how `invalid` begins where a policy of ours has no skill for the task
+
+
 def _display() -> Any:
     """A handle of a notebook's output; None elsewhere."""
     try:
@@ -38,7 +41,8 @@ class Line:
         self._on_terminal = self._display is None and sys.stderr is not None and sys.stderr.isatty()
 
     def __call__(self, told: dict) -> None:
-        self._invalid += told.get("invalid") is not None
+        reason = told.get("invalid")
+        self._invalid += reason is not None and not reason.startswith(_NOT_ATTEMPTED)
         self._well += bool(told.get(self._good))
         now, there = self._clock(), told["done"] + told["skipped"]
         is_last = there == told["total"]
