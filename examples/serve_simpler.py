@@ -7,11 +7,15 @@
 `my_module.policy` has reset(task) and step(image, task), which returns (raw_action, action) with
 action's world_vector (3, m), rot_axangle (3, rad) and gripper (1, +1 open). Or it is a function that
 makes such an object: then every connection has its own, and `--jobs` may be more than 1; one object
-serves one connection after the other. A step that takes eef_pos gets the end effector's too.
+serves one connection after the other. A step that takes eef_pos gets the end effector's too, a function
+that takes path the address's: `ws://localhost:8000/PATH?profile=simpler_shim` can name a checkpoint.
 
 A policy that keeps nothing between steps may have step_batch(images, tasks), which returns a list of
 what step returns: `--jobs 8 --policy "openpi://...?profile=simpler_shim&connection=kept&batch=8"`
-then asks for all worlds that wait in one message.
+then asks for all worlds that wait in one message. It may take eef_pos, too, a list of them.
+
+For a chunk of n actions world_vector and rot_axangle have n rows, and gripper n numbers; the profile, or
+the address, says `chunk.length=n`.
 """
 import argparse
 import base64
@@ -58,17 +62,22 @@ def unpack(data, at=0):
     return table, at
 
 
-def pack_action(action):
-    """{"actions": float64 [1, 7]} as openpi's server writes it."""
-    return (b"\x81\xa7actions\x84\xc4\x0b__ndarray__\xc3\xc4\x04data\xc4\x38" +
-            numpy.ascontiguousarray(action, "<f8").tobytes() +
-            b"\xc4\x05dtype\xa3<f8\xc4\x05shape\x92\x01\x07")
+def pack_actions(actions):
+    """{"actions": float64 [n, 7]} as openpi's server writes it; n is at most 1000."""
+    data = numpy.ascontiguousarray(actions, "<f8").tobytes()
+    return (b"\x81\xa7actions\x84\xc4\x0b__ndarray__\xc3\xc4\x04data\xc5" +
+            struct.pack(">H", len(data)) + data + b"\xc4\x05dtype\xa3<f8\xc4\x05shape\x92\xcd" +
+            struct.pack(">H", len(actions)) + b"\x07")
 
 
 def pack_step(answer):
     action = answer[1]
-    parts = (action["world_vector"], action["rot_axangle"], action["gripper"])
-    return pack_action(numpy.concatenate([numpy.ravel(part) for part in parts]))
+    parts = ((action["world_vector"], 3), (action["rot_axangle"], 3), (action["gripper"], 1))
+    return pack_actions(numpy.concatenate([numpy.reshape(part, (-1, n)) for part, n in parts], 1))
+
+
+def takes(function, name):
+    return name in inspect.signature(function).parameters
 
 
 class Connection(socketserver.StreamRequestHandler):
@@ -89,7 +98,8 @@ class Connection(socketserver.StreamRequestHandler):
                          base64.b64encode(hashlib.sha1(key).digest()) + b"\r\n\r\n")
         self.send(2, b"\x80")  # no metadata
         self.task = None
-        with self.server.policy() as policy:
+        path = request.split(b" ")[1].partition(b"?")[0].decode().strip("/")
+        with self.server.policy(path) as policy:
             while (message := self.receive()) is not None:
                 try:
                     self.send(2, self.answer(policy, unpack(message)[0]))
@@ -101,16 +111,17 @@ class Connection(socketserver.StreamRequestHandler):
     def answer(self, policy, request):
         if "batch" in request:
             items = request["batch"]
+            poses = ({"eef_pos": [item["observation/state"] for item in items]}
+                     if takes(policy.step_batch, "eef_pos") else {})
             answers = policy.step_batch([item["observation/image"] for item in items],
-                                        [item["prompt"] for item in items])
+                                        [item["prompt"] for item in items], **poses)
             return (b"\x81\xa5batch\xdc" + struct.pack(">H", len(answers)) +
                     b"".join(pack_step(answer) for answer in answers))
         image, task = request["observation/image"], request["prompt"]
         if task != self.task:  # the first of this connection, or another task on it
             policy.reset(task)
             self.task = task
-        takes_pose = "eef_pos" in inspect.signature(policy.step).parameters
-        pose = {"eef_pos": request["observation/state"]} if takes_pose else {}
+        pose = {"eef_pos": request["observation/state"]} if takes(policy.step, "eef_pos") else {}
         return pack_step(policy.step(image, task, **pose))
 
     def receive(self):
@@ -141,9 +152,13 @@ class Connection(socketserver.StreamRequestHandler):
 def serve(policy, port, host="127.0.0.1"):
     lock = threading.Lock()
     @contextlib.contextmanager
-    def chosen():
-        with contextlib.nullcontext() if callable(policy) else lock:
-            yield policy() if callable(policy) else policy
+    def chosen(path):
+        made = callable(policy)
+        with contextlib.nullcontext() if made else lock:
+            if not made:
+                yield policy
+            else:
+                yield policy(path=path) if takes(policy, "path") else policy()
 
     socketserver.ThreadingTCPServer.allow_reuse_address = True
     with socketserver.ThreadingTCPServer((host, port), Connection) as server:

@@ -1,0 +1,95 @@
+"""The learnt policy: one picture, where the hand is, and an instruction in; a chunk of actions out.
+
+    words --embedding, GRU--> text --------------------+-- FiLM --+
+    picture (96 x 128) --4 x 4 patches, convolutions---+----------+--> maps --spatial softmax--> points
+    points, text --> where to grasp, where to let go;  these, points, hand --> the next 4 actions
+
+A point is the mean place of a map's softmax, so a few demonstrations teach where things are to a
+fraction of a pixel. Where to grasp and to let go was not labelled by anybody: it is where the hand of
+the same demonstration closed and opened later.
+"""
+import re
+
+import torch
+from torch import nn
+from torch.nn import functional as F
+
+CHUNK, HEIGHT, WIDTH = 4, 96, 128
+
+
+def words_of(instruction):
+    return re.findall(r"[a-z]+", instruction.lower())
+
+
+def hand_of(state):
+    """[n, 7] x y z roll pitch yaw openness, as exported and as served -> [n, 10].
+
+    A hand that points down has a pitch near pi/2, where roll and yaw jump; two columns of its rotation
+    Rz(yaw) Ry(pitch) Rx(roll) do not."""
+    (sr, sp, sy), (cr, cp, cy) = state[:, 3:6].sin().T, state[:, 3:6].cos().T
+    x = torch.stack([cy * cp, sy * cp, -sp], 1)
+    y = torch.stack([cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr], 1)
+    return torch.cat([state[:, :3], x, y, state[:, 6:]], 1)
+
+
+class Learnt(nn.Module):
+    def __init__(self, vocabulary, maps=32, channels=48):
+        super().__init__()
+        self.number = {word: i + 1 for i, word in enumerate(vocabulary)}  # 0: never read
+        self.embedding = nn.Embedding(len(vocabulary) + 1, 32)
+        self.reader = nn.GRU(32, 64, batch_first=True)
+        self.stem = nn.Conv2d(48, channels, 3, padding=1)
+        self.convolutions = nn.ModuleList([nn.Conv2d(channels, channels, 3, padding=d, dilation=d) for d in (1, 2)])
+        self.film = nn.Linear(64, 2 * channels * len(self.convolutions))
+        self.to_maps = nn.Conv2d(channels, maps, 1)
+        self.places = nn.Sequential(nn.Linear(2 * maps + 64, 128), nn.ReLU(), nn.Linear(128, 12))
+        self.hand = nn.Sequential(nn.Linear(10 + 12 + 6 + 2 * maps, 256), nn.ReLU(), nn.Linear(256, 256), nn.ReLU(),
+                                  nn.Linear(256, CHUNK * 7))
+        grid = torch.meshgrid(torch.linspace(-1, 1, HEIGHT // 4), torch.linspace(-1, 1, WIDTH // 4), indexing="ij")
+        self.register_buffer("grid", torch.stack(grid, -1).reshape(-1, 2))
+        for name, size in (("hand_mean", 10), ("hand_std", 10), ("place_mean", 12), ("place_std", 12), ("action_std", 7)):
+            self.register_buffer(name, torch.ones(size))
+
+    def numbers(self, instruction):
+        return [self.number.get(word, 0) for word in words_of(instruction)] or [0]
+
+    def read(self, sentences):
+        """Lists of word numbers -> [n, 64], what the reader knows behind the last word."""
+        lengths = torch.tensor([len(s) for s in sentences])
+        padded = nn.utils.rnn.pad_sequence([torch.as_tensor(s) for s in sentences], batch_first=True)
+        packed = nn.utils.rnn.pack_padded_sequence(self.embedding(padded), lengths, batch_first=True, enforce_sorted=False)
+        return self.reader(packed)[1][0]
+
+    def forward(self, pictures, hand, text):
+        """u8 [n, 96, 128, 3], [n, 10], [n, 64] -> actions [n, 4, 7] in stds, places [n, 12] in stds."""
+        x = F.pixel_unshuffle(pictures.permute(0, 3, 1, 2).float() / 128 - 1, 4)
+        x = F.relu(self.stem(x))
+        for convolution, film in zip(self.convolutions, self.film(text).chunk(len(self.convolutions), 1)):
+            gain, bias = film[:, :, None, None].chunk(2, 1)
+            x = x + F.relu(convolution(x) * (1 + gain) + bias)
+        points = (self.to_maps(x).flatten(2).softmax(2) @ self.grid).flatten(1)
+        places = self.places(torch.cat([points, text], 1))  # grasp: x y z and rotation; letting go: x y z
+        metres = places * self.place_std + self.place_mean
+        here = hand[:, :3].repeat(1, 2)
+        away = (metres[:, [0, 1, 2, 9, 10, 11]] - here) / 0.1
+        seen = torch.cat([(hand - self.hand_mean) / self.hand_std, places, away, points], 1)
+        return self.hand(seen).reshape(-1, CHUNK, 7), places
+
+    @torch.no_grad()
+    def act(self, pictures, states, instructions):
+        """u8 [n, 96, 128, 3], [n, 7], n texts -> actions [n, 4, 7]: m, rotation vector, gripper -1 .. 1."""
+        actions, _ = self(pictures, hand_of(states.float()), self.read([self.numbers(i) for i in instructions]))
+        actions = actions * self.action_std
+        actions[..., 6].clamp_(-1, 1)
+        return actions
+
+
+def save(policy, path):
+    torch.save({"vocabulary": list(policy.number), "weights": policy.state_dict()}, path)
+
+
+def load(path):
+    kept = torch.load(path, map_location="cpu")
+    policy = Learnt(kept["vocabulary"])
+    policy.load_state_dict(kept["weights"])
+    return policy.eval()
