@@ -1,12 +1,12 @@
 """The learnt policy: one picture, where the hand is, and an instruction in; a chunk of actions out.
 
-    words --embedding, GRU--> text --------------------+-- FiLM --+
-    picture (96 x 128) --4 x 4 patches, convolutions---+----------+--> maps --spatial softmax--> points
-    points, text --> where to grasp, where to let go;  these, points, hand --> the next 4 actions
+    words --embedding, GRU--> text ----------------------+- FiLM -+-----------------+
+    picture, 96 x 128 --4 x 4 patches, convolutions------+--------+--> maps --spatial softmax--> points --> places
+    places, hand --> the next 4 actions
 
-A point is the mean place of a map's softmax, so a few demonstrations teach where things are to a
-fraction of a pixel. Where to grasp and to let go was not labelled by anybody: it is where the hand of
-the same demonstration closed and opened later.
+A point is the mean place of a map's softmax: it moves with what its map shows by fractions of a pixel, so some hundred
+demonstrations teach where things are. Places are where the hand would hold the source as it lies now, and where it
+would let it go. Nobody labelled them: the hand of the same demonstration went there later.
 """
 import re
 
@@ -33,7 +33,7 @@ def hand_of(state):
 
 
 class Learnt(nn.Module):
-    def __init__(self, vocabulary, maps=32, channels=48):
+    def __init__(self, vocabulary, maps=32, channels=32):
         super().__init__()
         self.number = {word: i + 1 for i, word in enumerate(vocabulary)}  # 0: never read
         self.embedding = nn.Embedding(len(vocabulary) + 1, 32)
@@ -42,9 +42,9 @@ class Learnt(nn.Module):
         self.convolutions = nn.ModuleList([nn.Conv2d(channels, channels, 3, padding=d, dilation=d) for d in (1, 2)])
         self.film = nn.Linear(64, 2 * channels * len(self.convolutions))
         self.to_maps = nn.Conv2d(channels, maps, 1)
-        self.places = nn.Sequential(nn.Linear(2 * maps + 64, 128), nn.ReLU(), nn.Linear(128, 12))
-        self.hand = nn.Sequential(nn.Linear(10 + 12 + 6 + 2 * maps, 256), nn.ReLU(), nn.Linear(256, 256), nn.ReLU(),
-                                  nn.Linear(256, CHUNK * 7))
+        self.to_places = nn.Sequential(nn.Linear(2 * maps + 64, 128), nn.ReLU(), nn.Linear(128, 12))
+        self.to_actions = nn.Sequential(nn.Linear(10 + 12 + 15, 256), nn.ReLU(), nn.Linear(256, 256), nn.ReLU(),
+                                        nn.Linear(256, CHUNK * 7))
         grid = torch.meshgrid(torch.linspace(-1, 1, HEIGHT // 4), torch.linspace(-1, 1, WIDTH // 4), indexing="ij")
         self.register_buffer("grid", torch.stack(grid, -1).reshape(-1, 2))
         for name, size in (("hand_mean", 10), ("hand_std", 10), ("place_mean", 12), ("place_std", 12), ("action_std", 7)):
@@ -60,26 +60,29 @@ class Learnt(nn.Module):
         packed = nn.utils.rnn.pack_padded_sequence(self.embedding(padded), lengths, batch_first=True, enforce_sorted=False)
         return self.reader(packed)[1][0]
 
-    def forward(self, pictures, hand, text):
-        """u8 [n, 96, 128, 3], [n, 10], [n, 64] -> actions [n, 4, 7] in stds, places [n, 12] in stds."""
+    def places(self, pictures, text):
+        """u8 [n, 96, 128, 3], [n, 64] -> [n, 12]: x y z and two columns of the rotation to hold the source, x y z to
+        let it go; m, in the robot's base frame."""
         x = F.pixel_unshuffle(pictures.permute(0, 3, 1, 2).float() / 128 - 1, 4)
         x = F.relu(self.stem(x))
         for convolution, film in zip(self.convolutions, self.film(text).chunk(len(self.convolutions), 1)):
             gain, bias = film[:, :, None, None].chunk(2, 1)
             x = x + F.relu(convolution(x) * (1 + gain) + bias)
         points = (self.to_maps(x).flatten(2).softmax(2) @ self.grid).flatten(1)
-        places = self.places(torch.cat([points, text], 1))  # grasp: x y z and rotation; letting go: x y z
-        metres = places * self.place_std + self.place_mean
-        here = hand[:, :3].repeat(1, 2)
-        away = (metres[:, [0, 1, 2, 9, 10, 11]] - here) / 0.1
-        seen = torch.cat([(hand - self.hand_mean) / self.hand_std, places, away, points], 1)
-        return self.hand(seen).reshape(-1, CHUNK, 7), places
+        return self.to_places(torch.cat([points, text], 1)) * self.place_std + self.place_mean
+
+    def actions(self, places, hand):
+        """[n, 12], [n, 10] -> [n, 4, 7], in multiples of `action_std`."""
+        away = torch.cat([places[:, :3] - hand[:, :3], places[:, 9:] - hand[:, :3], places[:, 9:] - places[:, :3]], 1)
+        turn = places[:, 3:9] - hand[:, 3:9]
+        seen = [(hand - self.hand_mean) / self.hand_std, (places - self.place_mean) / self.place_std, away / 0.1, turn / 0.5]
+        return self.to_actions(torch.cat(seen, 1)).reshape(-1, CHUNK, 7)
 
     @torch.no_grad()
     def act(self, pictures, states, instructions):
         """u8 [n, 96, 128, 3], [n, 7], n texts -> actions [n, 4, 7]: m, rotation vector, gripper -1 .. 1."""
-        actions, _ = self(pictures, hand_of(states.float()), self.read([self.numbers(i) for i in instructions]))
-        actions = actions * self.action_std
+        places = self.places(pictures, self.read([self.numbers(i) for i in instructions]))
+        actions = self.actions(places, hand_of(states.float())) * self.action_std
         actions[..., 6].clamp_(-1, 1)
         return actions
 

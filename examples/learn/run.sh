@@ -14,19 +14,20 @@ jobs=${JOBS:-8}
 mkdir -p "$out"
 cd "$root"
 
-# ---- what it is shown, in the words of the tasks and in up to eight wordings of each demonstration ---------------------
+# ---- what it is shown: the expert's demonstrations, each told in up to eight wordings ---------------------------------
 "$vlaprobe" demos examples/learn/tasks.probe --suite learn --jobs 2 -o "$out/demos"
 [ -e "$out/words.jsonl" ] || "$vlaprobe" rephrase examples/learn/tasks.probe --suite learn \
   --not-in suite/intact.probe --drop-leaks -o "$out/words.jsonl"
-data() { "$vlaprobe" export "$out/demos" --format robomimic --size 128x96 --jobs 2 "$@"; }
-[ -e "$out/data/plain" ] || data -o "$out/data/plain"
-[ -e "$out/data/rephrased" ] || data -o "$out/data/rephrased" --rephrase "$out/words.jsonl" --wordings 8
+[ -e "$out/data" ] || "$vlaprobe" export "$out/demos" --format robomimic --size 128x96 --jobs 2 -o "$out/data" \
+  --rephrase "$out/words.jsonl" --wordings 8
 
 # ---- two policies: all is the same but the words ---------------------------------------------------------------------
-for kind in plain rephrased; do
-  [ -e "$out/policies/$kind/part_3.pt" ] || "$python" "$here/train.py" "$out/data/$kind" \
-    -o "$out/policies/$kind" --minutes "${MINUTES:-12}"
-done
+learn() { # NAME WORDS
+  [ -e "$out/policies/$1/part_3.pt" ] ||
+    "$python" "$here/train.py" "$out/data" -o "$out/policies/$1" --words "$2" --minutes "${MINUTES:-12}"
+}
+learn plain instruction
+learn rephrased lang
 
 # ---- served, the best checkpoint of each over the whole suite ---------------------------------------------------------
 for kind in plain rephrased; do

@@ -55,13 +55,15 @@ def learns_and_is_served():
     demos = train.demonstrations([FOLDER / "data"])
     assert len(demos) >= 2 and all(len(told) == 3 for *_, told in demos)
     print("told")
-    # What was not labelled by anybody: before the hand closes, where it will; the hand is there then.
+    # What nobody labelled: until the hand closes, where it will; what it holds is in it, and stays where it let go.
     _, states, actions, _ = demos[0]
     hand = policy.hand_of(torch.tensor(states))
-    where, is_known = train.labels(hand, actions)
-    closes, opens = int(is_known[:, 0].sum()) - 1, int(is_known[:, 9].sum()) - 1
-    assert 0 < closes < opens and actions[closes, 6] < 0 and actions[closes - 1, 6] > 0 and actions[opens, 6] > 0
-    assert torch.equal(where[0, :3], hand[closes, :3]) and torch.equal(where[0, 9:], hand[opens, :3])
+    where = train.labels(hand, actions)
+    closes = int((actions[:, 6] < 0).argmax())
+    opens = closes + int((actions[closes:, 6] > 0).argmax())
+    assert 0 < closes < opens < len(actions) - 1
+    assert (where[:closes, :9] == hand[closes, :9]).all() and (where[opens:, :9] == hand[opens, :9]).all()
+    assert (where[closes:opens, :9] == hand[closes:opens, :9]).all() and (where[:, 9:] == hand[opens, :3]).all()
     print("labelled")
 
     subprocess.run([sys.executable, EXAMPLE / "train.py", FOLDER / "data", "-o", FOLDER / "policies", "--minutes", "0.05",
