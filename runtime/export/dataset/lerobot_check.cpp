@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
-#include "runtime/export/dataset/check.h"
+#include "runtime/export/dataset/findings.h"
+#include "runtime/export/dataset/format_checks.h"
 #include "runtime/export/dataset/lerobot.h"
-#include "runtime/export/dataset/named_runs.h"
 #include "runtime/export/parquet/reader.h"
 #include "runtime/show/clip.h"
 
@@ -21,9 +20,6 @@ namespace {
 
 using namespace lerobot;
 using parquet::ReadColumn;
-
-// More of the same kind would only fill the screen.
-constexpr std::size_t kMostProblems = 50;
 
 // Tables of one schema in several files, row group after row group.
 class Groups {
@@ -73,33 +69,22 @@ class LerobotCheck {
 
   Result<CheckReport> check() {
     PROBE_TRY(read_tasks());
-    for (;;) {
-      const auto named = runs_.next();
-      if (!named) {
-        problem(to_text(named.failure()));
-        return report_;
-      }
-      if (!*named) break;
-      ++report_.demonstrations;
-      for (std::size_t i = 0; i < (*named)->wordings.size(); ++i) {
-        if (auto one = episode(**named, (*named)->wordings[i], i == 0); !one) {
-          problem(to_text(one.failure()));
-          return report_;
-        }
-        if (report_.problems.size() >= kMostProblems) return report_;
-      }
-    }
+    const bool is_whole =
+        each_episode(runs_, findings_, [&](const auto& named, const auto& wording, bool is_first) {
+          return episode(named, wording, is_first);
+        });
+    if (!is_whole) return findings_.report;
     PROBE_TRY(nothing_is_left());
     videos();
     PROBE_TRY(info());
     PROBE_TRY(statistics());
-    return report_;
+    return findings_.report;
   }
 
  private:
-  void problem(std::string text) { report_.problems.push_back(std::move(text)); }
+  void problem(std::string text) { findings_.problem(std::move(text)); }
   void expect(bool is_so, const std::string& where, const std::string& what) {
-    if (!is_so && report_.problems.size() < kMostProblems) problem(where + ": " + what);
+    findings_.expect(is_so, where, what);
   }
 
   Status read_tasks() {
@@ -122,7 +107,7 @@ class LerobotCheck {
   }
 
   Status episode(const NamedDemonstration& named, const std::string& wording, bool is_first) {
-    const std::string where = fmt::format("episode {} ({})", report_.episodes, named.name);
+    const std::string where = fmt::format("episode {} ({})", findings_.report.episodes, named.name);
     if (episode_rows_.empty() || row_ == episode_rows_.front().rows()) {
       PROBE_ASSIGN(episode_rows_, episodes_.next());
       row_ = 0;
@@ -138,8 +123,6 @@ class LerobotCheck {
     check_rows(named, wording, rows, where);
     check_episode_row(wording, length, is_first, where);
     ++row_;
-    ++report_.episodes;
-    report_.frames += length;
     return {};
   }
 
@@ -165,12 +148,6 @@ class LerobotCheck {
     return column_of(columns, name)->flags[row] != 0;
   }
 
-  static bool equal(std::span<const double> stored, std::span<const double> wanted) {
-    return std::ranges::equal(stored, wanted, [](double a, double b) {
-      return a == static_cast<double>(static_cast<float>(b));
-    });
-  }
-
   void check_rows(const NamedDemonstration& named, const std::string& wording,
                   const std::vector<ReadColumn>& rows, const std::string& where) {
     const auto& steps = named.trace.steps;
@@ -179,24 +156,27 @@ class LerobotCheck {
       const std::string at = fmt::format("{} frame {}", where, i);
       const bool is_last = i + 1 == steps.size(), is_success = is_last && named.success;
       const auto k = static_cast<std::int64_t>(i);
-      // What was measured before the action: behind the step before.
-      const vm::StepSample& sample = i == 0 ? named.trace.start->sample : steps[i - 1].sample;
-      const std::vector<double>& q = i == 0 ? named.trace.start->q : steps[i - 1].q;
-      expect(equal(reals(rows, "action", i), steps[i].action), at, "action is not the trace's");
-      expect(q.size() >= joints &&
-                 equal(reals(rows, "observation.joints", i), std::span(q).first(joints)),
+      expect(equal_singles(reals(rows, "action", i), steps[i].action), at,
+             "action is not the trace's");
+      expect(equal_singles(reals(rows, "observation.joints", i),
+                           joints_before(named.trace, i, joints)),
              at, "observation.joints are not the trace's");
-      check_state(reals(rows, "observation.state", i), named.base, sample, at);
+      expect_state(findings_, reals(rows, "observation.state", i), named.base,
+                   sample_before(named.trace, i), at, "observation.state");
       const double reward[] = {is_success ? 1.0 : 0.0},
                    time[] = {static_cast<double>(k) / shape_.fps};
-      expect(equal(reals(rows, "next.reward", i), reward), at, "next.reward is not the verdict");
+      expect(equal_singles(reals(rows, "next.reward", i), reward), at,
+             "next.reward is not the verdict");
       expect(flag(rows, "next.success", i) == is_success, at, "next.success is not the verdict");
       expect(flag(rows, "next.done", i) == is_last, at,
              "next.done is not true in the last row alone");
-      expect(equal(reals(rows, "timestamp", i), time), at, "timestamp is not frame_index / fps");
+      expect(equal_singles(reals(rows, "timestamp", i), time), at,
+             "timestamp is not frame_index / fps");
       expect(whole(rows, "frame_index", i) == k, at, "frame_index does not count from 0");
-      expect(whole(rows, "episode_index", i) == report_.episodes, at, "episode_index is another");
-      expect(whole(rows, "index", i) == report_.frames + k, at, "index does not count all frames");
+      expect(whole(rows, "episode_index", i) == findings_.report.episodes, at,
+             "episode_index is another");
+      expect(whole(rows, "index", i) == findings_.report.frames + k, at,
+             "index does not count all frames");
       const std::int64_t task = whole(rows, "task_index", i);
       expect(task >= 0 && static_cast<std::size_t>(task) < tasks_.size() &&
                  tasks_[static_cast<std::size_t>(task)] == wording,
@@ -204,32 +184,14 @@ class LerobotCheck {
     }
   }
 
-  // Position and gripper as the trace has them; of the rotation, which it does not have, the range.
-  void check_state(std::span<const double> state, const Pose& base, const vm::StepSample& sample,
-                   const std::string& at) {
-    constexpr double kNear = 1e-6;  // floats of metres
-    if (state.size() != kStateSize) return expect(false, at, "observation.state has another size");
-    const Vec3 place = base.inverse().apply(sample.tcp);
-    for (int i = 0; i < 3; ++i)
-      expect(std::abs(state[static_cast<std::size_t>(i)] - place[i]) < kNear, at,
-             fmt::format("observation.state {} is {}, the trace's {}",
-                         kStateNames[static_cast<std::size_t>(i)],
-                         state[static_cast<std::size_t>(i)], place[i]));
-    for (std::size_t i = 3; i < 6; ++i)
-      expect(std::abs(state[i]) <= std::numbers::pi + kNear, at,
-             fmt::format("observation.state {} is no angle", kStateNames[i]));
-    expect(std::abs(state[6] - (1 - sample.grip)) < kNear, at,
-           "observation.state gripper is not the trace's");
-  }
-
   void check_episode_row(const std::string& wording, std::int64_t length, bool is_first,
                          const std::string& where) {
     const auto& rows = episode_rows_;
-    expect(whole(rows, "episode_index", row_) == report_.episodes, where,
+    expect(whole(rows, "episode_index", row_) == findings_.report.episodes, where,
            "episode_index is another");
     expect(whole(rows, "length", row_) == length, where, "length is not its trace's");
-    expect(whole(rows, "dataset_from_index", row_) == report_.frames &&
-               whole(rows, "dataset_to_index", row_) == report_.frames + length,
+    expect(whole(rows, "dataset_from_index", row_) == findings_.report.frames &&
+               whole(rows, "dataset_to_index", row_) == findings_.report.frames + length,
            where, "dataset_from_index, dataset_to_index are not its rows");
     expect(whole(rows, "data/chunk_index", row_) == data_.number().chunk &&
                whole(rows, "data/file_index", row_) == data_.number().file,
@@ -302,13 +264,13 @@ class LerobotCheck {
     };
     is("codebase_version", kVersion);
     is("fps", shape_.fps);
-    is("total_episodes", report_.episodes);
-    is("total_frames", report_.frames);
+    is("total_episodes", findings_.report.episodes);
+    is("total_frames", findings_.report.frames);
     is("total_tasks", tasks_.size());
     is("robot_type", shape_.robot);
     is("chunks_size", kChunkSize);
     Json splits = Json::object();
-    splits["train"] = fmt::format("0:{}", report_.episodes);
+    splits["train"] = fmt::format("0:{}", findings_.report.episodes);
     is("splits", splits);
     const Json* features = json.find("features");
     if (features == nullptr || features->items().size() != features_.size()) {
@@ -363,16 +325,13 @@ class LerobotCheck {
   std::vector<ReadColumn> episode_rows_;
   std::size_t row_ = 0;  // of these
   std::map<std::string, VideoNeed> videos_;
-  CheckReport report_;
+  Findings findings_;
 };
 
 }  // namespace
 
-Result<CheckReport> check_dataset(const std::string& dir, const std::vector<std::string>& runs) {
-  PROBE_ASSIGN(NamedRuns named, NamedRuns::open(dir, runs));
-  if (!is_file(dir + "/" + lerobot::kInfoPath))
-    return Failure{Fault::kUsage, "is no dataset of a format that is checked", dir};
-  return LerobotCheck(dir, std::move(named)).check();
+Result<CheckReport> check_lerobot(const std::string& dir, NamedRuns runs) {
+  return LerobotCheck(dir, std::move(runs)).check();
 }
 
 }  // namespace probe::dataset

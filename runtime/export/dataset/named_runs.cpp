@@ -4,6 +4,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/export/dataset/provenance.h"
+#include "runtime/export/dataset/source.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"
 
@@ -130,7 +131,8 @@ Result<std::optional<NamedDemonstration>> NamedRuns::next() {
   const plan::SceneRecord& scene = plan.scenes()[plan.tasks()[*plan.find_task(key.task)].scene];
   return std::optional(NamedDemonstration{
       store::to_text(key), std::move(trace), json.at("wordings").get<std::vector<std::string>>(),
-      is_success(row->second), Pose{to_vec(scene.base_position), to_quat(scene.base_rotation)}});
+      is_success(row->second), Pose{to_vec(scene.base_position), to_quat(scene.base_rotation)},
+      shape_.cameras == cameras_of(plan, plan.tasks()[*plan.find_task(key.task)])});
 }
 
 }  // namespace probe::dataset

@@ -24,6 +24,8 @@ struct NamedDemonstration {
   std::vector<std::string> wordings;
   bool success = false;
   Pose base;  // of the robot in the world
+  // The dataset has every camera of its task, in order and in the size in which the policy saw it.
+  bool has_all_pictures = false;
 };
 
 class NamedRuns {

@@ -23,18 +23,14 @@ std::string counted(std::size_t count) {
 
 Result<std::vector<CameraShape>> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task,
                                             const DatasetOptions& options) {
-  std::vector<CameraShape> all, chosen;
+  std::vector<CameraShape> all = dataset::cameras_of(plan, task), chosen;
   std::string known;
-  for (const plan::ViewRecord& view : plan.views(task)) {
-    const plan::CameraRecord& camera = plan.cameras()[view.camera];
-    CameraShape shape{std::string(plan.text(view.name)), static_cast<int>(camera.width),
-                      static_cast<int>(camera.height)};
+  for (CameraShape& shape : all) {
     if (options.width > 0) {
       shape.width = options.width;
       shape.height = options.height;
     }
     known += (known.empty() ? "`" : ", `") + shape.name + "`";
-    all.push_back(std::move(shape));
   }
   if (options.cameras.empty()) return all;
   for (const std::string& name : options.cameras) {
@@ -92,6 +88,16 @@ Result<Shape> shape_of_task(const plan::Plan& plan, const plan::TaskRecord& task
 }
 
 }  // namespace
+
+std::vector<CameraShape> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task) {
+  std::vector<CameraShape> all;
+  for (const plan::ViewRecord& view : plan.views(task)) {
+    const plan::CameraRecord& camera = plan.cameras()[view.camera];
+    all.push_back({std::string(plan.text(view.name)), static_cast<int>(camera.width),
+                   static_cast<int>(camera.height)});
+  }
+  return all;
+}
 
 bool is_success(const store::ResultRow& row) {
   return !row.invalid && std::ranges::any_of(row.metrics, [](const store::MetricValue& metric) {

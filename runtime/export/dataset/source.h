@@ -23,6 +23,9 @@ struct Source {
 
 bool is_success(const store::ResultRow& row);
 
+// A task's cameras as policies see them.
+std::vector<CameraShape> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task);
+
 // The valid episodes of the run in `dir` that the options name; what else there was is told in
 // `left_out`. Fails (kStore) when there is no run.
 Result<Source> open_source(const std::string& dir, const DatasetOptions& options,

@@ -1,0 +1,49 @@
+// What the checks of all formats have in common: problems with their places, the loop over the
+// demonstrations, and what is held against a trace in the same way everywhere.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/export/dataset/check.h"
+#include "runtime/export/dataset/demonstration.h"
+#include "runtime/export/dataset/named_runs.h"
+
+namespace probe::dataset {
+
+class Findings {
+ public:
+  void problem(std::string text) { report.problems.push_back(std::move(text)); }
+  void expect(bool is_so, const std::string& where, const std::string& what);
+  // More of the same kind would only fill the screen.
+  bool is_full() const;
+
+  CheckReport report;
+};
+
+// Of each demonstration in each of its wordings, in order, until `episode` fails, which is a
+// problem: what follows cannot be read. False then, and where there are too many problems.
+bool each_episode(NamedRuns& runs, Findings& findings,
+                  const std::function<Status(const NamedDemonstration& named,
+                                             const std::string& wording, bool is_first)>& episode);
+
+// What was measured before the action of step `i`, and the joints then.
+const vm::StepSample& sample_before(const store::Trace& trace, std::size_t i);
+std::span<const double> joints_before(const store::Trace& trace, std::size_t i, std::size_t count);
+
+// Place and gripper as the trace has them; of the rotation, which it does not have, the range.
+void expect_state(Findings& findings, std::span<const double> state, const Pose& base,
+                  const vm::StepSample& sample, const std::string& at, const std::string& called);
+
+// Whether the pictures of a step, one a camera, are those that the policy saw; where the dataset
+// has all of them as they were (`NamedDemonstration::has_all_pictures`).
+void expect_pictures(Findings& findings, const std::vector<std::vector<std::uint8_t>>& rgb,
+                     const store::TraceStep& step, const std::string& at);
+
+// Single numbers of 32 bits, or double ones.
+bool equal_singles(std::span<const double> stored, std::span<const double> wanted);
+
+}  // namespace probe::dataset
