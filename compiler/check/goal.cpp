@@ -187,6 +187,11 @@ class Reader {
         }
         return;
       }
+      case ExprOp::kAny: {
+        const Things among = things_in(node.set, given);
+        if (among.size() > 1) goal_.one_of.insert(among);
+        return;
+      }
       case ExprOp::kCall: {
         const Given inner = given_to(node, given);
         const std::size_t count = std::min(node.args.size(), inner.size());
@@ -202,9 +207,9 @@ class Reader {
 
   // One of several conditions that hold together.
   struct Part {
-    enum Kind : std::uint8_t { kNow, kBefore, kNot } kind = kNow;
+    enum Kind : std::uint8_t { kNow, kNot, kNever } kind = kNow;
     Things of;
-    PredicateId predicate = PredicateId::kNone;  // called, of kNow and kNot
+    PredicateId predicate = PredicateId::kNone;  // called
   };
 
   void collect_parts(ExprRef ref, const Given& given, std::vector<Part>& parts) const {
@@ -217,19 +222,21 @@ class Reader {
       case ExprOp::kHold:
         for (const ExprRef arg : node.args) collect_parts(arg, given, parts);
         return;
-      case ExprOp::kOnce:
-        parts.push_back({Part::kBefore, things(node.args[0], given)});
+      case ExprOp::kNot: {
+        const ExprNode& denied = at(node.args[0]);
+        const bool is_never = denied.op == ExprOp::kOnce;
+        const ExprRef what = is_never ? denied.args[0] : node.args[0];
+        parts.push_back({is_never ? Part::kNever : Part::kNot, things(what, given), called(what)});
         return;
-      case ExprOp::kNot:
-        parts.push_back({Part::kNot, things(node.args[0], given), called(node.args[0])});
-        return;
+      }
       case ExprOp::kCall: {
-        // One that says itself what was before is several conditions.
+        // One that says itself what is not yet is several conditions.
         const ExprRef body = model_.predicates[node.predicate].body;
-        const auto is_before = [&](ExprRef one) { return at(one).op == ExprOp::kOnce; };
-        if (body != kNoExpr && (is_before(body) || (at(body).op == ExprOp::kAnd &&
-                                                    std::any_of(at(body).args.begin(),
-                                                                at(body).args.end(), is_before)))) {
+        const auto is_not_yet = [&](ExprRef one) {
+          return at(one).op == ExprOp::kNot && at(at(one).args[0]).op == ExprOp::kOnce;
+        };
+        if (body != kNoExpr && at(body).op == ExprOp::kAnd &&
+            std::any_of(at(body).args.begin(), at(body).args.end(), is_not_yet)) {
           collect_parts(body, given_to(node, given), parts);
           return;
         }
@@ -250,17 +257,17 @@ class Reader {
     if (!before.empty() && !after.empty()) goal_.order.insert({before, after});
   }
 
-  // At one step all of it holds: what was before is done before what is now, and what is now before
-  // the same that is not yet.
+  // At one step all of it holds: what is now, before what has never been so, or before the same of
+  // another that is not so. (`once a and b` wants no order: b may have been so all along.)
   void order_within(ExprRef ref, const Given& given) {
     std::vector<Part> parts;
     collect_parts(ref, given, parts);
     for (const Part& now : parts) {
       if (now.kind != Part::kNow) continue;
       for (const Part& other : parts) {
-        if (other.kind == Part::kBefore) put_in_order(other.of, now.of);
-        if (other.kind == Part::kNot && other.predicate == now.predicate &&
-            other.predicate != PredicateId::kNone)
+        const bool is_same =
+            other.predicate == now.predicate && other.predicate != PredicateId::kNone;
+        if (other.kind == Part::kNever || (other.kind == Part::kNot && is_same))
           put_in_order(now.of, other.of);
       }
     }

@@ -24,8 +24,10 @@ struct Goal {
   std::set<Asked> asked;
   // Two things that one comparison measures, the lower id first.
   std::set<std::pair<ObjectId, ObjectId>> compared;
-  // What is done with the first is done before what is done with the second.
+  // What is done with the first is so at a step at which what is done with the second is not yet.
   std::set<std::pair<Things, Things>> order;
+  // Things of which it is enough that one is so.
+  std::set<Things> one_of;
   // Something is measured that is one way on the left and another on the right: a coordinate, a
   // region, a direction, a joint.
   bool tells_sides = false;

@@ -8,6 +8,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/check/goal.h"
+#include "compiler/check/noun_words.h"
 #include "compiler/check/relation_words.h"
 #include "compiler/check/said.h"
 #include "compiler/define/wording.h"
@@ -32,10 +33,15 @@ void collect_relations(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
   }
 }
 
-// What an instruction says beside its slots.
+// What an instruction says beside its slots, which say themselves how many they mean.
 std::string literal_text(const Model& model, const Task& task) {
   std::string text;
-  for (const Template::Part& part : model.templates[task.say].parts) text += part.literal + " ";
+  for (const Template::Part& part : model.templates[task.say].parts) {
+    text += part.literal + " ";
+    if (!part.slot || part.slot->avoid) continue;
+    if (part.slot->count == syntax::SlotCount::kBoth) text += "both ";
+    if (part.slot->count == syntax::SlotCount::kAll) text += "all ";
+  }
   return text;
 }
 
@@ -113,7 +119,7 @@ struct JointGoal {
 };
 
 // What each of the table's words asks of a goal; empty where that is there.
-enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter };
+enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter, kEach };
 struct GoalWords {
   std::string_view words;
   Asks asks;
@@ -152,7 +158,7 @@ class Told {
     switch (one.asks) {
       case Asks::kOpens:
       case Asks::kCloses:
-        return joint_lack(one.asks);
+        return joint_lack(one);
       case Asks::kAmong:
         return among_lack(one);
       case Asks::kSides:
@@ -160,19 +166,42 @@ class Told {
       case Asks::kThen:
       case Asks::kAfter:
         return order_lack(one);
+      case Asks::kEach:
+        return each_lack();
     }
     return std::nullopt;
   }
 
  private:
-  bool says(Asks asks) const {
+  bool says(Asks asks) {
     return std::any_of(kGoalWords.begin(), kGoalWords.end(), [&](const GoalWords& one) {
-      return one.asks == asks && has_words(text_, one.words);
+      return one.asks == asks && has_words(text_, one.words) && tells_to(one);
     });
   }
 
+  // Words that tell to do so, not how a thing is: "open the drawer", not "the open drawer", "left
+  // open" or "close to".
+  bool tells_to(const GoalWords& one) {
+    constexpr auto kBefore = std::to_array<std::string_view>(
+        {"and", "then", "please", "to", "first", "you", "can", "could", "should", "must", "now",
+         "or", "but", "just"});
+    const std::size_t length = folded_words(one.words).size();
+    const auto& words = said().words;
+    for (auto at = said().find(one.words); at; at = said().find(one.words, *at + 1)) {
+      if (*at + length < words.size() && words[*at + length].text == "to") continue;
+      if (length > 1 || *at == 0) return true;
+      const std::string& before = words[*at - 1].text;
+      if (before.ends_with("ly") ||
+          std::find(kBefore.begin(), kBefore.end(), before) != kBefore.end())
+        return true;
+    }
+    return false;
+  }
+
   // "close the drawer" of which success is that it is open.
-  std::optional<std::string> joint_lack(Asks asks) const {
+  std::optional<std::string> joint_lack(const GoalWords& one) {
+    if (!tells_to(one)) return std::nullopt;
+    const Asks asks = one.asks;
     JointGoal travels{model_};
     for (const Metric& metric : task_.judged) {
       if (metric.name == "success") travels.look(metric.expr);
@@ -193,7 +222,8 @@ class Told {
     for (std::size_t i = *at + 1; i < said().words.size() && behind.size() < 2; ++i) {
       if (!said().words[i].of.empty()) behind.push_back(said().words[i].of);
     }
-    if (behind.empty()) return std::nullopt;
+    // "Between yourself and the plate": of one of them there is no telling.
+    if (behind.empty() || (behind.size() == 1 && behind.front().size() == 1)) return std::nullopt;
     const Things& a = behind.front();
     const Things& b = behind.back();  // of several that one slot means they are the same
     const auto is_compared = [&](ObjectId thing, const Things& with) {
@@ -227,8 +257,72 @@ class Told {
     return std::nullopt;
   }
 
-  // "first A, then B" of which success is that B was done first.
+  // "first A, then B" of which success is that B was done first, wants no order of the two, or is
+  // content with A.
   std::optional<std::string> order_lack(const GoalWords& one) {
+    if (auto lack = other_order(one)) return lack;
+    for (const auto& [first, second] : goal().order) {
+      if (earliest(first) && earliest(second) && !is_asked(second))
+        return "succeeds without " + name_of(second);
+    }
+    return no_order(one);
+  }
+
+  bool is_asked(const Things& things) {
+    return std::any_of(goal().asked.begin(), goal().asked.end(), [&](const Goal::Asked& asked) {
+      return std::any_of(asked.of.begin(), asked.of.end(), [&](const Things& of) {
+        return std::any_of(of.begin(), of.end(), [&](ObjectId id) { return things.contains(id); });
+      });
+    });
+  }
+
+  // Two objects that are said on both sides of the word, of each of which something is asked that
+  // the other has no part in.
+  std::optional<std::string> no_order(const GoalWords& one) {
+    const auto at = said().find(one.words);
+    if (!at) return std::nullopt;
+    std::set<ObjectId> before, behind;
+    for (const Goal::Asked& asked : goal().asked) {
+      if (asked.of.empty() || asked.of[0].size() != 1) continue;
+      const ObjectId thing = *asked.of[0].begin();
+      const auto first = said().first(thing);
+      if (!first || model_.objects[thing].of) continue;
+      (*first < *at ? before : behind).insert(thing);
+    }
+    for (const ObjectId a : before) {
+      for (const ObjectId b : behind) {
+        if (is_beside(a, b) && is_beside(b, a) && !is_ordered(a, b))
+          return "its success wants no order of `" + model_.objects[a].name + "` and `" +
+                 model_.objects[b].name + "`";
+      }
+    }
+    return std::nullopt;
+  }
+
+  // Whether nothing that is asked of A is asked of A and B together.
+  bool is_beside(ObjectId a, ObjectId b) {
+    return std::none_of(goal().asked.begin(), goal().asked.end(), [&](const Goal::Asked& asked) {
+      return std::any_of(asked.of.begin(), asked.of.end(),
+                         [&](const Things& of) { return of.contains(a); }) &&
+             std::any_of(asked.of.begin(), asked.of.end(),
+                         [&](const Things& of) { return of.contains(b); });
+    });
+  }
+  bool is_ordered(ObjectId a, ObjectId b) {
+    return std::any_of(goal().order.begin(), goal().order.end(), [&](const auto& order) {
+      return (order.first.contains(a) && order.second.contains(b)) ||
+             (order.first.contains(b) && order.second.contains(a));
+    });
+  }
+
+  bool speaks_back(std::size_t at) {
+    constexpr auto kBack =
+        std::to_array<std::string_view>({"that", "this", "it", "them", "which", "these", "those"});
+    return at < said().words.size() &&
+           std::find(kBack.begin(), kBack.end(), said().words[at].text) != kBack.end();
+  }
+
+  std::optional<std::string> other_order(const GoalWords& one) {
     for (const auto& [first, second] : goal().order) {
       const auto a = earliest(first), b = earliest(second);
       if (!a || !b || *a == *b) continue;
@@ -238,11 +332,32 @@ class Told {
       if (!is_between && one.words != "before" && one.words != "after") continue;
       if (!is_between) at = said().find(one.words);
       if (!at || (!is_between && *at > std::min(*a, *b))) continue;
-      const bool is_forward = (one.asks == Asks::kThen) == is_between;
+      if (*at > 0 && said().words[*at - 1].text == "not") continue;
+      // "After that" and "before it" speak of what was said before.
+      const bool looks_back = speaks_back(*at + 1);
+      const bool is_forward =
+          (one.asks == Asks::kThen) == (is_between != (looks_back && is_between));
       if ((*a < *b) == is_forward) continue;
       return "succeeds when " + name_of(first) + " comes before " + name_of(second);
     }
     return std::nullopt;
+  }
+
+  // "both spoons" of which success is that any of them is there.
+  std::optional<std::string> each_lack() {
+    for (const Things& things : goal().one_of) {
+      const bool is_said = std::any_of(
+          said().words.begin(), said().words.end(), [&](const Said::Word& word) {
+            return std::includes(word.of.begin(), word.of.end(), things.begin(), things.end());
+          });
+      if (is_said && !is_each_asked(things))
+        return "succeeds with one of " + std::to_string(things.size()) + " (`any`, not `all`)";
+    }
+    return std::nullopt;
+  }
+  bool is_each_asked(const Things& things) {
+    return std::all_of(things.begin(), things.end(),
+                       [&](ObjectId thing) { return is_asked(Things{thing}); });
   }
 
   std::optional<std::size_t> earliest(const Things& things) {
@@ -430,8 +545,11 @@ bool says_other_part(const Model& model, const Task& task, Reporter& reporter) {
   const std::string text = fold_case(literal_text(model, task));
   const auto& parts = model.templates[task.say].parts;
   const auto is_said = [&](const Object& thing) {
-    const std::string words = fold_case(thing.text.text);
-    return has_words(text, words) ||
+    // A region without a name of its own is called like what it is of.
+    const bool has_name =
+        !thing.of->region ||
+        !model.fixtures[thing.of->fixture].regions[*thing.of->region].text.text.empty();
+    return (has_name && has_words(text, fold_case(thing.text.text))) ||
            std::any_of(parts.begin(), parts.end(), [&](const Template::Part& part) {
              if (!part.slot) return false;
              if (part.slot->role == RoleId::kNone) return part.slot->name.text == thing.name;
@@ -459,50 +577,6 @@ bool says_other_part(const Model& model, const Task& task, Reporter& reporter) {
   return false;
 }
 
-bool has_fixtures(const Model& model, const Task& task) {
-  return !model.scenes[task.scene].fixtures.empty();
-}
-
-// "open the drawer" where the scene has three: P0402, as of a phrase. Which one is meant may be
-// said elsewhere, or behind it.
-bool leaves_part_open(const Model& model, const Task& task, Told& told, Reporter& reporter) {
-  constexpr auto kSaysMore = std::to_array<std::string_view>(
-      {"of",      "on",   "in",     "at",      "under",  "above", "below",
-       "with",    "that", "which",  "whose",   "to",     "near",  "nearest",
-       "closest", "next", "beside", "between", "behind", "left",  "right"});
-  const auto& words = told.said().words;
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    const std::string& noun = words[i].text;
-    if (noun.empty() || (i != 1 && words[i - 1].text != "the")) continue;
-    if (i + 1 < words.size() &&
-        std::find(kSaysMore.begin(), kSaysMore.end(), words[i + 1].text) != kSaysMore.end())
-      continue;
-    std::vector<ObjectId> parts;
-    for (const ObjectId id : nameable(model, task)) {
-      const Object& thing = model.objects[id];
-      const std::vector<std::string> name = folded_words(thing.text.text);
-      if (thing.of && !name.empty() && name.back() == noun) parts.push_back(id);
-    }
-    if (parts.size() < 2) continue;
-    const bool is_told_apart = std::any_of(words.begin(), words.end(), [&](const Said::Word& word) {
-      return word.of.size() == 1 &&
-             std::find(parts.begin(), parts.end(), *word.of.begin()) != parts.end();
-    });
-    if (is_told_apart) continue;
-    std::string names;
-    for (const ObjectId id : parts)
-      names += (names.empty() ? "`" : ", `") + model.objects[id].name + "`";
-    report_of(reporter, Code::P0402, task, task.say_span,
-              "\"" + noun + "\" denotes " + std::to_string(parts.size()) +
-                  " parts of fixtures in `" + task.name + "`")
-        .label(model.templates[task.say].span, "said here")
-        .help("they are " + names + ": say \"" + model.objects[parts.front()].text.text +
-              "\", or `{the target}` of a task that is about one");
-    return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 void check_goal_words(const Model& model, Reporter& reporter) {
@@ -515,7 +589,9 @@ void check_goal_words(const Model& model, Reporter& reporter) {
     if (says_other_relation(model, task, reporter)) continue;
     if (says_other_goal(model, task, told, reporter)) continue;
     if (says_other_part(model, task, reporter)) continue;
-    if (has_fixtures(model, task) && leaves_part_open(model, task, told, reporter)) continue;
+    if (has_nouns_of_several(model, task) &&
+        leaves_noun_open(model, task, told.said(), reporter))
+      continue;
     if (asks_twice(task)) leaves_one_out(model, task, told, reporter);
   }
 }

@@ -114,7 +114,7 @@ object red {
   phrase loved commonsense "everybody's darling" bare means favorite
   phrase toy appearance "toy" means category toy
 }
-object blue like red { color blue; name "blue block" }
+object blue like red { color blue; paint blue; name "blue block" }
 object pale {
   mesh "block"; box 2cm x 2cm x 2cm; density 500kg/m3; friction 0.5
   category dish; unseen; rest yaw 0deg, yaw 0deg; name "pale block"

@@ -77,7 +77,7 @@ TEST_CASE("a reason silences a box, a copy is not doubted again, a wrong unit is
   write_meshes();
   const std::string wrong = object("mesh \"bar\"; box 2cm x 2cm x 2cm");
   CHECK(analyze_with_suite("@allow(box, \"as published\")\n" + wrong)->codes() == "");
-  CHECK(analyze_with_suite(wrong + "object p like o { color blue; name \"p\" }")->codes() ==
+  CHECK(analyze_with_suite(wrong + "object p like o { color blue; paint blue; name \"p\" }")->codes() ==
         "P0506");
   CHECK(analyze_with_suite(object("mesh \"bar\"; box 12deg x 2cm x 3cm"))->codes() == "P0302");
 }

@@ -45,6 +45,25 @@ TEST_CASE("words for a joint go the way that success goes") {
   CHECK(told("turn on the stove") == "");
   CHECK(told("turn off the stove") == "P1202");
   CHECK(told("switch off the stove") == "P1202");
+  CHECK(told("carefully close the drawer") == "P1202");
+  // How a thing is, no order to do so.
+  CHECK(told("pull out the shut drawer") == "");
+  CHECK(told("pull out the drawer, close to the robot") == "");
+  CHECK(told("pull out the drawer that was left closed") == "");
+}
+
+TEST_CASE("a name of several objects says which of them") {
+  const auto told = [](const std::string& words) {
+    return test::analyze_with_suite("object second like blue { name \"red block\" }\n"
+                                    "task t like red_on_tray { distractors second; say \"" +
+                                    words + "\" }\n")
+        ->said();
+  };
+  const std::string open = "error[P0402]: \"the red block\" denotes 2 objects in `t`";
+  CHECK(told("put the red block on {the target}, {the source}").find(open) != std::string::npos);
+  CHECK(told("put a red block on {the target}, {the source}").find("P0402") == std::string::npos);
+  CHECK(told("put the red block with the dot on {the target}, {the source}").find("P0402") ==
+        std::string::npos);
 }
 
 TEST_CASE("words for a part are those of one that success measures") {
@@ -71,8 +90,7 @@ TEST_CASE("words that put two things in an order say the one that success judges
                     backward =
                         "first put {the helper} on {the target}, then put {the source} there";
   for (const std::string goal :
-       {"once (over(helper, target) and once over(source, target))",
-        "at end (done(helper) and done(source) and once (done(helper) and once done(source)))",
+       {"at end (done(helper) and done(source) and once (done(source) and not once done(helper)))",
         "at end (done(source) and done(helper) and once (done(source) and not done(helper)))",
         "at end (done(source) and done(helper) and latest(step, not done(source)) < latest(step, "
         "not done(helper)))"}) {
@@ -80,7 +98,8 @@ TEST_CASE("words that put two things in an order say the one that success judges
     CHECK(said_of_two(goal, forward) == "");
     CHECK(first_line(said_of_two(goal, backward)) == wrong);
   }
-  const std::string judged = "once (done(helper) and once done(source))";
+  const std::string judged =
+      "at end (done(helper) and once (done(source) and not once done(helper)))";
   CHECK(said_of_two(judged, "put {the source} on {the target} before you put {the helper} there") ==
         "");
   CHECK(said_of_two(judged, "put {the helper} on {the target} after {the source}") == "");
@@ -91,12 +110,73 @@ TEST_CASE("words that put two things in an order say the one that success judges
         "error[P1202]: `t` says \"before\" and succeeds when `red` comes before `blue`");
   CHECK(first_line(said_of_two(judged, "put the red block on {the target} after {the helper}")) ==
         "error[P1202]: `t` says \"after\" and succeeds when `red` comes before `blue`");
-  CHECK(first_line(said_of_two(
-            "once follows(helper, source)", backward,
-            "predicate follows(a: object, b: object) = done(a) and once done(b)\n")) == wrong);
-  // No order is judged, or none is said.
-  CHECK(said_of_two("at end (done(source) and done(helper))", backward) == "");
+  CHECK(first_line(said_of_two("at end (done(helper) and once leads(source, helper))", backward,
+                               "predicate leads(a: object, b: object) = done(a) and not once "
+                               "done(b)\n")) == wrong);
   CHECK(said_of_two(judged, "put {the helper} and {the source} on {the target}") == "");
+}
+
+TEST_CASE("what looks back says the order of what was said") {
+  const std::string judged =
+      "at end (done(source) and done(helper) and once (done(source) and not once done(helper)))";
+  for (const std::string words :
+       {"put {the source} on {the target}. After that put {the helper} there",
+        "put {the source} on {the target}, and after it {the helper}",
+        "put {the helper} on {the target}, and before it {the source}",
+        "put {the helper} on {the target}, but not before {the source} is there"}) {
+    CAPTURE(words);
+    CHECK(said_of_two(judged, words) == "");
+  }
+  CHECK(first_line(said_of_two(judged, "put {the helper} there. After that put {the source} on "
+                                       "{the target}")) ==
+        "error[P1202]: `t` says \"after\" and succeeds when `red` comes before `blue`");
+}
+
+TEST_CASE("words that put two things in an order want one") {
+  const std::string words = "first put {the source} on {the target}, then put {the helper} there";
+  const std::string none =
+      "error[P1202]: `t` says \"then\" and its success wants no order of `red` and `blue`";
+  // Whoever puts the second first and leaves it there has both of these as well.
+  for (const std::string goal :
+       {"at end (done(source) and done(helper))",
+        "once (done(helper) and once done(source))",
+        "at end (done(helper) and done(source) and once (done(helper) and once done(source)))"}) {
+    CAPTURE(goal);
+    CHECK(first_line(said_of_two(goal, words)) == none);
+  }
+  CHECK(first_line(said_of_two("once (done(source) and not done(helper))", words)) ==
+        "error[P1202]: `t` says \"then\" and succeeds without `blue`");
+  // One thing that is done in two steps, and a word that stands before both.
+  CHECK(said_of_two("at end done(source)",
+                    "pick up {the source}, then drop it on {the target} beside {the helper}") == "");
+  CHECK(said_of_two("at end (done(source) and done(helper))",
+                    "then put {the source} and {the helper} on {the target}") == "");
+}
+
+TEST_CASE("words for each of several things are not judged by one of them") {
+  const auto told = [](const std::string& goal, const std::string& words) {
+    return first_line(test::analyze_with_suite(
+                          "role goods: set\n"
+                          "predicate over(a: object, b: object) = height(a) > height(b)\n"
+                          "layout row { cells ends = grid 2 x 2 at (0cm, 0cm) spread (10cm, 20cm)\n"
+                          "place goods in distinct ends; place target at (0cm, 0cm)\n"
+                          "orient by rest; drop 10cm settle 0.5s }\n"
+                          "metrics m { success = at end " +
+                          goal +
+                          " }\n"
+                          "task t like base { layout row; goods red, blue; target tray; metrics m; "
+                          "say \"" +
+                          words + "\" }\n")
+                          ->said());
+  };
+  const std::string one = "(any g in goods: over(g, target))",
+                    each = "(all g in goods: over(g, target))";
+  CHECK(told(one, "put {both goods} on {the target}") ==
+        "error[P1202]: `t` says \"both\" and succeeds with one of 2 (`any`, not `all`)");
+  CHECK(told(one, "put all {goods} on {the target}") ==
+        "error[P1202]: `t` says \"all\" and succeeds with one of 2 (`any`, not `all`)");
+  CHECK(told(each, "put {both goods} on {the target}") == "");
+  CHECK(told(one, "put one of {the goods} on {the target}") == "");
 }
 
 TEST_CASE("what success asks of two things is said of both") {
@@ -130,6 +210,9 @@ TEST_CASE("between two is measured to both") {
         "error[P1202]: `t` says \"between\" and its success measures nothing to both of what that "
         "stands before");
   CHECK(said_of_two("at end y(source) > 0cm", words) == "");
+  CHECK(said_of_two("at end over(source, target)",
+                    "put {the source}, not {the helper}, between yourself and {the target}") ==
+        "");
 }
 
 TEST_CASE("a side that is said is one that success can tell") {

@@ -17,3 +17,15 @@ TEST_CASE("what was painted or covered anew is not called by its old colour") {
   CHECK(codes("texture \"wood\"; name \"wooden block\"") == "");
   CHECK(codes("texture \"wood\"; color red") == "");
 }
+
+TEST_CASE("a copy of another colour is painted") {
+  const auto said = [](const std::string& object) {
+    const auto analysis = test::analyze_with_suite("object o like red { " + object +
+                                                   " }\nvariant v of red_on_tray { distractors o }\n");
+    return analysis->said().substr(0, analysis->said().find('\n'));
+  };
+  CHECK(said("color blue; name \"toy\"") ==
+        "warning[P1510]: `o` is said to be blue and shows the mesh of `red`, which is red");
+  CHECK(said("color blue; paint blue; name \"toy\"") == "");
+  CHECK(said("name \"toy\"") == "");
+}
