@@ -7,6 +7,7 @@
 #include "compiler/check/check.h"
 #include "compiler/check/starts.h"
 #include "compiler/define/in_start.h"
+#include "compiler/define/likeness.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
@@ -74,7 +75,7 @@ struct TaskLanguage {
     }
     const bool is_sure = !meant.sure.empty();
     const std::vector<ObjectId>& rivals = is_sure ? meant.sure : meant.perhaps;
-    if (rivals.empty()) return;
+    if (rivals.empty()) return check_looks(role, phrase.text.text, wanted_id);
     std::string names;
     for (const ObjectId id : rivals)
       names += (names.empty() ? "`" : ", `") + model.objects[id].name + "`";
@@ -92,6 +93,23 @@ struct TaskLanguage {
     if (!hint.empty()) {
       diagnostic.help("`" + hint + "` holds for `" + wanted.name + "` and not for `" + first.name +
                       "`");
+    }
+  }
+
+  // Words that no other object fits or is called, and an object that looks as the one that is meant
+  // does: whoever sees the two cannot tell which they are for.
+  void check_looks(RoleId role, const std::string& words, ObjectId wanted_id) const {
+    for (const ObjectId id : rivals_of(role, wanted_id, task.objects())) {
+      if (id == wanted_id || !look_alike(model, wanted_id, id)) continue;
+      if (clash(model.objects[wanted_id].text.text, model.objects[id].text.text) !=
+          NameClash::kNone)
+        continue;  // told of the name
+      Diagnostic& diagnostic = reporter.report(
+          Code::P0405, rivalry(role, id),
+          "`" + model.objects[id].name + "` looks as `" + model.objects[wanted_id].name +
+              "` does in `" + task.name + "`: \"" + words + "\" may be either");
+      diagnostic.help("say where it is by a `spatial` phrase, or let them look different");
+      return;
     }
   }
 
@@ -202,6 +220,7 @@ struct TaskLanguage {
               ? "two objects of `" + task.name + "` are called \"" + name + "\""
               : "\"" + name + "\" is part of the name \"" + other + "\" in `" + task.name + "`");
     }
+    check_looks(role, wanted.text.text, wanted_id);
   }
 
   void check_category(const SlotRef& slot, const Object& object) const {

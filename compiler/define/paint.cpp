@@ -36,14 +36,19 @@ double unlikeness(const std::array<std::uint8_t, 3>& a, const std::array<std::ui
   return std::sqrt((2 + red / 256) * r * r + 4 * g * g + (2 + (255 - red) / 256) * blue * blue);
 }
 
+// Room for what people call alike: red and a darker red.
+constexpr double kRoom = 60;
+
+}  // namespace
+
+bool are_alike(const Paint& a, const Paint& b) { return unlikeness(a.rgb, b.rgb) <= kRoom; }
+
 std::optional<AttributeId> color_attribute(const Model& model) {
   for (std::size_t i = 0; i < model.attributes.size(); ++i) {
     if (model.attributes[model.attributes.id(i)].name == "color") return model.attributes.id(i);
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 std::optional<Paint> read_paint(Context& context, const syntax::PaintStmt& stmt) {
   if (const auto* name = std::get_if<syntax::Name>(&stmt.color)) {
@@ -95,8 +100,7 @@ void check_paint(Context& context, const Object& object) {
     const NamedPaint* paint = find_paint(word);
     if (paint != nullptr && (nearest == nullptr || away(*paint) < away(*nearest))) nearest = paint;
   }
-  // Room for what people call alike: red and a darker red.
-  constexpr double kFactor = 1.5, kRoom = 60;
+  constexpr double kFactor = 1.5;
   if (nearest == nullptr || best_said <= kFactor * away(*nearest) + kRoom) return;
   context
       .report(Code::P1510, object.paint->span,

@@ -16,6 +16,12 @@ std::optional<Paint> read_paint(Context& context, const syntax::PaintStmt& stmt)
 // colour that paints.def does not have is not looked at.
 void check_paint(Context& context, const Object& object);
 
+// Whether people would call both by one word: red and a darker red.
+bool are_alike(const Paint& a, const Paint& b);
+
+// The attribute that says what is seen of paint; nothing in a text that has none.
+std::optional<AttributeId> color_attribute(const Model& model);
+
 // `side`: what one picture covers where the statement does not say it, m.
 std::optional<Cover> read_cover(Context& context, const syntax::TextureStmt& stmt, double side);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/define/likeness.h"
 #include "compiler/define/query.h"
 #include "compiler/define/question_pool.h"
 #include "runtime/base/words.h"
@@ -69,6 +70,15 @@ MayOmit Referents::check_name_of(ObjectId id, const Span& span) const {
     return ambiguous(span, here() + "\"" + model_.objects[id].text.text + "\" may also mean `" +
                                model_.objects[other].name + "`");
   }
+  return check_looks_of(id, model_.objects[id].text.text, span);
+}
+
+MayOmit Referents::check_looks_of(ObjectId id, const std::string& words, const Span& span) const {
+  for (const ObjectId other : objects_) {
+    if (other == id || !look_alike(model_, id, other)) continue;
+    return ambiguous(span, here() + "`" + model_.objects[other].name + "` looks as `" +
+                               model_.objects[id].name + "` does: \"" + words + "\" may be either");
+  }
   return {};
 }
 
@@ -84,7 +94,7 @@ MayOmit Referents::check_phrase_of(const Phrase& phrase, ObjectId id, const Span
                                (truth == Truth::kYes ? "denotes `" : "may denote `") +
                                model_.objects[other].name + "`, too");
   }
-  return {};
+  return check_looks_of(id, phrase.text.text, span);
 }
 
 // Of words that say where things are: they must in every start.

@@ -48,6 +48,7 @@ class Referents {
   MayOmit check_options(const std::vector<ObjectId>& options) const;
 
  private:
+  MayOmit check_looks_of(ObjectId id, const std::string& words, const Span& span) const;
   MayOmit check_places_of(const Phrase& phrase, ObjectId id, const Span& span) const;
   MayOmit check_told(ObjectId id, const Span& span) const;
   std::string here() const { return asked_.here(); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compiler/define/likeness.h"
 #include "compiler/define/query.h"
 #include "compiler/define/template.h"
 #include "runtime/base/utf8.h"
@@ -83,7 +84,8 @@ bool SceneObjects::find_absent(ObjectId id, const std::string& fixture) const {
   const Object& object = model_.objects[id];
   if (object.of || object.broken || is_blank(object.text.text) || body_of(id)) return false;
   for (const ObjectId other : objects_) {
-    if (names_.are_alike(id, other) || model_.objects[other].mesh.text == object.mesh.text)
+    if (names_.are_alike(id, other) || model_.objects[other].mesh.text == object.mesh.text ||
+        look_alike(model_, id, other))
       return false;
   }
   for (const ObjectId said : objects_) {

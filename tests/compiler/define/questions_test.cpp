@@ -208,6 +208,23 @@ TEST_CASE("a question whether something is open is not answered by whether it is
   CHECK(asked("Is {the target} closed or not?") == "");
 }
 
+TEST_CASE("what looks as the one that is asked about, whatever it is called, leaves it open") {
+  const std::string copy =
+      "object toy like red { name \"toy\" }\n"
+      "variant among_copies of red_on_tray { distractors toy }\n";
+  for (const std::string& statement :
+       {kPick, std::string(R"(point where "Point at {the source}." answer source)"),
+        std::string(
+            R"(yesno left "Is {the source} left of {the target}?" answer left(source, target))")}) {
+    CAPTURE(statement);
+    const auto a = ask(statement, copy);
+    CHECK(a->said().find("`toy` looks as `red` does: \"red block\" may be either") !=
+          std::string::npos);
+    CHECK(asked_of(*a, "among_copies") == nullptr);
+    CHECK(asked_of(*a, "red_on_tray") != nullptr);
+  }
+}
+
 TEST_CASE("what does not fit a task is left out of it, with the reason") {
   using plan::OmissionReason;
   const auto why = [](const std::string& statement, const std::string& more = "") {
@@ -251,7 +268,7 @@ task two like red_on_tray { distractors other }
   REQUIRE(allowed->model.left_out.size() == 1);
   CHECK(reason(*allowed) == plan::OmissionReason::kAmbiguous);
   const auto same = ask(kPick, R"(object other like red { mesh "tray" }
-object third like blue { name "red block" }
+object third like blue { mesh "tray"; name "red block" }
 task two like base { source tray; target blue; distractors red, third })");
   CHECK_MESSAGE(same->codes() == "P0902", same->said());
 }
