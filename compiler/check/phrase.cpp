@@ -6,6 +6,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/check/starts.h"
+#include "compiler/check/unclear_starts.h"
 #include "compiler/define/in_start.h"
 #include "compiler/define/likeness.h"
 #include "compiler/define/task.h"
@@ -27,6 +28,7 @@ struct TaskLanguage {
   const Task& task;
   Unfit& unfit;
   Relations& relations;
+  UnclearStarts& unclear;
 
   // Where the words for a role are chosen, here or in what is copied.
   const Span& chosen(RoleId role) const {
@@ -113,26 +115,6 @@ struct TaskLanguage {
     }
   }
 
-  // What a phrase denotes in the starts of a task: those in which it does not denote the object
-  // that is meant, or denotes another one too, or where it cannot be told.
-  struct Unclear {
-    std::vector<std::size_t> unfit, ambiguous, unknown;
-    std::size_t count() const { return unfit.size() + ambiguous.size() + unknown.size(); }
-  };
-
-  Unclear unclear_starts(const Phrase& phrase, ObjectId wanted) const {
-    Unclear found;
-    for (std::size_t i = 0; i < task.starts.size(); ++i) {
-      const Denotation meant = InStart(relations, task, task.starts[i]).denote(phrase, wanted);
-      if (meant.is_clear()) continue;
-      auto& kind = !meant.may_fit       ? found.unfit
-                   : meant.sure.empty() ? found.unknown
-                                        : found.ambiguous;
-      kind.push_back(i);
-    }
-    return found;
-  }
-
   // "start 7: coke at (7.5cm, 0cm), plate at (-7.5cm, 0cm)".
   std::string drawn(std::size_t start) const {
     std::string text;
@@ -165,7 +147,7 @@ struct TaskLanguage {
 
   void check_places(RoleId role, const Phrase& phrase, ObjectId wanted) const {
     const std::size_t mistakes = reporter.diagnostics.error_count();
-    const Unclear found = unclear_starts(phrase, wanted);
+    const Unclear& found = unclear.find(task, phrase, wanted);
     if (found.count() == 0 || reporter.diagnostics.error_count() != mistakes) return;
     const auto& [code, starts, says] =
         !found.unfit.empty() ? std::tuple(Code::P0401, &found.unfit, "does not denote `")
@@ -398,10 +380,11 @@ struct TaskLanguage {
 void check_phrases(const Model& model, const std::string& asset_root, Reporter& reporter) {
   Unfit unfit;
   Relations relations(model, asset_root, reporter.diagnostics);
+  UnclearStarts unclear(model, relations);
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
-    const TaskLanguage check{model, reporter, task, unfit, relations};
+    const TaskLanguage check{model, reporter, task, unfit, relations, unclear};
     // A second slot of one name says nothing new, unless it counts.
     std::set<std::tuple<std::string, bool, syntax::SlotCount>> checked;
     for (const Template::Part& part : model.templates[task.say].parts) {
