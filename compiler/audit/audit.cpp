@@ -81,6 +81,7 @@ class Auditor {
     PROBE_TRY(find_rules());
     find_questions();
     find_warnings();
+    audit_.robots = robots_of(plan_, scope_);
     std::stable_sort(audit_.findings.begin(), audit_.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.kind < b.kind; });
     return std::move(audit_);

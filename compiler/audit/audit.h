@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "compiler/audit/robots.h"
 #include "compiler/emit/compile.h"
 #include "runtime/plan/plan.h"
 
@@ -65,7 +66,8 @@ struct Audit {
   std::string suite;
   std::size_t tasks = 0, comparisons = 0;  // of the suite
   std::vector<Finding> findings;           // by kind, then in the order of the text
-  std::vector<std::string> unchecked;      // columns of a published table that are no set
+  std::vector<RobotFacts> robots;
+  std::vector<std::string> unchecked;  // columns of a published table that are no set
 };
 
 // `plan` is that of `compilation`, with all its suites; `suite` indexes plan.suites(). `files` are

@@ -19,6 +19,23 @@ std::string list(const std::vector<std::string>& names) {
   return text;
 }
 
+Json to_json(const std::map<std::string, std::size_t>& counts) {
+  Json json = Json::object();
+  for (const auto& [name, count] : counts) json[name] = count;
+  return json;
+}
+
+Json to_json(const RobotFacts& robot) {
+  Json json = {{"name", robot.name},       {"law", robot.law},     {"control_hz", robot.control_hz},
+               {"fingers", robot.fingers}, {"tasks", robot.tasks}, {"starts", robot.starts}};
+  if (robot.fingers > 0) json["grip"] = {{"closed", robot.grip_closed}, {"open", robot.grip_open}};
+  json["objects"] = {{"nearest_m", robot.nearest}, {"farthest_m", robot.farthest}};
+  json["reach"] = Json();
+  if (robot.reach) json["reach"] = {{"near_m", robot.reach->near}, {"far_m", robot.reach->far}};
+  json["axes"] = to_json(robot.axes);
+  return json;
+}
+
 }  // namespace
 
 std::string to_text(const Audit& audit) {
@@ -45,8 +62,10 @@ std::string to_text(const Audit& audit) {
     fmt::format_to(out, "{}no sets, so not checked: {}\n", audit.findings.empty() ? "" : "\n",
                    fmt::join(audit.unchecked, ", "));
   }
-  fmt::format_to(out, "{}suite `{}`, {} tasks, {} comparisons: {}\n",
-                 audit.findings.empty() ? "" : "\n", audit.suite, audit.tasks, audit.comparisons,
+  if (!audit.findings.empty()) text += '\n';
+  for (const RobotFacts& robot : audit.robots) text += to_text(robot) + '\n';
+  fmt::format_to(out, "suite `{}`, {} tasks, {} comparisons: {}\n", audit.suite, audit.tasks,
+                 audit.comparisons,
                  audit.findings.empty()
                      ? "nothing irregular"
                      : fmt::format("{} irregularities, {} of them allowed with a reason",
@@ -76,6 +95,7 @@ std::string to_json(const Audit& audit) {
     entry["allowed"] = finding.allowed ? Json(*finding.allowed) : Json();
     json["findings"].push_back(std::move(entry));
   }
+  for (const RobotFacts& robot : audit.robots) json["robots"].push_back(to_json(robot));
   if (!audit.unchecked.empty()) json["unchecked"] = audit.unchecked;
   return json.dump(2) + "\n";
 }

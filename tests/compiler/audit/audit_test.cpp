@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -226,7 +227,49 @@ TEST_CASE("the repaired suite has nothing irregular") {
   CHECK(clean.audit.tasks == 52);
   CHECK(clean.audit.comparisons == 48);
   CHECK(audit::to_text(clean.audit) ==
-        "suite `intact_clean`, 52 tasks, 48 comparisons: nothing irregular\n");
+        audit::to_text(clean.audit.robots.front()) +
+            "\nsuite `intact_clean`, 52 tasks, 48 comparisons: nothing irregular\n");
+}
+
+TEST_CASE("of each robot it says how it is driven, grips, where things are and what is varied") {
+  const Audited own = audit_text(R"(use "panda.probe"
+camera noisy like third_view { sensor noise 0.02 }
+variant carrot_noisy of carrot_on_plate { camera noisy }
+variant carrot_late of carrot_on_plate { delay 2 steps }
+suite robots trained on bridge_v2 {
+  tasks { carrot_on_plate, carrot_noisy, carrot_late, panda_carrot_on_plate }; seeds 42
+}
+)");
+  REQUIRE(own.audit.robots.size() == 2);
+  const bool panda_first = own.audit.robots[0].name == "panda";
+  const audit::RobotFacts& panda = own.audit.robots[panda_first ? 0 : 1];
+  const audit::RobotFacts& widowx = own.audit.robots[panda_first ? 1 : 0];
+  CHECK(panda.law == "osc_pose");
+  CHECK(panda.control_hz == 20);
+  CHECK(panda.tasks == 1);
+  CHECK(panda.axes.empty());
+  REQUIRE(panda.reach);
+  CHECK(panda.reach->near <= panda.nearest);
+  CHECK(panda.farthest <= panda.reach->far);
+  CHECK(widowx.name == "widowx");
+  CHECK(widowx.law == "ee_delta_pose");
+  CHECK(widowx.control_hz == 5);
+  CHECK(widowx.fingers == 2);
+  CHECK(widowx.grip_open == doctest::Approx(0.038));
+  CHECK(widowx.tasks == 3);
+  CHECK(widowx.starts == 72);
+  CHECK(widowx.axes == std::map<std::string, std::size_t>{{"latency", 1}, {"sensor", 1}});
+  REQUIRE(widowx.reach);
+  // The near corner of the grid is (-8.5cm, 7.5cm), the far one (-23.5cm, -7.5cm); the base stands
+  // at (14.7cm, 2.8cm).
+  CHECK(widowx.nearest == doctest::Approx(std::hypot(0.232, 0.047)));
+  CHECK(widowx.farthest == doctest::Approx(std::hypot(0.382, 0.103)));
+  const std::string told = audit::to_text(widowx);
+  CHECK(told.find("robot `widowx`: ee_delta_pose at 5 Hz, 2 fingers (joint at 0.014 closed, 0.038 "
+                  "open); 72 starts of 3 tasks, objects 23.7cm to 39.6cm from its base, all within "
+                  "its reach of 12cm to 62cm; comparisons move latency in 1, sensor in 1") !=
+        std::string::npos);
+  CHECK(audit::to_json(own.audit).find("\"law\": \"osc_pose\"") != std::string::npos);
 }
 
 TEST_CASE("the same task twice is found") {
