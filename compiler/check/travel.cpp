@@ -1,34 +1,17 @@
-// P1302: what stands in a fixture with joints, or in the way of its parts. A joint's whole way is
-// looked at, so that it does not matter where an episode leaves it.
+// P1302 of a task: what begins in a fixture with joints, or in the way of its parts. A joint's
+// whole way is looked at, so that it does not matter where an episode leaves it.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <map>
-#include <numbers>
 
+#include "compiler/check/part_boxes.h"
 #include "compiler/check/starts.h"
-#include "compiler/define/fixture.h"
 #include "compiler/geometry/footprint.h"
-#include "compiler/geometry/pose.h"
-#include "compiler/geometry/travel.h"
-#include "runtime/robot/kinematics.h"
-#include "runtime/scene/link_solids.h"
 
 namespace probe::sema {
 namespace {
 
 constexpr double kRounding = 1e-6;  // m: boxes may touch
-constexpr double kRubs = 1e-3;      // m that a part may be lower than the surface, as a foot is
-
-bool may_overlap(const PartBox& box, const Vec3& centre, const Vec3& half) {
-  const Vec3 apart = (box.solid.centre - centre).cwiseAbs();
-  return (apart.array() < (box.half + half).array()).all();
-}
-
-std::string stands(const Fixture::Joint& joint, double position) {
-  return joint.slides ? centimetres(position)
-                      : fmt::format("{:.4g}deg", position * 180 / std::numbers::pi);
-}
 
 // The upright box around each part as a task begins.
 struct Around {
@@ -57,18 +40,6 @@ struct Found {
   const PartBox* box = nullptr;
   const Start::Placed* placed = nullptr;
 };
-
-// " when `cabinet.top` stands at 4cm": all joints that carry the part of a box of everywhere().
-std::string when(const Fixture& fixture, const Travel& travel, const PartBox& box) {
-  std::string text;
-  const auto joints = travel.joints_of(box);
-  for (const std::size_t i : travel.carriers(box.part)) {
-    const Fixture::Joint& joint = fixture.joints[i];
-    text += fmt::format("{} `{}.{}` stands at {}", text.empty() ? " when" : " and", fixture.name,
-                        joint.name, stands(joint, joints[i]));
-  }
-  return text;
-}
 
 // Where a thing is looked for.
 enum class Look {
@@ -195,162 +166,13 @@ struct TravelCheck {
   }
 };
 
-std::vector<ArmLink> arm_of(const Model& model, const Scene& scene, const std::string& asset_root) {
-  std::vector<ArmLink> links;
-  if (scene.robot == RobotId::kNone) return links;
-  const Robot& robot = model.robots[scene.robot];
-  if (!robot.model || scene.joints.size() != robot.drives.size()) return links;
-  std::vector<std::string> names;
-  std::vector<double> joints;
-  for (std::size_t i = 0; i < robot.drives.size(); ++i) {
-    names.push_back(robot.drives[i].joint.text);
-    joints.push_back(scene.joints[i].si());
-  }
-  const auto tree = robot::Tree::create(*robot.model, names);
-  if (!tree.ok()) return links;
-  std::vector<Pose> poses(tree->link_count());
-  tree->link_poses(joints, poses);
-  const Pose base = pose_of(scene.base_position, scene.base_turn.rotation);
-  const std::string folder =
-      (std::filesystem::path(asset_root) / robot.urdf.text).parent_path().string();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    for (const scene::Solid& solid : scene::link_solids(robot.model->links[i], folder))
-      links.push_back({robot.model->links[i].name, moved(solid, base * poses[i])});
-  }
-  return links;
-}
-
 }  // namespace
-
-const std::optional<Travel>& Travels::of(FixtureId id) {
-  const auto [known, is_new] = known_.try_emplace(id);
-  if (is_new) known->second = Travel::of(model_.fixtures[id], asset_root_);
-  return known->second;
-}
-
-const std::vector<ArmLink>& Travels::arm(SceneId id) {
-  const auto [known, is_new] = arms_.try_emplace(id);
-  if (is_new) known->second = arm_of(model_, model_.scenes[id], asset_root_);
-  return known->second;
-}
-
-std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& travels) {
-  const std::vector<double> all = joint_starts_of(starts.model, starts.task);
-  std::span<const double> left = all;
-  std::vector<BegunFixture> begun;
-  for (const FixtureId id : starts.model.scenes[starts.task.scene].fixtures) {
-    const Fixture& fixture = starts.model.fixtures[id];
-    const auto joints = left.first(fixture.joints.size());
-    left = left.subspan(fixture.joints.size());
-    if (const auto& travel = travels.of(id))
-      begun.push_back({fixture, *travel, {joints.begin(), joints.end()}});
-  }
-  return begun;
-}
-
-scene::Solid solid_of(const TaskStarts& starts, const Start::Placed& placed) {
-  const Object& object = starts.object(placed);
-  const Mat3 turn = axes_of(placed.turn);
-  const double surface = starts.model.scenes[starts.task.scene].surface_z;
-  return solid(object, turn,
-               {placed.x, placed.y, placed.z.value_or(surface - lowest(object, turn))});
-}
 
 void check_travel(const TaskStarts& starts, Travels& travels) {
   for (const BegunFixture& begun : begun_fixtures(starts, travels)) {
     const TravelCheck check{starts, begun.fixture, begun.travel};
     check.check(begun.joints);
     check.check_arm(begun.joints, travels.arm(starts.task.scene));
-  }
-}
-
-namespace {
-
-// A part anywhere on its way, and the surface.
-void check_surface_below(const Scene& scene, const Fixture& fixture, const Travel& travel,
-                         Reporter& reporter) {
-  const PartBox* lowest_box = nullptr;
-  double depth = kRubs;
-  for (const PartBox& box : travel.everywhere()) {
-    if (travel.carriers(box.part).empty()) continue;  // what stands still meets no surface
-    const double below = scene.surface_z - (box.solid.centre.z() - box.half.z());
-    if (below <= depth) continue;
-    depth = below;
-    lowest_box = &box;
-  }
-  if (lowest_box == nullptr) return;
-  reporter
-      .report(Code::P1302, fixture.span,
-              fmt::format("`{}` runs {} into the surface of `{}`{}",
-                          fixture.body_name(fixture.parts[lowest_box->part]), centimetres(depth),
-                          scene.name, when(fixture, travel, *lowest_box)))
-      .label(scene.span, "the scene")
-      .help("put the fixture higher");
-}
-
-// A part anywhere on its way, and another fixture as it begins. `is_first`: of the pair, so that
-// two that stand in one another are told of once.
-void check_neighbour(const Scene& scene, const Fixture& fixture, const Travel& travel,
-                     const Fixture& other, const Travel& other_travel, bool is_first,
-                     Reporter& reporter) {
-  std::vector<double> begin, other_begin;
-  for (const Fixture::Joint& joint : fixture.joints) begin.push_back(joint.start);
-  for (const Fixture::Joint& joint : other.joints) other_begin.push_back(joint.start);
-  const std::vector<PartBox> still = other_travel.at(other_begin), begun = travel.at(begin);
-  const auto worst = [&](const std::vector<PartBox>& boxes, const PartBox** against) {
-    const PartBox* found = nullptr;
-    double depth = kRubs;
-    for (const PartBox& box : boxes) {
-      for (const PartBox& one : still) {
-        if (!may_overlap(box, one.solid.centre, one.half)) continue;
-        const double now = overlap(box.solid, one.solid);
-        if (now <= depth) continue;
-        depth = now;
-        found = &box;
-        *against = &one;
-      }
-    }
-    return std::pair(found, depth);
-  };
-  const PartBox* against = nullptr;
-  const bool at_start = worst(begun, &against).first != nullptr;
-  const auto [found, depth] = worst(at_start ? begun : travel.everywhere(), &against);
-  if (found == nullptr || (at_start && !is_first)) return;
-  const std::string names =
-      fmt::format("`{}` and `{}` in `{}`", fixture.body_name(fixture.parts[found->part]),
-                  other.body_name(other.parts[against->part]), scene.name);
-  Diagnostic& said = reporter.report(
-      Code::P1302, fixture.span,
-      at_start ? fmt::format("{} stand in one another by {}", names, centimetres(depth))
-               : fmt::format("{} meet: they overlap by {}{}", names, centimetres(depth),
-                             when(fixture, travel, *found)));
-  if (!at_start) said.severity = Severity::kWarning;
-  said.label(other.span, "the other fixture").help("move one of them");
-}
-
-}  // namespace
-
-// Once for a scene: what its fixtures meet that does not depend on starts.
-void check_fixture_places(const Model& model, Travels& travels, Reporter& reporter) {
-  for (const Scene& scene : model.scenes) {
-    if (scene.broken) continue;
-    for (const FixtureId id : scene.fixtures) {
-      const Fixture& fixture = model.fixtures[id];
-      const auto& travel = travels.of(id);
-      if (!travel) continue;
-      const About about(reporter, fixture.span);
-      check_surface_below(scene, fixture, *travel, reporter);
-      bool is_first = false;  // behind itself in the list
-      for (const FixtureId other : scene.fixtures) {
-        const auto& other_travel = travels.of(other);
-        if (other == id) {
-          is_first = true;
-        } else if (other_travel) {
-          check_neighbour(scene, fixture, *travel, model.fixtures[other], *other_travel, is_first,
-                          reporter);
-        }
-      }
-    }
   }
 }
 

@@ -1,0 +1,35 @@
+#include "compiler/check/part_boxes.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "compiler/check/starts.h"
+
+namespace probe::sema {
+namespace {
+
+std::string stands(const Fixture::Joint& joint, double position) {
+  return joint.slides ? centimetres(position)
+                      : fmt::format("{:.4g}deg", position * 180 / std::numbers::pi);
+}
+
+}  // namespace
+
+bool may_overlap(const PartBox& box, const Vec3& centre, const Vec3& half) {
+  const Vec3 apart = (box.solid.centre - centre).cwiseAbs();
+  return (apart.array() < (box.half + half).array()).all();
+}
+
+std::string when(const Fixture& fixture, const Travel& travel, const PartBox& box) {
+  std::string text;
+  const auto joints = travel.joints_of(box);
+  for (const std::size_t i : travel.carriers(box.part)) {
+    const Fixture::Joint& joint = fixture.joints[i];
+    text += fmt::format("{} `{}.{}` stands at {}", text.empty() ? " when" : " and", fixture.name,
+                        joint.name, stands(joint, joints[i]));
+  }
+  return text;
+}
+
+}  // namespace probe::sema

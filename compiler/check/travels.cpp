@@ -1,0 +1,76 @@
+// What checks of ways share: what each fixture fills, arms as scenes begin, fixtures as tasks do.
+#include <filesystem>
+#include <string>
+
+#include "compiler/check/starts.h"
+#include "compiler/define/fixture.h"
+#include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
+#include "runtime/robot/kinematics.h"
+#include "runtime/scene/link_solids.h"
+
+namespace probe::sema {
+namespace {
+
+std::vector<ArmLink> arm_of(const Model& model, const Scene& scene, const std::string& asset_root) {
+  std::vector<ArmLink> links;
+  if (scene.robot == RobotId::kNone) return links;
+  const Robot& robot = model.robots[scene.robot];
+  if (!robot.model || scene.joints.size() != robot.drives.size()) return links;
+  std::vector<std::string> names;
+  std::vector<double> joints;
+  for (std::size_t i = 0; i < robot.drives.size(); ++i) {
+    names.push_back(robot.drives[i].joint.text);
+    joints.push_back(scene.joints[i].si());
+  }
+  const auto tree = robot::Tree::create(*robot.model, names);
+  if (!tree.ok()) return links;
+  std::vector<Pose> poses(tree->link_count());
+  tree->link_poses(joints, poses);
+  const Pose base = pose_of(scene.base_position, scene.base_turn.rotation);
+  const std::string folder =
+      (std::filesystem::path(asset_root) / robot.urdf.text).parent_path().string();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    for (const scene::Solid& solid : scene::link_solids(robot.model->links[i], folder))
+      links.push_back({robot.model->links[i].name, moved(solid, base * poses[i])});
+  }
+  return links;
+}
+
+}  // namespace
+
+const std::optional<Travel>& Travels::of(FixtureId id) {
+  const auto [known, is_new] = known_.try_emplace(id);
+  if (is_new) known->second = Travel::of(model_.fixtures[id], asset_root_);
+  return known->second;
+}
+
+const std::vector<ArmLink>& Travels::arm(SceneId id) {
+  const auto [known, is_new] = arms_.try_emplace(id);
+  if (is_new) known->second = arm_of(model_, model_.scenes[id], asset_root_);
+  return known->second;
+}
+
+std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& travels) {
+  const std::vector<double> all = joint_starts_of(starts.model, starts.task);
+  std::span<const double> left = all;
+  std::vector<BegunFixture> begun;
+  for (const FixtureId id : starts.model.scenes[starts.task.scene].fixtures) {
+    const Fixture& fixture = starts.model.fixtures[id];
+    const auto joints = left.first(fixture.joints.size());
+    left = left.subspan(fixture.joints.size());
+    if (const auto& travel = travels.of(id))
+      begun.push_back({fixture, *travel, {joints.begin(), joints.end()}});
+  }
+  return begun;
+}
+
+scene::Solid solid_of(const TaskStarts& starts, const Start::Placed& placed) {
+  const Object& object = starts.object(placed);
+  const Mat3 turn = axes_of(placed.turn);
+  const double surface = starts.model.scenes[starts.task.scene].surface_z;
+  return solid(object, turn,
+               {placed.x, placed.y, placed.z.value_or(surface - lowest(object, turn))});
+}
+
+}  // namespace probe::sema
