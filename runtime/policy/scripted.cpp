@@ -120,6 +120,19 @@ class NoisyPolicy final : public Policy {
 
 constexpr double kPushedShare = 1.0 / 8;
 
+// What it was given, step by step.
+class SayingPolicy final : public Policy {
+ public:
+  explicit SayingPolicy(std::span<const Action> actions) : actions_(actions) {}
+  Status begin(const EpisodeStart& /*start*/) override { return {}; }
+  Result<Action> act(const Observation& observation) override {
+    return actions_[static_cast<std::size_t>(observation.step)];
+  }
+
+ private:
+  std::span<const Action> actions_;
+};
+
 }  // namespace
 
 std::unique_ptr<Policy> make_null() { return std::make_unique<NullPolicy>(); }
@@ -140,6 +153,22 @@ std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma) 
 
 std::unique_ptr<Policy> make_pushed(std::unique_ptr<Policy> inner, double sigma) {
   return std::make_unique<NoisyPolicy>(std::move(inner), sigma, kPushedShare);
+}
+
+std::vector<int> pushed_steps(std::uint64_t draw_seed, std::span<const Action> actions) {
+  // The same policy about the same number of actions, of which it is seen whether it lets them be.
+  NoisyPolicy again(std::make_unique<SayingPolicy>(actions), 1, kPushedShare);
+  EpisodeStart start;
+  start.draw_seed = draw_seed;
+  std::vector<int> pushed;
+  if (!again.begin(start)) return pushed;
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    Observation seen;
+    seen.step = static_cast<int>(i);
+    const Result<Action> said = again.act(seen);
+    if (said && *said != actions[i]) pushed.push_back(seen.step);
+  }
+  return pushed;
 }
 
 }  // namespace probe::policy

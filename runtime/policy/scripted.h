@@ -1,8 +1,10 @@
 // Policies that look at nothing: null, random, and the actions of a stored episode.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,5 +40,9 @@ std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma);
 // `inner`, pushed off its way now and then: in one step of eight, drawn, the noise of make_noisy is
 // added, and in the others `inner` finds back. What it shows is how one recovers.
 std::unique_ptr<Policy> make_pushed(std::unique_ptr<Policy> inner, double sigma);
+
+// In which steps of an episode make_pushed pushed, ascending: the draws depend on `draw_seed` and
+// the number of steps alone. `actions` are what was done, pushes included.
+std::vector<int> pushed_steps(std::uint64_t draw_seed, std::span<const Action> actions);
 
 }  // namespace probe::policy

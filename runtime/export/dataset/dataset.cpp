@@ -20,7 +20,9 @@
 #include "runtime/export/dataset/robomimic.h"
 #include "runtime/export/dataset/source.h"
 #include "runtime/export/dataset/wordings.h"
+#include "runtime/policy/scripted.h"
 #include "runtime/robot/rotation.h"
+#include "runtime/run/episode.h"
 #include "runtime/run/workers.h"
 #include "runtime/servers/resize.h"
 #include "runtime/store/episode_key.h"
@@ -76,6 +78,12 @@ class Maker {
     demonstration.prompt = trace->header.prompt;
     demonstration.success = is_success(row);
     demonstration.wordings = {trace->header.prompt};
+    if (source_.is_pushed) {
+      std::vector<robot::Action> done;
+      for (const store::TraceStep& step : trace->steps) done.push_back(step.action);
+      demonstration.pushed =
+          policy::pushed_steps(run::draw_seed(trace->header.seed, trace->header.episode_id), done);
+    }
     if (wordings_ != nullptr)
       demonstration.wordings =
           wordings_->draw(row.task, trace->header.prompt, options_.wordings, row.trace_sha256);

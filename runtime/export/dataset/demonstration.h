@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -58,6 +59,8 @@ struct Demonstration {
   std::vector<std::string> wordings;  // how it is told in the dataset, at least one
   std::vector<Step> steps;
   bool success = false;
+  // Of a run of pushes: the steps whose action is not the expert's alone.
+  std::optional<std::vector<int>> pushed = {};
 };
 
 }  // namespace probe::dataset

@@ -102,6 +102,7 @@ Status Provenance::add(const Demonstration& demonstration) {
   json["policy"] = row.policy;
   json["steps"] = demonstration.steps.size();
   json["success"] = demonstration.success;
+  if (demonstration.pushed) json["pushed"] = *demonstration.pushed;
   json["trace_sha256"] = row.trace_sha256;
   json["instruction"] = demonstration.prompt;
   json["wordings"] = demonstration.wordings;

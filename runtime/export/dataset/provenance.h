@@ -26,7 +26,8 @@ class Provenance {
   Provenance(const Provenance&) = delete;
   Provenance& operator=(const Provenance&) = delete;
 
-  // A line: task, episode, seed, run, trace's hash, instruction, wordings, metrics, steps.
+  // A line: task, episode, seed, run, trace's hash, instruction, wordings, metrics, steps; of a run
+  // of `pushed:SIGMA` the steps in which the expert was pushed.
   Status add(const Demonstration& demonstration);
 
   struct Facts {

@@ -17,6 +17,17 @@
 namespace probe::dataset {
 namespace {
 
+// `pushed:SIGMA`, but of no size.
+bool is_pushed(const store::RunIdentity& identity) {
+  std::string_view policy = identity.policy;
+  if (std::string_view(identity.policy_content).starts_with(store::kOwnPolicy)) {
+    policy = identity.policy_content;
+    policy.remove_prefix(store::kOwnPolicy.size());
+  }
+  constexpr std::string_view kPushed = "pushed:";
+  return policy.starts_with(kPushed) && policy.find_first_of("123456789") != std::string_view::npos;
+}
+
 std::string counted(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " episode" : " episodes");
 }
@@ -110,7 +121,7 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
   PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
   PROBE_ASSIGN(plan::Plan plan, store::open_run_plan(dir));
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
-  Source source{dir, record.identity.policy, std::move(plan), {}, {}};
+  Source source{dir, record.identity.policy, is_pushed(record.identity), std::move(plan), {}, {}};
   std::map<std::string, std::pair<std::size_t, std::string>> invalid;  // by reason: how many, first
   std::size_t failed = 0, empty = 0;
   std::set<std::uint32_t> tasks;

@@ -16,6 +16,9 @@ namespace probe::dataset {
 struct Source {
   std::string dir;     // as it was named
   std::string policy;  // who acted
+  // The expert, pushed off its way in some steps: store::RunIdentity says so, whatever rows call
+  // it.
+  bool is_pushed = false;
   plan::Plan plan;
   std::vector<store::ResultRow> rows;  // those that are wanted, in the stored order
   std::vector<std::uint32_t> tasks;    // of these rows, ascending

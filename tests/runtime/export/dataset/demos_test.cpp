@@ -1,6 +1,7 @@
 // What is shown to learners: the expert's successes, pushed off its way.
 #include <algorithm>
 
+#include "runtime/base/json.h"
 #include "runtime/policy/scripted.h"
 #include "runtime/run/policies.h"
 #include "tests/runtime/export/dataset/exported_run.h"
@@ -70,6 +71,49 @@ TEST_CASE("a pushed policy is itself in most steps, the same ones for the same d
   CHECK(run::choose_policy("pushed:0.01")->traits.draws);
   CHECK(!run::choose_policy("pushed:0")->traits.draws);
   CHECK(run::make_policy("pushed:far").failure().message.find("SIGMA of `pushed:SIGMA`") == 0);
+}
+
+TEST_CASE("a dataset says in which steps the expert was pushed") {
+  run::TablePlan table(std::string(VLAPROBE_SOURCE_DIR) + "/assets");
+  const plan::Plan plan = table.make(2, 30);
+  const run::TemporaryFolder folder;
+  for (const char* policy : {"expert", "pushed:0.02"}) {
+    run::RunOptions options = run::options_for(folder / policy, policy);
+    options.seeds = {0, 1, 2};
+    options.name = std::string(policy) == "expert" ? "" : "somebody";  // whatever rows call it
+    run::must_run(plan, options);
+  }
+  // Until the first push the two do the same in the same places; there they part.
+  const auto straight = traces_of(folder / "expert"), pushed = traces_of(folder / "pushed:0.02");
+  must_export(folder / "pushed:0.02", folder / "set", Format::kRobomimic, dataset_options());
+  must_export(folder / "expert", folder / "plain", Format::kRobomimic, dataset_options());
+  std::ifstream lines(folder / "set/vlaprobe/demonstrations.jsonl");
+  std::string line;
+  std::size_t count = 0;
+  for (; std::getline(lines, line); ++count) {
+    const Json json = Json::parse(line);
+    REQUIRE(json.contains("pushed"));
+    const auto steps = json["pushed"].get<std::vector<int>>();
+    const store::Trace& trace = pushed[count].trace;
+    CHECK(json["trace_sha256"] == to_hex(trace.hash));
+    const store::Trace* beside = nullptr;  // of the same start
+    for (const store::StoredTrace& other : straight) {
+      if (other.trace.header.episode == trace.header.episode) beside = &other.trace;
+    }
+    REQUIRE(beside != nullptr);
+    int parted = 0;
+    while (static_cast<std::size_t>(parted) < trace.steps.size() &&
+           trace.steps[static_cast<std::size_t>(parted)].action ==
+               beside->steps[static_cast<std::size_t>(parted)].action)
+      ++parted;
+    REQUIRE(!steps.empty());
+    CHECK(steps.front() == parted);
+    CHECK(std::ranges::is_sorted(steps));
+    CHECK(steps.back() < static_cast<int>(trace.steps.size()));
+  }
+  CHECK(count == 6);
+  CHECK(text_of(folder / "plain/vlaprobe/demonstrations.jsonl").find("pushed") ==
+        std::string::npos);
 }
 
 }  // namespace
