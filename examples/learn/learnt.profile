@@ -8,5 +8,6 @@ state.layout = xyz_rpy_openness
 action.form = delta
 action.units = m_rad
 action.rotation = vector
+action.threshold = 0
 chunk.length = 4
 chunk.use = 2

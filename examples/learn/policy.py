@@ -1,7 +1,7 @@
 """The learnt policy: one picture, where the hand is, and an instruction in; a chunk of actions out.
 
-    words --embedding, GRU--> text ----------------------+- FiLM -+-----------------+
-    picture, 96 x 128 --4 x 4 patches, convolutions------+--------+--> maps --spatial softmax--> points --> places
+    words --embedding, GRU--> text ------------+- FiLM ----------+- queries
+    picture --4 x 4 patches, convolutions------+--> features ----+--> maps --spatial softmax--> points --> places
     places, hand --> the next 4 actions
 
 A point is the mean place of a map's softmax: it moves with what its map shows by fractions of a pixel, so some hundred
@@ -41,13 +41,14 @@ class Learnt(nn.Module):
         self.stem = nn.Conv2d(48, channels, 3, padding=1)
         self.convolutions = nn.ModuleList([nn.Conv2d(channels, channels, 3, padding=d, dilation=d) for d in (1, 2)])
         self.film = nn.Linear(64, 2 * channels * len(self.convolutions))
-        self.to_maps = nn.Conv2d(channels, maps, 1)
+        self.queries = nn.Linear(64, maps * channels)
         self.to_places = nn.Sequential(nn.Linear(2 * maps + 64, 128), nn.ReLU(), nn.Linear(128, 12))
         self.to_actions = nn.Sequential(nn.Linear(10 + 12 + 15, 256), nn.ReLU(), nn.Linear(256, 256), nn.ReLU(),
                                         nn.Linear(256, CHUNK * 7))
         grid = torch.meshgrid(torch.linspace(-1, 1, HEIGHT // 4), torch.linspace(-1, 1, WIDTH // 4), indexing="ij")
         self.register_buffer("grid", torch.stack(grid, -1).reshape(-1, 2))
-        for name, size in (("hand_mean", 10), ("hand_std", 10), ("place_mean", 12), ("place_std", 12), ("action_std", 7)):
+        sizes = {"hand_mean": 10, "hand_std": 10, "place_mean": 12, "place_std": 12, "action_std": 7}
+        for name, size in sizes.items():
             self.register_buffer(name, torch.ones(size))
 
     def numbers(self, instruction):
@@ -57,7 +58,7 @@ class Learnt(nn.Module):
         """Lists of word numbers -> [n, 64], what the reader knows behind the last word."""
         lengths = torch.tensor([len(s) for s in sentences])
         padded = nn.utils.rnn.pad_sequence([torch.as_tensor(s) for s in sentences], batch_first=True)
-        packed = nn.utils.rnn.pack_padded_sequence(self.embedding(padded), lengths, batch_first=True, enforce_sorted=False)
+        packed = nn.utils.rnn.pack_padded_sequence(self.embedding(padded), lengths, True, enforce_sorted=False)
         return self.reader(packed)[1][0]
 
     def places(self, pictures, text):
@@ -68,14 +69,16 @@ class Learnt(nn.Module):
         for convolution, film in zip(self.convolutions, self.film(text).chunk(len(self.convolutions), 1)):
             gain, bias = film[:, :, None, None].chunk(2, 1)
             x = x + F.relu(convolution(x) * (1 + gain) + bias)
-        points = (self.to_maps(x).flatten(2).softmax(2) @ self.grid).flatten(1)
+        maps = self.queries(text).reshape(len(x), -1, x.shape[1]) @ x.flatten(2)
+        points = (maps.softmax(2) @ self.grid).flatten(1)
         return self.to_places(torch.cat([points, text], 1)) * self.place_std + self.place_mean
 
     def actions(self, places, hand):
         """[n, 12], [n, 10] -> [n, 4, 7], in multiples of `action_std`."""
         away = torch.cat([places[:, :3] - hand[:, :3], places[:, 9:] - hand[:, :3], places[:, 9:] - places[:, :3]], 1)
         turn = places[:, 3:9] - hand[:, 3:9]
-        seen = [(hand - self.hand_mean) / self.hand_std, (places - self.place_mean) / self.place_std, away / 0.1, turn / 0.5]
+        seen = [(hand - self.hand_mean) / self.hand_std, (places - self.place_mean) / self.place_std, away / 0.1,
+                turn / 0.5]
         return self.to_actions(torch.cat(seen, 1)).reshape(-1, CHUNK, 7)
 
     @torch.no_grad()

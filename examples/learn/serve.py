@@ -2,7 +2,8 @@
 """Serves checkpoints of train.py through the shim for SimplerEnv's manner.
 
     python3 examples/learn/serve.py FOLDER --port 8000
-    vlaprobe run suite/intact.probe --policy 'ws://127.0.0.1:8000/part_3?profile=examples/learn/learnt.profile' -o runs/learnt
+    vlaprobe run suite/intact.probe -o runs/learnt \\
+      --policy 'ws://127.0.0.1:8000/part_3?profile=examples/learn/learnt.profile&batch=8' --jobs 8
 
 The address's path names the checkpoint, so one server does a whole sweep.
 """

@@ -26,7 +26,7 @@ import train  # noqa: E402
 
 
 def vlaprobe(*arguments):
-    done = subprocess.run([VLAPROBE, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    done = subprocess.run([VLAPROBE, *map(str, arguments)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -48,8 +48,10 @@ def hands_are_their_rotations():
 
 def learns_and_is_served():
     text, suite = EXAMPLE / "tasks.probe", ROOT / "suite/intact.probe"
-    vlaprobe("rephrase", text, "--suite", "learn", "--not-in", suite, "--drop-leaks", "-o", FOLDER / "words.jsonl")
-    vlaprobe("demos", text, "--suite", "learn", "--tasks", "carrot_plate", "--episodes", "0-3", "--noise", "0.005", "-o", FOLDER / "demos")
+    vlaprobe("rephrase", text, "--suite", "learn", "--not-in", suite, "--drop-leaks", "-o",
+             FOLDER / "words.jsonl")
+    vlaprobe("demos", text, "--suite", "learn", "--tasks", "carrot_plate", "--episodes", "0-3", "--noise", "0.005",
+             "-o", FOLDER / "demos")
     vlaprobe("export", FOLDER / "demos", "--format", "robomimic", "--size", "128x96", "-o", FOLDER / "data",
              "--rephrase", FOLDER / "words.jsonl", "--wordings", "3")
     demos = train.demonstrations([FOLDER / "data"])
@@ -66,14 +68,14 @@ def learns_and_is_served():
     assert (where[closes:opens, :9] == hand[closes:opens, :9]).all() and (where[:, 9:] == hand[opens, :3]).all()
     print("labelled")
 
-    subprocess.run([sys.executable, EXAMPLE / "train.py", FOLDER / "data", "-o", FOLDER / "policies", "--minutes", "0.05",
-                    "--checkpoints", "2", "--batch", "8", "--threads", "1"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([sys.executable, EXAMPLE / "train.py", FOLDER / "data", "-o", FOLDER / "policies", "--minutes",
+                    "0.05", "--checkpoints", "2", "--batch", "8", "--threads", "1"], check=True, stdout=subprocess.DEVNULL)
     server = subprocess.Popen([sys.executable, EXAMPLE / "serve.py", FOLDER / "policies", "--port", "0"],
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     try:
         port = server.stdout.readline().split()[1]
-        vlaprobe("run", suite, "--tasks", "carrot_on_plate", "--episodes", "0-1", "--seeds", "42", "--jobs", "2", "-o", FOLDER / "run", "--policy",
-                 f"ws://127.0.0.1:{port}/part_2?profile={EXAMPLE}/learnt.profile&batch=2")
+        vlaprobe("run", suite, "--tasks", "carrot_on_plate", "--episodes", "0-1", "--seeds", "42", "--jobs", "2",
+                 "-o", FOLDER / "run", "--policy", f"ws://127.0.0.1:{port}/part_2?profile={EXAMPLE}/learnt.profile&batch=2")
     finally:
         server.kill()
         server.wait()
@@ -87,8 +89,8 @@ def learns_and_is_served():
     for pictures, states, actions, told in train.demonstrations([FOLDER / "seen"]):
         for step in range(0, 20, 2):  # two of each answer are done
             again = learnt.act(torch.from_numpy(pictures[step:step + 1]), torch.tensor(states[step:step + 1]), told)
-            off = numpy.abs(again[0, :2].numpy() - actions[step:step + 2]).max()
-            assert off < 1e-3, (step, off)
+            off = numpy.abs(again[0, :2].numpy() - actions[step:step + 2])
+            assert off[:, :6].max() < 1e-5, (step, off)
     print("same")
 
 
