@@ -8,11 +8,11 @@ import os
 import traceback
 from typing import Any, Callable, Iterable, Optional, Union
 
-from . import _vlaprobe
-from ._progress import Line
+from . import _given, _vlaprobe
+from ._given import flag, pair, text, text_or_none, texts, whole
 from .errors import UsageError
 from .plan import Path, Plan, PlanLike, Task, compile, plan_of
-from .runs import IF_CHANGED, episode_range, named, reason
+from .runs import IF_CHANGED, glob_of, name_of, named, reason, teller
 
 ModelCallable = Callable[[dict], str]
 
@@ -131,7 +131,9 @@ class Answers:
         """The rows, each read again from its words, and the scores."""
         return AnswerRows(json.loads(_vlaprobe.answers(self.folder)))
 
-    def why(self, task: str, episode: int, seed: Optional[int] = None, question: Optional[str] = None) -> dict[str, Any]:
+    def why(
+        self, task: Union[str, Task], episode: int, seed: Optional[int] = None, question: Optional[str] = None
+    ) -> dict[str, Any]:
         """One start's answers explained: the dict of ``vlaprobe why ANSWERS ... --json``: task, episode, model, instruction,
         and questions, each with its text, how the right answer is known, where it was written, and its answers.
 
@@ -140,7 +142,13 @@ class Answers:
             question: "SET.FAMILY" or the family's name; None: all.
         """
         return json.loads(
-            _vlaprobe.why_answers(self.folder, task, int(episode), -1 if seed is None else int(seed), question)
+            _vlaprobe.why_answers(
+                self.folder,
+                name_of(task),
+                whole(episode, "`episode`"),
+                -1 if seed is None else whole(seed, "`seed`"),
+                text_or_none(question, "`question`"),
+            )
         )
 
     def __fspath__(self) -> str:
@@ -158,8 +166,8 @@ def open_answers(folder: Path) -> Answers:
     return Answers(folder)
 
 
-def _joined(words: Union[None, str, Iterable[str]]) -> Optional[str]:
-    return words if words is None or isinstance(words, str) else ",".join(words)
+def _joined(words: Union[None, str, Iterable[str]], what: str) -> Optional[str]:
+    return None if words is None else ",".join(texts(words, what))
 
 
 def ask(
@@ -199,10 +207,10 @@ def ask(
             what it returns that is no str, makes the row invalid with that reason (and the traceback); the next call asks
             it again.
         out: the folder; made if absent. One that holds another plan, model, content or build is refused.
-        tasks: a glob over names.
+        tasks: a glob over names, or one Task.
         questions: SET or SET.FAMILY, with * and ?; one or several; None: all.
         arms: of "picture", "blind" (the same words without one), "prior" (with another start's): one or several.
-        episodes: a number, (first, last) with both included, or a range of step 1; None: all.
+        episodes: a number, a tuple (first, last) with both included, or a range of step 1; None: all.
         frames: folder of a run: its ends are what questions at the end are about.
         name: what rows call the model; of a callable needed where it has no __name__ or is a lambda.
         content: of a callable, what its name does not say, such as its weights' hash: two contents are not one folder.
@@ -223,11 +231,11 @@ def ask(
         Error: the folder, the assets, or a server.
         KeyboardInterrupt: Ctrl-C: the questions at the model are waited for and stored; the same call continues.
     """
-    whole: Plan
+    compiled: Plan
     if suite is not None and not isinstance(plan, Plan) and os.fspath(plan).endswith(".probe"):
-        whole = compile(plan, suite=suite)
+        compiled = compile(plan, suite=text(suite, "`suite`"))
     else:
-        whole = plan_of(plan)
+        compiled = plan_of(plan)
     answer = None
     if not isinstance(model, str):
         if not callable(model):
@@ -236,28 +244,28 @@ def ask(
         name = named(model, name, "ask()")
     elif size is not None or camera is not None or content:
         raise UsageError("size, camera and content are of a callable; a server's stand in its address: ?size=WxH&camera=NAME")
-    if if_changed not in IF_CHANGED:
+    if not isinstance(if_changed, str) or if_changed not in IF_CHANGED:
         raise UsageError(f"if_changed is one of {', '.join(IF_CHANGED)}, found {if_changed!r}")
     options = {
         "out": os.fspath(out),
         "model": model if isinstance(model, str) else None,
-        "name": name,
-        "content": content or None,
-        "suite": suite,
-        "tasks": tasks.name if isinstance(tasks, Task) else tasks,
-        "questions": _joined(questions),
-        "arms": _joined(arms),
+        "name": text_or_none(name, "`name`"),
+        "content": text(content, "`content`") or None,
+        "suite": text_or_none(suite, "`suite`"),
+        "tasks": glob_of(tasks),
+        "questions": _joined(questions, "`questions`"),
+        "arms": _joined(arms, "`arms`"),
         "frames": None if frames is None else os.fspath(frames),
-        "camera": camera,
-        "episodes": episode_range(episodes),
-        "shard": None if shard is None else (int(shard[0]), int(shard[1])),
-        "size": None if size is None else (int(size[0]), int(size[1])),
-        "jobs": int(jobs),
-        "retries": int(retries),
-        "give_up_after": int(give_up_after),
-        "insecure": bool(insecure),
+        "camera": text_or_none(camera, "`camera`"),
+        "episodes": _given.episodes(episodes),
+        "shard": None if shard is None else pair(shard, "`shard`"),
+        "size": None if size is None else pair(size, "`size`"),
+        "jobs": whole(jobs, "`jobs`"),
+        "retries": whole(retries, "`retries`"),
+        "give_up_after": whole(give_up_after, "`give_up_after`"),
+        "insecure": flag(insecure, "`insecure`"),
         "if_changed": IF_CHANGED[if_changed],
     }
-    tell = Line("answers", "right") if progress is True else None if progress is False else progress
-    told = json.loads(_vlaprobe.ask(whole._handle, options, answer, tell))
+    tell = teller(progress, "answers", "right")
+    told = json.loads(_vlaprobe.ask(compiled._handle, options, answer, tell))
     return Answers(told["out"], told)

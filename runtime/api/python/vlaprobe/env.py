@@ -8,6 +8,7 @@ from typing import Any, Optional, Sequence, Union
 import numpy as np
 
 from . import _gym, _vlaprobe
+from ._given import texts, whole_or_none
 from ._gym import Box, Dict
 from ._picture import Picture, png_of
 from .errors import ClosedError, UsageError
@@ -41,8 +42,7 @@ def choose_cameras(all_names: Sequence[str], wanted: Cameras) -> list[int]:
         return list(range(len(all_names)))
     if wanted is False or wanted is None:
         return []
-    if isinstance(wanted, str):
-        wanted = [wanted]
+    wanted = texts(wanted, "`cameras`")
     for name in wanted:
         if name not in all_names:
             raise UsageError(f"there is no camera `{name}`; the task has {', '.join(all_names)}")
@@ -53,6 +53,8 @@ def check_options(options: Optional[dict], known: Sequence[str]) -> dict:
     """The options of a reset; a name that means nothing is an error."""
     if options is None:
         return {}
+    if not isinstance(options, dict):
+        raise UsageError(f"the options of reset() are a dict, found {options!r}")
     for name in options:
         if name not in known:
             raise UsageError(f"reset() has no option `{name}`; it has {', '.join(known)}")
@@ -126,8 +128,9 @@ class Env(_gym.Env):
         self._episode = episode
         self._copy = copy
         self.render_mode = render_mode
+        size = (whole_or_none(width, "`width`") or 0, whole_or_none(height, "`height`") or 0)
         self._stage: Optional[_vlaprobe.Stage] = _vlaprobe.Stage(
-            self.plan._handle, self._task.index, width or 0, height or 0, cameras is not False or render_mode is not None
+            self.plan._handle, self._task.index, *size, cameras is not False or render_mode is not None
         )
         all_cameras = self._stage.cameras()
         self._shown = choose_cameras([name for name, _, _ in all_cameras], cameras)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, Iterable, Iterator, Optional, Union
 
 from . import _vlaprobe
+from ._given import text_or_none
 from ._picture import Picture, image_tag
 from .errors import Error, UsageError
 
@@ -315,6 +316,8 @@ class Plan:
 
         Raises UsageError naming what no task is called, with the nearest name.
         """
+        if not isinstance(tasks, (str, Task)) and not isinstance(tasks, Iterable):
+            raise UsageError(f"a task is asked for by its name or a glob, found {tasks!r}")
         asked = [tasks] if isinstance(tasks, (str, Task)) else list(tasks)
         if not asked:
             raise UsageError("no task was asked for")
@@ -411,7 +414,8 @@ def compile(  # noqa: A001 - the design's name
         raise UsageError("compile() wants the path of a .probe file")
     folder = _absent(assets)
     paths = [os.fspath(file) for file in files]
-    return Plan(_vlaprobe.Plan.compile(paths, folder, _absent(std), suite, tasks), folder)
+    only = (text_or_none(suite, "`suite`"), text_or_none(tasks, "`tasks`"))
+    return Plan(_vlaprobe.Plan.compile(paths, folder, _absent(std), *only), folder)
 
 
 def load(path: Path, assets: Optional[Path] = None) -> Plan:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from . import _vlaprobe
+from ._given import text as checked_text
+from ._given import whole
 from .env import Env
 
 
@@ -21,11 +23,11 @@ class Policy:
 
     def __init__(self, text: str) -> None:
         self.text = text
-        self._policy = _vlaprobe.Policy(text)
+        self._policy = _vlaprobe.Policy(checked_text(text, "a policy"))
 
     def begin(self, env: Env, seed: int = 0) -> None:
         """Behind env.reset(): the policy is told of the episode. `seed` is what it draws from, with the episode."""
-        self._policy.begin(env._open(), seed)
+        self._policy.begin(env._open(), whole(seed, "`seed`"))
 
     def act(self, env: Env) -> np.ndarray:
         """float64 (7,): what the policy does about what the environment shows now."""

@@ -10,7 +10,8 @@ from typing import Any, Callable, Iterable, Optional, Union
 
 import numpy as np
 
-from . import _vlaprobe
+from . import _given, _vlaprobe
+from ._given import flag, number, text, text_or_none, texts, whole
 from ._progress import Line
 from .errors import UsageError
 from .plan import Path, Plan, PlanLike, Task, plan_of
@@ -121,6 +122,15 @@ class Results(list):
         return f"<p>{html.escape(self.policy)}</p><table><tr><th>task</th><th>success</th></tr>{rows}</table>{note}"
 
 
+def _seed_of(seed: Any) -> int:
+    """As the extension takes it: -1 is the lowest that is stored."""
+    if seed is None:
+        return -1
+    if whole(seed, "`seed`") < 0:
+        raise UsageError(f"a seed is a whole number from 0 on, found {seed}")
+    return whole(seed, "`seed`")
+
+
 class Run:
     """A folder of a run. Made by evaluate(), or by open_run() of one that is there.
 
@@ -150,7 +160,7 @@ class Run:
         return Results(json.loads(_vlaprobe.results(self.folder)))
 
     def why(
-        self, task: str, episode: int, seed: Optional[int] = None, metric: Optional[str] = None
+        self, task: Union[str, Task], episode: int, seed: Optional[int] = None, metric: Optional[str] = None
     ) -> dict[str, Any]:
         """A verdict explained: the dict of ``vlaprobe why ... --json``: task, episode, seed, steps, invalid, metrics with
         their values, the step that decided, and the conditions by source line with what was measured there.
@@ -159,11 +169,12 @@ class Run:
             seed: None: the lowest stored.
             metric: this one alone; None: all.
         """
-        return json.loads(_vlaprobe.why(self.folder, task, int(episode), -1 if seed is None else int(seed), metric))
+        which = (name_of(task), whole(episode, "`episode`"), _seed_of(seed))
+        return json.loads(_vlaprobe.why(self.folder, *which, text_or_none(metric, "`metric`")))
 
     def replay(
         self,
-        task: str,
+        task: Union[str, Task],
         episode: int,
         seed: Optional[int] = None,
         *,
@@ -186,10 +197,9 @@ class Run:
             fingerprint_differences (what is not as it was when the episode was recorded).
         """
         as_text = [None if path is None else os.fspath(path) for path in (video, png)]
-        told = _vlaprobe.replay(
-            self.folder, task, int(episode), -1 if seed is None else int(seed), self._assets, *as_text, step, camera, verify
-        )
-        return json.loads(told)
+        which = (name_of(task), whole(episode, "`episode`"), _seed_of(seed))
+        shown = (whole(step, "`step`"), text_or_none(camera, "`camera`"), flag(verify, "`verify`"))
+        return json.loads(_vlaprobe.replay(self.folder, *which, self._assets, *as_text, *shown))
 
     def report(self, out: Path, **options: Any) -> dict[str, Any]:
         """One page of this run: report([self], out, ...)."""
@@ -246,7 +256,7 @@ def compare(a: Union[Run, Path], b: Union[Run, Path], metrics: Iterable[str] = (
     Args:
         metrics: of these only; empty: those of the tables.
     """
-    chosen = [metrics] if isinstance(metrics, str) else list(metrics)
+    chosen = texts(metrics, "`metrics`")
     return Comparison(json.loads(_vlaprobe.compare(os.fspath(a), os.fspath(b), chosen)))
 
 
@@ -270,30 +280,45 @@ def report(
     Returns:
         out, policies, episodes, and notes: sentences that a reader of the page should know.
     """
+    if isinstance(folders, (str, os.PathLike)):
+        raise UsageError(f"a report is of several folders, in a list, found {folders!r}")
     paths = [os.fspath(folder) for folder in folders]
     file = None if floors is None else os.fspath(floors)
-    return json.loads(_vlaprobe.report(paths, os.fspath(out), title, file, traces, int(jobs)))
+    of = (paths, os.fspath(out), text_or_none(title, "`title`"))
+    return json.loads(_vlaprobe.report(*of, file, flag(traces, "`traces`"), whole(jobs, "`jobs`")))
+
+
+def teller(progress: Any, what: str, good: str) -> Optional[Callable[[dict], None]]:
+    """Whom `progress` means; None: nobody."""
+    if progress is True:
+        return Line(what, good)
+    if progress is False:
+        return None
+    if not callable(progress):
+        raise UsageError(f"`progress` is True, False or a callable, found {progress!r}")
+    return progress
 
 
 def named(of: Any, name: Optional[str], what: str) -> str:
     """What rows call a callable."""
-    name = name or getattr(of, "__name__", None) or type(of).__name__
+    name = text_or_none(name, "`name`") or getattr(of, "__name__", None) or type(of).__name__
     if name == "<lambda>":
         raise UsageError(f"a lambda has no name for the rows: give {what} a `name`")
     return name
 
 
-def episode_range(episodes: Any) -> Optional[tuple[int, int]]:
-    """The first and the last of a number, a pair or a range; None of None."""
-    if episodes is None:
-        return None
-    if isinstance(episodes, range):
-        if episodes.step != 1 or not len(episodes):
-            raise UsageError(f"episodes are a range without gaps, found {episodes}")
-        return (episodes.start, episodes.stop - 1)
-    if isinstance(episodes, (int, np.integer)):
-        return (int(episodes), int(episodes))
-    return (int(episodes[0]), int(episodes[1]))
+def name_of(task: Any) -> str:
+    """Of one task of a folder, by name or as a Task."""
+    return task.name if isinstance(task, Task) else text(task, "`task`")
+
+
+def glob_of(tasks: Any) -> str:
+    """What `tasks` means to the program: one glob."""
+    if isinstance(tasks, Task):
+        return tasks.name
+    if not isinstance(tasks, str):
+        raise UsageError(f"`tasks` is one Task, or a glob such as 'carrot_*', found {tasks!r}")
+    return text(tasks, "`tasks`")
 
 
 def evaluate(
@@ -331,13 +356,13 @@ def evaluate(
             reason (and the traceback); numbers that are not finite only those that they are for. The run goes on.
         plan: a Plan, or the path of a .plan or .probe file.
         out: the folder; made if absent. One that holds another plan, policy, content or build is refused.
-        tasks: a glob over names.
+        tasks: a glob over names, or one Task.
         name: what rows call a callable; needed where it has no __name__ or is a lambda.
         content: of a callable, what its name does not say, such as its weights' hash: two contents are not one run.
         suite: default: the plan's first.
         originals: only tasks that are no variant of another.
-        episodes: a number, (first, last) with both included, or a range of step 1; None: all.
-        seeds: None: the suite's; of a policy that draws nothing the first of them alone.
+        episodes: a number, a tuple (first, last) with both included, or a range of step 1; None: all.
+        seeds: whole numbers, each once; None: the suite's; of a policy that draws nothing the first of them alone.
         draws: of a callable: two seeds may give two different episodes.
         jobs: worlds at a time, a thread each.
         batch: most observations in a call of the callable; 0: as many as there are jobs.
@@ -352,7 +377,7 @@ def evaluate(
         Error: the folder, the assets, or a policy server.
         KeyboardInterrupt: Ctrl-C: episodes under way are not stored; the same call continues.
     """
-    whole: Plan = plan_of(plan)
+    compiled: Plan = plan_of(plan)
     answer = None
     if not isinstance(policy, str):
         if not callable(policy):
@@ -360,25 +385,25 @@ def evaluate(
         answer = _checked(policy)
         name = named(policy, name, "evaluate()")
     for word, known, what in ((if_changed, IF_CHANGED, "if_changed"), (video, _VIDEOS, "video")):
-        if word not in known:
+        if not isinstance(word, str) or word not in known:
             raise UsageError(f"{what} is one of {', '.join(known)}, found {word!r}")
     options = {
         "out": os.fspath(out),
         "policy": policy if isinstance(policy, str) else None,
-        "name": name,
-        "content": content or None,
-        "suite": suite,
-        "tasks": tasks.name if isinstance(tasks, Task) else tasks,
-        "originals": originals,
-        "episodes": episode_range(episodes),
-        "seeds": [] if seeds is None else [int(seed) for seed in seeds],
-        "jobs": int(jobs),
+        "name": text_or_none(name, "`name`"),
+        "content": text(content, "`content`") or None,
+        "suite": text_or_none(suite, "`suite`"),
+        "tasks": glob_of(tasks),
+        "originals": flag(originals, "`originals`"),
+        "episodes": _given.episodes(episodes),
+        "seeds": _given.seeds(seeds),
+        "jobs": whole(jobs, "`jobs`"),
         "if_changed": IF_CHANGED[if_changed],
         "videos": _VIDEOS[video],
-        "draws": draws,
-        "batch": int(batch),
-        "gather_s": float(gather_s),
+        "draws": flag(draws, "`draws`"),
+        "batch": whole(batch, "`batch`"),
+        "gather_s": number(gather_s, "`gather_s`"),
     }
-    tell = Line("episodes", "success") if progress is True else None if progress is False else progress
-    told = json.loads(_vlaprobe.run(whole._handle, options, answer, tell))
-    return Run(told["out"], told, whole.assets)
+    tell = teller(progress, "episodes", "success")
+    told = json.loads(_vlaprobe.run(compiled._handle, options, answer, tell))
+    return Run(told["out"], told, compiled.assets)

@@ -7,6 +7,7 @@ from typing import Any, Iterable, Optional, Union
 import numpy as np
 
 from . import _gym, _vlaprobe
+from ._given import whole, whole_or_none
 from ._gym import AutoresetMode, batch_space
 from .env import Cameras, action_space, check_options, choose_cameras, observation_space
 from .errors import ClosedError, UsageError
@@ -72,7 +73,8 @@ class VectorEnv(_gym.VectorEnv):
         self._tasks = self.plan.select(tasks)
         self.tasks = [task.name for task in self._tasks]
         mode, number = _mode(autoreset)
-        self.num_envs = int(num_envs)
+        self.num_envs = whole(num_envs, "`num_envs`")
+        size = (whole_or_none(width, "`width`") or 0, whole_or_none(height, "`height`") or 0)
         self._copy = copy
         self._mode = mode
         self.render_mode = render_mode
@@ -85,9 +87,8 @@ class VectorEnv(_gym.VectorEnv):
             self.plan._handle,
             [task.index for task in self._tasks],
             self.num_envs,
-            int(threads),
-            width or 0,
-            height or 0,
+            whole(threads, "`threads`"),
+            *size,
             cameras is not False,
             number,
         )
@@ -130,6 +131,8 @@ class VectorEnv(_gym.VectorEnv):
         seeds = [None] * self.num_envs if seed is None else seed
         if isinstance(seed, (int, np.integer)):
             seeds = [int(seed) + i for i in range(self.num_envs)]
+        if not hasattr(seeds, "__len__"):
+            raise UsageError(f"a seed is a whole number, or one a world, found {seed!r}")
         if len(seeds) != self.num_envs:
             raise UsageError(f"{len(seeds)} seeds for {self.num_envs} worlds")
         for i, own in enumerate(seeds):
@@ -273,6 +276,8 @@ class VectorEnv(_gym.VectorEnv):
         given = options.get(name)
         if given is None or isinstance(given, (str, int, np.integer, Task)):
             return [given] * self.num_envs
+        if not hasattr(given, "__len__"):
+            raise UsageError(f"option `{name}` is one value or one a world, found {given!r}")
         if len(given) != self.num_envs:
             raise UsageError(f"option `{name}` has {len(given)} values for {self.num_envs} worlds")
         return list(given)

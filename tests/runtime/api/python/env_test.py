@@ -175,6 +175,15 @@ class EnvTest(Case):
                 env.step(action)
             self.assertSays(raised.exception, *words)
         for options, words in [
+            (dict(width=64.5), ["width", "64.5"]),
+            (dict(height=True), ["height", "True"]),
+            (dict(width=2**40), ["width", str(2**40)]),
+            (dict(cameras=7), ["cameras", "7"]),
+        ]:
+            with self.assertRaises(vlaprobe.UsageError) as raised:
+                vlaprobe.make(suite_plan(), TASK, **options)
+            self.assertSays(raised.exception, *words)
+        for options, words in [
             ({"episode": 24}, ["no episode 24", "24"]),
             ({"episode": -1}, ["-1"]),
             ({"episode": 1.5}, ["1.5"]),

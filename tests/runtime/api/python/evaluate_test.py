@@ -78,6 +78,25 @@ class EvaluateTest(Case):
         again = vlaprobe.evaluate(
             "expert", suite_plan(), tasks=TASK, episodes=(0, 2), out=folder + "/here", progress=False
         )
+        # What is asked of a folder is refused by its name.
+        for call, words in [
+            (lambda: run.why(TASK, 2**40), ["episode", str(2**40)]),
+            (lambda: run.why(TASK, 1.5), ["episode", "1.5"]),
+            (lambda: run.why(7, 1), ["task", "7"]),
+            (lambda: run.why(TASK, 1, seed=-1), ["seed", "-1"]),
+            (lambda: run.why(TASK, 1, metric=["success"]), ["metric", "['success']"]),
+            (lambda: run.replay(TASK, 1, step=0.5), ["step", "0.5"]),
+            (lambda: run.replay(TASK, 1, verify="no"), ["verify", "'no'"]),
+            (lambda: run.replay(TASK, 1, camera=0), ["camera", "0"]),
+            (lambda: vlaprobe.report(run.folder, folder + "/page.html"), ["several folders", run.folder]),
+            (lambda: run.report(folder + "/page.html", title=5), ["title", "5"]),
+            (lambda: run.report(folder + "/page.html", jobs=1.5), ["jobs", "1.5"]),
+            (lambda: vlaprobe.compare(run, run, metrics=3), ["metrics", "3"]),
+        ]:
+            with self.assertRaises(vlaprobe.UsageError) as raised:
+                call()
+            self.assertSays(raised.exception, *words)
+        self.assertEqual(run.why(suite_plan().tasks[TASK], 1), run.why(TASK, 1))
         self.assertEqual((again.done, again.skipped), (0, 3))
 
     def test_a_random_agent_has_the_same_traces_through_a_callable_an_env_and_the_program(self):
@@ -271,15 +290,37 @@ class EvaluateTest(Case):
             (dict(episodes=(5, 2)), ["5", "2"]),
             (dict(episodes=range(0, 10, 2)), ["gaps"]),
             (dict(episodes=100), ["100"]),
+            (dict(episodes=[0, 3]), ["[0, 3]", "(first, last)"]),
+            (dict(episodes=(0, 1, 5)), ["(0, 1, 5)", "(first, last)"]),
+            (dict(episodes=(0.9, 1.9)), ["episode", "0.9"]),
+            (dict(episodes=True), ["episode", "True"]),
+            (dict(episodes="0"), ["'0'"]),
+            (dict(episodes=2**40), ["episode", str(2**40)]),
             (dict(jobs=-1), ["-1"]),
+            (dict(jobs=1.7), ["jobs", "1.7"]),
+            (dict(jobs=True), ["jobs", "True"]),
+            (dict(batch="3"), ["batch", "'3'"]),
             (dict(seeds=[-3]), ["-3"]),
+            (dict(seeds="42"), ["seeds", "'42'"]),
+            (dict(seeds=42), ["seeds", "42"]),
+            (dict(seeds=[1.9]), ["seed", "1.9"]),
+            (dict(seeds=[1, 1]), ["seed 1", "twice"]),
+            (dict(seeds=[]), ["None"]),
+            (dict(tasks=[TASK, "carrot_*"]), ["tasks", TASK, "glob"]),
+            (dict(suite=3), ["suite", "3"]),
+            (dict(name=5), ["name", "5"]),
+            (dict(content=b"x"), ["content", "b'x'"]),
+            (dict(draws=1), ["draws", "1"]),
+            (dict(originals="yes"), ["originals", "'yes'"]),
+            (dict(progress=3), ["progress", "3"]),
+            (dict(gather_s="soon"), ["gather_s", "soon"]),
             (dict(video="some"), ["some", "failures"]),
             (dict(if_changed="ask"), ["ask", "refuse"]),
             (dict(gather_s=-1.0), ["gather_s"]),
         ]:
-            options = {"policy": reach, "tasks": TASK, "episodes": 0, **options}
+            options = {"policy": reach, "tasks": TASK, "episodes": 0, "progress": False, **options}
             with self.assertRaises(vlaprobe.UsageError) as raised:
-                vlaprobe.evaluate(plan=suite_plan(), out=folder, progress=False, **options)
+                vlaprobe.evaluate(plan=suite_plan(), out=folder, **options)
             self.assertSays(raised.exception, *words)
             self.assertFalse(os.path.exists(folder))
         with self.assertRaises(vlaprobe.UsageError):

@@ -77,9 +77,12 @@ class PlanTest(Case):
             (lambda: vlaprobe.compile(), ["path"]),
             (lambda: suite_plan().episodes("carot_on_plate"), ["carot_on_plate", "did you mean `carrot_on_plate`?"]),
             (lambda: suite_plan().select([]), ["no task"]),
-            (lambda: suite_plan().select(7), []),
+            (lambda: suite_plan().select(7), ["7", "glob"]),
+            (lambda: vlaprobe.make(suite_plan(), 3), ["3", "glob"]),
+            (lambda: vlaprobe.compile(SUITE, tasks=["a"]), ["tasks", "['a']"]),
+            (lambda: vlaprobe.Policy(3), ["policy", "3"]),
         ]:
-            with self.assertRaises((vlaprobe.Error, TypeError)) as raised:
+            with self.assertRaises(vlaprobe.Error) as raised:
                 call()
             self.assertSays(raised.exception, *words)
 
