@@ -81,13 +81,6 @@ struct RobotReader {
   void operator()(const syntax::ControlStmt& stmt) {
     has_control = true;
     read_control(context, stmt, robot);
-    if (robot::row_of(robot.law).per_joint) {
-      context
-          .report(Code::P0101, stmt.law.span,
-                  "`" + std::string(stmt.law.text) + "` is not available yet")
-          .point("policies, servers and traces know actions of a tool and a gripper")
-          .help("a tool is moved by `ee_delta_pose` or `osc_pose`");
-    }
     robot.control_hz = read_positive(context, stmt.rate, dim::kRate,
                                      {"`control` takes a frequency", plan::Magnitude::kControlRate})
                            .value_or(1);
@@ -354,9 +347,7 @@ void define_robots(Context& context) {
     // What is wrong so far may be why a joint is not the arm's.
     const bool clean = context.mistakes() == errors;
     // Of a law that is refused nothing is lacking.
-    const bool is_law_known = control != nullptr &&
-                              robot::find_kind(control->law.text) != nullptr &&
-                              !robot::row_of(robot.law).per_joint;
+    const bool is_law_known = control != nullptr && robot::find_kind(control->law.text) != nullptr;
     define_drives(context, reader.drives, is_law_known, robot);
     if (clean && control != nullptr) define_home(context, *control, robot);
     if (declared.decl->complete && context.mistakes() == errors) check_fit(context, robot);

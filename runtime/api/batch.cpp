@@ -125,6 +125,15 @@ int32_t vlaprobe_batch_reset(vlaprobe_batch* batch, const uint8_t* mask,
   });
 }
 
+int32_t vlaprobe_batch_action_space(const vlaprobe_batch* batch, vlaprobe_action_space* out,
+                                    vlaprobe_error* error) {
+  return call(error, [&]() -> Status {
+    PROBE_ASSIGN(const Use use, Use::of(own(batch)->lock, kBatch));
+    *out = batch->worlds->actions().told();
+    return {};
+  });
+}
+
 int32_t vlaprobe_batch_step(vlaprobe_batch* batch, const double* actions,
                             const vlaprobe_start* next, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
@@ -133,7 +142,7 @@ int32_t vlaprobe_batch_step(vlaprobe_batch* batch, const double* actions,
     if (actions == nullptr) return api::usage("there are no actions");
     if (next == nullptr && worlds.options().autoreset != VLAPROBE_DISABLED)
       return api::usage("a batch whose episodes begin by themselves is told their next starts");
-    return worlds.step({actions, worlds.count() * VLAPROBE_ACTION_SIZE},
+    return worlds.step({actions, worlds.count() * worlds.actions().space.size()},
                        {next, next == nullptr ? 0 : worlds.count()});
   });
 }

@@ -70,16 +70,23 @@ int32_t vlaprobe_policy_begin(vlaprobe_policy* policy, const vlaprobe_stage* sta
   });
 }
 
-int32_t vlaprobe_policy_act(vlaprobe_policy* policy, vlaprobe_stage* stage,
-                            double action[VLAPROBE_ACTION_SIZE], vlaprobe_error* error) {
+int32_t vlaprobe_policy_act(vlaprobe_policy* policy, vlaprobe_stage* stage, double* action,
+                            size_t size, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
     PROBE_ASSIGN(const Use use, Use::of(policy->lock, kPolicy));
     PROBE_ASSIGN(const Use stage_use, Use::of(stage->lock, "stage"));
     if (policy->world != stage->world)
       return api::usage("the policy has begun no episode of this stage: begin comes first");
+    if (const std::size_t wanted = stage->world->actions().space.size(); size != wanted) {
+      return api::usage("an action has " + std::to_string(wanted) +
+                        " numbers, and there is room for " + std::to_string(size));
+    }
     PROBE_ASSIGN(const policy::Observation seen, stage->world->observe());
     stage->is_observed = stage->has_pictures;
     PROBE_ASSIGN(const policy::Action said, policy->policy->act(seen));
+    if (said.size() != size)
+      return Failure{Fault::kPolicy, "an action of " + std::to_string(said.size()) + " numbers",
+                     ""};
     std::ranges::copy(said, action);
     return {};
   });

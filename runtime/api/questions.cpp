@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runtime/api/arrays.h"
+#include "runtime/robot/action_space.h"
 
 namespace probe::api {
 namespace {
@@ -17,7 +18,9 @@ std::chrono::nanoseconds in_clock(double seconds) {
 
 // Whether one array holds the pictures of both, and one their joints.
 bool are_alike(const vlaprobe_question& a, const vlaprobe_question& b) {
-  if (a.picture_count != b.picture_count || a.joints.shape[0] != b.joints.shape[0]) return false;
+  if (a.picture_count != b.picture_count || a.joints.shape[0] != b.joints.shape[0] ||
+      a.action_size != b.action_size)
+    return false;
   for (std::size_t i = 0; i < a.picture_count; ++i) {
     if (std::string_view(a.pictures[i].camera) != b.pictures[i].camera) return false;
     if (!std::ranges::equal(a.pictures[i].rgb.shape, b.pictures[i].rgb.shape)) return false;
@@ -68,7 +71,8 @@ std::vector<Questions::Waiting*> Questions::take() {
 void Questions::answer(const std::vector<Waiting*>& batch) const {
   std::vector<vlaprobe_question> asked;
   for (const Waiting* one : batch) asked.push_back(*one->question);
-  std::vector<double> actions(batch.size() * VLAPROBE_ACTION_SIZE);
+  const std::size_t size = asked.front().action_size;
+  std::vector<double> actions(batch.size() * size);
   vlaprobe_refusals refusals{std::vector<std::optional<std::string>>(batch.size())};
   options_.act(options_.user, asked.data(), asked.size(), actions.data(), &refusals);
   for (std::size_t i = 0; i < batch.size(); ++i) {
@@ -76,10 +80,7 @@ void Questions::answer(const std::vector<Waiting*>& batch) const {
       batch[i]->answer = Failure{Fault::kPolicy, *refusals.why[i], ""};
       continue;
     }
-    policy::Action action{};
-    std::copy_n(actions.begin() + static_cast<std::ptrdiff_t>(i * action.size()), action.size(),
-                action.begin());
-    batch[i]->answer = action;
+    batch[i]->answer = policy::Action(std::span<const double>(actions).subspan(i * size, size));
   }
 }
 
@@ -129,6 +130,8 @@ class Asking : public policy::Policy {
     question_.seed = start.seed;
     question_.draw_seed = start.draw_seed;
     question_.horizon = start.horizon;
+    question_.action_size =
+        start.robot == nullptr ? robot::kActionSize : robot::action_space_of(*start.robot).size();
     question_.task = task_.c_str();
     question_.instruction = prompt_.c_str();
     question_.world = questions_->come();

@@ -63,9 +63,19 @@ int32_t vlaprobe_stage_step(vlaprobe_stage* stage, const double* action, size_t 
     PROBE_ASSIGN(const Use use, Use::of(stage->lock, kStage));
     PROBE_TRY(stage->world->check_step());
     if (action == nullptr) return api::usage("there is no action");
-    PROBE_ASSIGN(const policy::Action numbers, api::read_action({action, size}));
+    PROBE_ASSIGN(const policy::Action numbers,
+                 api::read_action({action, size}, stage->world->actions().space.size()));
     stage->is_observed = false;
     return stage->world->step(numbers);
+  });
+}
+
+int32_t vlaprobe_stage_action_space(const vlaprobe_stage* stage, vlaprobe_action_space* out,
+                                    vlaprobe_error* error) {
+  return call(error, [&]() -> Status {
+    PROBE_ASSIGN(const Use use, Use::of(own(stage)->lock, kStage));
+    *out = stage->world->actions().told();
+    return {};
   });
 }
 

@@ -104,8 +104,22 @@ typedef struct vlaprobe_array {
 } vlaprobe_array;
 
 /* x y z of a translation (m), x y z of a rotation vector (rad), both in the robot's base frame, and
- * the gripper from -1 closed to 1 open. Every robot's action has this size. */
+ * the gripper from -1 closed to 1 open: the numbers of a robot whose tool is moved. Others say in
+ * their vlaprobe_action_space how many they take. */
 #define VLAPROBE_ACTION_SIZE 7
+
+typedef enum vlaprobe_action_kind {
+  VLAPROBE_TOOL = 1,           /* VLAPROBE_ACTION_SIZE numbers */
+  VLAPROBE_JOINT_STEPS = 2,    /* a step of each arm joint (rad, m), and the gripper */
+  VLAPROBE_JOINT_POSITIONS = 3 /* a position of each arm joint (rad, m), and the gripper */
+} vlaprobe_action_kind;
+typedef struct vlaprobe_action_space {
+  int32_t kind; /* vlaprobe_action_kind */
+  int32_t size; /* numbers of an action */
+  /* F64 (size): between these actions are usual; of positions the joints' limits, and pi to either
+   * side where there are none. */
+  vlaprobe_array low, high;
+} vlaprobe_action_space;
 
 /* ---- plans */
 
@@ -225,9 +239,13 @@ VLAPROBE_EXPORT void vlaprobe_stage_release(vlaprobe_stage* stage);
  */
 VLAPROBE_EXPORT int32_t vlaprobe_stage_reset(vlaprobe_stage* stage, int32_t episode,
                                              vlaprobe_error* error);
-/* One control step of `size` (VLAPROBE_ACTION_SIZE) numbers. Fails with VLAPROBE_USAGE on another
- * size, a number that is not finite, and after the horizon or where nothing was reset; then nothing
- * has changed. After any other failure only a reset or restore is accepted. */
+/* What its robot's actions are; the arrays are the stage's. */
+VLAPROBE_EXPORT int32_t vlaprobe_stage_action_space(const vlaprobe_stage* stage,
+                                                    vlaprobe_action_space* out,
+                                                    vlaprobe_error* error);
+/* One control step of `size` numbers. Fails with VLAPROBE_USAGE on another size than its action
+ * space's, a number that is not finite, and after the horizon or where nothing was reset; then
+ * nothing has changed. After any other failure only a reset or restore is accepted. */
 VLAPROBE_EXPORT int32_t vlaprobe_stage_step(vlaprobe_stage* stage, const double* action,
                                             size_t size, vlaprobe_error* error);
 
@@ -308,7 +326,7 @@ typedef struct vlaprobe_start {
 } vlaprobe_start;
 
 /* `tasks` are those whose episodes the worlds may be given. They must show alike: cameras by name
- * and size, the robot's joints. */
+ * and size, the robot's joints; and take actions of one kind and size. */
 VLAPROBE_EXPORT int32_t vlaprobe_batch_create(const vlaprobe_plan* plan, const size_t* tasks,
                                               size_t count, const vlaprobe_batch_options* options,
                                               vlaprobe_batch** batch, vlaprobe_error* error);
@@ -318,8 +336,12 @@ VLAPROBE_EXPORT void vlaprobe_batch_release(vlaprobe_batch* batch);
  * with the first world's failure, which names it; the others have begun. */
 VLAPROBE_EXPORT int32_t vlaprobe_batch_reset(vlaprobe_batch* batch, const uint8_t* mask,
                                              const vlaprobe_start* starts, vlaprobe_error* error);
-/* A control step of every world; `actions` are F64 (worlds, VLAPROBE_ACTION_SIZE). A world whose
- * turn it is to begin anew begins `next[i]`; NULL with VLAPROBE_DISABLED alone. Fails with
+/* What the robots' actions are; the arrays are the batch's. */
+VLAPROBE_EXPORT int32_t vlaprobe_batch_action_space(const vlaprobe_batch* batch,
+                                                    vlaprobe_action_space* out,
+                                                    vlaprobe_error* error);
+/* A control step of every world; `actions` are F64 (worlds, size of the action space). A world
+ * whose turn it is to begin anew begins `next[i]`; NULL with VLAPROBE_DISABLED alone. Fails with
  * VLAPROBE_USAGE, before anything moves, on an action that is none and on a world without an
  * episode. What goes wrong with one world ends its episode (truncated) and is its fault; its
  * metrics are no numbers then, and unless VLAPROBE_DISABLED its next step begins anew. */
@@ -373,10 +395,10 @@ VLAPROBE_EXPORT void vlaprobe_policy_release(vlaprobe_policy* policy);
 /* Behind a reset of the stage; `seed` is what its draws start from, with the episode. */
 VLAPROBE_EXPORT int32_t vlaprobe_policy_begin(vlaprobe_policy* policy, const vlaprobe_stage* stage,
                                               int32_t seed, vlaprobe_error* error);
-/* What the policy does about what the stage shows now; draws pictures. */
+/* What the policy does about what the stage shows now; draws pictures. Fails with VLAPROBE_USAGE
+ * where `size` is not that of the stage's action space. */
 VLAPROBE_EXPORT int32_t vlaprobe_policy_act(vlaprobe_policy* policy, vlaprobe_stage* stage,
-                                            double action[VLAPROBE_ACTION_SIZE],
-                                            vlaprobe_error* error);
+                                            double* action, size_t size, vlaprobe_error* error);
 
 /* ---- runs: episodes into a folder, as `vlaprobe run` makes them */
 
@@ -394,6 +416,7 @@ typedef struct vlaprobe_question {
   double tool[7]; /* as vlaprobe_state */
   double openness;
   vlaprobe_array joints;
+  size_t action_size; /* numbers of its answer; one for all questions of a call */
   const vlaprobe_camera_picture*
       pictures; /* of the first camera first; all questions of a call have alike ones */
   size_t picture_count;
@@ -403,7 +426,7 @@ typedef struct vlaprobe_question {
 typedef struct vlaprobe_refusals vlaprobe_refusals;
 VLAPROBE_EXPORT void vlaprobe_refuse(vlaprobe_refusals* refusals, size_t question, const char* why);
 
-/* Answers `count` questions with VLAPROBE_ACTION_SIZE numbers each, one behind the other; or
+/* Answers `count` questions with their `action_size` numbers each, one behind the other; or
  * refuses some, whose episodes are invalid then, with the reason. Called from threads of the
  * library, one call at a time. */
 typedef void (*vlaprobe_act_callback)(void* user, const vlaprobe_question* questions, size_t count,

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
+#include "runtime/api/arrays.h"
 #include "runtime/api/calls.h"
 #include "runtime/robot/action.h"
 #include "runtime/stage/stage_state.h"
@@ -21,10 +23,10 @@ std::array<double, 7> numbers_of(const Pose& pose) {
 
 }  // namespace
 
-Result<policy::Action> read_action(std::span<const double> numbers) {
-  policy::Action action{};
-  if (numbers.size() != action.size()) {
-    return usage("an action has " + std::to_string(action.size()) + " numbers, found " +
+Result<policy::Action> read_action(std::span<const double> numbers, std::size_t size) {
+  policy::Action action = policy::Action::zeros(size);
+  if (numbers.size() != size) {
+    return usage("an action has " + std::to_string(size) + " numbers, found " +
                  std::to_string(numbers.size()));
   }
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -36,6 +38,33 @@ Result<policy::Action> read_action(std::span<const double> numbers) {
                                             : "not finite"));
   }
   return action;
+}
+
+ActionBounds::ActionBounds(const robot::Robot& robot) : space(robot::action_space_of(robot)) {
+  constexpr double kShift = 0.05,
+                   kTurn = 0.25;  // m, rad in a control step: a share of what arms do
+  for (std::size_t i = 0; i + 1 < space.size(); ++i) {
+    high.push_back(space.is_length(i) ? kShift : kTurn);
+    low.push_back(-high.back());
+    if (space.layout != robot::ActionLayout::kJoints) continue;
+    const auto index = static_cast<std::size_t>(robot.model->find_joint(space.joints[i]));
+    const robot::Joint& joint = robot.model->joints[index];
+    const bool turns_on = joint.kind == robot::JointKind::kContinuous;
+    low.back() = turns_on ? -std::numbers::pi : joint.lower;
+    high.back() = turns_on ? std::numbers::pi : joint.upper;
+  }
+  low.push_back(-1);
+  high.push_back(1);
+}
+
+vlaprobe_action_space ActionBounds::told() const {
+  const vlaprobe_action_kind kind = !space.is_of_joints() ? VLAPROBE_TOOL
+                                    : space.layout == robot::ActionLayout::kJointSteps
+                                        ? VLAPROBE_JOINT_STEPS
+                                        : VLAPROBE_JOINT_POSITIONS;
+  return {kind, static_cast<std::int32_t>(space.size()),
+          array_of(std::span<const double>(low), {low.size()}),
+          array_of(std::span<const double>(high), {high.size()})};
 }
 
 Status check_picture_size(std::int32_t width, std::int32_t height) {
@@ -64,7 +93,7 @@ std::vector<Camera> cameras_of(const plan::Plan& plan, const plan::TaskRecord& t
 
 World::World(std::shared_ptr<const SharedPlan> plan, std::unique_ptr<stage::Stage> stage,
              stage::ImageSize size)
-    : plan_(std::move(plan)), stage_(std::move(stage)) {
+    : plan_(std::move(plan)), stage_(std::move(stage)), actions_(stage_->robot()) {
   const plan::TaskRecord& task = plan_->plan().tasks()[stage_->task()];
   horizon_ = static_cast<int>(task.horizon);
   for (const plan::BodyRecord& body : plan_->plan().bodies(task)) {

@@ -9,14 +9,24 @@
 #include <vector>
 
 #include "runtime/api/plan.h"
+#include "runtime/api/vlaprobe.h"
 #include "runtime/base/result.h"
+#include "runtime/robot/action_space.h"
 #include "runtime/stage/stage.h"
 
 namespace probe::api {
 
-// What a caller said as an action, as one. Fails (kUsage) on another count and on numbers that are
-// none: not finite, or larger than any policy means.
-Result<policy::Action> read_action(std::span<const double> numbers);
+// What a caller said as an action, as one. Fails (kUsage) on another count than `size` and on
+// numbers that are none: not finite, or larger than any policy means.
+Result<policy::Action> read_action(std::span<const double> numbers, std::size_t size);
+
+// What a robot's actions are, and between what numbers they usually lie.
+struct ActionBounds {
+  robot::ActionSpace space;
+  std::vector<double> low, high;  // one for each number
+  explicit ActionBounds(const robot::Robot& robot);
+  vlaprobe_action_space told() const;  // its arrays are this
+};
 
 // Of a task, also of a world without pictures.
 struct Camera {
@@ -61,6 +71,7 @@ class World {
   std::size_t object_count() const { return object_count_; }
   // Position and rotation (w x y z) of the tool centre point in the robot's base frame.
   void write_tool(double (&out)[7]);
+  const ActionBounds& actions() const { return actions_; }
   // Since the last reset or step.
   const policy::Proprioception& proprioception();
 
@@ -88,6 +99,7 @@ class World {
   std::vector<Camera> cameras_;
   std::vector<std::string> joint_names_;
   std::size_t object_count_ = 0;
+  ActionBounds actions_;
   std::vector<double> objects_;
   std::optional<policy::Proprioception> proprioception_;  // of now, when it was asked for
 };

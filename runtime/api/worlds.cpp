@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "runtime/api/calls.h"
+#include "runtime/stage/robot_of.h"
 
 namespace probe::api {
 namespace {
@@ -44,6 +45,7 @@ Result<std::unique_ptr<Worlds>> Worlds::create(std::shared_ptr<const SharedPlan>
   auto made = std::unique_ptr<Worlds>(new Worlds(std::move(plan), std::move(tasks), options));
   PROBE_TRY(made->look_alike());
   PROBE_ASSIGN(made->assets_, made->plan_->assets(made->tasks_));
+  PROBE_TRY(made->act_alike());
   made->now_ = made->room();
   if (options.autoreset == VLAPROBE_SAME_STEP) made->final_ = made->room();
   return made;
@@ -77,6 +79,22 @@ Status Worlds::look_alike() {
       metrics_.push_back(
           {name, metric.type == static_cast<std::uint32_t>(plan::MetricType::kBool)});
     }
+  }
+  return {};
+}
+
+// One array holds what all worlds are told.
+Status Worlds::act_alike() {
+  const plan::Plan& plan = plan_->plan();
+  for (const std::uint32_t index : tasks_) {
+    const plan::RobotRecord& record = plan.robots()[plan.scenes()[plan.tasks()[index].scene].robot];
+    PROBE_ASSIGN(const robot::Robot robot,
+                 stage::robot_of(plan, record, *assets_->robot(record.urdf)));
+    ActionBounds actions(robot);
+    if (!actions_) actions_ = std::move(actions);
+    if (robot::action_space_of(robot) == actions_->space) continue;
+    return usage("tasks `" + plan_->name(tasks_.front()) + "` and `" + plan_->name(index) +
+                 "` do not fit one batch: their robots take other actions");
   }
   return {};
 }
@@ -201,8 +219,8 @@ Status Worlds::step(std::span<const double> actions, std::span<const vlaprobe_st
     }
     // Where the next episode begins nobody reads the action.
     if (!goes_on && options_.autoreset == VLAPROBE_NEXT_STEP) continue;
-    constexpr std::size_t kSize = robot::kActionSize;
-    const auto action = read_action(actions.subspan(i * kSize, kSize));
+    const std::size_t size = actions_->space.size();
+    const auto action = read_action(actions.subspan(i * size, size), size);
     if (!action) return in_world(i, action.failure());
     if (!goes_on) continue;
     if (auto good = worlds_[i]->check_step(); !good) return in_world(i, good.failure());

@@ -52,6 +52,7 @@ class Worlds {
   const std::vector<Camera>& cameras() const { return cameras_; }
   const std::vector<Metric>& metrics() const { return metrics_; }
   std::size_t joints() const { return joints_; }
+  const ActionBounds& actions() const { return *actions_; }
   const Columns& now() const { return now_; }
   // Empty unless episodes begin in the step that ends the last one.
   const Columns& final() const { return final_; }
@@ -71,6 +72,7 @@ class Worlds {
   Worlds(std::shared_ptr<const SharedPlan> plan, std::vector<std::uint32_t> tasks,
          const WorldsOptions& options);
   Status look_alike();
+  Status act_alike();
   Columns room() const;
   Status check_start(const vlaprobe_start& start) const;
   Status begin(std::size_t world, const vlaprobe_start& start);
@@ -86,6 +88,7 @@ class Worlds {
   std::vector<Metric> metrics_;                    // of all tasks, each name once
   std::vector<std::vector<std::size_t>> columns_;  // of the metrics of tasks_[i], among these
   std::size_t joints_ = 0;
+  std::optional<ActionBounds> actions_;
   std::vector<std::unique_ptr<World>> worlds_;
   Columns now_, final_;
   std::vector<std::uint8_t> over_;  // whose next turn is to begin anew

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "runtime/expert/away.h"
+#include "runtime/expert/joint_actions.h"
 #include "runtime/expert/joint_skill.h"
 #include "runtime/expert/pick_place.h"
 #include "runtime/expert/put_spot.h"
@@ -37,6 +38,11 @@ class Expert final : public policy::Policy {
     if (start.delay > 0) return Failure{Fault::kNoSkill, std::string(policy::kLateActions), ""};
     PROBE_ASSIGN(Reach reach, Reach::create(*start.robot));
     reach_ = std::move(reach);
+    joint_actions_.reset();
+    if (robot::row_of(start.robot->law).per_joint) {
+      PROBE_ASSIGN(JointActions made, JointActions::create(*start.robot));
+      joint_actions_ = std::move(made);
+    }
     horizon_ = start.horizon;
     law_ = start.robot->law;
     rate_ = start.control_hz > 0 ? start.control_hz : 5;
@@ -63,6 +69,17 @@ class Expert final : public policy::Policy {
   }
 
   Result<policy::Action> act(const policy::Observation& observation) override {
+    const bool is_first = !started_;
+    PROBE_ASSIGN(const policy::Action step, step_tool(observation));
+    if (!joint_actions_) return step;
+    const std::vector<double>& joints = observation.proprioception.joints;
+    if (is_first) joint_actions_->begin(joints);
+    return joint_actions_->act(step.tool(), joints);
+  }
+
+ private:
+  // What the tool shall do, in seven numbers.
+  Result<policy::Action> step_tool(const policy::Observation& observation) {
     if (!started_ && observation.privileged != nullptr)
       solution_ = skills_of(*observation.privileged);
     // Nothing to do wrong.
@@ -109,7 +126,6 @@ class Expert final : public policy::Policy {
     return action;
   }
 
- private:
   // What kept a skill from being done; the first is what the others follow from.
   void note(const std::string& lack) {
     if (!lack_.empty() || lack.empty()) return;
@@ -311,8 +327,9 @@ class Expert final : public policy::Policy {
 
   bool started_ = false;
   Servo servo_;
-  std::vector<policy::Skill> solution_;  // none: the usual pick and place
-  std::size_t skill_ = 0;                // of these
+  std::optional<JointActions> joint_actions_;  // of an arm that is told its joints
+  std::vector<policy::Skill> solution_;        // none: the usual pick and place
+  std::size_t skill_ = 0;                      // of these
   bool skill_begun_ = false;
   JointSkill joint_;
   PickPlace hand_;

@@ -92,7 +92,7 @@ policy::Action ToolTracker::act(double openness) {
       (robot::from_rotation_vector(share * part(whole, 3)) * from_.rotation).normalized()};
   ++step_;
   const std::array<double, 6> off = between(at_, meant);
-  policy::Action action{};
+  robot::ToolAction action{};
   // Shortened as one where it is too much, so that the tool stays on its line.
   std::array<double, 2> most{1, 1};
   for (std::size_t i = 0; i < 6; ++i) {

@@ -59,6 +59,7 @@ class Hdf5 final : public Sink {
     text(group, "trace_sha256", row.trace_sha256);
     text(group, "invalid", row.invalid.value_or(""));
     text(group, "live", header.live ? to_text(*header.live) : "");
+    if (header.joint_actions) text(group, "action_law", header.joint_actions->law);
     if (header.live && header.live->delay_s) number(group, "live_delay_s", *header.live->delay_s);
     number(group, "episode", header.episode);
     number(group, "seed", header.seed);
@@ -124,7 +125,7 @@ class Hdf5 final : public Sink {
     reals(group, "time", time, {n});
     reals(group, "grip", grip, {n});
     reals(group, "tcp", tcp, {n, 3});
-    reals(group, "action", action, {n, 7});
+    reals(group, "action", action, {n, trace.header.action_size()});
     reals(group, "q", q, {n, joints});
     reals(group, "u", u, {n, joints});
     reals(group, "metrics", metrics, {n, metric_count});

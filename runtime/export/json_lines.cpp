@@ -87,6 +87,7 @@ Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
   json["steps"] = trace.steps.size();
   json["invalid"] = row.invalid ? Json(*row.invalid) : Json(nullptr);
   json["live"] = header.live ? terms_json(*header.live) : Json(nullptr);
+  if (header.joint_actions) json["action_law"] = header.joint_actions->law;
   json["idle"] = row.idle;
   json["delay"] = row.delay;
   json["bodies"] = header.bodies;
@@ -125,7 +126,7 @@ Json step_json(const store::TraceHeader& header, const store::TraceStep& step, i
   json["episode"] = header.episode;
   json["seed"] = header.seed;
   json.update(sample_json(step.sample, header.bodies));
-  json["action"] = step.action;
+  json["action"] = std::vector<double>(step.action.begin(), step.action.end());
   json["live"] = step.live ? live_json(number, *step.live) : Json(nullptr);
   json["q"] = step.q;
   json["u"] = step.u;

@@ -9,7 +9,11 @@
 namespace probe::inspect {
 namespace {
 
-Json law_of(const plan::Plan& plan, const plan::LawRecord& law) {
+Json law_of(const plan::Plan& plan, plan::Control control, const plan::LawRecord& law) {
+  if (control == plan::Control::kJointDelta) {
+    const bool from_target = (law.flags & plan::kLawFromTarget) != 0;
+    return {{"from", from_target ? "target" : "measured"}, {"most", law.most}};
+  }
   Json home = Json::array();
   for (const double q : plan.home(law)) home.push_back(q);
   return {
@@ -55,7 +59,11 @@ Json robot_of(const plan::Plan& plan, const plan::TaskRecord& task) {
   json["fingers"] = Json::array();
   for (const plan::FingerRecord& finger : plan.fingers(robot))
     json["fingers"].push_back(plan.text(finger.link));
-  if (const plan::LawRecord* law = plan.law(robot)) json["law"] = law_of(plan, *law);
+  const auto control = static_cast<plan::Control>(robot.control);
+  // A `joint_position` has a record and no number in it.
+  const plan::LawRecord* law = plan.law(robot);
+  if (law != nullptr && control != plan::Control::kJointPosition)
+    json["law"] = law_of(plan, control, *law);
   const auto gears = plan.gears(robot);
   for (std::size_t i = 0; i < gears.size(); ++i) {
     json["gears"][std::string(plan.text(plan.drives(robot)[i].joint))] = {
@@ -83,6 +91,13 @@ std::string law_text(const Json& robot) {
   if (!robot.contains("law")) return {};
   const Json& law = robot["law"];
   const auto number = [](const Json& value) { return fmt::format("{:.6g}", value.get<double>()); };
+  if (law.contains("most")) {
+    const double most = law["most"].get<double>();
+    return "steps from the " +
+           std::string(law["from"].get<std::string>() == "target" ? "last target"
+                                                                  : "measured position") +
+           (most > 0 ? fmt::format(", at most {:.6g} rad or m", most) : "");
+  }
   std::string home;
   for (const Json& q : law["home"]) home += (home.empty() ? "" : ", ") + number(q);
   const Json& grip = law["grip"];

@@ -9,7 +9,8 @@
 namespace probe::inspect {
 
 // {name, control, hz, drives[], fingers[]}; where the law has numbers also law {kp[6], damping[6],
-// output[6], null, uncouple, ramp, home[], grip {pace, stiffness, limit}}, where joints have them
+// output[6], null, uncouple, ramp, home[], grip {pace, stiffness, limit}} or, of joint_delta, {from
+// "target" or "measured", most (rad or m; 0: any)}, where joints have them
 // gears {joint: {friction, armature}}; where there is air, air {density, viscosity}. SI.
 Json robot_of(const plan::Plan& plan, const plan::TaskRecord& task);
 

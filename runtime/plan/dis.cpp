@@ -187,7 +187,12 @@ void list_robots(std::string& out, const Plan& plan) {
     if (law == nullptr && gears.empty() && robot.more_fingers.count == 0) continue;
     fmt::format_to(to, "\nrobot {} {}: control {} at {} Hz\n", i, plan.text(robot.name),
                    robot.control, robot.control_hz);
-    if (law != nullptr) {
+    const auto control = static_cast<Control>(robot.control);
+    if (law != nullptr && control == Control::kJointDelta) {
+      fmt::format_to(to, "  steps from the {}, most {}\n",
+                     (law->flags & kLawFromTarget) != 0 ? "last target" : "measured position",
+                     law->most);
+    } else if (law != nullptr && control != Control::kJointPosition) {
       fmt::format_to(to, "  kp{}, damping{}, output{}\n", numbers_text(law->kp),
                      numbers_text(law->damping), numbers_text(law->output));
       fmt::format_to(to, "  null {}, ramp {}, flags {}, most {}, home{}\n", law->null_kp, law->ramp,

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "runtime/base/percent.h"
+#include "runtime/robot/action_space.h"
 
 namespace probe::policy {
 namespace {
@@ -120,7 +121,8 @@ class LivePolicy final : public Policy {
     answers_.clear();
     question_.reset();
     next_ = 0;
-    gripper_.reset();
+    space_ = start.robot == nullptr ? robot::ActionSpace{} : robot::action_space_of(*start.robot);
+    told_.reset();
     live_ = {};
     return inner_ ? inner_->begin(start) : Status();
   }
@@ -129,7 +131,6 @@ class LivePolicy final : public Policy {
     const int step = now.step;
     live_ = {};
     if (step == 0) begun_ = is_paced_ ? LiveClock::now() : Time{};
-    if (!gripper_) gripper_ = now.proprioception.openness >= 0.5 ? 1 : -1;
     PROBE_TRY(keep_pace(step));
     seen_ = is_paced_ ? LiveClock::now() : begun_ + step * period_;
     if (!question_ && step >= next_) PROBE_TRY(ask(now, seen_));
@@ -216,17 +217,24 @@ class LivePolicy final : public Policy {
   }
 
   Result<Action> decide(const Observation& now) {
-    Action action{0, 0, 0, 0, 0, 0, *gripper_};
+    Action action = hold(now);
     if (const auto said = answers_.at(now.step, !live_.answers.empty(), ratio(), &live_.source)) {
       if (halves_ != nullptr) {
         PROBE_ASSIGN(action, halves_->convert(*said, now));
       } else {
-        std::copy_n(said->begin(), action.size(), action.begin());
+        action = Action(std::span<const double>(*said));
       }
     }
-    gripper_ = action[robot::kActionGripper];
+    told_ = action;
     if (halves_ != nullptr) halves_->done(action, now);
     return action;
+  }
+
+  // No motion, the gripper as it was told last.
+  Action hold(const Observation& now) const {
+    if (told_) return robot::standstill(space_, told_->arm(), told_->gripper());
+    const Proprioception& arm = now.proprioception;
+    return robot::standstill(space_, arm.joints, arm.openness >= 0.5 ? 1 : -1);
   }
 
   std::optional<double> ratio() const {
@@ -243,7 +251,8 @@ class LivePolicy final : public Policy {
   std::optional<Question> question_;
   int next_ = 0;  // step of the next question, at the earliest
   LiveAnswers answers_;
-  std::optional<double> gripper_;  // as told last
+  robot::ActionSpace space_;
+  std::optional<Action> told_;  // last
   LiveStep live_;
 };
 

@@ -1,37 +1,68 @@
 // Null, random, replayed and noisy policies, and one that may have nothing to do.
 #include "runtime/policy/scripted.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
+
+#include "runtime/robot/action_space.h"
 
 namespace probe::policy {
 namespace {
 
-constexpr Action kStill{0, 0, 0, 0, 0, 0, 1};
+// What an episode's actions are: those of a tool where nobody says which robot acts.
+robot::ActionSpace space_of(const EpisodeStart& start) {
+  return start.robot == nullptr ? robot::ActionSpace{} : robot::action_space_of(*start.robot);
+}
+
+// Asks the arm to stay where it is first seen, with an open gripper.
+class StandsStill {
+ public:
+  void begin(const EpisodeStart& start) {
+    space_ = space_of(start);
+    stay_.reset();
+  }
+  const Action& act(const Observation& observation) {
+    if (!stay_) stay_ = robot::standstill(space_, observation.proprioception.joints, 1);
+    return *stay_;
+  }
+
+ private:
+  robot::ActionSpace space_;
+  std::optional<Action> stay_;
+};
 
 class NullPolicy final : public Policy {
  public:
-  Status begin(const EpisodeStart&) override { return {}; }
-  Result<Action> act(const Observation&) override { return kStill; }
+  Status begin(const EpisodeStart& start) override {
+    stands_.begin(start);
+    return {};
+  }
+  Result<Action> act(const Observation& observation) override { return stands_.act(observation); }
+
+ private:
+  StandsStill stands_;
 };
 
 class RandomPolicy final : public Policy {
  public:
   Status begin(const EpisodeStart& start) override {
     draws_ = Draws(start.draw_seed);
+    space_ = space_of(start);
     return {};
   }
-  Result<Action> act(const Observation&) override {
-    Action action{};
-    for (std::size_t i = 0; i < robot::kActionGripper; ++i) {
-      const double most = i < robot::kActionTurn ? 0.02 : 0.1;  // m, rad
-      action[i] = most * (2 * draws_.uniform() - 1);
+  Result<Action> act(const Observation& observation) override {
+    Action action = robot::standstill(space_, observation.proprioception.joints, 1);
+    for (std::size_t i = 0; i + 1 < action.size(); ++i) {
+      const double most = space_.is_length(i) ? 0.02 : 0.1;  // m, rad
+      action[i] += most * (2 * draws_.uniform() - 1);
     }
-    action[robot::kActionGripper] = draws_.uniform() < 0.5 ? -1 : 1;
+    action.gripper() = draws_.uniform() < 0.5 ? -1 : 1;
     return action;
   }
 
  private:
+  robot::ActionSpace space_;
   Draws draws_{0};
 };
 
@@ -69,11 +100,15 @@ class StillWithoutPolicy final : public Policy {
   StillWithoutPolicy(int role, std::unique_ptr<Policy> inner)
       : role_(role), inner_(std::move(inner)) {}
 
-  Status begin(const EpisodeStart& start) override { return inner_->begin(start); }
+  Status begin(const EpisodeStart& start) override {
+    stands_.begin(start);
+    return inner_->begin(start);
+  }
   Result<Action> act(const Observation& observation) override {
     const Privileged* view = observation.privileged;
     // A solution in skills may be about other things than objects: the inner one knows.
-    if (view != nullptr && view->object_of(role_) < 0 && view->solution.empty()) return kStill;
+    if (view != nullptr && view->object_of(role_) < 0 && view->solution.empty())
+      return stands_.act(observation);
     return inner_->act(observation);
   }
   void end(const EpisodeEnd& end) override { inner_->end(end); }
@@ -82,6 +117,7 @@ class StillWithoutPolicy final : public Policy {
  private:
   int role_;
   std::unique_ptr<Policy> inner_;
+  StandsStill stands_;
 };
 
 class NoisyPolicy final : public Policy {
@@ -91,14 +127,14 @@ class NoisyPolicy final : public Policy {
 
   Status begin(const EpisodeStart& start) override {
     draws_ = Draws(start.draw_seed);
+    space_ = space_of(start);
     return inner_->begin(start);
   }
   Result<Action> act(const Observation& observation) override {
     PROBE_ASSIGN(Action action, inner_->act(observation));
     if (share_ < 1 && draws_.uniform() >= share_) return action;
-    for (std::size_t i = 0; i < robot::kActionGripper; ++i) {
-      action[i] += (i < robot::kActionTurn ? sigma_ : 2 * sigma_) * normal();  // m, rad
-    }
+    for (std::size_t i = 0; i + 1 < action.size(); ++i)
+      action[i] += (space_.is_length(i) ? sigma_ : 2 * sigma_) * normal();  // m, rad
     return action;
   }
   void end(const EpisodeEnd& end) override { inner_->end(end); }
@@ -115,6 +151,7 @@ class NoisyPolicy final : public Policy {
 
   std::unique_ptr<Policy> inner_;
   double sigma_, share_;  // of the steps that are noisy
+  robot::ActionSpace space_;
   Draws draws_{0};
 };
 

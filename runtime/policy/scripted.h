@@ -13,11 +13,12 @@
 
 namespace probe::policy {
 
-// Stays where it is with an open gripper.
+// Stays where it first is with an open gripper.
 std::unique_ptr<Policy> make_null();
 
 // Each number uniform: translations within 2 cm, rotation vector within 0.1 rad a component,
-// gripper open or closed.
+// gripper open or closed. Of an arm that is told its joints: steps within 0.1 rad, or 2 cm where
+// the joint slides; positions as far from where it is.
 std::unique_ptr<Policy> make_random();
 
 // Gives the actions of a stored episode of the run in `dir`.
@@ -34,7 +35,8 @@ std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inn
 
 // `inner` with normal noise on the first six numbers: standard deviation `sigma` metres on each
 // translation, 2 `sigma` rad on each component of the rotation vector (10 mm and 1.1 degrees for
-// 0.01). The gripper stays as it is.
+// 0.01). The gripper stays as it is. On joints as on those: `sigma` metres where the joint slides,
+// else 2 `sigma` rad.
 std::unique_ptr<Policy> make_noisy(std::unique_ptr<Policy> inner, double sigma);
 
 // `inner`, pushed off its way now and then: in one step of eight, drawn, the noise of make_noisy is

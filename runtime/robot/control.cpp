@@ -68,7 +68,7 @@ double EeDeltaPoseController::openness(std::span<const double> q) const {
   return range_.openness(q.subspan(chain_.joint_count()));
 }
 
-Result<std::span<const double>> EeDeltaPoseController::targets(const Action& action,
+Result<std::span<const double>> EeDeltaPoseController::targets(const ToolAction& action,
                                                                std::span<const double> measured_q) {
   PROBE_CHECK(measured_q.size() == joint_targets_.size(), "one measured position a drive");
   for (std::size_t i = 0; i < action.size(); ++i) {

@@ -47,7 +47,8 @@ class EeDeltaPoseController {
   // next call. The target pose moves even if no joint positions reach it; the arm's targets then
   // stay. Fails (kPolicy) on a number that is not finite or is beyond 1000 in size; nothing has
   // changed then.
-  Result<std::span<const double>> targets(const Action& action, std::span<const double> measured_q);
+  Result<std::span<const double>> targets(const ToolAction& action,
+                                          std::span<const double> measured_q);
 
   std::span<const double> last() const { return joint_targets_; }  // of the last targets()
 

@@ -63,7 +63,7 @@ Status Controller::begin(std::span<const double> action, std::span<const double>
   }
   return std::visit(
       Overloaded{[&](EeDeltaPoseController& ee) -> Status {
-                   Action seven{};
+                   ToolAction seven{};
                    std::copy(action.begin(), action.end(), seven.begin());
                    PROBE_TRY(ee.targets(seven, measured_q));
                    return {};

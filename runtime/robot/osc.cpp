@@ -121,8 +121,8 @@ Status check_law(const RobotModel& model, const EeControlSpec& spec, const OscPo
 
 }  // namespace
 
-Action shares_of(const OscPose& law, const Action& action) {
-  Action shares = action;
+ToolAction shares_of(const OscPose& law, const ToolAction& action) {
+  ToolAction shares = action;
   for (size_t i = 0; i < law.output.size(); ++i) shares[i] /= law.output[i];
   shares[kActionGripper] = -action[kActionGripper];
   return shares;

@@ -78,7 +78,7 @@ class OscPoseController {
 
 // An action in m and rad, gripper -1 closes .. +1 opens (action.h), as begin() wants it: shares of
 // the law's output, and the gripper's sign the other way round.
-Action shares_of(const OscPose& law, const Action& action);
+ToolAction shares_of(const OscPose& law, const ToolAction& action);
 
 // 0.5 (r1 x g1 + r2 x g2 + r3 x g3) with the columns of both: robosuite's orientation error, world
 // axes; near the goal it is the rotation vector that is left.

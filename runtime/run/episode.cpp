@@ -134,6 +134,12 @@ class Loop {
       if (std::isfinite(value)) continue;
       return policy_failed({Fault::kPolicy, "an action with a number that is not finite", ""});
     }
+    if (const std::size_t wanted = stage_.action_space().size(); action->size() != wanted) {
+      return policy_failed({Fault::kPolicy,
+                            "an action of " + std::to_string(action->size()) +
+                                " numbers, the robot's have " + std::to_string(wanted),
+                            ""});
+    }
     record.action = *action;
     if (const policy::LiveStep* live = policy_.live_step()) {
       record.live = *live;
@@ -253,6 +259,10 @@ store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& j
   for (const plan::MetricRecord& metric : plan.metrics(task)) {
     header.metrics.push_back({std::string(plan.text(metric.name)),
                               metric.type == static_cast<std::uint32_t>(plan::MetricType::kBool)});
+  }
+  if (const robot::ActionSpace& space = stage.action_space(); space.is_of_joints()) {
+    header.joint_actions = {std::string(robot::row_of(stage.robot().law).word),
+                            static_cast<std::uint32_t>(space.size())};
   }
   header.live = live;
   header.fingerprint = fingerprint;

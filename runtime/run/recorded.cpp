@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "runtime/robot/laws.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/store.h"
@@ -81,6 +82,30 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const st
   }
   if (steps->empty()) return Failure{Fault::kUsage, "has no valid episode to serve", dir};
   return std::shared_ptr<const servers::RecordedEpisodes>(std::move(steps));
+}
+
+Result<servers::ActionForm> only_form(const std::string& dir) {
+  PROBE_ASSIGN(const auto rows, store::read_results(dir));
+  std::optional<std::string> law;
+  std::set<std::string> tasks;
+  for (const store::ResultRow& row : rows) {
+    // A task has one robot.
+    if (row.invalid || !tasks.insert(row.task).second) continue;
+    PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
+    const auto& joints = trace.header.joint_actions;
+    const std::string here = joints ? joints->law : std::string();
+    if (law && *law != here) {
+      return Failure{Fault::kUsage,
+                     "has actions of several laws, and a server answers in one: run the tasks of "
+                     "one robot into a folder of their own",
+                     dir};
+    }
+    law = here;
+  }
+  const robot::KindRow* kind = robot::find_kind(law.value_or(""));
+  if (kind == nullptr) return servers::ActionForm::kDelta;
+  return kind->layout == robot::ActionLayout::kJoints ? servers::ActionForm::kJoints
+                                                      : servers::ActionForm::kJointSteps;
 }
 
 Result<std::optional<int>> only_seed(const std::string& dir) {

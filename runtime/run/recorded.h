@@ -24,6 +24,10 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const
 Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const std::string& dir,
                                                                         int most);
 
+// What the actions of a run's valid episodes are, as a profile says it: changes of the tool, or
+// what the law of its robots takes. Fails (kUsage) where there are several.
+Result<servers::ActionForm> only_form(const std::string& dir);
+
 // Which seed the episodes of a run are of, where its policy draws, so that of another seed they
 // would be others; nothing where it draws nothing, or there are several.
 Result<std::optional<int>> only_seed(const std::string& dir);

@@ -84,11 +84,9 @@ class TraceAnswers final : public policy::Answerer {
     return std::exchange(answer_, std::nullopt);
   }
   Result<policy::Action> convert(const Said& said, const policy::Observation&) override {
-    policy::Action action{};
-    if (said.size() != action.size())
+    if (said.empty())
       return Failure{Fault::kStore, "the trace has no action of an answer that it does", ""};
-    std::copy(said.begin(), said.end(), action.begin());
-    return action;
+    return policy::Action(std::span<const double>(said));
   }
   void done(const policy::Action&, const policy::Observation&) override {}
   int steps_between(int asked) const override {

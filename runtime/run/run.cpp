@@ -206,8 +206,8 @@ void note_batch(const RunOptions& options, const Actor& actor, RunSummary& summa
                           ": each world asks one question at a time");
 }
 
-// Whose state the questions carry: the first task's robot. Of the control laws of all tasks the one
-// that takes the least.
+// Whose state the questions carry: the first task's robot. Of the control laws of all tasks one
+// that does not take every form; each episode begins with its own robot's.
 Result<servers::KnownArm> arm_of(const plan::Plan& plan, const std::vector<EpisodeJob>& jobs,
                                  const stage::SharedAssets& assets) {
   const auto robot_in = [&](std::uint32_t task) -> const plan::RobotRecord& {
@@ -217,8 +217,11 @@ Result<servers::KnownArm> arm_of(const plan::Plan& plan, const std::vector<Episo
   PROBE_ASSIGN(const robot::Robot robot, stage::robot_of(plan, record, *assets.robot(record.urdf)));
   servers::KnownArm arm{robot.control.arm_joints.size(), robot.control.finger_joints.size(), {}};
   for (const EpisodeJob& job : jobs) {
-    if (robot_in(job.task).control == static_cast<std::uint32_t>(plan::Control::kOscPose))
-      arm.control = robot::ControlKind::kOscPose;
+    // Records count from 1.
+    const std::uint32_t control = robot_in(job.task).control;
+    if (control == static_cast<std::uint32_t>(plan::Control::kEeDeltaPose)) continue;
+    arm.control = static_cast<robot::ControlKind>(control - 1);
+    if (arm.control == robot::ControlKind::kOscPose) break;
   }
   return arm;
 }

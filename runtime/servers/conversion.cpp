@@ -102,8 +102,9 @@ Pose pose_of(const Profile& profile, const RawAction& a) {
 // rad; farther outside a joint's limits than policies overshoot.
 constexpr double kBeyondJoint = 0.5;
 
-// The pose that the joints asked for bring the tool to.
-Result<Pose> pose_of_joints(const Profile& profile, const RawAction& numbers, const ArmNow& arm) {
+// Where the joints asked for are to be.
+Result<std::vector<double>> asked_joints(const Profile& profile, const RawAction& numbers,
+                                         const ArmNow& arm) {
   const std::size_t count = numbers.size() - 1;
   if (arm.chain == nullptr || arm.chain->joint_count() != count || arm.joints.size() != count) {
     return bad_conversion("an action of " + std::to_string(count) +
@@ -122,13 +123,28 @@ Result<Pose> pose_of_joints(const Profile& profile, const RawAction& numbers, co
     }
     joints[i] = std::clamp(joints[i], low, high);
   }
-  return arm.chain->pose(joints);
+  return joints;
+}
+
+// The numbers of an arm that is told its joints, the gripper's left to do.
+Result<policy::Action> joint_action(const Profile& profile, const RawAction& numbers,
+                                    const ArmNow& arm) {
+  const ActionForm wanted = arm.space->layout == robot::ActionLayout::kJoints
+                                ? ActionForm::kJoints
+                                : ActionForm::kJointSteps;
+  if (profile.action_form != wanted) {
+    return bad_conversion(std::string("the robot is told ") +
+                          (wanted == ActionForm::kJoints ? "positions" : "steps") +
+                          " of its joints, and the actions are none (profile field `action.form`)");
+  }
+  if (auto good = asked_joints(profile, numbers, arm); !good) return good.failure();
+  return policy::Action(std::span<const double>(numbers));
 }
 
 // The pose to be at as the change that brings the controller's target there. Its law is T' =
 // Trans(p) [R, d] Trans(-p) T with p the measured position, so R = R' R_T^-1 and d = t' - p - R (t
 // - p).
-void set_change(const Pose& wanted, const ArmNow& arm, policy::Action* action) {
+void set_change(const Pose& wanted, const ArmNow& arm, robot::ToolAction* action) {
   const Quat turn = wanted.rotation * arm.target.rotation.conjugate();
   const Vec3& from = arm.tool_measured;
   const Vec3 shift = wanted.position - from - turn * (arm.target.position - from);
@@ -295,12 +311,17 @@ RawAction denormalised(const Profile& profile, const RawAction& raw) {
 Result<policy::Action> to_action(const Profile& profile, const RawAction& raw, const ArmNow& arm) {
   if (auto fit = check_statistics(profile, raw.size()); !fit) return fit.failure();
   const RawAction numbers = denormalised(profile, raw);
-  policy::Action action{};
+  if (arm.space != nullptr && arm.space->is_of_joints()) {
+    PROBE_ASSIGN(policy::Action joints, joint_action(profile, numbers, arm));
+    PROBE_ASSIGN(joints.gripper(), to_gripper(profile, numbers.back()));
+    return joints;
+  }
+  robot::ToolAction action{};
   const bool are_joints = names_joints(profile.action_form);
   const bool is_absolute = profile.action_form == ActionForm::kAbsolute;
   if (are_joints) {
-    PROBE_ASSIGN(const Pose wanted, pose_of_joints(profile, numbers, arm));
-    set_change(wanted, arm, &action);
+    PROBE_ASSIGN(const std::vector<double> joints, asked_joints(profile, numbers, arm));
+    set_change(arm.chain->pose(joints), arm, &action);
   } else if (is_absolute) {
     set_change(pose_of(profile, numbers), arm, &action);
   } else {
@@ -315,7 +336,7 @@ Result<policy::Action> to_action(const Profile& profile, const RawAction& raw, c
     for (int i = 0; i < 3; ++i) action[static_cast<std::size_t>(i + 3)] = turn[i];
   }
   PROBE_ASSIGN(action[robot::kActionGripper], to_gripper(profile, numbers.back()));
-  return action;
+  return policy::Action(action);
 }
 
 }  // namespace probe::servers

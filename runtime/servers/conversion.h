@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/policy/policy.h"
+#include "runtime/robot/action_space.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/servers/profile.h"
 #include "runtime/servers/transport.h"
@@ -29,14 +30,16 @@ Result<std::vector<double>> to_state(const Profile& profile, StateLayout layout,
 RawAction denormalised(const Profile& profile, const RawAction& raw);
 
 struct ArmNow {
-  Pose target;                          // of the controller, base frame
-  Vec3 tool_measured;                   // the tool centre point's position, base frame
-  std::span<const double> joints = {};  // measured, of the arm alone, rad
-  const robot::Chain* chain = nullptr;  // of these joints; needed where actions name them
+  Pose target;                                // of the controller, base frame
+  Vec3 tool_measured;                         // the tool centre point's position, base frame
+  std::span<const double> joints = {};        // measured, of the arm alone, rad
+  const robot::Chain* chain = nullptr;        // of these joints; needed where actions name them
+  const robot::ActionSpace* space = nullptr;  // the robot's; null: the tool's
 };
 
 // Denormalised, the rotation as a rotation vector, the gripper -1 .. +1. Numbers that already are
-// ours come back bit for bit; joints become the pose that they bring the tool to. Fails (kPolicy),
+// ours come back bit for bit; joints become the pose that they bring the tool to, and go on as they
+// are to a robot whose law takes them. Fails (kPolicy) where the numbers do not fit that law and,
 // naming the field that would be at fault, on a shift or turn above the profile's limits, on
 // joints far outside the robot's and on a gripper's number far outside its range. Of a pose, and of
 // joints, the limits on shift and turn hold for what it changes.

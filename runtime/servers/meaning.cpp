@@ -184,15 +184,34 @@ Status check_said(const Profile& adapted, const std::vector<OpenField>& left,
 
 Status check_form(const Profile& profile, ActionForm form, robot::ControlKind control,
                   const std::string& server) {
-  if (form == ActionForm::kUnsaid || form == ActionForm::kDelta) return {};
+  struct Takes {
+    ActionForm form;
+    const char* what;
+  };
+  // Of each law but `ee_delta_pose`, which takes all.
+  const auto takes = [&]() -> Takes {
+    switch (control) {
+      case robot::ControlKind::kOscPose:
+        return {ActionForm::kDelta, "changes of the tool's pose"};
+      case robot::ControlKind::kJointDelta:
+        return {ActionForm::kJointSteps, "steps of the arm's joints"};
+      case robot::ControlKind::kJointPosition:
+        return {ActionForm::kJoints, "positions of the arm's joints"};
+      case robot::ControlKind::kEeDeltaPose:
+        break;
+    }
+    return {form, ""};
+  }();
+  if (form == ActionForm::kUnsaid || form == takes.form) return {};
   const robot::KindRow& row = robot::control_kinds()[static_cast<std::size_t>(control)];
-  if (control == robot::ControlKind::kEeDeltaPose) return {};
-  const auto word = std::ranges::find(kActionForms, form, &Word<ActionForm>::value);
+  const auto word_of = [](ActionForm of) {
+    return std::string(std::ranges::find(kActionForms, of, &Word<ActionForm>::value)->text);
+  };
   return Failure{Fault::kUsage,
-                 "actions of profile `" + profile.name + "` are `" + std::string(word->text) +
+                 "actions of profile `" + profile.name + "` are `" + word_of(form) +
                      "` (`action.form`), and a robot of the run is controlled by `" +
-                     std::string(row.word) +
-                     "`, which takes changes of the tool's pose alone (`action.form = delta`)",
+                     std::string(row.word) + "`, which takes " + takes.what +
+                     " alone (`action.form = " + word_of(takes.form) + "`)",
                  server};
 }
 

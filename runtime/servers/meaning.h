@@ -47,7 +47,8 @@ Status check_said(const Profile& adapted, const std::vector<OpenField>& left,
                   const std::string& server);
 
 // Fails (kUsage) on a form that the robot's control law cannot carry out: poses and joints move the
-// target that `ee_delta_pose` keeps; a law without one has changes alone. kUnsaid passes.
+// target that `ee_delta_pose` keeps; `osc_pose`, which keeps none, takes changes alone; a law of
+// joints takes their numbers alone. kUnsaid passes.
 Status check_form(const Profile& profile, ActionForm form, robot::ControlKind control,
                   const std::string& server);
 

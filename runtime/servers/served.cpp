@@ -6,6 +6,7 @@
 #include "runtime/base/sha256.h"
 #include "runtime/servers/known_observations.h"
 #include "runtime/servers/listening.h"
+#include "runtime/servers/profile_words.h"
 #include "runtime/servers/protocol.h"
 
 namespace probe::servers {
@@ -23,6 +24,8 @@ class ServedNull final : public ServedPolicy {
 
 class ServedDigest final : public ServedPolicy {
  public:
+  // Answers have `size` numbers: a tool's, or joints' and the gripper's.
+  explicit ServedDigest(std::size_t size = robot::kActionSize) : size_(size) {}
   void reset() override {}
   Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
     const Sha256 seen = Hasher()
@@ -32,19 +35,28 @@ class ServedDigest final : public ServedPolicy {
     policy::Draws draws(little_endian_number(seen));
     std::vector<policy::Action> actions(static_cast<std::size_t>(count));
     for (policy::Action& action : actions) {
-      for (std::size_t i = 0; i < 6; ++i)
+      action = policy::Action::zeros(size_);
+      for (std::size_t i = 0; i + 1 < size_; ++i)
         action[i] = (i < 3 ? 0.008 : 0.02) * (2 * draws.uniform() - 1);
-      action[6] = draws.uniform() < 0.5 ? -1 : 1;
+      action.gripper() = draws.uniform() < 0.5 ? -1 : 1;
     }
     return actions;
   }
+
+ private:
+  std::size_t size_;
 };
 
 // Of an observation that no episode has: a question of a proof is answered as a digest does.
-Result<std::vector<policy::Action>> answer_unknown(const Asked& asked, int count,
+Result<std::vector<policy::Action>> answer_unknown(const RecordedEpisodes& recorded,
+                                                   const Asked& asked, int count,
                                                    const char* refusal) {
+  const auto some =
+      std::ranges::find_if(recorded, [](const auto& one) { return !one.second.empty(); });
+  const std::size_t size =
+      some == recorded.end() ? robot::kActionSize : some->second.front().size();
   if (is_known_observation(asked.picture.bytes, asked.words))
-    return ServedDigest().answer(asked, count);
+    return ServedDigest(size).answer(asked, count);
   return bad(refusal);
 }
 
@@ -66,7 +78,7 @@ class ServedRecorded final : public ServedPolicy {
     }
     // A question of a proof is no step of the episode, in which it may come.
     if (actions_ == nullptr || is_known_observation(asked.picture.bytes, asked.words)) {
-      return answer_unknown(asked, count,
+      return answer_unknown(*episodes_, asked, count,
                             "picture and instruction begin none of the episodes that are served");
     }
     if (next_ >= actions_->size()) return bad("the episode has no more actions");
@@ -94,7 +106,7 @@ class ServedSteps final : public ServedPolicy {
         steps_->find(episode_key(to_hex(sha256(std::as_bytes(std::span(asked.picture.bytes)))),
                                  to_hex(sha256(asked.words))));
     if (found == steps_->end()) {
-      return answer_unknown(asked, count,
+      return answer_unknown(*steps_, asked, count,
                             "picture and instruction are of no step that is served, or of several");
     }
     const auto& actions = found->second;
@@ -180,6 +192,11 @@ Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOpti
                    "--batch"};
   }
   PROBE_TRY(check_tls(row, options.tls));
+  if (names_joints(options.form) && !row.has_joint_actions) {
+    return Failure{Fault::kUsage,
+                   "protocol " + std::string(row.word) + " has no actions of joints, as these are",
+                   "--protocol"};
+  }
   ServeOptions numeric = options;
   PROBE_ASSIGN(numeric.address, listening_address(options.address, options.port));
   return row.serve(numeric);
@@ -191,9 +208,10 @@ bool has_reset(Protocol protocol, const std::string& dialect) {
 }
 
 std::string options_for_served(Protocol protocol, const ServeOptions& options) {
-  std::string text =
-      "action.form=delta&action.units=m_rad&action.rotation=vector&action.gripper=signed&"
-      "action.threshold=none";
+  const auto form = std::ranges::find(kActionForms, options.form, &Word<ActionForm>::value);
+  std::string text = "action.form=" + std::string(form->text) +
+                     "&action.units=m_rad&action.rotation=vector&action.gripper=signed&"
+                     "action.threshold=none";
   text += row_of(protocol).served_options;
   // Their servers know no connection from another.
   if (options.keeps_episode && (protocol == Protocol::kGr00t || protocol == Protocol::kOpenVla))
@@ -247,7 +265,9 @@ wire::Array actions_array(const std::vector<policy::Action>& actions) {
   std::vector<double> numbers;
   for (const policy::Action& action : actions)
     numbers.insert(numbers.end(), action.begin(), action.end());
-  return wire::array_f64({static_cast<std::int64_t>(actions.size()), 7}, numbers);
+  const std::size_t size = actions.empty() ? robot::kActionSize : actions.front().size();
+  return wire::array_f64(
+      {static_cast<std::int64_t>(actions.size()), static_cast<std::int64_t>(size)}, numbers);
 }
 
 }  // namespace probe::servers

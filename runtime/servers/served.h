@@ -63,14 +63,16 @@ struct ServeOptions {
   int chunk = 1;  // actions of an answer, at most; vla-eval's have one
   // Questions of a message, at most, or of those that vla-eval's server gathers; 1: no batches.
   int batch = 1;
-  std::string dialect;           // of GR00T and OpenVLA, as in a profile
-  bool keeps_episode = false;    // the policy does, from one question to the next
-  std::optional<int> seed = {};  // its episodes are of this one alone
-  wire::TlsFiles tls = {};       // of protocols over WebSocket and HTTP; none: plain
+  std::string dialect;                   // of GR00T and OpenVLA, as in a profile
+  ActionForm form = ActionForm::kDelta;  // of the policy's actions: changes of the tool, or joints
+  bool keeps_episode = false;            // the policy does, from one question to the next
+  std::optional<int> seed = {};          // its episodes are of this one alone
+  wire::TlsFiles tls = {};               // of protocols over WebSocket and HTTP; none: plain
   MakeServedPolicy policy;
 };
 
-// Listens until it goes. Fails (kUsage) where it cannot.
+// Listens until it goes. Fails (kUsage) where it cannot, and where the protocol has no actions of
+// the form.
 Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOptions& options);
 
 // Whether the protocol has a word for an episode's beginning.
@@ -90,7 +92,7 @@ Status check_batch_asked(const ServeOptions& options, std::size_t questions);
 // The first picture among a map's entries. Fails naming what there is.
 Result<wire::Array> first_picture(const wire::Value& map);
 Result<std::string> text_at(const wire::Value& map, std::string_view key);
-// f64 [n, 7].
+// f64 [n, 7], or as many numbers as the actions have.
 wire::Array actions_array(const std::vector<policy::Action>& actions);
 
 }  // namespace probe::servers

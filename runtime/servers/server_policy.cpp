@@ -97,7 +97,9 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   if (is_exchanged_unseen() && identity_->is_due()) is_shown_ = false;
   PROBE_TRY(is_open_ ? show_who_answers() : connect());
   arm_.reset();
+  space_ = {};
   if (start.robot != nullptr) {
+    space_ = robot::action_space_of(*start.robot);
     PROBE_TRY(
         check_form(profile_, profile_.action_form, robot::row_of(start.robot->law).kind, server_));
   }
@@ -137,13 +139,14 @@ Result<policy::Action> ServerPolicy::convert(const RawAction& said,
   const Pose& tool = measured.tcp_in_base;
   if (!target_) target_ = tool;
   const std::span<const double> joints(measured.joints.data(), measured.arm_joints());
-  auto action =
-      to_action(profile_, said, {*target_, tool.position, joints, arm_ ? &*arm_ : nullptr});
+  auto action = to_action(profile_, said,
+                          {*target_, tool.position, joints, arm_ ? &*arm_ : nullptr, &space_});
   if (!action) return named(action.failure(), server_);
   return action;
 }
 
 void ServerPolicy::done(const policy::Action& a, const policy::Observation& now) {
+  if (space_.is_of_joints()) return;
   const Pose& tool = now.proprioception.tcp_in_base;
   if (!target_) target_ = tool;
   target_ = robot::moved_target(*target_, tool.position, {a[0], a[1], a[2]}, {a[3], a[4], a[5]});

@@ -12,6 +12,7 @@
 #include "runtime/policy/live.h"
 #include "runtime/policy/policy.h"
 #include "runtime/policy/query_meter.h"
+#include "runtime/robot/action_space.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/servers/chunk.h"
 #include "runtime/servers/identity.h"
@@ -82,6 +83,7 @@ class ServerPolicy : public policy::Policy, public policy::Answerer {
   ChunkQueue queue_;
   std::optional<policy::Delivery> delivery_;
   std::optional<robot::Chain> arm_;  // of the episode's robot, where actions name its joints
+  robot::ActionSpace space_;         // of the episode's robot
   std::optional<Pose> target_;  // of the arm's controller; none before an episode's first action
   std::vector<std::string> notes_;  // of the transport, once there was a connection
   bool is_open_ = false;

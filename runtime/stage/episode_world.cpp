@@ -20,13 +20,6 @@ namespace {
 // over objects and joints of fixtures), and how long it is (s). From the reference's reset.
 constexpr double kStillSpeed = 1e-3, kStillSpin = 1e-2, kExtraSettle = 1.5;
 
-// What the arm is told while it waits: to stay, the gripper open.
-constexpr policy::Action kStay = [] {
-  policy::Action stay{};
-  stay.back() = 1;
-  return stay;
-}();
-
 // An articulation that nobody drives, its joints at `positions`. Its springs rest where the fixture
 // says, wherever settling has left the joints.
 world::ArticulationSpec passive(const LoadedFixture& loaded, std::span<const double> positions) {
@@ -62,6 +55,7 @@ EpisodeWorld::EpisodeWorld(const plan::Plan& plan, const plan::TaskRecord& task,
       assets_(std::move(assets)),
       robot_(std::move(robot)),
       controller_(std::move(controller)),
+      space_(robot::action_space_of(robot_)),
       bodies_(std::move(bodies)),
       instruments_(plan, task, bodies_, std::move(trees), robot_.model->find_link(robot_.tcp_link)),
       substeps_(static_cast<int>(std::lround(scene_.physics_hz / record_.control_hz))) {}
@@ -223,10 +217,22 @@ Status EpisodeWorld::check_arm() const {
                  ""};
 }
 
-// The arm is told to stay and the gripper to be open.
+// What the arm is told while it waits: to stay where it was told to be, the gripper open.
+policy::Action EpisodeWorld::stay() const {
+  return robot::standstill(space_, controller_.targets(), 1);
+}
+
+// What the controller reads. Of an action of another size it says so.
+policy::Action EpisodeWorld::in_law(const policy::Action& action) const {
+  const auto* osc = std::get_if<robot::OscPose>(&robot_.law);
+  if (osc == nullptr || action.size() != robot::kActionSize) return action;
+  return robot::shares_of(*osc, action.tool());
+}
+
+// The arm stays.
 Status EpisodeWorld::idle() {
   for (std::uint32_t i = 0; i < task_.idle; ++i)
-    PROBE_TRY(loop_->step(kStay, substeps_, &controller_, world_.get()));
+    PROBE_TRY(loop_->step(in_law(stay()), substeps_, &controller_, world_.get()));
   return {};
 }
 
@@ -237,12 +243,11 @@ Status EpisodeWorld::act(const policy::Action& now) {
     if (!std::ranges::all_of(now, [](double number) { return std::isfinite(number); }))
       return Failure{Fault::kPolicy, "an action has a number that is not finite", ""};
     waiting_.push_back(now);
-    if (waiting_.size() <= task_.delay) return move(kStay);
+    if (waiting_.size() <= task_.delay) return move(stay());
     action = waiting_.front();
     waiting_.pop_front();
   }
-  const auto* osc = std::get_if<robot::OscPose>(&robot_.law);
-  return move(osc == nullptr ? action : robot::shares_of(*osc, action));
+  return move(action);
 }
 
 // What nobody touched so far, from where it lay when the episode began. The way between two control
@@ -263,10 +268,10 @@ void EpisodeWorld::lead() {
   }
 }
 
-// One control step with what the controller reads.
-Status EpisodeWorld::move(const policy::Action& numbers) {
+// One control step.
+Status EpisodeWorld::move(const policy::Action& action) {
   lead();
-  PROBE_TRY(loop_->step(numbers, substeps_, &controller_, world_.get()));
+  PROBE_TRY(loop_->step(in_law(action), substeps_, &controller_, world_.get()));
   ++steps_;
   measure();
   return {};
@@ -284,6 +289,11 @@ Status EpisodeWorld::restore(const WorldState& state) {
   if (state.waiting.size() !=
       std::min<std::size_t>(task_.delay, static_cast<std::size_t>(state.steps))) {
     return Failure{Fault::kWorld, "the saved state has actions on their way of another task",
+                   "task `" + std::string(plan_.text(task_.name)) + "`"};
+  }
+  if (std::ranges::any_of(state.waiting,
+                          [&](const auto& one) { return one.size() != space_.size(); })) {
+    return Failure{Fault::kWorld, "the saved state has actions on their way of another robot",
                    "task `" + std::string(plan_.text(task_.name)) + "`"};
   }
   if (!world_) {

@@ -13,6 +13,7 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/policy/policy.h"
+#include "runtime/robot/action_space.h"
 #include "runtime/robot/controller.h"
 #include "runtime/robot/robot.h"
 #include "runtime/stage/assets.h"
@@ -65,6 +66,7 @@ class EpisodeWorld {
   std::span<const Pose> objects() const { return objects_; }
   Sha256 state_hash() const { return world_->state_hash(); }
 
+  const robot::ActionSpace& action_space() const { return space_; }
   const robot::Robot& robot() const { return robot_; }
   const TaskBodies& bodies() const { return bodies_; }
   std::vector<std::string> joint_names() const;  // of q
@@ -84,7 +86,9 @@ class EpisodeWorld {
   Result<Arrangement> settle(const Arrangement& placed);
   Status check_arm() const;
   Status idle();
-  Status move(const policy::Action& numbers);
+  Status move(const policy::Action& action);
+  policy::Action stay() const;
+  policy::Action in_law(const policy::Action& action) const;
   // What moves by itself is on its way, so that it is where its way leads when this step ends.
   void lead();
   bool still_moves(const world::World& world) const;
@@ -98,6 +102,7 @@ class EpisodeWorld {
   std::shared_ptr<const SharedAssets> assets_;
   robot::Robot robot_;
   robot::Controller controller_;
+  robot::ActionSpace space_;  // what policies say
   TaskBodies bodies_;
   Instruments instruments_;
   std::vector<world::JointSpec> drives_;  // what acts in the robot's joints

@@ -63,6 +63,10 @@ class Stage {
   // What a policy is told at the beginning of an episode, but for what the run draws (its seeds).
   policy::EpisodeStart introduction() const;
 
+  const robot::Robot& robot() const { return world_->robot(); }
+  // What step() takes.
+  const robot::ActionSpace& action_space() const { return world_->action_space(); }
+
   // The pictures of the last observe(), with depth and segmentation.
   std::span<const CameraFrame> frames() const { return frames_; }
 

@@ -13,7 +13,7 @@ namespace probe::stage {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'S', 'T', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::uint32_t kVersion = 1, kLateVersion = 2;
+constexpr std::uint32_t kVersion = 1, kLateVersion = 2, kCountedVersion = 3;
 constexpr std::size_t kCheckBytes = 8;
 // Two objects of 256 parts of which each touches each of the other's would save 54 MB.
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
@@ -38,9 +38,18 @@ robot::ControlState get_control(ByteReader& from) {
   return control;
 }
 
+// Whether an action on its way has other numbers than a tool's: it says how many, then.
+bool has_counted(const StageState& state) {
+  return std::ranges::any_of(state.world.waiting, [](const policy::Action& action) {
+    return action.size() != robot::kActionSize;
+  });
+}
+
 void put_late(ByteWriter& to, const StageState& state) {
+  const bool is_counted = has_counted(state);
   to.u32(static_cast<std::uint32_t>(state.world.waiting.size()));
   for (const policy::Action& action : state.world.waiting) {
+    if (is_counted) to.u32(static_cast<std::uint32_t>(action.size()));
     for (const double number : action) to.f64(number);
   }
   to.u32(static_cast<std::uint32_t>(state.past.size()));
@@ -55,9 +64,15 @@ void put_late(ByteWriter& to, const StageState& state) {
   }
 }
 
-void get_late(ByteReader& from, StageState& state) {
-  state.world.waiting.resize(from.count(from.u32(), sizeof(policy::Action)));
+// Whether it could be read.
+bool get_late(ByteReader& from, bool is_counted, StageState& state) {
+  constexpr std::size_t kFewest = sizeof(std::uint32_t) + sizeof(double);
+  const std::size_t least = is_counted ? kFewest : sizeof(robot::ToolAction);
+  state.world.waiting.resize(from.count(from.u32(), least));
   for (policy::Action& action : state.world.waiting) {
+    const std::uint32_t size = is_counted ? from.u32() : robot::kActionSize;
+    if (size == 0 || size > robot::kMostActionNumbers) return false;
+    action = policy::Action::zeros(size);
     for (double& number : action) number = from.f64();
   }
   constexpr std::size_t kLeast = 3 * sizeof(std::uint32_t);
@@ -71,6 +86,7 @@ void get_late(ByteReader& from, StageState& state) {
       pose.rotation = from.quat();
     }
   }
+  return true;
 }
 
 std::span<const std::byte> check_of(const Sha256& hash) {
@@ -83,7 +99,7 @@ std::vector<std::byte> StageState::to_bytes() const {
   ByteWriter to;
   for (const std::uint8_t byte : kMagic) to.u8(byte);
   const bool is_late = !world.waiting.empty() || !past.empty();
-  to.u32(is_late ? kLateVersion : kVersion);
+  to.u32(has_counted(*this) ? kCountedVersion : is_late ? kLateVersion : kVersion);
   to.u32(start);
   to.hash(episode_id);
   to.u32(static_cast<std::uint32_t>(world.steps));
@@ -122,10 +138,11 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   ByteReader from(bytes.first(bytes.size() - kCheckBytes));
   from.take(kMagic.size());
   const std::uint32_t version = from.u32();
-  const bool is_late = version == kLateVersion;
+  const bool is_counted = version == kCountedVersion,
+             is_late = version == kLateVersion || is_counted;
   if (version != kVersion && !is_late) {
-    return refuse(fmt::format("a saved stage of format {}, this program reads {} and {}", version,
-                              kVersion, kLateVersion));
+    return refuse(fmt::format("a saved stage of format {}, this program reads {} to {}", version,
+                              kVersion, kCountedVersion));
   }
   const Sha256 hash = sha256(bytes.first(bytes.size() - kCheckBytes));
   if (!std::ranges::equal(bytes.last(kCheckBytes), check_of(hash))) {
@@ -153,8 +170,8 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   }
   state.judge.values = from.reals();
   state.judge.decided = from.u8() != 0;
-  if (is_late) get_late(from, state);
-  if (!from.ok() || from.left() != 0 || steps > kMostSteps) {
+  const bool is_read = !is_late || get_late(from, is_counted, state);
+  if (!is_read || !from.ok() || from.left() != 0 || steps > kMostSteps) {
     return refuse("the saved stage has another form than its version");
   }
   return state;

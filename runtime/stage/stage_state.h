@@ -29,12 +29,12 @@ struct StageState {
   vm::JudgeState judge;     // monitors and verdicts so far
   std::vector<PastPlaces> past = {};  // where a camera may show them late; at most 33
 
-  // Little endian: "\x89STG\r\n\x1a\n", u32 version 1, or 2 where actions are late or pictures
-  // dropped; start, episode id; world: steps, controller
-  // (target pose, joint targets, u8 reached), bodies at the start, physics; judge: monitors,
-  // values, u8 decided; of version 2 actions on their way and past places; the first 8 bytes of the
-  // SHA-256 of all before. The physics has its own magic and counts (world/snapshot). Equal states
-  // have equal bytes.
+  // Little endian: "\x89STG\r\n\x1a\n", u32 version 1, 2 where actions are late or pictures
+  // dropped, 3 where late ones are not of a tool's seven numbers; start, episode id; world: steps,
+  // controller (target pose, joint targets, u8 reached), bodies at the start, physics; judge:
+  // monitors, values, u8 decided; of versions 2 and 3 actions on their way (of 3 with a u32 count
+  // each) and past places; the first 8 bytes of the SHA-256 of all before. The physics has its own
+  // magic and counts (world/snapshot). Equal states have equal bytes.
   std::vector<std::byte> to_bytes() const;
   // Fails (kWorld) on bytes that are no saved stage, of another version, cut short, changed or
   // longer than any stage needs; never takes more memory than a few times the bytes. Whether the

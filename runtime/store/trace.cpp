@@ -62,12 +62,19 @@ class FileTraceWriter final : public TraceWriter {
     ByteWriter head;
     for (const std::uint8_t byte : codec::kMagic) head.u8(byte);
     is_live_ = header.live.has_value();
-    head.u32(is_live_ ? codec::kLiveVersion : codec::kVersion);
+    action_size_ = header.action_size();
+    head.u32(codec::kVersion + (is_live_ ? codec::kOfLive : 0) +
+             (header.joint_actions ? codec::kOfJoints : 0));
     head.u32(0);
     PROBE_TRY(compress(head.bytes(), ZSTD_e_continue));
     ByteWriter payload;
     codec::put_header(payload, header);
     PROBE_TRY(chunk(Tag::kHead, payload.bytes()));
+    if (header.joint_actions) {
+      ByteWriter actions;
+      codec::put_actions(actions, *header.joint_actions);
+      PROBE_TRY(chunk(Tag::kActions, actions.bytes()));
+    }
     if (is_live_) {
       ByteWriter terms;
       codec::put_terms(terms, *header.live);
@@ -88,6 +95,7 @@ class FileTraceWriter final : public TraceWriter {
 
   Status step(const TraceStep& step) override {
     PROBE_CHECK(step.live.has_value() == is_live_, "every step of a live trace is a live one");
+    PROBE_CHECK(step.action.size() == action_size_, "actions of the robot that the header is of");
     ByteWriter payload;
     codec::put_step(payload, step);
     ByteWriter timing;
@@ -170,6 +178,7 @@ class FileTraceWriter final : public TraceWriter {
   std::string path_;
   int file_;
   bool is_live_ = false;
+  std::size_t action_size_ = robot::kActionSize;
   ZSTD_CCtx* stream_ = nullptr;
   Hasher hasher_;
 };
@@ -281,14 +290,16 @@ bool fits(const Trace& trace, const std::vector<vm::OwnPlace>& own) {
 }
 
 // One chunk into the trace; what is wrong with it, if anything is.
-std::string accept(Trace& trace, bool is_live, bool& has_header, Ahead& ahead, Tag tag,
-                   std::span<const std::byte> payload) {
+std::string accept(Trace& trace, bool is_live, bool is_of_joints, bool& has_header, Ahead& ahead,
+                   Tag tag, std::span<const std::byte> payload) {
   if (!is_known(tag)) return "a chunk of unknown kind";
   if ((tag == Tag::kHead) == has_header) return has_header ? "a second header" : "no header";
   const bool needs_start = tag == Tag::kStep || tag == Tag::kTime || tag == Tag::kOwn;
   if (needs_start && !trace.start) return "a step before the settled start";
   if (trace.end && tag != Tag::kHash) return "a chunk after the end";
-  if (has_header && is_live && !trace.header.live && tag != Tag::kLive)
+  if (has_header && is_of_joints && !trace.header.joint_actions && tag != Tag::kActions)
+    return "no count of an action's numbers";
+  if (has_header && is_live && !trace.header.live && tag != Tag::kLive && tag != Tag::kActions)
     return "no terms of a live episode";
   ByteReader from(payload);
   switch (tag) {
@@ -299,6 +310,14 @@ std::string accept(Trace& trace, bool is_live, bool& has_header, Ahead& ahead, T
       has_header = true;
       return {};
     }
+    case Tag::kActions:
+      if (!is_of_joints || trace.header.joint_actions)
+        return "a count of an action's numbers where none belongs";
+      trace.header.joint_actions = codec::get_actions(payload);
+      if (trace.header.joint_actions &&
+          trace.header.joint_actions->count > trace.header.joints.size() + 1)
+        return "more numbers of an action than its header has joints";
+      return trace.header.joint_actions ? "" : "a count of an action's numbers of another form";
     case Tag::kLive:
       if (!is_live || trace.header.live) return "terms of a live episode where none belong";
       trace.header.live = codec::get_terms(payload);
@@ -324,7 +343,7 @@ std::string accept(Trace& trace, bool is_live, bool& has_header, Ahead& ahead, T
       if (!ahead.own || ahead.own->empty()) return "places of what moves by itself of another form";
       return {};
     case Tag::kStep: {
-      auto step = codec::get_step(payload, is_live);
+      auto step = codec::get_step(payload, is_live, trace.header.action_size());
       if (!step) return "a step of another form";
       if (!fits(trace.steps, *step)) return "an answer to a question that was not asked";
       if (!fits(trace.header, *step)) return "a step of other things than its header's";
@@ -376,12 +395,14 @@ Result<Trace> read_trace_prefix(const std::string& path) {
   }
   const std::uint32_t version = from.u32();
   const std::uint32_t zero = from.u32();
-  const bool is_live = version == codec::kLiveVersion;
-  if (from.ok() && version != codec::kVersion && !is_live) {
+  if (from.ok() && (version < codec::kVersion || version > codec::kLastVersion)) {
     return Failure{Fault::kTrace,
-                   "trace format " + std::to_string(version) + ", this program reads 1 and 2",
+                   "trace format " + std::to_string(version) + ", this program reads 1 to " +
+                       std::to_string(codec::kLastVersion),
                    path};
   }
+  const bool is_live = ((version - codec::kVersion) & codec::kOfLive) != 0;
+  const bool is_of_joints = ((version - codec::kVersion) & codec::kOfJoints) != 0;
 
   if (zero != 0)
     return Failure{Fault::kTrace, "reserved bytes after the version are not zero", path};
@@ -404,7 +425,7 @@ Result<Trace> read_trace_prefix(const std::string& path) {
       wrong = "a chunk with another check word";
       break;
     }
-    wrong = accept(trace, is_live, has_header, ahead, tag, payload);
+    wrong = accept(trace, is_live, is_of_joints, has_header, ahead, tag, payload);
     if (!wrong.empty()) break;
     if (is_hashed(tag)) hasher.bytes(chunk);
     if (tag == Tag::kHash) {

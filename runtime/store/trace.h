@@ -37,6 +37,17 @@ struct TraceHeader {
   std::vector<Metric> metrics;
   // Of a world that did not wait for its policy; such a trace has version 2.
   std::optional<policy::LiveTerms> live = {};
+  // Where the numbers of actions are joints': the law, and how many they are. Such a trace has
+  // version 3 or 4. Else they are a tool's seven.
+  struct JointActions {
+    std::string law;
+    std::uint32_t count = 0;
+    bool operator==(const JointActions&) const = default;
+  };
+  std::optional<JointActions> joint_actions = {};
+  std::size_t action_size() const {
+    return joint_actions ? joint_actions->count : robot::kActionSize;
+  }
   std::string fingerprint;  // JSON; not part of the trace's hash
 };
 

@@ -121,6 +121,21 @@ std::optional<TraceHeader> get_header(std::span<const std::byte> bytes) {
   return whole(from, std::move(header));
 }
 
+void put_actions(ByteWriter& to, const TraceHeader::JointActions& actions) {
+  to.text(actions.law);
+  to.u32(actions.count);
+}
+
+std::optional<TraceHeader::JointActions> get_actions(std::span<const std::byte> bytes) {
+  ByteReader from(bytes);
+  TraceHeader::JointActions actions;
+  actions.law = from.text();
+  actions.count = from.u32();
+  if (actions.law.empty() || actions.count < 2 || actions.count > robot::kMostActionNumbers)
+    return std::nullopt;
+  return whole(from, std::move(actions));
+}
+
 void put_terms(ByteWriter& to, const policy::LiveTerms& terms) {
   to.u8(terms.delay_s ? 1 : 0);
   to.f64(terms.delay_s.value_or(0));
@@ -204,11 +219,13 @@ void put_step(ByteWriter& to, const TraceStep& step) {
     to.u32(static_cast<std::uint32_t>(answer.asked));
 }
 
-std::optional<TraceStep> get_step(std::span<const std::byte> bytes, bool is_live) {
+std::optional<TraceStep> get_step(std::span<const std::byte> bytes, bool is_live,
+                                  std::size_t numbers) {
   ByteReader from(bytes);
   TraceStep step;
   step.prompt_hash = from.hash();
   step.image_hash = from.hash();
+  step.action = robot::Action::zeros(numbers);
   for (double& value : step.action) value = from.f64();
   step.state_hash = from.hash();
   step.q = from.reals();

@@ -154,7 +154,8 @@ Status TraceComparer::step(const TraceStep& here) {
   finder.hash("image hash", here.image_hash, recorded.image_hash);
   if (here.live && recorded.live) finder.live(*here.live, *recorded.live, is_given);
   finder.count("live steps", here.live ? 1 : 0, recorded.live ? 1 : 0);
-  for (std::size_t i = 0; i < here.action.size(); ++i) {
+  finder.count("numbers of the action", here.action.size(), recorded.action.size());
+  for (std::size_t i = 0; i < std::min(here.action.size(), recorded.action.size()); ++i) {
     finder.real("action " + std::to_string(i), here.action[i], recorded.action[i]);
   }
   finder.reals("q", here.q, recorded.q, recorded_.header.joints);

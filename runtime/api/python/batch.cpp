@@ -50,9 +50,17 @@ void reset(const Batch& batch, const std::optional<std::vector<bool>>& mask, con
   });
 }
 
+vlaprobe_action_space space_of(const Batch& batch) {
+  vlaprobe_action_space space{};
+  call([&](vlaprobe_error* error) {
+    return vlaprobe_batch_action_space(batch.get(), &space, error);
+  });
+  return space;
+}
+
 void step(const Batch& batch, const py::handle& actions, const std::optional<Starts>& given) {
   const Numbers numbers = numbers_of(
-      actions, {static_cast<py::ssize_t>(batch.worlds), VLAPROBE_ACTION_SIZE}, "actions");
+      actions, {static_cast<py::ssize_t>(batch.worlds), space_of(batch).size}, "actions");
   std::vector<vlaprobe_start> next;
   if (given) next = starts_of(batch, *given);
   call_free([&, handle = batch.get(), data = numbers.data()](vlaprobe_error* error) {
@@ -123,6 +131,7 @@ void add_batch(py::module_& module) {
       .def(py::init(&make_batch))
       .def("reset", &reset)
       .def("step", &step)
+      .def("action_space", [](const Batch& b) { return told_of(space_of(b)); })
       .def("array", &array_of<&vlaprobe_batch_array>)
       .def("final", &array_of<&vlaprobe_batch_final>)
       .def("fault", &fault_of)

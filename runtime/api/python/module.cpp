@@ -58,6 +58,10 @@ py::array copy_of(const vlaprobe_array& array) {
   return py::array(dtype_of(array.type), shape_of(array), {}, array.data);
 }
 
+py::tuple told_of(const vlaprobe_action_space& space) {
+  return py::make_tuple(space.kind, copy_of(space.low), copy_of(space.high));
+}
+
 Numbers numbers_of(const py::handle& given, const std::vector<py::ssize_t>& shape,
                    const char* what) {
   const std::string wanted =
@@ -80,6 +84,9 @@ PYBIND11_MODULE(_vlaprobe, module) {
   using namespace probe::python;
   module.attr("__version__") = vlaprobe_version();
   module.attr("ACTION_SIZE") = VLAPROBE_ACTION_SIZE;
+  module.attr("TOOL") = static_cast<int>(VLAPROBE_TOOL);
+  module.attr("JOINT_STEPS") = static_cast<int>(VLAPROBE_JOINT_STEPS);
+  module.attr("JOINT_POSITIONS") = static_cast<int>(VLAPROBE_JOINT_POSITIONS);
   if (vlaprobe_api_version() != VLAPROBE_API_VERSION)
     throw py::import_error("libvlaprobe.so is not the one that this module was built with");
   add_plan(module);

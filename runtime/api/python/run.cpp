@@ -64,6 +64,7 @@ py::dict batch_of(const vlaprobe_question* questions, std::size_t count) {
   batch["step"] = column<std::int32_t>(questions, count, [](const Question& q) { return q.step; });
   batch["horizon"] =
       column<std::int32_t>(questions, count, [](const Question& q) { return q.horizon; });
+  batch["action_size"] = questions[0].action_size;
   batch["draw_seed"] =
       column<std::uint64_t>(questions, count, [](const Question& q) { return q.draw_seed; });
   return batch;
@@ -78,13 +79,14 @@ void act(void* user, const vlaprobe_question* questions, std::size_t count, doub
   auto* caller = static_cast<RunCaller*>(user);
   const py::gil_scoped_acquire gil;
   try {
-    // An array (n, 7), or the reason why there is none.
+    // An array (n, action_size), or the reason why there is none.
     const py::object answer = caller->answer(batch_of(questions, count));
     if (py::isinstance<py::str>(answer))
       return refuse_all(refusals, count, answer.cast<std::string>());
-    const Numbers numbers =
-        numbers_of(answer, {static_cast<py::ssize_t>(count), VLAPROBE_ACTION_SIZE}, "actions");
-    std::memcpy(actions, numbers.data(), count * VLAPROBE_ACTION_SIZE * sizeof(double));
+    const std::size_t size = questions[0].action_size;
+    const Numbers numbers = numbers_of(
+        answer, {static_cast<py::ssize_t>(count), static_cast<py::ssize_t>(size)}, "actions");
+    std::memcpy(actions, numbers.data(), count * size * sizeof(double));
   } catch (py::error_already_set& error) {
     // sys.exit() in a callback ends the run, not an episode.
     if (!error.matches(PyExc_Exception)) caller->end_with(error);

@@ -31,10 +31,19 @@ void reset(const Stage& stage, std::int32_t episode) {
   });
 }
 
+vlaprobe_action_space space_of(const Stage& stage) {
+  vlaprobe_action_space space{};
+  call([&](vlaprobe_error* error) {
+    return vlaprobe_stage_action_space(stage.get(), &space, error);
+  });
+  return space;
+}
+
 void step(const Stage& stage, const py::handle& action) {
-  const Numbers numbers = numbers_of(action, {VLAPROBE_ACTION_SIZE}, "an action");
-  call_free([handle = stage.get(), data = numbers.data()](vlaprobe_error* error) {
-    return vlaprobe_stage_step(handle, data, VLAPROBE_ACTION_SIZE, error);
+  const std::int32_t size = space_of(stage).size;
+  const Numbers numbers = numbers_of(action, {size}, "an action");
+  call_free([handle = stage.get(), data = numbers.data(), size](vlaprobe_error* error) {
+    return vlaprobe_stage_step(handle, data, static_cast<std::size_t>(size), error);
   });
 }
 
@@ -138,9 +147,11 @@ void begin(const Policy& policy, const Stage& stage, std::int32_t seed) {
 }
 
 py::array_t<double> act(const Policy& policy, const Stage& stage) {
-  py::array_t<double> action(VLAPROBE_ACTION_SIZE);
-  call_free([handle = policy.get(), world = stage.get(), data = action.mutable_data()](
-                vlaprobe_error* error) { return vlaprobe_policy_act(handle, world, data, error); });
+  py::array_t<double> action(space_of(stage).size);
+  call_free([handle = policy.get(), world = stage.get(), data = action.mutable_data(),
+             size = static_cast<std::size_t>(action.size())](vlaprobe_error* error) {
+    return vlaprobe_policy_act(handle, world, data, size, error);
+  });
   return action;
 }
 
@@ -154,6 +165,7 @@ void add_stage(py::module_& module) {
       .def(py::init(&make_stage))
       .def("reset", &reset)
       .def("step", &step)
+      .def("action_space", [](const Stage& s) { return told_of(space_of(s)); })
       .def("observe", &observe)
       .def("state", &state_of)
       .def("objects", &objects_of)

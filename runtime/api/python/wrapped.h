@@ -85,6 +85,9 @@ py::array view_of(const vlaprobe_array& array, const py::handle& owner);
 // Its numbers in an array of their own.
 py::array copy_of(const vlaprobe_array& array);
 
+// (kind, low (n,), high (n,))
+py::tuple told_of(const vlaprobe_action_space& space);
+
 // C-contiguous doubles of this many in all, whatever numbers were given. Raises TypeError for what
 // is no array of numbers and ValueError for another shape, naming both.
 using Numbers = py::array_t<double, py::array::c_style>;

@@ -85,6 +85,9 @@ int serve_verb(const ServeArguments& arguments) {
     const auto seed = run::only_seed(*dir);
     if (!seed) return report(seed.failure());
     options.seed = *seed;
+    const auto form = run::only_form(*dir);
+    if (!form) return report(form.failure());
+    options.form = *form;
     const bool together = options.batch > 1;
     const auto episodes =
         together ? run::recorded_steps(*dir, options.chunk) : run::recorded_episodes(*dir);

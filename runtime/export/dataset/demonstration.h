@@ -27,6 +27,10 @@ struct Shape {
   int fps = 0;
   std::vector<CameraShape> cameras;
   std::vector<std::string> joints;  // the robot's, in drive order
+  // The control law whose numbers actions have: one for each of the first joints, and the
+  // gripper's; empty: a tool's seven.
+  std::string law;
+  std::size_t action_size = robot::kActionSize;
   bool operator==(const Shape&) const = default;
 };
 
@@ -35,9 +39,10 @@ struct Shape {
 inline constexpr std::size_t kStateSize = 7;
 inline constexpr std::array<std::string_view, kStateSize> kStateNames = {
     "x", "y", "z", "roll", "pitch", "yaw", "gripper"};
-// As robot::Action.
-inline constexpr std::array<std::string_view, robot::kActionSize> kActionNames = {
-    "dx", "dy", "dz", "rx", "ry", "rz", "gripper"};
+// Of an action's numbers, as robot::Action has them.
+std::vector<std::string> action_names(const Shape& shape);
+// What an action's numbers are, for people.
+std::string action_meaning(const Shape& shape);
 
 // What was there when the policy was asked, and what it answered.
 struct Step {

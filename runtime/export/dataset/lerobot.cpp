@@ -374,8 +374,9 @@ class LerobotLayout final : public Layout {
            "| `observation.state` | tool centre point in the robot's base frame: x, y, z (m), "
            "roll, pitch, yaw (rad, Rz Ry Rx); gripper, 0 closed to 1 open |\n"
            "| `observation.joints` | rad and m |\n"
-           "| `action` | change of the end effector in the robot's base frame: m, rotation vector "
-           "in rad; gripper, -1 closed to 1 open, absolute |\n"
+           "| `action` | " +
+           action_meaning(shape_) +
+           " |\n"
            "| `next.reward`, `next.success` | 1 and true in the last step of an episode that "
            "succeeded |\n\n"
            "Episodes of one demonstration in several wordings share its stretch of video.\n";

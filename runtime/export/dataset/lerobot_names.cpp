@@ -24,7 +24,7 @@ std::vector<Feature> features_of(const Shape& shape) {
   all.push_back(
       {"observation.joints", Kind::kReal32, {static_cast<int>(shape.joints.size())}, shape.joints});
   all.push_back(
-      {"action", Kind::kReal32, {static_cast<int>(robot::kActionSize)}, texts(kActionNames)});
+      {"action", Kind::kReal32, {static_cast<int>(shape.action_size)}, action_names(shape)});
   all.push_back({"next.reward", Kind::kReal32, {1}});
   all.push_back({"next.done", Kind::kFlag, {1}});
   all.push_back({"next.success", Kind::kFlag, {1}});

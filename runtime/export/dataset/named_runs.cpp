@@ -47,6 +47,14 @@ std::optional<Shape> shape_of_json(const Json& json) {
   shape.fps = json.at("fps").get<int>();
   shape.control_hz = json.at("control_hz").get<double>();
   shape.joints = json.at("joints").get<std::vector<std::string>>();
+  if (json.contains("actions")) {
+    const Json& actions = json.at("actions");
+    if (!has_texts(actions, {"law"}) || !has_wholes(actions, {"size"})) return std::nullopt;
+    shape.law = actions.at("law").text();
+    const int size = actions.at("size").get<int>();
+    if (size < 2 || static_cast<std::size_t>(size) > shape.joints.size() + 1) return std::nullopt;
+    shape.action_size = static_cast<std::size_t>(size);
+  }
   for (const Json& camera : json.at("cameras")) {
     if (!has_texts(camera, {"name"}) || !has_wholes(camera, {"width", "height"}))
       return std::nullopt;

@@ -28,6 +28,8 @@ Json dataset_json(const Provenance::Facts& facts, const Contents& contents) {
   json["control_hz"] = facts.shape.control_hz;
   json["fps"] = facts.shape.fps;
   json["joints"] = facts.shape.joints;
+  if (!facts.shape.law.empty())
+    json["actions"] = {{"law", facts.shape.law}, {"size", facts.shape.action_size}};
   json["cameras"] = Json::array();
   for (const CameraShape& camera : facts.shape.cameras)
     json["cameras"].push_back(

@@ -43,18 +43,16 @@ class PngMaker final : public FilmMaker {
 };
 
 // Bridge's: roll, pitch, yaw of the change in place of a rotation vector; gripper 0 closed .. 1
-// open.
-std::array<double, robot::kActionSize> bridge_action(const robot::Action& action) {
+// open. Joints are as they are.
+robot::Action bridge_action(const Shape& shape, const robot::Action& action) {
+  robot::Action made = action;
+  made.gripper() = (action.gripper() + 1) / 2;
+  if (!shape.law.empty()) return made;
   const Vec3 turn = robot::to_rpy(
       robot::from_rotation_vector({action[robot::kActionTurn], action[robot::kActionTurn + 1],
                                    action[robot::kActionTurn + 2]}));
-  return {action[0],
-          action[1],
-          action[2],
-          turn.x(),
-          turn.y(),
-          turn.z(),
-          (action[robot::kActionGripper] + 1) / 2};
+  for (int i = 0; i < 3; ++i) made[robot::kActionTurn + static_cast<std::size_t>(i)] = turn[i];
+  return made;
 }
 
 // A leaf of features.json and the key of an Example. Which of Bridge's names it is, is said once.
@@ -75,8 +73,8 @@ std::vector<Leaf> observation_leaves(const Shape& shape) {
   leaves.push_back({"joints", Leaf::Kind::kReals, shape.joints.size()});
   return leaves;
 }
-std::vector<Leaf> step_leaves() {
-  return {{"action", Leaf::Kind::kReals, robot::kActionSize},
+std::vector<Leaf> step_leaves(const Shape& shape) {
+  return {{"action", Leaf::Kind::kReals, shape.action_size},
           {"discount", Leaf::Kind::kReal},
           {"reward", Leaf::Kind::kReal},
           {"is_first", Leaf::Kind::kFlag},
@@ -150,7 +148,7 @@ Json leaves_json(const std::vector<Leaf>& leaves) {
 }
 
 Json features_json(const Shape& shape) {
-  Json step = leaves_json(step_leaves());
+  Json step = leaves_json(step_leaves(shape));
   step["observation"] = dict_json(leaves_json(observation_leaves(shape)));
   Json steps;
   steps["pythonClassName"] = class_name("dataset_feature.Dataset");
@@ -245,7 +243,7 @@ class RldsLayout final : public Layout {
     for (const Step& step : demonstration.steps) {
       append(state, step.state);
       append(joints, step.joints);
-      append(action, bridge_action(step.action));
+      append(action, bridge_action(shape_, step.action));
     }
     reward.back() = demonstration.success ? 1.0f : 0.0f;
     first.front() = last.back() = 1;

@@ -138,8 +138,9 @@ class RobomimicLayout final : public Layout {
         "`: a group `data/demo_K` for each episode, its words in the attribute `ep_meta` (`lang`); "
         "`obs/CAMERA` are the pictures, uint8, lossless; `obs/state` is the tool centre point in "
         "the robot's base frame (x, y, z in m, roll, pitch, yaw in rad) and the gripper, 0 closed "
-        "to 1 open; `obs/joints` rad and m; `actions` the change of the end effector (m, rotation "
-        "vector in rad) and the gripper, -1 closed to 1 open. `mask/success` and `mask/failure` "
+        "to 1 open; `obs/joints` rad and m; `actions` the " +
+        action_meaning(shape_) +
+        ". `mask/success` and `mask/failure` "
         "divide `mask/train`. There is no `next_obs` (`hdf5_load_next_obs: false`). Groups of one "
         "demonstration in several wordings share their datasets.\n";
     return contents_;
@@ -180,7 +181,7 @@ class RobomimicLayout final : public Layout {
     }
     rewards.back() = demonstration.success ? 1 : 0;
     dones.back() = 1;
-    reals(demo, "actions", actions, {n, robot::kActionSize});
+    reals(demo, "actions", actions, {n, shape_.action_size});
     reals(demo, "rewards", rewards, {n});
     dataset(demo, "dones", H5T_STD_I64LE, H5T_NATIVE_INT64, dones.data(), {n});
     reals(demo, "states", states, {n, shape_.joints.size()});

@@ -13,6 +13,7 @@
 #include "runtime/store/not_attempted.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
 
 namespace probe::dataset {
 namespace {
@@ -66,6 +67,7 @@ std::string difference(const Shape& a, const Shape& b) {
   if (a.control_hz != b.control_hz)
     return fmt::format("one has {} control steps a second, the other {}", a.control_hz,
                        b.control_hz);
+  if (a.law != b.law || a.action_size != b.action_size) return "their actions are of other numbers";
   if (a.cameras == b.cameras) return "";
   const auto names = [](const Shape& shape) {
     std::string text;
@@ -96,6 +98,21 @@ Result<Shape> shape_of_task(const plan::Plan& plan, const plan::TaskRecord& task
                    "--fps"};
   }
   return shape;
+}
+
+// What actions are the traces say: which of the robot's joints are fingers no plan does.
+void add_actions(const Source& source, const plan::TaskRecord& task, Shape* shape) {
+  const auto control = static_cast<plan::Control>(
+      source.plan.robots()[source.plan.scenes()[task.scene].robot].control);
+  if (control != plan::Control::kJointDelta && control != plan::Control::kJointPosition) return;
+  for (const store::ResultRow& row : source.rows) {
+    if (row.task != source.plan.text(task.name)) continue;
+    const auto trace = store::read_stored_trace(row);
+    if (!trace || !trace->header.joint_actions) continue;
+    shape->law = trace->header.joint_actions->law;
+    shape->action_size = trace->header.joint_actions->count;
+    return;
+  }
 }
 
 }  // namespace
@@ -160,6 +177,7 @@ Result<Shape> shape_of(const std::vector<Source>& sources, const DatasetOptions&
       const plan::TaskRecord& task = source.plan.tasks()[index];
       const std::string name = fmt::format("`{}` of `{}`", source.plan.text(task.name), source.dir);
       PROBE_ASSIGN(Shape shape, shape_of_task(source.plan, task, options));
+      add_actions(source, task, &shape);
       if (!common) {
         common = std::move(shape);
         first = name;

@@ -131,12 +131,26 @@ TEST_CASE("what a law does not read is an error at its place") {
         "P1001");
 }
 
-TEST_CASE("laws whose actions no policy can send yet are refused by name") {
-  CHECK(said(arm("control joint_delta 10Hz { from target; most 0.1rad }\n" + kDriven)) ==
-        "P0101 joint_delta");
-  CHECK(said(arm("control joint_position 10Hz\n" + kDriven)) == "P0101 joint_position");
-  CHECK(said(arm("control joint_position 10Hz\n" + with(kDriven, "stiffness 100Nm/rad", ""))) ==
-        "P0101 joint_position");
+TEST_CASE("laws of joints are read with their numbers") {
+  const auto law = [](const std::string& control) {
+    const auto a = analyze_with_suite(arm(control + "\n" + kDriven));
+    REQUIRE_MESSAGE(a->codes() == "", a->said());
+    return other(*a).law;
+  };
+  const auto steps = [&](const std::string& numbers) {
+    return std::get<robot::JointDelta>(law("control joint_delta 10Hz " + numbers));
+  };
+  CHECK(steps("").from_target);
+  CHECK(steps("").most == 0);
+  CHECK(steps("{ from target; most 0.1rad }").from_target);
+  CHECK(steps("{ from target; most 0.1rad }").most == 0.1);
+  CHECK_FALSE(steps("{ from measured }").from_target);
+  CHECK(std::holds_alternative<robot::JointPosition>(law("control joint_position 10Hz")));
+  CHECK(said(arm("control joint_delta 10Hz { from nowhere }\n" + kDriven)) == "P0201 nowhere");
+  CHECK(said(arm("control joint_delta 10Hz { most 0rad }\n" + kDriven)) == "P0304 0rad");
+  CHECK(said(arm("control joint_position 10Hz { most 1rad }\n" + kDriven)) == "P1001 most 1rad");
+  CHECK(said(arm("control joint_position 10Hz\n" + with(kDriven, "stiffness 100Nm/rad", "")))
+            .substr(0, 5) == "P1002");
 }
 
 TEST_CASE("what a law lacks is named") {

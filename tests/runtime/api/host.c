@@ -258,13 +258,17 @@ static void expert(const vlaprobe_plan* plan, size_t task) {
   CHECK(vlaprobe_policy_create("expert", &policy, &error) == VLAPROBE_OK);
   CHECK(vlaprobe_stage_create(plan, task, &options, &stage, &error) == VLAPROBE_OK);
   CHECK(vlaprobe_policy_begin(policy, stage, 0, &error) == VLAPROBE_USAGE && says("reset first"));
-  CHECK(vlaprobe_policy_act(policy, stage, action, &error) == VLAPROBE_USAGE);
+  CHECK(vlaprobe_policy_act(policy, stage, action, 7, &error) == VLAPROBE_USAGE);
   CHECK(vlaprobe_stage_reset(stage, 3, &error) == VLAPROBE_OK);
   CHECK(vlaprobe_stage_observe(stage, &error) == VLAPROBE_USAGE && says("without pictures"));
   CHECK(vlaprobe_policy_begin(policy, stage, 0, &error) == VLAPROBE_OK);
+  vlaprobe_action_space space = {0};
+  CHECK(vlaprobe_stage_action_space(stage, &space, &error) == VLAPROBE_OK);
+  CHECK(space.kind == VLAPROBE_TOOL && space.size == VLAPROBE_ACTION_SIZE);
+  CHECK(vlaprobe_policy_act(policy, stage, action, 6, &error) == VLAPROBE_USAGE && says("6"));
   vlaprobe_state state = {0};
   while (!state.truncated) {
-    CHECK(vlaprobe_policy_act(policy, stage, action, &error) == VLAPROBE_OK);
+    CHECK(vlaprobe_policy_act(policy, stage, action, 7, &error) == VLAPROBE_OK);
     CHECK(vlaprobe_stage_step(stage, action, 7, &error) == VLAPROBE_OK);
     CHECK(vlaprobe_stage_state(stage, &state, &error) == VLAPROBE_OK);
   }
@@ -274,7 +278,7 @@ static void expert(const vlaprobe_plan* plan, size_t task) {
   CHECK(vlaprobe_stage_create(plan, task, &options, &other, &error) == VLAPROBE_OK);
   CHECK(vlaprobe_stage_reset(other, 3, &error) == VLAPROBE_OK);
   vlaprobe_stage_release(stage);
-  CHECK(vlaprobe_policy_act(policy, other, action, &error) == VLAPROBE_USAGE && says("begin"));
+  CHECK(vlaprobe_policy_act(policy, other, action, 7, &error) == VLAPROBE_USAGE && says("begin"));
   vlaprobe_policy_release(policy);
   vlaprobe_stage_release(other);
 }

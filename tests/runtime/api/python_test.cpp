@@ -42,6 +42,7 @@ TEST_CASE("the wheel works in an empty environment") { run("wheel_test.py"); }
 TEST_CASE("the notebooks show what is stored in them") { run("notebooks_test.py"); }
 TEST_CASE("the recipes of the Python package's README run") { run("readme_test.py"); }
 TEST_CASE("models are asked from Python, callables among them") { run("ask_test.py"); }
+TEST_CASE("robots that are told their joints, from Python") { run("joints_test.py"); }
 TEST_CASE("callables are evaluated by the program's runner") { run("evaluate_test.py"); }
 
 }  // namespace

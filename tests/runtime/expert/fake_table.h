@@ -88,7 +88,7 @@ class FakeTable {
 
   Status apply(const policy::Action& action) {
     const Pose tcp_before = tcp_in_world();
-    PROBE_ASSIGN(const std::span<const double> targets, controller_.targets(action, q_));
+    PROBE_ASSIGN(const std::span<const double> targets, controller_.targets(action.tool(), q_));
     // exp(-0.2 s stiffness / damping) of the benchmark's drives.
     constexpr std::array<double, 6> kLeft = {0.49, 0.44, 0.35, 0.45, 0.28, 0.46};
     for (std::size_t j = 0; j < 6; ++j) q_[j] = targets[j] + kLeft[j] * (q_[j] - targets[j]);

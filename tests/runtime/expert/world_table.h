@@ -119,7 +119,7 @@ class WorldTable {
   }
 
   void apply(const policy::Action& action) {
-    const auto targets = need(controller_.targets(action, world_->joints()));
+    const auto targets = need(controller_.targets(action.tool(), world_->joints()));
     reached_ = controller_.reached();
     world_->set_targets(targets);
     const Status stepped = world_->step(100);

@@ -8,6 +8,7 @@
 #include "runtime/plan/dis.h"
 #include "tests/parity/published.h"
 #include "tests/runtime/inspect/small_plan.h"
+#include "tests/runtime/run/plan_of_text.h"
 
 using namespace probe;
 using namespace probe::inspect;
@@ -37,6 +38,23 @@ TEST_CASE("a robot is shown with its law's numbers, gears and air") {
         std::string::npos);
   CHECK(text.find("law          kp 150, damping 1, output (0.05, 0.5) m and rad, null 10, "
                   "uncoupled, ramp 0, home (") != std::string::npos);
+}
+
+TEST_CASE("a robot that is told its joints says from where its steps go") {
+  const plan::Plan plan =
+      run::plan_of_file(VLAPROBE_SOURCE_DIR "/examples/joint_arm.probe", "joint_arm");
+  const auto robot = [&](const char* task) {
+    return describe(plan, *plan.find_task(task))["robot"];
+  };
+  const Json told = robot("told_carrot_on_plate"), stepped = robot("stepped_carrot_on_plate");
+  CHECK(robot_text(told) == "told_panda, joint_position at 5 Hz");
+  CHECK_FALSE(told.contains("law"));
+  CHECK(robot_text(stepped) == "stepped_panda, joint_delta at 5 Hz");
+  CHECK(law_text(stepped) == "steps from the last target, at most 0.3 rad or m");
+  const std::string text = plan::disassemble(plan);
+  CHECK(text.find(" told_panda: control 4 at 5 Hz\n") != std::string::npos);
+  CHECK(text.find(" stepped_panda: control 3 at 5 Hz\n  steps from the last target, most 0.3\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("a robot without numbers of its own has its name, law and rate") {

@@ -57,7 +57,7 @@ class Halves final : public Policy, public Answerer {
     return std::optional(answer_);
   }
   Result<Action> convert(const Said& said, const Observation&) override {
-    Action action{};
+    Action action = Action::zeros(7);
     std::copy_n(said.begin(), action.size(), action.begin());
     return action;
   }

@@ -44,7 +44,7 @@ TEST_CASE("`ee_delta_pose` behind the common face gives the same bits") {
   REQUIRE(alone.ok());
   alone->reset(test::kTableStart);
   Controller common = controller(EeDeltaPose{});
-  const Action action{0.01, -0.02, 0.005, 0.1, 0, -0.2, -1};
+  const ToolAction action{0.01, -0.02, 0.005, 0.1, 0, -0.2, -1};
   for (int i = 0; i < 3; ++i) {
     const auto wanted = alone->targets(action, test::kTableStart);
     REQUIRE(wanted.ok());

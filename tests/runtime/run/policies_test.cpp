@@ -92,7 +92,7 @@ TEST_CASE("a replay gives the stored actions and fails past their end") {
                                 int) -> Result<std::vector<Action>> {
     if (dir != "runs/a") return Failure{Fault::kStore, "no run here", dir};
     CHECK(task == "carrot_on_plate");
-    return std::vector<Action>{{1}, {2}};
+    return std::vector<Action>{{1, 0, 0, 0, 0, 0, 0}, {2, 0, 0, 0, 0, 0, 0}};
   };
   auto policy = make_policy("replay:runs/a", context).value();
   REQUIRE(policy->begin(start_with(0)).ok());

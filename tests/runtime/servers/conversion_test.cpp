@@ -350,4 +350,65 @@ TEST_CASE("states beside the first go under their own keys") {
   CHECK(parse_profile(to_text(*droid), "again").value().more_states == droid->more_states);
 }
 
+TEST_CASE("joints go as they are to a robot that is told them, and nothing else does") {
+  const robot::RobotModel model = robot::test::widowx();
+  const auto chain = robot::Chain::create(model, "ee_gripper_link", robot::test::kArm);
+  REQUIRE(chain.ok());
+  robot::ActionSpace space{robot::ActionLayout::kJoints, robot::test::kArm,
+                           std::vector<bool>(6, false)};
+  const std::vector<double> joints(robot::test::kTableStart.begin(),
+                                   robot::test::kTableStart.begin() + 6);
+  ArmNow arm;
+  arm.joints = joints;
+  arm.chain = &*chain;
+  arm.space = &space;
+  Profile profile;
+  profile.action_gripper = GripperRange::kUnit;
+  const auto said = [&](ActionForm form, const RawAction& raw) {
+    profile.action_form = form;
+    return to_action(profile, raw, arm);
+  };
+  const RawAction raw = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1};
+  const auto positions = said(ActionForm::kJoints, raw);
+  REQUIRE_MESSAGE(positions.ok(), to_text(positions.failure()));
+  CHECK(*positions == policy::Action{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1});
+  CHECK(said(ActionForm::kJointSteps, raw).failure().message ==
+        "the robot is told positions of its joints, and the actions are none (profile field "
+        "`action.form`)");
+  CHECK(said(ActionForm::kDelta, raw).failure().message.find("told positions") !=
+        std::string::npos);
+  CHECK(said(ActionForm::kJoints, {0.1, 0.2, 1}).failure().message ==
+        "an action of 2 joints and a gripper, for an arm of 6 (profile field `action.form`)");
+  CHECK(said(ActionForm::kJoints, {9, 0, 0, 0, 0, 0, 1}).failure().message.find("joint 1") == 0);
+
+  space.layout = robot::ActionLayout::kJointSteps;
+  const auto steps = said(ActionForm::kJointSteps, {0.01, 0, 0, 0, 0, -0.01, 0});
+  REQUIRE_MESSAGE(steps.ok(), to_text(steps.failure()));
+  CHECK(*steps == policy::Action{0.01, 0, 0, 0, 0, -0.01, -1});
+  CHECK(said(ActionForm::kJoints, raw).failure().message.find("told steps") != std::string::npos);
+}
+
+TEST_CASE("each control law takes the forms that it can carry out") {
+  using robot::ControlKind;
+  const auto takes = [](ActionForm form, ControlKind control) {
+    return check_form(Profile{}, form, control, "server").ok();
+  };
+  for (const ActionForm form : {ActionForm::kDelta, ActionForm::kAbsolute, ActionForm::kJoints,
+                                ActionForm::kJointSteps, ActionForm::kUnsaid}) {
+    const bool is_unsaid = form == ActionForm::kUnsaid;
+    CHECK(takes(form, ControlKind::kEeDeltaPose));
+    CHECK(takes(form, ControlKind::kOscPose) == (is_unsaid || form == ActionForm::kDelta));
+    CHECK(takes(form, ControlKind::kJointDelta) == (is_unsaid || form == ActionForm::kJointSteps));
+    CHECK(takes(form, ControlKind::kJointPosition) == (is_unsaid || form == ActionForm::kJoints));
+  }
+  Profile profile;
+  profile.name = "mine";
+  CHECK(check_form(profile, ActionForm::kDelta, ControlKind::kJointPosition, "server")
+            .failure()
+            .message ==
+        "actions of profile `mine` are `delta` (`action.form`), and a robot of the run is "
+        "controlled by `joint_position`, which takes positions of the arm's joints alone "
+        "(`action.form = joints`)");
+}
+
 }  // namespace probe::servers

@@ -8,6 +8,7 @@
 #include "runtime/stage/robot_of.h"
 #include "runtime/stage/stage.h"
 #include "tests/parity/published.h"
+#include "tests/runtime/run/plan_of_text.h"
 #include "tests/runtime/stage/solves.h"
 #include "tests/runtime/world/panda.h"
 
@@ -84,6 +85,26 @@ TEST_CASE("a Panda that is told to stay stays, with its gripper open") {
   for (int i = 0; i < 20; ++i) REQUIRE(stage.step({0, 0, 0, 0, 0, 0, 1}).ok());
   CHECK((stage.sample().tcp - before).norm() < 1e-3);
   CHECK(stage.sample().grip < 0.02);
+}
+
+TEST_CASE("a Panda that idles, or whose actions are late, keeps its gripper open meanwhile") {
+  const plan::Plan plan = run::plan_of_text(
+      "use \"suite/panda.probe\"\n"
+      "task idles like panda_carrot_on_plate { idle 10 steps }\n"
+      "task late like panda_carrot_on_plate { delay 10 steps }\n"
+      "suite mine { tasks { idles, late }; seeds 0 }\n");
+  for (const char* name : {"idles", "late"}) {
+    CAPTURE(name);
+    const std::uint32_t tasks[] = {plan.find_task(name).value()};
+    const auto assets = SharedAssets::load(plan, VLAPROBE_SOURCE_DIR "/assets", tasks);
+    REQUIRE(assets.ok());
+    const auto stage = Stage::create(plan, tasks[0], *assets, {{}, false});
+    REQUIRE(stage.ok());
+    REQUIRE((*stage)->reset(0).ok());
+    const bool is_late = std::string(name) == "late";
+    for (int i = 0; is_late && i < 10; ++i) REQUIRE((*stage)->step({0, 0, 0, 0, 0, 0, -1}).ok());
+    CHECK((*stage)->sample().grip < 0.1);  // 0 is open
+  }
 }
 
 TEST_CASE("the expert puts things where they belong with the Panda, too") {

@@ -361,7 +361,7 @@ TEST_CASE("over an episode of every scene a cached picture equals one traced ane
       const Picture a = copy(cached.view->render(q, objects));
       different += !(a == copy(full.view->render_full(q, objects)));
       // Down and across, so that things move; the fingers open and close.
-      policy::Action action{};
+      policy::Action action = policy::Action::zeros(7);
       action[0] = 0.02 * portable_sin(0.7 * step);
       action[1] = 0.015;
       action[2] = step < 12 ? -0.02 : 0.02;

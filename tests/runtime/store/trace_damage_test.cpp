@@ -217,11 +217,17 @@ TEST_CASE("another version and unknown chunks are refused") {
   REQUIRE(write_sample_trace(folder / "a.trace", 1).ok());
   std::string content = unpacked(read_file(folder / "a.trace"));
   std::string later = content;
-  later[8] = 3;
+  later[8] = 5;
   write_file(folder / "later.trace", packed(later));
   const auto refused = read_trace_prefix(folder / "later.trace");
   REQUIRE_FALSE(refused.ok());
-  CHECK(refused.failure().message == "trace format 3, this program reads 1 and 2");
+  CHECK(refused.failure().message == "trace format 5, this program reads 1 to 4");
+  // A tool's actions are no joints'.
+  later[8] = 3;
+  write_file(folder / "joints.trace", packed(later));
+  const auto joints = read_trace(folder / "joints.trace");
+  REQUIRE_FALSE(joints.ok());
+  CHECK(joints.failure().message.find("no count of an action's numbers") == 0);
   // A world that waited is no live one.
   later[8] = 2;
   write_file(folder / "live.trace", packed(later));

@@ -157,6 +157,52 @@ TEST_CASE("the hash covers everything but the clock") {
   CHECK(*a != *c);
 }
 
+TEST_CASE("actions of joints say their law and their number, and come back") {
+  TemporaryFolder folder;
+  TraceHeader header = sample_header();
+  header.joints = {"slide", "waist", "elbow", "left_finger"};
+  header.joint_actions = {"joint_position", 4};
+  const auto write = [&](const TraceHeader& of) {
+    auto writer = TraceWriter::create(folder / "a.trace", of);
+    REQUIRE(writer.ok());
+    TraceStart start = sample_start();
+    start.q.assign(4, 0.5);
+    REQUIRE((*writer)->start(start).ok());
+    TraceStep step = sample_step(1);
+    step.q.assign(4, 0.5);
+    step.u.assign(4, 0.25);
+    step.action = {0.1, -0.2, 1e-300, -1};
+    if (of.live) step.live.emplace();
+    REQUIRE((*writer)->step(step).ok());
+    const auto hash =
+        (*writer)->finish({1, {{"success", true, 0}, {"height", false, 0.125}}, std::nullopt});
+    REQUIRE(hash.ok());
+    return *hash;
+  };
+  const Sha256 waits = write(header);
+  const auto trace = read_trace(folder / "a.trace");
+  REQUIRE_MESSAGE(trace.ok(), to_text(trace.failure()));
+  CHECK(trace->hash == waits);
+  CHECK(trace->header.joint_actions == header.joint_actions);
+  CHECK(trace->header.action_size() == 4);
+  CHECK(trace->steps[0].action == robot::Action{0.1, -0.2, 1e-300, -1});
+  header.live = policy::LiveTerms{};
+  CHECK(write(header) != waits);
+  const auto live = read_trace(folder / "a.trace");
+  REQUIRE_MESSAGE(live.ok(), to_text(live.failure()));
+  CHECK(live->header.joint_actions == header.joint_actions);
+  CHECK(live->steps[0].action == trace->steps[0].action);
+  // More numbers than there are joints and a gripper.
+  header.live.reset();
+  header.joints = {"waist"};
+  auto writer = TraceWriter::create(folder / "a.trace", header);
+  REQUIRE(writer.ok());
+  writer->reset();
+  const auto refused = read_trace_prefix(folder / "a.trace");
+  REQUIRE(refused.ok());
+  CHECK(refused->incomplete.find("more numbers of an action") == 0);
+}
+
 TEST_CASE("a truncated trace is refused, and readable up to its last whole step") {
   TemporaryFolder folder;
   REQUIRE(write_sample_trace(folder / "a.trace", 5).ok());

@@ -20,10 +20,15 @@ _REACH = np.array([0.05, 0.05, 0.05, 0.25, 0.25, 0.25, 1.0], np.float32)
 Cameras = Union[bool, Sequence[str]]
 
 
-def action_space() -> Box:
-    """Of every task: x, y, z of a translation (m) and of a rotation vector (rad) in the robot's base frame, done within
-    one control step, and the gripper from -1 closed to 1 open. The bounds are what sample() draws from."""
-    return Box(-_REACH, _REACH, dtype=np.float32)
+def action_space(told: tuple[int, np.ndarray, np.ndarray]) -> Box:
+    """Of a robot whose tool is moved: x, y, z of a translation (m) and of a rotation vector (rad) in the robot's base frame,
+    done within one control step, and the gripper from -1 closed to 1 open. Of one that is told its joints (``joint_delta``,
+    ``joint_position``): a step or a position of each arm joint (rad, m), and the gripper. The bounds are what sample() draws
+    from; positions have the joints' limits."""
+    kind, low, high = told
+    if kind == _vlaprobe.TOOL:
+        return Box(-_REACH, _REACH, dtype=np.float32)
+    return Box(low.astype(np.float32), high.astype(np.float32), dtype=np.float32)
 
 
 def observation_space(cameras: Sequence[tuple[str, int, int]], joints: int) -> Dict:
@@ -79,7 +84,7 @@ class Env(_gym.Env):
             w, x, y, z; openness of the gripper from 0 closed to 1 open.
         joints: float64 (n,): the robot's, rad and m, in the plan's drive order; names in ``joint_names``.
 
-    Actions are 7 numbers of any dtype, see ``action_space``. A step is one control step of the plan's robot.
+    Actions are numbers of any dtype, 7 unless the robot is told its joints, see ``action_space``. A step is one control step of the plan's robot.
 
     The reward is what `success` is behind the step less what it was before, so that an episode's rewards sum up to its
     success: 1 or 0. Episodes terminate where the task's text ends them (``ends when``), and are truncated at the horizon.
@@ -143,7 +148,7 @@ class Env(_gym.Env):
         self.metric_names: list[str] = [name for name, _ in self._metrics]
         _, _, _, _, _, _, _, joints = self.plan._handle.task(self._task.index)
         self.observation_space = observation_space([all_cameras[i] for i in self._shown], joints)
-        self.action_space = action_space()
+        self.action_space = action_space(self._stage.action_space())
         self.metadata = dict(self.metadata, render_fps=self._task.control_hz)
         self._max_episode_steps = self._task.horizon
         self._success = False
@@ -181,7 +186,7 @@ class Env(_gym.Env):
         """One control step: (observation, reward, terminated, truncated, info).
 
         Raises:
-            TypeError, ValueError: the action is no array of 7 finite numbers.
+            TypeError, ValueError: the action is no array of as many finite numbers as the action space has.
             UsageError: nothing was reset, or the episode is over.
             Error: the simulation cannot go on; only reset() is accepted then.
         """

@@ -30,7 +30,7 @@ class Policy:
         self._policy.begin(env._open(), whole(seed, "`seed`"))
 
     def act(self, env: Env) -> np.ndarray:
-        """float64 (7,): what the policy does about what the environment shows now."""
+        """float64 (n,), 7 numbers unless the robot is told its joints: what the policy does about what the environment shows now."""
         return self._policy.act(env._open())
 
     def close(self) -> None:

@@ -35,21 +35,21 @@ def _checked(policy: PolicyCallable) -> Callable[[dict], Any]:
     """What the library asks: an array of actions, or the sentence why there is none."""
 
     def answer(batch: dict) -> Any:
-        n = len(batch["world"])
+        n, size = len(batch["world"]), batch["action_size"]
         try:
             said = policy(batch)
         except Exception as error:
             # From the callable on: the frame of this function says nothing.
             trace = "".join(traceback.format_exception(type(error), error, error.__traceback__.tb_next))
             return reason(f"the callable raised {type(error).__name__}: {error}", trace.rstrip())
-        wanted = f"actions of the shape ({n}, 7) were wanted, one row an observation"
+        wanted = f"actions of the shape ({n}, {size}) were wanted, one row an observation"
         try:
             actions = np.asarray(said)
         except Exception as error:
             return reason(f"the callable returned a {type(said).__name__} that is no array: {error}; {wanted}")
         if actions.dtype.kind not in "biuf":
             return f"the callable returned a {type(said).__name__}, which is no array of numbers; {wanted}"
-        if actions.shape != (n, 7):
+        if actions.shape != (n, size):
             return f"the callable returned the shape {actions.shape}; {wanted}"
         return np.ascontiguousarray(actions, np.float64)
 
@@ -346,10 +346,10 @@ def evaluate(
 
     Args:
         policy: a callable, or what stands behind --policy ("expert", "openpi://HOST:PORT?profile=NAME").
-            A callable is asked for all worlds that wait at once: ``policy(batch) -> actions``, an array of numbers (n, 7)
-            as of vlaprobe.Env. `batch` is a dict of one row an observation:
+            A callable is asked for all worlds that wait at once: ``policy(batch) -> actions``, an array of numbers (n, 7),
+            or (n, action_size) where the robot is told its joints, as of vlaprobe.Env. `batch` is a dict of one row an observation:
             pixels: by camera, uint8 (n, height, width, 3); agent_pos: float64 (n, 8) and joints: float64 (n, j), as of
-            Env; prompt, task: lists of str; world, episode, seed, step, horizon: int32 (n,); draw_seed: uint64 (n,), for
+            Env; action_size: int; prompt, task: lists of str; world, episode, seed, step, horizon: int32 (n,); draw_seed: uint64 (n,), for
             policies that draw. An observation whose step is 0 begins an episode of its world: what a policy keeps
             of an episode, it keeps by world.
             What it raises, and what it returns that is no such array, makes the episodes that asked invalid with that

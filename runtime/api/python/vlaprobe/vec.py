@@ -103,7 +103,7 @@ class VectorEnv(_gym.VectorEnv):
             sizes.append((all_names[i], high, wide))
         joints = self._batch.array(_vlaprobe.FIELD_JOINTS, 0, False).shape[1]
         self.single_observation_space = observation_space(sizes, joints)
-        self.single_action_space = action_space()
+        self.single_action_space = action_space(self._batch.action_space())
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.metadata = dict(self.metadata, render_fps=self._tasks[0].control_hz, autoreset_mode=mode)
@@ -163,7 +163,7 @@ class VectorEnv(_gym.VectorEnv):
         truncations bool (n,), infos).
 
         Args:
-            actions: numbers (num_envs, 7), see ``single_action_space``.
+            actions: numbers (num_envs, n), see ``single_action_space``.
 
         Raises:
             TypeError, ValueError: the actions are no such array, or not finite.
@@ -380,7 +380,7 @@ def make_vec(
 
     Args:
         plan: a Plan, or the path of a .plan or .probe file.
-        tasks: a glob, a task or several; they must show alike (cameras, joints).
+        tasks: a glob, a task or several; they must show alike (cameras, joints) and take actions of one kind.
         num_envs: worlds.
         threads: that step them; 0: one a core.
         autoreset: "next_step", "same_step" or "disabled", or gymnasium's AutoresetMode.

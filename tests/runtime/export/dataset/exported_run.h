@@ -39,6 +39,19 @@ inline plan::Plan small_table(int width = 96, int height = 64) {
   return plan::Plan::from_bytes(std::move(*bytes)).value();
 }
 
+// The same table, its arm told positions of its joints.
+inline plan::Plan told_table() {
+  run::TablePlan table(std::string(VLAPROBE_SOURCE_DIR) + "/assets");
+  auto bytes = table.write(2, kHorizon, [](plan::Records& records) {
+    records.robots[0].control = static_cast<std::uint32_t>(plan::Control::kJointPosition);
+    const plan::LawRecord law;
+    records.robots[0].law = plan::append(records.laws, std::span<const plan::LawRecord>(&law, 1));
+    records.cameras[0].width = records.cameras[0].height = 32;
+  });
+  REQUIRE_MESSAGE(bytes.ok(), (bytes.ok() ? "" : to_text(bytes.failure())));
+  return plan::Plan::from_bytes(std::move(*bytes)).value();
+}
+
 inline void make_run(const plan::Plan& plan, const std::string& dir,
                      const std::string& policy = "random") {
   run::RunOptions options = run::options_for(dir, policy);

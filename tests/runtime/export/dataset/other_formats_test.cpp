@@ -56,7 +56,8 @@ TEST_CASE("a robomimic file has every frame and picture of its run, as h5py sees
     CHECK(demo["ep_meta"]["lang"] == trace.header.prompt);
     REQUIRE(demo["actions"].size() == kHorizon);
     for (std::size_t k = 0; k < kHorizon; ++k) {
-      CHECK(demo["actions"][k] == Json(trace.steps[k].action));
+      CHECK(demo["actions"][k] ==
+            Json(std::vector<double>(trace.steps[k].action.begin(), trace.steps[k].action.end())));
       const auto& q = k == 0 ? trace.start->q : trace.steps[k - 1].q;
       CHECK(demo["joints"][k] == Json(q));
       // A single camera's hash is that of its bytes.
@@ -93,6 +94,37 @@ TEST_CASE(
       CHECK(episode["steps/action"][7 * k + 6].get<double>() == single((action[6] + 1) / 2));
     }
   }
+}
+
+TEST_CASE("actions of joints are named by them, and come as they were said") {
+  const run::TemporaryFolder folder;
+  make_run(told_table(), folder / "run", "null");
+  must_export(folder / "run", folder / "rlds", Format::kRlds, dataset_options());
+  const auto traces = traces_of(folder / "run");
+  REQUIRE(traces.size() == 2);
+  REQUIRE(traces[0].trace.header.joint_actions.has_value());
+  const Json read = read_by("read_rlds.py", folder / "rlds/1.0.0");
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const Json& actions = read["episodes"][i]["steps/action"];
+    REQUIRE(actions.size() == 7 * kHorizon);
+    for (std::size_t k = 0; k < kHorizon; ++k) {
+      const auto& action = traces[i].trace.steps[k].action;
+      for (std::size_t c = 0; c < 6; ++c)
+        CHECK(actions[7 * k + c].get<double>() == single(action[c]));
+      CHECK(actions[7 * k + 6].get<double>() == 1);  // -1 .. 1 as Bridge's 0 .. 1
+    }
+  }
+  must_export(folder / "run", folder / "lerobot", Format::kLerobot, dataset_options());
+  std::ifstream info(folder / "lerobot/meta/info.json");
+  const Json features = Json::parse(std::string(std::istreambuf_iterator<char>(info), {}));
+  CHECK(features["features"]["action"]["names"].dump() ==
+        R"(["waist","shoulder","elbow","forearm_roll","wrist_angle","wrist_rotate","gripper"])");
+  const auto checked = check_dataset(folder / "lerobot");
+  REQUIRE_MESSAGE(checked.ok(), to_text(checked.failure()));
+  for (const std::string& problem : checked->problems) CHECK_MESSAGE(problem.empty(), problem);
+  std::ifstream about(folder / "lerobot/README.md");
+  const std::string words(std::istreambuf_iterator<char>(about), {});
+  CHECK(words.find("position of each arm joint, rad and m; gripper") != std::string::npos);
 }
 
 TEST_CASE("both formats are the same bytes whatever the threads, also with several wordings") {

@@ -140,7 +140,7 @@ TEST_CASE("an episode after one that was killed is not done with the killed one'
   AskingPicture picture;
   Observation carrot = picture.observation(), spoon = carrot;
   spoon.prompt = "put the spoon on the towel";
-  Action fresh{};
+  Action fresh;
   {
     const PythonServer server("openpi_server.py", {"intact", "seen=keeps"});
     const auto policy = policy_at("intact", server, "&model=/m");

@@ -1,0 +1,151 @@
+// Robots that are told their joints, from the example's text to results: traces that say their
+// count, replay bit for bit, stored actions acted again, and the same behind a server.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "runtime/run/recorded.h"
+#include "runtime/run/replay.h"
+#include "runtime/servers/protocol.h"
+#include "runtime/store/proof.h"
+#include "runtime/store/stored_trace.h"
+#include "tests/runtime/run/plan_of_text.h"
+#include "tests/runtime/run/run_checks.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::run {
+namespace {
+
+const plan::Plan& example() {
+  static const plan::Plan plan =
+      plan_of_file(VLAPROBE_SOURCE_DIR "/examples/joint_arm.probe", "joint_arm");
+  return plan;
+}
+
+RunOptions two_of(const std::string& task, const std::string& out, const std::string& policy) {
+  RunOptions options = options_for(out, policy);
+  options.tasks = task;
+  options.episodes = {0, 1};
+  return options;
+}
+
+std::string address_of(const wire::Listener& listener, const servers::ServeOptions& options) {
+  return "openpi://127.0.0.1:" + listener.port() + "?" +
+         servers::options_for_served(servers::Protocol::kOpenpi, options);
+}
+
+TEST_CASE("what an arm was told by its joints is stored, proven, repeated and served") {
+  for (const auto& [task, law] : {std::pair{"told_carrot_on_plate", "joint_position"},
+                                  std::pair{"stepped_carrot_on_plate", "joint_delta"}}) {
+    CAPTURE(task);
+    const TemporaryFolder folder;
+    CHECK(must_run(example(), two_of(task, folder / "expert", "expert")).invalid == 0);
+    const auto proven = store::read_proven_results(folder / "expert");
+    REQUIRE_MESSAGE(proven.ok(), to_text(proven.failure()));
+    CHECK(proven->refused.empty());
+    REQUIRE(proven->rows.size() == 2);
+    for (const ResultRow& row : proven->rows) {
+      CHECK(row.metrics.front().name == "success");
+      CHECK(row.metrics.front().value == 1);
+      const auto trace = store::read_stored_trace(row);
+      REQUIRE(trace.ok());
+      REQUIRE(trace->header.joint_actions.has_value());
+      CHECK(trace->header.joint_actions->law == law);
+      CHECK(trace->header.joint_actions->count == 8);
+      CHECK(trace->steps.front().action.size() == 8);
+      ReplayOptions replaying;
+      replaying.verify = true;
+      replaying.assets = options_for("").assets;
+      const auto again = replay(folder / "expert", task, row.episode, std::nullopt, replaying);
+      REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
+      CHECK_MESSAGE(again->identical, again->difference);
+    }
+    must_run(example(), two_of(task, folder / "again", "replay:" + folder / "expert"));
+
+    const auto episodes = recorded_episodes(folder / "expert");
+    REQUIRE_MESSAGE(episodes.ok(), to_text(episodes.failure()));
+    servers::ServeOptions served;
+    served.chunk = 4;
+    const auto form = only_form(folder / "expert");
+    REQUIRE(form.ok());
+    CHECK((*form == servers::ActionForm::kJoints) == (std::string(law) == "joint_position"));
+    served.form = *form;
+    served.policy = servers::serve_recorded(*episodes, false);
+    const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
+    REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+    must_run(example(), two_of(task, folder / "served", address_of(**listener, served)));
+    for (const char* other : {"again", "served"}) {
+      CAPTURE(other);
+      const auto rows = read_results(folder / other);
+      REQUIRE(rows.ok());
+      REQUIRE(rows->size() == 2);
+      for (std::size_t i = 0; i < 2; ++i) {
+        REQUIRE_MESSAGE(!(*rows)[i].invalid, (*rows)[i].invalid.value_or(""));
+        const auto here = store::read_stored_trace((*rows)[i]),
+                   there = store::read_stored_trace(proven->rows[i]);
+        REQUIRE((here.ok() && there.ok()));
+        REQUIRE(here->steps.size() == there->steps.size());
+        for (std::size_t k = 0; k < here->steps.size(); ++k)
+          REQUIRE(here->steps[k].state_hash == there->steps[k].state_hash);
+      }
+    }
+    // A server whose actions are a tool's is refused before the first episode.
+    servers::ServeOptions tool;
+    tool.policy = servers::serve_null();
+    const auto other = servers::serve(servers::Protocol::kOpenpi, tool);
+    REQUIRE_MESSAGE(other.ok(), to_text(other.failure()));
+    const auto refused =
+        run::run(example(), two_of(task, folder / "wrong", address_of(**other, tool)));
+    REQUIRE_FALSE(refused.ok());
+    CHECK_MESSAGE(refused.failure().message.find("are `delta` (`action.form`), and a robot of the "
+                                                 "run is controlled by `" +
+                                                 std::string(law) + "`") != std::string::npos,
+                  refused.failure().message);
+  }
+}
+
+TEST_CASE("actions of joints are served by protocols that have them alone, and of one law") {
+  servers::ServeOptions options;
+  options.form = servers::ActionForm::kJoints;
+  options.policy = servers::serve_null();
+  const auto refused = servers::serve(servers::Protocol::kIntact, options);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().message == "protocol intact has no actions of joints, as these are");
+  const TemporaryFolder folder;
+  RunOptions both = options_for(folder / "both", "null");
+  both.episodes = {0, 0};
+  must_run(example(), both);
+  const auto mixed = only_form(folder / "both");
+  REQUIRE_FALSE(mixed.ok());
+  CHECK(mixed.failure().message.find("has actions of several laws") == 0);
+}
+
+TEST_CASE("policies that draw, and worlds that do not wait, act by joints and repeat") {
+  const TemporaryFolder folder;
+  for (const char* policy : {"random", "noisy:0.005"}) {
+    CAPTURE(policy);
+    const std::string out = folder / std::string(policy).substr(0, 5);
+    CHECK(must_run(example(), two_of("*", out, policy)).invalid == 0);
+  }
+  RunOptions live = two_of("told_*", folder / "live", "expert");
+  live.live = policy::LiveTerms{.delay_s = 0.3, .most_held = 1};
+  CHECK(must_run(example(), live).invalid == 0);
+  const auto rows = read_results(folder / "live");
+  REQUIRE(rows.ok());
+  for (const ResultRow& row : *rows) {
+    const auto trace = store::read_stored_trace(row);
+    REQUIRE(trace.ok());
+    // Without an answer the arm is told to stay where it is.
+    REQUIRE(trace->steps.front().live->source == policy::LiveSource::kHeld);
+    for (std::size_t k = 0; k < 7; ++k) CHECK(trace->steps.front().action[k] == trace->start->q[k]);
+    ReplayOptions replaying;
+    replaying.verify = true;
+    replaying.assets = options_for("").assets;
+    const auto again = replay(folder / "live", row.task, row.episode, std::nullopt, replaying);
+    REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
+    CHECK_MESSAGE(again->identical, again->difference);
+  }
+}
+
+}  // namespace
+}  // namespace probe::run
