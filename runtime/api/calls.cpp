@@ -19,7 +19,8 @@ static_assert(VLAPROBE_WORLD == static_cast<int>(Fault::kWorld) + 1);
 static_assert(VLAPROBE_ANSWERED == static_cast<int>(Fault::kAnswered) + 1);
 static_assert(VLAPROBE_TRACE == static_cast<int>(Fault::kTrace) + 1);
 static_assert(VLAPROBE_INTERNAL == static_cast<int>(Fault::kInternal) + 1);
-static_assert(VLAPROBE_INTERNAL == std::size(kFaults));
+static_assert(VLAPROBE_NO_SKILL == static_cast<int>(Fault::kNoSkill) + 1);
+static_assert(VLAPROBE_NO_SKILL == std::size(kFaults));
 
 // Of the codes that are no fault.
 struct Word {

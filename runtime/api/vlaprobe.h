@@ -64,6 +64,7 @@ typedef enum vlaprobe_code {
   VLAPROBE_STATS = 15,    /* an estimate that does not exist */
   VLAPROBE_TABLE = 16,    /* a published table */
   VLAPROBE_INTERNAL = 17, /* a mistake of ours */
+  VLAPROBE_NO_SKILL = 18, /* a policy of the library's has no skill for what the task asks */
   VLAPROBE_TEXT = 100,    /* the user's .probe text has mistakes: see `diagnostics` */
   VLAPROBE_MEMORY = 101,  /* there is none left */
   VLAPROBE_STOPPED = 102  /* a callback asked for the end */
