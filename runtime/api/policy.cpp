@@ -1,5 +1,6 @@
 // Policies of ours behind their handles.
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -13,6 +14,7 @@ struct vlaprobe_policy {
   probe::api::Use::Lock lock;
   std::unique_ptr<probe::policy::Policy> policy;
   std::shared_ptr<probe::api::World> world;  // of its episode; null before the first
+  std::uint64_t turn = 0;                    // of that world: World::turn()
 };
 
 using namespace probe;
@@ -66,6 +68,7 @@ int32_t vlaprobe_policy_begin(vlaprobe_policy* policy, const vlaprobe_stage* sta
     start.seed = seed;
     start.draw_seed = run::draw_seed(seed, Sha256{episode.episode_id});
     policy->world = stage->world;
+    policy->turn = world.turn();
     return policy->policy->begin(start);
   });
 }
@@ -77,6 +80,11 @@ int32_t vlaprobe_policy_act(vlaprobe_policy* policy, vlaprobe_stage* stage, doub
     PROBE_ASSIGN(const Use stage_use, Use::of(stage->lock, "stage"));
     if (policy->world != stage->world)
       return api::usage("the policy has begun no episode of this stage: begin comes first");
+    if (policy->turn != stage->world->turn()) {
+      return api::usage(
+          "the stage was reset or restored since the policy began its episode, whose plan is of "
+          "what was before: begin comes first");
+    }
     if (const std::size_t wanted = stage->world->actions().space.size(); size != wanted) {
       return api::usage("an action has " + std::to_string(wanted) +
                         " numbers, and there is room for " + std::to_string(size));

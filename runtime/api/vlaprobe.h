@@ -393,11 +393,12 @@ typedef struct vlaprobe_policy vlaprobe_policy;
 VLAPROBE_EXPORT int32_t vlaprobe_policy_create(const char* text, vlaprobe_policy** policy,
                                                vlaprobe_error* error);
 VLAPROBE_EXPORT void vlaprobe_policy_release(vlaprobe_policy* policy);
-/* Behind a reset of the stage; `seed` is what its draws start from, with the episode. */
+/* Behind each reset and restore of the stage, before the first act; `seed` is what its draws start
+ * from, with the episode. */
 VLAPROBE_EXPORT int32_t vlaprobe_policy_begin(vlaprobe_policy* policy, const vlaprobe_stage* stage,
                                               int32_t seed, vlaprobe_error* error);
-/* What the policy does about what the stage shows now; draws pictures. Fails with VLAPROBE_USAGE
- * where `size` is not that of the stage's action space. */
+/* What the policy does about what the stage shows now; draws pictures. VLAPROBE_USAGE where
+ * `size` is not that of the stage's action space, and where the stage was reset or restored since the policy began: what it keeps is of another episode. */
 VLAPROBE_EXPORT int32_t vlaprobe_policy_act(vlaprobe_policy* policy, vlaprobe_stage* stage,
                                             double* action, size_t size, vlaprobe_error* error);
 

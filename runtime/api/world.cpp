@@ -121,6 +121,7 @@ std::string World::place() const {
 Status World::reset(std::int32_t episode) {
   PROBE_TRY(plan_->check_episode(task(), episode));
   phase_ = Phase::kBroken;
+  ++turn_;
   episode_ = episode;
   proprioception_.reset();
   const auto placed = [&](Failure failure) {
@@ -176,6 +177,7 @@ Result<std::vector<std::byte>> World::save() const {
 Status World::restore(std::span<const std::byte> bytes) {
   PROBE_ASSIGN(const stage::StageState state, stage::StageState::from_bytes(bytes));
   phase_ = Phase::kBroken;
+  ++turn_;
   proprioception_.reset();
   PROBE_TRY(stage_->restore(state));
   episode_ = static_cast<std::int32_t>(state.start);

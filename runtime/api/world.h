@@ -2,6 +2,7 @@
 // batches of the interface stand on it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -60,6 +61,8 @@ class World {
   Result<std::vector<std::byte>> save() const;
 
   bool has_episode() const { return phase_ == Phase::kInEpisode; }
+  // Counts resets and restores: what was told of an episode holds as long as this stays.
+  std::uint64_t turn() const { return turn_; }
   Status check_episode() const;
   bool terminated() const { return stage_->judge().ended(); }
   bool truncated() const { return stage_->steps() >= horizon_ && !terminated(); }
@@ -94,6 +97,7 @@ class World {
   std::unique_ptr<stage::Stage> stage_;
   Phase phase_ = Phase::kEmpty;
   std::int32_t episode_ = 0;
+  std::uint64_t turn_ = 0;
   int horizon_ = 0;
   std::optional<std::uint32_t> success_;
   std::vector<Camera> cameras_;

@@ -26,11 +26,16 @@ class Policy:
         self._policy = _vlaprobe.Policy(checked_text(text, "a policy"))
 
     def begin(self, env: Env, seed: int = 0) -> None:
-        """Behind env.reset(): the policy is told of the episode. `seed` is what it draws from, with the episode."""
+        """Behind each env.reset() and env.restore(): the policy is told of the episode. `seed` is what it draws from, with
+        the episode."""
         self._policy.begin(env._open(), whole(seed, "`seed`"))
 
     def act(self, env: Env) -> np.ndarray:
-        """float64 (n,), 7 numbers unless the robot is told its joints: what the policy does about what the environment shows now."""
+        """float64 (n,), 7 numbers unless the robot is told its joints: what the policy does about what the environment shows now.
+
+        Raises:
+            UsageError: the environment was reset or restored since begin(): what the policy keeps is of another episode.
+        """
         return self._policy.act(env._open())
 
     def close(self) -> None:

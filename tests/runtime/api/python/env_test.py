@@ -95,6 +95,18 @@ class EnvTest(Case):
         self.assertEqual(env.task_description, "put carrot on plate")
         self.assertEqual(env._max_episode_steps, 60)
 
+    def test_a_policy_is_told_of_each_episode(self):
+        env, expert = small_env(), vlaprobe.Policy("expert")
+        env.reset(options={"episode": 0})
+        expert.begin(env)
+        env.step(expert.act(env))
+        env.reset(options={"episode": 4})
+        with self.assertRaises(vlaprobe.UsageError) as raised:
+            expert.act(env)
+        self.assertSays(raised.exception, "reset", "begin comes first")
+        expert.begin(env)
+        expert.act(env)
+
     def test_pictures_without_copies_are_views_of_the_world(self):
         env = small_env(copy=False)
         observation, _ = env.reset(options={"episode": 0})
