@@ -240,6 +240,7 @@ int32_t vlaprobe_ask(const vlaprobe_plan* plan, const vlaprobe_ask_options* opti
                      vlaprobe_error* error) {
   std::atomic<bool> stop = false;
   const int32_t code = call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {options, "options"}}));
     PROBE_ASSIGN(const vlaprobe_ask_options given, api::read_options(options));
     PROBE_ASSIGN(ask::AskOptions wanted, read(given, *plan->shared));
     wanted.stopped = [&] {
@@ -267,7 +268,7 @@ int32_t vlaprobe_ask(const vlaprobe_plan* plan, const vlaprobe_ask_options* opti
 
 int32_t vlaprobe_answers(const char* folder, char** json, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
-    if (folder == nullptr || json == nullptr) return api::usage("there is no folder of answers");
+    PROBE_TRY(api::needs({{folder, "folder"}, {json, "json"}}));
     PROBE_ASSIGN(const ask::AskRecord record, ask::read_ask_record(folder));
     PROBE_ASSIGN(const plan::Plan plan, ask::open_asked_plan(folder));
     ask::Tally tally(plan);
@@ -310,8 +311,7 @@ int32_t vlaprobe_answers(const char* folder, char** json, vlaprobe_error* error)
 int32_t vlaprobe_why_answers(const char* folder, const char* task, int32_t episode, int32_t seed,
                              const char* question, char** json, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
-    if (folder == nullptr || task == nullptr || json == nullptr)
-      return api::usage("there is no folder of answers, or no task");
+    PROBE_TRY(api::needs({{folder, "folder"}, {task, "task"}, {json, "json"}}));
     const std::optional<int> asked = seed < 0 ? std::nullopt : std::optional<int>(seed);
     PROBE_ASSIGN(const ask::StartWhy why,
                  ask::why_answers(folder, task, episode, asked, text_of(question)));

@@ -96,6 +96,8 @@ int32_t vlaprobe_batch_create(const vlaprobe_plan* plan, const size_t* tasks, si
                               const vlaprobe_batch_options* options, vlaprobe_batch** batch,
                               vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(
+        api::needs({{plan, "plan"}, {tasks, "tasks"}, {options, "options"}, {batch, "batch"}}));
     PROBE_ASSIGN(const vlaprobe_batch_options given, api::read_options(options));
     PROBE_ASSIGN(const api::WorldsOptions read_options, read(given));
     std::vector<std::uint32_t> chosen;
@@ -118,8 +120,8 @@ void vlaprobe_batch_release(vlaprobe_batch* batch) {
 int32_t vlaprobe_batch_reset(vlaprobe_batch* batch, const uint8_t* mask,
                              const vlaprobe_start* starts, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{batch, "batch"}, {starts, "starts"}}));
     PROBE_ASSIGN(const Use use, Use::of(batch->lock, kBatch));
-    if (starts == nullptr) return api::usage("there are no starts");
     const std::size_t n = batch->worlds->count();
     return batch->worlds->reset({mask, mask == nullptr ? 0 : n}, {starts, n});
   });
@@ -137,9 +139,9 @@ int32_t vlaprobe_batch_action_space(const vlaprobe_batch* batch, vlaprobe_action
 int32_t vlaprobe_batch_step(vlaprobe_batch* batch, const double* actions,
                             const vlaprobe_start* next, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{batch, "batch"}, {actions, "actions"}}));
     PROBE_ASSIGN(const Use use, Use::of(batch->lock, kBatch));
     api::Worlds& worlds = *batch->worlds;
-    if (actions == nullptr) return api::usage("there are no actions");
     if (next == nullptr && worlds.options().autoreset != VLAPROBE_DISABLED)
       return api::usage("a batch whose episodes begin by themselves is told their next starts");
     return worlds.step({actions, worlds.count() * worlds.actions().space.size()},
@@ -150,6 +152,7 @@ int32_t vlaprobe_batch_step(vlaprobe_batch* batch, const double* actions,
 int32_t vlaprobe_batch_array(const vlaprobe_batch* batch, int32_t field, size_t camera,
                              vlaprobe_array* out, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{batch, "batch"}, {out, "out"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(batch)->lock, kBatch));
     return give_column(*batch->worlds, batch->worlds->now(), field, camera, out);
   });
@@ -158,6 +161,7 @@ int32_t vlaprobe_batch_array(const vlaprobe_batch* batch, int32_t field, size_t 
 int32_t vlaprobe_batch_final(const vlaprobe_batch* batch, int32_t field, size_t camera,
                              vlaprobe_array* out, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{batch, "batch"}, {out, "out"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(batch)->lock, kBatch));
     if (batch->worlds->options().autoreset != VLAPROBE_SAME_STEP)
       return api::usage("only a batch that begins anew in the same step has final arrays");
@@ -166,22 +170,25 @@ int32_t vlaprobe_batch_final(const vlaprobe_batch* batch, int32_t field, size_t 
 }
 
 const char* vlaprobe_batch_fault(const vlaprobe_batch* batch, size_t world) {
-  if (world >= batch->worlds->count()) return nullptr;
+  if (batch == nullptr || world >= batch->worlds->count()) return nullptr;
   const std::string* fault = batch->worlds->fault(world);
   return fault == nullptr ? nullptr : fault->c_str();
 }
 
 const char* vlaprobe_batch_camera(const vlaprobe_batch* batch, size_t camera) {
+  if (batch == nullptr) return nullptr;
   const auto& cameras = batch->worlds->cameras();
   return camera < cameras.size() ? cameras[camera].name.c_str() : nullptr;
 }
 
 const char* vlaprobe_batch_metric(const vlaprobe_batch* batch, size_t metric) {
+  if (batch == nullptr) return nullptr;
   const auto& metrics = batch->worlds->metrics();
   return metric < metrics.size() ? metrics[metric].name.c_str() : nullptr;
 }
 
 int32_t vlaprobe_batch_metric_is_truth(const vlaprobe_batch* batch, size_t metric) {
+  if (batch == nullptr) return 0;
   const auto& metrics = batch->worlds->metrics();
   return metric < metrics.size() && metrics[metric].is_truth;
 }
@@ -189,6 +196,7 @@ int32_t vlaprobe_batch_metric_is_truth(const vlaprobe_batch* batch, size_t metri
 int32_t vlaprobe_batch_hash(const vlaprobe_batch* batch, size_t world, char hash[65],
                             vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{batch, "batch"}, {hash, "hash"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(batch)->lock, kBatch));
     if (world >= batch->worlds->count() || batch->worlds->world(world) == nullptr)
       return api::usage("no episode has begun", "world " + std::to_string(world));

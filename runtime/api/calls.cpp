@@ -71,6 +71,25 @@ std::int32_t fail_memory(vlaprobe_error* error) {
   return fail(error, VLAPROBE_MEMORY, kNoMemory, {});
 }
 
+Status needs(std::initializer_list<Needed> arguments) {
+  for (const Needed& one : arguments) {
+    if (one.given == nullptr) return usage("`" + std::string(one.name) + "` is NULL");
+  }
+  return {};
+}
+
+Result<std::vector<std::string>> read_texts(const char* const* texts, std::size_t count,
+                                            const char* name) {
+  if (count > 0) PROBE_TRY(needs({{texts, name}}));
+  std::vector<std::string> read;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (texts[i] == nullptr)
+      return usage("`" + std::string(name) + "` has NULL at " + std::to_string(i));
+    read.emplace_back(texts[i]);
+  }
+  return read;
+}
+
 }  // namespace probe::api
 
 extern "C" {

@@ -7,10 +7,12 @@
 
 #include <atomic>
 #include <exception>
+#include <initializer_list>
 #include <new>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "runtime/api/vlaprobe.h"
 #include "runtime/base/result.h"
@@ -31,6 +33,18 @@ char* copy_text(std::string_view text);
 inline Failure usage(std::string message, std::string where = "") {
   return {Fault::kUsage, std::move(message), std::move(where)};
 }
+
+// An argument that must be there, and what the header calls it.
+struct Needed {
+  const void* given;
+  const char* name;
+};
+// Fails (kUsage) on the first that is NULL.
+Status needs(std::initializer_list<Needed> arguments);
+
+// `count` texts. Fails (kUsage) where the array or one of them is NULL.
+Result<std::vector<std::string>> read_texts(const char* const* texts, std::size_t count,
+                                            const char* name);
 
 // Runs `body`, which returns a Status, and turns whatever comes of it into a code.
 template <typename Body>
@@ -86,7 +100,8 @@ Result<Options> read_options(const Options* given) {
   if (given == nullptr) return options;
   constexpr std::size_t kLargest = 4096;
   const std::size_t size = given->size;
-  if (size < sizeof given->size || size > kLargest)
+  // A size that is no multiple of the alignment would end within a field.
+  if (size < sizeof given->size || size > kLargest || size % alignof(Options) != 0)
     return usage("`size` of the options is their size in bytes; found " + std::to_string(size));
   const auto* from = reinterpret_cast<const unsigned char*>(given);
   auto* to = reinterpret_cast<unsigned char*>(&options);

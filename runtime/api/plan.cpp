@@ -100,10 +100,10 @@ int32_t vlaprobe_compile(const char* const* files, size_t count,
                          vlaprobe_error* error) {
   std::string said, json;
   const int32_t code = call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}}));
     PROBE_ASSIGN(const vlaprobe_plan_options given, api::read_options(options));
-    if (files == nullptr || count == 0 || plan == nullptr)
-      return api::usage("there is no file to compile, or no place for the plan");
-    const std::vector<std::string> paths(files, files + count);
+    if (count == 0) return api::usage("there is no file to compile");
+    PROBE_ASSIGN(const std::vector<std::string> paths, api::read_texts(files, count, "files"));
     PROBE_ASSIGN(Compilation compiled,
                  compile::compile_files(paths, {.assets = api::text_of(given.assets),
                                                 .library = api::text_of(given.library),
@@ -127,9 +127,8 @@ int32_t vlaprobe_compile(const char* const* files, size_t count,
 int32_t vlaprobe_plan_open(const char* path, const vlaprobe_plan_options* options,
                            vlaprobe_plan** plan, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{path, "path"}, {plan, "plan"}}));
     PROBE_ASSIGN(const vlaprobe_plan_options given, api::read_options(options));
-    if (path == nullptr || plan == nullptr)
-      return api::usage("there is no path, or no place for the plan");
     PROBE_ASSIGN(plan::Plan opened, plan::Plan::open(path));
     *plan = api::handle_of(std::move(opened), given);
     return {};
@@ -140,9 +139,8 @@ int32_t vlaprobe_plan_from_bytes(const void* bytes, size_t size,
                                  const vlaprobe_plan_options* options, vlaprobe_plan** plan,
                                  vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{bytes, "bytes"}, {plan, "plan"}}));
     PROBE_ASSIGN(const vlaprobe_plan_options given, api::read_options(options));
-    if (bytes == nullptr || plan == nullptr)
-      return api::usage("there are no bytes, or no place for the plan");
     const auto* first = static_cast<const std::byte*>(bytes);
     PROBE_ASSIGN(plan::Plan read, plan::Plan::from_bytes({first, first + size}));
     *plan = api::handle_of(std::move(read), given);
@@ -152,29 +150,34 @@ int32_t vlaprobe_plan_from_bytes(const void* bytes, size_t size,
 
 void vlaprobe_plan_release(vlaprobe_plan* plan) { delete plan; }
 
-const char* vlaprobe_plan_root(const vlaprobe_plan* plan) { return plan->shared->root().c_str(); }
+const char* vlaprobe_plan_root(const vlaprobe_plan* plan) {
+  return plan == nullptr ? nullptr : plan->shared->root().c_str();
+}
 
 const void* vlaprobe_plan_bytes(const vlaprobe_plan* plan, size_t* size) {
+  if (size != nullptr) *size = 0;
+  if (plan == nullptr) return nullptr;
   const auto bytes = plan->shared->plan().bytes();
   if (size != nullptr) *size = bytes.size();
   return bytes.data();
 }
 
 const char* vlaprobe_plan_warnings(const vlaprobe_plan* plan) {
-  return plan->shared->warnings.text.c_str();
+  return plan == nullptr ? nullptr : plan->shared->warnings.text.c_str();
 }
 
 const char* vlaprobe_plan_diagnostics(const vlaprobe_plan* plan) {
-  return plan->shared->warnings.json.c_str();
+  return plan == nullptr ? nullptr : plan->shared->warnings.json.c_str();
 }
 
 size_t vlaprobe_plan_task_count(const vlaprobe_plan* plan) {
-  return plan->shared->plan().tasks().size();
+  return plan == nullptr ? 0 : plan->shared->plan().tasks().size();
 }
 
 int32_t vlaprobe_plan_task(const vlaprobe_plan* plan, size_t task, vlaprobe_task* out,
                            vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {out, "out"}}));
     const api::SharedPlan& shared = *plan->shared;
     PROBE_ASSIGN(const std::uint32_t index, shared.task(task));
     const plan::TaskRecord& record = shared.plan().tasks()[index];
@@ -196,7 +199,7 @@ int32_t vlaprobe_plan_task(const vlaprobe_plan* plan, size_t task, vlaprobe_task
 int32_t vlaprobe_plan_find_task(const vlaprobe_plan* plan, const char* name, size_t* task,
                                 vlaprobe_error* error) {
   return call(error, [&]() -> Status {
-    if (name == nullptr) return api::usage("there is no name");
+    PROBE_TRY(api::needs({{plan, "plan"}, {name, "name"}, {task, "task"}}));
     PROBE_ASSIGN(*task, plan->shared->find_task(name));
     return {};
   });
@@ -205,6 +208,7 @@ int32_t vlaprobe_plan_find_task(const vlaprobe_plan* plan, const char* name, siz
 int32_t vlaprobe_plan_describe(const vlaprobe_plan* plan, size_t task, char** json,
                                vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {json, "json"}}));
     PROBE_ASSIGN(const std::uint32_t index, plan->shared->task(task));
     return api::give_text(inspect::describe(plan->shared->plan(), index).dump(), json);
   });
@@ -212,18 +216,20 @@ int32_t vlaprobe_plan_describe(const vlaprobe_plan* plan, size_t task, char** js
 
 int32_t vlaprobe_plan_list(const vlaprobe_plan* plan, char** json, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {json, "json"}}));
     const plan::Plan& whole = plan->shared->plan();
     return api::give_text(inspect::list(whole, inspect::all_tasks(whole)).dump(), json);
   });
 }
 
 size_t vlaprobe_plan_suite_count(const vlaprobe_plan* plan) {
-  return plan->shared->plan().suites().size();
+  return plan == nullptr ? 0 : plan->shared->plan().suites().size();
 }
 
 int32_t vlaprobe_plan_suite(const vlaprobe_plan* plan, size_t suite, vlaprobe_suite* out,
                             vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {out, "out"}}));
     const plan::Plan& whole = plan->shared->plan();
     if (suite >= whole.suites().size()) {
       return api::usage("the plan has no suite " + std::to_string(suite) + "; it has " +
@@ -245,6 +251,7 @@ int32_t vlaprobe_plan_suite(const vlaprobe_plan* plan, size_t suite, vlaprobe_su
 int32_t vlaprobe_plan_episode(const vlaprobe_plan* plan, size_t task, int32_t episode,
                               vlaprobe_episode* out, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {out, "out"}}));
     const api::SharedPlan& shared = *plan->shared;
     PROBE_ASSIGN(const std::uint32_t index, shared.task(task));
     PROBE_TRY(shared.check_episode(index, episode));
@@ -260,6 +267,7 @@ int32_t vlaprobe_plan_episode(const vlaprobe_plan* plan, size_t task, int32_t ep
 int32_t vlaprobe_plan_placement(const vlaprobe_plan* plan, size_t task, int32_t episode,
                                 int32_t placement, vlaprobe_placement* out, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {out, "out"}}));
     const api::SharedPlan& shared = *plan->shared;
     PROBE_ASSIGN(const std::uint32_t index, shared.task(task));
     PROBE_TRY(shared.check_episode(index, episode));
@@ -282,6 +290,8 @@ int32_t vlaprobe_plan_placement(const vlaprobe_plan* plan, size_t task, int32_t 
 int32_t vlaprobe_plan_load(vlaprobe_plan* plan, const size_t* tasks, size_t count,
                            vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}}));
+    if (count > 0) PROBE_TRY(api::needs({{tasks, "tasks"}}));
     std::vector<std::uint32_t> chosen;
     for (std::size_t i = 0; i < count; ++i) {
       PROBE_ASSIGN(const std::uint32_t task, plan->shared->task(tasks[i]));
@@ -292,5 +302,7 @@ int32_t vlaprobe_plan_load(vlaprobe_plan* plan, const size_t* tasks, size_t coun
   });
 }
 
-void vlaprobe_plan_forget(vlaprobe_plan* plan) { plan->shared->forget(); }
+void vlaprobe_plan_forget(vlaprobe_plan* plan) {
+  if (plan != nullptr) plan->shared->forget();
+}
 }

@@ -36,7 +36,7 @@ extern "C" {
 
 int32_t vlaprobe_policy_create(const char* text, vlaprobe_policy** policy, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
-    if (text == nullptr) return api::usage("there is no policy's name");
+    PROBE_TRY(api::needs({{text, "text"}, {policy, "policy"}}));
     auto made = std::make_unique<vlaprobe_policy>();
     PROBE_ASSIGN(made->policy, run::make_policy(text, run::policy_context()));
     *policy = made.release();
@@ -56,6 +56,7 @@ void vlaprobe_policy_release(vlaprobe_policy* policy) {
 int32_t vlaprobe_policy_begin(vlaprobe_policy* policy, const vlaprobe_stage* stage, int32_t seed,
                               vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{policy, "policy"}, {stage, "stage"}}));
     PROBE_ASSIGN(const Use use, Use::of(policy->lock, kPolicy));
     PROBE_ASSIGN(const Use stage_use, Use::of(const_cast<vlaprobe_stage*>(stage)->lock, "stage"));
     PROBE_TRY(stage->world->check_episode());
@@ -76,6 +77,7 @@ int32_t vlaprobe_policy_begin(vlaprobe_policy* policy, const vlaprobe_stage* sta
 int32_t vlaprobe_policy_act(vlaprobe_policy* policy, vlaprobe_stage* stage, double* action,
                             size_t size, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{policy, "policy"}, {stage, "stage"}, {action, "action"}}));
     PROBE_ASSIGN(const Use use, Use::of(policy->lock, kPolicy));
     PROBE_ASSIGN(const Use stage_use, Use::of(stage->lock, "stage"));
     if (policy->world != stage->world)

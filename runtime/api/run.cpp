@@ -47,6 +47,7 @@ Result<run::RunOptions> read(const vlaprobe_run_options& given, const api::Share
   if (given.has_episodes != 0) {
     PROBE_ASSIGN(options.episodes, api::read_episodes(given.first_episode, given.last_episode));
   }
+  if (given.seed_count > 0) PROBE_TRY(api::needs({{given.seeds, "seeds"}}));
   for (std::size_t i = 0; i < given.seed_count; ++i) {
     if (given.seeds[i] < 0)
       return api::usage("a seed is a whole number from 0 on, found " +
@@ -120,6 +121,7 @@ int32_t vlaprobe_run(const vlaprobe_plan* plan, const vlaprobe_run_options* opti
                      vlaprobe_error* error) {
   std::atomic<bool> stop = false;
   const int32_t code = call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {options, "options"}}));
     PROBE_ASSIGN(const vlaprobe_run_options given, api::read_options(options));
     PROBE_ASSIGN(run::RunOptions wanted, read(given, *plan->shared));
     if (plan->shared->only_used_suites && wanted.suite.empty())
@@ -153,7 +155,7 @@ int32_t vlaprobe_run(const vlaprobe_plan* plan, const vlaprobe_run_options* opti
 
 int32_t vlaprobe_results(const char* folder, char** json, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
-    if (folder == nullptr || json == nullptr) return api::usage("there is no folder of a run");
+    PROBE_TRY(api::needs({{folder, "folder"}, {json, "json"}}));
     PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(folder));
     PROBE_ASSIGN(const store::ProvenResults proven, store::read_proven_results(folder));
     std::string text = Json{
@@ -172,8 +174,7 @@ int32_t vlaprobe_results(const char* folder, char** json, vlaprobe_error* error)
 int32_t vlaprobe_why(const char* folder, const char* task, int32_t episode, int32_t seed,
                      const char* metric, char** json, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
-    if (folder == nullptr || task == nullptr || json == nullptr)
-      return api::usage("there is no folder of a run, or no task");
+    PROBE_TRY(api::needs({{folder, "folder"}, {task, "task"}, {json, "json"}}));
     const std::optional<int> asked = seed < 0 ? std::nullopt : std::optional<int>(seed);
     PROBE_ASSIGN(const rejudge::EpisodeWhy why,
                  rejudge::why(folder, task, episode, asked, text_of(metric)));
@@ -184,11 +185,11 @@ int32_t vlaprobe_why(const char* folder, const char* task, int32_t episode, int3
 int32_t vlaprobe_compare(const char* folder, const char* other, const char* const* metrics,
                          size_t metric_count, char** json, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
-    if (folder == nullptr || other == nullptr || json == nullptr)
-      return api::usage("two folders of runs are compared");
-    PROBE_ASSIGN(
-        const report::ComparedFolders compared,
-        report::compare_folders(folder, other, {.metrics = {metrics, metrics + metric_count}}));
+    PROBE_TRY(api::needs({{folder, "folder"}, {other, "other"}, {json, "json"}}));
+    report::CompareFoldersOptions request;
+    PROBE_ASSIGN(request.metrics, api::read_texts(metrics, metric_count, "metrics"));
+    PROBE_ASSIGN(const report::ComparedFolders compared,
+                 report::compare_folders(folder, other, request));
     Json notes = Json::array();
     for (const report::Note& note : compared.benchmark.notes) {
       if (note.level == "bad") notes.push_back(note.text);
@@ -204,11 +205,13 @@ int32_t vlaprobe_report(const char* const* folders, size_t count,
                         const vlaprobe_report_options* options, char** json,
                         vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{options, "options"}}));
     PROBE_ASSIGN(const vlaprobe_report_options given, api::read_options(options));
-    if (folders == nullptr || count == 0 || given.out == nullptr)
+    if (count == 0 || given.out == nullptr)
       return api::usage("a report is of folders, and has a page to write: `out`");
     if (given.jobs < 0) return api::usage("traces are read by at least one thread");
-    report::ReportRequest request{.dirs = {folders, folders + count}};
+    report::ReportRequest request;
+    PROBE_ASSIGN(request.dirs, api::read_texts(folders, count, "folders"));
     request.out = given.out;
     request.title = text_of(given.title);
     request.floors = text_of(given.floors);
@@ -237,9 +240,8 @@ int32_t vlaprobe_replay(const char* folder, const char* task, int32_t episode, i
                         const vlaprobe_replay_options* options, char** json,
                         vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{folder, "folder"}, {task, "task"}}));
     PROBE_ASSIGN(const vlaprobe_replay_options given, api::read_options(options));
-    if (folder == nullptr || task == nullptr)
-      return api::usage("there is no folder of a run, or no task");
     run::ReplayOptions wanted;
     wanted.verify = given.no_verify == 0;
     wanted.video = text_of(given.video);

@@ -30,6 +30,7 @@ int32_t vlaprobe_stage_create(const vlaprobe_plan* plan, size_t task,
                               const vlaprobe_stage_options* options, vlaprobe_stage** stage,
                               vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{plan, "plan"}, {stage, "stage"}}));
     PROBE_ASSIGN(const vlaprobe_stage_options given, api::read_options(options));
     PROBE_TRY(api::check_picture_size(given.width, given.height));
     PROBE_ASSIGN(const std::uint32_t index, plan->shared->task(task));
@@ -51,6 +52,7 @@ void vlaprobe_stage_release(vlaprobe_stage* stage) {
 
 int32_t vlaprobe_stage_reset(vlaprobe_stage* stage, int32_t episode, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}}));
     PROBE_ASSIGN(const Use use, Use::of(stage->lock, kStage));
     stage->is_observed = false;
     return stage->world->reset(episode);
@@ -60,9 +62,9 @@ int32_t vlaprobe_stage_reset(vlaprobe_stage* stage, int32_t episode, vlaprobe_er
 int32_t vlaprobe_stage_step(vlaprobe_stage* stage, const double* action, size_t size,
                             vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {action, "action"}}));
     PROBE_ASSIGN(const Use use, Use::of(stage->lock, kStage));
     PROBE_TRY(stage->world->check_step());
-    if (action == nullptr) return api::usage("there is no action");
     PROBE_ASSIGN(const policy::Action numbers,
                  api::read_action({action, size}, stage->world->actions().space.size()));
     stage->is_observed = false;
@@ -82,6 +84,7 @@ int32_t vlaprobe_stage_action_space(const vlaprobe_stage* stage, vlaprobe_action
 int32_t vlaprobe_stage_state(const vlaprobe_stage* stage, vlaprobe_state* out,
                              vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {out, "out"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(stage)->lock, kStage));
     api::World& world = *own(stage)->world;
     PROBE_TRY(world.check_episode());
@@ -107,6 +110,7 @@ int32_t vlaprobe_stage_state(const vlaprobe_stage* stage, vlaprobe_state* out,
 
 int32_t vlaprobe_stage_hash(const vlaprobe_stage* stage, char hash[65], vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {hash, "hash"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(stage)->lock, kStage));
     PROBE_TRY(stage->world->check_episode());
     const std::string hex = to_hex(stage->world->stage().state_hash());
@@ -117,6 +121,7 @@ int32_t vlaprobe_stage_hash(const vlaprobe_stage* stage, char hash[65], vlaprobe
 
 int32_t vlaprobe_stage_observe(vlaprobe_stage* stage, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}}));
     PROBE_ASSIGN(const Use use, Use::of(stage->lock, kStage));
     if (!stage->has_pictures) return api::usage("the stage was made without pictures");
     if (auto seen = stage->world->observe(); !seen) return seen.failure();
@@ -128,6 +133,7 @@ int32_t vlaprobe_stage_observe(vlaprobe_stage* stage, vlaprobe_error* error) {
 int32_t vlaprobe_stage_picture(const vlaprobe_stage* stage, size_t camera, int32_t kind,
                                vlaprobe_array* out, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {out, "out"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(stage)->lock, kStage));
     if (!stage->is_observed) return api::usage("nothing was drawn of what is now: observe first");
     const auto frames = stage->world->stage().frames();
@@ -155,38 +161,42 @@ int32_t vlaprobe_stage_picture(const vlaprobe_stage* stage, size_t camera, int32
 }
 
 const char* vlaprobe_stage_camera(const vlaprobe_stage* stage, size_t camera) {
+  if (stage == nullptr) return nullptr;
   const auto& cameras = stage->world->cameras();
   return camera < cameras.size() ? cameras[camera].name.c_str() : nullptr;
 }
 
 const char* vlaprobe_stage_metric(const vlaprobe_stage* stage, size_t metric) {
+  if (stage == nullptr) return nullptr;
   const vm::Judge& judge = stage->world->stage().judge();
   if (metric >= judge.metric_count()) return nullptr;
   return judge.metric_name(static_cast<std::uint32_t>(metric)).c_str();
 }
 
 int32_t vlaprobe_stage_metric_is_truth(const vlaprobe_stage* stage, size_t metric) {
+  if (stage == nullptr) return 0;
   const vm::Judge& judge = stage->world->stage().judge();
   return metric < judge.metric_count() &&
          judge.metric_type(static_cast<std::uint32_t>(metric)) == plan::MetricType::kBool;
 }
 
 const char* vlaprobe_stage_joint(const vlaprobe_stage* stage, size_t joint) {
-  return name_at(stage->world->joint_names(), joint);
+  return stage == nullptr ? nullptr : name_at(stage->world->joint_names(), joint);
 }
 
 const char* vlaprobe_stage_object(const vlaprobe_stage* stage, size_t object) {
-  if (object >= stage->world->object_count()) return nullptr;
+  if (stage == nullptr || object >= stage->world->object_count()) return nullptr;
   return name_at(stage->world->stage().body_names(), object);
 }
 
 const char* vlaprobe_stage_body(const vlaprobe_stage* stage, size_t body) {
-  return name_at(stage->world->stage().body_names(), body);
+  return stage == nullptr ? nullptr : name_at(stage->world->stage().body_names(), body);
 }
 
 int32_t vlaprobe_stage_picture_size(const vlaprobe_stage* stage, size_t camera, int32_t* height,
                                     int32_t* width, vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {height, "height"}, {width, "width"}}));
     const auto& cameras = stage->world->cameras();
     if (camera >= cameras.size()) {
       return api::usage("the task has no camera " + std::to_string(camera) + "; it has " +
@@ -201,6 +211,7 @@ int32_t vlaprobe_stage_picture_size(const vlaprobe_stage* stage, size_t camera, 
 int32_t vlaprobe_stage_save(vlaprobe_stage* stage, const void** bytes, size_t* size,
                             vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {bytes, "bytes"}, {size, "size"}}));
     PROBE_ASSIGN(const Use use, Use::of(stage->lock, kStage));
     PROBE_ASSIGN(stage->saved, stage->world->save());
     *bytes = stage->saved.data();
@@ -212,6 +223,7 @@ int32_t vlaprobe_stage_save(vlaprobe_stage* stage, const void** bytes, size_t* s
 int32_t vlaprobe_stage_restore(vlaprobe_stage* stage, const void* bytes, size_t size,
                                vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {bytes, "bytes"}}));
     PROBE_ASSIGN(const Use use, Use::of(stage->lock, kStage));
     stage->is_observed = false;
     return stage->world->restore({static_cast<const std::byte*>(bytes), size});

@@ -6,11 +6,16 @@
  * crosses, no state is global. What a function gives through a pointer is written only where it
  * returns VLAPROBE_OK.
  *
- * Ownership. A handle is released with its own function; releasing NULL does nothing. What a handle
- * was made of may be released before it. Strings are UTF-8 and end with a zero byte. Arrays and
- * strings that a handle gives are its own and stay until the next call with that handle that is not
- * one of its questions (those take it as const); what is given as `char **` is the caller's, for
- * vlaprobe_free().
+ * NULL. Where a comment does not say what it means, a handle or an argument that is NULL is
+ * VLAPROBE_USAGE, and named; an array of no elements may be NULL. `error`, and a `char **` beside a
+ * result that is stored in a folder, may be NULL. Functions without a code give NULL or 0 of a
+ * handle that is NULL.
+ *
+ * Ownership. A handle is released with its own function, once, as memory is by free(); releasing
+ * NULL does nothing. What a handle was made of may be released before it. Strings are UTF-8 and end
+ * with a zero byte. Arrays and strings that a handle gives are its own and stay until the next call
+ * with that handle that is not one of its questions (those take it as const); what is given as
+ * `char **` is the caller's, for vlaprobe_free().
  *
  * Threads. A plan may be used by any number of threads at a time. Any other handle is used by one
  * thread at a time; a second one that comes is refused (VLAPROBE_USAGE). Worlds, batches and
@@ -398,7 +403,8 @@ VLAPROBE_EXPORT void vlaprobe_policy_release(vlaprobe_policy* policy);
 VLAPROBE_EXPORT int32_t vlaprobe_policy_begin(vlaprobe_policy* policy, const vlaprobe_stage* stage,
                                               int32_t seed, vlaprobe_error* error);
 /* What the policy does about what the stage shows now; draws pictures. VLAPROBE_USAGE where
- * `size` is not that of the stage's action space, and where the stage was reset or restored since the policy began: what it keeps is of another episode. */
+ * `size` is not that of the stage's action space, and where the stage was reset or restored since
+ * the policy began: what it keeps is of another episode. */
 VLAPROBE_EXPORT int32_t vlaprobe_policy_act(vlaprobe_policy* policy, vlaprobe_stage* stage,
                                             double* action, size_t size, vlaprobe_error* error);
 

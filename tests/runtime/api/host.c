@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "nulls.h"
 #include "vlaprobe.h"
 
 #define CHECK(condition)                                                       \
@@ -397,6 +398,7 @@ int main(int count, char** words) {
         strstr(json, "\"prompt\"") != NULL);
   vlaprobe_free(json);
   bad_input(plan, words[2], task);
+  nulls(plan, task, words[1]);
   compiles(words[4], words[2]);
   one_episode(plan, task);
   three_worlds(plan, task, VLAPROBE_NEXT_STEP);

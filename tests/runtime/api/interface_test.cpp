@@ -98,5 +98,15 @@ TEST_CASE("the library exports the functions of its header and nothing else") {
   CHECK(declared.out.find("vlaprobe_stage_step\n") != std::string::npos);
 }
 
+TEST_CASE("every function that takes a pointer is called with NULL for it") {
+  const test::Sandbox sandbox;
+  const test::Outcome untried = sandbox.run(
+      "( for f in $(sed -n 's/^VLAPROBE_EXPORT.*[ *]\\(vlaprobe_[a-z_]*\\)(.*/\\1/p' "
+      "'" VLAPROBE_SOURCE_DIR "/runtime/api/vlaprobe.h'); do grep -q \"$f(\" '" VLAPROBE_SOURCE_DIR
+      "/tests/runtime/api/nulls.c' || echo $f; done )");
+  REQUIRE(untried.exit == 0);
+  CHECK(untried.out == "vlaprobe_api_version\nvlaprobe_version\nvlaprobe_code_word\n");
+}
+
 }  // namespace
 }  // namespace probe
