@@ -15,7 +15,7 @@ struct ExpertOptions {
   bool close = true;  // false: goes to the source and stays there with open fingers
 };
 
-// Tasks that it has no skills for fail so that policy::was_not_attempted(): in begin() where
+// Tasks that it has no skills for fail with kNoSkill, a status of their own: in begin() where
 // actions are late or the hand is none that it knows, in act() where there is neither a solution in
 // skills nor a goal that one pick and place reaches. act() also fails (kPolicy) without the
 // privileged view.
