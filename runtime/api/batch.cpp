@@ -130,6 +130,7 @@ int32_t vlaprobe_batch_reset(vlaprobe_batch* batch, const uint8_t* mask,
 int32_t vlaprobe_batch_action_space(const vlaprobe_batch* batch, vlaprobe_action_space* out,
                                     vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{batch, "batch"}, {out, "out"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(batch)->lock, kBatch));
     *out = batch->worlds->actions().told();
     return {};

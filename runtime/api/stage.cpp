@@ -75,6 +75,7 @@ int32_t vlaprobe_stage_step(vlaprobe_stage* stage, const double* action, size_t 
 int32_t vlaprobe_stage_action_space(const vlaprobe_stage* stage, vlaprobe_action_space* out,
                                     vlaprobe_error* error) {
   return call(error, [&]() -> Status {
+    PROBE_TRY(api::needs({{stage, "stage"}, {out, "out"}}));
     PROBE_ASSIGN(const Use use, Use::of(own(stage)->lock, kStage));
     *out = stage->world->actions().told();
     return {};

@@ -276,15 +276,15 @@ static void expert(const vlaprobe_plan* plan, size_t task) {
   CHECK(state.success == 1);
   /* What it keeps is of the episode that it began. */
   CHECK(vlaprobe_stage_reset(stage, 4, &error) == VLAPROBE_OK);
-  CHECK(vlaprobe_policy_act(policy, stage, action, &error) == VLAPROBE_USAGE && says("begin"));
+  CHECK(vlaprobe_policy_act(policy, stage, action, 7, &error) == VLAPROBE_USAGE && says("begin"));
   CHECK(vlaprobe_policy_begin(policy, stage, 0, &error) == VLAPROBE_OK);
-  CHECK(vlaprobe_policy_act(policy, stage, action, &error) == VLAPROBE_OK);
+  CHECK(vlaprobe_policy_act(policy, stage, action, 7, &error) == VLAPROBE_OK);
   const void* bytes = NULL;
   size_t size = 0;
   CHECK(vlaprobe_stage_save(stage, &bytes, &size, &error) == VLAPROBE_OK);
-  CHECK(vlaprobe_policy_act(policy, stage, action, &error) == VLAPROBE_OK);
+  CHECK(vlaprobe_policy_act(policy, stage, action, 7, &error) == VLAPROBE_OK);
   CHECK(vlaprobe_stage_restore(stage, bytes, size, &error) == VLAPROBE_OK);
-  CHECK(vlaprobe_policy_act(policy, stage, action, &error) == VLAPROBE_USAGE && says("restored"));
+  CHECK(vlaprobe_policy_act(policy, stage, action, 7, &error) == VLAPROBE_USAGE && says("restored"));
   CHECK(vlaprobe_policy_begin(policy, stage, 0, &error) == VLAPROBE_OK);
   /* The policy was told where the robot's numbers are; the stage goes first all the same. */
   vlaprobe_stage* other = NULL;

@@ -86,6 +86,9 @@ static void of_stages(const vlaprobe_plan* plan, size_t task) {
   REFUSED("stage", vlaprobe_stage_reset(NULL, 0, &error));
   REFUSED("stage", vlaprobe_stage_step(NULL, action, 7, &error));
   REFUSED("action", vlaprobe_stage_step(stage, NULL, 7, &error));
+  vlaprobe_action_space space;
+  REFUSED("stage", vlaprobe_stage_action_space(NULL, &space, &error));
+  REFUSED("out", vlaprobe_stage_action_space(stage, NULL, &error));
   REFUSED("stage", vlaprobe_stage_state(NULL, &state, &error));
   REFUSED("out", vlaprobe_stage_state(stage, NULL, &error));
   REFUSED("stage", vlaprobe_stage_hash(NULL, hash, &error));
@@ -114,9 +117,9 @@ static void of_stages(const vlaprobe_plan* plan, size_t task) {
   if (vlaprobe_policy_create("null", &policy, &error) != VLAPROBE_OK) exit(1);
   REFUSED("policy", vlaprobe_policy_begin(NULL, stage, 0, &error));
   REFUSED("stage", vlaprobe_policy_begin(policy, NULL, 0, &error));
-  REFUSED("policy", vlaprobe_policy_act(NULL, stage, action, &error));
-  REFUSED("stage", vlaprobe_policy_act(policy, NULL, action, &error));
-  REFUSED("action", vlaprobe_policy_act(policy, stage, NULL, &error));
+  REFUSED("policy", vlaprobe_policy_act(NULL, stage, action, 7, &error));
+  REFUSED("stage", vlaprobe_policy_act(policy, NULL, action, 7, &error));
+  REFUSED("action", vlaprobe_policy_act(policy, stage, NULL, 7, &error));
   vlaprobe_policy_release(policy);
   vlaprobe_policy_release(NULL);
   vlaprobe_stage_release(stage);
@@ -139,6 +142,9 @@ static void of_batches(const vlaprobe_plan* plan, size_t task) {
   REFUSED("starts", vlaprobe_batch_reset(batch, NULL, NULL, &error));
   REFUSED("batch", vlaprobe_batch_step(NULL, action, &start, &error));
   REFUSED("actions", vlaprobe_batch_step(batch, NULL, &start, &error));
+  vlaprobe_action_space space;
+  REFUSED("batch", vlaprobe_batch_action_space(NULL, &space, &error));
+  REFUSED("out", vlaprobe_batch_action_space(batch, NULL, &error));
   REFUSED("batch", vlaprobe_batch_array(NULL, VLAPROBE_FIELD_STEPS, 0, &array, &error));
   REFUSED("out", vlaprobe_batch_array(batch, VLAPROBE_FIELD_STEPS, 0, NULL, &error));
   REFUSED("batch", vlaprobe_batch_final(NULL, VLAPROBE_FIELD_STEPS, 0, &array, &error));
