@@ -22,6 +22,7 @@
 #include "runtime/report/compare_folders.h"
 #include "runtime/report/report_page.h"
 #include "runtime/run/replay.h"
+#include "runtime/store/callers_policy.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/run_record.h"
 #include "runtime/store/store.h"
@@ -86,7 +87,8 @@ Status use_callback(const vlaprobe_run_options& given, const std::function<bool(
       .stopped = stopped});
   run::PolicyTraits traits;
   traits.draws = given.draws != 0;
-  traits.content = text_of(given.content);
+  traits.content = store::kCallersPolicy;
+  if (const std::string said = text_of(given.content); !said.empty()) traits.content += ": " + said;
   options.own_policy = run::OwnPolicy{
       traits, [questions](const run::PolicyContext&) -> Result<std::unique_ptr<policy::Policy>> {
         return api::make_asking(questions);

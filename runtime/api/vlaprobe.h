@@ -464,14 +464,17 @@ typedef enum vlaprobe_videos {
 
 /* NULL and 0 are the defaults; the options of `vlaprobe run` say more of those of their names. */
 typedef struct vlaprobe_run_options {
-  uint32_t size;       /* sizeof(vlaprobe_run_options) */
-  const char* out;     /* the folder; made if absent, continued if there */
-  const char* policy;  /* as after --policy; of none where `act` answers */
-  const char* name;    /* what folder and rows call the policy; needed with `act` */
-  const char* content; /* with `act`: what the name does not say, such as the hash of its weights */
-  const char* suite;   /* default: the first */
-  const char* tasks;   /* glob; default: all */
-  int32_t originals;   /* 1: of these only tasks that are no variant */
+  uint32_t size;      /* sizeof(vlaprobe_run_options) */
+  const char* out;    /* the folder; made if absent, continued if there */
+  const char* policy; /* as after --policy; of none where `act` answers */
+  const char* name;   /* what folder and rows call the policy; needed with `act` */
+  /* With `act`: what the name does not say, such as the hash of its weights. Without it a call that
+   * continues a folder asks for a stored episode again first, and fails with VLAPROBE_STORE where
+   * an action is not the stored one. */
+  const char* content;
+  const char* suite;    /* default: the first */
+  const char* tasks;    /* glob; default: all */
+  int32_t originals;    /* 1: of these only tasks that are no variant */
   int32_t has_episodes; /* 1: only those from first_episode to last_episode */
   int32_t first_episode, last_episode;
   const int32_t* seeds; /* default: the suite's */

@@ -7,16 +7,19 @@
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
+#include "runtime/run/callers_proof.h"
 #include "runtime/run/changed_folder.h"
 #include "runtime/run/delivery.h"
 #include "runtime/run/episode_worker.h"
 #include "runtime/run/policies.h"
+#include "runtime/run/policy_name.h"
 #include "runtime/run/recorded.h"
 #include "runtime/run/selection.h"
 #include "runtime/run/server_proof.h"
 #include "runtime/run/workers.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/robot_of.h"
+#include "runtime/store/callers_policy.h"
 #include "runtime/store/fingerprint.h"
 #include "runtime/store/not_attempted.h"
 #include "runtime/store/store.h"
@@ -255,6 +258,8 @@ std::string content_of(const RunOptions& options, const PolicyTraits& traits) {
 
 Result<Actor> choose_actor(const RunOptions& options) {
   Actor actor;
+  // Of a caller's policy the options call both so.
+  PROBE_TRY(check_policy_name(options.name, options.own_policy ? "" : options.policy));
   if (options.own_policy) {
     actor = {options.own_policy->traits, nullptr, options.own_policy->make};
   } else {
@@ -309,6 +314,9 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const std::vector<EpisodeJob> chosen = selection.jobs;
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
   summary.skipped = static_cast<int>(stored.size());
+  // What the caller says more of the policy vouches for it.
+  if (traits.content == store::kCallersPolicy)
+    PROBE_TRY(check_callers_policy(plan, options, actor, summary.notes));
   PROBE_TRY(note_missing_videos(options, stored, summary));
   if (options.progress) options.progress({0, summary.skipped, summary.total, nullptr});
   PROBE_ASSIGN(const auto unproven, store->unproven());

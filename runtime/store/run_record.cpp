@@ -5,6 +5,7 @@
 
 #include "runtime/base/json.h"
 #include "runtime/base/percent.h"
+#include "runtime/store/callers_policy.h"
 
 namespace probe::store {
 namespace {
@@ -105,8 +106,10 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
   }
   if (there.policy_content != here.policy_content) {
     const auto said = [](const std::string& text) { return text.empty() ? "nothing" : text; };
-    const bool is_server = !there.policy_content.starts_with(kOwnPolicy) &&
-                           !here.policy_content.starts_with(kOwnPolicy);
+    const auto is_of_server = [](const std::string& content) {
+      return !content.starts_with(kOwnPolicy) && !content.starts_with(kCallersPolicy);
+    };
+    const bool is_server = is_of_server(there.policy_content) && is_of_server(here.policy_content);
     changes.policy_content =
         std::string("was begun with another ") + (is_server ? "profile" : "policy") +
         " (recorded " + said(there.policy_content) + ", now " + said(here.policy_content) + ")";

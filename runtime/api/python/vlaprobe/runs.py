@@ -357,8 +357,11 @@ def evaluate(
         plan: a Plan, or the path of a .plan or .probe file.
         out: the folder; made if absent. One that holds another plan, policy, content or build is refused.
         tasks: a glob over names, or one Task.
-        name: what rows call a callable; needed where it has no __name__ or is a lambda.
-        content: of a callable, what its name does not say, such as its weights' hash: two contents are not one run.
+        name: what rows call a callable; needed where it has no __name__, is a lambda, or is called as a policy of the
+            program's is.
+        content: of a callable, what its name does not say, such as its weights' hash: two contents are not one run. Without
+            it a callable that continues a folder does a stored episode again first, and is refused where an action is not
+            the stored one, bit for bit; one that draws needs it, from the first call on.
         suite: default: the plan's first.
         originals: only tasks that are no variant of another.
         episodes: a number, a tuple (first, last) with both included, or a range of step 1; None: all.

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 
@@ -14,7 +15,7 @@ import vlaprobe
 from common import SUITE, TASK, Case, act, program, sky_plan, suite_plan
 
 
-def reach(batch):
+def reach_out(batch):
     return np.array([act(step) for step in batch["step"]])
 
 
@@ -117,10 +118,10 @@ class EvaluateTest(Case):
 
         run = vlaprobe.evaluate(
             random, suite_plan(), tasks=TASK, episodes=(0, 2), jobs=2, out=folder + "/here", progress=False, draws=True,
-            seeds=[42],
+            seeds=[42], name="drawn",  # which traces have
         )
         told = program(
-            "run", SUITE, "--tasks", TASK, "--episodes", "0-2", "--seeds", "42", "--policy", "random", "-o",
+            "run", SUITE, "--tasks", TASK, "--episodes", "0-2", "--seeds", "42", "--policy", "random", "--name", "drawn", "-o",
             folder + "/there",
         )
         self.assertEqual(told.returncode, 0, told.stderr)
@@ -175,7 +176,7 @@ class EvaluateTest(Case):
                 raise TypeError("can't convert cuda:0 device type tensor to numpy")
 
         def broken(batch):
-            actions = reach(batch)
+            actions = reach_out(batch)
             episode, step = int(batch["episode"][0]), int(batch["step"][0])
             if episode == 0 and step == 4:
                 raise RuntimeError("no weights here")
@@ -212,7 +213,7 @@ class EvaluateTest(Case):
 
         def reached(batch):
             asked.extend(batch["task"])
-            return reach(batch)
+            return reach_out(batch)
 
         run = vlaprobe.evaluate(reached, sky_plan(), episodes=0, out=self.folder() + "/run", progress=False)
         self.assertEqual((run.total, run.invalid), (2, 1))
@@ -224,7 +225,7 @@ class EvaluateTest(Case):
         told = []
         folder = self.folder() + "/run"
         options = dict(tasks=TASK, episodes=(0, 2), out=folder)
-        vlaprobe.evaluate(reach, suite_plan(), progress=told.append, **options)
+        vlaprobe.evaluate(reach_out, suite_plan(), progress=told.append, **options)
         self.assertEqual([row["done"] for row in told], [0, 1, 2, 3])
         self.assertNotIn("task", told[0])
         self.assertEqual((told[1]["task"], told[1]["invalid"], told[1]["steps"]), (TASK, None, 60))
@@ -237,9 +238,9 @@ class EvaluateTest(Case):
                 raise Enough("one will do")
 
         with self.assertRaises(Enough):
-            vlaprobe.evaluate(reach, suite_plan(), progress=stop, **{**options, "out": folder + "2"})
+            vlaprobe.evaluate(reach_out, suite_plan(), progress=stop, **{**options, "out": folder + "2"})
         self.assertEqual(len(rows_of(folder + "2")), 1)
-        rest = vlaprobe.evaluate(reach, suite_plan(), progress=False, **{**options, "out": folder + "2"})
+        rest = vlaprobe.evaluate(reach_out, suite_plan(), progress=False, **{**options, "out": folder + "2"})
         self.assertEqual((rest.done, rest.skipped), (2, 1))
         hashes = [row["trace_sha256"] for row in rows_of(folder).values()]
         self.assertEqual([row["trace_sha256"] for row in rows_of(folder + "2").values()], hashes)
@@ -318,7 +319,7 @@ class EvaluateTest(Case):
             (dict(if_changed="ask"), ["ask", "refuse"]),
             (dict(gather_s=-1.0), ["gather_s"]),
         ]:
-            options = {"policy": reach, "tasks": TASK, "episodes": 0, "progress": False, **options}
+            options = {"policy": reach_out, "tasks": TASK, "episodes": 0, "progress": False, **options}
             with self.assertRaises(vlaprobe.UsageError) as raised:
                 vlaprobe.evaluate(plan=suite_plan(), out=folder, **options)
             self.assertSays(raised.exception, *words)
@@ -330,10 +331,78 @@ class EvaluateTest(Case):
 
     def test_two_contents_under_one_name_are_not_one_run(self):
         options = dict(tasks=TASK, episodes=0, out=self.folder() + "/run", progress=False)
-        vlaprobe.evaluate(reach, suite_plan(), content="weights 1", **options)
+        vlaprobe.evaluate(reach_out, suite_plan(), content="weights 1", **options)
         with self.assertRaises(vlaprobe.Error) as raised:
-            vlaprobe.evaluate(reach, suite_plan(), content="weights 2", **options)
+            vlaprobe.evaluate(reach_out, suite_plan(), content="weights 2", **options)
         self.assertSays(raised.exception, options["out"])
+
+    def test_a_callable_is_never_taken_for_a_policy_of_the_programs(self):
+        folder = self.folder()
+        options = dict(plan=suite_plan(), tasks=TASK, episodes=0, progress=False)
+
+        def null(batch):
+            return reach_out(batch)
+
+        for policy, name, words in [
+            (null, None, ["`null`", "name"]),
+            (reach_out, "expert", ["`expert`", "name"]),
+            (reach_out, "noisy:0.01", ["`noisy:0.01`", "name"]),
+            ("null", "expert", ["`expert`", "`null`", "name"]),
+        ]:
+            with self.assertRaises(vlaprobe.UsageError) as raised:
+                vlaprobe.evaluate(policy, name=name, out=folder + "/run", **options)
+            self.assertSays(raised.exception, *words)
+            self.assertFalse(os.path.exists(folder + "/run"))
+        told = program("run", SUITE, "--tasks", TASK, "--policy", "null", "--name", "expert", "-o", folder + "/run")
+        self.assertEqual(told.returncode, 1)
+        self.assertIn("`expert`", told.stderr)
+        # Under a name that is nobody's the folder still knows which of the two it is.
+        for first, second, content in [("null", reach_out, ""), ("null", reach_out, "policy null"), (reach_out, "null", "")]:
+            out = tempfile.mkdtemp(dir=folder) + "/run"
+            vlaprobe.evaluate(first, name="mine", out=out, **options)
+            with self.assertRaises(vlaprobe.Error) as raised:
+                vlaprobe.evaluate(second, name="mine", content=content, out=out, **options)
+            self.assertSays(raised.exception, out, "another policy", "policy null", "the caller's")
+
+    def test_another_callable_of_the_same_name_is_found_out(self):
+        class Policy:
+            def __init__(self, late=60, noise=0.0):
+                self.late, self.noise, self.random = late, noise, np.random.default_rng(0)
+
+            def __call__(self, batch):
+                actions = reach_out(batch) + self.noise * self.random.normal(size=(len(batch["world"]), 7))
+                actions[batch["step"] >= self.late] = 0
+                return actions
+
+        options = dict(plan=suite_plan(), tasks=TASK, progress=False)
+        out = self.folder() + "/run"
+        first = vlaprobe.evaluate(Policy(), episodes=(0, 1), out=out, **options)
+        self.assertEqual((first.done, first.skipped), (2, 0))
+        before = rows_of(out)
+        # Another object that does the same goes on.
+        again = vlaprobe.evaluate(Policy(), episodes=(0, 2), out=out, jobs=2, **options)
+        self.assertEqual((again.done, again.skipped), (1, 2))
+        # One that differs in the last step alone does not, whether or not its episodes are there.
+        for episodes in [(0, 2), 5]:
+            with self.assertRaises(vlaprobe.Error) as raised:
+                vlaprobe.evaluate(Policy(late=59), episodes=episodes, out=out, **options)
+            self.assertEqual(raised.exception.code, "store")
+            self.assertSays(raised.exception, out, "step 59", "content")
+        # Nor one that draws, whose answers show nothing.
+        with self.assertRaises(vlaprobe.Error) as raised:
+            vlaprobe.evaluate(Policy(noise=1e-3), episodes=(0, 2), out=out, **options)
+        self.assertSays(raised.exception, "step 0", "draws")
+        self.assertEqual(len(rows_of(out)), 3)
+        for key, row in before.items():
+            self.assertEqual(rows_of(out)[key], row)
+        mixed = vlaprobe.evaluate(Policy(late=59), episodes=5, out=out, if_changed="continue", **options)
+        self.assertEqual(mixed.done, 1)
+        self.assertTrue(any("step 59" in note and "continued all the same" in note for note in mixed.notes), mixed.notes)
+        # What is said of it vouches for it.
+        said = self.folder() + "/run"
+        vlaprobe.evaluate(Policy(noise=1e-3), episodes=0, out=said, content="sha256 1", **options)
+        more = vlaprobe.evaluate(Policy(noise=1e-3), episodes=(0, 1), out=said, content="sha256 1", **options)
+        self.assertEqual((more.done, more.skipped), (1, 1))
 
     def test_a_folder_that_is_being_written_is_refused(self):
         folder = self.folder() + "/run"
