@@ -1,10 +1,11 @@
-// One HDF5 file, a group an episode. HDF5 stops here and at dataset/robomimic.cpp.
+// One HDF5 file, a group an episode. HDF5 stops here and at dataset/robomimic*.cpp.
 #include <hdf5.h>
 
 #include <array>
 #include <span>
 
 #include "runtime/export/export.h"
+#include "runtime/export/hdf5_file.h"
 #include "runtime/export/hdf5_handle.h"
 
 namespace probe::exporting {
@@ -15,12 +16,7 @@ using Shape = std::vector<hsize_t>;
 
 class Hdf5 final : public Sink {
  public:
-  Hdf5(hid_t file, std::string path) : file_(file), path_(std::move(path)) {}
-  ~Hdf5() override {
-    if (file_ >= 0) H5Fclose(file_);
-  }
-  Hdf5(const Hdf5&) = delete;
-  Hdf5& operator=(const Hdf5&) = delete;
+  explicit Hdf5(Hdf5File file) : file_(std::move(file)) {}
 
   Status episode(const store::ResultRow& row, const store::Trace& trace) override {
     const store::TraceHeader& header = trace.header;
@@ -35,19 +31,12 @@ class Hdf5 final : public Sink {
     steps(group, trace);
     contacts(group, trace);
     if (header.live) live(group, trace);
-    return ok_ ? Status() : failed();
+    return file_.status(ok_);
   }
 
-  Status finish() override {
-    const hid_t file = std::exchange(file_, -1);
-    ok_ = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0 && ok_;
-    ok_ = H5Fclose(file) >= 0 && ok_;
-    return ok_ ? Status() : failed();
-  }
+  Status finish() override { return file_.close(ok_); }
 
  private:
-  Failure failed() const { return {Fault::kIo, "cannot be written as HDF5", path_}; }
-
   void attributes(hid_t group, const store::ResultRow& row, const store::Trace& trace) {
     const store::TraceHeader& header = trace.header;
     text(group, "task", header.task);
@@ -258,19 +247,15 @@ class Hdf5 final : public Sink {
     ok_ = attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0;
   }
 
-  hid_t file_;
-  std::string path_;
+  Hdf5File file_;
   bool ok_ = true;
 };
 
 }  // namespace
 
 Result<std::unique_ptr<Sink>> open_hdf5(const std::string& path) {
-  // Failures are told by us, not by the library's own printing.
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (file < 0) return Failure{Fault::kIo, "cannot be made as HDF5", path};
-  return std::unique_ptr<Sink>(std::make_unique<Hdf5>(file, path));
+  PROBE_ASSIGN(Hdf5File file, Hdf5File::create(path));
+  return std::unique_ptr<Sink>(std::make_unique<Hdf5>(std::move(file)));
 }
 
 }  // namespace probe::exporting

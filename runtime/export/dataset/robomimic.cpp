@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "runtime/base/json.h"
+#include "runtime/export/hdf5_file.h"
 #include "runtime/export/hdf5_handle.h"
 #include "runtime/store/episode_key.h"
 
@@ -58,16 +59,11 @@ class Deflater final : public FilmMaker {
 
 class RobomimicLayout final : public Layout {
  public:
-  RobomimicLayout(hid_t file, std::string path, Shape shape)
-      : file_(file), path_(std::move(path)), shape_(std::move(shape)) {
+  RobomimicLayout(exporting::Hdf5File file, Shape shape)
+      : file_(std::move(file)), shape_(std::move(shape)) {
     const Id data = group(file_, "data");
     const Id mask = group(file_, "mask");
   }
-  ~RobomimicLayout() override {
-    if (file_ >= 0) H5Fclose(file_);
-  }
-  RobomimicLayout(const RobomimicLayout&) = delete;
-  RobomimicLayout& operator=(const RobomimicLayout&) = delete;
 
   Result<std::unique_ptr<FilmMaker>> film(std::size_t) const override {
     return std::unique_ptr<FilmMaker>(std::make_unique<Deflater>(shape_.cameras.size()));
@@ -100,14 +96,13 @@ class RobomimicLayout final : public Layout {
           keep(H5Lcreate_hard(file_, (first + "/" + shared).c_str(), demo, shared, H5P_DEFAULT,
                               H5P_DEFAULT));
       }
-      if (!ok_) return failed();
+      PROBE_TRY(file_.status(ok_));
       (demonstration.success ? successes_ : failures_).push_back(name(contents_.episodes));
       ++contents_.episodes;
       contents_.frames += static_cast<std::int64_t>(demonstration.steps.size());
     }
     ++contents_.demonstrations;
-    keep(H5Fflush(file_, H5F_SCOPE_GLOBAL));  // so that nothing is kept in memory
-    return ok_ ? Status() : failed();
+    return file_.flush(ok_);  // so that nothing is kept in memory
   }
 
   Result<Contents> finish() override {
@@ -129,10 +124,7 @@ class RobomimicLayout final : public Layout {
       names(mask, "success", successes_);
       names(mask, "failure", failures_);
     }
-    const hid_t file = std::exchange(file_, -1);
-    keep(H5Fflush(file, H5F_SCOPE_GLOBAL));
-    keep(H5Fclose(file));
-    if (!ok_) return failed();
+    PROBE_TRY(file_.close(ok_));
     contents_.readme =
         "robomimic's HDF5, `" + std::string(kFile) +
         "`: a group `data/demo_K` for each episode, its words in the attribute `ep_meta` (`lang`); "
@@ -148,7 +140,6 @@ class RobomimicLayout final : public Layout {
 
  private:
   static std::string name(std::int64_t number) { return "demo_" + std::to_string(number); }
-  Failure failed() const { return {Fault::kIo, "cannot be written as HDF5", path_}; }
   void keep(herr_t code) { ok_ = ok_ && code >= 0; }
 
   Id group(hid_t parent, const std::string& path) {
@@ -266,8 +257,7 @@ class RobomimicLayout final : public Layout {
     if (ok_) keep(H5Awrite(attribute, type, &pointer));
   }
 
-  hid_t file_;
-  std::string path_;
+  exporting::Hdf5File file_;
   Shape shape_;
   std::vector<std::string> successes_, failures_;
   Contents contents_;
@@ -277,12 +267,8 @@ class RobomimicLayout final : public Layout {
 }  // namespace
 
 Result<std::unique_ptr<Layout>> open_layout(const std::string& dir, const Shape& shape) {
-  // Failures are told by us, not by the library's own printing.
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const std::string path = dir + "/" + kFile;
-  const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  if (file < 0) return Failure{Fault::kIo, "cannot be made as HDF5", path};
-  return std::unique_ptr<Layout>(std::make_unique<RobomimicLayout>(file, path, shape));
+  PROBE_ASSIGN(auto file, exporting::Hdf5File::create(dir + "/" + kFile));
+  return std::unique_ptr<Layout>(std::make_unique<RobomimicLayout>(std::move(file), shape));
 }
 
 }  // namespace probe::dataset::robomimic

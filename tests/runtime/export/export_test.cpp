@@ -4,7 +4,14 @@
 
 #include <doctest/doctest.h>
 #include <hdf5.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 
@@ -200,6 +207,48 @@ TEST_CASE("what cannot be written is told") {
   auto sink = open_hdf5(folder / "y.h5");
   REQUIRE(sink.ok());
   CHECK(!(*sink)->episode(in.row, in.trace).ok());
+}
+
+// What a process of its own does with room for files of so many bytes, until its very end: 0 where
+// all of it was written, 1 where it was told that it was not.
+int exit_with_room(rlim_t room, const Recorded& in, const std::string& path) {
+  std::fflush(nullptr);  // or the child writes it as well
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);  // the write fails instead
+    rlimit limit{room, RLIM_INFINITY};
+    if (setrlimit(RLIMIT_FSIZE, &limit) != 0) std::_Exit(7);
+    const auto written = [&]() -> Status {
+      PROBE_ASSIGN(auto sink, open_hdf5(path));
+      for (int episode = 0; episode < 40; ++episode) {
+        store::Trace trace = in.trace;
+        trace.header.episode = episode;
+        PROBE_TRY(sink->episode(in.row, trace));
+      }
+      return sink->finish();
+    }();
+    if (!written.ok() && to_text(written.failure()).find("File too large") == std::string::npos)
+      std::exit(5);
+    std::exit(written.ok() ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+}
+
+TEST_CASE("a full disk is told, wherever in the file it happens, and ends nobody's program") {
+  const TemporaryFolder folder;
+  const Recorded in = recorded(folder);
+  const std::string path = folder / "x.h5";
+  REQUIRE(exit_with_room(RLIM_INFINITY, in, path) == 0);
+  const auto whole = static_cast<rlim_t>(std::filesystem::file_size(path));
+  CHECK(exit_with_room(whole, in, path) == 0);
+  for (int part = 0; part < 20; ++part) {
+    const rlim_t room = whole * static_cast<rlim_t>(part) / 20;
+    CAPTURE(room);
+    CHECK(exit_with_room(room, in, path) == 1);
+  }
+  CHECK(exit_with_room(whole - 1, in, path) == 1);
 }
 
 }  // namespace
