@@ -17,7 +17,7 @@ Json name_of(const sema::Phrase* phrase) { return phrase == nullptr ? Json() : J
 constexpr auto kColumns = std::to_array<std::string_view>(
     {"task", "original", "wording", "split", "probability", "original_probability", "template",
      "frame", "source_as", "target_as", "uses", "original_sha256", "wording_sha256",
-     "made_from_sha256"});
+     "made_from_sha256", "starts_sha256"});
 using Cells = std::array<Json, kColumns.size()>;
 
 Json uses_of(const Wording& wording) {
@@ -32,7 +32,7 @@ Json uses_of(const Wording& wording) {
 }
 
 Cells cells_of(const sema::Model& model, const TaskWordings& of_task, const Line& line,
-               const std::string& made_from) {
+               const std::string& sources, const Json& starts) {
   const sema::Task& task = model.tasks[of_task.task];
   const sema::Template& say = model.templates[line.wording.say];
   return {task.name,
@@ -48,14 +48,18 @@ Cells cells_of(const sema::Model& model, const TaskWordings& of_task, const Line
           uses_of(line.wording),
           to_hex(sha256(task.prompt)),
           to_hex(sha256(line.wording.text)),
-          made_from};
+          sources,
+          starts};
 }
 
 template <typename Take>
-void each_row(const sema::Model& model, const Rephrased& all, const Sha256& made_from, Take take) {
-  const std::string hash = to_hex(made_from);
+void each_row(const sema::Model& model, const Rephrased& all, const MadeFrom& made_from,
+              Take take) {
+  const std::string sources = to_hex(made_from.sources);
   for (const TaskWordings& of_task : all.tasks) {
-    for (const Line& line : of_task.lines) take(cells_of(model, of_task, line, hash));
+    const auto known = made_from.starts.find(std::string(model.tasks[of_task.task].name));
+    const Json starts = known == made_from.starts.end() ? Json() : Json(to_hex(known->second));
+    for (const Line& line : of_task.lines) take(cells_of(model, of_task, line, sources, starts));
   }
 }
 
@@ -89,7 +93,8 @@ std::uint64_t sum_of(const Json& counts) {
 
 }  // namespace
 
-std::string to_json_lines(const sema::Model& model, const Rephrased& all, const Sha256& made_from) {
+std::string to_json_lines(const sema::Model& model, const Rephrased& all,
+                          const MadeFrom& made_from) {
   std::string text;
   each_row(model, all, made_from, [&](const Cells& cells) {
     Json row = Json::object();
@@ -99,7 +104,7 @@ std::string to_json_lines(const sema::Model& model, const Rephrased& all, const 
   return text;
 }
 
-std::string to_csv(const sema::Model& model, const Rephrased& all, const Sha256& made_from) {
+std::string to_csv(const sema::Model& model, const Rephrased& all, const MadeFrom& made_from) {
   std::string text;
   for (const std::string_view column : kColumns)
     text += (text.empty() ? "" : ",") + std::string(column);

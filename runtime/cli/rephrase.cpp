@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
+#include <map>
+#include <set>
 #include <span>
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/analyzed.h"
+#include "compiler/emit/compile.h"
 #include "compiler/rephrase/published.h"
 #include "compiler/rephrase/table.h"
 #include "runtime/assets/output_file.h"
@@ -18,6 +22,7 @@
 #include "runtime/base/say.h"
 #include "runtime/cli/load.h"
 #include "runtime/compile/library.h"
+#include "runtime/plan/starts_hash.h"
 
 namespace probe::cli {
 namespace {
@@ -124,8 +129,34 @@ Result<rephrase::Options> options_of(const RephraseArguments& arguments) {
   return options;
 }
 
+// In which starts the words of these tasks are proved: those of the plan that the text makes.
+Result<std::map<std::string, Sha256>> starts_of(const RephraseArguments& arguments,
+                                                const sema::Model& model,
+                                                const std::vector<sema::TaskId>& tasks) {
+  std::set<std::string, std::less<>> names;
+  for (const sema::TaskId task : tasks) names.insert(std::string(model.tasks[task].name));
+  PROBE_ASSIGN(const std::string root, find_asset_root(arguments.assets.root));
+  PROBE_ASSIGN(const auto library, compile::find_library_folders(arguments.assets.library));
+  PROBE_ASSIGN(auto built,
+               build(std::span(&arguments.file, 1),
+                     {.asset_root = root,
+                      .library_folders = library,
+                      .wants_task = [&](std::string_view task) { return names.contains(task); }}));
+  if (!built.ok)
+    return Failure{Fault::kUsage,
+                   "makes no plan, so it is not known for which starts its words are proved:\n" +
+                       render_text(built.diagnostics, built.sources),
+                   arguments.file};
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::from_bytes(std::move(built.plan)));
+  std::map<std::string, Sha256> starts;
+  for (const plan::TaskRecord& task : plan.tasks())
+    starts.emplace(plan.text(task.name), plan::starts_hash(plan, task));
+  return starts;
+}
+
 // A file in the layout that was asked for, by its name's ending.
 Result<std::string> contents(const RephraseArguments& arguments, const AnalyzedText& text,
+                             const std::vector<sema::TaskId>& tasks,
                              const rephrase::Rephrased& all) {
   const auto is = [&](const char* ending) { return arguments.out.ends_with(ending); };
   if (arguments.format == "intact") {
@@ -139,10 +170,12 @@ Result<std::string> contents(const RephraseArguments& arguments, const AnalyzedT
       say("left out is \"{}\": the layout separates wordings by full stops\n", original);
     return is_pickle ? to_published_pickle(published) : to_published_json(published);
   }
-  const Sha256 made_from = rephrase::sources_hash(text.compilation.sources);
-  if (is(".jsonl")) return rephrase::to_json_lines(text.model, all, made_from);
-  if (is(".csv")) return rephrase::to_csv(text.model, all, made_from);
-  return Failure{Fault::kUsage, "expected a name that ends in .jsonl or .csv", arguments.out};
+  if (!is(".jsonl") && !is(".csv"))
+    return Failure{Fault::kUsage, "expected a name that ends in .jsonl or .csv", arguments.out};
+  rephrase::MadeFrom made_from{rephrase::sources_hash(text.compilation.sources)};
+  PROBE_ASSIGN(made_from.starts, starts_of(arguments, text.model, tasks));
+  return is(".jsonl") ? rephrase::to_json_lines(text.model, all, made_from)
+                      : rephrase::to_csv(text.model, all, made_from);
 }
 
 // Says which wordings are instructions of a suite; whether there are any.
@@ -196,7 +229,7 @@ int rephrase_verb(const RephraseArguments& arguments) {
   const rephrase::Rephrased all = rephrase::rephrase(model, tasks, not_in, *options);
   if (says_leaks(model, all)) return kUser;
   if (!arguments.out.empty()) {
-    const auto text = contents(arguments, *analysed.text, all);
+    const auto text = contents(arguments, *analysed.text, tasks, all);
     if (!text) return report(text.failure());
     if (const auto written = write_file(arguments.out, std::as_bytes(std::span(*text))); !written)
       return report(written.failure());

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <optional>
+#include <utility>
 
 #include "runtime/assets/output_file.h"
 #include "runtime/base/clock.h"
@@ -19,6 +21,7 @@ namespace {
 struct ExportArguments {
   std::vector<std::string> runs;
   std::string out, format, tasks = "*", size, only, check;
+  std::optional<int> wordings, fps;
   dataset::DatasetOptions dataset;
 };
 
@@ -39,7 +42,25 @@ int say_refused(const std::vector<std::string>& sentences) {
   return sentences.empty() ? kFine : kOutside;
 }
 
+// What has a meaning for datasets alone is not ignored elsewhere.
+Status of_traces(const ExportArguments& arguments) {
+  const std::pair<const char*, bool> given[] = {
+      {"--only", !arguments.only.empty()},
+      {"--size", !arguments.size.empty()},
+      {"--camera", !arguments.dataset.cameras.empty()},
+      {"--rephrase", !arguments.dataset.rephrase.empty()},
+      {"--wordings", arguments.wordings.has_value()},
+      {"--fps", arguments.fps.has_value()}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given)
+      return Failure{Fault::kUsage, "is of datasets: with --format lerobot, robomimic or rlds",
+                     option};
+  }
+  return {};
+}
+
 int export_traces(const ExportArguments& arguments) {
+  if (const auto fits = of_traces(arguments); !fits) return report(fits.failure());
   if (arguments.runs.size() != 1)
     return report(
         {Fault::kUsage, "traces of one run go into a file; datasets take several", "RUN"});
@@ -59,6 +80,10 @@ int export_dataset(const ExportArguments& arguments, dataset::Format format) {
   dataset::DatasetOptions options = arguments.dataset;
   options.tasks = arguments.tasks;
   options.only_success = arguments.only == "success";
+  if (arguments.wordings && options.rephrase.empty())
+    return report({Fault::kUsage, "takes words from a table, which --rephrase names", "--wordings"});
+  options.wordings = arguments.wordings.value_or(options.wordings);
+  options.fps = arguments.fps.value_or(options.fps);
   if (auto sized = read_size(arguments.size, options); !sized) return report(sized.failure());
   const auto begun = std::chrono::steady_clock::now();
   constexpr double kRedrawEvery = 0.2;
@@ -130,8 +155,10 @@ void add_export(Verb app, int& exit) {
       .one_each();
   verb.add_option("--rephrase", options.rephrase,
                   "X.jsonl of `vlaprobe rephrase`: tell in its words, split train");
-  verb.add_option("--wordings", options.wordings, "wordings a demonstration, an episode each (1)");
-  verb.add_option("--fps", options.fps, "frames a second that are written (default: control rate)");
+  verb.add_option("--wordings", arguments->wordings, "wordings a demonstration, an episode each (1)");
+  verb.add_option("--fps", arguments->fps,
+                  "frames a second that are written, where the control rate is no whole number")
+      .between(1, 1000);
   verb.add_option("--jobs", options.jobs, "threads; the bytes do not depend on it")
       .between(1, 1024);
   verb.add_option("--check", arguments->check,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "runtime/base/asset_root.h"
+#include "runtime/base/paths.h"
 #include "runtime/export/dataset/in_order.h"
 #include "runtime/export/dataset/layout.h"
 #include "runtime/export/dataset/lerobot.h"
@@ -20,6 +21,7 @@
 #include "runtime/export/dataset/robomimic.h"
 #include "runtime/export/dataset/source.h"
 #include "runtime/export/dataset/wordings.h"
+#include "runtime/plan/starts_hash.h"
 #include "runtime/policy/scripted.h"
 #include "runtime/robot/rotation.h"
 #include "runtime/run/episode.h"
@@ -72,6 +74,12 @@ class Maker {
                      "`: " + to_text(trace.failure());
       return made;
     }
+    // The record is not among what the trace's hash vouches for.
+    if (trace->header.live) {
+      made.refused = store::to_text(store::key_of(row)) + " of `" + source_.dir +
+                     "`: its world did not wait for its policy, and its run's record says it did";
+      return made;
+    }
     Demonstration& demonstration = made.demonstration;
     demonstration.run = source_.dir;
     demonstration.row = row;
@@ -84,9 +92,12 @@ class Maker {
       demonstration.pushed =
           policy::pushed_steps(run::draw_seed(trace->header.seed, trace->header.episode_id), done);
     }
-    if (wordings_ != nullptr)
-      demonstration.wordings =
-          wordings_->draw(row.task, trace->header.prompt, options_.wordings, row.trace_sha256);
+    if (wordings_ != nullptr) {
+      const plan::TaskRecord& task = source_.plan.tasks()[*source_.plan.find_task(row.task)];
+      demonstration.wordings = wordings_->draw(
+          {row.task, trace->header.prompt, to_hex(plan::starts_hash(source_.plan, task))},
+          options_.wordings, row.trace_sha256);
+    }
     PROBE_ASSIGN(const auto film, layout_.film(trace->steps.size()));
     PROBE_TRY(repeater_.repeat(*trace, [&](auto frames, const auto& observation, std::size_t at) {
       demonstration.steps.push_back(step_of(observation, trace->steps[at].action));
@@ -215,15 +226,24 @@ Status write_run(const Source& source, const Shape& shape, const Layout& layout,
 // What has no other words in the table keeps its own, and that is told.
 std::vector<std::string> without_words(const std::vector<Source>& sources,
                                        const Wordings& wordings) {
-  std::set<std::string> tasks;
+  std::set<std::string> tasks, others;
   for (const Source& source : sources) {
     for (const std::uint32_t index : source.tasks) {
       const plan::TaskRecord& task = source.plan.tasks()[index];
       const std::string name(source.plan.text(task.name));
-      if (!wordings.has(name, std::string(source.plan.text(task.prompt)))) tasks.insert(name);
+      const Wordings::Told told{name, std::string(source.plan.text(task.prompt)),
+                                to_hex(plan::starts_hash(source.plan, task))};
+      if (wordings.has_for_other_starts(told)) {
+        others.insert("`" + name + "` of `" + source.dir + "`");
+      } else if (!wordings.has(told)) {
+        tasks.insert(name);
+      }
     }
   }
   std::vector<std::string> sentences;
+  for (const std::string& task : others)
+    sentences.push_back("other words for the instruction of " + task +
+                        ": those of the table are proved for other starts, so it keeps its own");
   for (const std::string& task : tasks)
     sentences.push_back("other words for the instruction of `" + task +
                         "`: the table of wordings has none, so it keeps its own");
@@ -238,8 +258,13 @@ Result<DatasetReport> export_dataset(const std::vector<std::string>& runs, const
   DatasetReport report;
   std::vector<Source> sources;
   std::size_t total = 0;
-  for (const std::string& dir : runs) {
-    PROBE_ASSIGN(Source source, open_source(dir, options, report.left_out));
+  std::set<std::string> taken;
+  for (auto dir = runs.begin(); dir != runs.end(); ++dir) {
+    const auto before =
+        std::find_if(runs.begin(), dir, [&](const auto& other) { return is_same(other, *dir); });
+    if (before != dir)
+      return Failure{Fault::kUsage, "is the run that was already named as `" + *before + "`", *dir};
+    PROBE_ASSIGN(Source source, open_source(*dir, options, taken, report.left_out));
     total += source.rows.size();
     sources.push_back(std::move(source));
   }

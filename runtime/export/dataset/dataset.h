@@ -22,7 +22,9 @@ struct DatasetOptions {
   // demonstration is told in so many wordings of the split `train`.
   std::string rephrase;
   int wordings = 1;
-  int fps = 0;         // frames a second; 0: the control rate, which then has to be a whole number
+  // Frames a second, less than one beside the control rate; 0: that, which then has to be a whole
+  // number.
+  int fps = 0;
   int jobs = 1;        // threads; the bytes do not depend on it
   std::string assets;  // asset root, see find_asset_root
   // Sizes at which a new file is begun, bytes.

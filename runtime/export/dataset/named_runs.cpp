@@ -133,6 +133,8 @@ Result<std::optional<NamedDemonstration>> NamedRuns::next() {
                    store::to_text(key)};
   const plan::Plan& plan = run->second.plan;
   PROBE_ASSIGN(store::Trace trace, store::prove(plan, row->second));
+  if (const auto why = lateness(plan, row->second))
+    return Failure{Fault::kTrace, "is nothing to learn from: " + *why, store::to_text(key)};
   if (trace.header.prompt != json.at("instruction").text())
     return Failure{Fault::kTrace, "has another instruction than the dataset says",
                    store::to_text(key)};

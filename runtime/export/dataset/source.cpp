@@ -97,6 +97,13 @@ Result<Shape> shape_of_task(const plan::Plan& plan, const plan::TaskRecord& task
                                plan.text(task.name), robot.control_hz),
                    "--fps"};
   }
+  if (std::abs(shape.fps - robot.control_hz) >= 1) {
+    return Failure{Fault::kUsage,
+                   fmt::format("task `{}` has {} control steps a second, and a frame is a step: {} "
+                               "frames would take another time than the episode did",
+                               plan.text(task.name), robot.control_hz, shape.fps),
+                   "--fps"};
+  }
   return shape;
 }
 
@@ -133,14 +140,25 @@ bool is_success(const store::ResultRow& row) {
   });
 }
 
+std::optional<std::string> lateness(const plan::Plan& plan, const store::ResultRow& row) {
+  if (!row.live.empty())
+    return "its world did not wait for its policy (" + row.live +
+           "): actions answer earlier pictures, or are held";
+  const auto task = plan.find_task(row.task);
+  if (!task || plan.tasks()[*task].delay == 0) return std::nullopt;
+  return fmt::format("`{}` has a delay: an action acts {} control steps after its picture",
+                     row.task, plan.tasks()[*task].delay);
+}
+
 Result<Source> open_source(const std::string& dir, const DatasetOptions& options,
-                           std::vector<std::string>& left_out) {
+                           std::set<std::string>& taken, std::vector<std::string>& left_out) {
   PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
   PROBE_ASSIGN(plan::Plan plan, store::open_run_plan(dir));
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
   Source source{dir, record.identity.policy, is_pushed(record.identity), std::move(plan), {}, {}};
   std::map<std::string, std::pair<std::size_t, std::string>> invalid;  // by reason: how many, first
-  std::size_t failed = 0, empty = 0;
+  std::map<std::string, std::size_t> late;  // by reason
+  std::size_t failed = 0, empty = 0, again = 0;
   std::set<std::uint32_t> tasks;
   for (const store::ResultRow& row : rows) {
     if (!matches_glob(options.tasks, row.task)) continue;
@@ -152,6 +170,10 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
       ++failed;
     } else if (row.steps == 0 || !task) {
       ++empty;
+    } else if (const auto why = lateness(source.plan, row)) {
+      ++late[*why];
+    } else if (!taken.insert(row.trace_sha256).second) {
+      ++again;
     } else {
       source.rows.push_back(row);
       tasks.insert(*task);
@@ -162,6 +184,11 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
     left_out.push_back(fmt::format("{} of `{}`, {} the first: {}{}", counted(of.first), dir,
                                    of.second,
                                    why.starts_with(store::kNotAttempted) ? "" : "invalid, ", why));
+  for (const auto& [why, count] : late)
+    left_out.push_back(fmt::format("{} of `{}`: {}", counted(count), dir, why));
+  if (again > 0)
+    left_out.push_back(
+        fmt::format("{} of `{}`: the same traces as in a run before it", counted(again), dir));
   if (failed > 0) left_out.push_back(fmt::format("{} of `{}`: no success", counted(failed), dir));
   if (empty > 0)
     left_out.push_back(

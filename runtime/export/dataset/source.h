@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,10 +31,16 @@ bool is_success(const store::ResultRow& row);
 // A task's cameras as policies see them.
 std::vector<CameraShape> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task);
 
-// The valid episodes of the run in `dir` that the options name; what else there was is told in
+// Why the action that the row's trace has at a step is not what was done at the picture of that
+// step, so that nobody should learn it: its world did not wait for the policy, or its task's
+// actions act late. Nothing: it is.
+std::optional<std::string> lateness(const plan::Plan& plan, const store::ResultRow& row);
+
+// The valid episodes of the run in `dir` that the options name, whose actions answer their pictures
+// and whose traces are not among `taken`, to which theirs are added; what else there was is told in
 // `left_out`. Fails (kStore) when there is no run.
 Result<Source> open_source(const std::string& dir, const DatasetOptions& options,
-                           std::vector<std::string>& left_out);
+                           std::set<std::string>& taken, std::vector<std::string>& left_out);
 
 // What all tasks of the sources have; fails (kUsage) naming two that differ in it, an unknown
 // camera, and a control rate that is no whole number.

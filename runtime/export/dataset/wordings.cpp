@@ -31,9 +31,15 @@ Result<Wordings> Wordings::read(const std::string& path) {
         !is_share("probability") || !is_share("original_probability"))
       return Failure{Fault::kUsage, "is no line of `vlaprobe rephrase -o X.jsonl`",
                      path + ":" + std::to_string(number)};
+    if (!is_text("starts_sha256"))
+      return Failure{Fault::kUsage,
+                     "does not say for which starts its words are proved (`starts_sha256`): an older "
+                     "program wrote it; `vlaprobe rephrase` makes it again",
+                     path + ":" + std::to_string(number)};
     if (json.at("split").text() != "train") continue;
     const std::string& original = json.at("original").text();
-    auto& choices = out.choices_[{json.at("task").text(), original}];
+    auto& choices =
+        out.choices_[{json.at("task").text(), original, json.at("starts_sha256").text()}];
     if (choices.empty())
       choices.push_back({original, json.at("original_probability").get<double>()});
     choices.push_back({json.at("wording").text(), json.at("probability").get<double>()});
@@ -43,14 +49,17 @@ Result<Wordings> Wordings::read(const std::string& path) {
   return out;
 }
 
-bool Wordings::has(const std::string& task, const std::string& instruction) const {
-  return choices_.contains({task, instruction});
+bool Wordings::has(const Told& told) const { return choices_.contains(told); }
+
+bool Wordings::has_for_other_starts(const Told& told) const {
+  const auto first = choices_.lower_bound({told.task, told.instruction, ""});
+  return !has(told) && first != choices_.end() && first->first.task == told.task &&
+         first->first.instruction == told.instruction;
 }
 
-std::vector<std::string> Wordings::draw(const std::string& task, const std::string& instruction,
-                                        int count, std::string_view key) const {
-  const auto found = choices_.find({task, instruction});
-  if (found == choices_.end()) return {instruction};
+std::vector<std::string> Wordings::draw(const Told& told, int count, std::string_view key) const {
+  const auto found = choices_.find(told);
+  if (found == choices_.end()) return {told.instruction};
   std::vector<Choice> left = found->second;
   policy::Draws draws(little_endian_number(Hasher().text("wordings").text(key).finish()));
   std::vector<std::string> drawn;

@@ -41,7 +41,9 @@ struct Made {
 
 TEST_CASE("a line says how a wording was made, how likely it is and what proves it") {
   const Made made({.held_out = 0, .keep_original = 0.5});
-  std::istringstream lines(rephrase::to_json_lines(made.analysis->model, made.all, made.hash()));
+  const Sha256 starts = sha256(std::string_view("starts"));
+  std::istringstream lines(rephrase::to_json_lines(made.analysis->model, made.all,
+                                                   {made.hash(), {{"red_on_tray", starts}}}));
   std::size_t count = 0;
   for (std::string line; std::getline(lines, line); ++count) {
     const Json row = Json::parse(line);
@@ -61,6 +63,7 @@ TEST_CASE("a line says how a wording was made, how likely it is and what proves 
     CHECK(row["uses"].dump() == "[\"appearance\"]");
     CHECK(row["wording_sha256"].text() == to_hex(sha256("place the red thing on the tray")));
     CHECK(row["made_from_sha256"].text() == to_hex(made.hash()));
+    CHECK(row["starts_sha256"].text() == to_hex(starts));
   }
   std::size_t expected = 0;
   for (const auto& of_task : made.all.tasks) expected += of_task.lines.size();
@@ -70,7 +73,7 @@ TEST_CASE("a line says how a wording was made, how likely it is and what proves 
 
 TEST_CASE("comma-separated values quote commas and quotes") {
   const Made made({.held_out = 0});
-  const std::string csv = rephrase::to_csv(made.analysis->model, made.all, made.hash());
+  const std::string csv = rephrase::to_csv(made.analysis->model, made.all, {made.hash()});
   CHECK(csv.starts_with("task,original,wording,split,probability,original_probability,template,"));
   CHECK(csv.find("\"on the tray, \"\"put\"\" the red block\"") != csv.npos);
 }

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/json.h"
 #include "runtime/export/dataset/dataset.h"
+#include "runtime/plan/starts_hash.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/stored_trace.h"
 #include "tests/runtime/run/run_checks.h"
@@ -69,6 +71,18 @@ inline std::vector<store::StoredTrace> traces_of(const std::string& dir) {
     all.push_back({row, std::move(*trace)});
   }
   return all;
+}
+
+// A table with one other wording of the run's task, proved for its starts.
+inline void write_wording(const std::string& run, const std::string& path) {
+  const auto plan = store::open_run_plan(run);
+  REQUIRE(plan.ok());
+  const plan::TaskRecord& task = plan->tasks()[0];
+  const Json line = {{"task", plan->text(task.name)},      {"original", plan->text(task.prompt)},
+                     {"wording", "lay it down"},           {"split", "train"},
+                     {"probability", 0.5},                 {"original_probability", 0.5},
+                     {"starts_sha256", to_hex(plan::starts_hash(*plan, task))}};
+  std::ofstream(path) << line.dump() << "\n";
 }
 
 inline DatasetOptions dataset_options() {

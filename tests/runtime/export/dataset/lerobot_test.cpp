@@ -194,12 +194,8 @@ TEST_CASE("the bytes do not depend on the threads, and files are cut where they 
 
 TEST_CASE("every wording is an episode of its own that shares the demonstration's video") {
   const Exported made;
-  const std::string prompt = traces_of(made.run)[0].trace.header.prompt;
   const std::string table = made.folder / "w.jsonl";
-  std::ofstream(table) << R"({"task":"carrot_on_plate","original":")" << prompt
-                       << R"(","wording":"lay it down","split":"train","probability":0.5,)"
-                       << R"("original_probability":0.5})"
-                       << "\n";
+  write_wording(made.run, table);
   DatasetOptions options = dataset_options();
   options.rephrase = table;
   options.wordings = 2;

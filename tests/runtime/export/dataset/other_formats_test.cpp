@@ -1,6 +1,7 @@
 // A run as robomimic's HDF5 and as RLDS, read by h5py and by Python's standard library.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <functional>
@@ -130,11 +131,7 @@ TEST_CASE("actions of joints are named by them, and come as they were said") {
 TEST_CASE("both formats are the same bytes whatever the threads, also with several wordings") {
   const run::TemporaryFolder folder;
   make_run(small_table(), folder / "run");
-  const std::string prompt = traces_of(folder / "run")[0].trace.header.prompt;
-  std::ofstream(folder / "w.jsonl")
-      << R"({"task":"carrot_on_plate","original":")" << prompt
-      << R"(","wording":"lay it down","split":"train","probability":0.5,"original_probability":0.5})"
-      << "\n";
+  write_wording(folder / "run", folder / "w.jsonl");
   DatasetOptions options = dataset_options();
   options.rephrase = folder / "w.jsonl";
   options.wordings = 2;
@@ -236,11 +233,7 @@ TEST_CASE("both formats are read back and held against their traces, pictures am
   const run::TemporaryFolder folder;
   make_run(small_table(), folder / "run");
   make_run(small_table(), folder / "expert", "expert");
-  const std::string prompt = traces_of(folder / "run")[0].trace.header.prompt;
-  std::ofstream(folder / "w.jsonl")
-      << R"({"task":"carrot_on_plate","original":")" << prompt
-      << R"(","wording":"lay it down","split":"train","probability":0.5,"original_probability":0.5})"
-      << "\n";
+  write_wording(folder / "run", folder / "w.jsonl");
   for (const Format format : {Format::kRobomimic, Format::kRlds}) {
     for (const bool is_small : {false, true}) {
       DatasetOptions options = dataset_options();
@@ -316,6 +309,10 @@ TEST_CASE("an RLDS dataset that was changed does not pass its check") {
   with([](Example& e) { e["steps/is_last"].wholes.back() = 0; }, "is_last is not true");
   with([](Example& e) { e["steps/is_terminal"].wholes.back() = 1; }, "is_terminal is not");
   with([](Example& e) { e["steps/language_instruction"].texts[3] = "?"; }, "is not its wording");
+  // The same in every step is told once.
+  with([](Example& e) { std::ranges::fill(e["steps/observation/joints"].reals, 0.5); },
+       "(and 6 more like it)");
+  CHECK(problems_of(out).size() == 1);
   with([](Example& e) { e["episode_metadata/episode_id"].wholes = {7}; }, "episode_id");
   with([](Example& e) { e["episode_metadata/success"].wholes = {1}; }, "success is not");
   with([](Example& e) { e["steps/reward"].reals.pop_back(); }, "steps/reward has 6 numbers");
