@@ -13,10 +13,24 @@ namespace {
 
 constexpr std::size_t kMostProblems = 50;
 
+std::string without_numbers(std::string text) {
+  std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; });
+  return text;
+}
+
 }  // namespace
 
 void Findings::expect(bool is_so, const std::string& where, const std::string& what) {
-  if (!is_so && report.problems.size() < kMostProblems) problem(where + ": " + what);
+  if (is_so) return;
+  const auto [kind, is_new] = kinds_.try_emplace(without_numbers(what));
+  Kind& known = kind->second;
+  if (is_new) {
+    known = {where + ": " + what, report.problems.size(), 0};
+    problem(known.first);
+    return;
+  }
+  ++known.more;
+  report.problems[known.index] = fmt::format("{} (and {} more like it)", known.first, known.more);
 }
 
 bool Findings::is_full() const { return report.problems.size() >= kMostProblems; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,11 +18,21 @@ namespace probe::dataset {
 class Findings {
  public:
   void problem(std::string text) { report.problems.push_back(std::move(text)); }
+  // Of what differs in nothing but its numbers the first place is told, and how many more there are.
   void expect(bool is_so, const std::string& where, const std::string& what);
   // More of the same kind would only fill the screen.
   bool is_full() const;
 
   CheckReport report;
+
+ private:
+  // Of a kind of problem: its first sentence in `report.problems`, where that is, and how many came
+  // behind it.
+  struct Kind {
+    std::string first;
+    std::size_t index = 0, more = 0;
+  };
+  std::map<std::string, Kind> kinds_;
 };
 
 // Of each demonstration in each of its wordings, in order, until `episode` fails, which is a
