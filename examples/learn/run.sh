@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The whole story: demonstrations, two datasets, two policies, checkpoints compared, the suite, a report.
 #   examples/learn/run.sh [OUTPUT_DIR]      default: runs/learn in this checkout
-# MINUTES of processor time for each policy (12), JOBS worlds side by side (8), VLAPROBE and PYTHON programs.
+# MINUTES of processor time for each policy (9), JOBS worlds side by side (8), VLAPROBE and PYTHON programs.
 # Needs python3-torch and python3-h5py. Begun again it goes on with the first step that has not ended.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -24,25 +24,25 @@ cd "$root"
 # ---- two policies: all is the same but the words ---------------------------------------------------------------------
 learn() { # NAME WORDS
   [ -e "$out/policies/$1/part_3.pt" ] ||
-    "$python" "$here/train.py" "$out/data" -o "$out/policies/$1" --words "$2" --minutes "${MINUTES:-12}"
+    "$python" "$here/train.py" "$out/data" -o "$out/policies/$1" --words "$2" --minutes "${MINUTES:-9}"
 }
 learn plain instruction
 learn rephrased lang
 
-# ---- served, the best checkpoint of each over the whole suite ---------------------------------------------------------
+# ---- served: the four canonical tasks with each checkpoint, the whole suite with the best -----------------------------
 for kind in plain rephrased; do
   "$python" "$here/serve.py" "$out/policies/$kind" --port 0 > "$out/$kind.port" 2> "$out/$kind.log" &
   server=$!
   trap 'kill $server 2>/dev/null || true' EXIT
   until grep -q port "$out/$kind.port"; do kill -0 $server; sleep 0.2; done
   at="ws://127.0.0.1:$(cut -d' ' -f2 "$out/$kind.port")"
-  options="profile=examples/learn/learnt.profile&batch=$jobs"
-  best=$("$vlaprobe" sweep suite/intact.probe --seeds 42 --jobs "$jobs" -o "$out/sweep_$kind" \
-    --policy "$at/{}?$options" --checkpoints part_1,part_2,part_3 | tail -n 1)
-  "$vlaprobe" run suite/intact.probe --seeds 42 --jobs "$jobs" --name "$kind" --policy "$at/$best?$options" -o "$out/$kind"
+  "$vlaprobe" sweep suite/intact.probe --seeds 42 --jobs "$jobs" --name "$kind" -o "$out/$kind" \
+    --policy "$at/{}?profile=examples/learn/learnt.profile&batch=$jobs" --checkpoints part_1,part_2,part_3
   kill $server
 done
 
-"$vlaprobe" compare "$out/plain" "$out/rephrased" | tee "$out/compare.txt"
-"$vlaprobe" report "$out/plain" "$out/rephrased" --floors suite/floors.csv -o "$out/report.html"
+best() { "$python" -c 'import json, sys; print(json.load(open(sys.argv[1]))["best"])' "$out/$1/sweep.json"; }
+runs=("$out/plain/$(best plain)" "$out/rephrased/$(best rephrased)")
+"$vlaprobe" compare "${runs[@]}" | tee "$out/compare.txt"
+"$vlaprobe" report "${runs[@]}" --floors suite/floors.csv -o "$out/report.html"
 echo "report    $out/report.html"
