@@ -69,6 +69,8 @@ class FolderLoader {
 
   Status add_folder(const std::string& dir) {
     PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+    if (record.identity.only_success)
+      return Failure{Fault::kUsage, std::string(store::kSuccessesAlone), dir};
     RunInfo info;
     PROBE_ASSIGN(std::vector<store::ResultRow> rows, rows_of(dir, &info.live));
     PROBE_ASSIGN(const int plan, plan_of(dir, record));

@@ -281,8 +281,12 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   PROBE_ASSIGN(const Actor actor, choose_actor(options));
   const run::PolicyTraits& traits = actor.traits;
   std::vector<store::ResultRow> recorded;
+  bool is_of_successes = false;  // as what is done again, which has no others
   if (traits.recorded) {
-    PROBE_ASSIGN(recorded, recorded_rows(run::policy_argument(options.policy)));
+    const std::string dir = run::policy_argument(options.policy);
+    PROBE_ASSIGN(recorded, recorded_rows(dir));
+    PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+    is_of_successes = record.identity.only_success;
   }
   PROBE_ASSIGN(Selection selection,
                select_jobs(plan, options, traits.draws, traits.recorded ? &recorded : nullptr));
@@ -303,7 +307,8 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const store::Fingerprint fingerprint = store::take_fingerprint(stage::asset_digest(plan));
   store::RunRecord record{
       {to_hex(plan.root()), options.name.empty() ? options.policy : options.name,
-       content_of(options, traits), options.live ? to_text(*options.live) : ""},
+       content_of(options, traits), options.live ? to_text(*options.live) : "",
+       options.only_success || is_of_successes},
       selection.suite,
       selection.seeds,
       fingerprint};

@@ -103,6 +103,7 @@ Result<ProvenResults> read_proven_results(const std::string& dir) {
   PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
   ProvenResults proven;
   proven.live_terms = record.identity.live;
+  proven.only_success = record.identity.only_success;
   std::vector<std::optional<Failure>> wrong(rows.size());
   std::vector<policy::LiveFigures> live(rows.size());
   std::atomic<std::size_t> next{0};

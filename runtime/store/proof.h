@@ -30,6 +30,7 @@ struct ProvenResults {
   // in valid episodes. Empty: it waits.
   std::string live_terms;
   policy::LiveFigures live;
+  bool only_success = false;  // RunIdentity::only_success
 };
 
 // The rows of a run that their traces bear; reads all of them, on every core. Fails as

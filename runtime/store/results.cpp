@@ -54,6 +54,7 @@ struct RareField {
 std::string steps_cell(int steps) { return steps == 0 ? "" : std::to_string(steps); }
 constexpr RareField kRareFields[] = {
     {"live", [](const ResultRow& row) { return row.live; }},
+    {"only_success", [](const ResultRow& row) { return std::string(row.only_success ? "true" : ""); }},
     {"remark", [](const ResultRow& row) { return row.remark.value_or(""); }},
     {"idle", [](const ResultRow& row) { return steps_cell(row.idle); }},
     {"delay", [](const ResultRow& row) { return steps_cell(row.delay); }},
@@ -133,6 +134,7 @@ std::string results_to_json(std::span<const ResultRow> rows) {
     json["start_id"] = row.start_id;
     json["trace"] = row.trace;
     if (!row.live.empty()) json["live"] = row.live;
+    if (row.only_success) json["only_success"] = true;
     if (row.remark) json["remark"] = *row.remark;
     if (row.idle != 0) json["idle"] = row.idle;
     if (row.delay != 0) json["delay"] = row.delay;

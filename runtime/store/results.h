@@ -50,6 +50,8 @@ struct ResultRow {
   std::vector<JointValue> joints = {};
   // RunIdentity::live of its run; empty in one whose world waits. Of read_results.
   std::string live = {};
+  // RunIdentity::only_success of its run. Of read_results.
+  bool only_success = false;
   bool operator==(const ResultRow&) const = default;
 };
 
@@ -58,7 +60,8 @@ struct ResultRow {
 Result<std::vector<ResultRow>> read_results(const std::string& dir);
 
 // A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.
-// Behind `trace` stand, where there is something to say, `live`, `remark`, `idle` and `delay`
+// Behind `trace` stand, where there is something to say, `live`, `only_success` (true where the run
+// stored no other episodes), `remark`, `idle` and `delay`
 // (control steps) and `joints`, an object.
 std::string results_to_json(std::span<const ResultRow> rows);
 // The same as comma-separated values with a header line; truths as true/false. What some rows have

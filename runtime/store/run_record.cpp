@@ -38,7 +38,10 @@ std::string percent(double part, double whole) {
 
 std::string record_to_text(const RunRecord& record) {
   const bool is_live = !record.identity.live.empty();
-  Json json = {{"schema", std::to_string(is_live ? kLiveSchemaVersion : record.schema)},
+  const int schema = record.identity.only_success ? kSelectedSchemaVersion
+                     : is_live                    ? kLiveSchemaVersion
+                                                  : record.schema;
+  Json json = {{"schema", std::to_string(schema)},
                {"plan_root", record.identity.plan_root},
                {"policy", record.identity.policy},
                {"policy_content", record.identity.policy_content},
@@ -46,6 +49,7 @@ std::string record_to_text(const RunRecord& record) {
                {"seeds", record.seeds},
                {"fingerprint", to_json(record.fingerprint)}};
   if (is_live) json["live"] = record.identity.live;
+  if (record.identity.only_success) json["only_success"] = true;
   return json.sorted().dump();
 }
 
@@ -57,8 +61,10 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
   }
   RunRecord record;
   PROBE_ASSIGN(const std::string schema, record_text(json, "schema", where));
-  const bool is_live = schema == std::to_string(kLiveSchemaVersion);
-  if (schema != "1" && schema != std::to_string(kSchemaVersion) && !is_live) {
+  const bool is_selected = schema == std::to_string(kSelectedSchemaVersion);
+  const bool is_live = schema == std::to_string(kLiveSchemaVersion) ||
+                       (is_selected && json.find("live") != nullptr);
+  if (schema != "1" && schema != std::to_string(kSchemaVersion) && !is_live && !is_selected) {
     return record_failure(
         "was written by a program with another layout of results (" + schema + ")", where);
   }
@@ -71,6 +77,12 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
   if (is_live) {
     PROBE_ASSIGN(record.identity.live, record_text(json, "live", where));
     if (record.identity.live.empty()) return bad_record("live", "a text that says how", where);
+  }
+  if (is_selected) {
+    const Json* kept = json.find("only_success");
+    if (kept == nullptr || !kept->is_boolean() || !kept->get<bool>())
+      return bad_record("only_success", "true", where);
+    record.identity.only_success = true;
   }
   PROBE_ASSIGN(record.suite, record_text(json, "suite", where));
   const Json* seeds = json.find("seeds");
@@ -96,7 +108,13 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
     return live.empty() ? std::string("a run whose world waits for its policy")
                         : "a run that is " + live;
   };
-  if (there.live != here.live) {
+  const auto kept = [](bool only_success) {
+    return only_success ? "successes alone (`vlaprobe demos`)" : "every episode that was run";
+  };
+  if (there.only_success != here.only_success) {
+    changes.identity =
+        std::string("holds ") + kept(there.only_success) + ", not " + kept(here.only_success);
+  } else if (there.live != here.live) {
     changes.identity = "holds " + kind(there.live) + ", not " + kind(here.live);
   } else if (there.policy != here.policy) {
     changes.identity = "holds a run of policy `" + there.policy + "`, not `" + here.policy + "`";

@@ -17,9 +17,11 @@ namespace probe::store {
 
 // Raised when the tables or the record change. Version 1 had neither `policy_content` nor calls nor
 // the hashes of what was sent; it is read, and raised to 2 when it is written. A live run's record
-// is of version 3, which programs that know no live runs refuse.
+// is of version 3, which programs that know no live runs refuse; that of a folder of successes alone
+// of version 4, which programs refuse that would take it for a policy that never fails.
 inline constexpr int kSchemaVersion = 2;
 inline constexpr int kLiveSchemaVersion = 3;
+inline constexpr int kSelectedSchemaVersion = 4;
 
 // How the content of a policy in this process begins whose rows call it otherwise.
 inline constexpr std::string_view kOwnPolicy = "policy ";
@@ -34,6 +36,9 @@ struct RunIdentity {
   // Of a world that does not wait for its policy: to_text of its policy::LiveTerms. Empty: it
   // waits.
   std::string live = "";
+  // Only episodes that succeeded are stored (`vlaprobe demos`): of what was done nothing can be
+  // told from them.
+  bool only_success = false;
   bool operator==(const RunIdentity&) const = default;
 };
 
@@ -44,6 +49,11 @@ struct RunRecord {
   Fingerprint fingerprint;  // of the call that made the folder
   int schema = kSchemaVersion;
 };
+
+// What is said of a folder with `RunIdentity::only_success` in place of a rate.
+inline constexpr std::string_view kSuccessesAlone =
+    "holds successes alone, as `vlaprobe demos` keeps them: how often its policy succeeds cannot "
+    "be told";
 
 std::string record_to_text(const RunRecord& record);
 // Fails (kStore, at `where`) naming the key that is missing or of another type, and on a

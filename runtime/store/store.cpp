@@ -198,6 +198,7 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
     row.sent_prompt_sha256 = select.optional_text(EpisodeColumn::kSentPromptSha);
     row.sent_image_sha256 = select.optional_text(EpisodeColumn::kSentImageSha);
     row.live = record->identity.live;
+    row.only_success = record->identity.only_success;
     if (const auto said = remarks.find(key_of(row)); said != remarks.end())
       row.remark = said->second;
     rows.push_back(std::move(row));

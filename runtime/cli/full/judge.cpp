@@ -14,6 +14,7 @@
 #include "runtime/rejudge/rejudge.h"
 #include "runtime/store/results.h"
 #include "runtime/store/run_plan.h"
+#include "runtime/store/store.h"
 
 namespace probe::cli {
 namespace {
@@ -253,6 +254,9 @@ int judge_verb(JudgeArguments arguments) {
   }
   for (const std::string& task : judged->left_out)
     say("left out: the judging plan has no task for `{}`\n", task);
+  if (const auto record = store::read_run_record(arguments.dir);
+      record && record->identity.only_success)
+    say("{} {}\n", arguments.dir, store::kSuccessesAlone);
   say("{} episodes judged, {} of them invalid\n", judged->rows.size(), judged->invalid);
   if (judged->not_attempted.count() > 0)
     say("{} of them were not attempted: {}\n", judged->not_attempted.count(),

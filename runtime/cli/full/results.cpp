@@ -55,6 +55,17 @@ void print_batches(const std::string& dir) {
   }
 }
 
+// In place of rates, which a folder of successes alone has none of.
+void print_successes(const std::string& dir, const std::vector<store::ResultRow>& rows) {
+  put("{} {}\n", dir, store::kSuccessesAlone);
+  std::vector<std::pair<std::string, int>> counts;  // a task's rows stand together
+  for (const store::ResultRow& row : rows) {
+    if (counts.empty() || counts.back().first != row.task) counts.push_back({row.task, 0});
+    if (!row.invalid) ++counts.back().second;
+  }
+  for (const auto& [task, count] : counts) put("{}: {} successes kept\n", task, count);
+}
+
 // Whether what makes tasks different reached the policy.
 int delivery_verb(const ResultsArguments& arguments, const store::ProvenResults& proven) {
   const std::vector<store::ResultRow>& rows = proven.rows;
@@ -151,6 +162,8 @@ int results_verb(const ResultsArguments& arguments) {
     put("{}\n", store::results_to_json(rows));
   } else if (arguments.csv) {
     put("{}", store::results_to_csv(rows));
+  } else if (proven->only_success) {
+    print_successes(arguments.dir, rows);
   } else {
     const auto plan = rejudge::stored_plan(arguments.dir);
     put("{}", rejudge::tally_text(rows, plan ? &*plan : nullptr));

@@ -58,3 +58,27 @@ TEST_CASE("compare says in words what differs, report gives the tables, both ref
   CHECK(box.vlaprobe("compare reach null --metrics sucess").exit == 1);
   CHECK(box.vlaprobe("report reach").exit == 1);
 }
+
+TEST_CASE("demonstrations are no rate, whoever is asked for one") {
+  const Sandbox box;
+  const std::string more = " $SUITE --assets $ASSETS --tasks carrot_on_plate --episodes 0-1 ";
+  const Outcome demos = box.vlaprobe("demos" + more + "-o demos --noise 0");
+  REQUIRE_MESSAGE(demos.exit == 0, demos.err);
+  const Outcome results = box.vlaprobe("results demos");
+  REQUIRE_MESSAGE(results.exit == 0, results.err);
+  CHECK(results.out.find("demos holds successes alone") == 0);
+  CHECK(results.out.find("carrot_on_plate: 2 successes kept") != std::string::npos);
+  CHECK(results.out.find(" of ") == std::string::npos);
+  const Outcome json = box.vlaprobe("results demos --json");
+  CHECK(probe::Json::parse(json.out)[0]["only_success"] == true);
+  CHECK(box.vlaprobe("results demos --csv").out.find(",only_success") != std::string::npos);
+  for (const char* verb : {"compare demos demos", "report demos -o x.html"}) {
+    const Outcome refused = box.vlaprobe(verb);
+    CHECK(refused.exit == 1);
+    CHECK(refused.err.find("holds successes alone") != std::string::npos);
+  }
+  const Outcome into = box.vlaprobe("run" + more + "--policy pushed:0 --seeds 0 -o demos");
+  CHECK(into.exit == 2);
+  CHECK(into.err.find("holds successes alone (`vlaprobe demos`), not every episode") !=
+        std::string::npos);
+}

@@ -69,6 +69,20 @@ TEST_CASE("a folder named twice counts once, two runs of a policy stand apart, s
   CHECK(loaded({folder / "a", folder / "rest"}, {.sets = {}, .join = false}).policies.size() == 2);
 }
 
+TEST_CASE("a folder of successes alone is no policy's result") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  fake_run(folder / "a", plan, "pi0", {.tasks = {kFour[0]}, .last = 2}, always(true));
+  fake_run(folder / "demos", plan, "pi0",
+           {.tasks = {kFour[0]}, .last = 2, .only_success = true}, always(true));
+  const std::vector<std::string> both = {folder / "a", folder / "demos"};
+  const auto refused = load(both);
+  REQUIRE(!refused.ok());
+  CHECK(refused.failure().code == Fault::kUsage);
+  CHECK(refused.failure().where == both[1]);
+  CHECK(refused.failure().message.find("holds successes alone") == 0);
+}
+
 TEST_CASE("no folder, no run and no episode are told apart") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;

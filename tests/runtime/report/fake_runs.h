@@ -55,6 +55,7 @@ struct FakeRunOptions {
   int first = 0, last = 23;        // starts
   std::vector<int> seeds = {42};
   std::string content = "";  // RunIdentity::policy_content
+  bool only_success = false;
 };
 
 // Makes DIR with a row for every task, start and seed.
@@ -64,6 +65,7 @@ inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::
   record.identity.plan_root = to_hex(plan.root());
   record.identity.policy = policy;
   record.identity.policy_content = options.content;
+  record.identity.only_success = options.only_success;
   record.suite = plan.text(plan.suites()[0].name);
   record.seeds = options.seeds;
   record.fingerprint.entries = {{"cpu", "test"}};

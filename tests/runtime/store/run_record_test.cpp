@@ -34,6 +34,29 @@ TEST_CASE(
   CHECK(summarize_readings({later}, 7).findings[0].starts_with("7 episodes "));
 }
 
+TEST_CASE("a folder of successes says so, and older programs do not take it for a run") {
+  RunRecord run = run_of("aa", "1f", "c0"), demos = run;
+  demos.identity.only_success = true;
+  CHECK(record_to_text(run).find("only_success") == std::string::npos);
+  const std::string text = record_to_text(demos);
+  CHECK(text.find(R"("schema":"4")") != std::string::npos);
+  for (const RunRecord& record : {run, demos}) {
+    const auto read = record_from_text(record_to_text(record), "x");
+    REQUIRE_MESSAGE(read.ok(), (read.ok() ? "" : to_text(read.failure())));
+    CHECK(read->identity == record.identity);
+  }
+  RunRecord live = demos;
+  live.identity.live = "live, 80 ms, at most 90 % held";
+  CHECK(record_from_text(record_to_text(live), "x").value().identity == live.identity);
+  std::string without = text;
+  without.replace(without.find("\"only_success\":true"), 19, "\"only_success\":false");
+  CHECK(record_from_text(without, "x").failure().message.find("only_success") != std::string::npos);
+  CHECK(changes_between(demos, run).identity ==
+        "holds successes alone (`vlaprobe demos`), not every episode that was run");
+  CHECK(changes_between(run, demos).identity ==
+        "holds every episode that was run, not successes alone (`vlaprobe demos`)");
+}
+
 TEST_CASE("a change is said of what changed: the plan, the assets or the build") {
   const RunRecord begun = run_of("aa", "1f", "c0");
   CHECK_FALSE(changes_between(begun, begun).any());

@@ -4,6 +4,7 @@
 #include "runtime/base/json.h"
 #include "runtime/policy/scripted.h"
 #include "runtime/run/policies.h"
+#include "runtime/store/store.h"
 #include "tests/runtime/export/dataset/exported_run.h"
 
 namespace probe::dataset {
@@ -43,6 +44,30 @@ TEST_CASE("where only successes are kept they are the episodes that succeed anyw
   const run::RunSummary again = run::must_run(plan, options);
   CHECK(again.skipped == static_cast<int>(wanted.size()));
   CHECK(again.not_kept == summary.not_kept);
+
+  // A folder of successes says so, and is no place for the others.
+  CHECK(store::read_run_record(folder / "kept").value().identity.only_success);
+  CHECK(!store::read_run_record(folder / "all").value().identity.only_success);
+  for (const store::ResultRow& row : *kept) CHECK(row.only_success);
+  for (const store::ResultRow& row : *all) CHECK(!row.only_success);
+  const auto refused = [&](const char* name, bool only_success) {
+    run::RunOptions into = options;
+    into.out = folder / name;
+    into.only_success = only_success;
+    for (const run::IfChanged if_changed : {run::IfChanged::kRefuse, run::IfChanged::kContinue}) {
+      into.if_changed = if_changed;
+      const auto done = run::run(plan, into);
+      REQUIRE(!done.ok());
+      CHECK(done.failure().code == Fault::kStore);
+      CHECK(done.failure().message.find("successes alone") != std::string::npos);
+    }
+  };
+  refused("kept", false);
+  refused("all", true);
+  // What repeats them is as selected as they are.
+  run::RunOptions repeated = run::options_for(folder / "repeated", "replay:" + (folder / "kept"));
+  run::must_run(plan, repeated);
+  CHECK(store::read_run_record(folder / "repeated").value().identity.only_success);
 }
 
 TEST_CASE("a pushed policy is itself in most steps, the same ones for the same draws") {
