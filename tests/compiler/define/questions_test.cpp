@@ -267,8 +267,8 @@ task two like red_on_tray { distractors other }
   CHECK_MESSAGE(allowed->codes() == "", allowed->said());
   REQUIRE(allowed->model.left_out.size() == 1);
   CHECK(reason(*allowed) == plan::OmissionReason::kAmbiguous);
-  const auto same = ask(kPick, R"(object other like red { mesh "tray" }
-object third like blue { mesh "tray"; name "red block" }
+  const auto same = ask(kPick, R"(object other like red { mesh "tray"; paint red }
+object third like blue { mesh "tray"; color gray; paint gray; name "red block" }
 task two like base { source tray; target blue; distractors red, third })");
   CHECK_MESSAGE(same->codes() == "P0902", same->said());
 }

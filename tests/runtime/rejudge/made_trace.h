@@ -37,6 +37,7 @@ inline store::Trace made_trace(const plan::Plan& plan, std::uint32_t task) {
   trace.start->starts[3].opening = {0, 1, 0};
   for (std::uint32_t i = 1; i <= record.horizon; ++i) {
     store::TraceStep step;
+    step.action = policy::Action::zeros(robot::kActionSize);
     step.sample.bodies.resize(bodies);
     step.sample.step = i;
     step.sample.tcp = {i == 3 ? 0.04 : 0.5 / i + 0.06, 0, 0};

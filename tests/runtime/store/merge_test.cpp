@@ -247,31 +247,36 @@ TEST_CASE(
 TEST_CASE("what does not belong together is refused before anything is written") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(1, 2);
-  must_run(plan, options_for(folder / "a", "null"));
-  must_run(table_plan(1, 3), options_for(folder / "plan", "null"));
+  const auto named = [&](const std::string& name, const std::string& policy) {
+    RunOptions options = options_for(folder / name, policy);
+    options.name = "mine";
+    return options;
+  };
+  must_run(plan, named("a", "null"));
+  must_run(table_plan(1, 3), named("plan", "null"));
   // The same policy by all that the record says, with other actions.
-  RunOptions other_actions = options_for(folder / "trace", "null");
+  RunOptions other_actions = named("trace", "null");
+  PolicyTraits same;
+  same.content = "policy null";
   other_actions.own_policy =
-      OwnPolicy{{}, [](const PolicyContext&) -> Result<std::unique_ptr<policy::Policy>> {
+      OwnPolicy{same, [](const PolicyContext&) -> Result<std::unique_ptr<policy::Policy>> {
                   return policy::make_random();
                 }};
   must_run(plan, other_actions);
-  RunOptions reach = options_for(folder / "content", "reach");
-  reach.name = "null";
-  must_run(plan, reach);
+  must_run(plan, named("content", "reach"));
   must_run(plan, options_for(folder / "policy", "reach"));
-  const auto refusal = [&](const std::string& other) {
-    const auto merged = merge({{folder / "a", folder / other}, folder / "out"});
+  const auto refusal = [&](const std::string& other, const std::string& first = "a") {
+    const auto merged = merge({{folder / first, folder / other}, folder / "out"});
     REQUIRE_FALSE(merged.ok());
     CHECK_FALSE(fs::exists(folder / "out"));
     CHECK(merged.failure().where == folder / other);
     return merged.failure().message;
   };
   CHECK(refusal("plan").starts_with("holds a run of another plan (root "));
-  CHECK(refusal("policy").starts_with("holds a run of policy `reach`, not `null`, as " +
+  CHECK(refusal("policy").starts_with("holds a run of policy `reach`, not `mine`, as " +
                                       (folder / "a") + " does"));
   CHECK(refusal("content").starts_with(
-      "was begun with another policy (recorded policy reach, now nothing) than "));
+      "was begun with another policy (recorded policy reach, now policy null) than "));
   CHECK(refusal("trace").starts_with("carrot_on_plate episode 0 seed 42 has the trace "));
   CHECK(refusal("nothing").starts_with("cannot be merged: no run here"));
 
@@ -284,10 +289,12 @@ TEST_CASE("what does not belong together is refused before anything is written")
   CHECK(mixed.rows == 1);
   REQUIRE(mixed.notes.size() == 1);
   CHECK(mixed.notes[0].starts_with((folder / "build") + " was begun by another build"));
-  record = *read_run_record(folder / "a");
+  must_run(plan, options_for(folder / "served", "null"));
+  record = *read_run_record(folder / "served");
   record.identity.policy_content = "profile b";
   REQUIRE(Store::open(folder / "profile", record, plan.bytes()).ok());
-  CHECK(refusal("profile").starts_with("was begun with another profile (recorded profile b, "));
+  CHECK(refusal("profile", "served")
+            .starts_with("was begun with another profile (recorded profile b, "));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ import time
 from typing import Any, Callable
 
 
-_NOT_ATTEMPTED = "not attempted: "  # how `invalid` begins where a policy of ours has no skill for the task
+NOT_ATTEMPTED = "not attempted: "  # how `invalid` begins where a policy of ours has no skill for the task
 
 
 def _display() -> Any:
@@ -42,7 +42,7 @@ class Line:
 
     def __call__(self, told: dict) -> None:
         reason = told.get("invalid")
-        self._invalid += reason is not None and not reason.startswith(_NOT_ATTEMPTED)
+        self._invalid += reason is not None and not reason.startswith(NOT_ATTEMPTED)
         self._well += bool(told.get(self._good))
         now, there = self._clock(), told["done"] + told["skipped"]
         is_last = there == told["total"]

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _given, _vlaprobe
 from ._given import flag, number, text, text_or_none, texts, whole
-from ._progress import Line
+from ._progress import NOT_ATTEMPTED, Line
 from .errors import UsageError
 from .plan import Path, Plan, PlanLike, Task, plan_of
 
@@ -105,7 +105,7 @@ class Results(list):
 
     def _uncounted(self) -> list[str]:
         """What no metric counts, in words."""
-        not_attempted = sum((row["invalid"] or "").startswith(_NOT_ATTEMPTED) for row in self)
+        not_attempted = sum((row["invalid"] or "").startswith(NOT_ATTEMPTED) for row in self)
         invalid = len(self) - len(self.valid) - not_attempted
         return [f"{invalid} invalid"] + ([f"{not_attempted} not attempted"] if not_attempted else [])
 
