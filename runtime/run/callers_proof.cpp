@@ -7,6 +7,7 @@
 
 #include "runtime/base/asset_root.h"
 #include "runtime/plan/plan.h"
+#include "runtime/run/changed_folder.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/recorded.h"
 #include "runtime/stage/assets.h"
@@ -75,15 +76,8 @@ Status check_callers_policy(const plan::Plan& plan, const RunOptions& options, c
                            to_text(store::key_of(*row)) +
                            " otherwise than the caller's does now (" + difference +
                            "): it is another one, or one that draws or rounds otherwise";
-  if (options.if_changed == IfChanged::kContinue) {
-    notes.push_back(options.out + " " + said + ": continued all the same");
-    return {};
-  }
-  return Failure{Fault::kStore,
-                 said +
-                     "; take another folder, or --if-changed continue, which mixes them in this "
-                     "one; `content`, given from the first call on, says which policy it is",
-                 options.out};
+  return goes_on_mixed(options.out, said, options.if_changed, notes,
+                       "; `content`, given from the first call on, says which policy it is");
 }
 
 }  // namespace probe::run

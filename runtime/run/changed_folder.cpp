@@ -24,4 +24,18 @@ Result<bool> goes_on(const std::string& dir, const FolderChanges& changes, IfCha
       dir};
 }
 
+Status goes_on_mixed(const std::string& dir, const std::string& said, IfChanged if_changed,
+                     std::vector<std::string>& notes, const std::string& also) {
+  if (if_changed == IfChanged::kContinue) {
+    notes.push_back(dir + " " + said + ": continued all the same");
+    return {};
+  }
+  return Failure{Fault::kStore,
+                 said +
+                     "; take another folder, or --if-changed continue, which mixes them in this "
+                     "one" +
+                     also,
+                 dir};
+}
+
 }  // namespace probe::run

@@ -21,4 +21,9 @@ struct FolderChanges {
 Result<bool> goes_on(const std::string& dir, const FolderChanges& changes, IfChanged if_changed,
                      std::vector<std::string>& notes);
 
+// For a folder whose policy acts otherwise than what is asked now: noted where the call says
+// `continue`, else a failure (kStore, at `dir`) with what can be said instead, and `also`.
+Status goes_on_mixed(const std::string& dir, const std::string& said, IfChanged if_changed,
+                     std::vector<std::string>& notes, const std::string& also = "");
+
 }  // namespace probe::run

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <thread>
 
+#include "runtime/run/changed_folder.h"
 #include "runtime/servers/reading.h"
 
 namespace probe::run {
@@ -56,15 +57,7 @@ Status ServerProof::check_as_before(const policy::Reading& reading, const RunOpt
   const std::string said =
       "was begun with a policy that answered the first questions otherwise than the one at " +
       reading.server + " does now: it is another one, or on a machine that rounds otherwise";
-  if (options.if_changed == IfChanged::kContinue) {
-    notes.push_back(options.out + " " + said + ": continued all the same");
-    return {};
-  }
-  return Failure{Fault::kStore,
-                 said +
-                     "; take another folder, or --if-changed continue, which mixes them in this "
-                     "one",
-                 options.out};
+  return goes_on_mixed(options.out, said, options.if_changed, notes);
 }
 
 Status ServerProof::watch(store::Store& store) {
