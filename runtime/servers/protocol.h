@@ -72,6 +72,8 @@ struct ProtocolRow {
   std::span<const std::string_view> dialects = {};
   // What of a profile reads our own server as it is meant, beside what all of them need.
   std::string_view served_options;
+  // Its servers know no connection from another: those that keep something of an episode keep one.
+  bool has_one_place = false;
   Carrier carrier = Carrier::kWebSocket;
   // Of questions over HTTP where the address has none.
   std::string_view path = "/";

@@ -213,9 +213,7 @@ std::string options_for_served(Protocol protocol, const ServeOptions& options) {
                      "&action.units=m_rad&action.rotation=vector&action.gripper=signed&"
                      "action.threshold=none";
   text += row_of(protocol).served_options;
-  // Their servers know no connection from another.
-  if (options.keeps_episode && (protocol == Protocol::kGr00t || protocol == Protocol::kOpenVla))
-    text += "&worlds=one";
+  if (options.keeps_episode && row_of(protocol).has_one_place) text += "&worlds=one";
   if (options.seed) text += "&seed=" + std::to_string(*options.seed);
   if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
   if (options.batch > 1) text += "&batch=" + std::to_string(options.batch);

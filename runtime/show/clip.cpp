@@ -7,6 +7,7 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
+#include <libswscale/swscale.h>
 }
 
 #include <cmath>
@@ -183,6 +184,97 @@ struct OpenVideo {
   }
 };
 
+class DecodedClip final : public ClipReader {
+ public:
+  explicit DecodedClip(std::string path) : path_(std::move(path)) {}
+  ~DecodedClip() override {
+    sws_freeContext(scaler_);
+    av_frame_free(&frame_);
+    avcodec_free_context(&codec_);
+  }
+
+  Status begin() {
+    int code = avformat_open_input(&video_.format, path_.c_str(), nullptr, nullptr);
+    if (code < 0) return failed("cannot be opened", code);
+    code = avformat_find_stream_info(video_.format, nullptr);
+    if (code < 0) return failed("cannot be read", code);
+    index_ = av_find_best_stream(video_.format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+    if (index_ < 0) return failed("has no pictures", 0);
+    const AVCodecParameters* parameters = video_.format->streams[index_]->codecpar;
+    const AVCodec* decoder = avcodec_find_decoder(parameters->codec_id);
+    codec_ = decoder == nullptr ? nullptr : avcodec_alloc_context3(decoder);
+    frame_ = av_frame_alloc();
+    video_.packet = av_packet_alloc();
+    if (codec_ == nullptr || frame_ == nullptr || video_.packet == nullptr)
+      return failed("cannot be decoded", 0);
+    code = avcodec_parameters_to_context(codec_, parameters);
+    if (code < 0) return failed("cannot be decoded", code);
+    codec_->thread_count = 1;
+    codec_->err_recognition = AV_EF_EXPLODE;
+    code = avcodec_open2(codec_, decoder, nullptr);
+    if (code < 0) return failed("cannot be decoded", code);
+    if (codec_->width <= 0 || codec_->height <= 0) return failed("has pictures without size", 0);
+    scaler_ =
+        sws_getContext(codec_->width, codec_->height, codec_->pix_fmt, codec_->width,
+                       codec_->height, AV_PIX_FMT_RGB24,
+                       SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
+    if (scaler_ == nullptr) return failed("no colour conversion", 0);
+    rgb_bytes_ = 3 * static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+    rgb_.resize(rgb_bytes_ + 64);  // the scaler may write a few bytes behind a row's end
+    return {};
+  }
+
+  int width() const override { return codec_->width; }
+  int height() const override { return codec_->height; }
+
+  Result<std::span<const std::uint8_t>> next() override {
+    for (;;) {
+      int code = avcodec_receive_frame(codec_, frame_);
+      if (code == AVERROR_EOF) return std::span<const std::uint8_t>();
+      if (code >= 0) return shown();
+      if (code != AVERROR(EAGAIN)) return failed("cannot be decoded", code);
+      PROBE_TRY(feed());
+    }
+  }
+
+ private:
+  Failure failed(const std::string& what, int code) const { return av_failure(what, code, path_); }
+
+  // The next packet of the pictures, or the word that there are no more.
+  Status feed() {
+    for (;;) {
+      int code = av_read_frame(video_.format, video_.packet);
+      if (code < 0 && code != AVERROR_EOF) return failed("cannot be read to its end", code);
+      const bool is_end = code == AVERROR_EOF;
+      if (!is_end && video_.packet->stream_index != index_) {
+        av_packet_unref(video_.packet);
+        continue;
+      }
+      code = avcodec_send_packet(codec_, is_end ? nullptr : video_.packet);
+      av_packet_unref(video_.packet);
+      return code < 0 ? Status(failed("cannot be decoded", code)) : Status();
+    }
+  }
+
+  Result<std::span<const std::uint8_t>> shown() {
+    if (frame_->width != width() || frame_->height != height())
+      return failed("changes the size of its pictures", 0);
+    std::uint8_t* rows[] = {rgb_.data()};
+    const int strides[] = {3 * width()};
+    sws_scale(scaler_, frame_->data, frame_->linesize, 0, height(), rows, strides);
+    return std::span<const std::uint8_t>(rgb_).first(rgb_bytes_);
+  }
+
+  std::string path_;
+  OpenVideo video_;
+  int index_ = -1;
+  AVCodecContext* codec_ = nullptr;
+  AVFrame* frame_ = nullptr;
+  SwsContext* scaler_ = nullptr;
+  std::size_t rgb_bytes_ = 0;
+  std::vector<std::uint8_t> rgb_;
+};
+
 }  // namespace
 
 std::size_t Clip::bytes() const {
@@ -204,8 +296,15 @@ Result<std::unique_ptr<ClipJoiner>> ClipJoiner::create(const std::string& path, 
   return std::unique_ptr<ClipJoiner>(std::move(joiner));
 }
 
+Result<std::unique_ptr<ClipReader>> ClipReader::create(const std::string& path) {
+  av_log_set_level(AV_LOG_QUIET);  // what is wrong with a file is told by its failure
+  auto reader = std::make_unique<DecodedClip>(path);
+  PROBE_TRY(reader->begin());
+  return std::unique_ptr<ClipReader>(std::move(reader));
+}
+
 Result<VideoFacts> read_video_facts(const std::string& path) {
-  av_log_set_level(AV_LOG_ERROR);
+  av_log_set_level(AV_LOG_QUIET);  // as above
   OpenVideo video;
   int code = avformat_open_input(&video.format, path.c_str(), nullptr, nullptr);
   if (code < 0) return av_failure("cannot be opened", code, path);

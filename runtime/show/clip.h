@@ -65,4 +65,16 @@ struct VideoFacts {
 };
 Result<VideoFacts> read_video_facts(const std::string& path);
 
+// A video file's pictures, one after the other. Fails with kVideo naming the path.
+class ClipReader {
+ public:
+  static Result<std::unique_ptr<ClipReader>> create(const std::string& path);
+  virtual ~ClipReader() = default;
+  virtual int width() const = 0;
+  virtual int height() const = 0;
+  // The next one, width * height * 3, row 0 on top, valid until the next call; empty behind the
+  // last.
+  virtual Result<std::span<const std::uint8_t>> next() = 0;
+};
+
 }  // namespace probe::show

@@ -22,6 +22,7 @@ struct ExportArguments {
   std::vector<std::string> runs;
   std::string out, format, tasks = "*", size, only, check;
   std::optional<int> wordings, fps;
+  bool numbers_only = false;
   dataset::DatasetOptions dataset;
 };
 
@@ -44,13 +45,12 @@ int say_refused(const std::vector<std::string>& sentences) {
 
 // What has a meaning for datasets alone is not ignored elsewhere.
 Status of_traces(const ExportArguments& arguments) {
-  const std::pair<const char*, bool> given[] = {
-      {"--only", !arguments.only.empty()},
-      {"--size", !arguments.size.empty()},
-      {"--camera", !arguments.dataset.cameras.empty()},
-      {"--rephrase", !arguments.dataset.rephrase.empty()},
-      {"--wordings", arguments.wordings.has_value()},
-      {"--fps", arguments.fps.has_value()}};
+  const std::pair<const char*, bool> given[] = {{"--only", !arguments.only.empty()},
+                                                {"--size", !arguments.size.empty()},
+                                                {"--camera", !arguments.dataset.cameras.empty()},
+                                                {"--rephrase", !arguments.dataset.rephrase.empty()},
+                                                {"--wordings", arguments.wordings.has_value()},
+                                                {"--fps", arguments.fps.has_value()}};
   for (const auto& [option, is_given] : given) {
     if (is_given)
       return Failure{Fault::kUsage, "is of datasets: with --format lerobot, robomimic or rlds",
@@ -81,7 +81,8 @@ int export_dataset(const ExportArguments& arguments, dataset::Format format) {
   options.tasks = arguments.tasks;
   options.only_success = arguments.only == "success";
   if (arguments.wordings && options.rephrase.empty())
-    return report({Fault::kUsage, "takes words from a table, which --rephrase names", "--wordings"});
+    return report(
+        {Fault::kUsage, "takes words from a table, which --rephrase names", "--wordings"});
   options.wordings = arguments.wordings.value_or(options.wordings);
   options.fps = arguments.fps.value_or(options.fps);
   if (auto sized = read_size(arguments.size, options); !sized) return report(sized.failure());
@@ -107,7 +108,8 @@ int export_dataset(const ExportArguments& arguments, dataset::Format format) {
 }
 
 int check_dataset(const ExportArguments& arguments) {
-  const auto checked = dataset::check_dataset(arguments.check, arguments.runs);
+  const auto checked = dataset::check_dataset(
+      arguments.check, {arguments.runs, arguments.dataset.assets, !arguments.numbers_only});
   if (!checked) return report(checked.failure());
   if (say_refused(checked->problems) != kFine) return kOutside;
   put("{}: {} episodes of {} demonstrations, {} frames are as their traces\n", arguments.check,
@@ -121,6 +123,7 @@ int export_verb(const ExportArguments& arguments) {
     return report(
         {Fault::kUsage, "reads a dataset and writes none: without -o and --format", "--check"});
   }
+  if (arguments.numbers_only) return report({Fault::kUsage, "is of --check", "--numbers-only"});
   if (arguments.runs.empty()) return report({Fault::kUsage, "which run is exported?", "RUN"});
   if (arguments.out.empty()) return report({Fault::kUsage, "where to write to?", "-o"});
   if (auto spared = assets::check_output(arguments.out, arguments.runs); !spared)
@@ -155,14 +158,16 @@ void add_export(Verb app, int& exit) {
       .one_each();
   verb.add_option("--rephrase", options.rephrase,
                   "X.jsonl of `vlaprobe rephrase`: tell in its words, split train");
-  verb.add_option("--wordings", arguments->wordings, "wordings a demonstration, an episode each (1)");
+  verb.add_option("--wordings", arguments->wordings,
+                  "wordings a demonstration, an episode each (1)");
   verb.add_option("--fps", arguments->fps,
-                  "frames a second that are written, where the control rate is no whole number")
-      .between(1, 1000);
+                  "frames a second, 1 to 1000, where the control rate is no whole number");
   verb.add_option("--jobs", options.jobs, "threads; the bytes do not depend on it")
       .between(1, 1024);
   verb.add_option("--check", arguments->check,
                   "DIR: hold this dataset against its traces (RUN: where its runs are now)");
+  verb.add_flag("--numbers-only", arguments->numbers_only,
+                "of --check: leaves out pictures that have to be drawn again to be compared");
   verb.add_option("--assets", options.assets, "");
   verb.callback([arguments, &exit] { exit = export_verb(*arguments); });
 }

@@ -1,5 +1,8 @@
 #include "runtime/export/dataset/check.h"
 
+#include <optional>
+
+#include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
 #include "runtime/export/dataset/format_checks.h"
 #include "runtime/export/dataset/lerobot.h"
@@ -8,12 +11,18 @@
 
 namespace probe::dataset {
 
-Result<CheckReport> check_dataset(const std::string& dir, const std::vector<std::string>& runs) {
-  PROBE_ASSIGN(NamedRuns named, NamedRuns::open(dir, runs));
-  if (is_file(dir + "/" + lerobot::kInfoPath)) return check_lerobot(dir, std::move(named));
-  if (is_file(dir + "/" + robomimic::kFile)) return check_robomimic(dir, std::move(named));
+Result<CheckReport> check_dataset(const std::string& dir, const CheckOptions& options) {
+  PROBE_ASSIGN(NamedRuns named, NamedRuns::open(dir, options.runs));
+  std::optional<PicturesAgain> again;
+  if (options.redraws) {
+    PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+    again.emplace(named.shape(), root);
+  }
+  PicturesAgain* const drawn = again ? &*again : nullptr;
+  if (is_file(dir + "/" + lerobot::kInfoPath)) return check_lerobot(dir, std::move(named), drawn);
+  if (is_file(dir + "/" + robomimic::kFile)) return check_robomimic(dir, std::move(named), drawn);
   if (is_file(dir + "/" + rlds::kDatasetVersion + "/dataset_info.json"))
-    return check_rlds(dir, std::move(named));
+    return check_rlds(dir, std::move(named), drawn);
   return Failure{Fault::kUsage,
                  "is no dataset of a format that is checked: it has no meta/info.json, no " +
                      std::string(robomimic::kFile) + " and no " + rlds::kDatasetVersion + "/",

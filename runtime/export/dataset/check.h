@@ -15,10 +15,17 @@ struct CheckReport {
   std::vector<std::string> problems;
 };
 
-// `runs`: where the runs are now, in the order in which the dataset names them; empty: where it
-// says. What a damaged dataset has wrong are problems; fails (kUsage or kIo) where `dir` is no
-// dataset of ours, and as readers of runs do.
-Result<CheckReport> check_dataset(const std::string& dir,
-                                  const std::vector<std::string>& runs = {});
+struct CheckOptions {
+  // Where the runs are now, in the order in which the dataset names them; empty: where it says.
+  std::vector<std::string> runs = {};
+  std::string assets = {};  // as find_asset_root() takes it
+  // Pictures that are no copies of what the policy saw (resized, or in a video) are held against
+  // the run's, which are drawn again and proved; false: they are only counted and measured.
+  bool redraws = true;
+};
+
+// What a damaged dataset has wrong are problems; fails (kUsage or kIo) where `dir` is no dataset of
+// ours, and as readers of runs and of assets do.
+Result<CheckReport> check_dataset(const std::string& dir, const CheckOptions& options = {});
 
 }  // namespace probe::dataset

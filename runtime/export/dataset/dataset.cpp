@@ -15,6 +15,7 @@
 #include "runtime/export/dataset/layout.h"
 #include "runtime/export/dataset/lerobot.h"
 #include "runtime/export/dataset/partial_folder.h"
+#include "runtime/export/dataset/pictures.h"
 #include "runtime/export/dataset/provenance.h"
 #include "runtime/export/dataset/repeater.h"
 #include "runtime/export/dataset/rlds.h"
@@ -26,7 +27,6 @@
 #include "runtime/robot/rotation.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/workers.h"
-#include "runtime/servers/resize.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/store/proof.h"
 
@@ -101,7 +101,7 @@ class Maker {
     PROBE_ASSIGN(const auto film, layout_.film(trace->steps.size()));
     PROBE_TRY(repeater_.repeat(*trace, [&](auto frames, const auto& observation, std::size_t at) {
       demonstration.steps.push_back(step_of(observation, trace->steps[at].action));
-      return show(frames, *film);
+      return in_shape(shape_, frames, [&](auto pictures) { return film->add(pictures); });
     }));
     PROBE_ASSIGN(made.film, film->finish());
     return made;
@@ -116,26 +116,6 @@ class Maker {
     step.joints = body.joints;
     step.action = action;
     return step;
-  }
-
-  Status show(std::span<const stage::CameraFrame> frames, FilmMaker& film) {
-    std::vector<wire::Bytes> resized(shape_.cameras.size());
-    std::vector<Picture> pictures;
-    for (std::size_t i = 0; i < shape_.cameras.size(); ++i) {
-      const CameraShape& camera = shape_.cameras[i];
-      const auto seen = std::ranges::find(frames, camera.name, &stage::CameraFrame::camera);
-      if (seen == frames.end())
-        return Failure{Fault::kInternal, "a camera is not there any more", camera.name};
-      const render::FrameView& frame = seen->frame;
-      std::span<const std::uint8_t> rgb = frame.rgb;
-      if (frame.width != camera.width || frame.height != camera.height) {
-        resized[i] = servers::resize_bilinear({frame.width, frame.height, frame.rgb}, camera.width,
-                                              camera.height);
-        rgb = resized[i];
-      }
-      pictures.push_back({&camera, rgb});
-    }
-    return film.add(pictures);
   }
 
   const Source& source_;

@@ -12,13 +12,15 @@
 #include "runtime/export/dataset/check.h"
 #include "runtime/export/dataset/demonstration.h"
 #include "runtime/export/dataset/named_runs.h"
+#include "runtime/export/dataset/pictures_again.h"
 
 namespace probe::dataset {
 
 class Findings {
  public:
   void problem(std::string text) { report.problems.push_back(std::move(text)); }
-  // Of what differs in nothing but its numbers the first place is told, and how many more there are.
+  // Of what differs in nothing but its numbers the first place is told, and how many more there
+  // are.
   void expect(bool is_so, const std::string& where, const std::string& what);
   // More of the same kind would only fill the screen.
   bool is_full() const;
@@ -49,10 +51,14 @@ std::span<const double> joints_before(const store::Trace& trace, std::size_t i, 
 void expect_state(Findings& findings, std::span<const double> state, const Pose& base,
                   const vm::StepSample& sample, const std::string& at, const std::string& called);
 
-// Whether the pictures of a step, one a camera, are those that the policy saw; where the dataset
-// has all of them as they were (`NamedDemonstration::has_all_pictures`).
+// run::picture_hash of what each step's pictures have to be: what the policy saw, where the dataset
+// has all of it as it was (`NamedDemonstration::has_all_pictures`), else what `again` draws. Empty
+// where that is not known: `again` is null, or cannot, which is a problem then.
+std::vector<Sha256> picture_hashes(Findings& findings, const NamedDemonstration& named,
+                                   PicturesAgain* again);
+// Whether the pictures of a step, one a camera, are those; `wanted` of picture_hashes().
 void expect_pictures(Findings& findings, const std::vector<std::vector<std::uint8_t>>& rgb,
-                     const store::TraceStep& step, const std::string& at);
+                     std::span<const Sha256> wanted, std::size_t step, const std::string& at);
 
 // Single numbers of 32 bits, or double ones.
 bool equal_singles(std::span<const double> stored, std::span<const double> wanted);

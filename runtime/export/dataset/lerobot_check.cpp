@@ -12,6 +12,7 @@
 #include "runtime/export/dataset/findings.h"
 #include "runtime/export/dataset/format_checks.h"
 #include "runtime/export/dataset/lerobot.h"
+#include "runtime/export/dataset/video_check.h"
 #include "runtime/export/parquet/reader.h"
 #include "runtime/show/clip.h"
 
@@ -59,13 +60,15 @@ struct VideoNeed {
 
 class LerobotCheck {
  public:
-  LerobotCheck(std::string dir, NamedRuns runs)
+  LerobotCheck(std::string dir, NamedRuns runs, PicturesAgain* again)
       : dir_(std::move(dir)),
         runs_(std::move(runs)),
         shape_(runs_.shape()),
         features_(features_of(shape_)),
         data_(dir_, data_schema(features_), data_path),
-        episodes_(dir_, episodes_schema(features_), episodes_path) {}
+        episodes_(dir_, episodes_schema(features_), episodes_path) {
+    if (again != nullptr) pictures_.emplace(*again);
+  }
 
   Result<CheckReport> check() {
     PROBE_TRY(read_tasks());
@@ -121,7 +124,8 @@ class LerobotCheck {
                      fmt::format("has {} rows, its trace {} steps", rows.front().rows(), length),
                      where};
     check_rows(named, wording, rows, where);
-    check_episode_row(wording, length, is_first, where);
+    const auto stretches = check_episode_row(wording, length, is_first, where);
+    if (is_first && pictures_) pictures_->check(findings_, named, stretches, where);
     ++row_;
     return {};
   }
@@ -184,8 +188,10 @@ class LerobotCheck {
     }
   }
 
-  void check_episode_row(const std::string& wording, std::int64_t length, bool is_first,
-                         const std::string& where) {
+  // Returns where its pictures are, of each camera.
+  std::vector<VideoStretch> check_episode_row(const std::string& wording, std::int64_t length,
+                                              bool is_first, const std::string& where) {
+    std::vector<VideoStretch> stretches;
     const auto& rows = episode_rows_;
     expect(whole(rows, "episode_index", row_) == findings_.report.episodes, where,
            "episode_index is another");
@@ -218,7 +224,9 @@ class LerobotCheck {
                  std::abs(to - static_cast<double>(begin + length) / shape_.fps) < 1e-9 &&
                  begin + length == need.frames,
              where, key + " is not a stretch of its length");
+      stretches.push_back({dir_ + "/" + video_path(feature, number), begin});
     }
+    return stretches;
   }
 
   Status nothing_is_left() {
@@ -325,13 +333,14 @@ class LerobotCheck {
   std::vector<ReadColumn> episode_rows_;
   std::size_t row_ = 0;  // of these
   std::map<std::string, VideoNeed> videos_;
+  std::optional<VideoCheck> pictures_;  // nothing: they are not looked at
   Findings findings_;
 };
 
 }  // namespace
 
-Result<CheckReport> check_lerobot(const std::string& dir, NamedRuns runs) {
-  return LerobotCheck(dir, std::move(runs)).check();
+Result<CheckReport> check_lerobot(const std::string& dir, NamedRuns runs, PicturesAgain* again) {
+  return LerobotCheck(dir, std::move(runs), again).check();
 }
 
 }  // namespace probe::dataset

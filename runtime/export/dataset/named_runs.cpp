@@ -140,8 +140,9 @@ Result<std::optional<NamedDemonstration>> NamedRuns::next() {
                    store::to_text(key)};
   const plan::SceneRecord& scene = plan.scenes()[plan.tasks()[*plan.find_task(key.task)].scene];
   return std::optional(NamedDemonstration{
-      store::to_text(key), std::move(trace), json.at("wordings").get<std::vector<std::string>>(),
-      is_success(row->second), Pose{to_vec(scene.base_position), to_quat(scene.base_rotation)},
+      store::to_text(key), &plan, row->second.trace_sha256, std::move(trace),
+      json.at("wordings").get<std::vector<std::string>>(), is_success(row->second),
+      Pose{to_vec(scene.base_position), to_quat(scene.base_rotation)},
       shape_.cameras == cameras_of(plan, plan.tasks()[*plan.find_task(key.task)])});
 }
 

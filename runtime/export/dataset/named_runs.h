@@ -19,7 +19,9 @@ namespace probe::dataset {
 
 // A line of demonstrations.jsonl with what it stands for.
 struct NamedDemonstration {
-  std::string name;  // for messages
+  std::string name;                  // for messages
+  const plan::Plan* plan = nullptr;  // its run's; lives as long as the NamedRuns
+  std::string trace_sha256;
   store::Trace trace;
   std::vector<std::string> wordings;
   bool success = false;

@@ -11,8 +11,7 @@ namespace {
 Failure differs(const store::Trace& trace, std::size_t step, const std::string& what) {
   return {Fault::kTrace,
           "step " + std::to_string(step) + ": " + what +
-              " on this machine or build (`vlaprobe replay --verify` says what is otherwise); "
-              "nothing was exported",
+              " on this machine or build (`vlaprobe replay --verify` says what is otherwise)",
           store::to_text(store::key_of(trace.header))};
 }
 

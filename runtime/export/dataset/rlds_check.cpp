@@ -39,8 +39,11 @@ void add_keys(const Json& feature, const std::string& prefix, std::set<std::stri
 
 class RldsCheck {
  public:
-  RldsCheck(const std::string& dir, NamedRuns runs)
-      : dir_(dir + "/" + rlds::kDatasetVersion), runs_(std::move(runs)), shape_(runs_.shape()) {}
+  RldsCheck(const std::string& dir, NamedRuns runs, PicturesAgain* again)
+      : dir_(dir + "/" + rlds::kDatasetVersion),
+        runs_(std::move(runs)),
+        again_(again),
+        shape_(runs_.shape()) {}
 
   Result<CheckReport> check() {
     PROBE_TRY(read_info());
@@ -157,6 +160,7 @@ class RldsCheck {
   void check_steps(const NamedDemonstration& named, const std::string& where) {
     const auto& steps = named.trace.steps;
     const std::size_t joints = shape_.joints.size();
+    const auto pictures = picture_hashes(findings_, named, again_);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const std::string at = fmt::format("{} step {}", where, i);
       const bool is_first = i == 0, is_last = i + 1 == steps.size();
@@ -177,12 +181,12 @@ class RldsCheck {
              "is_last is not true in the last step alone");
       expect(example_["steps/is_terminal"].wholes[i] == (is_success ? 1 : 0), at,
              "is_terminal is not the verdict");
-      check_pictures(named, i, at);
+      check_pictures(pictures, i, at);
     }
   }
 
-  // A robot that is told its joints has their numbers; else roll, pitch and yaw turn as far, and about
-  // the axis, that the rotation vector says.
+  // A robot that is told its joints has their numbers; else roll, pitch and yaw turn as far, and
+  // about the axis, that the rotation vector says.
   void check_action(std::span<const double> stored, std::span<const double> wanted,
                     const std::string& at) {
     const auto turn = [](std::span<const double> numbers) {
@@ -201,7 +205,7 @@ class RldsCheck {
            "the turn of action is not the trace's");
   }
 
-  void check_pictures(const NamedDemonstration& named, std::size_t i, const std::string& at) {
+  void check_pictures(std::span<const Sha256> wanted, std::size_t i, const std::string& at) {
     std::vector<std::vector<std::uint8_t>> rgb;
     for (std::size_t camera = 0; camera < shape_.cameras.size(); ++camera) {
       const auto& files = example_[fmt::format("steps/observation/image_{}", camera)].texts;
@@ -218,11 +222,12 @@ class RldsCheck {
       }
       rgb.push_back(std::move(pixels));
     }
-    if (named.has_all_pictures) expect_pictures(findings_, rgb, named.trace.steps[i], at);
+    expect_pictures(findings_, rgb, wanted, i, at);
   }
 
   std::string dir_;
   NamedRuns runs_;
+  PicturesAgain* again_;
   Shape shape_;
   Findings findings_;
   std::set<std::string> keys_;
@@ -236,8 +241,8 @@ class RldsCheck {
 
 }  // namespace
 
-Result<CheckReport> check_rlds(const std::string& dir, NamedRuns runs) {
-  return RldsCheck(dir, std::move(runs)).check();
+Result<CheckReport> check_rlds(const std::string& dir, NamedRuns runs, PicturesAgain* again) {
+  return RldsCheck(dir, std::move(runs), again).check();
 }
 
 }  // namespace probe::dataset

@@ -237,6 +237,7 @@ constinit const ProtocolRow gr00t_row{
     .dialects = kGr00tDialects,
     // As rendered: an episode is known by its first picture.
     .served_options = "&chunk.length=any&chunk.use=all&image=first%20-%3E%20video.image_0",
+    .has_one_place = true,
     .carrier = Carrier::kZmq,
     .has_reset = gr00t_has_reset,
 };

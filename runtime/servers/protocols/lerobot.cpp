@@ -257,6 +257,7 @@ constinit const ProtocolRow lerobot_row{
     .serve = serve_lerobot,
     // As rendered: an episode is known by its first picture.
     .served_options = "&chunk.length=any&chunk.use=all&type=served&model=/served",
+    .has_one_place = true,
     .carrier = Carrier::kGrpc,
     .has_reset = always_has_reset,
 };

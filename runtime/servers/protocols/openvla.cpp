@@ -109,6 +109,7 @@ constinit const ProtocolRow openvla_row{
     .serve = serve_openvla,
     .dialects = kOpenVlaDialects,
     .served_options = "&chunk.length=any&chunk.use=all",
+    .has_one_place = true,
     .carrier = Carrier::kHttp,
     .path = "/act",
     .is_exchanged_unseen = true,  // each question has a connection of its own

@@ -99,6 +99,21 @@ TEST_CASE("a policy test ends in 20 answers on every protocol, and finds nothing
   }
 }
 
+TEST_CASE("an episode is served to one world where the protocol knows no connection from another") {
+  const auto worlds = [](Protocol protocol) {
+    ServeOptions options;
+    options.keeps_episode = true;
+    const auto choice =
+        choose_server(protocol, "//127.0.0.1:9?" + options_for_served(protocol, options));
+    REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+    return choice->profile.worlds;
+  };
+  for (const Protocol protocol : {Protocol::kGr00t, Protocol::kOpenVla, Protocol::kLeRobot})
+    CHECK(worlds(protocol) == WorldsAtOnce::kOne);
+  for (const Protocol protocol : {Protocol::kOpenpi, Protocol::kIntact, Protocol::kStarVla})
+    CHECK(worlds(protocol) == WorldsAtOnce::kMany);
+}
+
 TEST_CASE("a dialect is one of the protocol's own, asking and serving") {
   for (const Protocol protocol : all_protocols()) {
     CAPTURE(std::string(to_word(protocol)));

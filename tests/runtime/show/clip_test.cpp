@@ -59,6 +59,35 @@ TEST_CASE("joined clips are one video whose frames are evenly spaced, each clip 
   CHECK(bytes_of(folder / "a.mp4") == bytes_of(folder / "b.mp4"));
 }
 
+TEST_CASE("a video's pictures come back in order, nearly as they were, and then none") {
+  const run::TemporaryFolder folder;
+  std::vector<std::vector<std::uint8_t>> drawn;
+  auto encoder = ClipEncoder::create(kSmall);
+  REQUIRE(encoder.ok());
+  for (int i = 0; i < 5; ++i) {
+    drawn.emplace_back(64 * 48 * 3, static_cast<std::uint8_t>(40 * i + 20));
+    REQUIRE((*encoder)->add(drawn.back()).ok());
+  }
+  const auto clip = (*encoder)->finish();
+  REQUIRE(clip.ok());
+  join(folder / "a.mp4", {*clip});
+  auto reader = ClipReader::create(folder / "a.mp4");
+  REQUIRE_MESSAGE(reader.ok(), (reader.ok() ? "" : to_text(reader.failure())));
+  CHECK((*reader)->width() == 64);
+  CHECK((*reader)->height() == 48);
+  for (const auto& wanted : drawn) {
+    const auto frame = (*reader)->next();
+    REQUIRE(frame.ok());
+    REQUIRE(frame->size() == wanted.size());
+    CHECK(std::abs(static_cast<int>(frame->front()) - wanted.front()) <= 4);
+    CHECK(std::abs(static_cast<int>(frame->back()) - wanted.back()) <= 4);
+  }
+  CHECK((*reader)->next()->empty());
+  CHECK((*reader)->next()->empty());
+  CHECK(ClipReader::create(folder / "no.mp4").failure().where == folder / "no.mp4");
+  CHECK(!ClipReader::create("/dev/null").ok());
+}
+
 TEST_CASE("odd sides, clips of two formats and a full disk are told") {
   const run::TemporaryFolder folder;
   CHECK(ClipEncoder::create({63, 48, 5}).failure().code == Fault::kVideo);

@@ -13,6 +13,7 @@
 #include "runtime/base/json.h"
 #include "runtime/export/dataset/check.h"
 #include "runtime/export/dataset/repeater.h"
+#include "runtime/show/clip.h"
 #include "tests/runtime/export/dataset/exported_run.h"
 
 namespace probe::dataset {
@@ -303,7 +304,7 @@ TEST_CASE("a dataset that was changed, or is of another run, does not pass its c
   const Exported made;
   must_export(made.run, made.out, Format::kLerobot, dataset_options());
   const auto problems = [&](const std::vector<std::string>& runs = {}) {
-    const auto checked = check_dataset(made.out, runs);
+    const auto checked = check_dataset(made.out, {.runs = runs});
     return checked ? checked->problems : std::vector<std::string>{to_text(checked.failure())};
   };
   REQUIRE(problems().empty());
@@ -342,6 +343,67 @@ TEST_CASE("a dataset that was changed, or is of another run, does not pass its c
   make_run(small_table(), made.run, "null");
   CHECK(problems().front().find("another trace") != std::string::npos);
   CHECK(!check_dataset(made.run).ok());
+}
+
+// The dataset's video with its frames in another order or otherwise changed, as `frame_of` has it.
+void film_again(const std::string& path, int count,
+                const std::function<std::vector<std::uint8_t>(
+                    const std::vector<std::vector<std::uint8_t>>& frames, int)>& frame_of) {
+  std::vector<std::vector<std::uint8_t>> frames;
+  auto reader = show::ClipReader::create(path);
+  REQUIRE(reader.ok());
+  for (;;) {
+    const auto frame = (*reader)->next();
+    REQUIRE(frame.ok());
+    if (frame->empty()) break;
+    frames.emplace_back(frame->begin(), frame->end());
+  }
+  REQUIRE(frames.size() == static_cast<std::size_t>(count));
+  auto encoder = show::ClipEncoder::create({(*reader)->width(), (*reader)->height(), 5});
+  REQUIRE(encoder.ok());
+  for (int i = 0; i < count; ++i) REQUIRE((*encoder)->add(frame_of(frames, i)).ok());
+  const auto clip = (*encoder)->finish();
+  REQUIRE(clip.ok());
+  auto joiner = show::ClipJoiner::create(path, *clip);
+  REQUIRE(joiner.ok());
+  REQUIRE((*joiner)->add(*clip).ok());
+  REQUIRE((*joiner)->finish().ok());
+}
+
+TEST_CASE(
+    "a video that shows other pictures, or the right ones a step late, does not pass its check") {
+  const Exported made;
+  const std::string video = made.out + "/" + kVideo;
+  const auto problem = [&](const auto& frame_of, bool redraws = true) {
+    fs::remove_all(made.out);
+    must_export(made.run, made.out, Format::kLerobot, dataset_options());
+    film_again(video, kEpisodes * kHorizon, frame_of);
+    CheckOptions options;
+    options.redraws = redraws;
+    const auto checked = check_dataset(made.out, options);
+    REQUIRE(checked.ok());
+    std::string all;
+    for (const std::string& one : checked->problems) all += one + "\n";
+    return all;
+  };
+  const auto at = [](const auto& frames, int i) {
+    return frames[static_cast<std::size_t>(std::clamp(i, 0, static_cast<int>(frames.size()) - 1))];
+  };
+  CHECK(problem([&](const auto& frames, int i) { return at(frames, i); }) == "");
+  const auto late = [&](const auto& frames, int i) { return at(frames, i - 1); };
+  CHECK(problem(late).find("shows what the policy saw a step earlier") != std::string::npos);
+  CHECK(problem(late, false) == "");  // nobody looked
+  CHECK(problem([&](const auto& frames, int i) {
+          return at(frames, i + 1);
+        }).find("is shown a step earlier") != std::string::npos);
+  const std::string other = problem([&](const auto& frames, int i) {
+    auto frame = at(frames, i);
+    if (i == 3) std::ranges::reverse(frame);
+    return frame;
+  });
+  CHECK(other.find("episode 0 (carrot_on_plate episode 0 seed 42) frame 3 of `third_view` in ") ==
+        0);
+  CHECK(other.find(" of 255 away from what the policy saw") != std::string::npos);
 }
 
 }  // namespace

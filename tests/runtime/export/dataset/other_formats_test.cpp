@@ -217,7 +217,7 @@ TEST_CASE("records and their messages are the published bytes") {
 
 std::vector<std::string> problems_of(const std::string& dir,
                                      const std::vector<std::string>& runs = {}) {
-  const auto checked = check_dataset(dir, runs);
+  const auto checked = check_dataset(dir, {.runs = runs});
   return checked ? checked->problems : std::vector<std::string>{to_text(checked.failure())};
 }
 
@@ -283,6 +283,22 @@ void rewrite(const std::string& dir, const std::function<void(Example&, std::siz
     REQUIRE(file->add(message.finish()).ok());
   }
   REQUIRE(file->finish().ok());
+}
+
+TEST_CASE("resized pictures are held against what the policy saw, drawn and resized again") {
+  const run::TemporaryFolder folder;
+  make_run(small_table(), folder / "run");
+  DatasetOptions options = dataset_options();
+  options.width = options.height = 32;
+  must_export(folder / "run", folder / "set", Format::kRlds, options);
+  rewrite(folder / "set", [&](Example& example, std::size_t i) {
+    auto& files = example["steps/observation/image_0"].texts;
+    if (i == 1) std::swap(files[1], files[5]);
+  });
+  check_told(folder / "set", "step 1: its pictures are not those that the policy saw");
+  CheckOptions numbers_only;
+  numbers_only.redraws = false;
+  CHECK(check_dataset(folder / "set", numbers_only)->problems.empty());
 }
 
 TEST_CASE("an RLDS dataset that was changed does not pass its check") {

@@ -1,0 +1,31 @@
+#include "runtime/export/dataset/pictures.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "runtime/servers/resize.h"
+
+namespace probe::dataset {
+
+Status in_shape(const Shape& shape, std::span<const stage::CameraFrame> frames,
+                const std::function<Status(std::span<const Picture> pictures)>& use) {
+  std::vector<wire::Bytes> resized(shape.cameras.size());
+  std::vector<Picture> pictures;
+  for (std::size_t i = 0; i < shape.cameras.size(); ++i) {
+    const CameraShape& camera = shape.cameras[i];
+    const auto seen = std::ranges::find(frames, camera.name, &stage::CameraFrame::camera);
+    if (seen == frames.end())
+      return Failure{Fault::kInternal, "a camera is not there any more", camera.name};
+    const render::FrameView& frame = seen->frame;
+    std::span<const std::uint8_t> rgb = frame.rgb;
+    if (frame.width != camera.width || frame.height != camera.height) {
+      resized[i] = servers::resize_bilinear({frame.width, frame.height, frame.rgb}, camera.width,
+                                            camera.height);
+      rgb = resized[i];
+    }
+    pictures.push_back({&camera, rgb});
+  }
+  return use(pictures);
+}
+
+}  // namespace probe::dataset
