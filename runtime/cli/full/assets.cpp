@@ -1,7 +1,8 @@
-// vlaprobe assets import, vlaprobe assets pack
+// vlaprobe assets import, vlaprobe assets pack, vlaprobe assets mujoco
 #include <fmt/format.h>
 
 #include "runtime/assets/import.h"
+#include "runtime/assets/mujoco_folder.h"
 #include "runtime/assets/pack.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/say.h"
@@ -58,6 +59,48 @@ void add_pack(Verb assets, int& exit) {
   });
 }
 
+void add_mujoco(Verb assets, int& exit) {
+  struct Arguments {
+    assets::MujocoFolderOptions options;
+    bool object = false, fixture = false, backdrop = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb = assets.add_subcommand("mujoco", "objects and fixtures of MuJoCo (MJCF) as assets and text");
+  verb.footer(
+      "writes objects/, fixtures/ and a NAME.probe for each FILE with its declaration; one line for each thing that\n"
+      "is odd or not read, with file and line\n"
+      "example: vlaprobe assets mujoco mug/mug.xml -o mine --merged-into robosuite/models/assets/base.xml");
+  assets::MujocoFolderOptions& options = arguments->options;
+  verb.add_option("FILE", options.files, "MJCF of one object or fixture each").required();
+  verb.add_option("-o,--out", options.to, "asset folder to make").required();
+  verb.add_option("--name", options.name, "what one FILE's object is declared as (default: the file's stem)");
+  verb.add_option("--merged-into", options.merged_into,
+                  "the MJCF that FILE is made a part of (robosuite's base.xml): its compiler holds");
+  verb.add_flag("--object", arguments->object, "what is picked up (default, where no joint is in it)");
+  verb.add_flag("--fixture", arguments->fixture, "what stands (default, where a joint is in it)");
+  verb.add_flag("--backdrop", arguments->backdrop, "what is only seen: everything that stands in the world");
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] {
+    using Kind = assets::MujocoKind;
+    assets::MujocoFolderOptions& chosen = arguments->options;
+    if (arguments->object + arguments->fixture + arguments->backdrop > 1) {
+      exit = report({Fault::kUsage, "--object, --fixture and --backdrop are three kinds of one thing", ""});
+      return;
+    }
+    if (arguments->object) chosen.kind = Kind::kObject;
+    if (arguments->fixture) chosen.kind = Kind::kFixture;
+    if (arguments->backdrop) chosen.kind = Kind::kBackdrop;
+    const auto made = assets::make_mujoco_folder(chosen);
+    if (!made) {
+      exit = report(made.failure());
+      return;
+    }
+    for (const assets::MujocoLine& line : made->lines) put("{:<8} {}\n", line.word, line.text);
+    say("{}: {} files, {:.1f} MB\n", chosen.to, made->files, static_cast<double>(made->bytes) / 1e6);
+    exit = kFine;
+  });
+}
+
 }  // namespace
 
 void add_assets(Verb app, int& exit) {
@@ -79,6 +122,7 @@ void add_assets(Verb app, int& exit) {
   import.callback([arguments, &exit] { exit = import_verb(*arguments);
 });
 add_pack(verb, exit);
+add_mujoco(verb, exit);
 }  // namespace probe::cli
 
 }  // namespace probe::cli

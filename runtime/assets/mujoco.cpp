@@ -1,0 +1,316 @@
+// Reads a model, finds the thing in it and puts together what the other files of this stem make.
+#include "runtime/assets/mujoco.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "runtime/assets/mujoco_felt.h"
+#include "runtime/assets/mujoco_seen.h"
+#include "runtime/assets/mujoco_text.h"
+#include "runtime/assets/mujoco_thing.h"
+#include "runtime/mjcf/read.h"
+#include "runtime/scene/hull.h"
+
+namespace probe::assets {
+namespace {
+
+namespace fs = std::filesystem;
+using mjcf::Model;
+
+class Conversion {
+ public:
+  Conversion(const MujocoOptions& options, const Model& model, scene::MeshLimits limits)
+      : options_(options), model_(model), meshes_(model, std::move(limits)) {
+    const std::string stem = fs::path(options.file).stem().string();
+    asset_.name = options.name.empty() ? mujoco_identifier(stem) : options.name;
+    folder_ = options.folder.empty() ? asset_.name : options.folder;
+    called_ = options.called;
+    if (called_.empty()) {
+      called_ = asset_.name;
+      std::ranges::replace(called_, '_', ' ');
+    }
+    for (const mjcf::Note& note : model.notes)
+      asset_.notes.push_back(model.where(note.at) + ": " + note.text);
+  }
+
+  Result<MujocoAsset> run() {
+    if (options_.kind == MujocoKind::kBackdrop) {
+      PROBE_TRY(make_backdrop());
+      return std::move(asset_);
+    }
+    PROBE_ASSIGN(thing_, find_thing(model_, meshes_));
+    for (const mjcf::Geom* geom : thing_.of_world)
+      note(geom->at, "a geom of the world is no part of the thing");
+    const bool moves = thing_.links.size() > 1;
+    asset_.kind = options_.kind;
+    if (asset_.kind == MujocoKind::kEither) {
+      asset_.kind = moves ? MujocoKind::kFixture : MujocoKind::kObject;
+      if (!moves && !thing_.is_free && !thing_.is_wrapped)
+        asset_.notes.push_back(options_.file +
+                               ": nothing in it moves: taken as an object; say if it is a fixture");
+    }
+    if (asset_.kind == MujocoKind::kObject && moves)
+      return Failure{Fault::kAsset, "an object whose parts move on joints: it can only be a fixture",
+                     model_.where(thing_.links[1].joint->at)};
+    if (asset_.kind == MujocoKind::kFixture && thing_.is_free)
+      asset_.notes.push_back(options_.file + ": its free joint is left out: a fixture stands where it is put");
+    for (const MujocoLink& link : thing_.links) {
+      PROBE_ASSIGN(std::vector<FeltPart> parts, felt_parts(model_, link, meshes_, asset_.notes));
+      felt_.push_back(std::move(parts));
+    }
+    PROBE_TRY(measure());
+    PROBE_TRY(asset_.kind == MujocoKind::kObject ? make_object() : make_fixture());
+    for (const mjcf::Site* site : thing_.outside) {
+      MujocoSite made = site_of(*site, site->pose, "");
+      made.outside = true;
+      asset_.sites.push_back(std::move(made));
+    }
+    return std::move(asset_);
+  }
+
+ private:
+  void note(const mjcf::At& at, const std::string& text) {
+    asset_.notes.push_back(model_.where(at) + ": " + text);
+  }
+
+  // ---- what is said of the whole
+
+  Status measure() {
+    bool first = true;
+    std::map<double, std::size_t> frictions;
+    for (std::size_t i = 0; i < thing_.links.size(); ++i) {
+      const Pose pose = frame_of(i);
+      for (const FeltPart& part : felt_[i]) {
+        for (const Vec3& corner : part.corners) {
+          const Vec3 p = pose.apply(corner);
+          asset_.low = first ? p : Vec3(asset_.low.cwiseMin(p));
+          asset_.high = first ? p : Vec3(asset_.high.cwiseMax(p));
+          first = false;
+        }
+      }
+      mass_ = mjcf::joined(mass_, mjcf::moved(thing_.links[i].mass, pose));
+      for (const auto& placed : thing_.links[i].geoms) {
+        if (placed.it->can_touch()) ++frictions[placed.it->friction[0]];
+      }
+    }
+    if (first) return Failure{Fault::kAsset, "nothing of it can be touched", options_.file};
+    asset_.mass = mass_.mass;
+    asset_.center_of_mass = mass_.center;
+    asset_.friction = std::ranges::max_element(frictions, {}, [](const auto& f) { return f.second; })->first;
+    if (frictions.size() > 1) {
+      std::string list;
+      for (const auto& [friction, count] : frictions)
+        list += fmt::format("{}{:g} of {}", list.empty() ? "" : ", ", friction, count);
+      asset_.notes.push_back(fmt::format("{}: friction differs by geom ({}), {:g} is taken for all",
+                                         options_.file, list, asset_.friction));
+    }
+    return {};
+  }
+
+  // A link's frame in the thing's, joints at 0.
+  Pose frame_of(std::size_t link) const {
+    Pose pose;
+    for (int i = static_cast<int>(link); i >= 0; i = thing_.links[static_cast<std::size_t>(i)].parent)
+      pose = thing_.links[static_cast<std::size_t>(i)].at * pose;
+    return pose;
+  }
+
+  MujocoSite site_of(const mjcf::Site& site, const Pose& pose, const std::string& part) const {
+    MujocoSite made;
+    made.name = site.name;
+    made.part = part;
+    made.pose = pose;
+    made.half = site.shape == mjcf::Shape::kBox || site.shape == mjcf::Shape::kEllipsoid ? site.size
+                : site.shape == mjcf::Shape::kSphere
+                    ? Vec3(Vec3::Constant(site.size[0]))
+                    : Vec3(site.size[0], site.size[0], site.size[1]);
+    return made;
+  }
+
+  // Sites of a link; boxes become regions, by names that are still free.
+  void add_sites(const MujocoLink& link, const std::string& part, std::set<std::string>& taken) {
+    for (const Placed<mjcf::Site>& placed : link.sites) {
+      MujocoSite site = site_of(*placed.it, placed.pose, part);
+      if (placed.it->shape == mjcf::Shape::kBox && !site.name.empty()) {
+        std::string name = mujoco_identifier(site.name);
+        if (taken.contains(name)) name += "_region";
+        if (taken.insert(name).second) {
+          site.region = name;
+        } else {
+          note(placed.it->at, "a second region of this name is left out");
+        }
+      }
+      asset_.sites.push_back(std::move(site));
+    }
+  }
+
+  void add_file(const std::string& path, std::string bytes) {
+    asset_.files.push_back({path, std::move(bytes), options_.file});
+  }
+
+  // ---- kinds
+
+  Status make_object() {
+    const MujocoLink& link = thing_.links[0];
+    const std::string below = "objects/" + folder_;
+    PROBE_ASSIGN(SeenLink seen, seen_link(model_, link, seen_groups(thing_.links), asset_.name,
+                                          meshes_, pictures_, asset_.notes));
+    if (seen.glb.empty()) return Failure{Fault::kAsset, "nothing of it can be seen", options_.file};
+    add_file(below + "/visual.glb", std::move(seen.glb));
+    const std::string obj = felt_obj(felt_[0]);
+    std::vector<std::vector<Vec3>> components;
+    for (const FeltPart& part : felt_[0]) components.push_back(part.corners);
+    if (components.size() > 256)
+      return Failure{Fault::kAsset, fmt::format("{} parts are felt, at most 256", components.size()),
+                     options_.file};
+    PROBE_ASSIGN(const scene::CollisionShape shape,
+                 scene::make_collision_shape(components, options_.file, {.max_vertices = 64}));
+    if (shape.parts.size() != components.size())
+      asset_.notes.push_back(fmt::format("{}: {} of {} parts are too thin to be felt", options_.file,
+                                         components.size() - shape.parts.size(), components.size()));
+    add_file(below + "/collision.obj", obj);
+    ObjectText text;
+    text.name = asset_.name;
+    text.folder = folder_;
+    text.called = called_;
+    text.low = asset_.low;
+    text.high = asset_.high;
+    text.friction = asset_.friction;
+    text.mass = mass_;
+    if (!(mass_.mass > 0)) return Failure{Fault::kAsset, "it weighs nothing", options_.file};
+    text.density = mass_.mass / shape.volume;
+    // The same mass spread evenly: how far off it is from what the file says.
+    const double off = (shape.center_of_mass - mass_.center).norm();
+    const double turn = (text.density * shape.unit_inertia - mass_.inertia).norm() / mass_.inertia.norm();
+    if (off > 1e-6 || turn > 1e-4)
+      asset_.notes.push_back(fmt::format(
+          "{}: its mass is spread evenly over what is felt: centre {:.2g} mm, inertia {:.2g} % off",
+          options_.file, 1000 * off, 100 * turn));
+    std::set<std::string> taken;
+    add_sites(link, "", taken);
+    asset_.declaration = object_text(text, asset_.sites);
+    return {};
+  }
+
+  Status make_fixture() {
+    const std::string below = "fixtures/" + folder_;
+    std::set<std::string> taken;
+    std::vector<const mjcf::Joint*> acting;
+    for (std::size_t i = 1; i < thing_.links.size(); ++i) {
+      const mjcf::Joint& joint = *thing_.links[i].joint;
+      MujocoJoint made;
+      made.name = free_name(joint.name.empty() ? thing_.links[i].name + "_joint" : joint.name, "_joint", taken);
+      made.slides = joint.motion == mjcf::Motion::kSlide;
+      made.lower = joint.limited ? joint.lower : 0;
+      made.upper = joint.limited ? joint.upper : 0;
+      if (joint.armature > 0)
+        note(joint.at, fmt::format("an armature of {:g} is not kept: joints of fixtures have none", joint.armature));
+      acting.push_back(&joint);
+      asset_.joints.push_back(std::move(made));
+    }
+    // Regions come before parts: sites are what texts ask about.
+    std::set<std::string> regions;
+    for (const MujocoLink& link : thing_.links) {
+      for (const auto& placed : link.sites) {
+        if (placed.it->shape == mjcf::Shape::kBox && !placed.it->name.empty())
+          regions.insert(mujoco_identifier(placed.it->name));
+      }
+    }
+    std::vector<DescribedLink> links;
+    const std::set<int> groups = seen_groups(thing_.links);
+    for (std::size_t i = 0; i < thing_.links.size(); ++i) {
+      const MujocoLink& link = thing_.links[i];
+      DescribedLink described;
+      described.link = &link;
+      std::set<std::string> others = taken;
+      others.insert(regions.begin(), regions.end());
+      described.name = i == 0 ? "root" : free_name(link.name.empty() ? asset_.joints[i - 1].name : link.name, "_part", others);
+      if (i > 0) {
+        taken.insert(described.name);
+        asset_.joints[i - 1].part = described.name;
+      }
+      PROBE_ASSIGN(SeenLink seen, seen_link(model_, link, groups, described.name, meshes_, pictures_,
+                                            asset_.notes));
+      if (!seen.glb.empty()) {
+        described.glb = "meshes/" + described.name + ".glb";
+        add_file(below + "/" + described.glb, std::move(seen.glb));
+      }
+      described.felt = felt_[i];
+      for (std::size_t k = 0; k < felt_[i].size(); ++k) {
+        described.meshes.emplace_back();
+        if (felt_[i][k].box) continue;
+        described.meshes.back() = fmt::format("meshes/{}_{}_{}_collision.obj", described.name, felt_[i][k].kind, k + 1);
+        add_file(below + "/" + described.meshes.back(), felt_obj({felt_[i][k]}));
+      }
+      if (i > 0 && felt_[i].empty())
+        asset_.notes.push_back(fmt::format("{}: nothing of part `{}` can be touched: it is no part of the text",
+                                           options_.file, described.name));
+      links.push_back(std::move(described));
+    }
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      if (i > 0 && links[i].felt.empty() && !links[i].link->sites.empty()) {
+        for (const auto& placed : links[i].link->sites)
+          asset_.sites.push_back(site_of(*placed.it, placed.pose, links[i].name));
+        continue;
+      }
+      add_sites(*links[i].link, i == 0 ? "" : links[i].name, taken);
+    }
+    add_file(below + "/" + asset_.name + ".urdf", fixture_urdf(asset_.name, links, asset_.joints));
+    FixtureText text;
+    text.name = asset_.name;
+    text.urdf = below + "/" + asset_.name + ".urdf";
+    text.called = called_;
+    text.friction = asset_.friction;
+    text.acting = std::move(acting);
+    asset_.declaration = fixture_text(text, links, asset_.joints, asset_.sites);
+    return {};
+  }
+
+  static std::string free_name(const std::string& wanted, const std::string& suffix,
+                               std::set<std::string>& taken) {
+    std::string name = mujoco_identifier(wanted);
+    if (taken.contains(name)) name += suffix;
+    const std::string stem = name;
+    for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}", stem, i);
+    return name;
+  }
+
+  Status make_backdrop() {
+    asset_.kind = MujocoKind::kBackdrop;
+    thing_ = standing_things(model_, asset_.notes);
+    const MujocoLink& link = thing_.links[0];
+    PROBE_ASSIGN(SeenLink seen, seen_link(model_, link, seen_groups(thing_.links), asset_.name,
+                                          meshes_, pictures_, asset_.notes));
+    if (seen.glb.empty()) return Failure{Fault::kAsset, "nothing of it can be seen", options_.file};
+    add_file("scenes/" + folder_ + "/visual.glb", std::move(seen.glb));
+    for (const auto& placed : link.sites) asset_.sites.push_back(site_of(*placed.it, placed.pose, ""));
+    return {};
+  }
+
+  const MujocoOptions& options_;
+  const Model& model_;
+  MujocoMeshes meshes_;
+  MujocoPictures pictures_;
+  MujocoThing thing_;
+  std::vector<std::vector<FeltPart>> felt_;  // by link
+  mjcf::MassProperties mass_;                // of all, in the thing's frame
+  MujocoAsset asset_;
+  std::string folder_, called_;
+};
+
+}  // namespace
+
+Result<MujocoAsset> convert_mujoco(const MujocoOptions& options) {
+  PROBE_ASSIGN(const Model model, mjcf::read_model(options.file, {options.merged_into}));
+  scene::MeshLimits limits;
+  // Files of a benchmark's objects lie beside those of its scenes: two folders up.
+  const fs::path folder = fs::absolute(options.file).lexically_normal().parent_path();
+  limits.asset_root = folder.parent_path().parent_path().string();
+  return Conversion(options, model, std::move(limits)).run();
+}
+
+}  // namespace probe::assets
