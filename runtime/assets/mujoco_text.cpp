@@ -173,7 +173,7 @@ std::string fixture_text(const FixtureText& fixture, const std::vector<Described
   for (std::size_t i = 1; i < links.size(); ++i) {
     if (!links[i].felt.empty())
       out += fmt::format("  part {} link {} name \"{}\"\n", links[i].name, links[i].name,
-                         words(links[i].name));
+                         words(links[i].link->name.empty() ? links[i].name : links[i].link->name));
   }
   for (const MujocoSite& site : sites) out += region(site, site.part.empty() ? fixture.name : site.part);
   return out + "}\n";

@@ -57,7 +57,7 @@ class ModelReader {
       if (given == nullptr) {
         PROBE_TRY(read_compiler(section));
       } else {
-        note(section.at, "`compiler` is not read: that of the model it is merged into holds");
+        PROBE_TRY(check_attributes(section));
       }
     }
     for (const Element& section : document_.root.children) {
@@ -146,7 +146,8 @@ class ModelReader {
         PROBE_TRY(check_class(section));
       } else if (section.tag != "compiler" && section.tag != "asset" && section.tag != "worldbody") {
         if (!is_unread_section(section.tag)) return unknown(section, "`mujoco`");
-        if (!section.children.empty() || !section.attributes.empty())
+        // `size` is room for the engine.
+        if (section.tag != "size" && (!section.children.empty() || !section.attributes.empty()))
           note(section.at, fmt::format("`{}` is not read", section.tag));
       }
     }
