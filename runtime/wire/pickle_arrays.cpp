@@ -8,6 +8,7 @@
 #include <string>
 
 #include "runtime/base/printable.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::wire {
 namespace {
@@ -26,6 +27,7 @@ constexpr std::string_view kDtype = "numpy dtype";
 constexpr std::string_view kRebuildTensor = "torch._utils _rebuild_tensor_v2";
 constexpr std::string_view kLoadStorage = "torch.storage _load_from_bytes";
 constexpr std::string_view kOrderedDict = "collections OrderedDict";
+constexpr std::string_view kEncode = "_codecs encode";
 
 struct StorageRow {
   std::string_view global;
@@ -51,6 +53,7 @@ constexpr std::array kArrayGlobals = {
     kRebuildTensor,
     kLoadStorage,
     kOrderedDict,
+    kEncode,
     kStorages[0].global,
     kStorages[1].global,
     kStorages[2].global,
@@ -186,19 +189,40 @@ Result<Array> filled(std::string dtype, std::vector<std::int64_t> shape, std::st
   return finished(std::move(array));
 }
 
+// Bytes, which pickles before protocol 3 hold as the text of those codes: encode(text, "latin1").
+std::optional<std::string> bytes_of(const Pickle& pickle, const Node* node) {
+  if (node == nullptr) return std::nullopt;
+  if (node->kind == Kind::kBytes) return std::string(node->text);
+  if (!is_call_of(pickle, *node, kEncode)) return std::nullopt;
+  const Node& given = pickle.at(node->items[1]);
+  const Node *text = pickle.item(given, 0), *code = pickle.item(given, 1);
+  if (text == nullptr || text->kind != Kind::kText || code == nullptr ||
+      code->kind != Kind::kText || code->text != "latin1") {
+    return std::nullopt;
+  }
+  std::string bytes;
+  bytes.reserve(text->text.size());
+  for (std::string_view rest = text->text; !rest.empty();) {
+    const Utf8Char c = first_utf8(rest);
+    if (c.bytes == 0 || c.code > 0xff) return std::nullopt;
+    bytes += static_cast<char>(c.code);
+    rest.remove_prefix(c.bytes);
+  }
+  return bytes;
+}
+
 // _reconstruct(ndarray, (0,), b"b") with the state (1, shape, dtype, is_fortran, bytes).
 Result<Array> read_reconstructed(const Pickle& pickle, const Node& node, std::size_t most_bytes) {
   const Node* state = pickle.item(node, 2);
   if (state == nullptr || state->kind != Kind::kTuple) return no_array("an array without a state");
   auto shape = whole_tuple(pickle, pickle.item(*state, 1));
-  const Node *is_fortran = pickle.item(*state, 3), *raw = pickle.item(*state, 4);
-  if (!shape || is_fortran == nullptr || is_fortran->kind != Kind::kBool || raw == nullptr ||
-      raw->kind != Kind::kBytes) {
+  const Node* is_fortran = pickle.item(*state, 3);
+  const auto raw = bytes_of(pickle, pickle.item(*state, 4));
+  if (!shape || is_fortran == nullptr || is_fortran->kind != Kind::kBool || !raw) {
     return no_array("an array whose state is not read");
   }
   PROBE_ASSIGN(std::string dtype, read_dtype(pickle, pickle.item(*state, 2)));
-  return filled(std::move(dtype), std::move(*shape), raw->text, is_fortran->integer != 0,
-                most_bytes);
+  return filled(std::move(dtype), std::move(*shape), *raw, is_fortran->integer != 0, most_bytes);
 }
 
 // _frombuffer(bytes, dtype, shape, "C" or "F").

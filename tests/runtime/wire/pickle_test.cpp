@@ -85,6 +85,32 @@ TEST_CASE("arrays that Python wrote are read") {
   }
 }
 
+TEST_CASE("bytes that protocol 2 holds as a text are bytes") {
+  // pickle.dumps(numpy.array([[1.5, -200.25]]), protocol=2): with c3, bf and such in two bytes
+  // each.
+  const Bytes python = test::from_hex(
+      "8002636e756d70792e636f72652e6d756c746961727261790a5f7265636f6e7374727563740a7100636e756d70"
+      "790a6e6461727261790a71014b00857102635f636f646563730a656e636f64650a710358010000006271045806"
+      "0000006c6174696e317105867106527107877108527109284b014b014b0286710a636e756d70790a6474797065"
+      "0a710b58020000006638710c898887710d52710e284b0358010000003c710f4e4e4e4affffffff4affffffff4b"
+      "00747110628968035812000000000000000000c3b83f00000000000869c3807111680586711252711374711462"
+      "2e");
+  const auto read = array_in(python);
+  REQUIRE_MESSAGE(read.ok(), to_text(read.failure()));
+  CHECK(*to_numbers(*read) == std::vector<double>{1.5, -200.25});
+  // Another code, and a text that is no bytes.
+  for (const char* const other : {"utf-8", "latin2"}) {
+    PickleWriter writer;
+    writer.global("_codecs encode");
+    writer.begin_tuple();
+    writer.text("abc");
+    writer.text(other);
+    writer.end_tuple();
+    writer.call();
+    CHECK_FALSE(array_in(writer.finish()).ok());
+  }
+}
+
 TEST_CASE("nothing is run: a function that is not known is refused by its name") {
   CHECK(refusal(bytes_of("cos\nsystem\n(Vecho\ntR.")) ==
         "byte 0 of a pickle: the global `os system` is not read");
