@@ -49,8 +49,11 @@ class MotionCheck {
     if (movers_.empty()) return;
     for (const Mover& mover : movers_) ways_.push_back(places_on(*mover.motion));
     for (const BegunFixture& begun : begun_fixtures(starts, travels)) {
-      for (const PartBox& box : begun.travel.at(begun.joints))
-        standing_.push_back({box, begun.fixture.body_name(begun.fixture.parts[box.part])});
+      // In some start it stands there.
+      for (const std::vector<double>& joints : begun.joints) {
+        for (const PartBox& box : begun.travel.at(joints))
+          standing_.push_back({box, begun.fixture.body_name(begun.fixture.parts[box.part])});
+      }
     }
   }
 

@@ -61,7 +61,7 @@ void check_starts(const Model& model, const std::string& asset_root, Reporter& r
   for (const Task& task : model.tasks) {
     const std::size_t index = at++;
     if (task.starts.empty()) continue;
-    Where where{task.scene, {}, joint_starts_of(model, task)};
+    Where where{task.scene, {}, joint_starts_in_all(model, task)};
     for (const View& view : views_of(model, task)) std::get<1>(where).push_back(view.camera);
     auto& known = fine_in[task.starts.data()];
     if (task.motions.empty() && known.contains(where)) {

@@ -53,11 +53,12 @@ class Travels {
   std::map<SceneId, std::vector<ArmLink>> arms_;
 };
 
-// A fixture of a task's scene whose parts are known, its joints where the task begins.
+// A fixture of a task's scene whose parts are known, its joints where the task begins: alike in all
+// starts, or start by start.
 struct BegunFixture {
   const Fixture& fixture;
   const Travel& travel;
-  std::vector<double> joints;
+  std::vector<std::vector<double>> joints;
 };
 std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& travels);
 

@@ -64,13 +64,27 @@ struct TravelCheck {
     return scene::upright_solid(body.centre - half, body.centre + half + fall);
   }
 
-  // The deepest overlap of each start with any of the boxes. What is put into a part, at a height
-  // of its own, goes where the part goes: `carriers`, of a look at the whole way.
-  Found deepest(const std::vector<PartBox>& boxes, Look look,
-                const std::map<std::uint32_t, Around>& carriers = {}) const {
+  // One of all starts, or one for each.
+  template <typename T>
+  static const T& in_start(const std::vector<T>& all, std::size_t e) {
+    return all.size() == 1 ? all.front() : all[e];
+  }
+
+  // The deepest overlap of each start with any of the boxes as they stand there. What is put into a
+  // part, at a height of its own, goes where the part goes: `carriers`, of a look at the whole way.
+  Found deepest(const std::vector<std::vector<PartBox>>& begun, Look look) const {
+    std::vector<std::map<std::uint32_t, Around>> carried_by;
+    if (look == Look::kWay) {
+      for (const std::vector<PartBox>& boxes : begun) carried_by.push_back(around_parts(boxes));
+    } else {
+      carried_by.resize(1);
+    }
     Found found;
     for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
       bool here = false;
+      const std::vector<PartBox>& boxes =
+          look == Look::kWay ? travel.everywhere() : in_start(begun, e);
+      const std::map<std::uint32_t, Around>& carriers = in_start(carried_by, e);
       for (const Start::Placed& placed : starts.task.starts[e].placed) {
         const scene::Solid body = body_of(placed, look);
         const Vec3 half = body.half_extent();
@@ -104,8 +118,9 @@ struct TravelCheck {
         .label(fixture.span, "the fixture");
   }
 
-  void check(std::span<const double> joints) const {
-    const std::vector<PartBox> begun = travel.at(joints);
+  void check(const std::vector<std::vector<double>>& joints) const {
+    std::vector<std::vector<PartBox>> begun;
+    for (const std::vector<double>& here : joints) begun.push_back(travel.at(here));
     const std::string in_task = "` in `" + starts.task.name + "`";
     if (const Found found = deepest(begun, Look::kStart); found.box != nullptr) {
       report(found,
@@ -123,7 +138,7 @@ struct TravelCheck {
           "\"...\")`");
       return;
     }
-    const Found found = deepest(travel.everywhere(), Look::kWay, around_parts(begun));
+    const Found found = deepest(begun, Look::kWay);
     if (found.box == nullptr) return;
     const bool is_chain = travel.carriers(found.box->part).size() > 1;
     Diagnostic& said = report(found,
@@ -172,7 +187,7 @@ void check_travel(const TaskStarts& starts, Travels& travels) {
   for (const BegunFixture& begun : begun_fixtures(starts, travels)) {
     const TravelCheck check{starts, begun.fixture, begun.travel};
     check.check(begun.joints);
-    check.check_arm(begun.joints, travels.arm(starts.task.scene));
+    check.check_arm(begun.joints.front(), travels.arm(starts.task.scene));
   }
 }
 

@@ -52,15 +52,27 @@ const std::vector<ArmLink>& Travels::arm(SceneId id) {
 }
 
 std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& travels) {
-  const std::vector<double> all = joint_starts_of(starts.model, starts.task);
-  std::span<const double> left = all;
+  std::vector<std::vector<double>> all;
+  for (const Start& start : starts.task.starts) {
+    all.push_back(joint_starts_of(starts.model, starts.task, start));
+    if (starts.layout.given_joints.empty()) break;
+  }
+  std::ptrdiff_t at = 0;
   std::vector<BegunFixture> begun;
   for (const FixtureId id : starts.model.scenes[starts.task.scene].fixtures) {
     const Fixture& fixture = starts.model.fixtures[id];
-    const auto joints = left.first(fixture.joints.size());
-    left = left.subspan(fixture.joints.size());
-    if (const auto& travel = travels.of(id))
-      begun.push_back({fixture, *travel, {joints.begin(), joints.end()}});
+    const std::ptrdiff_t from = at;
+    at += static_cast<std::ptrdiff_t>(fixture.joints.size());
+    const auto& travel = travels.of(id);
+    if (!travel) continue;
+    BegunFixture one{fixture, *travel, {}};
+    for (const std::vector<double>& joints : all)
+      one.joints.emplace_back(joints.begin() + from, joints.begin() + at);
+    const auto is_first = [&](const std::vector<double>& joints) {
+      return joints == one.joints.front();
+    };
+    if (std::ranges::all_of(one.joints, is_first)) one.joints.resize(1);
+    begun.push_back(std::move(one));
   }
   return begun;
 }

@@ -10,7 +10,7 @@ const Unclear& UnclearStarts::find(const Task& task, const Phrase& phrase, Objec
   for (const ObjectId id : task.objects()) filled.emplace_back(task.role_of(id), id);
   for (const auto& [role, id] : task.things()) filled.emplace_back(role, id);
   std::vector<double> joints;
-  if (!model_.scenes[task.scene].fixtures.empty()) joints = joint_starts_of(model_, task);
+  if (!model_.scenes[task.scene].fixtures.empty()) joints = joint_starts_in_all(model_, task);
   Key key(task.starts.data(), task.starts.size(), task.scene, views_of(model_, task).front().camera,
           &phrase, wanted, std::move(filled), std::move(joints));
   const auto [at, is_new] = known_.try_emplace(std::move(key));

@@ -82,6 +82,24 @@ bool same_layout(const Layout& a, const Layout& b) {
   return true;
 }
 
+// Whether the joints that a file of starts says for arms begin alike.
+bool same_given_arms(const Layout& a, const Layout& b) {
+  const auto arms_of = [](const Layout& layout) {
+    std::vector<std::vector<GivenJoint>> arms = layout.given_joints;
+    for (std::vector<GivenJoint>& start : arms) {
+      std::erase_if(start, [](const GivenJoint& joint) { return joint.robot == RobotId::kNone; });
+    }
+    std::erase_if(arms, [](const std::vector<GivenJoint>& start) { return start.empty(); });
+    return arms;
+  };
+  return std::ranges::equal(
+      arms_of(a), arms_of(b),
+      [](const std::vector<GivenJoint>& p, const std::vector<GivenJoint>& q) {
+        return std::ranges::equal(
+            p, q, [](const GivenJoint& x, const GivenJoint& y) { return x.is_same(y); });
+      });
+}
+
 // A pose of an object that only one of the two has comes with that object and is no change of its
 // own.
 bool same_poses(const Model& model, const Task& a, const Task& b) {
@@ -208,11 +226,12 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
   if (!same_goal(model, a, b) || !same_layout(layout, model.layouts[b.layout]) ||
       !same_choice(a, b) ||
       (a.scene != b.scene && !is_same_place(model, model.scenes[a.scene], model.scenes[b.scene])) ||
-      layout.joints_jitter != model.layouts[b.layout].joints_jitter || a.delay != b.delay ||
-      !same_motions(model, a, b) ||
-      !same_sensors(model, a, b) ||
+      layout.joints_jitter != model.layouts[b.layout].joints_jitter ||
+      !same_given_arms(layout, model.layouts[b.layout]) || a.delay != b.delay ||
+      !same_motions(model, a, b) || !same_sensors(model, a, b) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
-      !same_cameras(model, a, b) || joint_starts_of(model, a) != joint_starts_of(model, b) ||
+      !same_cameras(model, a, b) ||
+      joint_starts_in_all(model, a) != joint_starts_in_all(model, b) ||
       a.distractors.size() != b.distractors.size() || a.objects().size() != b.objects().size() ||
       !same_shape(a, b) || a.things() != b.things())
     return false;
@@ -295,7 +314,7 @@ class Comparison {
       // Another scene's joints begin where they do.
       case plan::Axis::kFixture:
         return !scene_moves_ &&
-               joint_starts_of(model_, task_) != joint_starts_of(model_, baseline_);
+               joint_starts_in_all(model_, task_) != joint_starts_in_all(model_, baseline_);
       // Another scene comes with its own camera and light; only an override makes them a change of
       // their own.
       case plan::Axis::kLight:
@@ -310,7 +329,8 @@ class Comparison {
         return !same_sensors(model_, task_, baseline_);
       case plan::Axis::kRobot:
         return model_.layouts[task_.layout].joints_jitter !=
-               model_.layouts[baseline_.layout].joints_jitter;
+                   model_.layouts[baseline_.layout].joints_jitter ||
+               !same_given_arms(model_.layouts[task_.layout], model_.layouts[baseline_.layout]);
       case plan::Axis::kLatency:
         return task_.delay != baseline_.delay;
       case plan::Axis::kMotion:

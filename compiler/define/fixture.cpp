@@ -2,6 +2,7 @@
 #include "compiler/define/fixture.h"
 
 #include <algorithm>
+#include <span>
 
 #include "compiler/define/define.h"
 #include "compiler/define/fixture_model.h"
@@ -176,19 +177,52 @@ bool read_start(Context& context, const syntax::StartStmt& stmt, const Span& dec
   return false;
 }
 
-std::vector<double> joint_starts_of(const Model& model, const Task& task) {
+namespace {
+
+std::vector<double> joint_starts(const Model& model, const Task& task,
+                                 std::span<const GivenJoint> given) {
   std::vector<double> all;
   for (const FixtureId id : model.scenes[task.scene].fixtures) {
     const Fixture& fixture = model.fixtures[id];
     for (std::uint32_t i = 0; i < fixture.joints.size(); ++i) {
       double at = fixture.joints[i].start;
-      for (const auto* starts : {&model.layouts[task.layout].joint_starts, &task.joint_starts}) {
-        for (const JointStart& start : *starts) {
+      const auto take = [&](const auto& starts) {
+        for (const auto& start : starts) {
           if (start.fixture == id && start.joint == i) at = start.value;
         }
-      }
+      };
+      take(model.layouts[task.layout].joint_starts);
+      take(given);
+      take(task.joint_starts);
       all.push_back(at);
     }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<double> joint_starts_of(const Model& model, const Task& task) {
+  return joint_starts(model, task, {});
+}
+
+std::vector<double> joint_starts_of(const Model& model, const Task& task, const Start& start) {
+  const Layout& layout = model.layouts[task.layout];
+  if (layout.given_joints.empty()) return joint_starts_of(model, task);
+  return joint_starts(model, task, layout.given_joints[start.given]);
+}
+
+std::vector<double> joint_starts_in_all(const Model& model, const Task& task) {
+  const Layout& layout = model.layouts[task.layout];
+  const auto is_fixture = [](const GivenJoint& joint) { return joint.robot == RobotId::kNone; };
+  if (layout.given_joints.empty() ||
+      std::ranges::none_of(layout.given_joints.front(), is_fixture)) {
+    return joint_starts_of(model, task);
+  }
+  std::vector<double> all;
+  for (const std::vector<GivenJoint>& given : layout.given_joints) {
+    const std::vector<double> here = joint_starts(model, task, given);
+    all.insert(all.end(), here.begin(), here.end());
   }
   return all;
 }

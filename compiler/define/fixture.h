@@ -22,6 +22,11 @@ bool read_start(Context& context, const syntax::StartStmt& stmt, const Span& dec
 // the task says, else its layout, else the fixture.
 std::vector<double> joint_starts_of(const Model& model, const Task& task);
 
+// The same in one start, where a file of starts says it: over the layout, not over the task.
+std::vector<double> joint_starts_of(const Model& model, const Task& task, const Start& start);
+// Of all starts one after the other where a file says joints of fixtures, else of all at once.
+std::vector<double> joint_starts_in_all(const Model& model, const Task& task);
+
 // Whether both act, stand and are felt alike.
 bool same_fixture(const Fixture& a, const Fixture& b);
 bool same_fixtures(const Model& model, const Scene& a, const Scene& b);

@@ -115,7 +115,7 @@ InStart::InStart(Relations& relations, const Task& task, const Start& start)
   }
   if (scenery_.body_count <= placed_.size()) return;
   placed_.resize(scenery_.body_count);
-  const std::vector<double> joints = joint_starts_of(model, task);
+  const std::vector<double> joints = joint_starts_of(model, task, start);
   for (std::size_t i = 0; i < scenery_.things.size(); ++i) {
     const Object& object = model.objects[scenery_.things[i]];
     if (object.of) placed_[scenery_.bodies[i]] = placed_part(model, task, *object.of, joints);

@@ -51,6 +51,7 @@ struct LayoutReader {
   void note_placing(const Span& span) {
     if (!placing) placing = span;
     layout.given.clear();
+    layout.given_joints.clear();
     layout.given_span = {};
   }
   void operator()(const syntax::StartsStmt& stmt) {
@@ -59,7 +60,9 @@ struct LayoutReader {
     layout.orients.clear();
     layout.by_rest = false;
     layout.given_span = stmt.span;
-    layout.given = read_start_table(context, stmt);
+    GivenStarts starts = read_start_table(context, stmt);
+    layout.given = std::move(starts.places);
+    layout.given_joints = std::move(starts.joints);
   }
 
   void operator()(const syntax::CellsStmt& stmt) {
@@ -241,6 +244,21 @@ struct LayoutReader {
   }
 };
 
+// A joint that a file of starts has begins where the file says, in every start.
+void check_said_once(Context& context, const Layout& layout) {
+  if (layout.given_joints.empty()) return;
+  for (const GivenJoint& given : layout.given_joints.front()) {
+    for (const JointStart& start : layout.joint_starts) {
+      if (start.fixture != given.fixture || start.joint != given.joint) continue;
+      context
+          .report(Code::P1503, start.span,
+                  "`starts` says where `" + given.what.text + "` begins, and this says it again")
+          .label(given.what.span, "in the file");
+      return;
+    }
+  }
+}
+
 // Objects are put down before an episode and judged when they lie still.
 void require_rest(Context& context, const Layout& layout) {
   if (!layout.has_drop) {
@@ -277,6 +295,7 @@ void define_layouts(Context& context) {
     } else if (starts != nullptr) {
       reader(*starts);
     }
+    check_said_once(context, layout);
     // A grid that could not be read has been reported; one cell keeps the enumeration going.
     for (Cells& cells : layout.cells) {
       if (!cells.grids.empty()) continue;

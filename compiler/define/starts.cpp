@@ -203,6 +203,7 @@ std::vector<Start> given_starts(const Model& model, const Layout& layout, const 
   std::vector<Start> starts;
   for (const std::vector<GivenPlace>& given : layout.given) {
     Start start;
+    start.given = starts.size();
     for (const ObjectId id : objects) {
       const Object& object = model.objects[id];
       const std::string in_start =

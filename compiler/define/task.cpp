@@ -483,6 +483,22 @@ void check_joint_starts(Context& context, const Task& task, bool& poisoned) {
       poisoned = true;
     }
   }
+  const Layout& layout = context.model.layouts[task.layout];
+  if (layout.given_joints.empty()) return;
+  for (const GivenJoint& given : layout.given_joints.front()) {
+    const bool is_arm = given.robot != RobotId::kNone;
+    if (is_arm ? given.robot == scene.robot
+               : std::ranges::find(scene.fixtures, given.fixture) != scene.fixtures.end())
+      continue;
+    const std::string name = is_arm ? "robot `" + context.model.robots[given.robot].name
+                                    : "fixture `" + context.model.fixtures[given.fixture].name;
+    context
+        .report(Code::P0201, given.what.span,
+                name + "` is not in scene `" + scene.name + "` of `" + task.name + "`")
+        .label(scene.span, "the scene");
+    poisoned = true;
+    return;
+  }
 }
 
 // What a task's camera takes the place of must be there, and a camera moves with a link, so that

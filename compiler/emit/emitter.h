@@ -127,7 +127,7 @@ class Emitter {
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
   void add_task(const sema::Task& task);
   plan::Slice add_moves(const sema::Task& task);
-  plan::Slice add_joint_starts(const sema::Task& task);
+  plan::Slice add_joint_starts(const sema::Task& task, const sema::Start& start);
   plan::Slice add_arm_start(const sema::Task& task, std::size_t index);
   plan::Slice add_covers(const std::map<plan::CoverOf, sema::Cover>& covers, AssetOwner owner);
   // What its words say of places; `index` is the task's. Shapes that are alike share programs.

@@ -116,8 +116,8 @@ plan::Slice Emitter::add_roles(const sema::Task& task, const std::vector<lower::
 }
 
 // Nothing where all begin as their fixtures say.
-plan::Slice Emitter::add_joint_starts(const sema::Task& task) {
-  const std::vector<double> starts = joint_starts_of(model_, task);
+plan::Slice Emitter::add_joint_starts(const sema::Task& task, const sema::Start& start) {
+  const std::vector<double> starts = joint_starts_of(model_, task, start);
   std::size_t i = 0;
   bool moved = false;
   for (const sema::FixtureId id : model_.scenes[task.scene].fixtures) {
@@ -197,9 +197,11 @@ void Emitter::add_task(const sema::Task& task) {
   record.episodes = {size32(records().episodes), size32(task.starts)};
   const std::vector<plan::Slice>& placements =
       placements_of(task.starts, scene.surface_z + layout.drop);
-  const plan::Slice joints = add_joint_starts(task);
+  plan::Slice joints;
   for (std::size_t e = 0; e < task.starts.size(); ++e) {
     plan::EpisodeRecord episode;
+    // Without a file of starts they begin alike in all.
+    if (e == 0 || !layout.given_joints.empty()) joints = add_joint_starts(task, task.starts[e]);
     episode.joints = joints;
     episode.arm = add_arm_start(task, e);
     episode.task = index;

@@ -358,6 +358,19 @@ struct GivenPlace {
   }
 };
 
+// A joint of a fixture or of a robot in a start that a file gives.
+struct GivenJoint {
+  Spelled what;                          // "cabinet.top", "panda.joint1"
+  FixtureId fixture = FixtureId::kNone;  // or
+  RobotId robot = RobotId::kNone;
+  std::uint32_t joint = 0;  // of Fixture::joints, of Robot::drives
+  double value = 0;         // m or rad
+  bool is_same(const GivenJoint& other) const {
+    return fixture == other.fixture && robot == other.robot && joint == other.joint &&
+           value == other.value;
+  }
+};
+
 struct Layout {
   std::string name;
   LayoutId like = LayoutId::kNone;
@@ -369,6 +382,7 @@ struct Layout {
   std::vector<Orient> orients;
   // The starts of a file, in place of cells, places and turns.
   std::vector<std::vector<GivenPlace>> given;
+  std::vector<std::vector<GivenJoint>> given_joints;  // by start as well
   Span given_span;  // of the statement; none where there is no file
   double jitter = 0;
   Span jitter_span;
@@ -434,6 +448,7 @@ struct Start {
     std::optional<double> z = {};  // of the model's origin; none: dropped from the layout's height
   };
   std::vector<Placed> placed;  // in the order of Task::objects()
+  std::size_t given = 0;       // which of a file's starts it is, where the layout has a file
 };
 
 // A phrase that starts are chosen by: those in which it is clear.
@@ -541,8 +556,8 @@ struct Task {
     return source != ObjectId::kNone && target != ObjectId::kNone && is_object(source) &&
            is_object(target);
   }
-  // Where to point for what holds of this task: at what was said, unless another file says it, whose
-  // author is not the one who chose it here.
+  // Where to point for what holds of this task: at what was said, unless another file says it,
+  // whose author is not the one who chose it here.
   const Span& place(const Span& said) const {
     return said.is_none() || !(said.file == file) ? span : said;
   }

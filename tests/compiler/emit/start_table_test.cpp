@@ -10,6 +10,8 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/plan/axes.h"
+#include "runtime/plan/fixtures.h"
 #include "runtime/plan/plan.h"
 
 using namespace probe;
@@ -132,4 +134,115 @@ TEST_CASE("a mistake in a table is told at its line and cell") {
   CHECK(said("", kTask).find("the file of starts is empty") != std::string::npos);
   CHECK(said("start,object,x_m,y_m\n", kTask).find("there are no starts below this line") !=
         std::string::npos);
+}
+
+namespace {
+
+// Drawers and a Panda: the task has the carrot alone.
+const std::string kDrawer = std::string("use \"suite/kitchen.probe\"\n") + kLayout +
+                            "task t like open_the_top_drawer { layout given }\n";
+
+struct Begun {
+  std::vector<double> joints, arm;
+};
+Begun begun(const plan::Plan& plan, const char* name, std::size_t episode) {
+  const plan::TaskRecord& task = plan.tasks()[plan.find_task(name).value()];
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  const plan::EpisodeRecord& record = plan.episodes(task)[episode];
+  const auto arm = plan.joints(scene, record);
+  return {plan::joint_starts_of(plan.tables(), scene, record), {arm.begin(), arm.end()}};
+}
+
+}  // namespace
+
+TEST_CASE("joints of fixtures and of the robot begin where a table says, start by start") {
+  const std::string header = "start,object,x_m,y_m,value\n";
+  const plan::Plan plan = plan_with(header +
+                                        "0,carrot,-0.15,-0.11,\n"
+                                        "0,cabinet.middle,,,0.04\n"
+                                        "0,panda.joint1,,,0.125\n"
+                                        "1,carrot,-0.15,-0.11,\n"
+                                        "1,panda.joint1,,,-0.25\n"
+                                        "1,cabinet.middle,,,0.08\n",
+                                    kDrawer + "task u like t { start cabinet.middle 1cm }\n");
+  const Begun first = begun(plan, "t", 0), second = begun(plan, "t", 1);
+  REQUIRE(first.joints.size() == 5);  // three drawers and two knobs
+  CHECK(first.joints[1] == 0.04);
+  CHECK(second.joints[1] == 0.08);
+  CHECK(first.joints[0] == 0);
+  REQUIRE(first.arm.size() == 9);
+  CHECK(first.arm[0] == 0.125);
+  CHECK(second.arm[0] == -0.25);
+  CHECK(first.arm[1] == -0.161037389);  // as the scene says
+  CHECK(second.arm[8] == 0.020833);
+  const plan::TaskRecord& task = plan.tasks()[plan.find_task("t").value()];
+  CHECK(plan.episodes(task)[0].start_id != plan.episodes(task)[1].start_id);
+  // What the task says comes before the table.
+  CHECK(begun(plan, "u", 0).joints[1] == 0.01);
+  CHECK(begun(plan, "u", 1).joints[1] == 0.01);
+}
+
+TEST_CASE("a task whose table says other joints moves that axis alone") {
+  const std::string both = "start,object,x_m,y_m,value\n0,carrot,-0.15,-0.11,\n";
+  const auto axes = [&](const std::string& row) {
+    // The baseline's layout has the same place and no joint.
+    const plan::Plan plan =
+        plan_with(both + row,
+                  "use \"suite/kitchen.probe\"\n" + std::string(kLayout) +
+                      "layout placed { place carrot at (-15cm, -11cm); orient carrot yaw 0deg\n"
+                      "drop 2cm settle 0.5s }\n"
+                      "layout same like given { start cabinet.top 0cm }\n"
+                      "task u like open_the_top_drawer { layout given; start cabinet.middle 0cm }\n"
+                      "variant t of u { start cabinet.middle none }\n");
+    const plan::TaskRecord& task = plan.tasks()[plan.find_task("t").value()];
+    return task.axes;
+  };
+  CHECK(axes("0,cabinet.middle,,,0.04\n") == plan::bit(plan::Axis::kFixture));
+}
+
+TEST_CASE("what is wrong with a joint's row is told at its cell") {
+  const auto at = [](const std::string& row, const std::string& header) {
+    return said(
+        header + "\n0,carrot,-0.15,-0.11" + (header.ends_with("value") ? "," : "") + "\n" + row,
+        kDrawer);
+  };
+  const auto with = [&](const std::string& row) { return at(row, "start,object,x_m,y_m,value"); };
+  CHECK(with("0,cabinet.top,,,0.9\n").find("starts.csv:3:17") != std::string::npos);
+  CHECK(with("0,cabinet.top,,,0.9\n").find("beyond its limits of") != std::string::npos);
+  CHECK(with("0,cabinet.tpo,,,0.1\n").find("did you mean `top`?") != std::string::npos);
+  CHECK(with("0,panda.joint8,,,0.1\n").find("did you mean `joint") != std::string::npos);
+  CHECK(with("0,chest.top,,,0.1\n").find("error[P0201]") != std::string::npos);
+  CHECK(with("0,microwave.hinge,,,0.1\n")
+            .find("fixture `microwave` is not in scene `counter` of `t`") != std::string::npos);
+  CHECK(with("0,widowx.waist,,,0.1\n").find("robot `widowx` is not in scene `counter` of `t`") !=
+        std::string::npos);
+  CHECK(with("0,cabinet.top,0.1,,0.1\n")
+            .find("a joint has no place: expected nothing under `x_m`, found `0.1`") !=
+        std::string::npos);
+  CHECK(with("0,cabinet.top,,,\n").find("expected a number under `value`, found nothing") !=
+        std::string::npos);
+  CHECK(
+      with("0,cabinet.top,,,0.1\n0,cabinet.top,,,0.1\n").find("start 0 has `cabinet.top` twice") !=
+      std::string::npos);
+  CHECK(with("0,cabinet.top,,,0.1\n1,carrot,-0.15,-0.11,\n").find("start 1 has no `cabinet.top`") !=
+        std::string::npos);
+  CHECK(with("0,plate,-0.1,0.1,0.1\n").find("an object has no joint value") != std::string::npos);
+  CHECK(at("0,cabinet.top,,\n", "start,object,x_m,y_m").find("the table has no column `value`") !=
+        std::string::npos);
+  CHECK(said("start,object,x_m,y_m,value\n0,carrot,-0.15,-0.11,\n0,cabinet.top,,,0.1\n",
+             "use \"suite/kitchen.probe\"\n"
+             "layout given { starts \"starts.csv\"; drop 2cm settle 0.5s; start cabinet.top 3cm }\n"
+             "task t like open_the_top_drawer { layout given }\n")
+            .find("error[P1503]") != std::string::npos);
+}
+
+TEST_CASE("what stands in a drawer in one start alone is found there") {
+  const std::string text =
+      said("start,object,x_m,y_m,z_m,value\n"
+           "0,carrot,-0.09,0.26,1.08,\n0,cabinet.top,,,,0\n"
+           "1,carrot,-0.09,0.26,1.08,\n1,cabinet.top,,,,0.1\n",
+           kDrawer);
+  CHECK(text.find("stands in `cabinet.top_drawer` in `t`: they overlap by") != std::string::npos);
+  CHECK(text.find("so in 1 of 2 starts") != std::string::npos);
+  CHECK(text.find("episode 1:") != std::string::npos);
 }
