@@ -129,7 +129,7 @@ Status check_table(Audit& audit, const Compilation& compilation, const plan::Pla
     for (const std::uint32_t task : plan::slice_of(plan.tables().list, plan.sets()[*set].members)) {
       if (std::find(members.begin(), members.end(), task) == members.end()) continue;
       finding.tasks.emplace_back(plan.text(plan.tasks()[task].name));
-      episodes += seeds * plan.tasks()[task].episodes.count;
+      episodes += seeds * plan.episodes(record, task).size();
     }
     const std::size_t tasks = finding.tasks.size();
     const std::size_t odd = episodes == 0 ? 0 : misfits(column, episodes);

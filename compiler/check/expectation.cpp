@@ -48,7 +48,7 @@ void check_suite(const Model& model, const Suite& suite, Reporter& reporter) {
   });
   if (!suite.expect || !is_whole) return;
   std::uint64_t episodes = 0;
-  for (const TaskId id : suite.members) episodes += model.tasks[id].starts.size();
+  for (const TaskId id : suite.members) episodes += suite.starts_of(id, model.tasks[id]).size();
   if (suite.expect->tasks == suite.members.size() && suite.expect->episodes == episodes) return;
   reporter.report(Code::P0504, suite.expect->span,
                   "suite `" + suite.name + "` has " + std::to_string(suite.members.size()) +

@@ -8,6 +8,7 @@
 #include "compiler/define/record.h"
 #include "compiler/define/role.h"
 #include "compiler/define/support.h"
+#include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
 
 namespace probe::sema {

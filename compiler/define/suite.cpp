@@ -1,7 +1,9 @@
 // `suite`: which tasks are run, under which seeds.
 #include <algorithm>
+#include <set>
 
 #include "compiler/define/define.h"
+#include "compiler/define/episode_sample.h"
 #include "compiler/define/set.h"
 #include "runtime/plan/limits.h"
 
@@ -15,17 +17,28 @@ struct SuiteReader {
   Suite& suite;
   bool has_tasks = false, has_seeds = false;
   Span prefix_span = {};
+  std::vector<EpisodeSample> samples = {};
+  std::vector<CutComparison> cuts = {};
 
   void operator()(const syntax::SuiteTasksStmt& stmt) {
     has_tasks = true;
     suite.members = sets.read(file, stmt.tasks);
+    cuts = sets.take_cuts();
+  }
+  void operator()(const syntax::SuiteSampleStmt& stmt) {
+    has_tasks = true;
+    samples.push_back({&stmt, sets.read(file, stmt.of)});
+    for (const CutComparison& cut : sets.take_cuts()) cuts.push_back(cut);
+  }
+  void finish() {
+    sample_episodes(context, samples, suite);
     // The suite may have the baseline from elsewhere, or not have the variant after all.
-    const auto has = [&](TaskId id) {
-      return std::find(suite.members.begin(), suite.members.end(), id) != suite.members.end();
-    };
-    for (const CutComparison& cut : sets.take_cuts()) {
-      if (has(cut.task) && !has(context.model.tasks[cut.task].baseline)) suite.cuts.push_back(cut);
-    }
+    const std::set<TaskId> has(suite.members.begin(), suite.members.end());
+    std::erase_if(cuts, [&](const CutComparison& cut) {
+      return !has.contains(cut.task) || suite.drawn.contains(cut.task) ||
+             has.contains(context.model.tasks[cut.task].baseline);
+    });
+    suite.cuts.insert(suite.cuts.begin(), cuts.begin(), cuts.end());
   }
   void operator()(const syntax::PrefixStmt& stmt) {
     prefix_span = stmt.prefix.span;
@@ -109,6 +122,7 @@ void define_suites(Context& context) {
     }
     SuiteReader reader{context, sets, *declared.file, suite};
     for (const syntax::SuiteStmt& stmt : node.body) std::visit(reader, stmt);
+    reader.finish();
     reader.check_prefix();
     suite.broken = !declared.decl->complete || !reader.has_tasks;
     if (declared.decl->complete && !reader.has_tasks)

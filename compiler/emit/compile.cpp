@@ -229,17 +229,20 @@ Result<Counted> count(std::span<const std::string> files, const CompileOptions& 
   Analyzed analyzed;
   PROBE_TRY(analyze(files, options, analyzed));
   Counts counts;
-  const auto add = [&](const sema::Task& task) {
+  const auto add = [&](const sema::Task& task, std::size_t starts) {
     if (task.abstract || !task.complete) return;
     ++counts.tasks;
-    counts.episodes += task.starts.size();
+    counts.episodes += starts;
   };
   if (options.suite.empty()) {
-    for (const sema::Task& task : analyzed.model.tasks) add(task);
+    for (const sema::Task& task : analyzed.model.tasks) add(task, task.starts.size());
   }
   for (const sema::Suite& suite : analyzed.model.suites) {
     if (options.suite.empty() || suite.name != options.suite) continue;
-    for (const sema::TaskId id : suite.members) add(analyzed.model.tasks[id]);
+    for (const sema::TaskId id : suite.members) {
+      const sema::Task& task = analyzed.model.tasks[id];
+      add(task, suite.starts_of(id, task).size());
+    }
   }
   return Counted{std::move(analyzed.compilation), counts};
 }

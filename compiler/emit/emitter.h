@@ -142,6 +142,7 @@ class Emitter {
   plan::Slice add_members(const std::vector<TaskId>& members);
   void add_sets();
   void add_suites();
+  plan::Slice add_drawn(const sema::Suite& suite);
 
   bool is_asked(sema::QuestionSetId set, TaskId task) const;
   std::map<sema::QuestionSetId, std::uint32_t> add_families();

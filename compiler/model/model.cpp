@@ -2,6 +2,7 @@
 #include "compiler/model/model.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace probe::sema {
 
@@ -87,6 +88,14 @@ RoleId Task::role_of(ObjectId object) const {
       return filled.role;
   }
   return RoleId::kNone;
+}
+
+std::vector<std::uint32_t> Suite::starts_of(TaskId member, const Task& task) const {
+  const auto some = drawn.find(member);
+  if (some != drawn.end()) return some->second;
+  std::vector<std::uint32_t> all(task.starts.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
 }
 
 }  // namespace probe::sema

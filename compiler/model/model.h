@@ -571,6 +571,7 @@ struct Task {
 struct CutComparison {
   TaskId task = TaskId::kNone;
   Span sample;
+  std::size_t episodes = 0;  // so many drawn starts of it; 0: all that it has
 };
 
 struct TaskSet {
@@ -587,6 +588,7 @@ struct Suite {
   std::string prefix;
   DatasetId trained_on = DatasetId::kNone;
   std::vector<TaskId> members;
+  std::map<TaskId, std::vector<std::uint32_t>> drawn;  // of members that are sampled: which starts
   std::vector<std::uint32_t> seeds;
   struct Expect {
     std::uint64_t tasks = 0, episodes = 0;
@@ -596,6 +598,9 @@ struct Suite {
   std::vector<CutComparison> cuts;       // of members whose baseline is no member
   std::vector<QuestionSetId> questions;  // that its members are asked
   bool broken = false;                   // its text is torn, or has no `tasks`
+
+  // What it runs of a member: numbers of starts, ascending.
+  std::vector<std::uint32_t> starts_of(TaskId member, const Task& task) const;
 };
 
 struct Model {

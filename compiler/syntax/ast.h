@@ -998,6 +998,14 @@ struct SuiteTasksStmt {
   Span span;
   TaskSetId tasks;
 };
+// So many starts of these tasks, in place of all of each.
+struct SuiteSampleStmt {
+  Span span;
+  Int count;
+  TaskSetId of;
+  Int seed;
+  bool with_baselines = false;
+};
 struct PrefixStmt {
   Span span;
   Text prefix;
@@ -1015,7 +1023,8 @@ struct SuiteQuestionsStmt {
   std::vector<Name> sets;
 };
 using SuiteStmt =
-    std::variant<SuiteTasksStmt, PrefixStmt, SeedsStmt, ExpectTasksStmt, SuiteQuestionsStmt>;
+    std::variant<SuiteTasksStmt, SuiteSampleStmt, PrefixStmt, SeedsStmt, ExpectTasksStmt,
+                 SuiteQuestionsStmt>;
 struct SuiteDecl {
   Name name;
   std::optional<Name> trained_on;

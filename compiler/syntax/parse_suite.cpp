@@ -21,6 +21,21 @@ DeclNode Parser::suite_decl() {
 
 SuiteStmt Parser::suite_tasks() { return SuiteTasksStmt{{}, task_set()}; }
 
+SuiteStmt Parser::suite_sample() {
+  SuiteSampleStmt out;
+  out.count = integer();
+  expect_word("episodes");
+  expect_word("of");
+  out.of = task_set_operand();
+  expect_word("seed");
+  out.seed = integer();
+  if (accept_word("with")) {
+    expect_word("baselines");
+    out.with_baselines = true;
+  }
+  return out;
+}
+
 SuiteStmt Parser::suite_prefix() { return PrefixStmt{{}, string()}; }
 
 SuiteStmt Parser::suite_seeds() {

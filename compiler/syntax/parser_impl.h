@@ -317,6 +317,7 @@ class Parser {
   // ---- parse_suite.cpp ----
   DeclNode suite_decl();
   SuiteStmt suite_tasks();
+  SuiteStmt suite_sample();
   SuiteStmt suite_prefix();
   SuiteStmt suite_seeds();
   SuiteStmt suite_expect();

@@ -18,6 +18,17 @@ std::size_t only_baselines(const plan::Plan& plan, const std::string& suite) {
   return index ? plan.tasks().size() - plan.members(plan.suites()[*index]).size() : 0;
 }
 
+// ", of which suite `few` runs 20"
+std::string drawn_text(const plan::Plan& plan) {
+  std::string text;
+  for (const plan::SuiteRecord& suite : plan.suites()) {
+    if (suite.episodes.count > 0)
+      text += fmt::format(", of which suite `{}` runs {}", plan.text(suite.name),
+                          suite.episodes.count);
+  }
+  return text;
+}
+
 }  // namespace
 
 void add_build(Verb app, int& exit) {
@@ -69,9 +80,9 @@ void add_build(Verb app, int& exit) {
     }
     put("{}\n", to_hex(plan->root()));
     const std::size_t more = only_baselines(*plan, arguments->suite);
-    say("{}: {} tasks{}, {} episodes, {} bytes\n", arguments->out, plan->tasks().size(),
+    say("{}: {} tasks{}, {} episodes{}, {} bytes\n", arguments->out, plan->tasks().size(),
         more == 0 ? "" : fmt::format(", {} of them only baselines of the others", more),
-        plan->episodes().size(), plan->bytes().size());
+        plan->episodes().size(), drawn_text(*plan), plan->bytes().size());
   });
 }
 

@@ -63,7 +63,9 @@ int list_verb(const ListArguments& arguments) {
   const auto tasks = select_tasks(*loaded.plan, arguments.suite, loaded.exit);
   if (!tasks) return loaded.exit;
   if (arguments.questions) return list_questions(arguments, *loaded.plan, *tasks);
-  const Json count = inspect::count(*loaded.plan, *tasks);
+  const auto of = loaded.plan->find_suite(arguments.suite);
+  const plan::SuiteRecord* suite = of ? &loaded.plan->suites()[*of] : nullptr;
+  const Json count = inspect::count(*loaded.plan, *tasks, suite);
   const std::string summary =
       fmt::format("{} tasks, {} episodes\n", count["tasks"].get<std::size_t>(),
                   count["episodes"].get<std::size_t>());
@@ -71,7 +73,7 @@ int list_verb(const ListArguments& arguments) {
     put("{}", arguments.json ? count.dump() + "\n" : summary);
     return kFine;
   }
-  const Json list = inspect::list(*loaded.plan, *tasks);
+  const Json list = inspect::list(*loaded.plan, *tasks, suite);
   put("{}", arguments.json ? list.dump(2) + "\n" : inspect::list_text(list));
   if (!arguments.json) say("{}", summary);
   return kFine;

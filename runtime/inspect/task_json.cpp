@@ -88,6 +88,19 @@ Json start_of(const plan::Plan& plan, const plan::EpisodeRecord& episode) {
   return start;
 }
 
+// Suites that run some of the starts.
+Json drawn_of(const plan::Plan& plan, std::uint32_t task) {
+  Json drawn = Json::array();
+  for (const plan::SuiteRecord& suite : plan.suites()) {
+    const auto members = plan.members(suite);
+    if (std::ranges::find(members, task) == members.end()) continue;
+    const auto starts = plan.episodes(suite, task);
+    if (starts.size() < plan.tasks()[task].episodes.count)
+      drawn.push_back({{"suite", plan.text(suite.name)}, {"starts", starts}});
+  }
+  return drawn;
+}
+
 double distance(const plan::PlacementRecord& a, const plan::PlacementRecord& b) {
   const double x = a.position[0] - b.position[0];
   const double y = a.position[1] - b.position[1];
@@ -118,16 +131,22 @@ std::vector<std::uint32_t> members(const plan::Plan& plan, std::uint32_t suite) 
   return {tasks.begin(), tasks.end()};
 }
 
-Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
+Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks,
+           const plan::SuiteRecord* suite) {
+  if (suite != nullptr) return {{"tasks", tasks.size()}, {"episodes", plan.episode_count(*suite)}};
   std::size_t episodes = 0;
   for (const std::uint32_t task : tasks) episodes += plan.tasks()[task].episodes.count;
   return {{"tasks", tasks.size()}, {"episodes", episodes}};
 }
 
-Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks) {
+Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks,
+          const plan::SuiteRecord* suite) {
   const auto categories = categories_of(plan);
   Json all = Json::array();
-  for (const std::uint32_t task : tasks) all.push_back(summarise(plan, task, categories[task]));
+  for (const std::uint32_t task : tasks) {
+    all.push_back(summarise(plan, task, categories[task]));
+    if (suite != nullptr) all.back()["episodes"] = plan.episodes(*suite, task).size();
+  }
   return all;
 }
 
@@ -178,6 +197,7 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   if (plan.scenes()[task.scene].fixtures.count > 0) json["fixtures"] = fixtures_of(plan, index);
   const Json regions = regions_of(plan, index);
   if (!regions.empty()) json["regions"] = regions;
+  if (Json drawn = drawn_of(plan, index); !drawn.empty()) json["drawn"] = std::move(drawn);
   json["questions"] = questions_of(plan, index);
   json["not_asked"] = omissions_of(plan, index);
   return json;
@@ -291,6 +311,15 @@ std::string describe_text(const Json& task) {
   line("layout",
        fmt::format("{} starts, dropped from {} cm, settled for {} s", task["starts"].size(),
                    tenth(task["drop_m"].get<double>(), 100), task["settle_s"].get<double>()));
+  if (task.contains("drawn")) {
+    for (const Json& drawn : task["drawn"]) {
+      std::string starts;
+      for (const Json& start : drawn["starts"])
+        starts += (starts.empty() ? "" : ", ") + std::to_string(start.get<std::uint32_t>());
+      line("drawn", fmt::format("suite {} runs {} of them: {}", drawn["suite"].text(),
+                                drawn["starts"].size(), starts));
+    }
+  }
   if (task.contains("varied")) line("varied", joined(task["varied"], "nothing"));
   line("metrics", joined(task["metrics"], "none"));
   const std::string idle = task.contains("idle") ? fmt::format(", behind {} of standing still",

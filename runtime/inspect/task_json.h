@@ -14,15 +14,18 @@ namespace probe::inspect {
 std::vector<std::uint32_t> all_tasks(const plan::Plan& plan);
 std::vector<std::uint32_t> members(const plan::Plan& plan, std::uint32_t suite);
 
-// {tasks, episodes}
-Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
+// {tasks, episodes}: all that they have, or what a suite runs of them.
+Json count(const plan::Plan& plan, std::span<const std::uint32_t> tasks,
+           const plan::SuiteRecord* suite = nullptr);
 // An array of {task, baseline, axes[], categories[], prompt, episodes}.
-Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks);
+Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks,
+          const plan::SuiteRecord* suite = nullptr);
 // One task: the same and {source, target (null: none), roles {}, distractors[], placed[], horizon,
 // metrics[], starts[][], scene, robot {}, camera, cameras[]{name, camera}, light, ood[], drop_m, settle_s,
 // allow, distances_m[], ids{prompt, judge, starts[], episodes[]}, questions[], not_asked[]}.
 // `robot` is robot_json.h's. `camera` is the first of `cameras`, whose `name` is what policies know it by. A distance is from
-// source to target, horizontal, in the order of the starts. `questions` and `not_asked` are those
+// source to target, horizontal, in the order of the starts. Where suites run some of the starts,
+// `drawn`[]{suite, starts[]} has their numbers. `questions` and `not_asked` are those
 // of question_json.h.
 Json describe(const plan::Plan& plan, std::uint32_t task);
 

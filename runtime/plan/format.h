@@ -494,9 +494,10 @@ struct SuiteRecord {
   StringRef name;
   StringRef prefix;
   StringRef trained_on;
-  Slice members;  // kList of kTasks
-  Slice seeds;    // kList
-  std::uint64_t zero[3] = {};
+  Slice members;   // kList of kTasks
+  Slice seeds;     // kList
+  Slice episodes;  // kList of kEpisodes: those it runs of its members; none: all
+  std::uint64_t zero[2] = {};
 };
 static_assert(sizeof(SuiteRecord) == 64);
 

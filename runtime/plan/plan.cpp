@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "runtime/base/io_failure.h"
@@ -164,6 +165,27 @@ std::span<const std::uint32_t> Plan::members(const SuiteRecord& s) const {
 }
 std::span<const std::uint32_t> Plan::seeds(const SuiteRecord& s) const {
   return slice_of(tables_.list, s.seeds);
+}
+
+std::vector<std::uint32_t> Plan::episodes(const SuiteRecord& s, std::uint32_t task) const {
+  const Slice own = tasks()[task].episodes;
+  std::vector<std::uint32_t> numbers;
+  if (s.episodes.count == 0) {
+    numbers.resize(own.count);
+    std::iota(numbers.begin(), numbers.end(), 0u);
+    return numbers;
+  }
+  const auto drawn = slice_of(tables_.list, s.episodes);
+  for (auto at = std::ranges::lower_bound(drawn, own.first);
+       at != drawn.end() && *at - own.first < own.count; ++at)
+    numbers.push_back(*at - own.first);
+  return numbers;
+}
+std::size_t Plan::episode_count(const SuiteRecord& s) const {
+  if (s.episodes.count > 0) return s.episodes.count;
+  std::size_t count = 0;
+  for (const std::uint32_t task : members(s)) count += tasks()[task].episodes.count;
+  return count;
 }
 
 std::vector<ViewRecord> Plan::views(const TaskRecord& t) const {

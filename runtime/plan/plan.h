@@ -85,6 +85,9 @@ class Plan {
   std::span<const std::uint32_t> members(const SetRecord& set) const;      // indices of tasks()
   std::span<const std::uint32_t> members(const SuiteRecord& suite) const;  // indices of tasks()
   std::span<const std::uint32_t> seeds(const SuiteRecord& suite) const;
+  // Which of a member's episodes a suite runs: their numbers in the task, ascending.
+  std::vector<std::uint32_t> episodes(const SuiteRecord& suite, std::uint32_t task) const;
+  std::size_t episode_count(const SuiteRecord& suite) const;  // of all its members
   // Every camera of the task, at least one, the first first: also where the plan stores no views.
   std::vector<ViewRecord> views(const TaskRecord& task) const;
 

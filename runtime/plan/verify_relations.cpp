@@ -306,6 +306,32 @@ class RelationCheck : FieldCheck {
     return {};
   }
 
+  // The episodes that a suite runs, where it does not run all of its members'.
+  Status drawn(const SuiteRecord& suite) {
+    PROBE_TRY(count_list(suite.episodes));
+    const auto episodes = slice_of(t.list, suite.episodes);
+    if (episodes.empty()) return {};
+    const auto members = slice_of(t.list, suite.members);
+    std::unordered_set<std::uint32_t> lacking(members.begin(), members.end());
+    const std::unordered_set<std::uint32_t> all = lacking;
+    for (std::size_t i = 0; i < episodes.size(); ++i) {
+      PROBE_TRY(check_index(episodes[i], t.episodes.size(), "EPIS"));
+      if (i > 0 && episodes[i] <= episodes[i - 1])
+        return fail(Rule::kSuiteEpisodes, &episodes[i], "episodes of a suite do not ascend");
+      const std::uint32_t task = t.episodes[episodes[i]].task;
+      if (!all.contains(task)) {
+        return fail(Rule::kSuiteEpisodes, &episodes[i],
+                    fmt::format("suite `{}` runs episode {}, which is of no member",
+                                t.text(suite.name), episodes[i]));
+      }
+      lacking.erase(task);
+    }
+    if (lacking.empty()) return {};
+    return fail(Rule::kSuiteEpisodes, &suite.episodes,
+                fmt::format("suite `{}` has a member of which it runs no episode",
+                            t.text(suite.name)));
+  }
+
   Status lists() {
     for (const RobotRecord& r : t.robots) PROBE_TRY(count_list(r.meshes));
     for (const FixtureRecord& f : t.fixtures) PROBE_TRY(count_list(f.meshes));
@@ -314,6 +340,7 @@ class RelationCheck : FieldCheck {
     for (const SuiteRecord& s : t.suites) {
       PROBE_TRY(members(s.members));
       PROBE_TRY(count_list(s.seeds));
+      PROBE_TRY(drawn(s));
     }
     PROBE_TRY(check_unique_names(t.sets, "sets"));
     return check_unique_names(t.suites, "suites");

@@ -169,6 +169,7 @@ Status RecordCheck::check(const SuiteRecord& s) const {
   PROBE_TRY(check_text(s.trained_on));
   PROBE_TRY(check_slice(s.members, t.list.size(), "LIST"));
   PROBE_TRY(check_slice(s.seeds, t.list.size(), "LIST"));
+  PROBE_TRY(check_slice(s.episodes, t.list.size(), "LIST"));
   return check_zero(s.zero);
 }
 

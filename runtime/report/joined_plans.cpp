@@ -72,7 +72,8 @@ int JoinedPlans::add(plan::Plan plan, const std::string& suite_name) {
   }
   info.tasks = static_cast<int>(members.size());
   for (const std::uint32_t t : members) {
-    info.starts += static_cast<int>(plan.episodes(plan.tasks()[t]).size());
+    info.starts += static_cast<int>(suite ? plan.episodes(plan.suites()[*suite], t).size()
+                                          : plan.episodes(plan.tasks()[t]).size());
   }
   benchmark_.plans.push_back(std::move(info));
   benchmark_.plan_files.push_back(std::move(plan));

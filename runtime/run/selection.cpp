@@ -44,6 +44,15 @@ Failure no_task(const std::string& glob, const std::vector<std::string>& names) 
   return usage(message, "--tasks");
 }
 
+// All of a task's, or those that a suite drew.
+std::vector<std::uint32_t> episodes_of(const plan::Plan& plan, const plan::SuiteRecord* suite,
+                                       std::uint32_t task) {
+  if (suite != nullptr) return plan.episodes(*suite, task);
+  std::vector<std::uint32_t> all(plan.tasks()[task].episodes.count);
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
 using store::EpisodeKey;
 
 std::set<EpisodeKey> keys_of(const std::vector<store::ResultRow>* rows) {
@@ -131,8 +140,7 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
 
   bool any = false, any_held = recorded == nullptr;
   for (const std::uint32_t task : tasks) {
-    const auto count = static_cast<std::uint32_t>(plan.episodes(plan.tasks()[task]).size());
-    for (std::uint32_t index = 0; index < count; ++index) {
+    for (const std::uint32_t index : episodes_of(plan, suite, task)) {
       if (options.episodes && (static_cast<int>(index) < options.episodes->first ||
                                static_cast<int>(index) > options.episodes->second)) {
         continue;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "compiler/emit/compile.h"
 #include "runtime/policy/query_meter.h"
 #include "runtime/policy/scripted.h"
 #include "runtime/run/run.h"
@@ -249,6 +250,34 @@ TEST_CASE("shards hold each episode once, and what else is chosen moves none") {
   for (const EpisodeJob& job : single->jobs) {
     CHECK(std::count(joined.begin(), joined.end(), job) == 1);
   }
+}
+
+TEST_CASE("of a suite that drew episodes those are run, and no others") {
+  const std::string path = VLAPROBE_SOURCE_DIR "/examples/sample.probe";
+  auto compiled = build(std::span<const std::string>(&path, 1),
+                        {.asset_root = VLAPROBE_SOURCE_DIR "/assets", .suite = "some_starts"});
+  REQUIRE(compiled.ok());
+  REQUIRE(compiled->ok);
+  auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
+  REQUIRE(plan.ok());
+  RunOptions options;
+  options.policy = "expert";
+  options.suite = "some_starts";
+  const auto all = select_jobs(*plan, options, false);
+  REQUIRE(all.ok());
+  const plan::SuiteRecord& suite = plan->suites()[*plan->find_suite("some_starts")];
+  CHECK(all->jobs.size() == plan->episode_count(suite));
+  CHECK(all->jobs.size() < plan->episodes().size());
+  std::size_t variants = 0;
+  for (const EpisodeJob& job : all->jobs) {
+    const std::uint32_t baseline = plan->tasks()[job.task].baseline;
+    if (baseline == plan::kNone) continue;
+    ++variants;
+    // Its comparison has the same start.
+    CHECK(std::find(all->jobs.begin(), all->jobs.end(),
+                    EpisodeJob{baseline, job.index, job.seed}) != all->jobs.end());
+  }
+  CHECK(variants == 60);
 }
 
 TEST_CASE("a server that moves continues its run, and the rows keep the first name") {
