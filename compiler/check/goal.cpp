@@ -156,6 +156,7 @@ class Reader {
       case Measure::kTurn:
       case Measure::kWithin:
       case Measure::kLocal:
+      case Measure::kCentre:
         return true;
       default:
         return false;

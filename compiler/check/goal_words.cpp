@@ -182,9 +182,9 @@ class Told {
   // Words that tell to do so, not how a thing is: "open the drawer", not "the open drawer", "left
   // open" or "close to".
   bool tells_to(const GoalWords& one) {
-    constexpr auto kBefore = std::to_array<std::string_view>(
-        {"and", "then", "please", "to", "first", "you", "can", "could", "should", "must", "now",
-         "or", "but", "just"});
+    constexpr auto kBefore =
+        std::to_array<std::string_view>({"and", "then", "please", "to", "first", "you", "can",
+                                         "could", "should", "must", "now", "or", "but", "just"});
     const std::size_t length = folded_words(one.words).size();
     const auto& words = said().words;
     for (auto at = said().find(one.words); at; at = said().find(one.words, *at + 1)) {
@@ -213,11 +213,27 @@ class Told {
            (travels.opens ? "at least so much" : "at most so much");
   }
 
+  // "Pick up the bowl between A and B": that says which bowl, not where to.
+  bool tells_which(std::size_t at) {
+    static constexpr std::string_view kTakes[] = {"pick", "grasp", "grab", "take", "lift"};
+    static constexpr std::string_view kPuts[] = {"put",  "place", "move", "set",
+                                                 "drop", "push",  "lay",  "bring"};
+    const auto is_in = [](const auto& words, std::string_view word) {
+      return std::find(std::begin(words), std::end(words), word) != std::end(words);
+    };
+    while (at-- > 0) {
+      const std::string_view word = said().words[at].text;
+      if (is_in(kPuts, word)) return false;
+      if (is_in(kTakes, word)) return true;
+    }
+    return false;
+  }
+
   // "between A and B" of which success is that it lies on A.
   std::optional<std::string> among_lack(const GoalWords& one) {
     if (goal().tells_sides) return std::nullopt;
     const auto at = said().find(one.words);
-    if (!at) return std::nullopt;
+    if (!at || tells_which(*at)) return std::nullopt;
     std::vector<Things> behind;
     for (std::size_t i = *at + 1; i < said().words.size() && behind.size() < 2; ++i) {
       if (!said().words[i].of.empty()) behind.push_back(said().words[i].of);
@@ -346,8 +362,8 @@ class Told {
   // "both spoons" of which success is that any of them is there.
   std::optional<std::string> each_lack() {
     for (const Things& things : goal().one_of) {
-      const bool is_said = std::any_of(
-          said().words.begin(), said().words.end(), [&](const Said::Word& word) {
+      const bool is_said =
+          std::any_of(said().words.begin(), said().words.end(), [&](const Said::Word& word) {
             return std::includes(word.of.begin(), word.of.end(), things.begin(), things.end());
           });
       if (is_said && !is_each_asked(things))
@@ -589,8 +605,7 @@ void check_goal_words(const Model& model, Reporter& reporter) {
     if (says_other_relation(model, task, reporter)) continue;
     if (says_other_goal(model, task, told, reporter)) continue;
     if (says_other_part(model, task, reporter)) continue;
-    if (has_nouns_of_several(model, task) &&
-        leaves_noun_open(model, task, told.said(), reporter))
+    if (has_nouns_of_several(model, task) && leaves_noun_open(model, task, told.said(), reporter))
       continue;
     if (asks_twice(task)) leaves_one_out(model, task, told, reporter);
   }

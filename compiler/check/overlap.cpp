@@ -117,6 +117,13 @@ void check_overlap(const TaskStarts& starts) {
           .point(first.counted.first_words(at(one, *first.one) + ", " + at(other, *first.other)));
   said.cause = cause_of(starts.layout.span, {one.name, other.name});
   if (!advise_spread(starts, said)) said.label(starts.layout.span, "the layout");
+  // Heights were chosen or recorded: a thing may stand within the box around a hollow one.
+  const bool are_given =
+      std::ranges::all_of(pairs, [](const Pair& pair) { return pair.one->z && pair.other->z; });
+  if (are_given) {
+    said.severity = Severity::kWarning;
+    said.help("if they are to begin so, say why: `@allow(overlap, \"...\")`");
+  }
   if (pairs.size() > 1)
     said.note("so do " + std::to_string(pairs.size() - 1) + " other pair" +
               (pairs.size() > 2 ? "s" : "") + " of its objects");

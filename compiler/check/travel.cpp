@@ -123,10 +123,14 @@ struct TravelCheck {
     for (const std::vector<double>& here : joints) begun.push_back(travel.at(here));
     const std::string in_task = "` in `" + starts.task.name + "`";
     if (const Found found = deepest(begun, Look::kStart); found.box != nullptr) {
-      report(found,
-             "stands in `" + part_name(*found.box) + in_task + ": they overlap by " +
-                 centimetres(found.depth),
-             false);
+      Diagnostic& said = report(found,
+                                "stands in `" + part_name(*found.box) + in_task +
+                                    ": they overlap by " + centimetres(found.depth),
+                                false);
+      // Its height was chosen or recorded.
+      if (!found.placed->z) return;
+      said.severity = Severity::kWarning;
+      said.help("if it is to begin so, say why: `@allow(in_the_way, \"...\")`");
       return;
     }
     if (const Found found = deepest(begun, Look::kFalling); found.box != nullptr) {

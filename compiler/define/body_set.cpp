@@ -67,6 +67,19 @@ std::optional<SetRef> ExprReader::read_set(syntax::SetExprId id) {
       if (is_poison(body)) return std::nullopt;
       set.bodies.push_back(body);
     }
+  } else if (const auto* whole = std::get_if<syntax::SetWhole>(&written.node)) {
+    set.op = SetOp::kWhole;
+    const ExprRef thing = read_node(whole->name.span, syntax::ExprName{whole->name});
+    if (is_poison(thing)) return std::nullopt;
+    const Type& type = node(thing).type;
+    if (type.kind != TypeKind::kBody && type.kind != TypeKind::kRegion) {
+      context_
+          .report(Code::P0601, whole->name.span,
+                  "expected a body or a region, found " + type_name(type))
+          .point("`whole` is all bodies of a thing");
+      return std::nullopt;
+    }
+    set.bodies.push_back(thing);
   } else if (const auto* name = std::get_if<syntax::SetName>(&written.node)) {
     std::vector<std::string_view> candidates;
     bool found = false;

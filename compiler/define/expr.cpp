@@ -328,6 +328,9 @@ bool ExprReader::argument_fits(const MeasureInfo& measure, std::size_t i, ExprRe
     case 'G':
       fits = type.kind == TypeKind::kRegion || type.is_open, wanted = "a region";
       break;
+    case 'F':
+      fits = is_body || type.kind == TypeKind::kRegion, wanted = "a body or a region";
+      break;
     case 'C':
       fits = type.kind == TypeKind::kBool, wanted = "a condition";
       break;

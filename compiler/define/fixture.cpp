@@ -7,9 +7,11 @@
 #include "compiler/define/define.h"
 #include "compiler/define/fixture_model.h"
 #include "compiler/define/record.h"
+#include "compiler/geometry/pose.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
 #include "runtime/base/utf8.h"
+#include "runtime/plan/regions.h"
 
 namespace probe::sema {
 namespace {
@@ -131,6 +133,29 @@ std::optional<Region> read_region(Context& context, const syntax::RegionStmt& st
                    "the second corner of a region lies above the first on every axis");
     return std::nullopt;
   }
+  if (!stmt.at) return region;
+  const auto at = read_point(context, *stmt.at, 3, 3, dim::kLength,
+                             {"a region stands at lengths", plan::Magnitude::kPlace});
+  Turn turn;
+  if (stmt.turn) {
+    const auto read = read_turn(context, *stmt.turn);
+    if (!read) return std::nullopt;
+    turn = *read;
+  }
+  if (!at) return std::nullopt;
+  Vec3 middle = Vec3::Zero(), half = Vec3::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i);
+    middle[axis] = (region.low[i] + region.high[i]) / 2;
+    half[axis] = (region.high[i] - region.low[i]) / 2;
+    region.low[i] += (*at)[i].si();
+    region.high[i] += (*at)[i].si();
+  }
+  if (turn == Turn{}) return region;
+  middle = pose_of({(*at)[0].si(), (*at)[1].si(), (*at)[2].si()}, turn.rotation).apply(middle);
+  region.turned = plan::TurnedBox{
+      {middle.x(), middle.y(), middle.z()}, {half.x(), half.y(), half.z()}, turn.rotation};
+  plan::box_around(*region.turned, region.low, region.high);
   return region;
 }
 

@@ -14,6 +14,7 @@
 #include "runtime/base/utf8.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/limits.h"
+#include "runtime/plan/regions.h"
 
 namespace probe::sema {
 namespace {
@@ -215,6 +216,10 @@ void grow(Object& object) {
   for (Region& region : object.regions) {
     region.low = times(region.low);
     region.high = times(region.high);
+    if (!region.turned) continue;
+    region.turned->middle = times(region.turned->middle);
+    region.turned->half = times(region.turned->half);
+    plan::box_around(*region.turned, region.low, region.high);
   }
 }
 

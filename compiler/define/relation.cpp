@@ -74,6 +74,7 @@ class Search {
       case SetOp::kLinks:
       case SetOp::kBodies:
       case SetOp::kParts:
+      case SetOp::kWhole:
         return Fault{set.span, "a relation is one of objects, this set has others"};
       case SetOp::kUnion:
       case SetOp::kIntersection:

@@ -6,6 +6,10 @@ namespace probe::emit {
 void Emitter::add_regions(const std::vector<sema::Region>& regions, const std::string& owner,
                           plan::BodyKind kind, std::uint32_t index) {
   for (const sema::Region& region : regions) {
+    if (region.turned) {
+      records().turned.push_back({size32(records().regions), 0, region.turned->middle,
+                                  region.turned->half, region.turned->rotation});
+    }
     records().regions.push_back({writer_.text(owner + "." + region.name),
                                  static_cast<std::uint32_t>(kind), index, region.low, region.high});
   }

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/regions.h"
 #include "runtime/plan/roles.h"
 
 namespace probe::emit {
@@ -29,8 +30,10 @@ sema::Fixture::Joint joint_of(const plan::Plan& plan, const plan::FixtureJointRe
 
 PlanBodies::PlanBodies(const plan::Plan& plan, sema::Model& model) : plan_(plan), model_(model) {
   add_fixtures();
-  for (const plan::RegionRecord& record : plan.regions()) {
+  for (std::uint32_t i = 0; i < plan.regions().size(); ++i) {
+    const plan::RegionRecord& record = plan.regions()[i];
     sema::Region region;
+    region.turned = plan::turned_box(plan.tables(), i);
     region.name = behind_dot(plan.text(record.name));
     region.low = record.low;
     region.high = record.high;

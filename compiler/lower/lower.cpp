@@ -9,9 +9,11 @@
 #include "compiler/model/measures.h"
 #include "compiler/model/moving_joint.h"
 #include "runtime/base/check.h"
+#include "runtime/base/geometry.h"
 #include "runtime/base/trig.h"
 #include "runtime/plan/claims.h"
 #include "runtime/plan/readouts.h"
+#include "runtime/plan/regions.h"
 
 namespace probe::lower {
 namespace {
@@ -307,6 +309,9 @@ class Lowering {
       case 'G':
         fits = is_region, name = "a region";
         break;
+      case 'F':
+        fits = is_body || is_region, name = "a body or a region";
+        break;
       default:
         break;
     }
@@ -471,13 +476,62 @@ class Lowering {
     const std::uint16_t here = builder_.emit(Op::kLOCAL, of.index, point(where));
     Value all = Value::of_truth(true);
     constexpr Op kAxes[] = {Op::kVX, Op::kVY, Op::kVZ};
+    // From its middle along each of its axes, of a turned one.
+    std::uint16_t away = here;
+    std::optional<Mat3> turn;
+    if (of.region->turned) {
+      away = builder_.emit(Op::kVSUB, here, vector_of(to_vec(of.region->middle())));
+      turn = turn_of(*of.region);
+    }
+    const std::array<double, 3> half = of.region->half();
     for (std::size_t i = 0; i < 3; ++i) {
-      const Value at = Value::of_register(builder_.emit(kAxes[i], here));
-      const Value low = builder_.less(Value::of_number(of.region->low[i]), at, true);
-      const Value high = builder_.less(at, Value::of_number(of.region->high[i]), true);
+      const auto axis = static_cast<Eigen::Index>(i);
+      const Value at =
+          Value::of_register(turn ? builder_.emit(Op::kVDOT, away, vector_of(turn->col(axis)))
+                                  : builder_.emit(kAxes[i], here));
+      const double least = turn ? -half[i] : of.region->low[i];
+      const double most = turn ? half[i] : of.region->high[i];
+      const Value low = builder_.less(Value::of_number(least), at, true);
+      const Value high = builder_.less(at, Value::of_number(most), true);
       all = builder_.logical_and(all, builder_.logical_and(low, high));
     }
     return all;
+  }
+
+  // In the frame of what it belongs to.
+  static Mat3 turn_of(const sema::Region& region) {
+    Mat3 turn = Mat3::Identity();
+    if (!region.turned) return turn;
+    const auto rows = plan::axes_of(*region.turned);
+    for (std::size_t i = 0; i < 3; ++i)
+      turn.row(static_cast<Eigen::Index>(i)) = to_vec(rows[i]).transpose();
+    return turn;
+  }
+
+  // A vector of a body's frame, in the world.
+  std::uint16_t from_body(std::uint16_t body, const Vec3& vector) {
+    std::optional<std::uint16_t> sum;
+    for (std::uint16_t i = 0; i < 3; ++i) {
+      const double along = vector[i];
+      if (along == 0 && (sum || i < 2)) continue;
+      std::uint16_t part = builder_.emit(Op::kAXIS, body, i);
+      if (along != 1) part = builder_.emit(Op::kVSCALE, part, builder_.constant(along));
+      sum = sum ? builder_.emit(Op::kVADD, *sum, part) : part;
+    }
+    return *sum;
+  }
+
+  Value axis(const Value& of, std::uint16_t which) {
+    if (of.kind != Value::kRegion || !of.region->turned)
+      return Value::of_register(builder_.emit(Op::kAXIS, of.index, which));
+    return Value::of_register(from_body(of.index, turn_of(*of.region).col(which)));
+  }
+
+  Value centre(const Value& of) {
+    const std::uint16_t origin = builder_.emit(Op::kORIGIN, of.index);
+    const Vec3 middle = to_vec(of.region->middle());
+    if (middle == Vec3::Zero()) return Value::of_register(origin);
+    return Value::of_register(builder_.emit(Op::kVADD, origin, from_body(of.index, middle)));
   }
 
   Value call(const ExprNode& node) {
@@ -575,6 +629,15 @@ class Lowering {
           const auto& parts = model_.fixtures[static_cast<sema::FixtureId>(b.index)].parts;
           return parts[b.part].declared && parts[b.part].joint.has_value();
         });
+      case sema::SetOp::kWhole: {
+        const Value thing = eval(set.bodies.front());
+        if (!ok_) return {};
+        const Body& of = bodies_[thing.index];
+        return where([&](const Body& b, std::size_t i) {
+          const bool is_part = b.kind == BodyKind::kPart && of.kind == BodyKind::kPart;
+          return is_part ? b.index == of.index : i == thing.index;
+        });
+      }
       case sema::SetOp::kNames: {
         Bodies result;
         for (const ExprRef body : set.bodies) {
@@ -791,11 +854,11 @@ class Lowering {
         return reg(Op::kVLENXY, builder_.emit(Op::kVSUB, now, then));
       }
       case Measure::kAxisX:
-        return reg(Op::kAXIS, first, 0);
+        return axis(args[0], 0);
       case Measure::kAxisY:
-        return reg(Op::kAXIS, first, 1);
+        return axis(args[0], 1);
       case Measure::kAxisZ:
-        return reg(Op::kAXIS, first, 2);
+        return axis(args[0], 2);
       case Measure::kUp:
         return Value::of_register(builder_.vector(0, 0, 1));
       case Measure::kTcp:
@@ -826,6 +889,10 @@ class Lowering {
         return travel_as(node, args[0], false);
       case Measure::kWithin:
         return within(args[0], args[1]);
+      case Measure::kCentre:
+        return centre(args[0]);
+      case Measure::kHalf:
+        return Value::of_register(vector_of(to_vec(args[0].region->half())));
       case Measure::kLatest: {
         if (args[0].kind == Value::kNumber || args[1].kind == Value::kTruth) return args[0];
         const Value gated = reg(Op::kGATED, first, args[1].index);

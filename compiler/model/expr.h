@@ -91,6 +91,7 @@ enum class SetOp : std::uint8_t {
   kRole,   // role: all that fill it
   kParts,  // that a joint moves
   kNames,  // bodies: expressions
+  kWhole,  // bodies: one expression, a body or a region: all bodies of that thing
   kUnion,
   kIntersection,
   kDifference

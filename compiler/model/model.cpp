@@ -11,6 +11,16 @@ bool Phrase::is_spatial() const {
                      [](const QueryOp& op) { return op.kind == QueryOp::kRelation; });
 }
 
+std::array<double, 3> Region::middle() const {
+  if (turned) return turned->middle;
+  return {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+}
+
+std::array<double, 3> Region::half() const {
+  if (turned) return turned->half;
+  return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2, (high[2] - low[2]) / 2};
+}
+
 const Phrase* Object::find_phrase(std::string_view phrase) const {
   for (const Phrase& known : phrases) {
     if (known.name == phrase) return &known;

@@ -85,7 +85,11 @@ struct Turn {
 struct Region {
   std::string name;
   Span span;
-  std::array<double, 3> low{}, high{};  // m
+  std::array<double, 3> low{}, high{};         // m; of a turned one the box around it
+  std::optional<plan::TurnedBox> turned = {};  // where it lies otherwise than along those axes
+  // Along its own axes, m.
+  std::array<double, 3> middle() const;
+  std::array<double, 3> half() const;
 };
 
 // The colour of all of an object, sRGB.

@@ -240,13 +240,16 @@ struct SetNames {  // `{a, b}`
 struct SetName {  // `fingers`
   Name name;
 };
+struct SetWhole {  // `whole target`: all bodies of the thing that it is, or is of
+  Name name;
+};
 struct SetBinary {
   SetOp op;
   SetExprId left, right;
 };
 struct SetExpr {
   Span span;
-  std::variant<SetNames, SetName, SetBinary> node;
+  std::variant<SetNames, SetName, SetWhole, SetBinary> node;
 };
 
 struct TaskSetNames {
@@ -413,6 +416,8 @@ struct RegionStmt {  // `region inside of top_drawer box (..) .. (..)`
   Name name;
   std::optional<Name> of;  // of a fixture a part or itself, of a scene `surface` or `fixture`
   Point low, high;
+  std::optional<Point> at;   // of a turned one: where its box's own origin stands
+  std::optional<Pose> turn;  // behind `at`
   std::optional<Text> text;  // of a fixture's: in instructions
 };
 using ObjectStmt =

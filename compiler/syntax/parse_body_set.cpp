@@ -3,6 +3,15 @@
 
 namespace probe::syntax {
 
+namespace {
+
+bool is_name(std::string_view text) {
+  return !text.empty() &&
+         ((text[0] >= 'a' && text[0] <= 'z') || (text[0] >= 'A' && text[0] <= 'Z'));
+}
+
+}  // namespace
+
 SetExprId Parser::add(SetExpr node, std::initializer_list<SetExprId> children) {
   return add_node(file_.set_exprs, set_expr_heights_, std::move(node), children);
 }
@@ -38,6 +47,11 @@ SetExprId Parser::set_operand() {
     set_role(TokenRole::kTightBrace);
     SetNames out{braced_names()};
     return add(SetExpr{since(begin), std::move(out)}, {});
+  }
+  // A role may be called so; then no name follows.
+  if (at_word("whole") && is_name(text_ahead(1))) {
+    advance();
+    return add(SetExpr{since(begin), SetWhole{name()}}, {});
   }
   const Name only = name();
   return add(SetExpr{since(begin), SetName{only}}, {});

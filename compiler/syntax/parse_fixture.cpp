@@ -74,6 +74,9 @@ RegionStmt Parser::region(bool has_owner) {
   out.low = point();
   expect(TokenKind::kDotDot);
   out.high = point();
+  if (!accept_word("at")) return out;
+  out.at = point();
+  if (at_any_word({"roll", "pitch", "yaw"})) out.turn = pose();
   return out;
 }
 

@@ -36,14 +36,16 @@ TaskOrder order_tasks(const Suite& suite, const std::vector<std::string>& stems)
   std::vector<std::string> sorted = stems;
   std::ranges::sort(sorted);
   TaskOrder order;
-  bool is_listed = false;
+  std::size_t number = 0;
   for (const TaskRow& row : kTasks) {
     if (row.folder != suite.folder) continue;
-    is_listed = true;
     const bool is_there = std::ranges::binary_search(sorted, row.stem);
     (is_there ? order.stems : order.missing).emplace_back(row.stem);
+    if (is_there) order.numbers.push_back(number);
+    ++number;
   }
-  if (!is_listed) {
+  if (number == 0) {
+    for (; number < sorted.size(); ++number) order.numbers.push_back(number);
     order.stems = std::move(sorted);
     return order;
   }

@@ -24,6 +24,7 @@ std::span<const Suite> suites();
 // numbers; `missing` are tasks without a file, `strange` files that are no task of the suite.
 struct TaskOrder {
   std::vector<std::string> stems;
+  std::vector<std::size_t> numbers;  // of the stems: what is missing keeps its own
   std::vector<std::string> missing, strange;
 };
 TaskOrder order_tasks(const Suite& suite, const std::vector<std::string>& stems);

@@ -297,6 +297,21 @@ struct RegionRecord {
 };
 static_assert(sizeof(RegionRecord) == 64);
 
+// A box that lies otherwise than along the axes of a frame, in it.
+struct TurnedBox {
+  std::array<double, 3> middle{}, half{};  // m; half along its own axes
+  std::array<double, 4> rotation{1, 0, 0, 0};
+};
+// What a region is whose `low` and `high` are the box around it.
+struct TurnedRecord {
+  std::uint32_t region = kNone;  // kRegions, ascending
+  std::uint32_t zero = 0;
+  std::array<double, 3> middle{}, half{};  // as of a TurnedBox
+  std::array<double, 4> rotation{1, 0, 0, 0};
+  TurnedBox box() const { return {middle, half, rotation}; }
+};
+static_assert(sizeof(TurnedRecord) == 88);
+
 // Metric code, see isa.def.
 struct Instruction {
   std::uint8_t op = 0;
@@ -416,13 +431,14 @@ static_assert(sizeof(TaskRecord) == 192);
 
 enum class Way : std::uint32_t { kBack = 0, kLoop = 1, kOnce = 2, kRound = 3 };
 
-// A leg of the way that an object takes by itself, from the first step on and until the robot touches
-// it; see moves.h.
+// A leg of the way that an object takes by itself, from the first step on and until the robot
+// touches it; see moves.h.
 struct MoveRecord {
-  std::uint32_t body = 0;      // task-local: an object
-  std::uint32_t way = 0;       // Way, alike for all legs of a body
-  std::array<double, 2> to{};  // m, from where it lies when the episode begins; of kRound the centre
-  double speed = 0;            // m/s, alike for all legs of a body
+  std::uint32_t body = 0;  // task-local: an object
+  std::uint32_t way = 0;   // Way, alike for all legs of a body
+  std::array<double, 2>
+      to{};          // m, from where it lies when the episode begins; of kRound the centre
+  double speed = 0;  // m/s, alike for all legs of a body
 };
 static_assert(sizeof(MoveRecord) == 32);
 
@@ -452,7 +468,14 @@ enum class Skill : std::uint32_t {
 #define PROBE_SKILL(number, name, word, takes) k##name = number,
 #include "runtime/plan/skills.def"
 };
-enum class SkillRelation : std::uint32_t { kNothing = 0, kOn = 1, kIn = 2, kBeside = 3, kTo = 4, kBy = 5 };
+enum class SkillRelation : std::uint32_t {
+  kNothing = 0,
+  kOn = 1,
+  kIn = 2,
+  kBeside = 3,
+  kTo = 4,
+  kBy = 5
+};
 
 // A step of a task's reference solution; see skills.h. In no id.
 struct SkillRecord {

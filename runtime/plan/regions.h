@@ -1,12 +1,24 @@
 // Whose a region is in a task. The references of the plan are verified, or are those of a writer.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "runtime/plan/tables.h"
 
 namespace probe::plan {
+
+// The axes of a turned box: column i is axis i, in the frame that it is said in; whole numbers
+// where it is turned by right angles.
+std::array<std::array<double, 3>, 3> axes_of(const TurnedBox& box);
+
+// The box around a turned one, along the axes of the frame that it is said in. Its bits are those
+// of the plan: who writes a region and who verifies it ask here.
+void box_around(const TurnedBox& box, std::array<double, 3>& low, std::array<double, 3>& high);
+
+// What a region is along its own axes; nothing where these are those of what it belongs to.
+std::optional<TurnedBox> turned_box(const Tables& tables, std::uint32_t region);
 
 // Whether the region is of something that a task has: its scene, one of its objects, or a part of
 // one of its fixtures.

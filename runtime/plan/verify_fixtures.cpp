@@ -7,6 +7,7 @@
 
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/limits.h"
+#include "runtime/plan/regions.h"
 #include "runtime/plan/verify_records.h"
 
 namespace probe::plan {
@@ -91,6 +92,25 @@ Status RecordCheck::check(const RegionRecord& r) const {
       return fail(Rule::kBox, &r.low[i], "a region has a positive extent on each axis");
   }
   return {};
+}
+
+Status RecordCheck::check(const TurnedRecord& r) const {
+  PROBE_TRY(check_index(r.region, t.regions.size(), "REGN"));
+  PROBE_TRY(check_zero(r.zero));
+  PROBE_TRY(check_magnitude(r.middle, Magnitude::kPlace));
+  PROBE_TRY(check_magnitude(r.half, Magnitude::kPlace));
+  PROBE_TRY(check_unit(r.rotation, "the rotation of a region"));
+  for (const double& half : r.half) {
+    if (!(half > 0)) return fail(Rule::kBox, &half, "a region has a positive extent on each axis");
+  }
+  if (&r != t.turned.data() && !((&r)[-1].region < r.region))
+    return fail(Rule::kTurnedBox, &r.region, "turned regions ascend");
+  std::array<double, 3> low{}, high{};
+  box_around(r.box(), low, high);
+  const RegionRecord& region = t.regions[r.region];
+  if (low == region.low && high == region.high) return {};
+  return fail(Rule::kTurnedBox, &r.region,
+              fmt::format("region {} is not the box around its turned one", r.region));
 }
 
 namespace {

@@ -67,6 +67,7 @@ class RecordCheck : FieldCheck {
   Status check(const FixtureJointRecord& joint) const;
   Status check(const PartRecord& part) const;
   Status check(const RegionRecord& region) const;
+  Status check(const TurnedRecord& turned) const;
   Status check(const ViewRecord& view) const;
   Status check(const FamilyRecord& family) const;
   Status check(const QuestionRecord& question) const;

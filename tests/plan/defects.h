@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runtime/plan/ids.h"
+#include "runtime/plan/regions.h"
 #include "runtime/plan/verify.h"
 #include "tests/runtime/plan/small_plan.h"
 
@@ -259,13 +260,24 @@ inline void give_cover(Records& r, Writer& w, std::uint32_t what) {
   r.covers.push_back({what, add_asset(w, "textures/wood.png", AssetKind::kPhoto), 0.1});
 }
 
-// Of the first task: its source put onto its target, `count` times over the tasks.
+// A region of the first object, turned by 90 degrees about z.
+inline void give_turned(Records& r, Writer& w) {
+  const TurnedBox box{{0.1, 0, 0}, {0.1, 0.2, 0.3}, {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}};
+  RegionRecord region{
+      w.text("pear.inside"), static_cast<std::uint32_t>(BodyKind::kObject), 0, {}, {}};
+  box_around(box, region.low, region.high);
+  const auto index = static_cast<std::uint32_t>(r.regions.size());
+  r.turned.push_back({index, 0, box.middle, box.half, box.rotation});
+  r.regions.push_back(region);
+}
+
 // Its first object goes 10 cm along x and back.
 inline void give_move(Records& r) {
   r.moves.push_back({0, 0, {0.1, 0}, 0.05});
   r.tasks[0].moves = {0, 1};
 }
 
+// Of the first task: its source put onto its target, `count` times over the tasks.
 inline void give_skills(Records& r, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) {
     SkillRecord skill;
@@ -378,6 +390,14 @@ inline std::vector<Defect> task_defects() {
          give_move(r), r.moves.push_back(r.moves[0]), r.moves[1].speed = 0.1;
          r.moves[1].to = {0.2, 0}, r.tasks[0].moves.count = 2;
        }},
+      {"TURN", "has a positive extent",
+       [](Records& r, Writer& w) { give_turned(r, w), r.turned[0].half[1] = 0; }},
+      {"TURN", "the rotation of a region",
+       [](Records& r, Writer& w) { give_turned(r, w), r.turned[0].rotation[1] = 1; }},
+      {"TURN", "is not the box around",
+       [](Records& r, Writer& w) { give_turned(r, w), r.regions.back().high[0] += 0.01; }},
+      {"TURN", "turned regions ascend",
+       [](Records& r, Writer& w) { give_turned(r, w), r.turned.push_back(r.turned[0]); }},
       {"TASK", "idles for at most", [](Records& r, Writer&) { r.tasks[0].idle = 1001; }},
       {"METR", "at most one metric of a program ends",
        [](Records& r, Writer&) { r.metrics[0].readout = r.metrics[2].readout = 9; }},

@@ -61,8 +61,9 @@ Audited audit_text(const std::string& text) {
   const fs::path folder = fs::temp_directory_path() / ("probe_audit_" + std::to_string(getpid()));
   fs::create_directories(folder);
   for (const auto& entry : fs::directory_iterator(VLAPROBE_SOURCE_DIR "/suite"))
-    fs::copy_file(entry.path(), folder / entry.path().filename(),
-                  fs::copy_options::overwrite_existing);
+    if (entry.is_regular_file())
+      fs::copy_file(entry.path(), folder / entry.path().filename(),
+                    fs::copy_options::overwrite_existing);
   std::ofstream(folder / "own.probe") << "use \"intact_clean.probe\"\n" << text;
   Audited audited = audit_file((folder / "own.probe").string());
   fs::remove_all(folder);

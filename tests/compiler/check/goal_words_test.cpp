@@ -213,6 +213,13 @@ TEST_CASE("between two is measured to both") {
   CHECK(said_of_two("at end over(source, target)",
                     "put {the source}, not {the helper}, between yourself and {the target}") ==
         "");
+  // Which thing is picked up, not where it is put.
+  CHECK(said_of_two("at end over(source, target)",
+                    "pick up {the source} between {the target} and {the helper} and place it on "
+                    "{the target}") == "");
+  CHECK(said_of_two("at end over(source, target)",
+                    "pick up {the source} and place it between {the target} and {the helper}") !=
+        "");
 }
 
 TEST_CASE("a side that is said is one that success can tell") {

@@ -117,7 +117,14 @@ TEST_CASE("heights keep things apart that stand over one another") {
   const std::string within =
       "start,object,x_m,y_m,z_m\n0,source,-0.16,0,0.9\n0,target,-0.16,0,0.9\n";
   CHECK(said(over, kTask).find("P0501") == std::string::npos);
-  CHECK(said(within, kTask).find("P0501") != std::string::npos);
+  CHECK(said(within, kTask).find("warning[P0501]") != std::string::npos);
+  CHECK(said(within, std::string(kLayout) +
+                         "@allow(overlap, \"recorded so\")\n"
+                         "task t like on_table { layout given; source carrot; target plate }\n")
+            .empty());
+  // Without heights they would be dropped into one another.
+  CHECK(said("start,object,x_m,y_m\n0,source,-0.16,0\n0,target,-0.16,0\n", kTask)
+            .find("error[P0501]") != std::string::npos);
 }
 
 TEST_CASE("a mistake in a table is told at its line and cell") {

@@ -46,8 +46,9 @@ void check_becomes(const std::string& text, const std::string& wanted) {
 std::vector<std::string> corpus() {
   std::vector<std::string> texts;
   const fs::path root(VLAPROBE_SOURCE_DIR);
-  for (const fs::path& folder : {root / "suite", root / "examples", root / "dsl/std",
-                                 root / "tests/golden", root / "../shared/design/examples"}) {
+  for (const fs::path& folder :
+       {root / "suite", root / "suite/libero", root / "examples", root / "dsl/std",
+        root / "tests/golden", root / "../shared/design/examples"}) {
     if (!fs::is_directory(folder)) continue;
     for (const auto& entry : fs::directory_iterator(folder)) {
       if (entry.path().extension() == ".probe") texts.push_back(read(entry.path()));
@@ -150,7 +151,8 @@ TEST_CASE("the programs at hand are stable under formatting") {
 
 TEST_CASE("the suite, the examples and the library stand in canonical layout") {
   const fs::path root(VLAPROBE_SOURCE_DIR);
-  for (const fs::path& folder : {root / "suite", root / "examples", root / "dsl/std"}) {
+  for (const fs::path& folder :
+       {root / "suite", root / "suite/libero", root / "examples", root / "dsl/std"}) {
     for (const auto& entry : fs::directory_iterator(folder)) {
       if (entry.path().extension() != ".probe") continue;
       const std::string text = read(entry.path());

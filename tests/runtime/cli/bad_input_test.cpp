@@ -17,6 +17,7 @@ namespace {
 void copy_suite(const Sandbox& box, const std::string& file, const std::string& from,
                 const std::string& to) {
   for (const auto& entry : fs::directory_iterator(VLAPROBE_SOURCE_DIR "/suite")) {
+    if (!entry.is_regular_file()) continue;
     std::string text = read_file(entry.path());
     if (entry.path().filename() == file) {
       const std::size_t at = text.find(from);

@@ -36,6 +36,10 @@ TEST_CASE("suites have their tasks in the published order") {
     there.front() = "ask_for_the_moon";
     const TaskOrder other = order_tasks(suite, there);
     CHECK(other.missing.size() == 1);
+    // The others keep their numbers.
+    REQUIRE(other.numbers.size() == suite.tasks - 1);
+    for (std::size_t i = 0; i < other.stems.size(); ++i)
+      CHECK(none.missing[other.numbers[i]] == other.stems[i]);
     CHECK(other.strange == std::vector<std::string>{"ask_for_the_moon"});
   }
 }
