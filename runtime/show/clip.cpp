@@ -296,6 +296,8 @@ Result<std::unique_ptr<ClipJoiner>> ClipJoiner::create(const std::string& path, 
   return std::unique_ptr<ClipJoiner>(std::move(joiner));
 }
 
+std::string video_library() { return "libavcodec " + std::to_string(avcodec_version()); }
+
 Result<std::unique_ptr<ClipReader>> ClipReader::create(const std::string& path) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong with a file is told by its failure
   auto reader = std::make_unique<DecodedClip>(path);

@@ -55,6 +55,9 @@ class ClipJoiner {
   virtual Status finish() = 0;
 };
 
+// Name and version of what encodes, as it is loaded.
+std::string video_library();
+
 // What a video file says of its first picture stream, for checks. Fails with kVideo.
 struct VideoFacts {
   std::string codec;  // "h264"

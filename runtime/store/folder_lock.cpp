@@ -1,11 +1,16 @@
 #include "runtime/store/folder_lock.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <sstream>
 
 namespace probe::store {
 namespace {
@@ -45,6 +50,22 @@ Result<FolderLock> FolderLock::take(const std::string& dir, LockCall call) {
   } while (error == EINTR);
   if (error != 0) return Failure{Fault::kStore, reason(error), dir};
   return lock;
+}
+
+// "1: FLOCK  ADVISORY  WRITE 4711 fd:01:123456 0 EOF"
+bool FolderLock::is_taken(const std::string& dir) {
+  struct stat file {};
+  if (::stat((dir + "/lock").c_str(), &file) != 0) return false;
+  const std::string wanted = fmt::format("{:02x}:{:02x}:{}", major(file.st_dev), minor(file.st_dev),
+                                         static_cast<std::uint64_t>(file.st_ino));
+  std::ifstream locks("/proc/locks");
+  std::string number, kind, advisory, access, process, place;
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    words >> number >> kind >> advisory >> access >> process >> place;
+    if (kind == "FLOCK" && place == wanted) return true;
+  }
+  return false;
 }
 
 FolderLock::~FolderLock() {

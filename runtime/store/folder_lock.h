@@ -18,6 +18,9 @@ class FolderLock {
   // none, or the folder cannot be written. `call`: the system's, unless a test has its own.
   static Result<FolderLock> take(const std::string& dir, LockCall call = nullptr);
   ~FolderLock();
+  // Whether a process of this machine has it now, as /proc/locks says; nobody is kept from taking
+  // it.
+  static bool is_taken(const std::string& dir);
   FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
   FolderLock& operator=(FolderLock&&) = delete;
 

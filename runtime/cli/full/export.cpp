@@ -22,7 +22,7 @@ struct ExportArguments {
   std::vector<std::string> runs;
   std::string out, format, tasks = "*", size, only, check;
   std::optional<int> wordings, fps;
-  bool numbers_only = false;
+  bool no_redraw = false;
   dataset::DatasetOptions dataset;
 };
 
@@ -84,6 +84,8 @@ int export_dataset(const ExportArguments& arguments, dataset::Format format) {
     return report(
         {Fault::kUsage, "takes words from a table, which --rephrase names", "--wordings"});
   options.wordings = arguments.wordings.value_or(options.wordings);
+  if (arguments.fps && (*arguments.fps < 1 || *arguments.fps > 1000))
+    return report({Fault::kUsage, "1 to 1000 frames a second", "--fps"});
   options.fps = arguments.fps.value_or(options.fps);
   if (auto sized = read_size(arguments.size, options); !sized) return report(sized.failure());
   const auto begun = std::chrono::steady_clock::now();
@@ -100,6 +102,9 @@ int export_dataset(const ExportArguments& arguments, dataset::Format format) {
   line.clear();
   if (!done) return report(done.failure());
   for (const std::string& sentence : done->left_out) say("left out: {}\n", sentence);
+  if (done->kept > 0)
+    say("{} of {} demonstrations were drawn by the export before, which did not end\n", done->kept,
+        done->demonstrations);
   const double seconds = seconds_since(begun);
   say("{}: {} episodes of {} demonstrations, {} frames, {:.0f} a second\n", arguments.out,
       done->episodes, done->demonstrations, done->frames,
@@ -109,11 +114,16 @@ int export_dataset(const ExportArguments& arguments, dataset::Format format) {
 
 int check_dataset(const ExportArguments& arguments) {
   const auto checked = dataset::check_dataset(
-      arguments.check, {arguments.runs, arguments.dataset.assets, !arguments.numbers_only});
+      arguments.check, {arguments.runs, arguments.dataset.assets, !arguments.no_redraw});
   if (!checked) return report(checked.failure());
   if (say_refused(checked->problems) != kFine) return kOutside;
-  put("{}: {} episodes of {} demonstrations, {} frames are as their traces\n", arguments.check,
-      checked->episodes, checked->demonstrations, checked->frames);
+  const std::string unseen =
+      checked->not_redrawn == 0
+          ? ""
+          : fmt::format(", but for the pictures of {}, which were not drawn again",
+                        checked->not_redrawn);
+  put("{}: {} episodes of {} demonstrations, {} frames are as their traces{}\n", arguments.check,
+      checked->episodes, checked->demonstrations, checked->frames, unseen);
   return kFine;
 }
 
@@ -123,7 +133,7 @@ int export_verb(const ExportArguments& arguments) {
     return report(
         {Fault::kUsage, "reads a dataset and writes none: without -o and --format", "--check"});
   }
-  if (arguments.numbers_only) return report({Fault::kUsage, "is of --check", "--numbers-only"});
+  if (arguments.no_redraw) return report({Fault::kUsage, "is of --check", "--no-redraw"});
   if (arguments.runs.empty()) return report({Fault::kUsage, "which run is exported?", "RUN"});
   if (arguments.out.empty()) return report({Fault::kUsage, "where to write to?", "-o"});
   if (auto spared = assets::check_output(arguments.out, arguments.runs); !spared)
@@ -154,7 +164,9 @@ void add_export(Verb app, int& exit) {
       .one_of({"success"});
   verb.add_option("--size", arguments->size,
                   "WIDTHxHEIGHT of a dataset's pictures (default: as the policy saw them)");
-  verb.add_option("--camera", options.cameras, "of a task's cameras this one; several times: these")
+  verb.add_option(
+          "--camera", options.cameras,
+          "of a task's cameras this one; NAME=A,B: A or B, called NAME; several times: these")
       .one_each();
   verb.add_option("--rephrase", options.rephrase,
                   "X.jsonl of `vlaprobe rephrase`: tell in its words, split train");
@@ -166,7 +178,7 @@ void add_export(Verb app, int& exit) {
       .between(1, 1024);
   verb.add_option("--check", arguments->check,
                   "DIR: hold this dataset against its traces (RUN: where its runs are now)");
-  verb.add_flag("--numbers-only", arguments->numbers_only,
+  verb.add_flag("--no-redraw", arguments->no_redraw,
                 "of --check: leaves out pictures that have to be drawn again to be compared");
   verb.add_option("--assets", options.assets, "");
   verb.callback([arguments, &exit] { exit = export_verb(*arguments); });

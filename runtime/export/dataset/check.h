@@ -11,6 +11,7 @@ namespace probe::dataset {
 
 struct CheckReport {
   std::int64_t demonstrations = 0, episodes = 0, frames = 0;
+  std::int64_t not_redrawn = 0;  // of the frames: pictures that nothing was held against
   // A sentence each, with the place: what is not as the format or the traces have it.
   std::vector<std::string> problems;
 };

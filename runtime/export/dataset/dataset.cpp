@@ -11,6 +11,7 @@
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
+#include "runtime/export/dataset/finished_films.h"
 #include "runtime/export/dataset/in_order.h"
 #include "runtime/export/dataset/layout.h"
 #include "runtime/export/dataset/lerobot.h"
@@ -27,7 +28,9 @@
 #include "runtime/robot/rotation.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/workers.h"
+#include "runtime/show/clip.h"
 #include "runtime/store/episode_key.h"
+#include "runtime/store/fingerprint.h"
 #include "runtime/store/proof.h"
 
 namespace probe::dataset {
@@ -52,17 +55,20 @@ struct Made {
   Demonstration demonstration;
   std::unique_ptr<Film> film;
   std::string refused;
+  bool is_kept = false;  // by an export that was killed
 };
 
 // One thread's.
 class Maker {
  public:
   Maker(const Source& source, std::shared_ptr<const stage::SharedAssets> assets, const Shape& shape,
-        const Layout& layout, const Wordings* wordings, const DatasetOptions& options)
+        const Layout& layout, const FinishedFilms& finished, const Wordings* wordings,
+        const DatasetOptions& options)
       : source_(source),
         repeater_(source.plan, std::move(assets)),
         shape_(shape),
         layout_(layout),
+        finished_(finished),
         wordings_(wordings),
         options_(options) {}
 
@@ -98,12 +104,22 @@ class Maker {
           {row.task, trace->header.prompt, to_hex(plan::starts_hash(source_.plan, task))},
           options_.wordings, row.trace_sha256);
     }
+    if (auto kept = finished_.find(row.trace_sha256, trace->steps.size())) {
+      demonstration.steps = std::move(kept->steps);
+      made.film = std::move(kept->film);
+      made.is_kept = true;
+      return made;
+    }
+    Finished finished;
     PROBE_ASSIGN(const auto film, layout_.film(trace->steps.size()));
     PROBE_TRY(repeater_.repeat(*trace, [&](auto frames, const auto& observation, std::size_t at) {
-      demonstration.steps.push_back(step_of(observation, trace->steps[at].action));
+      finished.steps.push_back(step_of(observation, trace->steps[at].action));
       return in_shape(shape_, frames, [&](auto pictures) { return film->add(pictures); });
     }));
-    PROBE_ASSIGN(made.film, film->finish());
+    PROBE_ASSIGN(finished.film, film->finish());
+    PROBE_TRY(finished_.keep(row.trace_sha256, finished));
+    demonstration.steps = std::move(finished.steps);
+    made.film = std::move(finished.film);
     return made;
   }
 
@@ -122,6 +138,7 @@ class Maker {
   Repeater repeater_;
   const Shape& shape_;
   const Layout& layout_;
+  const FinishedFilms& finished_;
   const Wordings* wordings_;
   const DatasetOptions& options_;
 };
@@ -161,6 +178,7 @@ class Writing {
       PROBE_TRY(layout_.add(made.demonstration, std::move(made.film)));
       PROBE_TRY(provenance_.add(made.demonstration));
     }
+    if (made.is_kept) ++report_.kept;
     ++done_;
     if (options_.progress) options_.progress(done_, total_);
     return {};
@@ -185,14 +203,15 @@ Result<Made> make_guarded(Maker& maker, const store::ResultRow& row) {
 }
 
 Status write_run(const Source& source, const Shape& shape, const Layout& layout,
-                 const Wordings* wordings, const DatasetOptions& options, const std::string& root,
-                 Writing& writing) {
+                 const FinishedFilms& finished, const Wordings* wordings,
+                 const DatasetOptions& options, const std::string& root, Writing& writing) {
   if (source.rows.empty()) return {};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(source.plan, root, source.tasks));
   const std::size_t jobs = static_cast<std::size_t>(std::max(options.jobs, 1));
   InOrder<Made> order(jobs + kAhead, [&](Made made) { return writing.take(std::move(made)); });
   return run::run_jobs(source.rows.size(), options.jobs, [&]() -> Result<run::Worker> {
-    const auto maker = std::make_shared<Maker>(source, assets, shape, layout, wordings, options);
+    const auto maker =
+        std::make_shared<Maker>(source, assets, shape, layout, finished, wordings, options);
     return run::Worker([&, maker](std::size_t index) -> Status {
       if (!order.wait_for(index)) return {};
       auto made = make_guarded(*maker, source.rows[index]);
@@ -201,6 +220,16 @@ Status write_run(const Source& source, const Shape& shape, const Layout& layout,
       return made.failure();
     });
   });
+}
+
+// What steps and films of finished demonstrations depend on beside their trace: the format, the
+// cameras and their sizes, the rate of videos, and the program with its libraries.
+std::string making(Format format, const Shape& shape) {
+  std::string text = fmt::format("1 {} {}", static_cast<int>(format), shape.fps);
+  for (const CameraShape& camera : shape.cameras)
+    text += fmt::format(" {} {} {} {}", camera.name, camera.width, camera.height,
+                        fmt::join(camera.views, ","));
+  return text + " " + store::to_json(store::take_fingerprint({})) + " " + show::video_library();
 }
 
 // What has no other words in the table keeps its own, and that is told.
@@ -263,13 +292,14 @@ Result<DatasetReport> export_dataset(const std::vector<std::string>& runs, const
   }
   PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
 
-  PROBE_ASSIGN(PartialFolder folder, PartialFolder::create(out));
+  PROBE_ASSIGN(PartialFolder folder, PartialFolder::create(out, making(format, shape)));
   PROBE_ASSIGN(const auto layout, open_layout(format, folder.path(), shape, options));
+  const FinishedFilms finished(folder.finished(), *layout);
   PROBE_ASSIGN(auto provenance, Provenance::create(folder.path()));
   Writing writing(*layout, *provenance, options, total, report);
   for (const Source& source : sources) {
-    PROBE_TRY(
-        write_run(source, shape, *layout, wordings ? &*wordings : nullptr, options, root, writing));
+    PROBE_TRY(write_run(source, shape, *layout, finished, wordings ? &*wordings : nullptr, options,
+                        root, writing));
   }
   PROBE_ASSIGN(const Contents contents, layout->finish());
   if (contents.episodes == 0)

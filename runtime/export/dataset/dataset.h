@@ -35,16 +35,18 @@ struct DatasetOptions {
 
 struct DatasetReport {
   std::int64_t demonstrations = 0, episodes = 0, frames = 0;
+  std::int64_t kept = 0;              // of the demonstrations: drawn by an export that was killed
   std::vector<std::string> left_out;  // a sentence each: what is not in it, and why
   std::vector<std::string> refused;   // of these, what the traces do not bear
 };
 
 enum class Format { kLerobot, kRobomimic, kRlds };
 
-// Writes the folder `out`, whole or not at all: it is made as OUT.partial, which a later call
-// begins anew. Fails with kUsage where runs do not go into one dataset or `out` is there, with
-// kTrace naming episode and step when a picture is not the one that the policy saw, and with kIo or
-// kVideo naming the file that cannot be written.
+// Writes the folder `out`, whole or not at all: it is made as OUT.partial; a later call that
+// makes the same goes on with the demonstrations that a killed one had finished. Fails with kUsage
+// where runs do not go into one dataset or `out` is there, with kTrace naming episode and step when
+// a picture is not the one that the policy saw, and with kIo or kVideo naming the file that cannot
+// be written.
 Result<DatasetReport> export_dataset(const std::vector<std::string>& runs, const std::string& out,
                                      Format format, const DatasetOptions& options = {});
 

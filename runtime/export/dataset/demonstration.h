@@ -1,6 +1,7 @@
 // What a dataset's episode is made of, whatever the format.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,11 @@ namespace probe::dataset {
 struct CameraShape {
   std::string name;
   int width = 0, height = 0;  // of the pictures as they are written
+  // What tasks call it, each by one of these; empty: as it is called here.
+  std::vector<std::string> views = {};
+  bool is(std::string_view view) const {
+    return views.empty() ? view == name : std::ranges::find(views, view) != views.end();
+  }
   bool operator==(const CameraShape&) const = default;
 };
 struct Shape {

@@ -96,6 +96,8 @@ std::vector<Sha256> picture_hashes(Findings& findings, const NamedDemonstration&
     } else {
       findings.problem(to_text(drawn.failure()));
     }
+  } else {
+    findings.report.not_redrawn += static_cast<std::int64_t>(named.trace.steps.size());
   }
   return hashes;
 }

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "runtime/base/bytes.h"
 #include "runtime/base/result.h"
 #include "runtime/export/dataset/demonstration.h"
 
@@ -16,6 +17,8 @@ namespace probe::dataset {
 class Film {
  public:
   virtual ~Film() = default;
+  // As Layout::film_of reads it back, so that an export that was killed does not make it again.
+  virtual void write(ByteWriter& bytes) const = 0;
 };
 
 // Takes the pictures of one demonstration, step by step, every camera's in the shape's order.
@@ -38,6 +41,8 @@ class Layout {
   virtual ~Layout() = default;
   // Of any thread, for `steps` steps.
   virtual Result<std::unique_ptr<FilmMaker>> film(std::size_t steps) const = 0;
+  // What Film::write of a film of this layout wrote; null where it is none.
+  virtual std::unique_ptr<Film> film_of(ByteReader& bytes) const = 0;
   // Why the format cannot have it; such a demonstration is left out, and that is told.
   virtual std::optional<std::string> refusal(const Demonstration& /*demonstration*/) const {
     return std::nullopt;

@@ -40,6 +40,42 @@ struct Reel {
 };
 struct Reels final : Film {
   std::vector<Reel> cameras;
+
+  void write(ByteWriter& bytes) const override {
+    for (const auto& [clip, statistics] : cameras) {
+      bytes.text({reinterpret_cast<const char*>(clip.header.data()), clip.header.size()});
+      bytes.u32(static_cast<std::uint32_t>(clip.packets.size()));
+      for (const show::Clip::Packet& packet : clip.packets) {
+        bytes.u8(packet.is_key ? 1 : 0);
+        bytes.text({reinterpret_cast<const char*>(packet.bytes.data()), packet.bytes.size()});
+      }
+      for (const std::vector<double>& values : statistics.values) bytes.reals(values);
+      bytes.u64(static_cast<std::uint64_t>(statistics.count));
+    }
+  }
+  static std::unique_ptr<Film> read(ByteReader& bytes,
+                                    const std::vector<show::ClipFormat>& formats) {
+    const auto some = [&bytes] {
+      const std::string text = bytes.text();
+      return std::vector<std::uint8_t>(text.begin(), text.end());
+    };
+    auto film = std::make_unique<Reels>();
+    for (const show::ClipFormat& format : formats) {
+      Reel reel;
+      reel.clip.format = format;
+      reel.clip.header = some();
+      reel.clip.packets.resize(bytes.count(bytes.u32(), 1 + sizeof(std::uint32_t)));
+      for (show::Clip::Packet& packet : reel.clip.packets) {
+        packet.is_key = bytes.u8() != 0;
+        packet.bytes = some();
+      }
+      for (std::vector<double>& values : reel.statistics.values) values = bytes.reals();
+      reel.statistics.count = static_cast<std::int64_t>(bytes.u64());
+      film->cameras.push_back(std::move(reel));
+    }
+    if (!bytes.ok()) return nullptr;
+    return film;
+  }
 };
 
 class ReelMaker final : public FilmMaker {
@@ -115,6 +151,10 @@ class LerobotLayout final : public Layout {
       encoders.push_back(std::move(encoder));
     }
     return std::unique_ptr<FilmMaker>(std::make_unique<ReelMaker>(std::move(encoders), steps));
+  }
+
+  std::unique_ptr<Film> film_of(ByteReader& bytes) const override {
+    return Reels::read(bytes, formats_);
   }
 
   Status add(const Demonstration& demonstration, std::unique_ptr<Film> film) override {

@@ -125,7 +125,11 @@ class LerobotCheck {
                      where};
     check_rows(named, wording, rows, where);
     const auto stretches = check_episode_row(wording, length, is_first, where);
-    if (is_first && pictures_) pictures_->check(findings_, named, stretches, where);
+    if (!pictures_) {
+      findings_.report.not_redrawn += length;
+    } else if (is_first) {
+      pictures_->check(findings_, named, stretches, where);
+    }
     ++row_;
     return {};
   }

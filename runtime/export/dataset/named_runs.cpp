@@ -60,6 +60,9 @@ std::optional<Shape> shape_of_json(const Json& json) {
       return std::nullopt;
     shape.cameras.push_back(
         {camera.at("name").text(), camera.at("width").get<int>(), camera.at("height").get<int>()});
+    if (!camera.contains("views")) continue;
+    if (!camera.at("views").is_array() || !are_texts(camera.at("views"))) return std::nullopt;
+    shape.cameras.back().views = camera.at("views").get<std::vector<std::string>>();
   }
   return shape;
 }

@@ -4,6 +4,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
+#include "runtime/base/sha256.h"
 
 namespace probe::dataset {
 namespace {
@@ -12,12 +13,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kMark = ".vlaprobe-export";
 constexpr const char* kLock = "lock";  // FolderLock's
+constexpr const char* kFinished = "finished";
 
-Status clear(const std::string& path) {
+Status clear(const std::string& path, bool with_finished) {
   PROBE_ASSIGN(const auto names, list_folder(path));
   std::error_code error;
   for (const std::string& name : names) {
-    if (name == kLock || name == kMark) continue;
+    if (name == kLock || name == kMark || (name == kFinished && !with_finished)) continue;
     fs::remove_all(fs::path(path) / name, error);
     if (error)
       return Failure{Fault::kIo, "cannot be removed: " + error.message(), path + "/" + name};
@@ -27,7 +29,7 @@ Status clear(const std::string& path) {
 
 }  // namespace
 
-Result<PartialFolder> PartialFolder::create(const std::string& out) {
+Result<PartialFolder> PartialFolder::create(const std::string& out, const std::string& making) {
   std::string target = absolute_path(out);
   while (target.size() > 1 && target.ends_with('/')) target.pop_back();
   if (is_there(target) || is_link(target)) {
@@ -49,10 +51,17 @@ Result<PartialFolder> PartialFolder::create(const std::string& out) {
   PROBE_TRY(make_folders(path));
   auto lock = store::FolderLock::take(path);
   if (!lock) return lock.failure();
-  PROBE_TRY(write_file(path + "/" + kMark, {}));
-  PROBE_TRY(clear(path));
-  return PartialFolder(target, path, std::move(*lock));
+  PartialFolder folder(target, path, std::move(*lock));  // from here on a failure removes it
+  const std::string mark = path + "/" + kMark, now = to_hex(sha256(making));
+  const auto before = read_file(mark);
+  const bool goes_on = before.ok() && *before == now;
+  PROBE_TRY(clear(path, !goes_on));
+  if (!goes_on) PROBE_TRY(write_file(mark, std::as_bytes(std::span(now))));
+  PROBE_TRY(make_folders(folder.finished()));
+  return folder;
 }
+
+std::string PartialFolder::finished() const { return path_ + "/" + kFinished; }
 
 PartialFolder::~PartialFolder() {
   if (!lock_ || path_.empty()) return;
@@ -63,6 +72,8 @@ PartialFolder::~PartialFolder() {
 Status PartialFolder::finish() {
   std::error_code error;
   fs::remove(fs::path(path_) / kLock, error);
+  fs::remove_all(fs::path(path_) / kFinished, error);
+  if (error) return {Failure{Fault::kIo, "cannot be removed: " + error.message(), finished()}};
   fs::remove(fs::path(path_) / kMark, error);
   fs::remove(out_, error);  // an empty folder of that name
   fs::rename(path_, out_, error);

@@ -1,5 +1,6 @@
 // A dataset's folder while it is made: OUT.partial, which gets its name when it is whole. What a
-// killed export left is recognised and begun anew; what others put there is never touched.
+// killed export left is recognised: its files are begun anew, of the demonstrations that it had
+// finished one that makes the same goes on with them. What others put there is never touched.
 #pragma once
 
 #include <optional>
@@ -14,12 +15,15 @@ class PartialFolder {
  public:
   // Fails with kUsage when `out` is there and not an empty folder, or OUT.partial is not an
   // export's; with kStore when another export is writing it.
-  static Result<PartialFolder> create(const std::string& out);
+  // `making`: all that finished demonstrations depend on beside their traces; those of another export are
+  // removed.
+  static Result<PartialFolder> create(const std::string& out, const std::string& making);
   PartialFolder(PartialFolder&& other) noexcept = default;
   PartialFolder& operator=(PartialFolder&&) = delete;
   ~PartialFolder();  // removes what was not finished
 
   const std::string& path() const { return path_; }  // where files are written now
+  std::string finished() const;                      // where finished demonstrations are kept
   // Gives the folder its name. Fails with kIo.
   Status finish();
 

@@ -13,7 +13,8 @@ Status in_shape(const Shape& shape, std::span<const stage::CameraFrame> frames,
   std::vector<Picture> pictures;
   for (std::size_t i = 0; i < shape.cameras.size(); ++i) {
     const CameraShape& camera = shape.cameras[i];
-    const auto seen = std::ranges::find(frames, camera.name, &stage::CameraFrame::camera);
+    const auto seen = std::ranges::find_if(
+        frames, [&](const stage::CameraFrame& frame) { return camera.is(frame.camera); });
     if (seen == frames.end())
       return Failure{Fault::kInternal, "a camera is not there any more", camera.name};
     const render::FrameView& frame = seen->frame;

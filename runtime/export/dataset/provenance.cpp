@@ -31,9 +31,11 @@ Json dataset_json(const Provenance::Facts& facts, const Contents& contents) {
   if (!facts.shape.law.empty())
     json["actions"] = {{"law", facts.shape.law}, {"size", facts.shape.action_size}};
   json["cameras"] = Json::array();
-  for (const CameraShape& camera : facts.shape.cameras)
-    json["cameras"].push_back(
-        {{"name", camera.name}, {"width", camera.width}, {"height", camera.height}});
+  for (const CameraShape& camera : facts.shape.cameras) {
+    Json one = {{"name", camera.name}, {"width", camera.width}, {"height", camera.height}};
+    if (!camera.views.empty()) one["views"] = camera.views;
+    json["cameras"].push_back(std::move(one));
+  }
   json["only_success"] = facts.options.only_success;
   json["tasks"] = facts.options.tasks;
   json["rephrase_sha256"] =

@@ -8,6 +8,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
 #include "runtime/base/paths.h"
+#include "runtime/export/dataset/packed_film.h"
 #include "runtime/export/dataset/tfrecord.h"
 #include "runtime/robot/rotation.h"
 #include "runtime/scene/image.h"
@@ -16,13 +17,9 @@
 namespace probe::dataset::rlds {
 namespace {
 
-struct PngFilm final : Film {
-  std::vector<std::vector<std::string>> cameras;  // frame after frame
-};
-
 class PngMaker final : public FilmMaker {
  public:
-  explicit PngMaker(std::size_t cameras) : film_(std::make_unique<PngFilm>()) {
+  explicit PngMaker(std::size_t cameras) : film_(std::make_unique<PackedFilm>()) {
     film_->cameras.resize(cameras);
   }
   Status add(std::span<const Picture> pictures) override {
@@ -39,7 +36,7 @@ class PngMaker final : public FilmMaker {
   }
 
  private:
-  std::unique_ptr<PngFilm> film_;
+  std::unique_ptr<PackedFilm> film_;
 };
 
 // Bridge's: roll, pitch, yaw of the change in place of a rotation vector; gripper 0 closed .. 1
@@ -168,8 +165,12 @@ class RldsLayout final : public Layout {
     return std::unique_ptr<FilmMaker>(std::make_unique<PngMaker>(shape_.cameras.size()));
   }
 
+  std::unique_ptr<Film> film_of(ByteReader& bytes) const override {
+    return PackedFilm::read(bytes, shape_.cameras.size());
+  }
+
   Status add(const Demonstration& demonstration, std::unique_ptr<Film> film) override {
-    const auto& pictures = static_cast<const PngFilm&>(*film);
+    const auto& pictures = static_cast<const PackedFilm&>(*film);
     for (const std::string& wording : demonstration.wordings) {
       const std::string record = example(demonstration, wording, pictures);
       if (!file_ || bytes_in_file_ + record.size() >= most_) PROBE_TRY(begin_shard());
@@ -232,7 +233,7 @@ class RldsLayout final : public Layout {
   }
 
   std::string example(const Demonstration& demonstration, const std::string& wording,
-                      const PngFilm& pictures) const {
+                      const PackedFilm& pictures) const {
     const std::size_t n = demonstration.steps.size();
     std::vector<float> state, joints, action, reward(n, 0.0f);
     // An episode that ran out of time ended nothing.

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "runtime/base/json.h"
+#include "runtime/export/dataset/packed_film.h"
 #include "runtime/export/hdf5_file.h"
 #include "runtime/export/hdf5_handle.h"
 #include "runtime/store/episode_key.h"
@@ -25,23 +26,19 @@ constexpr int kGymType = 2;
 
 using Id = exporting::Hdf5Handle;
 using Sides = std::vector<hsize_t>;
-using Deflated = std::vector<std::uint8_t>;
-
-struct DeflatedFilm final : Film {
-  std::vector<std::vector<Deflated>> cameras;  // frame after frame
-};
 
 class Deflater final : public FilmMaker {
  public:
-  explicit Deflater(std::size_t cameras) : film_(std::make_unique<DeflatedFilm>()) {
+  explicit Deflater(std::size_t cameras) : film_(std::make_unique<PackedFilm>()) {
     film_->cameras.resize(cameras);
   }
   Status add(std::span<const Picture> pictures) override {
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       const auto rgb = pictures[i].rgb;
       uLongf size = compressBound(rgb.size());
-      Deflated bytes(size);
-      if (compress2(bytes.data(), &size, rgb.data(), rgb.size(), kEffort) != Z_OK)
+      std::string bytes(size, '\0');
+      if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, rgb.data(), rgb.size(),
+                    kEffort) != Z_OK)
         return Failure{Fault::kInternal, "a picture cannot be deflated", pictures[i].camera->name};
       bytes.resize(size);
       bytes.shrink_to_fit();
@@ -54,7 +51,7 @@ class Deflater final : public FilmMaker {
   }
 
  private:
-  std::unique_ptr<DeflatedFilm> film_;
+  std::unique_ptr<PackedFilm> film_;
 };
 
 class RobomimicLayout final : public Layout {
@@ -69,6 +66,10 @@ class RobomimicLayout final : public Layout {
     return std::unique_ptr<FilmMaker>(std::make_unique<Deflater>(shape_.cameras.size()));
   }
 
+  std::unique_ptr<Film> film_of(ByteReader& bytes) const override {
+    return PackedFilm::read(bytes, shape_.cameras.size());
+  }
+
   std::optional<std::string> refusal(const Demonstration& demonstration) const override {
     for (std::size_t i = 0; i < demonstration.steps.size(); ++i) {
       for (const double number : demonstration.steps[i].action) {
@@ -81,7 +82,7 @@ class RobomimicLayout final : public Layout {
 
   // The first wording's group has the numbers and pictures; those of the others are the same.
   Status add(const Demonstration& demonstration, std::unique_ptr<Film> film) override {
-    const auto& pictures = static_cast<const DeflatedFilm&>(*film);
+    const auto& pictures = static_cast<const PackedFilm&>(*film);
     const std::string first = "/data/" + name(contents_.episodes);
     for (const std::string& wording : demonstration.wordings) {
       const std::string path = "/data/" + name(contents_.episodes);
@@ -178,7 +179,7 @@ class RobomimicLayout final : public Layout {
     reals(demo, "states", states, {n, shape_.joints.size()});
   }
 
-  void observations(hid_t obs, const Demonstration& demonstration, const DeflatedFilm& film) {
+  void observations(hid_t obs, const Demonstration& demonstration, const PackedFilm& film) {
     const hsize_t n = demonstration.steps.size();
     std::vector<double> state, joints;
     for (const Step& step : demonstration.steps) {
@@ -191,7 +192,7 @@ class RobomimicLayout final : public Layout {
       pictures(obs, shape_.cameras[i], film.cameras[i]);
   }
 
-  void pictures(hid_t obs, const CameraShape& camera, const std::vector<Deflated>& frames) {
+  void pictures(hid_t obs, const CameraShape& camera, const std::vector<std::string>& frames) {
     const Sides sides = {frames.size(), static_cast<hsize_t>(camera.height),
                          static_cast<hsize_t>(camera.width), 3};
     const Sides chunk = {1, sides[1], sides[2], 3};

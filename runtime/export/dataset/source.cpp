@@ -10,6 +10,7 @@
 
 #include "runtime/base/glob.h"
 #include "runtime/store/episode_key.h"
+#include "runtime/store/folder_lock.h"
 #include "runtime/store/not_attempted.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
@@ -33,6 +34,24 @@ std::string counted(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " episode" : " episodes");
 }
 
+// NAME, or NAME=VIEW,VIEW...
+Result<CameraShape> chosen_camera(const std::string& option) {
+  CameraShape camera;
+  const std::size_t sign = option.find('=');
+  camera.name = option.substr(0, sign);
+  for (std::size_t at = sign; at != std::string::npos;) {
+    const std::size_t end = option.find(',', at + 1);
+    camera.views.push_back(option.substr(at + 1, end == std::string::npos ? end : end - at - 1));
+    at = end;
+  }
+  const bool is_blank =
+      camera.name.empty() || std::ranges::find(camera.views, "") != camera.views.end();
+  if (is_blank || camera.name.find_first_of("/. ") != std::string::npos)
+    return Failure{Fault::kUsage, "expected NAME or NAME=VIEW,VIEW, found `" + option + "`",
+                   "--camera"};
+  return camera;
+}
+
 Result<std::vector<CameraShape>> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task,
                                             const DatasetOptions& options) {
   std::vector<CameraShape> all = dataset::cameras_of(plan, task), chosen;
@@ -45,16 +64,28 @@ Result<std::vector<CameraShape>> cameras_of(const plan::Plan& plan, const plan::
     known += (known.empty() ? "`" : ", `") + shape.name + "`";
   }
   if (options.cameras.empty()) return all;
-  for (const std::string& name : options.cameras) {
-    const auto found = std::ranges::find(all, name, &CameraShape::name);
-    if (found == all.end()) {
-      return Failure{
-          Fault::kUsage,
-          fmt::format("task `{}` has no camera `{}`, but {}", plan.text(task.name), name, known),
-          "--camera"};
+  const auto refused = [&](std::string_view what, std::string_view camera) {
+    return Failure{
+        Fault::kUsage,
+        fmt::format("task `{}` {} `{}`, but {}", plan.text(task.name), what, camera, known),
+        "--camera"};
+  };
+  for (const std::string& option : options.cameras) {
+    PROBE_ASSIGN(CameraShape wanted, chosen_camera(option));
+    const auto is_it = [&](const CameraShape& one) { return wanted.is(one.name); };
+    const auto found = std::ranges::find_if(all, is_it);
+    if (found == all.end()) return refused("has no camera", option);
+    if (std::find_if(found + 1, all.end(), is_it) != all.end())
+      return refused("has several of the cameras", option);
+    wanted.width = found->width;
+    wanted.height = found->height;
+    const auto same = std::ranges::find(chosen, wanted.name, &CameraShape::name);
+    if (same == chosen.end()) {
+      chosen.push_back(std::move(wanted));
+    } else if (*same != wanted) {
+      return Failure{Fault::kUsage, "two cameras would be called `" + wanted.name + "`",
+                     "--camera"};
     }
-    if (std::ranges::find(chosen, name, &CameraShape::name) == chosen.end())
-      chosen.push_back(*found);
   }
   return chosen;
 }
@@ -76,8 +107,10 @@ std::string difference(const Shape& a, const Shape& b) {
                           camera.height);
     return text;
   };
-  return fmt::format("one has cameras {}, the other {} (--camera chooses, --size gives one size)",
-                     names(a), names(b));
+  return fmt::format(
+      "one has cameras {}, the other {} (--camera chooses and --camera NAME=A,B calls "
+      "A of one and B of the other NAME; --size gives one size)",
+      names(a), names(b));
 }
 
 Result<Shape> shape_of_task(const plan::Plan& plan, const plan::TaskRecord& task,
@@ -157,7 +190,7 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
   Source source{dir, record.identity.policy, is_pushed(record.identity), std::move(plan), {}, {}};
   std::map<std::string, std::pair<std::size_t, std::string>> invalid;  // by reason: how many, first
-  std::map<std::string, std::size_t> late;  // by reason
+  std::map<std::string, std::size_t> late;                             // by reason
   std::size_t failed = 0, empty = 0, again = 0;
   std::set<std::uint32_t> tasks;
   for (const store::ResultRow& row : rows) {
@@ -180,6 +213,8 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
     }
   }
   source.tasks.assign(tasks.begin(), tasks.end());
+  if (store::FolderLock::is_taken(dir))
+    left_out.push_back(fmt::format("what `{}` does not have yet: it is being written now", dir));
   for (const auto& [why, of] : invalid)
     left_out.push_back(fmt::format("{} of `{}`, {} the first: {}{}", counted(of.first), dir,
                                    of.second,

@@ -60,7 +60,11 @@ bool VideoCheck::go_to(Findings& findings, Film& film, const VideoStretch& stret
   }
   for (; film.reader && film.next < stretch.begin; ++film.next) {
     const auto skipped = film.reader->next();
-    if (!skipped || skipped->empty()) film.reader.reset();
+    if (skipped.ok() && !skipped->empty()) continue;
+    findings.problem(skipped ? stretch.path + ": ends before the demonstration begins"
+                             : to_text(skipped.failure()));
+    film.reader.reset();
+    return false;
   }
   // A stretch that begins before is told where its numbers are checked.
   return film.reader && film.next == stretch.begin;
@@ -81,7 +85,8 @@ void VideoCheck::check(Findings& findings, const NamedDemonstration& named,
           fmt::format("{} frame {} of `{}` in {}", where, step, camera->name, films_[i].path);
       const auto frame = films_[i].reader->next();
       if (!frame || frame->size() != drawn.size()) {
-        findings.problem(frame ? at + ": is not there" : to_text(frame.failure()));
+        findings.problem(frame ? at + ": is not there, nor is what follows"
+                               : to_text(frame.failure()));
         films_[i].reader.reset();
         is_read[i] = false;
         continue;

@@ -1,6 +1,7 @@
 // A run as a LeRobot dataset: what others read in it is what the traces have.
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -277,6 +278,55 @@ TEST_CASE("folders of others are refused, what a killed export left is begun ane
   must_export(made.run, made.out, Format::kLerobot, dataset_options());
   CHECK(!fs::exists(made.out + "/mine.txt"));
   CHECK(!fs::exists(made.out + "/.vlaprobe-export"));
+}
+
+// An export in a process of its own that is killed when so many demonstrations are done.
+void export_and_die(const std::string& run, const std::string& out, Format format,
+                    std::size_t after) {
+  const pid_t child = fork();
+  if (child == 0) {
+    DatasetOptions options = dataset_options();
+    options.progress = [&](std::size_t done, std::size_t) {
+      if (done == after) kill(getpid(), SIGKILL);
+    };
+    (void)export_dataset({run}, out, format, options);
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  REQUIRE(WIFSIGNALED(status));
+}
+
+TEST_CASE("an export that was killed goes on with what it had finished, to the same bytes") {
+  const Exported made;
+  for (const Format format : {Format::kLerobot, Format::kRobomimic, Format::kRlds}) {
+    CAPTURE(static_cast<int>(format));
+    const std::string whole = made.folder / "whole", out = made.out;
+    CHECK(must_export(made.run, whole, format, dataset_options()).kept == 0);
+    export_and_die(made.run, out, format, 2);
+    CHECK(!fs::exists(out));
+    CHECK(must_export(made.run, out, format, dataset_options()).kept >= 2);
+    CHECK(all_files(out) == all_files(whole));
+    CHECK(check_dataset(out)->problems.empty());
+    fs::remove_all(out);
+    // One that makes something else does not, nor one that finds them damaged.
+    export_and_die(made.run, out, format, 2);
+    DatasetOptions smaller = dataset_options();
+    smaller.width = smaller.height = 32;
+    CHECK(must_export(made.run, out, format, smaller).kept == 0);
+    fs::remove_all(out);
+    export_and_die(made.run, out, format, 2);
+    std::size_t damaged = 0;
+    for (const auto& entry : fs::directory_iterator(out + ".partial/finished")) {
+      fs::resize_file(entry.path(), fs::file_size(entry.path()) - 1);
+      ++damaged;
+    }
+    CHECK(damaged >= 2);
+    CHECK(must_export(made.run, out, format, dataset_options()).kept == 0);
+    CHECK(all_files(out) == all_files(whole));
+    fs::remove_all(out);
+    fs::remove_all(whole);
+  }
 }
 
 TEST_CASE("a disk that is full is told by the file that it has no room for") {

@@ -296,9 +296,11 @@ TEST_CASE("resized pictures are held against what the policy saw, drawn and resi
     if (i == 1) std::swap(files[1], files[5]);
   });
   check_told(folder / "set", "step 1: its pictures are not those that the policy saw");
-  CheckOptions numbers_only;
-  numbers_only.redraws = false;
-  CHECK(check_dataset(folder / "set", numbers_only)->problems.empty());
+  CheckOptions copies_only;
+  copies_only.redraws = false;
+  CHECK(check_dataset(folder / "set", copies_only)->problems.empty());
+  CHECK(check_dataset(folder / "set", copies_only)->not_redrawn == kEpisodes * kHorizon);
+  CHECK(check_dataset(folder / "set")->not_redrawn == 0);
 }
 
 TEST_CASE("an RLDS dataset that was changed does not pass its check") {
