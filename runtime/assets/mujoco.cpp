@@ -59,7 +59,7 @@ class Conversion {
     if (asset_.kind == MujocoKind::kFixture && thing_.is_free)
       asset_.notes.push_back(options_.file + ": its free joint is left out: a fixture stands where it is put");
     for (const MujocoLink& link : thing_.links) {
-      PROBE_ASSIGN(std::vector<FeltPart> parts, felt_parts(model_, link, meshes_, asset_.notes));
+      PROBE_ASSIGN(std::vector<FeltPart> parts, felt_parts(model_, link, meshes_, asset_.kind == MujocoKind::kObject, asset_.notes));
       felt_.push_back(std::move(parts));
     }
     PROBE_TRY(measure());
@@ -288,7 +288,31 @@ class Conversion {
     if (seen.glb.empty()) return Failure{Fault::kAsset, "nothing of it can be seen", options_.file};
     add_file("scenes/" + folder_ + "/visual.glb", std::move(seen.glb));
     for (const auto& placed : link.sites) asset_.sites.push_back(site_of(*placed.it, placed.pose, ""));
+    for (const auto& placed : link.geoms) add_surface(*placed.it, placed.pose);
     return {};
+  }
+
+  void add_surface(const mjcf::Geom& geom, const Pose& pose) {
+    if (!geom.can_touch()) return;
+    const bool plane = geom.shape == mjcf::Shape::kPlane;
+    if (!plane && geom.shape != mjcf::Shape::kBox) {
+      note(geom.at, "is felt and is no box and no plane: it is only seen");
+      return;
+    }
+    MujocoSurface made;
+    for (const mjcf::Body& body : model_.bodies) {
+      for (const mjcf::Geom& other : body.geoms) {
+        if (&other == &geom) made.body = body.name;
+      }
+    }
+    made.name = geom.name;
+    made.pose = pose;
+    made.half = plane ? Vec3(geom.size[0], geom.size[1], 0) : geom.size;
+    made.friction = geom.friction[0];
+    made.top = pose.position.z();
+    const Mat3 turn = pose.rotation.toRotationMatrix();
+    if (!plane) made.top += turn.row(2).cwiseAbs().dot(made.half.transpose());
+    asset_.surfaces.push_back(std::move(made));
   }
 
   const MujocoOptions& options_;
@@ -302,10 +326,33 @@ class Conversion {
   std::string folder_, called_;
 };
 
+// Bodies and geoms of the name are changed; a visual geom and a felt one have names of their own.
+Status apply(const MujocoChange& change, const std::string& file, Model& model) {
+  std::size_t found = 0;
+  for (mjcf::Body& body : model.bodies) {
+    if (body.name == change.name && !change.size && !change.friction) {
+      ++found;
+      if (change.position) body.pose.position = *change.position;
+    }
+    for (mjcf::Geom& geom : body.geoms) {
+      if (geom.name != change.name) continue;
+      ++found;
+      if (change.position) geom.pose.position = *change.position;
+      if (change.size) geom.size = *change.size;
+      if (change.friction) geom.friction[0] = *change.friction;
+    }
+  }
+  if (found == 1 && !change.name.empty()) return {};
+  return Failure{Fault::kAsset,
+                 fmt::format("{} bodies and geoms are called `{}`, which is to be changed", found, change.name),
+                 file};
+}
+
 }  // namespace
 
 Result<MujocoAsset> convert_mujoco(const MujocoOptions& options) {
-  PROBE_ASSIGN(const Model model, mjcf::read_model(options.file, {options.merged_into}));
+  PROBE_ASSIGN(Model model, mjcf::read_model(options.file, {options.merged_into}));
+  for (const MujocoChange& change : options.changes) PROBE_TRY(apply(change, options.file, model));
   scene::MeshLimits limits;
   // Files of a benchmark's objects lie beside those of its scenes: two folders up.
   const fs::path folder = fs::absolute(options.file).lexically_normal().parent_path();

@@ -2,6 +2,7 @@
 // doors and knobs a fixture, a room a backdrop. Files in memory and the text of a declaration; nothing is written here.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,14 @@ enum class MujocoKind {
   kBackdrop,  // what only is seen: everything that stands in the world and moves on no joint
 };
 
+// What code says of a body or a geom after the file is read, as robosuite's arenas do of their tables.
+struct MujocoChange {
+  std::string name;              // of the body or the geom
+  std::optional<Vec3> position;  // m, in its parent's or its body's frame
+  std::optional<Vec3> size;      // half sizes, of a geom
+  std::optional<double> friction;  // sliding, of a geom
+};
+
 struct MujocoOptions {
   std::string file;         // the MJCF
   std::string name;         // identifier to declare it by; empty: from the file's stem
@@ -24,6 +33,7 @@ struct MujocoOptions {
   std::string called;       // what instructions call it; empty: `name` with blanks
   std::string merged_into;  // the MJCF that the model is made a part of, robosuite's base.xml; or empty (mjcf/read.h)
   MujocoKind kind = MujocoKind::kEither;
+  std::vector<MujocoChange> changes;
 };
 
 struct MujocoFile {
@@ -48,6 +58,15 @@ struct MujocoJoint {
   double lower = 0, upper = 0; // m or rad
 };
 
+// A box or a plane that stands in a room and is felt.
+struct MujocoSurface {
+  std::string body, name;    // names in the file; may be empty
+  Pose pose;                 // m, in the world
+  Vec3 half = Vec3::Zero();  // of a plane x, y, 0; 0: without end
+  double friction = 1;       // sliding
+  double top = 0;            // m, the height of its highest corner; of a plane its own
+};
+
 struct MujocoAsset {
   MujocoKind kind = MujocoKind::kObject;  // never kEither
   std::string name;
@@ -60,6 +79,7 @@ struct MujocoAsset {
   Vec3 center_of_mass = Vec3::Zero();  // m, in the thing's frame, joints at 0
   double friction = 1;                 // sliding, of what is felt
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // m, bounds of what is felt, in the thing's frame, joints at 0
+  std::vector<MujocoSurface> surfaces; // of a backdrop
   std::vector<std::string> notes;      // what is odd, missing or not read, each with file and line where it has one
 };
 
@@ -67,7 +87,7 @@ struct MujocoAsset {
 // form), that one. Its own place in the file does not count: its frame is the asset's frame, so poses of a simulation's
 // state are poses of ours. Bodies without joints are one with what carries them. Fails (kAsset, where = FILE:LINE) as
 // mjcf::read_model does, on a mesh or texture that is missing or no mesh or picture, and on what cannot be made: two
-// joints of one body, a ball joint, a hinge that moves an object's part, nothing that is felt.
+// joints of one body, a change of what is not there, a ball joint, a hinge that moves an object's part, nothing that is felt.
 Result<MujocoAsset> convert_mujoco(const MujocoOptions& options);
 
 }  // namespace probe::assets

@@ -129,7 +129,8 @@ bool is_same(const FeltPart& a, const FeltPart& b) {
 }  // namespace
 
 Result<std::vector<FeltPart>> felt_parts(const mjcf::Model& model, const MujocoLink& link,
-                                         MujocoMeshes& meshes, std::vector<std::string>& notes) {
+                                         MujocoMeshes& meshes, bool keep_doubles,
+                                         std::vector<std::string>& notes) {
   std::vector<FeltPart> parts;
   std::map<std::string, int> rounded;
   std::size_t twice = 0;
@@ -172,7 +173,7 @@ Result<std::vector<FeltPart>> felt_parts(const mjcf::Model& model, const MujocoL
     }
     if (std::ranges::any_of(parts, [&](const FeltPart& known) { return is_same(known, part); })) {
       ++twice;
-      continue;
+      if (!keep_doubles) continue;
     }
     if (part.kind != "box" && part.kind != "mesh") ++rounded[part.kind];
     parts.push_back(std::move(part));
@@ -182,8 +183,9 @@ Result<std::vector<FeltPart>> felt_parts(const mjcf::Model& model, const MujocoL
     notes.push_back(fmt::format("{}{} {}{} felt as polyhedra whose corners lie on them", at, count,
                                 kind, count == 1 ? " is" : "s are"));
   if (twice > 0)
-    notes.push_back(fmt::format("{}{} geom{} felt once where another of the same place and size is",
-                                at, twice, twice == 1 ? " is" : "s are"));
+    notes.push_back(fmt::format("{}{} geom{} where another of the same size {}: {}", at, twice,
+                                twice == 1 ? " stands" : "s stand", twice == 1 ? "does" : "do",
+                                keep_doubles ? "all are felt, as all weigh" : "felt once"));
   return parts;
 }
 

@@ -22,11 +22,13 @@ struct FeltPart {
   std::string kind;        // what it was: "capsule"
 };
 
-// The parts of a link's geoms that can be touched, each once: boxes by their corners, a cylinder as a prism of 32 sides,
+// The parts of a link's geoms that can be touched: boxes by their corners, a cylinder as a prism of 32 sides,
 // capsules, balls and ellipsoids as polyhedra of 62 corners on their surface, a mesh as its convex hull of at most 64
-// corners. `notes` gets what that changes.
+// corners. `notes` gets what that changes. Of two at one place and of one size both stay where parts weigh by what they fill
+// (`keep_doubles`): MuJoCo counts both.
 Result<std::vector<FeltPart>> felt_parts(const mjcf::Model& model, const MujocoLink& link,
-                                         MujocoMeshes& meshes, std::vector<std::string>& notes);
+                                         MujocoMeshes& meshes, bool keep_doubles,
+                                         std::vector<std::string>& notes);
 
 // A Wavefront file of them, no vertex shared between parts.
 std::string felt_obj(const std::vector<FeltPart>& parts);
