@@ -595,9 +595,17 @@ class ModelReader {
     return {};
   }
 
+  // What follows something else is read as if it stood still.
+  void check_mode(const Values& values, const Element& element) {
+    const auto mode = values.find("mode");
+    if (mode && mode->text != "fixed")
+      note(element.at, fmt::format("`mode` of `{}` is read as `fixed`", element.tag));
+  }
+
   Status read_camera(const Element& element, std::size_t body, std::string_view childclass,
                      const Pose& frame) {
     PROBE_ASSIGN(const Values values, values_of(element, childclass));
+    check_mode(values, element);
     Camera camera;
     camera.at = element.at;
     PROBE_TRY(values.read("name", camera.name));
@@ -614,6 +622,7 @@ class ModelReader {
   Status read_light(const Element& element, std::size_t body, std::string_view childclass,
                     const Pose& frame) {
     PROBE_ASSIGN(const Values values, values_of(element, childclass));
+    check_mode(values, element);
     Light light;
     light.at = element.at;
     PROBE_TRY(values.read("name", light.name));

@@ -550,7 +550,7 @@ TEST_CASE("the rooms of LIBERO become backdrops") {
     const MujocoAsset room = converted(options);
     CHECK(room.files.size() == 1);
     CHECK(!room.surfaces.empty());
-    for (const std::string& note : room.notes) MESSAGE(note);
+    CHECK(room.notes.empty());
   }
 }
 

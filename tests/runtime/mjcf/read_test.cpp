@@ -115,7 +115,7 @@ TEST_CASE("frames, joints, sites, lights and cameras stand in their body's frame
       <site name="s" type="box" pos="1 0 0" size="0.1 0.2 0.3"/>
       <light name="l" pos="0 0 1" dir="1 0 0" directional="true" castshadow="false" cutoff="30"/>
     </frame>
-    <camera name="c" pos="0 1 0" fovy="60"/>
+    <camera name="c" mode="fixed" pos="0 1 0" fovy="60"/>
     <body name="free"><freejoint name="f"/></body>
     <body name="turning"><joint range="0 90" ref="45"/></body>)"));
   const Body& b = model.bodies[1];
@@ -139,6 +139,8 @@ TEST_CASE("frames, joints, sites, lights and cameras stand in their body's frame
   CHECK(!b.lights[0].casts_shadow);
   CHECK(b.lights[0].cutoff == doctest::Approx(std::numbers::pi / 6));
   CHECK(b.cameras[0].fovy == doctest::Approx(std::numbers::pi / 3));
+  CHECK(model.notes.empty());
+  CHECK(model_of(in_body("<camera mode=\"trackcom\"/>")).notes[0].text == "`mode` of `camera` is read as `fixed`");
   CHECK(model.bodies[2].joints[0].motion == Motion::kFree);
   CHECK(model.bodies[3].joints[0].upper == doctest::Approx(std::numbers::pi / 2));
   CHECK(model.bodies[3].joints[0].reference == doctest::Approx(std::numbers::pi / 4));
