@@ -143,7 +143,7 @@ std::string fixture_urdf(const std::string& name, const std::vector<DescribedLin
 }
 
 std::string object_text(const ObjectText& object, const std::vector<MujocoSite>& sites) {
-  std::string out = fmt::format("object {} {{\n  mesh \"{}\"; box {}\n", object.name, object.folder,
+  std::string out = fmt::format("object {} {{\n  mesh \"{}\"\n  box {}\n", object.name, object.folder,
                                 corners(object.low, object.high));
   out += fmt::format("  density {}kg/m3; friction {}; name \"{}\"\n", decimals(object.density, 6),
                      decimals(object.friction, 6), object.called);

@@ -114,7 +114,8 @@ TEST_CASE("an object is seen by its mesh with its texture, felt by its boxes, an
   CHECK(cup.kind == MujocoKind::kObject);
   CHECK(cup.declaration ==
         "object cup {\n"
-        "  mesh \"cup\"; box (-3cm, -3cm, -4cm) .. (3cm, 3cm, 4cm)\n"
+        "  mesh \"cup\"\n"
+        "  box (-3cm, -3cm, -4cm) .. (3cm, 3cm, 4cm)\n"
         "  density 100kg/m3; friction 0.95; name \"cup\"\n"
         "  region inside box (-2cm, -2cm, -2cm) .. (2cm, 2cm, 4cm)\n"
         "}\n");
