@@ -19,6 +19,8 @@ class OutputFolder {
 
   // `source` is what the file was made from, for the manifest.
   Status write(const std::string& path, std::string_view bytes, const std::string& source);
+  // Where the files are until then.
+  const std::string& path() const { return temporary_; }
   bool has(std::string_view path) const { return manifest_.find(path) != nullptr; }
   std::uint64_t bytes() const;
 

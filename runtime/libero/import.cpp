@@ -1,0 +1,471 @@
+#include "runtime/libero/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "compiler/format/format.h"
+#include "runtime/assets/mujoco.h"
+#include "runtime/assets/output_folder.h"
+#include "runtime/base/file.h"
+#include "runtime/compile/files.h"
+#include "runtime/libero/suite_text.h"
+
+namespace probe::libero {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Path = fs::path;
+
+bool is_folder(const Path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+bool is_file(const Path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+// The first of some places that a lab's folder may have it at.
+std::optional<Path> find_below(const std::string& from, std::initializer_list<const char*> places,
+                               const char* wanted) {
+  for (const char* const place : places) {
+    const Path path = (Path(from) / place).lexically_normal();
+    if (is_folder(path / wanted) || is_file(path / wanted)) return path;
+  }
+  return std::nullopt;
+}
+
+// Where a category's model is: below these folders of `assets`, in a folder of its own or beside
+// others.
+constexpr const char* kModelFolders[] = {"stable_scanned_objects", "stable_hope_objects",
+                                         "turbosquid_objects", "articulated_objects"};
+std::optional<Path> find_model(const Path& assets, const std::string& category) {
+  for (const char* const folder : kModelFolders) {
+    for (const Path& path : {assets / folder / category / (category + ".xml"),
+                             assets / folder / (category + ".xml")}) {
+      if (is_file(path)) return path;
+    }
+  }
+  return std::nullopt;
+}
+
+class LiberoImport {
+ public:
+  LiberoImport(const ImportOptions& options, assets::OutputFolder out)
+      : options_(options), out_(std::move(out)) {}
+
+  Result<ImportReport> run() {
+    const auto root = find_below(options_.from, {"", "libero", "libero/libero"}, "bddl_files");
+    if (!root)
+      return Failure{Fault::kUsage, "no LIBERO folder: there is no `bddl_files`", options_.from};
+    root_ = *root;
+    for (const char* const place : {"assets", "libero_assets/libero"}) {
+      if (assets_.empty() && is_folder(root_ / place)) assets_ = root_ / place;
+    }
+    if (assets_.empty())
+      return Failure{Fault::kUsage, "there is no `assets` beside `bddl_files`", root_.string()};
+    const std::string near =
+        options_.robosuite.empty() ? (root_ / "libero_assets").string() : options_.robosuite;
+    const auto robosuite = find_below(
+        near, {"", "models/assets", "robosuite", "robosuite/models/assets", "assets"}, "base.xml");
+    if (!robosuite) {
+      return Failure{Fault::kUsage,
+                     "no robosuite: there is no `models/assets/base.xml`; say where with "
+                     "`--robosuite DIR`",
+                     near};
+    }
+    base_ = (*robosuite / "base.xml").string();
+    if (!options_.poses.empty()) PROBE_TRY(read_poses());
+    for (const Suite& suite : suites()) PROBE_TRY(read_suite(suite));
+    PROBE_TRY(convert_things());
+    PROBE_TRY(write_things());
+    PROBE_TRY(take_robots());
+    for (auto& [suite, tasks] : tasks_) PROBE_TRY(write_one(*suite, tasks));
+    if (report_.tasks == 0) {
+      return Failure{Fault::kUsage, "no task can be read: " + report_.lines.front().text,
+                     options_.from};
+    }
+    for (const std::string& odd : odd_) say("odd", odd);
+    if (poses_.empty()) {
+      say("odd",
+          "where fixtures stand is in no stored start: here in the middle of their regions, which "
+          "are 2 cm wide; `--poses FILE` says it otherwise");
+    }
+    report_.bytes = out_.bytes();
+    PROBE_TRY(out_.finish());
+    return std::move(report_);
+  }
+
+ private:
+  void say(std::string word, std::string text) {
+    report_.lines.push_back({std::move(word), std::move(text)});
+  }
+  // Paths as they are below the folder that was given.
+  std::string shorter(std::string text) const {
+    const std::string prefix = (root_ / "").string();
+    for (std::size_t at = text.find(prefix); at != text.npos; at = text.find(prefix))
+      text.erase(at, prefix.size());
+    return text;
+  }
+
+  Status write(const std::string& path, std::string_view bytes, const std::string& source) {
+    PROBE_TRY(out_.write(path, bytes, source));
+    ++report_.files;
+    return {};
+  }
+
+  // ---- what is there
+
+  Status read_suite(const Suite& suite) {
+    const Path folder = root_ / "bddl_files" / suite.folder;
+    std::vector<std::string> stems;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+      if (at->path().extension() == ".bddl") stems.push_back(at->path().stem().string());
+    }
+    if (stems.empty()) {
+      say("missing",
+          fmt::format("{}: no task, there is no bddl_files/{}", suite.folder, suite.folder));
+      return {};
+    }
+    const TaskOrder order = order_tasks(suite, stems);
+    for (const std::string& stem : order.missing)
+      say("missing", fmt::format("{}: {}.bddl", suite.folder, stem));
+    for (const std::string& stem : order.strange) {
+      say("odd", fmt::format("{}: {}.bddl is no task of the released benchmark and is left out",
+                             suite.folder, stem));
+    }
+    if (order.missing.empty() && order.stems.size() != suite.tasks) {
+      say("odd", fmt::format("{} has {} tasks, the released one {}: another version", suite.folder,
+                             order.stems.size(), suite.tasks));
+    }
+    std::vector<TaskSource>& tasks = tasks_.emplace_back(&suite, std::vector<TaskSource>()).second;
+    for (std::size_t i = 0; i < order.stems.size(); ++i) {
+      const std::string& stem = order.stems[i];
+      const std::string path = (folder / (stem + ".bddl")).string();
+      const auto text = read_file(
+          path, {.most = std::size_t{1} << 20, .code = Fault::kUsage, .only_begin = false});
+      if (!text) {
+        leave_out(suite, stem, to_text(text.failure()));
+        continue;
+      }
+      BddlRead read = read_bddl(*text, path);
+      for (const Failure& odd : read.oddities) odd_.insert(shorter(to_text(odd)));
+      if (!read.mistakes.empty()) {
+        for (const Failure& mistake : read.mistakes) leave_out(suite, stem, to_text(mistake));
+        continue;
+      }
+      tasks.push_back({order.numbers[i], stem, std::move(read.problem), {}});
+    }
+    return {};
+  }
+
+  void leave_out(const Suite& suite, const std::string& stem, const std::string& why) {
+    say("missing", fmt::format("{}: {} is left out: {}", suite.folder, stem, shorter(why)));
+  }
+
+  // suite,task,fixture,x_m,y_m,z_m,qw,qx,qy,qz
+  Status read_poses() {
+    PROBE_ASSIGN(const std::string text, read_file(options_.poses));
+    std::size_t line_number = 0;
+    std::string_view rest = text;
+    while (!rest.empty()) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      std::string_view line = rest.substr(0, end);
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+      ++line_number;
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      const std::string where = options_.poses + ":" + std::to_string(line_number);
+      constexpr std::string_view kHeader = "suite,task,fixture,x_m,y_m,z_m,qw,qx,qy,qz";
+      if (line_number == 1) {
+        if (line != kHeader)
+          return Failure{Fault::kUsage, "expected the header " + std::string(kHeader), where};
+        continue;
+      }
+      if (line.empty()) continue;
+      std::vector<std::string_view> cells;
+      for (std::string_view left = line;; left.remove_prefix(left.find(',') + 1)) {
+        cells.push_back(left.substr(0, left.find(',')));
+        if (left.find(',') == left.npos) break;
+      }
+      if (cells.size() != 10)
+        return Failure{Fault::kUsage, fmt::format("expected 10 cells, found {}", cells.size()),
+                       where};
+      FixturePose pose{std::string(cells[0]), std::string(cells[1]), std::string(cells[2]), {}};
+      double squares = 0;
+      for (std::size_t i = 0; i < 7; ++i) {
+        double value = 0;
+        const std::string_view cell = cells[3 + i];
+        const auto [at, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+        if (error != std::errc() || at != cell.data() + cell.size() || !std::isfinite(value))
+          return Failure{Fault::kUsage, fmt::format("expected a number, found `{}`", cell), where};
+        (i < 3 ? pose.pose.position[i] : pose.pose.rotation[i - 3]) = value;
+        squares += i < 3 ? 0 : value * value;
+      }
+      if (std::abs(squares - 1) > 1e-5)
+        return Failure{Fault::kUsage, "a quaternion has length 1", where};
+      poses_.push_back(std::move(pose));
+    }
+    return {};
+  }
+
+  // ---- models
+
+  // The fixture that everything is put on: its regions have rectangles.
+  static bool is_workspace(const BddlProblem& problem, const BddlThing& thing) {
+    return std::ranges::any_of(problem.regions, [&](const BddlRegion& region) {
+      return region.target == thing.name && !region.ranges.empty();
+    });
+  }
+
+  Status convert_things() {
+    std::map<std::string, bool> wanted;  // category -> whether it stands
+    for (const auto& [suite, tasks] : tasks_) {
+      for (const TaskSource& task : tasks) {
+        for (const BddlThing& object : task.problem.objects) {
+          wanted.emplace(object.category, false);
+          instances_[object.name] = object.category;
+        }
+        for (const BddlThing& fixture : task.problem.fixtures) {
+          if (!is_workspace(task.problem, fixture)) wanted[fixture.category] = true;
+        }
+      }
+    }
+    for (const auto& [category, stands] : wanted) {
+      const auto model = find_model(assets_, category);
+      if (!model) {
+        lacking_[category] = "there is no " + category + ".xml";
+        continue;
+      }
+      assets::MujocoOptions options;
+      options.file = model->string();
+      options.name = category;
+      options.merged_into = base_;
+      options.kind = stands ? assets::MujocoKind::kFixture : assets::MujocoKind::kObject;
+      const auto made = assets::convert_mujoco(options);
+      if (!made) {
+        lacking_[category] = shorter(to_text(made.failure()));
+        continue;
+      }
+      for (const assets::MujocoFile& file : made->files)
+        PROBE_TRY(write(file.path, file.bytes, shorter(file.source)));
+      for (const std::string& note : made->notes) odd_.insert(shorter(note));
+      facts_.insert(made->facts.begin(), made->facts.end());
+      declarations_[category] = made->declaration;
+      Thing& thing = things_[category];
+      thing.category = category;
+      thing.is_fixture = stands;
+      thing.low = made->low;
+      thing.high = made->high;
+      for (const assets::MujocoJoint& joint : made->joints)
+        thing.joints.push_back({joint.name, joint.part});
+      for (const assets::MujocoSite& site : made->sites) {
+        if (site.name == "bottom_site") thing.bottom = site.pose.position.z();
+        if (!site.region.empty()) thing.regions.push_back({site.region, site.part});
+      }
+      say(stands ? "fixture" : "object",
+          fmt::format("{}: {:.4g} g, {}", category, made->mass * 1000, shorter(model->string())));
+    }
+    for (const auto& [category, why] : lacking_) say("missing", category + ": " + why);
+    return {};
+  }
+
+  // The category of a task that is lacking.
+  std::optional<std::string> lack_of(const TaskSource& task) const {
+    for (const auto* things : {&task.problem.objects, &task.problem.fixtures}) {
+      for (const BddlThing& thing : *things) {
+        if (lacking_.contains(thing.category)) return thing.category;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // ---- texts
+
+  Status write_one(const Suite& suite, std::vector<TaskSource>& tasks) {
+    JointsOf joints_of;
+    for (const auto& [category, thing] : things_) {
+      for (const ThingJoint& joint : thing.joints) joints_of[category].push_back(joint.name);
+    }
+    std::vector<TaskSource> whole;
+    std::size_t starts = 0;
+    for (TaskSource& task : tasks) {
+      if (const auto lacking = lack_of(task)) {
+        leave_out(suite, task.stem, "it needs " + *lacking);
+        continue;
+      }
+      const Path path = root_ / "init_files" / suite.folder / (task.stem + ".pruned_init");
+      auto states = read_states(path.string(), task.problem, joints_of);
+      if (!states) {
+        leave_out(suite, task.stem, to_text(states.failure()));
+        continue;
+      }
+      for (std::size_t i = 0; i < states->starts.size(); ++i) {
+        if (states->starts[i].time == 0 && states->starts[i].fastest == 0) continue;
+        odd_.insert(
+            fmt::format("{}: start {} of {} has a time or speeds other than 0, which are "
+                        "not taken",
+                        suite.folder, i, task.stem));
+        break;
+      }
+      task.states = std::move(*states);
+      starts += task.states.starts.size();
+      whole.push_back(std::move(task));
+    }
+    if (whole.empty()) return {};
+    PROBE_ASSIGN(const SuiteText text, write_suite(suite, whole, things_, poses_));
+    const std::string path = std::string(suite.folder) + ".probe";
+    const std::string problems = "bddl_files/" + std::string(suite.folder);
+    for (const SuiteText::Table& table : text.tables)
+      PROBE_TRY(write(table.path, table.text, "init_files/" + std::string(suite.folder)));
+    PROBE_TRY(write_text(path, text.text, problems));
+    // What a check finds in a task's words and starts is the benchmark's own: it stays, and is said
+    // above the task.
+    PROBE_ASSIGN(const Reasons reasons, reasons_in(path));
+    PROBE_TRY(write_text(path, with_reasons(text.text, reasons), problems));
+    --report_.files;
+    for (const std::string& note : text.notes) odd_.insert(note);
+    say("suite", fmt::format("{}: {} tasks, {} starts", suite.folder, whole.size(), starts));
+    report_.tasks += whole.size();
+    report_.starts += starts;
+    return {};
+  }
+
+  // By task and word of @allow.
+  using Reasons = std::map<std::string, std::map<std::string, std::string>>;
+
+  // What a check says of the tasks of a text that was written.
+  Result<Reasons> reasons_in(const std::string& path) {
+    compile::FilesRequest request;
+    request.assets = out_.path();
+    request.wants_plan = false;
+    PROBE_ASSIGN(const Compilation checked,
+                 compile::compile_files({out_.path() + "/" + path}, request));
+    Reasons reasons;
+    for (const Diagnostic& said : checked.diagnostics.items()) {
+      const CodeInfo& code = info(said.code);
+      const auto task = task_around(checked.sources, said.primary);
+      if (said.severity == Severity::kError || code.slug.empty() || !task) {
+        odd_.insert(fmt::format("{}: {}: {}", path, code.text, said.message));
+        continue;
+      }
+      std::string& reason = reasons[*task][std::string(code.slug)];
+      reason += (reason.empty() ? "" : "; ") + plain(said.message, *task);
+    }
+    return reasons;
+  }
+
+  // The task in whose declaration something stands: the last one that begins before it.
+  static std::optional<std::string> task_around(const SourceSet& sources, const Span& span) {
+    if (span.is_none()) return std::nullopt;
+    const std::string_view before = sources.file(span.file).text().substr(0, span.begin);
+    const std::size_t at = before.rfind("\ntask ");
+    if (at == before.npos) return std::nullopt;
+    const std::size_t name = at + 6;
+    return std::string(before.substr(name, before.find(' ', name) - name));
+  }
+
+  // Without the marks that a text's string cannot hold, and without the task that it stands above.
+  static std::string plain(std::string message, const std::string& task) {
+    for (const std::string& tail : {" of `" + task + "`", " in `" + task + "`"}) {
+      if (const std::size_t at = message.find(tail); at != message.npos)
+        message.erase(at, tail.size());
+    }
+    std::erase_if(message, [](char c) { return c == '`'; });
+    std::ranges::replace(message, '"', '\'');
+    return message;
+  }
+
+  static std::string with_reasons(const std::string& text, const Reasons& reasons) {
+    std::string out;
+    std::size_t from = 0;
+    while (from < text.size()) {
+      const std::size_t end = std::min(text.find('\n', from), text.size() - 1) + 1;
+      const std::string_view line = std::string_view(text).substr(from, end - from);
+      if (line.starts_with("task ")) {
+        const auto known = reasons.find(std::string(line.substr(5, line.find(' ', 5) - 5)));
+        if (known != reasons.end()) {
+          for (const auto& [slug, why] : known->second)
+            out += fmt::format("@allow({}, \"the benchmark's own: {}\")\n", slug, why);
+        }
+      }
+      out += line;
+      from = end;
+    }
+    return out;
+  }
+
+  // As `fmt` lays it out.
+  Status write_text(const std::string& path, std::string text, const std::string& source) {
+    SourceSet sources;
+    const FileId id = sources.add(path, std::move(text));
+    Diagnostics diagnostics;
+    PROBE_ASSIGN(const auto laid_out, format::format_file(sources, id, diagnostics));
+    if (!laid_out) return Failure{Fault::kInternal, "a text that was written does not parse", path};
+    return write(path, *laid_out, source);
+  }
+
+  Status write_things() {
+    std::string text =
+        "# The benchmark's things: how they look, weigh and feel is in their files; colours, facts "
+        "and phrases are yours to "
+        "say.\n";
+    if (!facts_.empty()) text += fmt::format("facts {{ {} }}\n", fmt::join(facts_, ", "));
+    for (const auto& [category, declaration] : declarations_) text += "\n" + declaration;
+    text += "\n# ---- as tasks call them ----\n";
+    for (const auto& [name, category] : instances_) {
+      if (things_.contains(category))
+        text += fmt::format("object {} like {} {{}}\n", name, category);
+    }
+    PROBE_TRY(write_text("things.probe", std::move(text), "assets"));
+    return {};
+  }
+
+  // The robots are ours: their meshes are not the benchmark's.
+  Status take_robots() {
+    const Path robots = Path(options_.own) / "robots/panda";
+    std::vector<Path> files;
+    std::error_code error;
+    for (fs::recursive_directory_iterator at(robots, error), end; !error && at != end;
+         at.increment(error)) {
+      if (at->is_regular_file()) files.push_back(at->path());
+    }
+    if (files.empty())
+      return Failure{Fault::kAsset, "our own robots are not there", robots.string()};
+    std::ranges::sort(files);
+    for (const Path& file : files) {
+      PROBE_ASSIGN(const std::string bytes, read_file(file.string()));
+      PROBE_TRY(
+          write(file.lexically_relative(options_.own).generic_string(), bytes, "vlaprobe's own"));
+    }
+    return {};
+  }
+
+  const ImportOptions& options_;
+  assets::OutputFolder out_;
+  ImportReport report_;
+  Path root_, assets_;
+  std::string base_;
+  std::vector<FixturePose> poses_;
+  std::vector<std::pair<const Suite*, std::vector<TaskSource>>> tasks_;
+  Things things_;
+  std::map<std::string, std::string> declarations_, instances_, lacking_;
+  std::set<std::string> facts_, odd_;
+};
+
+}  // namespace
+
+Result<ImportReport> import_libero(const ImportOptions& options) {
+  PROBE_ASSIGN(auto out, assets::OutputFolder::create(options.to));
+  return LiberoImport(options, std::move(out)).run();
+}
+
+}  // namespace probe::libero

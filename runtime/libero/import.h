@@ -1,0 +1,37 @@
+// A lab's own LIBERO folder as suites of ours: texts, tables of starts and assets, in a folder that
+// every verb takes with `--assets`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+
+namespace probe::libero {
+
+struct ImportOptions {
+  std::string from;       // with bddl_files, init_files and assets, or above
+  std::string robosuite;  // with models/assets/base.xml, or below; empty: beside `from`
+  std::string to;         // folder to make
+  std::string poses;      // table of where fixtures stand; empty: in the middle of their regions
+  std::string own;        // our asset folder, which has the robots
+};
+
+struct ImportLine {
+  std::string word;  // "suite", "object", "fixture", "odd", "missing"
+  std::string text;
+};
+
+struct ImportReport {
+  std::vector<ImportLine> lines;
+  std::size_t tasks = 0, starts = 0, files = 0;
+  std::uint64_t bytes = 0;
+};
+
+// OUT appears whole or not at all. A task whose problem, starts or models cannot be read is a line
+// and left out; nothing is filled in. Fails (kUsage, kIo) where no such folder is, where no task
+// can be read, and where `to` is there already.
+Result<ImportReport> import_libero(const ImportOptions& options);
+
+}  // namespace probe::libero

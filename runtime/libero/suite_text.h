@@ -1,0 +1,45 @@
+// A suite of LIBERO as a Probe text and tables of starts. Reads no file and knows no model.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/libero/bddl.h"
+#include "runtime/libero/states.h"
+#include "runtime/libero/suites.h"
+#include "runtime/libero/things.h"
+
+namespace probe::libero {
+
+// One task as it was read.
+struct TaskSource {
+  std::size_t number = 0;  // within its suite
+  std::string stem;        // of its files
+  BddlProblem problem;
+  StartStates states;
+};
+
+// Where a fixture stands instead of in the middle of its region: m, quaternion w x y z.
+struct FixturePose {
+  std::string suite, stem, fixture;
+  StatePose pose;
+};
+
+struct SuiteText {
+  struct Table {
+    std::string path;  // "starts/libero_goal_03.csv", beside the text
+    std::string text;
+  };
+  std::string text;  // as `fmt` lays it out
+  std::vector<Table> tables;
+  std::vector<std::string> notes;  // what is odd, a line each
+};
+
+// The tasks in the order of their numbers; all their categories are in `things`. The same bytes for
+// the same input. Fails (kUsage, where = the problem's file) on a problem class, a region or a
+// joint that is not known.
+Result<SuiteText> write_suite(const Suite& suite, const std::vector<TaskSource>& tasks,
+                              const Things& things, const std::vector<FixturePose>& poses);
+
+}  // namespace probe::libero

@@ -1,0 +1,226 @@
+// A small folder in the benchmark's form: what is written checks clean, says every start, and is
+// the same bytes twice; what is missing is named.
+#include "runtime/libero/import.h"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "compiler/diag/text.h"
+#include "runtime/compile/files.h"
+#include "runtime/plan/fixtures.h"
+#include "runtime/plan/plan.h"
+#include "tests/hex.h"
+#include "tests/runtime/libero/reference.h"
+#include "tests/runtime/libero/small.h"
+
+namespace probe::libero {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kTask = "KITCHEN_SCENE1_put_a_cup_in_the_drawer_and_close_it";
+
+struct LiberoFolder {
+  fs::path root = fs::temp_directory_path() / ("vlaprobe_libero_" + std::to_string(getpid()));
+  LiberoFolder() {
+    fs::remove_all(root);
+    write("bddl_files/libero_90/" + std::string(kTask) + ".bddl", test::kSmallProblem);
+    const auto states = test::from_hex(test::kSmallStates);
+    write("init_files/libero_90/" + std::string(kTask) + ".pruned_init",
+          {reinterpret_cast<const char*>(states.data()), states.size()});
+    write("assets/stable_scanned_objects/cup/cup.xml", model("cup", box("0.03 0.03 0.04")));
+    write("assets/turbosquid_objects/lid/lid.xml", model("lid", box("0.04 0.04 0.01")));
+    write(
+        "assets/articulated_objects/chest.xml",
+        model(
+            "chest",
+            box("0.1 0.1 0.01") +
+                R"(<body name="drawer"><joint name="drawer_slide" type="slide" axis="0 1 0" range="-0.16 0.01" damping="50"/>
+                       <geom type="box" size="0.08 0.08 0.005" pos="0 0 0.06" group="0" density="100"/>
+                       <site name="drawer" type="box" pos="0 0 0.1" size="0.07 0.06 0.03" quat="0.7071068 0 0.7071068 0"/></body>)"));
+    write(
+        "robosuite/base.xml",
+        R"(<mujoco model="base"><compiler angle="radian" inertiagrouprange="0 0"/><worldbody/></mujoco>)");
+  }
+  ~LiberoFolder() { fs::remove_all(root); }
+
+  static std::string box(const std::string& size) {
+    return "<geom type=\"box\" size=\"" + size +
+           "\" pos=\"0 0 0.04\" group=\"0\" density=\"100\" friction=\"0.95 0.3 0.1\"/>"
+           "<geom type=\"box\" size=\"" +
+           size +
+           "\" pos=\"0 0 0.04\" group=\"1\" contype=\"0\" conaffinity=\"0\" rgba=\"0.5 0.2 0.1 "
+           "1\"/>";
+  }
+  static std::string model(const std::string& name, const std::string& inside) {
+    return "<mujoco model=\"" + name + "\"><worldbody><body><body name=\"object\">" + inside +
+           "</body><site name=\"bottom_site\" pos=\"0 0 -0.06\" size=\"0.005\" rgba=\"0 0 0 0\"/>"
+           "</body></worldbody></mujoco>";
+  }
+  void write(const std::string& path, std::string_view bytes) const {
+    fs::create_directories((root / path).parent_path());
+    std::ofstream(root / path, std::ios::binary) << bytes;
+  }
+  Result<ImportReport> import(const std::string& to = "out") const {
+    fs::remove_all(root / to);
+    ImportOptions options;
+    options.from = root.string();
+    options.robosuite = (root / "robosuite").string();
+    options.to = (root / to).string();
+    options.own = VLAPROBE_SOURCE_DIR "/assets";
+    return import_libero(options);
+  }
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::map<std::string, std::string> files_in(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file())
+      files[fs::relative(entry.path(), folder).string()] = text_of(entry.path());
+  }
+  return files;
+}
+
+std::string said_by(const ImportReport& report, std::string_view word) {
+  std::string all;
+  for (const ImportLine& line : report.lines) {
+    if (line.word == word) all += line.text + "\n";
+  }
+  return all;
+}
+
+Compilation compiled(const fs::path& folder, const std::string& file) {
+  compile::FilesRequest request;
+  request.assets = folder.string();
+  auto made = compile::compile_files({(folder / file).string()}, request);
+  REQUIRE_MESSAGE(made.ok(), to_text(made.failure()));
+  return std::move(made).value();
+}
+
+}  // namespace
+
+TEST_CASE("a task is imported: its words, its goal, where things begin") {
+  const LiberoFolder folder;
+  const auto report = folder.import();
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(report->tasks == 1);
+  CHECK(report->starts == 2);
+  CHECK(said_by(*report, "suite") == "libero_90: 1 tasks, 2 starts\n");
+  CHECK(
+      said_by(*report, "odd").find("libero_90 has 1 tasks, the released one 90: another version") !=
+      std::string::npos);
+  CHECK(said_by(*report, "missing").find("libero_goal: no task") != std::string::npos);
+  const std::string text = text_of(folder.root / "out/libero_90.probe");
+  CAPTURE(text);
+  CHECK(text.find("say \"put a cup in the drawer and close it\"") != std::string::npos);
+  CHECK(text.find("in_site(cup_1, chest_1.drawer)") != std::string::npos);
+  CHECK(text.find("drawer_closed(chest_1.drawer_part)") != std::string::npos);
+  CHECK(text.find("fixture chest_1 like chest { at (21cm, -29cm, 92cm) yaw 180deg }") !=
+        std::string::npos);
+
+  const Compilation built = compiled(folder.root / "out", "libero_90.probe");
+  INFO(render_text(built.diagnostics, built.sources));
+  CHECK(built.diagnostics.items().empty());
+  REQUIRE(built.ok);
+  const auto plan = plan::Plan::from_bytes(built.plan);
+  REQUIRE(plan.ok());
+  REQUIRE(plan->tasks().size() == 1);
+  const plan::TaskRecord& task = plan->tasks()[0];
+  CHECK(plan->text(task.prompt) == "put a cup in the drawer and close it");
+  CHECK(task.horizon == 400);
+  CHECK(task.idle == 10);
+  const auto episodes = plan->episodes(task);
+  REQUIRE(episodes.size() == 2);
+  const auto placed = plan->placements(episodes[0]);
+  REQUIRE(placed.size() == 3);
+  CHECK(plan->text(plan->objects()[placed[0].object].name) == "cup_1");
+  CHECK(placed[0].position == std::array<double, 3>{-0.07, 0.03, 0.97});
+  CHECK(placed[0].rotation == std::array<double, 4>{0.6, 0, 0, 0.8});
+  const plan::SceneRecord& scene = plan->scenes()[task.scene];
+  CHECK(plan::joint_starts_of(plan->tables(), scene, episodes[0]) == std::vector<double>{-0.15});
+  CHECK(plan::joint_starts_of(plan->tables(), scene, episodes[1]) == std::vector<double>{-0.145});
+  const auto arm = plan->joints(scene, episodes[0]);
+  REQUIRE(arm.size() == 9);
+  CHECK(arm[0] == 0.035773);
+  CHECK(arm[8] == 0.020833);
+}
+
+TEST_CASE("the same folder gives the same bytes") {
+  const LiberoFolder folder;
+  REQUIRE(folder.import("one").ok());
+  REQUIRE(folder.import("two").ok());
+  const auto one = files_in(folder.root / "one");
+  CHECK(one == files_in(folder.root / "two"));
+  CHECK(one.contains("starts/libero_90_00.csv"));
+  CHECK(one.contains("things.probe"));
+}
+
+TEST_CASE("what a task needs and does not have leaves it out, by name") {
+  const LiberoFolder folder;
+  folder.write("bddl_files/libero_90/KITCHEN_SCENE2_b.bddl", "(define (problem x)\n  (:goals))");
+  folder.write("bddl_files/libero_90/KITCHEN_SCENE3_c.bddl", test::kSmallProblem);
+  auto report = folder.import();
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(report->tasks == 1);
+  const std::string missing = said_by(*report, "missing");
+  CAPTURE(missing);
+  CHECK(
+      missing.find("KITCHEN_SCENE2_b is left out: bddl_files/libero_90/KITCHEN_SCENE2_b.bddl:2:3: "
+                   "unknown section `:goals`, did you mean `:goal`?") != std::string::npos);
+  CHECK(missing.find("KITCHEN_SCENE3_c is left out: "
+                     "init_files/libero_90/KITCHEN_SCENE3_c.pruned_init") != std::string::npos);
+  fs::remove_all(folder.root / "assets/turbosquid_objects/lid");
+  report = folder.import();
+  REQUIRE_FALSE(report.ok());
+  CHECK(report.failure().message.find("no task can be read") == 0);
+  CHECK_FALSE(fs::exists(folder.root / "out"));
+}
+
+TEST_CASE("a folder that is none is refused with what is not there") {
+  const LiberoFolder folder;
+  fs::remove(folder.root / "robosuite/base.xml");
+  CHECK(folder.import().failure().message.find("no robosuite: there is no") == 0);
+  fs::remove_all(folder.root / "assets");
+  CHECK(folder.import().failure().message == "there is no `assets` beside `bddl_files`");
+  fs::remove_all(folder.root / "bddl_files");
+  CHECK(folder.import().failure().message == "no LIBERO folder: there is no `bddl_files`");
+}
+
+TEST_CASE("the reference: 130 tasks, 6,500 starts, nothing left to say by a check") {
+  if (!test::has_reference()) {
+    MESSAGE("skipped: no ../shared/reference/libero");
+    return;
+  }
+  const fs::path to =
+      fs::temp_directory_path() / ("vlaprobe_libero_all_" + std::to_string(getpid()));
+  fs::remove_all(to);
+  ImportOptions options;
+  options.from = test::reference();
+  options.to = to.string();
+  options.own = VLAPROBE_SOURCE_DIR "/assets";
+  const auto report = import_libero(options);
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(report->tasks == 130);
+  CHECK(report->starts == 6500);
+  for (const char* const suite :
+       {"libero_spatial", "libero_object", "libero_goal", "libero_10", "libero_90"}) {
+    const Compilation built = compiled(to, std::string(suite) + ".probe");
+    CAPTURE(suite);
+    CHECK_MESSAGE(built.diagnostics.items().empty(),
+                  render_text(built.diagnostics, built.sources).substr(0, 2000));
+  }
+  fs::remove_all(to);
+}
+
+}  // namespace probe::libero
