@@ -7,6 +7,7 @@
 #include "compiler/define/thing.h"
 #include "compiler/define/views.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/part_place.h"
 #include "compiler/geometry/pose.h"
 #include "runtime/base/upright.h"
 #include "runtime/robot/kinematics.h"
@@ -52,23 +53,13 @@ lower::PlacedBody placed_body(const Scene& scene, const Object& object, const Ce
 lower::PlacedBody placed_part(const Model& model, const Task& task, const OfFixture& of,
                               std::span<const double> all_joints) {
   const Fixture& fixture = model.fixtures[of.fixture];
-  std::vector<std::string> names;
-  std::vector<double> joints;
-  for (const FixtureId id : model.scenes[task.scene].fixtures) {
-    const std::size_t count = model.fixtures[id].joints.size();
-    if (id == of.fixture)
-      joints.assign(all_joints.begin(), all_joints.begin() + static_cast<std::ptrdiff_t>(count));
-    all_joints = all_joints.subspan(count);
-  }
-  for (const Fixture::Joint& joint : fixture.joints) names.push_back(joint.name);
   lower::PlacedBody body;
   const Vec3 slack = Vec3::Constant(kSettlesOnFixture);
-  const auto tree = robot::Tree::create(*fixture.model, names);
-  if (!tree.ok()) return body;  // reported where its travel is looked at
-  std::vector<Pose> poses(tree->link_count());
-  tree->link_poses(joints, poses);
+  const auto tree = tree_of(fixture);
+  if (!tree) return body;
+  const auto joints = joints_of(model, model.scenes[task.scene], of.fixture, all_joints);
+  const Pose pose = part_pose(fixture, *tree, joints, of.part);
   const auto link = static_cast<std::size_t>(fixture.parts[of.part].index);
-  const Pose pose = pose_of(fixture.position, fixture.turn.rotation) * poses[link];
   body.origin = around(pose.position, slack, slack);
   body.position = around(pose.apply(fixture.model->links[link].center_of_mass), slack, slack);
   const Mat3 turn = pose.rotation.toRotationMatrix();

@@ -8,6 +8,7 @@
 #include "compiler/define/fixture.h"
 #include "compiler/define/role.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/part_place.h"
 #include "compiler/geometry/pose.h"
 
 namespace probe::sema {
@@ -119,21 +120,11 @@ std::optional<Supports::Area> Supports::on_object(const Task& task, Start::Place
 std::optional<Supports::Area> Supports::in_region(const Task& task, const OfFixture& of) {
   const Fixture& fixture = model_.fixtures[of.fixture];
   const auto& way = travel(of.fixture);
-  std::vector<std::string> names;
-  for (const Fixture::Joint& joint : fixture.joints) names.push_back(joint.name);
-  const auto tree = robot::Tree::create(*fixture.model, names);
-  if (!tree.ok() || !way) return std::nullopt;
+  const auto tree = tree_of(fixture);
+  if (!tree || !way) return std::nullopt;
   const std::vector<double> all = joint_starts_of(model_, task);
-  std::span<const double> joints = all;
-  for (const FixtureId id : model_.scenes[task.scene].fixtures) {
-    if (id == of.fixture) break;
-    joints = joints.subspan(model_.fixtures[id].joints.size());
-  }
-  joints = joints.first(fixture.joints.size());
-  std::vector<Pose> poses(tree->link_count());
-  tree->link_poses(joints, poses);
-  const Pose pose = pose_of(fixture.position, fixture.turn.rotation) *
-                    poses[static_cast<std::size_t>(fixture.parts[of.part].index)];
+  const auto joints = joints_of(model_, model_.scenes[task.scene], of.fixture, all);
+  const Pose pose = part_pose(fixture, *tree, joints, of.part);
   const Region& region = fixture.regions[*of.region].region;
   const Vec3 low(region.low.data()), high(region.high.data()), half = (high - low) / 2;
   const Mat3 turn = pose.rotation.toRotationMatrix();

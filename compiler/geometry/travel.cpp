@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "compiler/geometry/part_place.h"
 #include "compiler/geometry/pose.h"
 #include "runtime/scene/link_solids.h"
 
@@ -61,10 +62,8 @@ Travel::Travel(const Fixture& fixture, robot::Tree tree)
 
 std::optional<Travel> Travel::of(const Fixture& fixture, const std::string& asset_root) {
   if (fixture.broken || !fixture.model) return std::nullopt;
-  std::vector<std::string> joints;
-  for (const Fixture::Joint& joint : fixture.joints) joints.push_back(joint.name);
-  auto tree = robot::Tree::create(*fixture.model, joints);
-  if (!tree.ok()) return std::nullopt;
+  auto tree = tree_of(fixture);
+  if (!tree) return std::nullopt;
   Travel travel(fixture, std::move(*tree));
   const std::string folder =
       (std::filesystem::path(asset_root) / fixture.urdf.text).parent_path().string();
@@ -82,10 +81,7 @@ std::optional<Travel> Travel::of(const Fixture& fixture, const std::string& asse
 
 void Travel::put(std::span<const double> joints, std::uint32_t part,
                  std::vector<PartBox>* to) const {
-  std::vector<Pose> poses(tree_.link_count());
-  tree_.link_poses(joints, poses);
-  const Fixture::Part& record = fixture_->parts[part];
-  const Pose pose = base_ * poses[static_cast<std::size_t>(record.index)];
+  const Pose pose = part_pose(*fixture_, tree_, joints, part);
   for (const Shape& shape : shapes_) {
     if (shape.part != part) continue;
     PartBox box{part, 0, moved(shape.solid, pose), {}};
