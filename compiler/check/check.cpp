@@ -17,6 +17,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_metrics(model, reporter);
   check_expectations(model, reporter);
   check_samples(model, reporter);
+  check_photos(model, reporter);
   check_tags(model, reporter);
   check_magnitudes(checked.symbols, reporter);
   check_boxes(model, checked.asset_root, reporter);

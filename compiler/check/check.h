@@ -54,6 +54,7 @@ std::string asks_for_fingers(const Model& model, ExprRef expr);
 std::string words_of_truths();
 void check_expectations(const Model& model, Reporter& reporter);    // P0504, P0211
 void check_samples(const Model& model, Reporter& reporter);         // P0706
+void check_photos(const Model& model, Reporter& reporter);          // P0304 of cameras that jitter
 void check_tags(const Model& model, Reporter& reporter);            // P0705
 void check_magnitudes(const Symbols& symbols, Reporter& reporter);  // P0303
 void check_boxes(const Model& model, const std::string& asset_root,

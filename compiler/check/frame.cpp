@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "compiler/check/starts.h"
+#include "compiler/define/camera_shake.h"
 #include "compiler/define/views.h"
 #include "compiler/geometry/in_frame.h"
 
@@ -12,15 +13,27 @@ namespace probe::sema {
 // move.
 void check_frame(const TaskStarts& starts) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
-  std::vector<Frustum> fixed;
+  const std::vector<View> views = views_of(starts.model, starts.task);
   const Camera* first = nullptr;
-  for (const View& view : views_of(starts.model, starts.task)) {
-    const Camera& camera = starts.model.cameras[view.camera];
-    const auto frustum = Frustum::of(starts.model, scene, camera);
-    if (!frustum) continue;
-    if (fixed.empty()) first = &camera;
-    fixed.push_back(*frustum);
-  }
+  bool jitters = false;
+  // Of cameras that jitter as they stand in one start. A frustum speaks of its camera.
+  std::vector<Camera> seen;
+  std::vector<Frustum> fixed;
+  const auto look = [&](std::size_t start) {
+    const std::vector<double> shakes = shakes_of(starts.model, views, start);
+    seen.clear();
+    fixed.clear();
+    seen.reserve(views.size());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      seen.push_back(shaken(starts.model.cameras[views[i].camera], shakes, i));
+      const auto frustum = Frustum::of(starts.model, scene, seen.back());
+      if (!frustum) continue;
+      if (fixed.empty()) first = &starts.model.cameras[views[i].camera];
+      fixed.push_back(*frustum);
+      jitters = jitters || seen.back().jitters();
+    }
+  };
+  look(0);
   if (fixed.empty()) return;
   const Camera& camera = *first;
   constexpr double kBehind = 1e9;  // px
@@ -28,6 +41,7 @@ void check_frame(const TaskStarts& starts) {
   std::size_t bad = 0, all = 0, episode = 0;
   const Start::Placed* worst = nullptr;
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
+    if (jitters && e > 0) look(e);
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
       ++all;
       double out = kBehind;

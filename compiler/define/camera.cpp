@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "compiler/define/define.h"
 #include "compiler/define/record.h"
@@ -153,6 +154,27 @@ struct CameraReader {
       sensor.blur = blur.value_or(0);
     }
     if (stmt.patch_low && stmt.patch_high) patch(*stmt.patch_low, *stmt.patch_high);
+  }
+  void operator()(const syntax::CameraJitterStmt& stmt) {
+    camera.jitter_span = stmt.span;
+    const auto read = [&](const syntax::Quantity& written, Dimension dimension, const char* takes,
+                          plan::Magnitude magnitude) {
+      const double most = read_si(context, written, dimension, {takes, magnitude}).value_or(0);
+      if (most < 0)
+        context.report(Situation::kNegative, written.span, "expected a jitter of 0 or more");
+      return std::max(0.0, most);
+    };
+    camera.jitter_place = read(stmt.place, dim::kLength,
+                               "`jitter` of a camera takes a length and an angle",
+                               plan::Magnitude::kLength);
+    camera.jitter_turn = read(stmt.turn, dim::kAngle,
+                              "`jitter` of a camera takes a length and an angle",
+                              plan::Magnitude::kJointPosition);
+    constexpr double kMost = std::numbers::pi / 2;
+    if (camera.jitter_turn <= kMost) return;
+    context.report(Situation::kCameraTurn, stmt.turn.span,
+                   "expected a turn of at most 90deg about each axis");
+    camera.jitter_turn = 0;
   }
   void patch(const syntax::Point& low, const syntax::Point& high) {
     const char* takes = "a patch takes shares of the picture's width and height";

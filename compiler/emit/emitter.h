@@ -128,6 +128,7 @@ class Emitter {
   void add_task(const sema::Task& task);
   plan::Slice add_moves(const sema::Task& task);
   plan::Slice add_joint_starts(const sema::Task& task, const sema::Start& start);
+  plan::Slice add_shakes(const std::vector<sema::View>& views, std::size_t index);
   plan::Slice add_arm_start(const sema::Task& task, std::size_t index);
   plan::Slice add_covers(const std::map<plan::CoverOf, sema::Cover>& covers, AssetOwner owner);
   // What its words say of places; `index` is the task's. Shapes that are alike share programs.
@@ -178,7 +179,7 @@ class Emitter {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Constant> constants_;  // by file and place
   std::set<std::pair<std::uint32_t, std::uint32_t>> contradictions_;
   std::map<std::vector<double>, plan::Slice> placements_;
-  std::map<std::vector<double>, plan::Slice> joint_starts_, arm_starts_;
+  std::map<std::vector<double>, plan::Slice> joint_starts_, arm_starts_, shakes_;
   std::map<std::pair<const sema::Start*, double>, std::vector<plan::Slice>> placement_lists_;
   std::map<std::vector<std::uint32_t>, plan::Slice> views_, roles_;
   std::map<std::vector<std::uint32_t>, std::uint32_t> claim_programs_;  // by shape

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "compiler/define/arm_start.h"
+#include "compiler/define/camera_shake.h"
 #include "compiler/define/fixture.h"
 #include "compiler/define/motion.h"
 #include "compiler/define/views.h"
@@ -139,6 +140,15 @@ plan::Slice Emitter::add_arm_start(const sema::Task& task, std::size_t index) {
   return at->second;
 }
 
+// Nothing where the cameras stand as they say.
+plan::Slice Emitter::add_shakes(const std::vector<sema::View>& views, std::size_t index) {
+  std::vector<double> shakes = shakes_of(model_, views, index);
+  if (shakes.empty()) return {};
+  const auto [at, is_new] = shakes_.try_emplace(shakes, plan::Slice{});
+  if (is_new) at->second = writer_.reals(shakes);
+  return at->second;
+}
+
 plan::Slice Emitter::add_moves(const sema::Task& task) {
   std::vector<plan::MoveRecord> rows;
   for (const sema::Mover& mover : movers_of(model_, task)) {
@@ -204,6 +214,7 @@ void Emitter::add_task(const sema::Task& task) {
     if (e == 0 || !layout.given_joints.empty()) joints = add_joint_starts(task, task.starts[e]);
     episode.joints = joints;
     episode.arm = add_arm_start(task, e);
+    episode.shaken = add_shakes(views, e);
     episode.task = index;
     episode.index = static_cast<std::uint32_t>(e);
     episode.placements = placements[e];

@@ -33,6 +33,8 @@ std::optional<Pose> camera_pose(const Model& model, const Scene& scene, const Ca
   Pose aim = pose_of(camera.position, {1, 0, 0, 0});
   const auto& a = camera.aim_values;
   aim.rotation = camera.aim == plan::CameraAim::kLook ? looking_along(a) : pose_of({}, a).rotation;
+  if (camera.turned != std::array<double, 4>{1, 0, 0, 0})
+    aim.rotation = aim.rotation * pose_of({}, camera.turned).rotation;
   return pose_of(scene.base_position, scene.base_turn.rotation) * mount * aim;
 }
 

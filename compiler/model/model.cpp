@@ -34,7 +34,8 @@ bool Camera::operator==(const Camera& other) const {
   return mount_link.text == other.mount_link.text && aim == other.aim &&
          position == other.position && aim_values == other.aim_values && width == other.width &&
          height == other.height && samples == other.samples && fx == other.fx && fy == other.fy &&
-         cx == other.cx && cy == other.cy;
+         cx == other.cx && cy == other.cy && jitter_place == other.jitter_place &&
+         jitter_turn == other.jitter_turn;
 }
 
 bool Light::operator==(const Light& other) const {

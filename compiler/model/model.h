@@ -198,6 +198,12 @@ struct Camera {
   std::uint32_t samples = 0;  // a pixel: 4 or 16, 0 for one
   double fx = 0, fy = 0, cx = 0, cy = 0;
   plan::SensorRecord sensor;                   // what it does to its picture; zeros: nothing
+  // Where it stands in a start is up to so far along each axis of its mount, and turned by up to so
+  // much about its own ahead, left and up.
+  double jitter_place = 0, jitter_turn = 0;  // m, rad
+  Span jitter_span;
+  std::array<double, 4> turned{1, 0, 0, 0};  // of a copy that stands as in a start: by how much
+  bool jitters() const { return jitter_place > 0 || jitter_turn > 0; }
   bool operator==(const Camera& other) const;  // place and lens; neither name nor sensor
   bool has_sensor() const;
 };

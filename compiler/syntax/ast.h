@@ -544,7 +544,11 @@ struct SensorStmt {  // `sensor noise 0.02 blur 1.5px exposure 0.7 patch (..) ..
   std::optional<Point> patch_low, patch_high;
   bool mirrored = false;
 };
-using CameraStmt = std::variant<MountStmt, ImageStmt, LensStmt, SensorStmt>;
+struct CameraJitterStmt {  // `jitter 3cm 5deg`
+  Span span;
+  Quantity place, turn;
+};
+using CameraStmt = std::variant<MountStmt, ImageStmt, LensStmt, SensorStmt, CameraJitterStmt>;
 struct CameraDecl {
   Name name;
   std::optional<Name> like;

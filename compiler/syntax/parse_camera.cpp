@@ -67,4 +67,11 @@ CameraStmt Parser::camera_sensor() {
   return out;
 }
 
+CameraStmt Parser::camera_jitter() {
+  CameraJitterStmt out;
+  out.place = quantity();
+  out.turn = quantity();
+  return out;
+}
+
 }  // namespace probe::syntax

@@ -180,6 +180,7 @@ class Parser {
   CameraStmt camera_image();
   CameraStmt camera_lens();
   CameraStmt camera_sensor();
+  CameraStmt camera_jitter();
   DeclNode light_decl();
   LightStmt light_ambient();
   LightStmt light_sun();

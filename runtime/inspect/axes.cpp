@@ -8,6 +8,7 @@
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/roles.h"
+#include "runtime/plan/shakes.h"
 
 namespace probe::inspect {
 namespace {
@@ -179,6 +180,17 @@ bool same_arms(const plan::Plan& plan, const plan::TaskRecord& a, const plan::Ta
   return true;
 }
 
+// Whether the cameras stand alike in all starts that both have.
+bool same_shakes(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+  const auto ours = plan.episodes(a), theirs = plan.episodes(b);
+  for (std::size_t e = 0; e < std::min(ours.size(), theirs.size()); ++e) {
+    if (!std::ranges::equal(plan::shakes_of(plan.tables(), ours[e]),
+                            plan::shakes_of(plan.tables(), theirs[e])))
+      return false;
+  }
+  return true;
+}
+
 bool same_moves(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
   const auto legs = [&](const plan::TaskRecord& task) {
     return plan::slice_of(plan.tables().moves, task.moves);
@@ -266,7 +278,7 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
       case plan::Axis::kLight:
         return !scene_moves && !is_same("light");
       case plan::Axis::kCamera:
-        return !scene_moves && !is_same("camera");
+        return !scene_moves && (!is_same("camera") || !same_shakes(plan, a, b));
       case plan::Axis::kSensor:
         return a.views.count == b.views.count && !is_same_of_some("sensor");
       case plan::Axis::kRobot:

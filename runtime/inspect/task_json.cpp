@@ -22,6 +22,7 @@
 #include "runtime/inspect/wrap.h"
 #include "runtime/plan/ids.h"
 #include "runtime/plan/roles.h"
+#include "runtime/plan/shakes.h"
 
 namespace probe::inspect {
 namespace {
@@ -86,6 +87,24 @@ Json start_of(const plan::Plan& plan, const plan::EpisodeRecord& episode) {
                      {"yaw_deg", angles.yaw_deg}});
   }
   return start;
+}
+
+// A list a start, an entry a camera; empty where all stand as they say.
+Json shaken_of(const plan::Plan& plan, const plan::TaskRecord& task) {
+  Json starts = Json::array();
+  const auto views = plan.views(task);
+  for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
+    if (episode.shaken.count == 0) continue;
+    Json start = Json::array();
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      const plan::Shake shake = plan::shake_of(plan::shakes_of(plan.tables(), episode), i);
+      start.push_back({{"camera", plan.text(views[i].name)},
+                       {"moved_m", shake.moved},
+                       {"turned_wxyz", shake.turned}});
+    }
+    starts.push_back(std::move(start));
+  }
+  return starts;
 }
 
 // Suites that run some of the starts.
@@ -194,6 +213,7 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
     json["ids"]["starts"].push_back(hex(episode.start_id));
     json["ids"]["episodes"].push_back(hex(episode.episode_id));
   }
+  if (Json shaken = shaken_of(plan, task); !shaken.empty()) json["shaken"] = std::move(shaken);
   if (plan.scenes()[task.scene].fixtures.count > 0) json["fixtures"] = fixtures_of(plan, index);
   const Json regions = regions_of(plan, index);
   if (!regions.empty()) json["regions"] = regions;

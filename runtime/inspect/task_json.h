@@ -25,7 +25,8 @@ Json list(const plan::Plan& plan, std::span<const std::uint32_t> tasks,
 // allow, distances_m[], ids{prompt, judge, starts[], episodes[]}, questions[], not_asked[]}.
 // `robot` is robot_json.h's. `camera` is the first of `cameras`, whose `name` is what policies know it by. A distance is from
 // source to target, horizontal, in the order of the starts. Where suites run some of the starts,
-// `drawn`[]{suite, starts[]} has their numbers. `questions` and `not_asked` are those
+// `drawn`[]{suite, starts[]} has their numbers; where cameras jitter, `shaken`[][]{camera, moved_m[3],
+// turned_wxyz[4]} has how, a list a start, in the frame of the mount and about ahead, left, up. `questions` and `not_asked` are those
 // of question_json.h.
 Json describe(const plan::Plan& plan, std::uint32_t task);
 

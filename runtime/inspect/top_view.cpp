@@ -125,6 +125,12 @@ bool stands_still(const robot::RobotModel& model, int link) {
   }
 }
 
+bool is_shaken(const plan::Plan& plan, const plan::TaskRecord& task) {
+  return std::ranges::any_of(plan.episodes(task), [](const plan::EpisodeRecord& episode) {
+    return episode.shaken.count > 0;
+  });
+}
+
 struct Mounted {
   Pinhole eye;
   bool still = false;
@@ -233,6 +239,7 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     TopCamera& camera = view.cameras.emplace_back();
     camera.name = plan.text(plan.cameras()[names[i].camera].name);
+    if (is_shaken(plan, task)) camera.name += ", as written";
     const Pinhole& pinhole = cameras[i].eye;
     camera.eye = {pinhole.eye.x(), pinhole.eye.y()};
     Eigen::Vector2d right = -pinhole.axes.col(1).head<2>();

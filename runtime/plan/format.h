@@ -503,7 +503,9 @@ struct EpisodeRecord {
   Slice joints;  // kReals: where the joints of the scene's fixtures begin, in their order; empty:
                  // where the fixtures say
   Slice arm;  // kReals: where the robot's joints begin, in drive order; empty: where the scene says
-  std::uint64_t zero[4] = {};
+  Slice shaken;  // kReals, 7 a view of its task: how its cameras stand elsewhere, shakes.h; empty:
+                 // as they say
+  std::uint64_t zero[3] = {};
 };
 static_assert(sizeof(EpisodeRecord) == 128);
 

@@ -318,6 +318,7 @@ Sha256 IdHasher::start(const TaskRecord& task, const EpisodeRecord& episode) {
   }
   if (task.idle != 0) hash_idle(h, task);
   if (episode.arm.count != 0) h.text("arm").f64s(slice_of(tables_.reals, episode.arm));
+  if (episode.shaken.count != 0) h.text("shaken").f64s(slice_of(tables_.reals, episode.shaken));
   if (task.delay != 0) h.text("delay").u32(task.delay);
   if (task.moves.count != 0) hash_moves(h.text("moves"), task);
   return h.finish();
@@ -367,6 +368,11 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
   if (episode.arm.count != 0) {
     Hasher arm = tagged("vlaprobe.arm.1");
     parts.push_back({"arm", arm.f64s(slice_of(tables_.reals, episode.arm)).finish()});
+  }
+  if (episode.shaken.count != 0) {
+    Hasher shaken = tagged("vlaprobe.shaken.1");
+    parts.push_back(
+        {"place of the cameras", shaken.f64s(slice_of(tables_.reals, episode.shaken)).finish()});
   }
   const TaskRoles roles = roles_of(tables_, task);
   if (s.fixtures.count > 0) {

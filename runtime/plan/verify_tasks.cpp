@@ -155,6 +155,7 @@ Status RecordCheck::check(const EpisodeRecord& e) const {
   PROBE_TRY(check_zero(e.zero));
   PROBE_TRY(check_slice(e.joints, t.reals.size(), "REAL"));
   PROBE_TRY(check_slice(e.arm, t.reals.size(), "REAL"));
+  PROBE_TRY(check_slice(e.shaken, t.reals.size(), "REAL"));
   return check_slice(e.placements, t.placements.size(), "PLAC");
 }
 

@@ -2,6 +2,7 @@
 // begin.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "runtime/plan/limits.h"
 #include "runtime/plan/moves.h"
 #include "runtime/plan/roles.h"
+#include "runtime/plan/shakes.h"
 #include "runtime/plan/verify_records.h"
 
 namespace probe::plan {
@@ -86,6 +88,7 @@ class VariationCheck : FieldCheck {
       }
     }
     PROBE_TRY(moves());
+    PROBE_TRY(shakes());
     return arms();
   }
 
@@ -136,6 +139,26 @@ class VariationCheck : FieldCheck {
     for (std::uint32_t i = slice.first; i < slice.first + slice.count; ++i) {
       if (owned[i]) return fail(Rule::kCoverOwned, &slice, "a sensor or texture of two records");
       owned[i] = true;
+    }
+    return {};
+  }
+
+  Status shakes() const {
+    for (const TaskRecord& k : t.tasks) {
+      const std::size_t views = std::max<std::size_t>(1, k.views.count);
+      for (const EpisodeRecord& e : slice_of(t.episodes, k.episodes)) {
+        if (e.shaken.count == 0) continue;
+        if (e.shaken.count != kShakeReals * views)
+          return fail(Rule::kCameraShake, &e.shaken,
+                      fmt::format("an episode shakes its cameras by {} numbers, of its {} views "
+                                  "each has {}",
+                                  e.shaken.count, views, kShakeReals));
+        const auto numbers = shakes_of(t, e);
+        for (std::size_t view = 0; view < views; ++view) {
+          PROBE_TRY(check_magnitude(numbers.subspan(view * kShakeReals, 3), Magnitude::kPlace));
+          PROBE_TRY(check_unit(numbers.subspan(view * kShakeReals + 3, 4), "the turn of a camera"));
+        }
+      }
     }
     return {};
   }

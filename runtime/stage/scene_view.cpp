@@ -119,7 +119,7 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   PROBE_ASSIGN(const TaskBodies local, task_bodies(plan, task, *assets));
   auto view = std::unique_ptr<SceneView>(new SceneView(assets, std::move(trees)));
 
-  render::SceneSpec spec;
+  render::SceneSpec& spec = view->seen_;
   if (scene.backdrop != plan::kNone) {
     PROBE_ASSIGN(const double lift, lift_backdrop(plan, task, *assets));
     spec.statics.push_back({assets->backdrop(task.scene),
@@ -164,10 +164,20 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   spec.lights = make_lights(plan, light);
   spec.occlusion_rays = static_cast<int>(light.occlusion);
   for (const plan::ViewRecord& record : plan.views(task)) {
-    PROBE_ASSIGN(Eye eye, view->open_eye(plan, scene, record, spec, size));
+    PROBE_ASSIGN(Eye eye, view->open_eye(plan, scene, record, size));
     if (const plan::SensorRecord* sensor = plan.sensor(plan.cameras()[record.camera]))
       eye.sensor.emplace(*sensor, view->eyes_.size());
     view->eyes_.push_back(std::move(eye));
+  }
+  const auto episodes = plan.episodes(task);
+  const auto is_shaken = [](const plan::EpisodeRecord& e) { return e.shaken.count > 0; };
+  if (std::ranges::none_of(episodes, is_shaken)) return view;
+  for (const plan::EpisodeRecord& episode : episodes) {
+    const auto shaken = plan::shakes_of(plan.tables(), episode);
+    std::vector<plan::Shake>& shakes = view->shakes_[Sha256{episode.start_id}];
+    shakes.clear();
+    for (std::size_t i = 0; i < view->eyes_.size(); ++i)
+      shakes.push_back(plan::shake_of(shaken, i));
   }
   return view;
 }
@@ -189,10 +199,37 @@ Status check_shape(const scene::Texture& photo, const plan::CameraRecord& camera
                  where};
 }
 
-// `seen` is the scene as every camera sees it.
+Result<std::unique_ptr<render::Renderer>> SceneView::open_renderer(const Eye& eye) const {
+  render::SceneSpec spec = seen_;
+  spec.camera = carried(eye.on_mount, eye.mount);
+  spec.samples = eye.samples;
+  spec.photo = eye.photo;
+  return render::Renderer::create(std::move(spec), assets_->pictures());
+}
+
+Status SceneView::begin(const Sha256& start_id) {
+  if (shakes_.empty() || begun_ == start_id) return {};
+  const auto shakes = shakes_.find(start_id);
+  if (shakes == shakes_.end())
+    return Failure{Fault::kRender, "no start of this task", to_hex(start_id)};
+  for (std::size_t i = 0; i < eyes_.size(); ++i) {
+    Eye& eye = eyes_[i];
+    const plan::Shake& shake = shakes->second[i];
+    if (shake == eye.shake) continue;
+    eye.shake = shake;
+    eye.on_mount = eye.written;
+    eye.on_mount.position += to_vec(shake.moved);
+    eye.on_mount.forward_left_up =
+        eye.written.forward_left_up * to_quat(shake.turned).normalized().toRotationMatrix();
+    if (eye.moving_mount >= 0) continue;
+    PROBE_ASSIGN(eye.renderer, open_renderer(eye));
+  }
+  begun_ = start_id;
+  return {};
+}
+
 Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
-                                           const plan::ViewRecord& record,
-                                           const render::SceneSpec& seen, ImageSize size) {
+                                           const plan::ViewRecord& record, ImageSize size) {
   const robot::RobotModel& model = robot().parts->model;
   const plan::CameraRecord& camera = plan.cameras()[record.camera];
   Eye eye;
@@ -204,18 +241,17 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
     return Failure{Fault::kRender, "the robot has no link `" + mount_name + "`", where};
   if (!is_fixed(model, mount)) eye.moving_mount = mount;
   trees_.front().place(plan.joints(scene));
-  const Pose mount_pose = robot().link(mount);
-  PROBE_ASSIGN(eye.on_mount, make_camera(plan, camera));
-  resize(eye.on_mount, size);
-  render::SceneSpec spec = seen;
-  spec.camera = carried(eye.on_mount, mount_pose);
-  spec.samples = camera.samples == 0 ? 1 : camera.samples == 4 ? 2 : 4;  // a side
+  eye.mount = robot().link(mount);
+  PROBE_ASSIGN(eye.written, make_camera(plan, camera));
+  resize(eye.written, size);
+  eye.on_mount = eye.written;
+  eye.samples = camera.samples == 0 ? 1 : camera.samples == 4 ? 2 : 4;
   // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
   if (record.photo != plan::kNone && eye.moving_mount < 0) {
-    spec.photo = assets_->photo(record.photo);
-    PROBE_TRY(check_shape(*spec.photo, camera, where));
+    eye.photo = assets_->photo(record.photo);
+    PROBE_TRY(check_shape(*eye.photo, camera, where));
   }
-  PROBE_ASSIGN(eye.renderer, render::Renderer::create(std::move(spec), assets_->pictures()));
+  PROBE_ASSIGN(eye.renderer, open_renderer(eye));
   return eye;
 }
 
@@ -260,6 +296,7 @@ Result<std::span<const CameraFrame>> SceneView::render_all(std::span<const doubl
 
 Result<std::span<const CameraFrame>> SceneView::render_seen(
     const Moment& moment, const std::function<Placed(int step)>& at) {
+  PROBE_TRY(begin(moment.start_id));
   frames_.clear();
   int placed = -1;
   for (Eye& eye : eyes_) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
+#include "runtime/plan/shakes.h"
 #include "runtime/render/renderer.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/placed_tree.h"
@@ -47,7 +49,8 @@ class SceneView {
                                                   std::span<const Pose> objects);
   // What a policy sees at `moment`: every camera's picture as its sensor gives it, which may be
   // that of an earlier step. `at` says where things were then; what it points to lives until the
-  // next call of `at`. Valid until the next call.
+  // next call of `at`. Valid until the next call. Cameras that jitter stand as in the moment's
+  // start; `render` and `render_all` show them as they stood last, at first as they are written.
   struct Placed {
     std::span<const double> q;
     std::span<const Pose> objects;
@@ -64,14 +67,21 @@ class SceneView {
   struct Eye {
     std::string name;
     int moving_mount = -1;    // the robot's link that carries it, where that moves
-    render::Camera on_mount;  // its place in the link, its picture's size and lens
+    render::Camera written;   // its place in the link, its picture's size and lens
+    render::Camera on_mount;  // the same in the start that is looked at
+    plan::Shake shake;        // by which it differs
+    Pose mount;               // in world, where that stands still
+    std::shared_ptr<const scene::Texture> photo;
+    int samples = 1;  // a side
     std::unique_ptr<render::Renderer> renderer;
     std::optional<Sensor> sensor;
   };
 
+  // Puts the cameras where they stand in that start.
+  Status begin(const Sha256& start_id);
+  Result<std::unique_ptr<render::Renderer>> open_renderer(const Eye& eye) const;
   Result<Eye> open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
-                       const plan::ViewRecord& record, const render::SceneSpec& seen,
-                       ImageSize size);
+                       const plan::ViewRecord& record, ImageSize size);
   void place(std::span<const double> q, std::span<const Pose> objects);
   Result<render::FrameView> look(Eye& eye, bool full);
   SceneView(std::shared_ptr<const SharedAssets> assets, std::vector<PlacedTree> trees)
@@ -82,7 +92,10 @@ class SceneView {
   std::vector<PlacedTree> trees_;
   std::size_t objects_ = 0;
   std::vector<Pose> poses_;  // of the dynamic visuals: objects, then links tree by tree
+  render::SceneSpec seen_;   // the scene as every camera sees it
   std::vector<Eye> eyes_;
+  std::map<Sha256, std::vector<plan::Shake>> shakes_;  // by start, then eye; of tasks that have any
+  std::optional<Sha256> begun_;
   std::vector<CameraFrame> frames_;
 };
 

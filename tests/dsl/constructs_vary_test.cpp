@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "compiler/geometry/frame.h"
+#include "runtime/plan/shakes.h"
 #include "tests/dsl/built.h"
 
 using namespace probe;
@@ -113,6 +115,64 @@ TEST_CASE("camera_st, sensor: in any order, each once; the lens is the same") {
     CHECK(analyze_with_suite(std::string("camera c like eye { sensor ") + bad + " }\n")
               ->codes()
               .find("P0101") != std::string::npos);
+}
+
+TEST_CASE(
+    "camera_st: with `jitter` each start has its camera elsewhere, the same way for all that "
+    "jitter") {
+  const Built built(
+      "camera loose like eye { jitter 1cm 2deg }\ncamera looser like eye { jitter 2cm 0deg }\n"
+      "variants of red_on_tray { v { camera loose }; w { camera looser } }\n"
+      "variant x of v { horizon 63 steps }\n");
+  const plan::Plan& plan = built.plan();
+  CHECK(built.task("v").axes == bit(plan::Axis::kCamera));
+  const auto shake = [&](const char* task, std::size_t start) {
+    return plan::shake_of(plan::shakes_of(plan.tables(), plan.episodes(built.task(task))[start]),
+                          0);
+  };
+  CHECK(shake("red_on_tray", 0) == plan::Shake{});
+  for (const std::size_t start : {0u, 1u, 2u}) {
+    const plan::Shake loose = shake("v", start), looser = shake("w", start);
+    CHECK(loose != plan::Shake{});
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(std::abs(loose.moved[i]) <= 0.01);
+      CHECK(looser.moved[i] == doctest::Approx(2 * loose.moved[i]));
+      // About each axis by up to 2 degrees.
+      CHECK(std::abs(loose.turned[1 + i]) < std::sin(1.001 * 3.14159265 / 180));
+    }
+    CHECK(looser.turned == plan::Shake{}.turned);
+    CHECK(shake("x", start).moved == loose.moved);
+    CHECK(shake("x", start).turned == loose.turned);
+  }
+  CHECK(shake("v", 0).moved != shake("v", 1).moved);
+  const auto start_id = [&](const char* task) {
+    return plan.episodes(built.task(task))[0].start_id;
+  };
+  CHECK(start_id("v") != start_id("red_on_tray"));
+  CHECK(start_id("v") == start_id("x"));
+  for (const char* bad : {"-1cm 2deg", "1cm -2deg", "1cm 91deg"})
+    CHECK(analyze_with_suite(std::string("camera c like eye { jitter ") + bad + " }\n")
+              ->codes()
+              .find("P0304") != std::string::npos);
+  CHECK(analyze_with_suite("camera c like eye { jitter 1cm 2cm }\n")->codes() == "P0302");
+  CHECK(analyze_with_suite("camera c like eye { jitter 1cm }\n")->codes() == "P0101");
+}
+
+TEST_CASE(
+    "camera_st: with `jitter` what is left in one start need not be so in the next; photos stay") {
+  const std::string loose = "camera loose like eye { jitter 1cm 2deg }\n";
+  const auto a = clean(loose + "variant v of red_on_tray { camera loose }\n");
+  const sema::Scene& bench = named(a->model.scenes, "bench");
+  CHECK(sema::frame_of(a->model, bench, named(a->model.cameras, "eye")).sight.has_value());
+  CHECK_FALSE(sema::frame_of(a->model, bench, named(a->model.cameras, "loose")).sight.has_value());
+  const auto photo =
+      analyze_with_suite(loose +
+                         "scene pictured like bench { camera loose overlay \"wall.png\" }\n"
+                         "variant v of red_on_tray { scene pictured }\n");
+  CHECK(photo->codes().find("P0304") != std::string::npos);
+  CHECK_MESSAGE(photo->said().find("`loose` jitters, and the photo `wall.png` behind its picture "
+                                   "in `v` is from one place") != std::string::npos,
+                photo->said());
 }
 
 TEST_CASE("camera_st: `sensor none` takes a copied one away") {
@@ -254,7 +314,8 @@ TEST_CASE("binder: numbers, in a range or a list, where a task takes some") {
 
 TEST_CASE("task_st, count: drawn distractors grow by the number and have no role") {
   const auto a = clean(
-      "object third like red { color blue; paint blue; name \"third block\" }\nobject fourth like red { color "
+      "object third like red { color blue; paint blue; name \"third block\" }\nobject fourth like "
+      "red { color "
       "blue; paint blue; name \"fourth "
       "block\" }\n"
       "variants of red_on_tray { one { distractors 1 of (red, blue, third, fourth) seed 3 }\n"
@@ -276,7 +337,8 @@ TEST_CASE("task_st, count: variants of variants draw what all variants of their 
     const std::string drawn =
         "{ distractors 1 of (blue, third, fourth) seed " + std::to_string(seed) + " }\n";
     const auto a = clean(
-        "object third like red { color blue; paint blue; name \"third block\" }\nobject fourth like red { "
+        "object third like red { color blue; paint blue; name \"third block\" }\nobject fourth "
+        "like red { "
         "color blue; paint blue; name \"fourth "
         "block\" }\n"
         "variant late of red_on_tray { delay 2 steps }\n"

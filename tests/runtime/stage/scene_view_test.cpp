@@ -34,6 +34,9 @@ camera shifted like small { lens 311.794px, 311.794px, 169.7505px, 119.7725px }
 camera smooth like small { image 320 x 240 samples 4 }
 camera wrist { mount widowx.gripper_link at (0cm, 0cm, 8cm) look (1, 0, -0.4)
   image 320 x 240; lens 250px, 250px, 160px, 120px }
+camera loose like small { jitter 3cm 5deg }
+camera wrist_loose like wrist { jitter 5mm 3deg }
+scene loose_eyes like table { camera loose, wrist_loose as hand }
 scene photographed like table { camera third_view overlay "wall.png" }
 scene wide_photo like table { camera third_view overlay "wide.png" }
 scene lowered like table { surface 82cm area (-34cm, -20cm) .. (4cm, 20cm) }
@@ -51,6 +54,7 @@ variants of carrot_on_plate {
   carrot_shifted { camera shifted }
   carrot_smooth  { camera smooth }
   carrot_wrist   { camera wrist }
+  carrot_loose   { scene loose_eyes }
   carrot_photo   { scene photographed }
   carrot_eyes    { scene three_eyes }
   carrot_wide    { scene wide_photo }
@@ -63,7 +67,7 @@ variant carrot_photo_lamp of carrot_photo { light lamp }
 variant eggplant_fine of put_eggplant_in_basket { light lamp }
 suite pictures trained on bridge_v2 {
   tasks { carrot_on_plate, carrot_evening, carrot_lamp, carrot_corners, carrot_no_corners, carrot_nearer,
-          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes, carrot_wide,
+          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes, carrot_wide, carrot_loose,
           carrot_lowered, carrot_raised, carrot_lowered_photo,
           put_eggplant_in_basket, eggplant_fine }
   seeds 42
@@ -373,4 +377,68 @@ TEST_CASE("over an episode of every scene a cached picture equals one traced ane
 }
 
 }  // namespace
+
+TEST_CASE("a camera that jitters stands in each start where the plan says, bit for bit again") {
+  const Pictures pictures;
+  const auto stage = pictures.stage("carrot_loose");
+  const plan::Plan& plan = pictures.plan();
+  const plan::TaskRecord& record = plan.tasks()[pictures.task("carrot_loose")];
+  std::vector<Pose> objects;
+  for (const auto& placement : plan.placements(plan.episodes(record)[0])) {
+    const auto& p = placement.position;
+    const auto& r = placement.rotation;
+    objects.push_back({Vec3(p[0], p[1], 0.89), Quat(r[0], r[1], r[2], r[3])});
+  }
+  const auto q = plan.joints(plan.scenes()[record.scene]);
+  const auto seen = [&](std::size_t start) {
+    const Sha256 id{plan.episodes(record)[start].start_id};
+    const auto frames = stage.view->render_seen({id, 0}, [&](int) {
+      return SceneView::Placed{q, objects};
+    });
+    REQUIRE_MESSAGE(frames.ok(), (frames.ok() ? "" : to_text(frames.failure())));
+    return std::pair(copy((*frames)[0].frame), copy((*frames)[1].frame));
+  };
+  const Picture written = copy(stage.view->render(q, objects));
+  const auto first = seen(0), second = seen(1);
+  CHECK(first.first != written);
+  CHECK(first.first != second.first);
+  CHECK(first.second.rgb != second.second.rgb);  // the one on the wrist, too
+  CHECK(seen(0) == first);
+  // A cached picture is a full one, there too.
+  CHECK(copy(stage.view->render_full(q, objects)) == copy(stage.view->render(q, objects)));
+  // The nearest point of the table is where a camera that is moved so would see it: of every pixel
+  // its ray from the shaken eye meets the plane of the surface at the depth of the picture.
+  const plan::Shake shake =
+      plan::shake_of(plan::shakes_of(plan.tables(), plan.episodes(record)[0]), 0);
+  const auto look = render::look_along({1, 0.553, -1.085});
+  REQUIRE(look.ok());
+  const plan::SceneRecord& scene = plan.scenes()[record.scene];
+  const Quat base(scene.base_rotation[0], scene.base_rotation[1], scene.base_rotation[2],
+                  scene.base_rotation[3]);
+  const Vec3 eye =
+      Vec3(scene.base_position.data()) + base * (Vec3(0, -0.16, 0.36) + Vec3(shake.moved.data()));
+  const Mat3 axes =
+      base.toRotationMatrix() * *look *
+      Quat(shake.turned[0], shake.turned[1], shake.turned[2], shake.turned[3]).toRotationMatrix();
+  std::size_t on_table = 0, all = 0;
+  for (int row = 200; row < 240; row += 4) {
+    for (int column = 0; column < 320; column += 4) {
+      const Vec3 ray =
+          axes * Vec3(1, -(column + 0.5 - 159.7505) / 311.794, -(row + 0.5 - 119.7725) / 311.794);
+      const double depth = (scene.surface_z - eye.z()) / ray.z();
+      const double drawn =
+          first.first.depth[static_cast<std::size_t>(row) * 320 + static_cast<std::size_t>(column)];
+      ++all;
+      if (std::abs(depth - drawn) < 2e-4) ++on_table;
+    }
+  }
+  CHECK(on_table > all / 2);
+  // And a start that is of another task is refused.
+  const auto strange = stage.view->render_seen({Sha256{}, 0}, [&](int) {
+    return SceneView::Placed{q, objects};
+  });
+  REQUIRE_FALSE(strange.ok());
+  CHECK(strange.failure().message == "no start of this task");
+}
+
 }  // namespace probe::stage
