@@ -78,7 +78,14 @@ void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double 
                      [&](const lower::ConstantMetric& found) { return found.metric == i; });
     const Span& span = program.metrics[i].span;
     Constant& constant = constants_[{span.file.value, span.begin}];
-    constant.metric = program.metrics[i];
+    // What nothing is in wherever the metric is used.
+    if (constant.values.empty() && !constant.varies) {
+      constant.metric = program.metrics[i];
+    } else {
+      std::erase_if(constant.metric.empty, [&](const Span& set) {
+        return !program.metrics[i].empty.contains(set);
+      });
+    }
     if (known == findings.constants.end()) {
       constant.varies = true;
     } else {
@@ -93,9 +100,10 @@ void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double 
 void Emitter::report_constants() {
   for (const auto& [place, constant] : constants_) {
     if (constant.varies || constant.values.size() != 1) continue;
-    diagnostics_.report(
+    Diagnostic& said = diagnostics_.report(
         Code::P0602, constant.metric.span,
         "metric `" + constant.metric.name + "` is always " + *constant.values.begin());
+    for (const Span& set : constant.metric.empty) said.label(set, "nothing is in it");
   }
 }
 

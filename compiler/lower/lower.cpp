@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "compiler/lower/builder.h"
 #include "compiler/model/measures.h"
@@ -37,9 +38,10 @@ class Lowering {
   // False when something was reported.
   bool metric(const sema::Metric& metric) {
     variables_.assign(metric.variables, Value{});
+    empty_.clear();
     Value value = eval(metric.expr);
     builder_.at(metric.readout_span);
-    ProgramMetric record{metric.name, plan::MetricType::kBool, metric.readout, metric.span};
+    ProgramMetric record{metric.name, plan::MetricType::kBool, metric.readout, metric.span, empty_};
     const plan::ReadoutInfo& readout = plan::info(metric.readout);
     if (readout.has_monitor()) value = builder_.monitor(readout.monitor, value);
     record.type = readout.is_truth() ? plan::MetricType::kBool : plan::MetricType::kReal;
@@ -582,7 +584,9 @@ class Lowering {
 
   Value quantified(const ExprNode& node) {
     std::vector<Value> values;
-    for (const std::uint16_t body : members(node.set)) {
+    const Bodies all = members(node.set);
+    if (all.empty()) empty_.insert(model_.exprs.sets[node.set].span);
+    for (const std::uint16_t body : all) {
       variables_[node.a] = Value::of_body(body);
       values.push_back(eval(node.args[0]));
     }
@@ -911,6 +915,7 @@ class Lowering {
   Builder builder_;
   std::vector<Value> variables_;
   std::optional<Bodies> alike_;
+  std::set<Span> empty_;  // of the metric that is being lowered
   unsigned motions_ = 0;  // kSlidesMet, kTurnsMet: of the travels in what is being lowered
   bool ok_ = true;
 };

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ProgramMetric {
   plan::MetricType type = plan::MetricType::kBool;
   plan::Readout readout = plan::Readout::kAtEnd;
   Span span;
+  std::set<Span> empty = {};  // sets of its quantifiers, and of its predicates', that nothing is in
 };
 
 struct Program {

@@ -33,6 +33,25 @@ TEST_CASE("a metric that no measurement can change is constant") {
   CHECK(codes("once height(source) < 1m") == "");
 }
 
+TEST_CASE("a metric that is constant since nothing is in a set names the set") {
+  auto a = test::analyze_with_suite(
+      "metrics m like plain { x = once any d in distractors: height(d) > 5cm\n"
+      "  y = once any o in others: height(o) > 500m }\n"
+      "task t like red_on_tray { metrics m }");
+  REQUIRE_MESSAGE(!a->diagnostics.has_errors(), a->said());
+  REQUIRE(emit::emit(a->model, a->sources, {a->files[0].file.id},
+                     {test::asset_root(), "", "", false}, a->diagnostics)
+              .ok());
+  REQUIRE(a->codes() == "P0602 P0602");
+  const Diagnostic& empty = a->diagnostics.items()[0];
+  REQUIRE(empty.labels.size() == 1);
+  CHECK(empty.labels[0].text == "nothing is in it");
+  CHECK(a->sources.file(empty.labels[0].span.file)
+            .text()
+            .substr(empty.labels[0].span.begin, empty.labels[0].span.size()) == "distractors");
+  CHECK(a->diagnostics.items()[1].labels.empty());
+}
+
 TEST_CASE("every read-out of a constant is constant") {
   CHECK(codes("max 3") == "P0602");
   CHECK(codes("min 3cm") == "P0602");
