@@ -75,6 +75,17 @@ void label_axes(const Model& model, const Task& task, const Task& baseline,
   }
 }
 
+// Starts are chosen anew in every task: words of place that a variant looks at from elsewhere are
+// clear in others than its baseline's.
+void note_chosen(const Task& task, const Task& baseline, Diagnostic& diagnostic) {
+  if (!plan::moves(task.axes, plan::Axis::kLayout) || task.clear.empty() ||
+      baseline.clear.empty() || task.layout != baseline.layout)
+    return;
+  diagnostic.note("`where clear` chooses other starts here, " + std::to_string(task.starts.size()) +
+                  ", than of `" + baseline.name + "`, " + std::to_string(baseline.starts.size()) +
+                  ": that is the axis layout");
+}
+
 void check_edge(const Model& model, const Task& task, Reporter& reporter) {
   const About about(reporter, task.decl_span);
   const Task& baseline = model.tasks[task.baseline];
@@ -108,6 +119,7 @@ void check_edge(const Model& model, const Task& task, Reporter& reporter) {
                       " moves");
     }
   }
+  note_chosen(task, baseline, diagnostic);
   diagnostic.note("axes: " + axis_list(task.axes))
       .note("to keep it, put @allow(confounded, \"why\") above the declaration");
 }

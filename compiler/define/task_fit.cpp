@@ -163,7 +163,11 @@ void check_cameras(Context& context, const Task& task, bool& poisoned) {
         .report(Situation::kOtherRobot, task.span,
                 "camera `" + camera.name + "` of `" + task.name +
                     "` is mounted on a robot that is not in scene `" + scene.name + "`")
-        .label(camera.mount_link.span, "this link");
+        .label(camera.mount_link.span, "this link")
+        .help("a scene with another robot needs a camera of its own: `camera C { mount " +
+              (scene.robot == RobotId::kNone ? std::string("ROBOT")
+                                             : context.model.robots[scene.robot].name) +
+              ".LINK at ... }`, and `camera C` in it");
     poisoned = true;
   }
 }

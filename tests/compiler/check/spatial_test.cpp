@@ -239,4 +239,7 @@ TEST_CASE("another camera chooses other starts, which is another layout") {
       "distractors blue; refer source as side }\n"
       "variant v of some { camera opposite }");
   CHECK(plan::axis_names(a->task("v").axes) == std::vector<std::string_view>{"layout", "camera"});
+  CHECK_MESSAGE(a->said().find("note: `where clear` chooses other starts here, 2, than of `some`, "
+                               "2: that is the axis layout") != std::string::npos,
+                a->said());
 }
