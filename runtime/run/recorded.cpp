@@ -84,28 +84,33 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const st
   return std::shared_ptr<const servers::RecordedEpisodes>(std::move(steps));
 }
 
-Result<servers::ActionForm> only_form(const std::string& dir) {
+Result<StoredActions> only_actions(const std::string& dir) {
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
-  std::optional<std::string> law;
+  std::optional<std::pair<std::string, std::uint32_t>> known;  // law, numbers of an action
   std::set<std::string> tasks;
   for (const store::ResultRow& row : rows) {
     // A task has one robot.
     if (row.invalid || !tasks.insert(row.task).second) continue;
     PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
     const auto& joints = trace.header.joint_actions;
-    const std::string here = joints ? joints->law : std::string();
-    if (law && *law != here) {
+    const std::pair<std::string, std::uint32_t> here(joints ? joints->law : std::string(),
+                                                     joints ? joints->count : 0);
+    if (known && *known != here) {
       return Failure{Fault::kUsage,
-                     "has actions of several laws, and a server answers in one: run the tasks of "
+                     "has actions of several laws or arms, and a server answers in those of one: "
+                     "run the tasks of "
                      "one robot into a folder of their own",
                      dir};
     }
-    law = here;
+    known = here;
   }
-  const robot::KindRow* kind = robot::find_kind(law.value_or(""));
-  if (kind == nullptr) return servers::ActionForm::kDelta;
-  return kind->layout == robot::ActionLayout::kJoints ? servers::ActionForm::kJoints
-                                                      : servers::ActionForm::kJointSteps;
+  if (!known) return StoredActions{};
+  const robot::KindRow* kind = robot::find_kind(known->first);
+  if (kind == nullptr) return StoredActions{};
+  return StoredActions{kind->layout == robot::ActionLayout::kJoints
+                           ? servers::ActionForm::kJoints
+                           : servers::ActionForm::kJointSteps,
+                       static_cast<int>(known->second) - 1};  // behind them the gripper's
 }
 
 Result<std::optional<int>> only_seed(const std::string& dir) {

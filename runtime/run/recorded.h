@@ -25,8 +25,13 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const st
                                                                         int most);
 
 // What the actions of a run's valid episodes are, as a profile says it: changes of the tool, or
-// what the law of its robots takes. Fails (kUsage) where there are several.
-Result<servers::ActionForm> only_form(const std::string& dir);
+// what the law of its robots takes, for an arm of so many joints (else 0). Fails (kUsage) where
+// there are several.
+struct StoredActions {
+  servers::ActionForm form = servers::ActionForm::kDelta;
+  int arm_joints = 0;
+};
+Result<StoredActions> only_actions(const std::string& dir);
 
 // Which seed the episodes of a run are of, where its policy draws, so that of another seed they
 // would be others; nothing where it draws nothing, or there are several.

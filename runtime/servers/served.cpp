@@ -215,6 +215,8 @@ std::string options_for_served(Protocol protocol, const ServeOptions& options) {
   text += row_of(protocol).served_options;
   if (options.keeps_episode && row_of(protocol).has_one_place) text += "&worlds=one";
   if (options.seed) text += "&seed=" + std::to_string(*options.seed);
+  if (names_joints(options.form) && options.arm_joints > 0)
+    text += "&arm.joints=" + std::to_string(options.arm_joints);
   if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
   if (options.batch > 1) text += "&batch=" + std::to_string(options.batch);
   return text;

@@ -65,6 +65,7 @@ struct ServeOptions {
   int batch = 1;
   std::string dialect;                   // of GR00T and OpenVLA, as in a profile
   ActionForm form = ActionForm::kDelta;  // of the policy's actions: changes of the tool, or joints
+  int arm_joints = 0;                    // whose actions these are, of joints
   bool keeps_episode = false;            // the policy does, from one question to the next
   std::optional<int> seed = {};          // its episodes are of this one alone
   wire::TlsFiles tls = {};               // of protocols over WebSocket and HTTP; none: plain

@@ -85,9 +85,10 @@ int serve_verb(const ServeArguments& arguments) {
     const auto seed = run::only_seed(*dir);
     if (!seed) return report(seed.failure());
     options.seed = *seed;
-    const auto form = run::only_form(*dir);
-    if (!form) return report(form.failure());
-    options.form = *form;
+    const auto actions = run::only_actions(*dir);
+    if (!actions) return report(actions.failure());
+    options.form = actions->form;
+    options.arm_joints = actions->arm_joints;
     const bool together = options.batch > 1;
     const auto episodes =
         together ? run::recorded_steps(*dir, options.chunk) : run::recorded_episodes(*dir);

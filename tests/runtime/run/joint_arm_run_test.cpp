@@ -66,10 +66,15 @@ TEST_CASE("what an arm was told by its joints is stored, proven, repeated and se
     REQUIRE_MESSAGE(episodes.ok(), to_text(episodes.failure()));
     servers::ServeOptions served;
     served.chunk = 4;
-    const auto form = only_form(folder / "expert");
-    REQUIRE(form.ok());
-    CHECK((*form == servers::ActionForm::kJoints) == (std::string(law) == "joint_position"));
-    served.form = *form;
+    const auto actions = only_actions(folder / "expert");
+    REQUIRE(actions.ok());
+    CHECK((actions->form == servers::ActionForm::kJoints) ==
+          (std::string(law) == "joint_position"));
+    CHECK(actions->arm_joints == 7);
+    served.form = actions->form;
+    served.arm_joints = actions->arm_joints;
+    CHECK(servers::options_for_served(servers::Protocol::kOpenpi, served).find("&arm.joints=7") !=
+          std::string::npos);
     served.policy = servers::serve_recorded(*episodes, false);
     const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
     REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
@@ -115,7 +120,7 @@ TEST_CASE("actions of joints are served by protocols that have them alone, and o
   RunOptions both = options_for(folder / "both", "null");
   both.episodes = {0, 0};
   must_run(example(), both);
-  const auto mixed = only_form(folder / "both");
+  const auto mixed = only_actions(folder / "both");
   REQUIRE_FALSE(mixed.ok());
   CHECK(mixed.failure().message.find("has actions of several laws") == 0);
 }
