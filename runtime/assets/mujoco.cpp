@@ -344,7 +344,8 @@ Status apply(const MujocoChange& change, const std::string& file, Model& model) 
   }
   if (found == 1 && !change.name.empty()) return {};
   return Failure{Fault::kAsset,
-                 fmt::format("{} bodies and geoms are called `{}`, which is to be changed", found, change.name),
+                 fmt::format("{} {} called `{}`, which is to be changed", found,
+                             change.size || change.friction ? "geoms are" : "bodies and geoms are", change.name),
                  file};
 }
 

@@ -55,7 +55,7 @@ struct MujocoSite {
 struct MujocoJoint {
   std::string name, part;      // as declared; the part that it moves
   bool slides = false;
-  double lower = 0, upper = 0; // m or rad
+  double lower = 0, upper = 0; // m or rad; both 0: it turns without end
 };
 
 // A box or a plane that stands in a room and is felt.

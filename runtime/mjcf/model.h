@@ -108,12 +108,12 @@ struct Joint {
   Vec3 axis{0, 0, 1};            // unit, in its body's frame
   bool limited = false;
   double lower = 0, upper = 0;  // rad or m
-  double reference = 0;         // its value where the body is as the file has it
+  double reference = 0;         // `ref`: its value where the body is as the file has it
   double damping = 0;           // N m s, N s/m
-  double friction = 0;          // N m, N
+  double friction = 0;          // `frictionloss`: N m, N
   double armature = 0;          // kg m2, kg
   double stiffness = 0;         // N m/rad, N/m
-  double rest = 0;              // rad or m
+  double rest = 0;              // `springref`: rad or m
   At at;
 };
 

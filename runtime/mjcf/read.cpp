@@ -54,11 +54,8 @@ class ModelReader {
     if (given != nullptr) model_.compiler = *given;
     for (const Element& section : document_.root.children) {
       if (section.tag != "compiler") continue;
-      if (given == nullptr) {
-        PROBE_TRY(read_compiler(section));
-      } else {
-        PROBE_TRY(check_attributes(section));
-      }
+      PROBE_TRY(check_leaf(section));
+      if (given == nullptr) PROBE_TRY(read_compiler(section));
     }
     for (const Element& section : document_.root.children) {
       if (section.tag == "asset") PROBE_TRY(read_assets(section));
@@ -70,15 +67,13 @@ class ModelReader {
     model_.bodies.push_back(std::move(world));
     for (const Element& section : document_.root.children) {
       if (section.tag != "worldbody") continue;
-      if (section.find("childclass") != nullptr || !section.attributes.empty())
-        note(section.at, "attributes of `worldbody` are not read");
+      PROBE_TRY(check_attributes(section));
       PROBE_TRY(read_content(section, 0, "main", Pose{}));
     }
     return std::move(model_);
   }
 
   Status read_compiler(const Element& element) {
-    PROBE_TRY(check_attributes(element));
     const Values values(document_, element);
     Compiler& c = model_.compiler;
     constexpr std::string_view kAngles[] = {"radian", "degree"};
@@ -130,12 +125,31 @@ class ModelReader {
 
   // Every element of a class, too: a slip in one of those is as wrong.
   Status check_class(const Element& element) {
+    PROBE_TRY(check_attributes(element));
     for (const Element& child : element.children) {
       if (child.tag == "default") {
         PROBE_TRY(check_class(child));
-      } else if (find_schema(child.tag) != nullptr) {
-        PROBE_TRY(check_attributes(child));
+        continue;
       }
+      constexpr std::string_view kRead = "geom site joint camera light mesh material texture";
+      if (has_word(kRead, child.tag)) {
+        PROBE_TRY(check_leaf(child));
+      } else if (is_unread_in_default(child.tag)) {
+        note(child.at, fmt::format("`{}` of a class is not read", child.tag));
+      } else {
+        return unknown(child, "a class");
+      }
+    }
+    return {};
+  }
+
+  // Attributes, and that nothing stands in an element that holds nothing.
+  Status check_leaf(const Element& element) {
+    PROBE_TRY(check_attributes(element));
+    for (const Element& child : element.children) {
+      if (!has_word(find_schema(element.tag)->children, child.tag))
+        return unknown(child, ("`" + element.tag + "`").c_str());
+      note(child.at, fmt::format("`{}` of `{}` is not read", child.tag, element.tag));
     }
     return {};
   }
@@ -168,7 +182,7 @@ class ModelReader {
 
   // An element over its class; the class of those around it unless it says one.
   Result<Values> values_of(const Element& element, std::string_view childclass) {
-    PROBE_TRY(check_attributes(element));
+    PROBE_TRY(check_leaf(element));
     std::string_view name = childclass;
     if (const std::string* said = element.find("class")) {
       if (!classes_.has(*said))
@@ -191,12 +205,13 @@ class ModelReader {
   bool is_first(const std::vector<Asset>& known, const std::string& name, const Element& element) {
     const auto other = std::ranges::find(known, name, &Asset::name);
     if (other == known.end()) return true;
-    note(element.at, fmt::format("a second {} `{}`: the one of line {} counts", element.tag,
-                                 printable(name, 60), other->at.line));
+    note(element.at, fmt::format("a second {} `{}`: the one of {} counts", element.tag,
+                                 printable(name, 60), document_.where(other->at)));
     return false;
   }
 
   Status read_assets(const Element& section) {
+    PROBE_TRY(check_attributes(section));
     for (const Element& element : section.children) {
       if (element.tag == "texture") {
         PROBE_TRY(read_texture(element));
@@ -288,8 +303,6 @@ class ModelReader {
 
   Status read_material(const Element& element) {
     PROBE_ASSIGN(const Values values, values_of(element, "main"));
-    for (const Element& child : element.children)
-      note(child.at, fmt::format("`{}` of `material` is not read", printable(child.tag, 60)));
     Material material;
     material.at = element.at;
     PROBE_TRY(values.read("name", material.name));
@@ -565,7 +578,7 @@ class ModelReader {
   }
 
   Status read_inertial(const Element& element, std::size_t body) {
-    PROBE_TRY(check_attributes(element));
+    PROBE_TRY(check_leaf(element));
     const Values values(document_, element);
     Body& of = model_.bodies[body];
     if (of.inertial) return fail(element.at, "a second `inertial`");

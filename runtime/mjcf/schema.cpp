@@ -13,6 +13,9 @@ constexpr auto kSchemas = std::to_array<ElementSchema>({
      "inertiagrouprange exactmeshinertia boundmass boundinertia coordinate",
      "settotalmass balanceinertia fitaabb", "fusestatic discardvisual usethread convexhull alignfree "
      "saveinertial"},
+    {"default", "class", "", ""},
+    {"asset", "", "", ""},
+    {"worldbody", "", "", ""},
     {"body", "name childclass pos quat axisangle euler xyaxes zaxis", "mocap gravcomp",
      "user sleep"},
     {"frame", "name childclass pos quat axisangle euler xyaxes zaxis", "", ""},
@@ -26,7 +29,7 @@ constexpr auto kSchemas = std::to_array<ElementSchema>({
     {"geom",
      "name class type pos quat axisangle euler xyaxes zaxis fromto size mesh material rgba mass "
      "density shellinertia group contype conaffinity condim friction solref solimp margin",
-     "hfield fitscale fluidshape fluidcoef", "priority solmix gap user"},
+     "hfield fitscale fluidshape fluidcoef", "priority solmix gap user", "plugin"},
     {"site", "name class type pos quat axisangle euler xyaxes zaxis fromto size rgba group",
      "material", "user"},
     {"camera", "name class pos quat axisangle euler xyaxes zaxis fovy mode",
@@ -36,14 +39,14 @@ constexpr auto kSchemas = std::to_array<ElementSchema>({
      "name class pos dir directional castshadow ambient diffuse specular attenuation cutoff "
      "exponent mode", "target type", "active bulbradius"},
     {"mesh", "name class file scale refpos refquat inertia",
-     "vertex normal texcoord face builtin params smoothnormal", "content_type maxhullvert"},
+     "vertex normal texcoord face builtin params smoothnormal", "content_type maxhullvert", "plugin"},
     {"texture",
      "name class type file fileright fileleft fileup filedown filefront fileback builtin rgb1 rgb2 "
      "width height hflip vflip",
      "mark markrgb random gridsize gridlayout nchannel", "content_type colorspace"},
     {"material",
      "name class texture texrepeat texuniform emission specular shininess reflectance rgba",
-     "metallic roughness", ""},
+     "metallic roughness", "", "layer"},
 });
 
 constexpr std::string_view kUnreadSections =
@@ -51,6 +54,9 @@ constexpr std::string_view kUnreadSections =
     "deformable";
 constexpr std::string_view kUnreadAssets = "hfield skin model";
 constexpr std::string_view kUnreadInBody = "composite flexcomp attach replicate plugin";
+
+constexpr std::string_view kUnreadInDefault =
+    "pair equality tendon general motor position velocity intvelocity damper cylinder muscle adhesion";
 
 }  // namespace
 
@@ -70,6 +76,7 @@ const ElementSchema* find_schema(std::string_view tag) {
 
 bool is_unread_section(std::string_view tag) { return has_word(kUnreadSections, tag); }
 bool is_unread_asset(std::string_view tag) { return has_word(kUnreadAssets, tag); }
+bool is_unread_in_default(std::string_view tag) { return has_word(kUnreadInDefault, tag); }
 bool is_unread_in_body(std::string_view tag) { return has_word(kUnreadInBody, tag); }
 
 }  // namespace probe::mjcf

@@ -61,7 +61,7 @@ Quat turn_of_z(const Vec3& axis);
 // Classes of `default` elements by name; "main" is the outermost.
 class Classes {
  public:
-  // Fails (kAsset) on a class of a name that is taken or without one, and where elements are nested that cannot be.
+  // Fails (kAsset) on a class of a name that is taken or without one.
   static Result<Classes> read(const Document& document);
 
   bool has(std::string_view name) const { return classes_.find(name) != classes_.end(); }

@@ -67,8 +67,8 @@ void add_mujoco(Verb assets, int& exit) {
   auto arguments = std::make_shared<Arguments>();
   Verb verb = assets.add_subcommand("mujoco", "objects and fixtures of MuJoCo (MJCF) as assets and text");
   verb.footer(
-      "writes objects/, fixtures/ and a NAME.probe for each FILE with its declaration; one line for each thing that\n"
-      "is odd or not read, with file and line\n"
+      "writes objects/, fixtures/ or scenes/, and a NAME.probe with the declaration of each object and fixture; one line for\n"
+      "each thing that is odd or not read, with file and line\n"
       "example: vlaprobe assets mujoco mug/mug.xml -o mine --merged-into robosuite/models/assets/base.xml");
   assets::MujocoFolderOptions& options = arguments->options;
   verb.add_option("FILE", options.files, "MJCF of one object or fixture each").required();
