@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "runtime/assets/mujoco_felt.h"
@@ -13,6 +13,7 @@
 #include "runtime/assets/mujoco_text.h"
 #include "runtime/assets/mujoco_thing.h"
 #include "runtime/mjcf/read.h"
+#include "runtime/scene/collision_mesh.h"
 #include "runtime/scene/hull.h"
 
 namespace probe::assets {
@@ -54,12 +55,16 @@ class Conversion {
                                ": nothing in it moves: taken as an object; say if it is a fixture");
     }
     if (asset_.kind == MujocoKind::kObject && moves)
-      return Failure{Fault::kAsset, "an object whose parts move on joints: it can only be a fixture",
+      return Failure{Fault::kAsset,
+                     "an object whose parts move on joints: it can only be a fixture",
                      model_.where(thing_.links[1].joint->at)};
     if (asset_.kind == MujocoKind::kFixture && thing_.is_free)
-      asset_.notes.push_back(options_.file + ": its free joint is left out: a fixture stands where it is put");
+      asset_.notes.push_back(options_.file +
+                             ": its free joint is left out: a fixture stands where it is put");
     for (const MujocoLink& link : thing_.links) {
-      PROBE_ASSIGN(std::vector<FeltPart> parts, felt_parts(model_, link, meshes_, asset_.kind == MujocoKind::kObject, asset_.notes));
+      PROBE_ASSIGN(
+          std::vector<FeltPart> parts,
+          felt_parts(model_, link, meshes_, asset_.kind == MujocoKind::kObject, asset_.notes));
       felt_.push_back(std::move(parts));
     }
     PROBE_TRY(measure());
@@ -100,7 +105,8 @@ class Conversion {
     if (first) return Failure{Fault::kAsset, "nothing of it can be touched", options_.file};
     asset_.mass = mass_.mass;
     asset_.center_of_mass = mass_.center;
-    asset_.friction = std::ranges::max_element(frictions, {}, [](const auto& f) { return f.second; })->first;
+    asset_.friction =
+        std::ranges::max_element(frictions, {}, [](const auto& f) { return f.second; })->first;
     if (frictions.size() > 1) {
       std::string list;
       for (const auto& [friction, count] : frictions)
@@ -114,7 +120,8 @@ class Conversion {
   // A link's frame in the thing's, joints at 0.
   Pose frame_of(std::size_t link) const {
     Pose pose;
-    for (int i = static_cast<int>(link); i >= 0; i = thing_.links[static_cast<std::size_t>(i)].parent)
+    for (int i = static_cast<int>(link); i >= 0;
+         i = thing_.links[static_cast<std::size_t>(i)].parent)
       pose = thing_.links[static_cast<std::size_t>(i)].at * pose;
     return pose;
   }
@@ -157,21 +164,25 @@ class Conversion {
   Status make_object() {
     const MujocoLink& link = thing_.links[0];
     const std::string below = "objects/" + folder_;
-    PROBE_ASSIGN(SeenLink seen, seen_link(model_, link, seen_groups(thing_.links), asset_.name,
-                                          meshes_, pictures_, asset_.notes));
-    if (seen.glb.empty()) return Failure{Fault::kAsset, "nothing of it can be seen", options_.file};
-    add_file(below + "/visual.glb", std::move(seen.glb));
+    PROBE_ASSIGN(std::string seen, seen_link(model_, link, seen_groups(thing_.links), asset_.name,
+                                             meshes_, pictures_, asset_.notes));
+    if (seen.empty()) return Failure{Fault::kAsset, "nothing of it can be seen", options_.file};
+    add_file(below + "/visual.glb", std::move(seen));
     const std::string obj = felt_obj(felt_[0]);
     std::vector<std::vector<Vec3>> components;
     for (const FeltPart& part : felt_[0]) components.push_back(part.corners);
-    if (components.size() > 256)
-      return Failure{Fault::kAsset, fmt::format("{} parts are felt, at most 256", components.size()),
+    if (components.size() > scene::kMaxCollisionParts)
+      return Failure{Fault::kAsset,
+                     fmt::format("{} parts are felt, at most {}", components.size(),
+                                 scene::kMaxCollisionParts),
                      options_.file};
-    PROBE_ASSIGN(const scene::CollisionShape shape,
-                 scene::make_collision_shape(components, options_.file, {.max_vertices = 64}));
+    PROBE_ASSIGN(
+        const scene::CollisionShape shape,
+        scene::make_collision_shape(components, options_.file, {.max_vertices = kMostCorners}));
     if (shape.parts.size() != components.size())
-      asset_.notes.push_back(fmt::format("{}: {} of {} parts are too thin to be felt", options_.file,
-                                         components.size() - shape.parts.size(), components.size()));
+      asset_.notes.push_back(fmt::format("{}: {} of {} parts are too thin to be felt",
+                                         options_.file, components.size() - shape.parts.size(),
+                                         components.size()));
     add_file(below + "/collision.obj", obj);
     ObjectText text;
     text.name = asset_.name;
@@ -180,12 +191,12 @@ class Conversion {
     text.low = asset_.low;
     text.high = asset_.high;
     text.friction = asset_.friction;
-    text.mass = mass_;
     if (!(mass_.mass > 0)) return Failure{Fault::kAsset, "it weighs nothing", options_.file};
     text.density = mass_.mass / shape.volume;
     // The same mass spread evenly: how far off it is from what the file says.
     const double off = (shape.center_of_mass - mass_.center).norm();
-    const double turn = (text.density * shape.unit_inertia - mass_.inertia).norm() / mass_.inertia.norm();
+    const double turn =
+        (text.density * shape.unit_inertia - mass_.inertia).norm() / mass_.inertia.norm();
     if (off > 1e-6 || turn > 1e-4)
       asset_.notes.push_back(fmt::format(
           "{}: its mass is spread evenly over what is felt: centre {:.2g} mm, inertia {:.2g} % off",
@@ -203,12 +214,14 @@ class Conversion {
     for (std::size_t i = 1; i < thing_.links.size(); ++i) {
       const mjcf::Joint& joint = *thing_.links[i].joint;
       MujocoJoint made;
-      made.name = free_name(joint.name.empty() ? thing_.links[i].name + "_joint" : joint.name, "_joint", taken);
+      made.name = free_name(joint.name.empty() ? thing_.links[i].name + "_joint" : joint.name,
+                            "_joint", taken);
       made.slides = joint.motion == mjcf::Motion::kSlide;
       made.lower = joint.limited ? joint.lower : 0;
       made.upper = joint.limited ? joint.upper : 0;
       if (joint.armature > 0)
-        note(joint.at, fmt::format("an armature of {:g} is not kept: joints of fixtures have none", joint.armature));
+        note(joint.at, fmt::format("an armature of {:g} is not kept: joints of fixtures have none",
+                                   joint.armature));
       acting.push_back(&joint);
       asset_.joints.push_back(std::move(made));
     }
@@ -228,27 +241,31 @@ class Conversion {
       described.link = &link;
       std::set<std::string> others = taken;
       others.insert(regions.begin(), regions.end());
-      described.name = i == 0 ? "root" : free_name(link.name.empty() ? asset_.joints[i - 1].name : link.name, "_part", others);
+      described.name = i == 0 ? "root"
+                              : free_name(link.name.empty() ? asset_.joints[i - 1].name : link.name,
+                                          "_part", others);
       if (i > 0) {
         taken.insert(described.name);
         asset_.joints[i - 1].part = described.name;
       }
-      PROBE_ASSIGN(SeenLink seen, seen_link(model_, link, groups, described.name, meshes_, pictures_,
-                                            asset_.notes));
-      if (!seen.glb.empty()) {
+      PROBE_ASSIGN(std::string seen, seen_link(model_, link, groups, described.name, meshes_,
+                                               pictures_, asset_.notes));
+      if (!seen.empty()) {
         described.glb = "meshes/" + described.name + ".glb";
-        add_file(below + "/" + described.glb, std::move(seen.glb));
+        add_file(below + "/" + described.glb, std::move(seen));
       }
       described.felt = felt_[i];
       for (std::size_t k = 0; k < felt_[i].size(); ++k) {
         described.meshes.emplace_back();
         if (felt_[i][k].box) continue;
-        described.meshes.back() = fmt::format("meshes/{}_{}_{}_collision.obj", described.name, felt_[i][k].kind, k + 1);
+        described.meshes.back() =
+            fmt::format("meshes/{}_{}_{}_collision.obj", described.name, felt_[i][k].kind, k + 1);
         add_file(below + "/" + described.meshes.back(), felt_obj({felt_[i][k]}));
       }
       if (i > 0 && felt_[i].empty())
-        asset_.notes.push_back(fmt::format("{}: nothing of part `{}` can be touched: it is no part of the text",
-                                           options_.file, described.name));
+        asset_.notes.push_back(
+            fmt::format("{}: nothing of part `{}` can be touched: it is no part of the text",
+                        options_.file, described.name));
       links.push_back(std::move(described));
     }
     for (std::size_t i = 0; i < links.size(); ++i) {
@@ -283,11 +300,12 @@ class Conversion {
     asset_.kind = MujocoKind::kBackdrop;
     thing_ = standing_things(model_, asset_.notes);
     const MujocoLink& link = thing_.links[0];
-    PROBE_ASSIGN(SeenLink seen, seen_link(model_, link, seen_groups(thing_.links), asset_.name,
-                                          meshes_, pictures_, asset_.notes));
-    if (seen.glb.empty()) return Failure{Fault::kAsset, "nothing of it can be seen", options_.file};
-    add_file("scenes/" + folder_ + "/visual.glb", std::move(seen.glb));
-    for (const auto& placed : link.sites) asset_.sites.push_back(site_of(*placed.it, placed.pose, ""));
+    PROBE_ASSIGN(std::string seen, seen_link(model_, link, seen_groups(thing_.links), asset_.name,
+                                             meshes_, pictures_, asset_.notes));
+    if (seen.empty()) return Failure{Fault::kAsset, "nothing of it can be seen", options_.file};
+    add_file("scenes/" + folder_ + "/visual.glb", std::move(seen));
+    for (const auto& placed : link.sites)
+      asset_.sites.push_back(site_of(*placed.it, placed.pose, ""));
     for (const auto& placed : link.geoms) add_surface(*placed.it, placed.pose);
     return {};
   }
@@ -345,7 +363,8 @@ Status apply(const MujocoChange& change, const std::string& file, Model& model) 
   if (found == 1 && !change.name.empty()) return {};
   return Failure{Fault::kAsset,
                  fmt::format("{} {} called `{}`, which is to be changed", found,
-                             change.size || change.friction ? "geoms are" : "bodies and geoms are", change.name),
+                             change.size || change.friction ? "geoms are" : "bodies and geoms are",
+                             change.name),
                  file};
 }
 

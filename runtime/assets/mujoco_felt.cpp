@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
-#include "runtime/assets/model_files.h"
 #include "runtime/base/trig.h"
 #include "runtime/scene/hull.h"
 
@@ -28,7 +26,8 @@ FeltPart box_part(const Vec3& half, const Pose& pose) {
   return part;
 }
 
-// A solid of revolution about z: rings of `sides` corners from below, closed by flat ends, or by poles where there are two.
+// A solid of revolution about z: rings of `sides` corners from below, closed by flat ends, or by
+// poles where there are two.
 struct Ring {
   double z = 0, radius = 0;
 };
@@ -100,10 +99,9 @@ Result<FeltPart> hull_part(const mjcf::Model& model, const Geom& geom, const Pos
   std::vector<Vec3> points;
   for (const scene::MeshPart& part : mesh.parts) {
     for (std::size_t i = 0; i + 2 < part.positions.size(); i += 3)
-      points.push_back(pose.apply(
-          {part.positions[i], part.positions[i + 1], part.positions[i + 2]}));
+      points.push_back(
+          pose.apply({part.positions[i], part.positions[i + 1], part.positions[i + 2]}));
   }
-  constexpr int kMostCorners = 64;
   const std::string where = model.where(geom.at);
   PROBE_ASSIGN(const scene::HullPart hull, scene::make_hull(points, where, kMostCorners));
   FeltPart made;
@@ -113,9 +111,10 @@ Result<FeltPart> hull_part(const mjcf::Model& model, const Geom& geom, const Pos
       made.triangles.push_back({face.loop[0], face.loop[k], face.loop[k + 1]});
   }
   if (hull.reduction_error > 1e-4)
-    notes.push_back(fmt::format("{}: the hull of mesh `{}` is felt by {} corners, up to {:.2g} mm within",
-                                where, model.meshes[static_cast<std::size_t>(geom.mesh)].name,
-                                made.corners.size(), 1000 * hull.reduction_error));
+    notes.push_back(
+        fmt::format("{}: the hull of mesh `{}` is felt by {} corners, up to {:.2g} mm within",
+                    where, model.meshes[static_cast<std::size_t>(geom.mesh)].name,
+                    made.corners.size(), 1000 * hull.reduction_error));
   return made;
 }
 
@@ -190,7 +189,7 @@ Result<std::vector<FeltPart>> felt_parts(const mjcf::Model& model, const MujocoL
 }
 
 std::string felt_obj(const std::vector<FeltPart>& parts) {
-  std::string out = fmt::format("# Convex parts, metres. Made by {}.\n", "vlaprobe assets mujoco");
+  std::string out = fmt::format("# Convex parts, metres. Made by {}.\n", kMujocoGenerator);
   std::size_t first = 1;
   for (const FeltPart& part : parts) {
     for (const Vec3& p : part.corners)

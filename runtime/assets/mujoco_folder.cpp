@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <numbers>
 #include <set>
 
 #include "runtime/assets/model_files.h"
@@ -22,13 +23,13 @@ std::string made_of(const MujocoAsset& asset) {
   if (asset.kind == MujocoKind::kBackdrop) return text;
   text += fmt::format("; {}, {:.4g} g", size_text(asset.high - asset.low), 1000 * asset.mass);
   for (const MujocoJoint& joint : asset.joints) {
-    constexpr double kDegrees = 180 / 3.14159265358979323846;
-    text += joint.slides
-                ? fmt::format("; {} slides {:.4g} .. {:.4g} cm", joint.name, 100 * joint.lower,
-                              100 * joint.upper)
-            : joint.lower == joint.upper ? fmt::format("; {} turns", joint.name)
-                                         : fmt::format("; {} turns {:.4g} .. {:.4g} deg", joint.name,
-                                                       kDegrees * joint.lower, kDegrees * joint.upper);
+    constexpr double kDegrees = 180 / std::numbers::pi;
+    text += joint.slides ? fmt::format("; {} slides {:.4g} .. {:.4g} cm", joint.name,
+                                       100 * joint.lower, 100 * joint.upper)
+            : joint.lower == joint.upper
+                ? fmt::format("; {} turns", joint.name)
+                : fmt::format("; {} turns {:.4g} .. {:.4g} deg", joint.name, kDegrees * joint.lower,
+                              kDegrees * joint.upper);
   }
   return text;
 }
@@ -39,9 +40,10 @@ Result<MujocoFolder> make_mujoco_folder(const MujocoFolderOptions& options) {
   if (!options.name.empty() && options.files.size() > 1)
     return Failure{Fault::kUsage, "one name for several files", ""};
   if (!options.name.empty() && mujoco_identifier(options.name) != options.name)
-    return Failure{Fault::kUsage,
-                   "a name has letters, digits and underscores, and a letter first: `" +
-                       options.name + "`", ""};
+    return Failure{
+        Fault::kUsage,
+        "a name has letters, digits and underscores, and a letter first: `" + options.name + "`",
+        ""};
   PROBE_ASSIGN(OutputFolder out, OutputFolder::create(options.to));
   MujocoFolder made;
   std::set<std::string> taken;
@@ -62,7 +64,9 @@ Result<MujocoFolder> make_mujoco_folder(const MujocoFolderOptions& options) {
       PROBE_TRY(out.write(written.path, written.bytes, written.source));
     made.files += asset.files.size();
     if (asset.declaration.empty()) continue;
-    std::string text = "# What it looks like and is good for is not in the file: colors, facts and phrases are yours to say.\n";
+    std::string text =
+        "# What it looks like and is good for is not in the file: colors, facts and phrases are "
+        "yours to say.\n";
     text += asset.declaration;
     PROBE_TRY(out.write(asset.name + ".probe", text, file));
     ++made.files;

@@ -28,9 +28,10 @@ struct MujocoFolder {
   std::uint64_t bytes = 0;
 };
 
-// Converts each file (convert_mujoco) and writes FOLDER/objects/NAME, FOLDER/fixtures/NAME or FOLDER/scenes/NAME, FOLDER/NAME.probe and
-// manifest.json. Names that stems share get a number. Fails (kUsage) on a name for several files or one that no text can
-// say, and as convert_mujoco and OutputFolder do; then nothing is left.
+// Converts each file (convert_mujoco) and writes FOLDER/objects/NAME, FOLDER/fixtures/NAME or
+// FOLDER/scenes/NAME, FOLDER/NAME.probe and manifest.json. Names that stems share get a number.
+// Fails (kUsage) on a name for several files or one that no text can say, and as convert_mujoco and
+// OutputFolder do; then nothing is left.
 Result<MujocoFolder> make_mujoco_folder(const MujocoFolderOptions& options);
 
 }  // namespace probe::assets

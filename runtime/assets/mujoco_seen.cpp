@@ -23,8 +23,8 @@ using mjcf::Texture;
 constexpr int kSlices = 28, kStacks = 16, kSquares = 4;  // MuJoCo's visual/quality
 
 struct Corner {
-  Vec3 position, normal;       // in the geom's frame, m
-  Vec3 texel = Vec3::Zero();   // what texture coordinates are made from, or u and v
+  Vec3 position, normal;      // in the geom's frame, m
+  Vec3 texel = Vec3::Zero();  // what texture coordinates are made from, or u and v
 };
 using Triangle = std::array<Corner, 3>;
 
@@ -33,7 +33,8 @@ using Triangle = std::array<Corner, 3>;
 void add_square(std::vector<Triangle>& out, const Vec3& middle, const Vec3& right, const Vec3& up) {
   const Vec3 normal = right.cross(up).normalized();
   const auto at = [&](int i, int k) {
-    return Corner{middle + (2.0 * i / kSquares - 1) * right + (2.0 * k / kSquares - 1) * up, normal};
+    return Corner{middle + (2.0 * i / kSquares - 1) * right + (2.0 * k / kSquares - 1) * up,
+                  normal};
   };
   for (int i = 0; i < kSquares; ++i) {
     for (int k = 0; k < kSquares; ++k) {
@@ -88,11 +89,14 @@ std::vector<Triangle> primitive_triangles(const Geom& geom) {
   const Vec3& size = geom.size;
   std::vector<Triangle> out;
   switch (geom.shape) {
-    case Shape::kBox: return box_triangles(size);
+    case Shape::kBox:
+      return box_triangles(size);
     case Shape::kPlane:
       add_square(out, Vec3::Zero(), size[0] * Vec3::UnitX(), size[1] * Vec3::UnitY());
       break;
-    case Shape::kSphere: add_turned(out, ball_rows(size[0], 0, -kHalf, kHalf)); break;
+    case Shape::kSphere:
+      add_turned(out, ball_rows(size[0], 0, -kHalf, kHalf));
+      break;
     case Shape::kEllipsoid:
       add_turned(out, ball_rows(1, 0, -kHalf, kHalf));
       for (Triangle& triangle : out) {
@@ -119,7 +123,8 @@ std::vector<Triangle> primitive_triangles(const Geom& geom) {
       add_turned(out, {{0, -size[1], 0, -1}, {size[0], -size[1], 0, -1}});
       break;
     }
-    case Shape::kMesh: break;
+    case Shape::kMesh:
+      break;
   }
   return out;
 }
@@ -136,8 +141,8 @@ std::vector<Triangle> mesh_triangles(const scene::Mesh& mesh) {
       return made;
     };
     for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3)
-      out.push_back({corner(part.indices[i]), corner(part.indices[i + 1]),
-                     corner(part.indices[i + 2])});
+      out.push_back(
+          {corner(part.indices[i]), corner(part.indices[i + 1]), corner(part.indices[i + 2])});
   }
   return out;
 }
@@ -162,8 +167,7 @@ void put_texels(std::vector<Triangle>& triangles, const scene::Mesh* mesh) {
     middle = solid.center;
   }
   for (Triangle& triangle : triangles) {
-    for (Corner& corner : triangle)
-      corner.texel = turn.transpose() * (corner.position - middle);
+    for (Corner& corner : triangle) corner.texel = turn.transpose() * (corner.position - middle);
   }
 }
 
@@ -182,8 +186,8 @@ void generate_2d(std::vector<Triangle>& triangles, const mjcf::Material& materia
   const double down = material.repeat[1] / (material.uniform ? 1 : extent.y());
   for (Triangle& triangle : triangles) {
     for (Corner& corner : triangle)
-      corner.texel = Vec3(0.5 * across * corner.texel.x() - 0.5,
-                          -0.5 * down * corner.texel.y() - 0.5, 0);
+      corner.texel =
+          Vec3(0.5 * across * corner.texel.x() - 0.5, -0.5 * down * corner.texel.y() - 0.5, 0);
   }
 }
 
@@ -192,14 +196,17 @@ Corner between(const Corner& a, const Corner& b, double t) {
           a.texel + t * (b.texel - a.texel)};
 }
 
-// What of a triangle lies in the pyramid over a face of the cube; its texels become u and v (OpenGL 2.1, table 3.19).
+// What of a triangle lies in the pyramid over a face of the cube; its texels become u and v
+// (OpenGL 2.1, table 3.19).
 void cut_to_face(const Triangle& triangle, int face, std::vector<Triangle>& out) {
   const int axis = face / 2;
   const double sign = face % 2 == 0 ? 1 : -1;
   std::vector<Corner> left(triangle.begin(), triangle.end());
   for (const int other : {(axis + 1) % 3, (axis + 2) % 3}) {
     for (const double side : {-1.0, 1.0}) {
-      const auto height = [&](const Corner& c) { return sign * c.texel[axis] + side * c.texel[other]; };
+      const auto height = [&](const Corner& c) {
+        return sign * c.texel[axis] + side * c.texel[other];
+      };
       std::vector<Corner> kept;
       for (std::size_t i = 0; i < left.size(); ++i) {
         const Corner& a = left[i];
@@ -219,7 +226,8 @@ void cut_to_face(const Triangle& triangle, int face, std::vector<Triangle>& out)
     c.texel = Vec3((across / deep + 1) / 2, (down / deep + 1) / 2, 0);
   }
   for (std::size_t i = 1; i + 1 < left.size(); ++i) {
-    const Vec3 area = (left[i].position - left[0].position).cross(left[i + 1].position - left[0].position);
+    const Vec3 area =
+        (left[i].position - left[0].position).cross(left[i + 1].position - left[0].position);
     if (area.norm() > 1e-14) out.push_back({left[0], left[i], left[i + 1]});
   }
 }
@@ -244,7 +252,8 @@ class Builder {
       mjcf::Rgba rgba = geom.rgba;
       for (std::size_t i = 0; i < 3; ++i) rgba[i] *= texture->rgb1[i];
       if (texture->builtin != Texture::Builtin::kFlat)
-        notes_.push_back(model_.where(texture->at) + ": a builtin gradient or checker is drawn as its first colour");
+        notes_.push_back(model_.where(texture->at) +
+                         ": a builtin gradient or checker is drawn as its first colour");
       return put(triangles, pose, color(rgba, material), false);
     }
     if (texture == nullptr) return put(triangles, pose, color(geom.rgba, material), false);
@@ -264,7 +273,7 @@ class Builder {
 
   scene::GlbDocument take(const std::string& name) {
     document_.name = name;
-    document_.generator = "vlaprobe assets mujoco";
+    document_.generator = kMujocoGenerator;
     return std::move(document_);
   }
 
@@ -308,8 +317,9 @@ class Builder {
 
   Result<std::size_t> picture(const Texture& texture, const std::string& file,
                               const mjcf::Rgba& rgba, const mjcf::Material* material) {
-    const Key key{file + (texture.flip_across ? "|across" : "") + (texture.flip_down ? "|down" : ""),
-                  rgba, emission(material)};
+    const Key key{
+        file + (texture.flip_across ? "|across" : "") + (texture.flip_down ? "|down" : ""), rgba,
+        emission(material)};
     const auto known = materials_.find(key);
     if (known != materials_.end()) return known->second;
     PROBE_ASSIGN(scene::EncodedImage image, pictures_.get(model_, texture, file, rgba));
@@ -349,7 +359,12 @@ class Builder {
         const Vec3 p = pose.apply(corner.position);
         const Vec3 n = (pose.rotation * corner.normal).normalized();
         const auto f = [](double v) { return static_cast<float>(v) + 0.0f; };
-        const std::array<float, 8> all{f(p.x()), f(p.y()), f(p.z()), f(n.x()), f(n.y()), f(n.z()),
+        const std::array<float, 8> all{f(p.x()),
+                                       f(p.y()),
+                                       f(p.z()),
+                                       f(n.x()),
+                                       f(n.y()),
+                                       f(n.z()),
                                        has_texels ? f(corner.texel.x()) : 0,
                                        has_texels ? f(corner.texel.y()) : 0};
         const auto [found, is_new] =
@@ -388,7 +403,8 @@ void flip(scene::Texture& picture, bool across, bool down) {
       std::swap_ranges(pixel(x, y), pixel(x, y) + 4, pixel(picture.width - 1 - x, y));
   }
   for (int y = 0; down && y < picture.height / 2; ++y)
-    std::swap_ranges(pixel(0, y), pixel(0, y) + 4 * picture.width, pixel(0, picture.height - 1 - y));
+    std::swap_ranges(pixel(0, y), pixel(0, y) + 4 * picture.width,
+                     pixel(0, picture.height - 1 - y));
 }
 
 }  // namespace
@@ -439,10 +455,10 @@ Result<scene::EncodedImage> MujocoPictures::get(const mjcf::Model& model, const 
   return scene::EncodedImage{std::move(bytes), "image/png"};
 }
 
-Result<SeenLink> seen_link(const mjcf::Model& model, const MujocoLink& link,
-                           const std::set<int>& groups, const std::string& name,
-                           MujocoMeshes& meshes, MujocoPictures& pictures,
-                           std::vector<std::string>& notes) {
+Result<std::string> seen_link(const mjcf::Model& model, const MujocoLink& link,
+                              const std::set<int>& groups, const std::string& name,
+                              MujocoMeshes& meshes, MujocoPictures& pictures,
+                              std::vector<std::string>& notes) {
   Builder builder(model, pictures, notes);
   bool any = false;
   for (const Placed<Geom>& placed : link.geoms) {
@@ -467,13 +483,11 @@ Result<SeenLink> seen_link(const mjcf::Model& model, const MujocoLink& link,
     PROBE_TRY(builder.add(geom, placed.pose, mesh));
     any = true;
   }
-  if (!any) return SeenLink{};
+  if (!any) return std::string();
   const scene::GlbDocument document = builder.take(name);
-  SeenLink seen;
-  for (const scene::GlbPart& part : document.parts) seen.triangles += part.indices.size() / 3;
-  if (seen.triangles == 0) return SeenLink{};
-  seen.glb = scene::glb_bytes(document);
-  return seen;
+  const bool has_triangles = std::ranges::any_of(
+      document.parts, [](const scene::GlbPart& part) { return !part.indices.empty(); });
+  return has_triangles ? scene::glb_bytes(document) : std::string();
 }
 
 }  // namespace probe::assets

@@ -14,16 +14,16 @@
 
 namespace probe::assets {
 
-// The groups that a thing is seen by: those of its geoms that nothing touches where it has some (pictures beside collision
-// shapes), else 0 to 2, which MuJoCo's viewer shows.
+// The groups that a thing is seen by: those of its geoms that nothing touches where it has some
+// (pictures beside collision shapes), else 0 to 2, which MuJoCo's viewer shows.
 std::set<int> seen_groups(const std::vector<MujocoLink>& links);
 
 // Pictures that materials name, each read once.
 class MujocoPictures {
  public:
-  // PNG or JPEG bytes of a texture's file or face as they are, flipped as the texture says and multiplied by `rgba` where
-  // that is not white (then PNG). Fails (kAsset, where = the texture's place) naming the file: missing, no picture, more
-  // than scene::kMaxImageSide pixels a side.
+  // PNG or JPEG bytes of a texture's file or face as they are, flipped as the texture says and
+  // multiplied by `rgba` where that is not white (then PNG). Fails (kAsset, where = the texture's
+  // place) naming the file: missing, no picture, more than scene::kMaxImageSide pixels a side.
   Result<scene::EncodedImage> get(const mjcf::Model& model, const mjcf::Texture& texture,
                                   const std::string& file, const mjcf::Rgba& rgba);
 
@@ -35,17 +35,13 @@ class MujocoPictures {
   std::map<std::string, Picture> pictures_;
 };
 
-struct SeenLink {
-  std::string glb;  // empty: nothing of it is seen
-  std::size_t triangles = 0;
-};
-
-// Geoms of `groups` that are not clear. Boxes and planes have faces of 4 x 4 squares, round shapes 28 slices and 16 stacks, as
-// MuJoCo draws them. Where a mesh has no texture coordinates, or is no mesh, those of a 2D texture are MuJoCo's generated
-// ones, and cube textures are cut at the edges of the cube. `notes` gets what is drawn otherwise than there.
-Result<SeenLink> seen_link(const mjcf::Model& model, const MujocoLink& link,
-                           const std::set<int>& groups, const std::string& name,
-                           MujocoMeshes& meshes, MujocoPictures& pictures,
-                           std::vector<std::string>& notes);
+// Geoms of `groups` that are not clear. Boxes and planes have faces of 4 x 4 squares, round shapes
+// 28 slices and 16 stacks, as MuJoCo draws them. Where a mesh has no texture coordinates, or is no
+// mesh, those of a 2D texture are MuJoCo's generated ones, and cube textures are cut at the edges
+// of the cube. `notes` gets what is drawn otherwise than there. Empty: nothing of it is seen.
+Result<std::string> seen_link(const mjcf::Model& model, const MujocoLink& link,
+                              const std::set<int>& groups, const std::string& name,
+                              MujocoMeshes& meshes, MujocoPictures& pictures,
+                              std::vector<std::string>& notes);
 
 }  // namespace probe::assets

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "runtime/base/trig.h"
 
@@ -50,7 +51,7 @@ std::string corners(const Vec3& low, const Vec3& high) { return point(low) + " .
 
 std::string degrees(double radians) {
   // Files have quarter turns to five digits.
-  const double exact = radians * (180 / M_PI);
+  const double exact = radians * (180 / std::numbers::pi);
   const double quarter = std::round(exact / 90) * 90;
   return decimals(std::abs(exact - quarter) < 1e-3 ? quarter : exact, 6);
 }
@@ -98,28 +99,32 @@ std::string mujoco_identifier(const std::string& name) {
 
 std::string fixture_urdf(const std::string& name, const std::vector<DescribedLink>& links,
                          const std::vector<MujocoJoint>& joints) {
-  std::string out = fmt::format(
-      "<?xml version=\"1.0\"?>\n<!-- Made by vlaprobe assets mujoco. -->\n<robot name=\"{}\">\n", name);
+  std::string out =
+      fmt::format("<?xml version=\"1.0\"?>\n<!-- Made by {}. -->\n<robot name=\"{}\">\n",
+                  kMujocoGenerator, name);
   for (const DescribedLink& link : links) {
     out += fmt::format("  <link name=\"{}\">\n", link.name);
     const mjcf::MassProperties& m = link.link->mass;
     if (m.mass > 0) {
       out += fmt::format(
-          "    <inertial><origin xyz=\"{}\"/><mass value=\"{}\"/><inertia ixx=\"{}\" iyy=\"{}\" izz=\"{}\" "
+          "    <inertial><origin xyz=\"{}\"/><mass value=\"{}\"/><inertia ixx=\"{}\" iyy=\"{}\" "
+          "izz=\"{}\" "
           "ixy=\"{}\" ixz=\"{}\" iyz=\"{}\"/></inertial>\n",
           numbers(m.center), number(m.mass), number(m.inertia(0, 0)), number(m.inertia(1, 1)),
           number(m.inertia(2, 2)), number(m.inertia(0, 1)), number(m.inertia(0, 2)),
           number(m.inertia(1, 2)));
     }
     if (!link.glb.empty())
-      out += fmt::format("    <visual><geometry><mesh filename=\"{}\"/></geometry></visual>\n", link.glb);
+      out += fmt::format("    <visual><geometry><mesh filename=\"{}\"/></geometry></visual>\n",
+                         link.glb);
     for (std::size_t i = 0; i < link.felt.size(); ++i) {
       if (const auto& box = link.felt[i].box) {
         out += fmt::format("    <collision>{}<geometry><box size=\"{}\"/></geometry></collision>\n",
                            origin(box->pose), numbers(2 * box->half));
       } else {
-        out += fmt::format("    <collision><geometry><mesh filename=\"{}\"/></geometry></collision>\n",
-                           link.meshes[i]);
+        out +=
+            fmt::format("    <collision><geometry><mesh filename=\"{}\"/></geometry></collision>\n",
+                        link.meshes[i]);
       }
     }
     out += "  </link>\n";
@@ -130,7 +135,8 @@ std::string fixture_urdf(const std::string& name, const std::vector<DescribedLin
     const MujocoJoint& made = joints[i - 1];
     const char* type = made.slides ? "prismatic" : joint.limited ? "revolute" : "continuous";
     out += fmt::format(
-        "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/><child link=\"{}\"/>{}<axis xyz=\"{}\"/>\n",
+        "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/><child link=\"{}\"/>{}<axis "
+        "xyz=\"{}\"/>\n",
         made.name, type, links[static_cast<std::size_t>(link.link->parent)].name, link.name,
         origin(link.link->at), numbers(joint.axis));
     // Nobody drives it: effort and velocity are asked for by the format and not read.
@@ -143,8 +149,8 @@ std::string fixture_urdf(const std::string& name, const std::vector<DescribedLin
 }
 
 std::string object_text(const ObjectText& object, const std::vector<MujocoSite>& sites) {
-  std::string out = fmt::format("object {} {{\n  mesh \"{}\"\n  box {}\n", object.name, object.folder,
-                                corners(object.low, object.high));
+  std::string out = fmt::format("object {} {{\n  mesh \"{}\"\n  box {}\n", object.name,
+                                object.folder, corners(object.low, object.high));
   out += fmt::format("  density {}kg/m3; friction {}; name \"{}\"\n", decimals(object.density, 6),
                      decimals(object.friction, 6), object.called);
   for (const MujocoSite& site : sites) out += region(site, "");
@@ -175,7 +181,8 @@ std::string fixture_text(const FixtureText& fixture, const std::vector<Described
       out += fmt::format("  part {} link {} name \"{}\"\n", links[i].name, links[i].name,
                          words(links[i].link->name.empty() ? links[i].name : links[i].link->name));
   }
-  for (const MujocoSite& site : sites) out += region(site, site.part.empty() ? fixture.name : site.part);
+  for (const MujocoSite& site : sites)
+    out += region(site, site.part.empty() ? fixture.name : site.part);
   return out + "}\n";
 }
 

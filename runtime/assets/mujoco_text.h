@@ -16,8 +16,8 @@ std::string mujoco_identifier(const std::string& name);
 // A link with the files that it is seen and felt by.
 struct DescribedLink {
   const MujocoLink* link = nullptr;
-  std::string name;               // of the URDF's link, and of the part
-  std::string glb;                // file name; empty: nothing is seen
+  std::string name;  // of the URDF's link, and of the part
+  std::string glb;   // file name; empty: nothing is seen
   std::vector<FeltPart> felt;
   std::vector<std::string> meshes;  // file name by felt part; of boxes empty
 };
@@ -27,8 +27,7 @@ std::string fixture_urdf(const std::string& name, const std::vector<DescribedLin
 struct ObjectText {
   std::string name, folder, called;
   Vec3 low, high;
-  double density = 0;  // kg/m3, or 0: `mass` is said
-  mjcf::MassProperties mass;
+  double density = 0;  // kg/m3
   double friction = 1;
 };
 std::string object_text(const ObjectText& object, const std::vector<MujocoSite>& sites);

@@ -78,7 +78,8 @@ class Finder {
       }
       const mjcf::Joint& joint = next.joints.front();
       if (next.joints.size() > 1)
-        return fail(model_, next.joints[1].at, "a second joint of one body: each has a link of its own here");
+        return fail(model_, next.joints[1].at,
+                    "a second joint of one body: each has a link of its own here");
       if (joint.motion == Motion::kBall || joint.motion == Motion::kFree)
         return fail(model_, joint.at, "a ball or a free joint within a thing");
       if (joint.motion == Motion::kSlide && !joint.limited)
@@ -119,8 +120,9 @@ MujocoMeshes::MujocoMeshes(const mjcf::Model& model, scene::MeshLimits limits)
 Result<const scene::Mesh*> MujocoMeshes::get(int mesh) {
   const auto known = meshes_.find(mesh);
   if (known != meshes_.end()) return &known->second;
-  PROBE_ASSIGN(scene::Mesh read,
-               mjcf::load_mesh_file(model_, model_.meshes[static_cast<std::size_t>(mesh)], limits_));
+  PROBE_ASSIGN(
+      scene::Mesh read,
+      mjcf::load_mesh_file(model_, model_.meshes[static_cast<std::size_t>(mesh)], limits_));
   return &meshes_.emplace(mesh, std::move(read)).first->second;
 }
 

@@ -15,6 +15,8 @@
 
 namespace probe::assets {
 
+inline constexpr char kMujocoGenerator[] = "vlaprobe assets mujoco";
+
 // A geom or a site of the model, placed in its link's frame.
 template <typename T>
 struct Placed {
@@ -52,10 +54,12 @@ class MujocoMeshes {
   std::map<int, scene::Mesh> meshes_;
 };
 
-// The thing as convert_mujoco says. A link's frame is its body's, moved to where its joint is. Fails as it says.
+// The thing as convert_mujoco says. A link's frame is its body's, moved to where its joint is.
+// Fails as it says.
 Result<MujocoThing> find_thing(const mjcf::Model& model, MujocoMeshes& meshes);
 
-// All that stands in the world and does not move, as one link in the world's frame; what moves is left out with a note.
+// All that stands in the world and does not move, as one link in the world's frame; what moves is
+// left out with a note.
 MujocoThing standing_things(const mjcf::Model& model, std::vector<std::string>& notes);
 
 }  // namespace probe::assets

@@ -48,7 +48,8 @@ MassProperties primitive(const Geom& geom) {
       break;
     }
     case Shape::kPlane:
-    case Shape::kMesh: break;
+    case Shape::kMesh:
+      break;
   }
   return m;
 }
@@ -131,8 +132,8 @@ bool has_mass(const Model& model, const Body& body, const Geom& geom) {
 Result<MassProperties> mass_of(const Model& model, const Body& body,
                                std::span<const MassProperties> solids) {
   MassProperties all;
-  const bool said = body.inertial &&
-                    model.compiler.inertia_from_geom != Compiler::FromGeom::kAlways;
+  const bool said =
+      body.inertial && model.compiler.inertia_from_geom != Compiler::FromGeom::kAlways;
   if (said) {
     all = moved({body.inertial->mass, Vec3::Zero(), body.inertial->inertia}, body.inertial->pose);
   }

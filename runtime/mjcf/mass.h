@@ -1,4 +1,5 @@
-// Masses, centres of mass and inertias as MuJoCo's compiler gives them (3.2: user_objects.cc, user_mesh.cc).
+// Masses, centres of mass and inertias as MuJoCo's compiler gives them (3.2: user_objects.cc,
+// user_mesh.cc).
 #pragma once
 
 #include <span>
@@ -21,16 +22,17 @@ MassProperties moved(const MassProperties& mass, const Pose& pose);
 // One rigid thing of two, in one frame.
 MassProperties joined(const MassProperties& a, const MassProperties& b);
 
-// The solid within a mesh, for a density of 1: the sum of the pyramids from the mean of its faces to each of them, all
-// counted as positive unless `exact` (MuJoCo's `legacy` way, which is more than the volume where a mesh is not star-shaped).
+// The solid within a mesh, for a density of 1: the sum of the pyramids from the mean of its faces
+// to each of them, all counted as positive unless `exact` (MuJoCo's `legacy` way, which is more
+// than the volume where a mesh is not star-shaped).
 MassProperties solid_of(const scene::Mesh& mesh, bool exact);
 
 // Whether the geom adds to its body's mass: by its group, unless `inertial` counts.
 bool has_mass(const Model& model, const Body& body, const Geom& geom);
 
-// Of a body, in its frame: its `inertial`, or volume times density of its geoms (or their `mass`), where they overlap
-// counted twice. `solids` by index of Model::meshes; those of meshes with mass are read. Fails (kAsset, where = the geom) on a
-// geom or mesh whose mass lies on its surface.
+// Of a body, in its frame: its `inertial`, or volume times density of its geoms (or their `mass`),
+// where they overlap counted twice. `solids` by index of Model::meshes; those of meshes with mass
+// are read. Fails (kAsset, where = the geom) on a geom or mesh whose mass lies on its surface.
 Result<MassProperties> mass_of(const Model& model, const Body& body,
                                std::span<const MassProperties> solids);
 

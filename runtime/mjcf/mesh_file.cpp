@@ -47,8 +47,8 @@ void make_normals(scene::MeshPart& part) {
   std::vector<Vec3> faces;  // twice the area along the normal
   for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3) {
     const Vec3 a = at(part.positions, part.indices[i]);
-    const Vec3 face =
-        (at(part.positions, part.indices[i + 1]) - a).cross(at(part.positions, part.indices[i + 2]) - a);
+    const Vec3 face = (at(part.positions, part.indices[i + 1]) - a)
+                          .cross(at(part.positions, part.indices[i + 2]) - a);
     faces.push_back(face);
     for (std::size_t k = 0; k < 3; ++k) mean[part.indices[i + k]] += face;
   }
@@ -82,8 +82,9 @@ Result<scene::Mesh> msh_mesh(std::string_view bytes, const std::string& name,
   const auto [vertices, normals, coordinates, faces] = std::to_array(sizes);
   if (vertices < 3 || faces < 1 || (normals != 0 && normals != vertices) ||
       (coordinates != 0 && coordinates != vertices))
-    return fail(fmt::format("not a .msh mesh: {} vertices, {} normals, {} texture coordinates, {} faces",
-                            vertices, normals, coordinates, faces));
+    return fail(
+        fmt::format("not a .msh mesh: {} vertices, {} normals, {} texture coordinates, {} faces",
+                    vertices, normals, coordinates, faces));
   if (static_cast<std::size_t>(faces) > limits.triangles)
     return fail(fmt::format("has {} triangles, at most {}", faces, limits.triangles));
   const auto n = [](std::int32_t v) { return static_cast<std::size_t>(v); };
@@ -129,7 +130,8 @@ Result<scene::Mesh> load_mesh_file(const Model& model, const MeshAsset& asset,
   bool weld = false;
   const std::string extension = lower_extension(asset.file);
   if (extension == ".msh") {
-    auto bytes = read_file(asset.file, {.most = kMostMeshBytes, .code = Fault::kAsset, .only_begin = false});
+    auto bytes =
+        read_file(asset.file, {.most = kMostMeshBytes, .code = Fault::kAsset, .only_begin = false});
     if (!bytes) return fail(bytes.failure().message);
     auto read = msh_mesh(*bytes, asset.file, limits);
     if (!read) return fail(read.failure().message);

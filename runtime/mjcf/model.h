@@ -1,5 +1,6 @@
-// An MJCF model as plain data: metre, kilogram, second, radian; quaternions w x y z; frames as MuJoCo has them, z up. What the
-// file leaves to defaults, to classes and to the compiler's settings is filled in.
+// An MJCF model as plain data: metre, kilogram, second, radian; quaternions w x y z; frames as
+// MuJoCo has them, z up. What the file leaves to defaults, to classes and to the compiler's
+// settings is filled in.
 #pragma once
 
 #include <array>
@@ -22,7 +23,8 @@ struct Compiler {
   enum class FromGeom { kNever, kAlways, kAuto };
   bool degrees = true;
   bool autolimits = true;
-  std::string eulerseq = "xyz";  // lower case turns about the axes as they were turned, upper case about fixed ones
+  std::string eulerseq =
+      "xyz";  // lower case turns about the axes as they were turned, upper case about fixed ones
   std::string meshdir, texturedir;
   bool strippath = false;
   FromGeom inertia_from_geom = FromGeom::kAuto;
@@ -36,7 +38,7 @@ struct Texture {
   enum class Builtin { kFile, kGradient, kChecker, kFlat };
   std::string name;
   Type type = Type::kCube;
-  std::string file;  // as it can be opened; empty: builtin, or `faces`
+  std::string file;                  // as it can be opened; empty: builtin, or `faces`
   std::array<std::string, 6> faces;  // right left up down front back; of a cube alone
   Builtin builtin = Builtin::kFile;
   std::array<double, 3> rgb1{0.8, 0.8, 0.8}, rgb2{0.5, 0.5, 0.5};
@@ -59,8 +61,8 @@ struct MeshAsset {
   std::string name;
   std::string file;  // as it can be opened
   Vec3 scale = Vec3::Ones();
-  Vec3 origin = Vec3::Zero();         // refpos: what becomes 0, in the file's units
-  Quat turn = Quat::Identity();       // refquat: what becomes no turn
+  Vec3 origin = Vec3::Zero();    // refpos: what becomes 0, in the file's units
+  Quat turn = Quat::Identity();  // refquat: what becomes no turn
   enum class Inertia { kVolume, kShell } inertia = Inertia::kVolume;
   At at;
 };
@@ -71,8 +73,8 @@ struct Geom {
   std::string name;  // may be empty
   Shape shape = Shape::kSphere;
   Pose pose;  // in its body's frame
-  // m, half sizes: sphere r; capsule r, half length without caps (along z); cylinder r, half length; box and ellipsoid
-  // x y z; plane x, y (0: without end)
+  // m, half sizes: sphere r; capsule r, half length without caps (along z); cylinder r, half
+  // length; box and ellipsoid x y z; plane x, y (0: without end)
   Vec3 size = Vec3::Zero();
   int mesh = kNone, material = kNone;
   Rgba rgba{0.5, 0.5, 0.5, 1};  // its own, or its material's
@@ -92,7 +94,7 @@ struct Geom {
 struct Site {
   std::string name;
   Shape shape = Shape::kSphere;
-  Pose pose;  // in its body's frame
+  Pose pose;                              // in its body's frame
   Vec3 size = Vec3(0.005, 0.005, 0.005);  // as of a geom
   Rgba rgba{0.5, 0.5, 0.5, 1};
   int group = 0;

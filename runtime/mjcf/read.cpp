@@ -1,4 +1,5 @@
-// The elements of a file, one function each. What is said of a geom and of a site stands in read_shape.
+// The elements of a file, one function each. What is said of a geom and of a site stands in
+// read_shape.
 #include "runtime/mjcf/read.h"
 
 #include <fmt/format.h>
@@ -120,7 +121,8 @@ class ModelReader {
   }
 
   Failure unknown(const Element& element, const char* within) const {
-    return fail(element.at, fmt::format("`{}` is no element of {}", printable(element.tag, 60), within));
+    return fail(element.at,
+                fmt::format("`{}` is no element of {}", printable(element.tag, 60), within));
   }
 
   // Every element of a class, too: a slip in one of those is as wrong.
@@ -158,7 +160,8 @@ class ModelReader {
     for (const Element& section : document_.root.children) {
       if (section.tag == "default") {
         PROBE_TRY(check_class(section));
-      } else if (section.tag != "compiler" && section.tag != "asset" && section.tag != "worldbody") {
+      } else if (section.tag != "compiler" && section.tag != "asset" &&
+                 section.tag != "worldbody") {
         if (!is_unread_section(section.tag)) return unknown(section, "`mujoco`");
         // `size` is room for the engine.
         if (section.tag != "size" && (!section.children.empty() || !section.attributes.empty()))
@@ -289,7 +292,8 @@ class ModelReader {
     }
     if (texture.builtin != Texture::Builtin::kFile &&
         (texture.width < 1 || texture.height < 1 || texture.width > 8192 || texture.height > 65536))
-      return fail(element.at, "a builtin texture wants a `width` and a `height` of 1 to 8192 pixels");
+      return fail(element.at,
+                  "a builtin texture wants a `width` and a `height` of 1 to 8192 pixels");
     if (texture.builtin == Texture::Builtin::kFile && texture.file.empty() && !has_faces)
       return fail(element.at, "a texture without `file` and without `builtin`");
     if (!texture.file.empty()) texture.name = fs::path(texture.file).stem().string();
@@ -422,7 +426,8 @@ class ModelReader {
   Status read_shape(const Values& values, const Pose& frame, Thing& thing, std::size_t& said) {
     std::array<std::string_view, kShapes.size()> words;
     for (std::size_t i = 0; i < kShapes.size(); ++i) words[i] = kShapes[i].word;
-    if (const auto type = values.find("type"); type && (type->text == "hfield" || type->text == "sdf"))
+    if (const auto type = values.find("type");
+        type && (type->text == "hfield" || type->text == "sdf"))
       return values.fail(type->at, fmt::format("a geom of type `{}` is not read", type->text));
     std::size_t which = 1;
     PROBE_TRY(values.read_word("type", words, which));
@@ -539,7 +544,8 @@ class ModelReader {
     if (!joint.name.empty() && !joint_names_.insert(joint.name).second)
       return fail(element.at, "a second joint `" + printable(joint.name, 60) + "`");
     constexpr std::string_view kMotions[] = {"hinge", "slide", "ball", "free"};
-    auto motion = static_cast<std::size_t>(element.tag == "freejoint" ? Motion::kFree : Motion::kHinge);
+    auto motion =
+        static_cast<std::size_t>(element.tag == "freejoint" ? Motion::kFree : Motion::kHinge);
     PROBE_TRY(values.read_word("type", kMotions, motion));
     joint.motion = static_cast<Motion>(motion);
     if (joint.motion == Motion::kFree) {
@@ -560,7 +566,8 @@ class ModelReader {
     constexpr std::string_view kLimited[] = {"false", "true", "auto"};
     std::size_t limited = 2;
     PROBE_TRY(values.read_word("limited", kLimited, limited));
-    joint.limited = limited == 1 || (limited == 2 && model_.compiler.autolimits && values.has("range"));
+    joint.limited =
+        limited == 1 || (limited == 2 && model_.compiler.autolimits && values.has("range"));
     if (limited == 2 && !model_.compiler.autolimits && values.has("range"))
       note(element.at, "a range without `limited`, and no `autolimits`: it is not read");
     if (joint.limited && joint.motion != Motion::kBall && !(joint.lower < joint.upper))
@@ -598,8 +605,8 @@ class ModelReader {
       inertial.inertia << full[0], full[3], full[4], full[3], full[1], full[5], full[4], full[5],
           full[2];
     }
-    const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(inertial.inertia, Eigen::EigenvaluesOnly)
-                             .eigenvalues();
+    const Vec3 moments =
+        Eigen::SelfAdjointEigenSolver<Mat3>(inertial.inertia, Eigen::EigenvaluesOnly).eigenvalues();
     constexpr double kRounding = 1e-6;
     const double largest = moments[2] * (1 + kRounding);
     if (moments[0] < 0 || moments[0] + moments[1] < moments[2] - (largest - moments[2]))

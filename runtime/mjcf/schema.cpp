@@ -11,7 +11,8 @@ constexpr auto kSchemas = std::to_array<ElementSchema>({
     {"compiler",
      "angle autolimits eulerseq meshdir texturedir assetdir strippath inertiafromgeom "
      "inertiagrouprange exactmeshinertia boundmass boundinertia coordinate",
-     "settotalmass balanceinertia fitaabb", "fusestatic discardvisual usethread convexhull alignfree "
+     "settotalmass balanceinertia fitaabb",
+     "fusestatic discardvisual usethread convexhull alignfree "
      "saveinertial"},
     {"default", "class", "", ""},
     {"asset", "", "", ""},
@@ -37,9 +38,11 @@ constexpr auto kSchemas = std::to_array<ElementSchema>({
      "ipd user"},
     {"light",
      "name class pos dir directional castshadow ambient diffuse specular attenuation cutoff "
-     "exponent mode", "target type", "active bulbradius"},
+     "exponent mode",
+     "target type", "active bulbradius"},
     {"mesh", "name class file scale refpos refquat inertia",
-     "vertex normal texcoord face builtin params smoothnormal", "content_type maxhullvert", "plugin"},
+     "vertex normal texcoord face builtin params smoothnormal", "content_type maxhullvert",
+     "plugin"},
     {"texture",
      "name class type file fileright fileleft fileup filedown filefront fileback builtin rgb1 rgb2 "
      "width height hflip vflip",
@@ -50,13 +53,15 @@ constexpr auto kSchemas = std::to_array<ElementSchema>({
 });
 
 constexpr std::string_view kUnreadSections =
-    "option size visual statistic custom extension keyframe sensor contact equality tendon actuator "
+    "option size visual statistic custom extension keyframe sensor contact equality tendon "
+    "actuator "
     "deformable";
 constexpr std::string_view kUnreadAssets = "hfield skin model";
 constexpr std::string_view kUnreadInBody = "composite flexcomp attach replicate plugin";
 
 constexpr std::string_view kUnreadInDefault =
-    "pair equality tendon general motor position velocity intvelocity damper cylinder muscle adhesion";
+    "pair equality tendon general motor position velocity intvelocity damper cylinder muscle "
+    "adhesion";
 
 }  // namespace
 

@@ -1,4 +1,5 @@
-// Which elements and attributes there are, which of them are read: nothing in a file is passed over without a word.
+// Which elements and attributes there are, which of them are read: nothing in a file is passed over
+// without a word.
 #pragma once
 
 #include <span>
@@ -8,16 +9,17 @@ namespace probe::mjcf {
 
 struct ElementSchema {
   std::string_view tag;
-  std::string_view read;    // attributes, separated by blanks
-  std::string_view unread;  // known: a note says that they are not read
-  std::string_view silent;  // known, and nothing to anybody who reads shapes: not even that
+  std::string_view read;           // attributes, separated by blanks
+  std::string_view unread;         // known: a note says that they are not read
+  std::string_view silent;         // known, and nothing to anybody who reads shapes: not even that
   std::string_view children = {};  // elements within it that are known and not read
 };
 
 // Null for what is not read as a whole.
 const ElementSchema* find_schema(std::string_view tag);
 
-// Sections and elements that are known and not read, at the outermost level, of `asset`, of a body, of a class.
+// Sections and elements that are known and not read, at the outermost level, of `asset`, of a body,
+// of a class.
 bool is_unread_section(std::string_view tag);
 bool is_unread_asset(std::string_view tag);
 bool is_unread_in_body(std::string_view tag);

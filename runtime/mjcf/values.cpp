@@ -104,7 +104,8 @@ Status Values::read(std::string_view name, int& to) const {
     return {};
   }
   return fail(find(name)->at, fmt::format("`{}` of `{}` is no whole number of a size that is "
-                                          "expected", name, element_->tag));
+                                          "expected",
+                                          name, element_->tag));
 }
 
 Status Values::read_word(std::string_view name, std::span<const std::string_view> words,
@@ -160,8 +161,7 @@ Status read_rotation(const Values& values, const Compiler& compiler, Quat& to) {
   At at = values.at();
   for (const std::string_view each : kForms) {
     if (!values.own(each)) continue;
-    if (!form.empty())
-      return values.fail(fmt::format("both `{}` and `{}` are said", form, each));
+    if (!form.empty()) return values.fail(fmt::format("both `{}` and `{}` are said", form, each));
     form = each;
   }
   for (const std::string_view each : kForms) {
@@ -229,8 +229,7 @@ Status Classes::add(const Document& document, const Element& element, const std:
   const std::string name = parent.empty() ? "main" : *said;
   if (!parent.empty() && has(name))
     return Failure{Fault::kAsset, "a second class `" + name + "`", document.where(element.at)};
-  if (parent.empty() && said != nullptr && *said != "main")
-    classes_[*said].parent = "main";
+  if (parent.empty() && said != nullptr && *said != "main") classes_[*said].parent = "main";
   classes_[name].parent = parent;
   for (const Element& child : element.children) {
     if (child.tag == "default") {

@@ -14,8 +14,9 @@
 
 namespace probe::mjcf {
 
-// What an element says itself, else the nearest of its classes that says it. Lists are separated by blanks. Every read fails
-// (kAsset, where = the place of the text) as read_model says; a value that is not there leaves what was.
+// What an element says itself, else the nearest of its classes that says it. Lists are separated by
+// blanks. Every read fails (kAsset, where = the place of the text) as read_model says; a value that
+// is not there leaves what was.
 class Values {
  public:
   // `classes` from the nearest on.
@@ -53,7 +54,8 @@ class Values {
   std::vector<const Element*> classes_;
 };
 
-// quat, axisangle, euler, xyaxes or zaxis; what the element says itself comes before what its classes say.
+// quat, axisangle, euler, xyaxes or zaxis; what the element says itself comes before what its
+// classes say.
 Status read_rotation(const Values& values, const Compiler& compiler, Quat& to);
 // The shortest turn that takes z to `axis`, which is unit.
 Quat turn_of_z(const Vec3& axis);

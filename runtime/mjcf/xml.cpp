@@ -48,8 +48,9 @@ class Reader {
       if (!fs::equivalent(known, path, error)) continue;
       return Failure{Fault::kAsset, "includes `" + path + "`, which is read already", by};
     }
-    PROBE_ASSIGN(const std::string text,
-                 read_file(path, {.most = kLongestText, .code = Fault::kAsset, .only_begin = false}));
+    PROBE_ASSIGN(
+        const std::string text,
+        read_file(path, {.most = kLongestText, .code = Fault::kAsset, .only_begin = false}));
     const auto file = static_cast<std::uint32_t>(document_.files.size());
     document_.files.push_back(path);
     PROBE_TRY(check_size(text, path));
@@ -77,7 +78,8 @@ class Reader {
       }
       if ((text[i] == '<' && next == '/') || (text[i] == '/' && next == '>')) --depth;
       if (depth > kDeepest)
-        return Failure{Fault::kAsset, fmt::format("elements nested deeper than {}", kDeepest), path};
+        return Failure{Fault::kAsset, fmt::format("elements nested deeper than {}", kDeepest),
+                       path};
     }
     if (elements_ <= kMostElements) return {};
     return Failure{Fault::kAsset, fmt::format("more than {} elements", kMostElements), path};

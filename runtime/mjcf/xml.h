@@ -1,5 +1,6 @@
-// An XML text as a tree that remembers where everything stood, with `include` elements replaced by what they name. Knows
-// nothing of bodies. xml.cpp is the only file of this folder that includes TinyXML.
+// An XML text as a tree that remembers where everything stood, with `include` elements replaced by
+// what they name. Knows nothing of bodies. xml.cpp is the only file of this folder that includes
+// TinyXML.
 #pragma once
 
 #include <cstdint>
@@ -35,9 +36,10 @@ struct Document {
   std::string where(const At& at) const;  // "cabinet.xml:12", with the path as it was given
 };
 
-// Files that are included are found beside the first one, as MuJoCo does; theirs is the content of their root. Fails
-// (kAsset, where = path or path:line) on a missing file, text that is not XML, another root than `mujoco`, a file that is
-// included twice or within itself, more than 64 MB or 1,000,000 elements, or elements nested deeper than 500.
+// Files that are included are found beside the first one, as MuJoCo does; theirs is the content of
+// their root. Fails (kAsset, where = path or path:line) on a missing file, text that is not XML,
+// another root than `mujoco`, a file that is included twice or within itself, more than 64 MB or
+// 1,000,000 elements, or elements nested deeper than 500.
 Result<Document> read_document(const std::string& path);
 
 }  // namespace probe::mjcf

@@ -39,7 +39,8 @@ std::string red_and_green() {
   return *scene::png_bytes(4, 2, rgb);
 }
 
-// A cup in robosuite's form: a mesh to be seen, two boxes to be felt, the upper half as heavy, a turned box as a site.
+// A cup in robosuite's form: a mesh to be seen, two boxes to be felt, the upper half as heavy, a
+// turned box as a site.
 constexpr const char* kCup = R"(<mujoco model="cup">
   <asset>
     <texture file="cup.png" name="tex" type="2d"/>
@@ -100,14 +101,16 @@ const MujocoFile& file_of(const MujocoAsset& asset, const std::string& path) {
 }
 
 scene::Mesh mesh_of(const MjcfFolder& folder, const MujocoAsset& asset, const std::string& path) {
-  const auto mesh =
-      scene::load_mesh(folder.write("made/" + fs::path(path).filename().string(), file_of(asset, path).bytes));
+  const auto mesh = scene::load_mesh(
+      folder.write("made/" + fs::path(path).filename().string(), file_of(asset, path).bytes));
   INFO((mesh ? std::string() : to_text(mesh.failure())));
   REQUIRE(mesh.ok());
   return **mesh;
 }
 
-TEST_CASE("an object is seen by its mesh with its texture, felt by its boxes, and declared with its density") {
+TEST_CASE(
+    "an object is seen by its mesh with its texture, felt by its boxes, and declared with its "
+    "density") {
   const MjcfFolder folder;
   write_cup(folder);
   const MujocoAsset cup = converted(cup_options(folder));
@@ -130,7 +133,8 @@ TEST_CASE("an object is seen by its mesh with its texture, felt by its boxes, an
   CHECK(cup.sites[2].outside);
   CHECK(cup.sites[2].pose.position.z() == -0.04);
   REQUIRE(cup.files.size() == 2);
-  const std::string obj = folder.write("made/collision.obj", file_of(cup, "objects/cup/collision.obj").bytes);
+  const std::string obj =
+      folder.write("made/collision.obj", file_of(cup, "objects/cup/collision.obj").bytes);
   const auto shape = scene::load_collision_mesh(obj, {1, 1, 1});
   REQUIRE(shape.ok());
   CHECK(shape->parts.size() == 2);
@@ -141,7 +145,8 @@ TEST_CASE("an object is seen by its mesh with its texture, felt by its boxes, an
   float highest = 0;
   for (const scene::MeshPart& part : seen.parts) {
     CHECK(part.uv.size() / 2 == part.positions.size() / 3);
-    for (std::size_t i = 2; i < part.positions.size(); i += 3) highest = std::max(highest, part.positions[i]);
+    for (std::size_t i = 2; i < part.positions.size(); i += 3)
+      highest = std::max(highest, part.positions[i]);
   }
   CHECK(highest == doctest::Approx(0.04f));
 }
@@ -149,7 +154,8 @@ TEST_CASE("an object is seen by its mesh with its texture, felt by its boxes, an
 TEST_CASE("a box that stands twice weighs twice in an object, and is felt once in a fixture") {
   const MjcfFolder folder;
   std::string text = kCup;
-  const std::string lower = "<geom type=\"box\" size=\"0.03 0.03 0.02\" pos=\"0 0 -0.02\" density=\"100\"/>";
+  const std::string lower =
+      "<geom type=\"box\" size=\"0.03 0.03 0.02\" pos=\"0 0 -0.02\" density=\"100\"/>";
   text.replace(text.find("<site name=\"inside\""), 0, lower);
   write_cup(folder, text);
   MujocoOptions options = cup_options(folder);
@@ -157,9 +163,11 @@ TEST_CASE("a box that stands twice weighs twice in an object, and is felt once i
   CHECK(cup.mass == doctest::Approx(0.0432));
   CHECK(cup.declaration.find("density 100kg/m3;") != std::string::npos);
   const std::string place = folder.path("cup.xml:10: ");
-  CHECK(cup.notes[0] == place + "1 geom stands where another of the same size does: all are felt, as all weigh");
+  CHECK(cup.notes[0] ==
+        place + "1 geom stands where another of the same size does: all are felt, as all weigh");
   options.kind = MujocoKind::kFixture;
-  CHECK(converted(options).notes[0] == place + "1 geom stands where another of the same size does: felt once");
+  CHECK(converted(options).notes[0] ==
+        place + "1 geom stands where another of the same size does: felt once");
 }
 
 TEST_CASE("what is not spread evenly is told, with how far off it is") {
@@ -172,7 +180,8 @@ TEST_CASE("what is not spread evenly is told, with how far off it is") {
   CHECK(cup.mass == doctest::Approx(0.0576));
   CHECK(cup.center_of_mass.z() == doctest::Approx(0.01));
   REQUIRE(cup.notes.size() == 1);
-  CHECK(cup.notes[0].find("its mass is spread evenly over what is felt: centre 10 mm, inertia") != std::string::npos);
+  CHECK(cup.notes[0].find("its mass is spread evenly over what is felt: centre 10 mm, inertia") !=
+        std::string::npos);
 }
 
 TEST_CASE("alone, without the model that it is merged into, its picture weighs as well") {
@@ -236,7 +245,8 @@ TEST_CASE("a fixture is a URDF with a link a joint, its joints, parts and region
         "  part knob link knob name \"knob\"\n"
         "  region on_shelf of cupboard box (-10cm, -5cm, 11cm) .. (10cm, 5cm, 19cm)\n"
         "  region in_drawer of drawer_part box (-10cm, -5cm, -4cm) .. (10cm, 5cm, 4cm)\n"
-        "  region slanted of drawer_part box (-10cm, -5cm, -4cm) .. (10cm, 5cm, 4cm) at (0cm, 0cm, 1cm) roll 30deg\n"
+        "  region slanted of drawer_part box (-10cm, -5cm, -4cm) .. (10cm, 5cm, 4cm) at (0cm, 0cm, "
+        "1cm) roll 30deg\n"
         "}\n");
   std::string notes;
   for (const std::string& note : made.notes) notes += note.substr(folder.path().size()) + "\n";
@@ -287,7 +297,9 @@ void each_corner(const scene::Mesh& mesh, const Use& use) {
   }
 }
 
-TEST_CASE("generated texture coordinates are MuJoCo's: 1.5 pictures a metre, or the whole picture on each face") {
+TEST_CASE(
+    "generated texture coordinates are MuJoCo's: 1.5 pictures a metre, or the whole picture on "
+    "each face") {
   const MjcfFolder folder;
   folder.write("cup.png", red_and_green());
   const auto wall = [&](const std::string& texture, const std::string& material) {
@@ -311,10 +323,11 @@ TEST_CASE("generated texture coordinates are MuJoCo's: 1.5 pictures a metre, or 
                 CHECK(v == doctest::Approx(-1.5 * p.y() - 0.5));
               });
   CHECK(corners == 6 * 25);
-  each_corner(wall("type=\"2d\"", "texrepeat=\"2 1\""), [&](const Vec3& p, const Vec3&, float u, float v) {
-    CHECK(u == doctest::Approx(p.x() / 1.5 - 0.5));
-    CHECK(v == doctest::Approx(-0.5 * p.y() / 2 - 0.5));
-  });
+  each_corner(wall("type=\"2d\"", "texrepeat=\"2 1\""),
+              [&](const Vec3& p, const Vec3&, float u, float v) {
+                CHECK(u == doctest::Approx(p.x() / 1.5 - 0.5));
+                CHECK(v == doctest::Approx(-0.5 * p.y() / 2 - 0.5));
+              });
   std::array<int, 4> seen{};
   each_corner(wall("type=\"cube\"", ""), [&](const Vec3& p, const Vec3& n, float u, float v) {
     if (n.z() < 0.5) return;  // the upper face: x to the right, y upwards in the picture
@@ -337,7 +350,8 @@ constexpr const char* kRoom = R"(<mujoco>
   </worldbody>
 </mujoco>)";
 
-TEST_CASE("a room is a backdrop, and what is felt in it are surfaces with their height and friction") {
+TEST_CASE(
+    "a room is a backdrop, and what is felt in it are surfaces with their height and friction") {
   const MjcfFolder folder;
   MujocoOptions options;
   options.kind = MujocoKind::kBackdrop;
@@ -370,7 +384,8 @@ TEST_CASE("a room is a backdrop, and what is felt in it are surfaces with their 
   CHECK(left == -3.0f);
   CHECK(high == doctest::Approx(0.9f));
   options.changes = {{"chair", Vec3(0, 0, 0), {}, {}}};
-  CHECK(failure_of(folder, options) == "room.xml: 0 bodies and geoms are called `chair`, which is to be changed");
+  CHECK(failure_of(folder, options) ==
+        "room.xml: 0 bodies and geoms are called `chair`, which is to be changed");
 }
 
 TEST_CASE("a colour on a texture is in its pixels, clear geoms are told") {
@@ -378,7 +393,8 @@ TEST_CASE("a colour on a texture is in its pixels, clear geoms are told") {
   std::string text = kCup;
   text.replace(text.find("specular"), 8, "rgba=\"0.5 0.5 0.5 1\" specular");
   text.replace(text.find("<site name=\"dot\""), 0,
-               "<geom type=\"sphere\" size=\"0.01\" contype=\"0\" conaffinity=\"0\" group=\"1\" rgba=\"1 1 1 0.2\"/>");
+               "<geom type=\"sphere\" size=\"0.01\" contype=\"0\" conaffinity=\"0\" group=\"1\" "
+               "rgba=\"1 1 1 0.2\"/>");
   write_cup(folder, text);
   const MujocoAsset cup = converted(cup_options(folder));
   const scene::Mesh seen = mesh_of(folder, cup, "objects/cup/visual.glb");
@@ -401,11 +417,13 @@ TEST_CASE("bad models are refused with what is wrong and where") {
   CHECK(cup("cup.msh", "none.msh") == "cup.xml:5: mesh `none.msh`: no such file");
   CHECK(cup("<site name=\"inside\"", "<joint/><site name=\"inside\"") ==
         "cup.xml:13: a joint that moves the thing itself");
-  CHECK(cup("<site name=\"dot\" size=\"0.01\"/>", "<body name=\"lid\"><joint type=\"ball\"/></body>") ==
+  CHECK(cup("<site name=\"dot\" size=\"0.01\"/>",
+            "<body name=\"lid\"><joint type=\"ball\"/></body>") ==
         "cup.xml:14: a ball or a free joint within a thing");
   CHECK(cup("<site name=\"dot\" size=\"0.01\"/>", "<body><joint/><joint/></body>") ==
         "cup.xml:14: a second joint of one body: each has a link of its own here");
-  CHECK(cup("<worldbody>", "<worldbody><body/>") == "cup.xml:1: the world has 2 bodies, expected one: the thing");
+  CHECK(cup("<worldbody>", "<worldbody><body/>") ==
+        "cup.xml:1: the world has 2 bodies, expected one: the thing");
   // 9,000 pixels across, told by the header alone.
   std::string huge = red_and_green();
   for (const std::size_t at : {18u, 22u}) {
@@ -421,8 +439,11 @@ TEST_CASE("bad models are refused with what is wrong and where") {
   write_cup(folder);
   folder.write("cup.png", huge);
   CHECK(failure_of(folder, cup_options(folder)) ==
-        "cup.xml:3: texture `cup.png`: the image has 9000 x 9000 pixels, at most 8192 a side are read");
-  write_cup(folder, "<mujoco><worldbody><body><geom size=\"1\" contype=\"0\" conaffinity=\"0\"/></body></worldbody></mujoco>");
+        "cup.xml:3: texture `cup.png`: the image has 9000 x 9000 pixels, at most 8192 a side are "
+        "read");
+  write_cup(folder,
+            "<mujoco><worldbody><body><geom size=\"1\" contype=\"0\" "
+            "conaffinity=\"0\"/></body></worldbody></mujoco>");
   CHECK(failure_of(folder, cup_options(folder)) == "cup.xml: nothing of it can be touched");
   MujocoOptions object;
   object.kind = MujocoKind::kObject;
@@ -438,7 +459,8 @@ TEST_CASE("a text that uses what was made is checked without a word and drawn") 
   const fs::path source = VLAPROBE_SOURCE_DIR;
   fs::create_directories(folder.path("all"));
   for (const char* part : {"objects", "robots", "scenes", "textures"})
-    fs::copy(source / "assets" / part, folder.path(std::string("all/") + part), fs::copy_options::recursive);
+    fs::copy(source / "assets" / part, folder.path(std::string("all/") + part),
+             fs::copy_options::recursive);
   fs::create_directories(folder.path("texts"));
   for (const auto& entry : fs::directory_iterator(source / "suite")) {
     if (entry.path().extension() == ".probe") fs::copy(entry.path(), folder.path("texts"));
@@ -459,7 +481,8 @@ TEST_CASE("a text that uses what was made is checked without a word and drawn") 
   CHECK(made->lines[1].word == "fixture");
   CHECK(!make_mujoco_folder(options).ok());  // it is there
   for (const char* part : {"objects", "fixtures"})
-    fs::copy(folder.path(std::string("made/") + part), folder.path(std::string("all/") + part), fs::copy_options::recursive);
+    fs::copy(folder.path(std::string("made/") + part), folder.path(std::string("all/") + part),
+             fs::copy_options::recursive);
   for (const char* text : {"cup.probe", "cupboard.probe"})
     fs::copy(folder.path(std::string("made/") + text), folder.path("texts"));
   const std::string text = folder.write("texts/try.probe", R"(use "panda.probe"
@@ -472,11 +495,13 @@ layout one { cells spots = grid 1 x 2 at (-15cm, 15cm) spread (0cm, 17cm); place
 task t { scene desk; layout one; metrics put_loose; say put; horizon 300 steps; source my_cup; target plate }
 suite tried trained on bridge_v2 { tasks { t }; seeds 42 }
 )");
-  CompileOptions compile{.asset_root = folder.path("all"), .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}};
+  CompileOptions compile{.asset_root = folder.path("all"),
+                         .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}};
   auto built = build(std::span(&text, 1), compile);
   REQUIRE(built.ok());
   std::string found;
-  for (const Diagnostic& diagnostic : built->diagnostics.items()) found += diagnostic.message + "\n";
+  for (const Diagnostic& diagnostic : built->diagnostics.items())
+    found += diagnostic.message + "\n";
   CHECK(found == "");
   REQUIRE(built->ok);
   const auto plan = plan::Plan::from_bytes(std::move(built->plan));
@@ -502,8 +527,9 @@ suite tried trained on bridge_v2 { tasks { t }; seeds 42 }
 
 TEST_CASE("all classes of LIBERO become assets, twice the same") {
   const char* elsewhere = std::getenv("VLAPROBE_REFERENCE");
-  const std::string root = (elsewhere != nullptr ? elsewhere : VLAPROBE_SOURCE_DIR "/../shared/reference") +
-                           std::string("/libero/");
+  const std::string root =
+      (elsewhere != nullptr ? elsewhere : VLAPROBE_SOURCE_DIR "/../shared/reference") +
+      std::string("/libero/");
   std::ifstream in(root + "libero_object_classes.json");
   if (!in) {
     MESSAGE("skipped: no ../shared/reference/libero");
@@ -521,14 +547,16 @@ TEST_CASE("all classes of LIBERO become assets, twice the same") {
     const MujocoAsset asset = converted(options);
     CHECK(asset.mass == doctest::Approx(entry["total_mass"].get<double>()).epsilon(1e-9));
     // By density alone each weighs what it weighs there, and where.
-    for (const std::string& note : asset.notes) CHECK(note.find("spread evenly") == std::string::npos);
+    for (const std::string& note : asset.notes)
+      CHECK(note.find("spread evenly") == std::string::npos);
     if (is_object) CHECK(asset.declaration.find("  density 100kg/m3;") != std::string::npos);
     std::size_t joints = 0;
     for (const auto& body : entry["bodies"]) joints += body["joints"].size();
     CHECK(asset.joints.size() == joints);
     const MujocoAsset again = converted(options);
     CHECK(asset.declaration == again.declaration);
-    for (std::size_t i = 0; i < asset.files.size(); ++i) CHECK((asset.files[i].bytes == again.files[i].bytes));
+    for (std::size_t i = 0; i < asset.files.size(); ++i)
+      CHECK((asset.files[i].bytes == again.files[i].bytes));
     ++(is_object ? objects : fixtures);
   }
   CHECK(objects + fixtures == 33);
@@ -537,13 +565,15 @@ TEST_CASE("all classes of LIBERO become assets, twice the same") {
 
 TEST_CASE("the rooms of LIBERO become backdrops") {
   const char* elsewhere = std::getenv("VLAPROBE_REFERENCE");
-  const std::string root = (elsewhere != nullptr ? elsewhere : VLAPROBE_SOURCE_DIR "/../shared/reference") +
-                           std::string("/libero/libero_assets/libero/scenes/");
+  const std::string root =
+      (elsewhere != nullptr ? elsewhere : VLAPROBE_SOURCE_DIR "/../shared/reference") +
+      std::string("/libero/libero_assets/libero/scenes/");
   if (!fs::is_directory(root)) {
     MESSAGE("skipped: no ../shared/reference/libero");
     return;
   }
-  for (const char* name : {"floor", "tabletop", "living_room_tabletop", "study", "kitchen_tabletop"}) {
+  for (const char* name :
+       {"floor", "tabletop", "living_room_tabletop", "study", "kitchen_tabletop"}) {
     CAPTURE(name);
     MujocoOptions options;
     options.kind = MujocoKind::kBackdrop;

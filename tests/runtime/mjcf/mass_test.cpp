@@ -21,8 +21,9 @@ struct Weighed {
 
 Weighed weighed(const std::string& content, const std::string& around = "",
                 const MjcfFolder& folder = {}) {
-  const auto model = read_model(folder.write(
-      "model.xml", "<mujoco>" + around + "<worldbody><body>" + content + "</body></worldbody></mujoco>"));
+  const auto model =
+      read_model(folder.write("model.xml", "<mujoco>" + around + "<worldbody><body>" + content +
+                                               "</body></worldbody></mujoco>"));
   INFO((model ? std::string() : to_text(model.failure())));
   REQUIRE(model.ok());
   std::vector<MassProperties> solids;
@@ -41,23 +42,29 @@ Weighed weighed(const std::string& content, const std::string& around = "",
 bool is_inside(const Geom& g, const Vec3& p) {
   const double across = std::hypot(p.x(), p.y());
   switch (g.shape) {
-    case Shape::kSphere: return p.norm() <= g.size[0];
-    case Shape::kEllipsoid: return p.cwiseQuotient(g.size).norm() <= 1;
-    case Shape::kBox: return (p.cwiseAbs().array() <= g.size.array()).all();
-    case Shape::kCylinder: return across <= g.size[0] && std::abs(p.z()) <= g.size[1];
+    case Shape::kSphere:
+      return p.norm() <= g.size[0];
+    case Shape::kEllipsoid:
+      return p.cwiseQuotient(g.size).norm() <= 1;
+    case Shape::kBox:
+      return (p.cwiseAbs().array() <= g.size.array()).all();
+    case Shape::kCylinder:
+      return across <= g.size[0] && std::abs(p.z()) <= g.size[1];
     case Shape::kCapsule:
       return std::hypot(across, std::max(std::abs(p.z()) - g.size[1], 0.0)) <= g.size[0];
     case Shape::kPlane:
-    case Shape::kMesh: break;
+    case Shape::kMesh:
+      break;
   }
   return false;
 }
 
 // The formulas against points on a fine grid.
 TEST_CASE("volumes and moments of the shapes are those of their points") {
-  for (const char* text : {"type=\"sphere\" size=\"0.5\"", "type=\"ellipsoid\" size=\"0.3 0.5 0.7\"",
-                           "type=\"box\" size=\"0.3 0.5 0.7\"", "type=\"cylinder\" size=\"0.4 0.6\"",
-                           "type=\"capsule\" size=\"0.3 0.5\""}) {
+  for (const char* text :
+       {"type=\"sphere\" size=\"0.5\"", "type=\"ellipsoid\" size=\"0.3 0.5 0.7\"",
+        "type=\"box\" size=\"0.3 0.5 0.7\"", "type=\"cylinder\" size=\"0.4 0.6\"",
+        "type=\"capsule\" size=\"0.3 0.5\""}) {
     CAPTURE(text);
     const Weighed w = weighed(std::string("<geom density=\"10\" ") + text + "/>");
     double volume = 0;
@@ -80,9 +87,11 @@ TEST_CASE("volumes and moments of the shapes are those of their points") {
   }
 }
 
-TEST_CASE("overlaps count twice, masses that are said replace densities, other groups weigh nothing") {
+TEST_CASE(
+    "overlaps count twice, masses that are said replace densities, other groups weigh nothing") {
   const std::string two =
-      "<geom type=\"box\" size=\"1 1 1\" density=\"1\"/><geom type=\"box\" size=\"1 1 1\" density=\"1\"/>";
+      "<geom type=\"box\" size=\"1 1 1\" density=\"1\"/><geom type=\"box\" size=\"1 1 1\" "
+      "density=\"1\"/>";
   CHECK(weighed(two).mass.mass == doctest::Approx(16));
   const Weighed far = weighed(
       "<geom type=\"box\" size=\"1 1 1\" mass=\"3\" pos=\"1 0 0\"/>"
@@ -105,20 +114,22 @@ TEST_CASE("an inertial replaces what geoms weigh, unless the compiler says other
   CHECK((said.mass.inertia - Mat3(Vec3(2, 1, 2.5).asDiagonal())).norm() < 1e-12);
   CHECK(weighed(body, "<compiler inertiafromgeom=\"true\"/>").mass.mass == doctest::Approx(7));
   CHECK(weighed("<geom size=\"1\"/>", "<compiler inertiafromgeom=\"false\"/>").mass.mass == 0);
-  const Weighed full = weighed("<inertial pos=\"0 0 0\" mass=\"1\" fullinertia=\"3 3 3 0.1 0.2 0.3\"/>");
+  const Weighed full =
+      weighed("<inertial pos=\"0 0 0\" mass=\"1\" fullinertia=\"3 3 3 0.1 0.2 0.3\"/>");
   CHECK(full.mass.inertia(0, 1) == 0.1);
   CHECK(full.mass.inertia(0, 2) == 0.2);
   CHECK(full.mass.inertia(2, 1) == 0.3);
-  CHECK(weighed("<geom size=\"0.01\" density=\"1\"/>", "<compiler boundmass=\"0.5\"/>").mass.mass == 0.5);
+  CHECK(weighed("<geom size=\"0.01\" density=\"1\"/>", "<compiler boundmass=\"0.5\"/>").mass.mass ==
+        0.5);
 }
 
 TEST_CASE("a mesh is moved, turned and scaled, and weighs what is in it") {
   const MjcfFolder folder;
   folder.write("box.msh", box_msh(1, 2, 3));
-  const Weighed w = weighed(
-      "<geom type=\"mesh\" mesh=\"box\" density=\"1\" pos=\"0 0 1\"/>",
-      "<asset><mesh file=\"box.msh\" refpos=\"1 0 0\" refquat=\"1 0 0 1\" scale=\"1 1 -0.5\"/></asset>",
-      folder);
+  const Weighed w = weighed("<geom type=\"mesh\" mesh=\"box\" density=\"1\" pos=\"0 0 1\"/>",
+                            "<asset><mesh file=\"box.msh\" refpos=\"1 0 0\" refquat=\"1 0 0 1\" "
+                            "scale=\"1 1 -0.5\"/></asset>",
+                            folder);
   // A quarter turn about z back: x to -y, y to x. What was at (1, 0, 0) is the origin.
   CHECK(w.mass.mass == doctest::Approx(24));
   CHECK((w.mass.center - Vec3(0, 1, 1)).norm() < 1e-6);
@@ -183,7 +194,8 @@ TEST_CASE("a mesh that is missing or none is named with the line that names it")
     REQUIRE(!mesh.ok());
     return to_text(mesh.failure());
   };
-  CHECK(message(0) == folder.path("model.xml:2: mesh `") + folder.path("none.stl") + "`: no such file");
+  CHECK(message(0) ==
+        folder.path("model.xml:2: mesh `") + folder.path("none.stl") + "`: no such file");
   CHECK(message(1) == folder.path("model.xml:3: mesh `") + folder.path("bad.msh") +
                           "`: not a .msh mesh: no room for its sizes");
   folder.write("cup.ply", "ply");

@@ -34,7 +34,8 @@ class MjcfFolder {
   std::filesystem::path path_;
 };
 
-// A .msh file of a box with half sizes x, y, z: 8 vertices, outward faces, texture coordinates where wanted.
+// A .msh file of a box with half sizes x, y, z: 8 vertices, outward faces, texture coordinates
+// where wanted.
 inline std::string box_msh(float x, float y, float z, bool coordinates = false) {
   std::string out;
   const auto put = [&](const auto& value) {

@@ -35,7 +35,8 @@ std::string in_body(const std::string& content, const std::string& around = "") 
 
 void check_near(const Vec3& a, const Vec3& b) { CHECK((a - b).norm() < 1e-12); }
 
-TEST_CASE("an element has what it says, then what its class says, then what the classes around say") {
+TEST_CASE(
+    "an element has what it says, then what its class says, then what the classes around say") {
   const Model model = model_of(R"(<mujoco>
     <default>
       <geom density="100" rgba="1 0 0 1"/>
@@ -83,7 +84,8 @@ TEST_CASE("angles are degrees unless the compiler says radian, and turn in the o
   q = turned("", "<body xyaxes=\"0 1 0 -1 1 0\"/>");
   check_near(q * Vec3::UnitX(), Vec3::UnitY());
   check_near(q * Vec3::UnitZ(), Vec3::UnitZ());
-  for (const Vec3& axis : {Vec3(0, 0, 3), Vec3(0, 0, -1), Vec3(1, 2, 3), Vec3(1e-9, 0, -1), Vec3(1, 0, -2)}) {
+  for (const Vec3& axis :
+       {Vec3(0, 0, 3), Vec3(0, 0, -1), Vec3(1, 2, 3), Vec3(1e-9, 0, -1), Vec3(1, 0, -2)}) {
     const std::string text = "<body zaxis=\"" + std::to_string(axis.x()) + " " +
                              std::to_string(axis.y()) + " " + std::to_string(axis.z()) + "\"/>";
     q = turned("", text);
@@ -96,9 +98,9 @@ TEST_CASE("angles are degrees unless the compiler says radian, and turn in the o
 }
 
 TEST_CASE("two points give a capsule its middle, its axis and its half length") {
-  const Model model = model_of(
-      in_body("<geom type=\"capsule\" fromto=\"0 0 0.1 0 0.4 0.1\" size=\"0.02\"/>"
-              "<geom type=\"box\" fromto=\"1 0 0 3 0 0\" size=\"0.1\"/>"));
+  const Model model =
+      model_of(in_body("<geom type=\"capsule\" fromto=\"0 0 0.1 0 0.4 0.1\" size=\"0.02\"/>"
+                       "<geom type=\"box\" fromto=\"1 0 0 3 0 0\" size=\"0.1\"/>"));
   const auto& geoms = model.bodies[1].geoms;
   check_near(geoms[0].pose.position, {0, 0.2, 0.1});
   check_near(geoms[0].pose.rotation * Vec3::UnitZ(), -Vec3::UnitY());
@@ -140,7 +142,8 @@ TEST_CASE("frames, joints, sites, lights and cameras stand in their body's frame
   CHECK(b.lights[0].cutoff == doctest::Approx(std::numbers::pi / 6));
   CHECK(b.cameras[0].fovy == doctest::Approx(std::numbers::pi / 3));
   CHECK(model.notes.empty());
-  CHECK(model_of(in_body("<camera mode=\"trackcom\"/>")).notes[0].text == "`mode` of `camera` is read as `fixed`");
+  CHECK(model_of(in_body("<camera mode=\"trackcom\"/>")).notes[0].text ==
+        "`mode` of `camera` is read as `fixed`");
   CHECK(model.bodies[2].joints[0].motion == Motion::kFree);
   CHECK(model.bodies[3].joints[0].upper == doctest::Approx(std::numbers::pi / 2));
   CHECK(model.bodies[3].joints[0].reference == doctest::Approx(std::numbers::pi / 4));
@@ -179,7 +182,8 @@ TEST_CASE("assets are found by name, files beside the model or in the compiler's
 TEST_CASE("what is merged into another model has that one's compiler and its files beside itself") {
   const MjcfFolder folder;
   const std::string base = folder.write(
-      "base.xml", "<mujoco><compiler angle=\"radian\" inertiagrouprange=\"0 0\" meshdir=\"far\"/></mujoco>");
+      "base.xml",
+      "<mujoco><compiler angle=\"radian\" inertiagrouprange=\"0 0\" meshdir=\"far\"/></mujoco>");
   const std::string file = folder.write("model.xml", R"(<mujoco>
     <compiler inertiagrouprange="4 4"/>
     <asset><mesh name="m" file="m.stl"/></asset>
@@ -203,12 +207,14 @@ TEST_CASE("included files are part of the model, and their mistakes have their o
   REQUIRE(model.ok());
   CHECK(model->bodies[1].geoms[0].group == 2);
   CHECK(model->files.size() == 2);
-  folder.write("parts/classes.xml", "<mujocoinclude>\n<default><geom gruop=\"2\"/></default></mujocoinclude>");
+  folder.write("parts/classes.xml",
+               "<mujocoinclude>\n<default><geom gruop=\"2\"/></default></mujocoinclude>");
   model = read_model(file);
   REQUIRE(!model.ok());
   CHECK(model.failure().where == folder.path("parts/classes.xml:2"));
   CHECK(model.failure().message == "`geom` has no attribute `gruop`");
-  folder.write("parts/classes.xml", "<mujocoinclude>\n<include file=\"model.xml\"/></mujocoinclude>");
+  folder.write("parts/classes.xml",
+               "<mujocoinclude>\n<include file=\"model.xml\"/></mujocoinclude>");
   model = read_model(file);
   REQUIRE(!model.ok());
   CHECK(model.failure().where == folder.path("parts/classes.xml:2"));
@@ -230,7 +236,8 @@ TEST_CASE("what is known and not read is a note with its place") {
     <tendon><fixed/></tendon>
     <worldbody><body mocap="true"><composite type="cable"/></body></worldbody></mujoco>)");
   std::string notes;
-  for (const Note& note : model.notes) notes += std::to_string(note.at.line) + " " + note.text + "\n";
+  for (const Note& note : model.notes)
+    notes += std::to_string(note.at.line) + " " + note.text + "\n";
   const std::string folder = model.files[0].substr(0, model.files[0].rfind('/'));
   if (const auto at = notes.find(folder); at != notes.npos) notes.erase(at, folder.size());
   CHECK(notes ==
@@ -254,17 +261,21 @@ TEST_CASE("bad input is refused with its file and line") {
   CHECK(failure_of(in_body("<gem/>")) == "/model.xml:2: `gem` is no element of a body");
   CHECK(geom("sice=\"1\"") == "/model.xml:2: `geom` has no attribute `sice`");
   CHECK(geom("size=\"nan\"") == "/model.xml:2: `size` of `geom` is `nan`, expected finite numbers");
-  CHECK(geom("size=\"1 2 x\"") == "/model.xml:2: `size` of `geom` is `1 2 x`, expected finite numbers");
-  CHECK(geom("size=\"1 1 1 1\"") == "/model.xml:2: `size` of `geom` is `1 1 1 1`, expected 3 numbers");
+  CHECK(geom("size=\"1 2 x\"") ==
+        "/model.xml:2: `size` of `geom` is `1 2 x`, expected finite numbers");
+  CHECK(geom("size=\"1 1 1 1\"") ==
+        "/model.xml:2: `size` of `geom` is `1 1 1 1`, expected 3 numbers");
   CHECK(geom("type=\"box\" size=\"1 1\"") == "/model.xml:2: `box` has 2 sizes, expected 3");
   CHECK(geom("type=\"box\" size=\"1 1 0\"") == "/model.xml:2: a size of `box` is 0");
   CHECK(geom("size=\"-1\"") == "/model.xml:2: a size below 0");
   CHECK(geom("size=\"1\" density=\"-3\"") == "/model.xml:2: `density` of `geom` is below 0");
-  CHECK(geom("size=\"1\" pos=\"1 2\"") == "/model.xml:2: `pos` of `geom` is `1 2`, expected 3 numbers");
+  CHECK(geom("size=\"1\" pos=\"1 2\"") ==
+        "/model.xml:2: `pos` of `geom` is `1 2`, expected 3 numbers");
   CHECK(geom("size=\"1\" quat=\"0 0 0 0\"") == "/model.xml:2: `quat` has a direction of no length");
-  CHECK(geom("type=\"bx\"") ==
-        "/model.xml:2: `type` of `geom` is `bx`, expected `plane`, `sphere`, `capsule`, `ellipsoid`, "
-        "`cylinder`, `box` or `mesh`");
+  CHECK(
+      geom("type=\"bx\"") ==
+      "/model.xml:2: `type` of `geom` is `bx`, expected `plane`, `sphere`, `capsule`, `ellipsoid`, "
+      "`cylinder`, `box` or `mesh`");
   CHECK(geom("type=\"hfield\"") == "/model.xml:2: a geom of type `hfield` is not read");
   CHECK(geom("type=\"mesh\" mesh=\"m\"") == "/model.xml:2: there is no mesh `m`");
   CHECK(geom("type=\"mesh\"") == "/model.xml:2: a geom of type `mesh` without a mesh");
@@ -276,15 +287,21 @@ TEST_CASE("bad input is refused with its file and line") {
         "/model.xml:2: `goem` is no element of a class");
   CHECK(failure_of("<mujoco>\n<default clas=\"c\"/></mujoco>") ==
         "/model.xml:2: `default` has no attribute `clas`");
-  CHECK(failure_of("<mujoco>\n<asset name=\"a\"/></mujoco>") == "/model.xml:2: `asset` has no attribute `name`");
+  CHECK(failure_of("<mujoco>\n<asset name=\"a\"/></mujoco>") ==
+        "/model.xml:2: `asset` has no attribute `name`");
   CHECK(failure_of("<mujoco>\n<worldbody pos=\"0 0 1\"/></mujoco>") ==
         "/model.xml:2: `worldbody` has no attribute `pos`");
-  CHECK(failure_of(in_body("<geom size=\"1\">\n<joint/></geom>")) == "/model.xml:3: `joint` is no element of `geom`");
-  CHECK(failure_of(in_body("<site>\n<geom/></site>")) == "/model.xml:3: `geom` is no element of `site`");
-  CHECK(failure_of(in_body("<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\">\n<x/></inertial>")) ==
+  CHECK(failure_of(in_body("<geom size=\"1\">\n<joint/></geom>")) ==
+        "/model.xml:3: `joint` is no element of `geom`");
+  CHECK(failure_of(in_body("<site>\n<geom/></site>")) ==
+        "/model.xml:3: `geom` is no element of `site`");
+  CHECK(failure_of(in_body(
+            "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"1 1 1\">\n<x/></inertial>")) ==
         "/model.xml:3: `x` is no element of `inertial`");
-  CHECK(model_of("<mujoco><default><motor ctrlrange=\"0 1\"/></default></mujoco>").notes.size() == 1);
-  CHECK(model_of("<mujoco><asset><material name=\"m\"><layer/></material></asset></mujoco>").notes.size() == 1);
+  CHECK(model_of("<mujoco><default><motor ctrlrange=\"0 1\"/></default></mujoco>").notes.size() ==
+        1);
+  CHECK(model_of("<mujoco><asset><material name=\"m\"><layer/></material></asset></mujoco>")
+            .notes.size() == 1);
   CHECK(failure_of(in_body("<joint range=\"1 0\"/>")) ==
         "/model.xml:2: a range whose second number is not above the first");
   CHECK(failure_of(in_body("<joint axis=\"0 0 0\"/>")) == "/model.xml:2: an axis of no length");

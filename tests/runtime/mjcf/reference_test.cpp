@@ -65,7 +65,9 @@ std::vector<const Body*> bodies_from(const Model& model, std::size_t root) {
   return found;
 }
 
-TEST_CASE("the classes of LIBERO have the bodies, geoms, sites, joints, masses and inertias that MuJoCo compiled") {
+TEST_CASE(
+    "the classes of LIBERO have the bodies, geoms, sites, joints, masses and inertias that MuJoCo "
+    "compiled") {
   std::ifstream in(reference() + "libero_object_classes.json");
   if (!in) {
     MESSAGE("skipped: no ../shared/reference/libero");
@@ -104,7 +106,8 @@ TEST_CASE("the classes of LIBERO have the bodies, geoms, sites, joints, masses a
         check_numbers(geom, "solref", body.geoms[g].solref);
         check_numbers(geom, "solimp", body.geoms[g].solimp);
         if (geom.contains("group")) CHECK(std::to_string(body.geoms[g].group) == geom["group"]);
-        if (geom.contains("contype")) CHECK(std::to_string(body.geoms[g].contype) == geom["contype"]);
+        if (geom.contains("contype"))
+          CHECK(std::to_string(body.geoms[g].contype) == geom["contype"]);
         if (geom.contains("conaffinity"))
           CHECK(std::to_string(body.geoms[g].conaffinity) == geom["conaffinity"]);
         if (geom.contains("mesh"))
