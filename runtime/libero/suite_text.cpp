@@ -189,7 +189,7 @@ class SuiteWriter {
       stage.scene = row->scene;
       return {};
     }
-    const std::string key = std::string(row->scene) + "\n" + lines;
+    const std::string key = std::string(row->scene) + " " + scene_of(task.stem) + "\n" + lines;
     const auto [at, is_new] = scenes_.try_emplace(key);
     if (is_new) {
       const std::string said = scene_of(task.stem);

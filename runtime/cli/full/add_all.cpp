@@ -25,6 +25,7 @@ void add_all_verbs(Verb program, int& exit) {
   add_demos(program, exit);
   add_export(program, exit);
   add_assets(program, exit);
+  add_libero(program, exit);
   add_doctor(program, exit);
 }
 
