@@ -164,12 +164,12 @@ struct CameraReader {
         context.report(Situation::kNegative, written.span, "expected a jitter of 0 or more");
       return std::max(0.0, most);
     };
-    camera.jitter_place = read(stmt.place, dim::kLength,
-                               "`jitter` of a camera takes a length and an angle",
-                               plan::Magnitude::kLength);
-    camera.jitter_turn = read(stmt.turn, dim::kAngle,
-                              "`jitter` of a camera takes a length and an angle",
-                              plan::Magnitude::kJointPosition);
+    camera.jitter_place =
+        read(stmt.place, dim::kLength, "`jitter` of a camera takes a length and an angle",
+             plan::Magnitude::kLength);
+    camera.jitter_turn =
+        read(stmt.turn, dim::kAngle, "`jitter` of a camera takes a length and an angle",
+             plan::Magnitude::kJointPosition);
     constexpr double kMost = std::numbers::pi / 2;
     if (camera.jitter_turn <= kMost) return;
     context.report(Situation::kCameraTurn, stmt.turn.span,

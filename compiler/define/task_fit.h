@@ -1,5 +1,6 @@
-// Whether what a task names fits together: its phrases, bodies, fixtures, cameras, joints and times.
-// What does not is reported, and the task is poisoned: what follows from it is not said again.
+// Whether what a task names fits together: its phrases, bodies, fixtures, cameras, joints and
+// times. What does not is reported, and the task is poisoned: what follows from it is not said
+// again.
 #pragma once
 
 #include "compiler/names/context.h"

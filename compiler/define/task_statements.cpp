@@ -10,6 +10,7 @@
 #include "compiler/define/solution.h"
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
+#include "compiler/define/wording.h"
 #include "compiler/names/quantities.h"
 #include "compiler/syntax/words.h"
 #include "runtime/base/sha256.h"

@@ -82,9 +82,8 @@ void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double 
     if (constant.values.empty() && !constant.varies) {
       constant.metric = program.metrics[i];
     } else {
-      std::erase_if(constant.metric.empty, [&](const Span& set) {
-        return !program.metrics[i].empty.contains(set);
-      });
+      std::erase_if(constant.metric.empty,
+                    [&](const Span& set) { return !program.metrics[i].empty.contains(set); });
     }
     if (known == findings.constants.end()) {
       constant.varies = true;

@@ -1031,9 +1031,8 @@ struct SuiteQuestionsStmt {
   Span span;
   std::vector<Name> sets;
 };
-using SuiteStmt =
-    std::variant<SuiteTasksStmt, SuiteSampleStmt, PrefixStmt, SeedsStmt, ExpectTasksStmt,
-                 SuiteQuestionsStmt>;
+using SuiteStmt = std::variant<SuiteTasksStmt, SuiteSampleStmt, PrefixStmt, SeedsStmt,
+                               ExpectTasksStmt, SuiteQuestionsStmt>;
 struct SuiteDecl {
   Name name;
   std::optional<Name> trained_on;

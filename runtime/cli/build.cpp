@@ -23,8 +23,8 @@ std::string drawn_text(const plan::Plan& plan) {
   std::string text;
   for (const plan::SuiteRecord& suite : plan.suites()) {
     if (suite.episodes.count > 0)
-      text += fmt::format(", of which suite `{}` runs {}", plan.text(suite.name),
-                          suite.episodes.count);
+      text +=
+          fmt::format(", of which suite `{}` runs {}", plan.text(suite.name), suite.episodes.count);
   }
   return text;
 }

@@ -327,9 +327,9 @@ class RelationCheck : FieldCheck {
       lacking.erase(task);
     }
     if (lacking.empty()) return {};
-    return fail(Rule::kSuiteEpisodes, &suite.episodes,
-                fmt::format("suite `{}` has a member of which it runs no episode",
-                            t.text(suite.name)));
+    return fail(
+        Rule::kSuiteEpisodes, &suite.episodes,
+        fmt::format("suite `{}` has a member of which it runs no episode", t.text(suite.name)));
   }
 
   Status lists() {

@@ -493,15 +493,26 @@ inline std::vector<Defect> task_defects() {
       {"SUIT", "share entries",
        [](Records& r, Writer&) { r.sets[0].members = r.suites[0].members; }},
       {"SUIT", "of LIST", [](Records& r, Writer&) { r.suites[0].seeds.count = 100; }},
-      {"SUIT", "of LIST", [](Records& r, Writer&) { r.suites[0].episodes = {0, 100}; }},
+      {"SUIT", "of LIST",
+       [](Records& r, Writer&) {
+         r.suites[0].episodes = {0, 100};
+       }},
       {"EPIS", "shakes its cameras by 6 numbers",
-       [](Records& r, Writer& w) { r.episodes[0].shaken = w.reals(std::vector<double>{0, 0, 0, 1, 0, 0}); }},
+       [](Records& r, Writer& w) {
+         r.episodes[0].shaken = w.reals(std::vector<double>{0, 0, 0, 1, 0, 0});
+       }},
       {"REAL", "the turn of a camera",
-       [](Records& r, Writer& w) { r.episodes[0].shaken = w.reals(std::vector<double>{0, 0, 0, 1, 1, 0, 0}); }},
+       [](Records& r, Writer& w) {
+         r.episodes[0].shaken = w.reals(std::vector<double>{0, 0, 0, 1, 1, 0, 0});
+       }},
       {"LIST", "do not ascend",
-       [](Records& r, Writer& w) { r.suites[0].episodes = w.list(std::vector<std::uint32_t>{2, 0}); }},
+       [](Records& r, Writer& w) {
+         r.suites[0].episodes = w.list(std::vector<std::uint32_t>{2, 0});
+       }},
       {"SUIT", "runs no episode",
-       [](Records& r, Writer& w) { r.suites[0].episodes = w.list(std::vector<std::uint32_t>{0, 1}); }},
+       [](Records& r, Writer& w) {
+         r.suites[0].episodes = w.list(std::vector<std::uint32_t>{0, 1});
+       }},
       {"SPAN", "span kind", [](Records& r, Writer&) { r.spans[0].what = 6; }},
       {"SPAN", "spans ascend", [](Records& r, Writer&) { std::ranges::reverse(r.spans); }},
       {"SPAN", "no part of a text", [](Records& r, Writer&) { r.spans[0].end = 9999; }},
