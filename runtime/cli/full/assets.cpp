@@ -65,26 +65,34 @@ void add_mujoco(Verb assets, int& exit) {
     bool object = false, fixture = false, backdrop = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  Verb verb = assets.add_subcommand("mujoco", "objects and fixtures of MuJoCo (MJCF) as assets and text");
+  Verb verb =
+      assets.add_subcommand("mujoco", "objects and fixtures of MuJoCo (MJCF) as assets and text");
   verb.footer(
-      "writes objects/, fixtures/ or scenes/, and a NAME.probe with the declaration of each object and fixture; one line for\n"
-      "each thing that is odd or not read, with file and line\n"
-      "example: vlaprobe assets mujoco mug/mug.xml -o mine --merged-into robosuite/models/assets/base.xml");
+      "writes objects/, fixtures/ or scenes/, and a NAME.probe that declares each object and "
+      "fixture;\n"
+      "a line for each thing that is odd or not read, with file and line\n"
+      "example: vlaprobe assets mujoco mug/mug.xml -o mine --merged-into "
+      "robosuite/models/assets/base.xml");
   assets::MujocoFolderOptions& options = arguments->options;
   verb.add_option("FILE", options.files, "MJCF of one object or fixture each").required();
   verb.add_option("-o,--out", options.to, "asset folder to make").required();
-  verb.add_option("--name", options.name, "what one FILE's object is declared as (default: the file's stem)");
-  verb.add_option("--merged-into", options.merged_into,
-                  "the MJCF that FILE is made a part of (robosuite's base.xml): its compiler holds");
-  verb.add_flag("--object", arguments->object, "what is picked up (default, where no joint is in it)");
+  verb.add_option("--name", options.name,
+                  "what one FILE's object is declared as (default: the file's stem)");
+  verb.add_option(
+      "--merged-into", options.merged_into,
+      "the MJCF that FILE is made a part of (robosuite's base.xml): its compiler holds");
+  verb.add_flag("--object", arguments->object,
+                "what is picked up (default, where no joint is in it)");
   verb.add_flag("--fixture", arguments->fixture, "what stands (default, where a joint is in it)");
-  verb.add_flag("--backdrop", arguments->backdrop, "what is only seen: everything that stands in the world");
+  verb.add_flag("--backdrop", arguments->backdrop,
+                "what is only seen: everything that stands in the world");
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] {
     using Kind = assets::MujocoKind;
     assets::MujocoFolderOptions& chosen = arguments->options;
     if (arguments->object + arguments->fixture + arguments->backdrop > 1) {
-      exit = report({Fault::kUsage, "--object, --fixture and --backdrop are three kinds of one thing", ""});
+      exit = report(
+          {Fault::kUsage, "--object, --fixture and --backdrop are three kinds of one thing", ""});
       return;
     }
     if (arguments->object) chosen.kind = Kind::kObject;
@@ -96,7 +104,8 @@ void add_mujoco(Verb assets, int& exit) {
       return;
     }
     for (const assets::MujocoLine& line : made->lines) put("{:<8} {}\n", line.word, line.text);
-    say("{}: {} files, {:.1f} MB\n", chosen.to, made->files, static_cast<double>(made->bytes) / 1e6);
+    say("{}: {} files, {:.1f} MB\n", chosen.to, made->files,
+        static_cast<double>(made->bytes) / 1e6);
     exit = kFine;
   });
 }
