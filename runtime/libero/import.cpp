@@ -258,7 +258,6 @@ class LiberoImport {
       for (const assets::MujocoFile& file : made->files)
         PROBE_TRY(write(file.path, file.bytes, shorter(file.source)));
       for (const std::string& note : made->notes) odd_.insert(shorter(note));
-      facts_.insert(made->facts.begin(), made->facts.end());
       declarations_[category] = made->declaration;
       Thing& thing = things_[category];
       thing.category = category;
@@ -418,7 +417,6 @@ class LiberoImport {
         "# The benchmark's things: how they look, weigh and feel is in their files; colours, facts "
         "and phrases are yours to "
         "say.\n";
-    if (!facts_.empty()) text += fmt::format("facts {{ {} }}\n", fmt::join(facts_, ", "));
     for (const auto& [category, declaration] : declarations_) text += "\n" + declaration;
     text += "\n# ---- as tasks call them ----\n";
     for (const auto& [name, category] : instances_) {
@@ -458,7 +456,7 @@ class LiberoImport {
   std::vector<std::pair<const Suite*, std::vector<TaskSource>>> tasks_;
   Things things_;
   std::map<std::string, std::string> declarations_, instances_, lacking_;
-  std::set<std::string> facts_, odd_;
+  std::set<std::string> odd_;
 };
 
 }  // namespace
