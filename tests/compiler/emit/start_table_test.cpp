@@ -21,11 +21,14 @@ namespace {
 
 const fs::path kRoot(VLAPROBE_SOURCE_DIR);
 
-Compilation compile_with(const std::string& table, const std::string& text) {
+// `placed` is a second table, placed.csv.
+Compilation compile_with(const std::string& table, const std::string& text,
+                         const std::string& placed = "") {
   const fs::path folder =
       fs::temp_directory_path() / ("probe_start_table_" + std::to_string(getpid()));
   fs::create_directories(folder);
   std::ofstream(folder / "starts.csv", std::ios::binary) << table;
+  std::ofstream(folder / "placed.csv", std::ios::binary) << placed;
   const std::string name = (folder / "text.probe").string();
   std::ofstream(name) << "use \"suite/intact.probe\"\n" << text;
   CompileOptions options;
@@ -38,8 +41,9 @@ Compilation compile_with(const std::string& table, const std::string& text) {
   return std::move(built).value();
 }
 
-plan::Plan plan_with(const std::string& table, const std::string& text) {
-  Compilation built = compile_with(table, text);
+plan::Plan plan_with(const std::string& table, const std::string& text,
+                     const std::string& placed = "") {
+  Compilation built = compile_with(table, text, placed);
   REQUIRE_MESSAGE(built.ok, render_text(built.diagnostics, built.sources));
   auto plan = plan::Plan::from_bytes(std::move(built.plan));
   REQUIRE_MESSAGE(plan.ok(), to_text(plan.failure()));
@@ -190,21 +194,26 @@ TEST_CASE("joints of fixtures and of the robot begin where a table says, start b
 }
 
 TEST_CASE("a task whose table says other joints moves that axis alone") {
-  const std::string both = "start,object,x_m,y_m,value\n0,carrot,-0.15,-0.11,\n";
-  const auto axes = [&](const std::string& row) {
-    // The baseline's layout has the same place and no joint.
-    const plan::Plan plan =
-        plan_with(both + row,
-                  "use \"suite/kitchen.probe\"\n" + std::string(kLayout) +
-                      "layout placed { place carrot at (-15cm, -11cm); orient carrot yaw 0deg\n"
-                      "drop 2cm settle 0.5s }\n"
-                      "layout same like given { start cabinet.top 0cm }\n"
-                      "task u like open_the_top_drawer { layout given; start cabinet.middle 0cm }\n"
-                      "variant t of u { start cabinet.middle none }\n");
-    const plan::TaskRecord& task = plan.tasks()[plan.find_task("t").value()];
-    return task.axes;
+  const std::string place = "start,object,x_m,y_m,value\n0,carrot,-0.15,-0.11,\n";
+  // The baseline's table has the same place, and the joints of `given`.
+  const auto axes = [&](const std::string& rows, const std::string& given = "") {
+    const plan::Plan plan = plan_with(place + rows,
+                                      "use \"suite/kitchen.probe\"\n" + std::string(kLayout) +
+                                          "layout placed like given { starts \"placed.csv\" }\n"
+                                          "task u like open_the_top_drawer { layout placed }\n"
+                                          "variant t of u { layout given }\n",
+                                      place + given);
+    return plan.tasks()[plan.find_task("t").value()].axes;
   };
-  CHECK(axes("0,cabinet.middle,,,0.04\n") == plan::bit(plan::Axis::kFixture));
+  using plan::Axis;
+  const std::string drawer = "0,cabinet.middle,,,0.04\n", arm = "0,panda.joint1,,,0.125\n";
+  CHECK(axes(drawer) == plan::bit(Axis::kFixture));
+  CHECK(axes(arm) == plan::bit(Axis::kRobot));
+  CHECK(axes(drawer + arm) == (plan::bit(Axis::kFixture) | plan::bit(Axis::kRobot)));
+  CHECK(axes(drawer + arm, drawer) == plan::bit(Axis::kRobot));
+  CHECK(axes(drawer + arm, arm) == plan::bit(Axis::kFixture));
+  CHECK(axes(arm, "0,panda.joint1,,,0.25\n") == plan::bit(Axis::kRobot));
+  CHECK(axes("0,panda.joint2,,,0.125\n", arm) == plan::bit(Axis::kRobot));
 }
 
 TEST_CASE("what is wrong with a joint's row is told at its cell") {
@@ -244,11 +253,11 @@ TEST_CASE("what is wrong with a joint's row is told at its cell") {
 }
 
 TEST_CASE("what stands in a drawer in one start alone is found there") {
-  const std::string text =
-      said("start,object,x_m,y_m,z_m,value\n"
-           "0,carrot,-0.09,0.26,1.08,\n0,cabinet.top,,,,0\n"
-           "1,carrot,-0.09,0.26,1.08,\n1,cabinet.top,,,,0.1\n",
-           kDrawer);
+  const std::string text = said(
+      "start,object,x_m,y_m,z_m,value\n"
+      "0,carrot,-0.09,0.26,1.08,\n0,cabinet.top,,,,0\n"
+      "1,carrot,-0.09,0.26,1.08,\n1,cabinet.top,,,,0.1\n",
+      kDrawer);
   CHECK(text.find("stands in `cabinet.top_drawer` in `t`: they overlap by") != std::string::npos);
   CHECK(text.find("so in 1 of 2 starts") != std::string::npos);
   CHECK(text.find("episode 1:") != std::string::npos);
