@@ -202,7 +202,11 @@ class Deriver {
     std::vector<Bundle> all;
     for (const auto& put : objects) {
       for (const Place& place : put.empty() ? std::vector<Place>{{}} : places_) {
-        if (std::ranges::find(put, place.to) != put.end()) continue;
+        // Nothing goes onto itself, nor into what it has about it.
+        const std::uint32_t to = place.region == plan::kNone
+                                     ? place.to
+                                     : *owner_of(plan_.regions()[place.region]);
+        if (std::ranges::find(put, to) != put.end()) continue;
         for (const auto& moves : joints) {
           // Every pair of joints beside every put would be too many to ask about.
           const bool is_source = put.size() == 1 && roles_.has_source() && put[0] == roles_.source;

@@ -228,7 +228,14 @@ Status Judge::check(const StepSample& sample) const {
     const bool ascends =
         previous == nullptr || std::pair(previous->a, previous->b) < std::pair(c.a, c.b);
     if (c.a >= c.b || c.b >= sample.bodies.size() || !ascends) {
-      return Failure{Fault::kJudge, "contacts ascend by pair, the smaller body first", task_name_};
+      const std::string behind =
+          previous == nullptr
+              ? ""
+              : " behind " + std::to_string(previous->a) + " and " + std::to_string(previous->b);
+      return Failure{Fault::kJudge,
+                     "contacts ascend by pair, the smaller body first: " + std::to_string(c.a) +
+                         " and " + std::to_string(c.b) + behind,
+                     task_name_};
     }
     previous = &c;
   }

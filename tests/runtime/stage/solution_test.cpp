@@ -11,6 +11,7 @@
 #include "compiler/emit/compile.h"
 #include "runtime/plan/skills.h"
 #include "runtime/stage/stage.h"
+#include "runtime/vm/derived_solution.h"
 #include "tests/runtime/stage/solves.h"
 
 namespace probe::stage {
@@ -151,6 +152,18 @@ task far like carrot_on_plate { scene far_widowx; metrics far_open; say "open th
         "hold is thinner");
   CHECK(refusal("far").starts_with(
       "skill 1 `open far_chest.drawer`: it is out of the arm's reach ("));
+}
+
+TEST_CASE("where nothing makes success, a thing that has a region of its own is not put into it") {
+  const plan::Plan plan = kitchen_of(R"(
+object dish like plate { region middle box (-4cm, -4cm, 0cm) .. (4cm, 4cm, 4cm) }
+metrics far_away { success = at end (within(position(source), target.middle) and x(source) > 5m) }
+task never like kept { target dish; metrics far_away }
+suite all { tasks { never } }
+)");
+  const auto derived = vm::derive_solution(plan, 0);
+  REQUIRE_MESSAGE(derived.ok(), (derived.ok() ? "" : to_text(derived.failure())));
+  CHECK(derived->empty());
 }
 
 TEST_CASE("the expert opens a drawer, puts the carrot in and closes it") {
