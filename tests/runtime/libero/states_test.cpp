@@ -2,6 +2,7 @@
 #include "runtime/libero/states.h"
 
 #include <doctest/doctest.h>
+#include <zlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -88,9 +89,16 @@ TEST_CASE("a pickle that would run something is refused by its name, and nothing
 
 TEST_CASE("an opcode that builds what is no array is refused by its name") {
   Bytes bytes = test::from_hex(test::kRunsAProgram);
-  bytes[find_bytes(bytes, "cposix")] = 0x69;  // INST
-  // The archive's checksum is checked first.
+  const std::size_t opcode = find_bytes(bytes, "cposix");
+  bytes[opcode] = 0x69;  // INST
   CHECK(refusal(bytes) == "`/data.pkl` is not what it was when it was packed: another checksum");
+  // With the checksum of what it is now, in the file's own head and in the directory's entry, the
+  // pickle is read. Its bytes are stored as they are, two behind its beginning is the opcode.
+  const std::size_t entry = find_bytes(bytes, "PK\x01\x02");
+  const auto sum = crc32(0, &bytes[opcode - 2], bytes[entry + 24]);
+  for (std::size_t i = 0; i < 4; ++i)
+    bytes[14 + i] = bytes[entry + 16 + i] = static_cast<std::uint8_t>(sum >> (8 * i));
+  CHECK(refusal(bytes) == "byte 2 of a pickle: opcode INST is not read");
 }
 
 TEST_CASE("archives that lie are refused before they fill the memory") {
