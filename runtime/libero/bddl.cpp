@@ -24,10 +24,6 @@ constexpr PredicateRow kPredicates[] = {
 #undef LIBERO_PREDICATE
 };
 
-constexpr std::string_view kSections[] = {"problem",          ":domain",   ":language",
-                                          ":regions",         ":fixtures", ":objects",
-                                          ":obj_of_interest", ":init",     ":goal"};
-
 constexpr std::size_t kLongestShown = 60;
 
 std::string in_lower_case(std::string_view text) {
@@ -36,6 +32,13 @@ std::string in_lower_case(std::string_view text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return lower;
+}
+
+template <typename Rows>
+std::vector<std::string_view> words_of(const Rows& rows) {
+  std::vector<std::string_view> words;
+  for (const auto& row : rows) words.push_back(row.word);
+  return words;
 }
 
 class BddlReader {
@@ -49,34 +52,53 @@ class BddlReader {
       return;
     }
     tree_ = std::move(*read);
-    const Sexpr& define = tree_.top();
-    if (in_lower_case(tree_.head(define)) != "define") {
-      wrong(define.spot, "expected `(define`, found " + shown(define));
-      return;
+    read_define(tree_.top());
+    std::ranges::stable_sort(mistakes_, {}, &Mistake::spot);
+    for (Mistake& mistake : mistakes_) {
+      read_.mistakes.push_back(
+          {Fault::kUsage, std::move(mistake.what), place_of(problem_.path, mistake.spot)});
     }
-    for (std::size_t i = 1; i < define.items.size(); ++i) read_section(tree_.at(define.items[i]));
-    for (const std::string_view section : kSections) {
-      if (!seen_.contains(section))
-        wrong(define.spot, "there is no `" + std::string(section) + "`");
-    }
-    if (read_.mistakes.empty()) check_names();
-    std::ranges::stable_sort(read_.mistakes, {}, [this](const Failure& f) { return order(f); });
   }
 
  private:
-  // Line and column, for sorting.
-  std::pair<unsigned long, unsigned long> order(const Failure& failure) const {
-    const std::string_view tail = std::string_view(failure.where).substr(problem_.path.size() + 1);
-    std::pair<unsigned long, unsigned long> place;
-    const auto line = std::from_chars(tail.data(), tail.data() + tail.size(), place.first);
-    if (line.ptr < tail.data() + tail.size())
-      std::from_chars(line.ptr + 1, tail.data() + tail.size(), place.second);
-    return place;
+  struct Mistake {
+    Spot spot;
+    std::string what;
+  };
+  struct SectionRow {
+    std::string_view word;
+    void (BddlReader::*read)(const Sexpr& section);
+  };
+  struct PartRow {
+    std::string_view word;
+    void (BddlReader::*read)(const Sexpr& part, BddlRegion& region);
+  };
+
+  // What a problem has, each once.
+  static std::span<const SectionRow> sections() {
+    static constexpr SectionRow kSections[] = {
+        {"problem", &BddlReader::read_problem},
+        {":domain", &BddlReader::read_domain},
+        {":language", &BddlReader::read_language},
+        {":regions", &BddlReader::read_regions},
+        {":fixtures", &BddlReader::read_fixtures},
+        {":objects", &BddlReader::read_objects},
+        {":obj_of_interest", &BddlReader::read_interest},
+        {":init", &BddlReader::read_init},
+        {":goal", &BddlReader::read_goal},
+    };
+    return kSections;
+  }
+  static std::span<const PartRow> region_parts() {
+    static constexpr PartRow kParts[] = {
+        {":target", &BddlReader::read_target},
+        {":ranges", &BddlReader::read_ranges},
+        {":yaw_rotation", &BddlReader::read_yaw},
+    };
+    return kParts;
   }
 
-  void wrong(Spot spot, std::string what) {
-    read_.mistakes.push_back({Fault::kUsage, std::move(what), place_of(problem_.path, spot)});
-  }
+  void wrong(Spot spot, std::string what) { mistakes_.push_back({spot, std::move(what)}); }
   void odd(Spot spot, std::string what) {
     read_.oddities.push_back({Fault::kUsage, std::move(what), place_of(problem_.path, spot)});
   }
@@ -93,31 +115,36 @@ class BddlReader {
     return near == nullptr ? "" : ", did you mean `" + std::string(*near) + "`?";
   }
 
+  void read_define(const Sexpr& define) {
+    if (in_lower_case(tree_.head(define)) != "define") {
+      wrong(define.spot, "expected `(define`, found " + shown(define));
+      return;
+    }
+    for (std::size_t i = 1; i < define.items.size(); ++i) read_section(tree_.at(define.items[i]));
+    for (const SectionRow& section : sections()) {
+      if (!seen_.contains(section.word))
+        wrong(define.spot, "there is no `" + std::string(section.word) + "`");
+    }
+    if (mistakes_.empty()) check_names();
+  }
+
   void read_section(const Sexpr& section) {
     const std::string word = in_lower_case(tree_.head(section));
     if (!section.is_list || word.empty()) {
       wrong(section.spot, "expected a section such as `(:objects`, found " + shown(section));
       return;
     }
-    const auto known = std::ranges::find(kSections, word);
-    if (known == std::end(kSections)) {
-      wrong(section.spot,
-            "unknown section `" + printable(word, kLongestShown) + "`" + meant(word, kSections));
+    const auto known = std::ranges::find(sections(), word, &SectionRow::word);
+    if (known == sections().end()) {
+      wrong(section.spot, "unknown section `" + printable(word, kLongestShown) + "`" +
+                              meant(word, words_of(sections())));
       return;
     }
-    if (!seen_.insert(*known).second) {
+    if (!seen_.insert(known->word).second) {
       wrong(section.spot, "section `" + word + "` is there twice");
       return;
     }
-    if (word == "problem") read_problem(section);
-    if (word == ":domain") read_domain(section);
-    if (word == ":language") read_language(section);
-    if (word == ":regions") read_regions(section);
-    if (word == ":fixtures") read_things(section, problem_.fixtures);
-    if (word == ":objects") read_things(section, problem_.objects);
-    if (word == ":obj_of_interest") read_interest(section);
-    if (word == ":init") read_init(section);
-    if (word == ":goal") read_goal(section);
+    (this->*known->read)(section);
   }
 
   // The only word behind the head; reported where there is another number of them.
@@ -147,6 +174,9 @@ class BddlReader {
     }
     if (problem_.language.empty()) wrong(section.spot, "there are no words behind `:language`");
   }
+
+  void read_fixtures(const Sexpr& section) { read_things(section, problem_.fixtures); }
+  void read_objects(const Sexpr& section) { read_things(section, problem_.objects); }
 
   // "a b - category", again and again.
   void read_things(const Sexpr& section, std::vector<BddlThing>& things) {
@@ -210,24 +240,31 @@ class BddlReader {
 
   void read_region_part(const Sexpr& part, BddlRegion& region) {
     const std::string word = in_lower_case(tree_.head(part));
-    if (word == ":target") {
-      if (auto target = only_word(part)) region.target = std::move(*target);
-    } else if (word == ":ranges") {
-      for (const auto& [numbers, spot] : tuples_in(part, 4)) {
-        if (numbers[0] > numbers[2] || numbers[1] > numbers[3]) {
-          wrong(spot, "the second corner of a rectangle lies below the first");
-        } else {
-          region.ranges.push_back({numbers[0], numbers[1], numbers[2], numbers[3]});
-        }
-      }
-    } else if (word == ":yaw_rotation") {
-      const auto tuples = tuples_in(part, 2);
-      if (tuples.size() == 1) region.yaw = {tuples[0].first[0], tuples[0].first[1]};
-      if (tuples.size() > 1) wrong(part.spot, "a region has one `:yaw_rotation`");
-    } else {
-      static constexpr std::string_view kParts[] = {":target", ":ranges", ":yaw_rotation"};
-      wrong(part.spot, "unknown part of a region, " + shown(part) + meant(word, kParts));
+    const auto known = std::ranges::find(region_parts(), word, &PartRow::word);
+    if (known == region_parts().end()) {
+      wrong(part.spot,
+            "unknown part of a region, " + shown(part) + meant(word, words_of(region_parts())));
+      return;
     }
+    (this->*known->read)(part, region);
+  }
+
+  void read_target(const Sexpr& part, BddlRegion& region) {
+    if (auto target = only_word(part)) region.target = std::move(*target);
+  }
+  void read_ranges(const Sexpr& part, BddlRegion& region) {
+    for (const auto& [numbers, spot] : tuples_in(part, 4)) {
+      if (numbers[0] > numbers[2] || numbers[1] > numbers[3]) {
+        wrong(spot, "the second corner of a rectangle lies below the first");
+      } else {
+        region.ranges.push_back({numbers[0], numbers[1], numbers[2], numbers[3]});
+      }
+    }
+  }
+  void read_yaw(const Sexpr& part, BddlRegion& region) {
+    const auto tuples = tuples_in(part, 2);
+    if (tuples.size() == 1) region.yaw = {tuples[0].first[0], tuples[0].first[1]};
+    if (tuples.size() > 1) wrong(part.spot, "a region has one `:yaw_rotation`");
   }
 
   // ((1 2) (3 4)) behind a head: lists of `count` numbers. What is something else is reported.
@@ -274,10 +311,8 @@ class BddlReader {
     }
     const auto known = std::ranges::find(kPredicates, fact.predicate, &PredicateRow::word);
     if (known == std::end(kPredicates)) {
-      std::vector<std::string_view> words;
-      for (const PredicateRow& row : kPredicates) words.push_back(row.word);
       wrong(node.spot, "unknown predicate `" + printable(fact.predicate, kLongestShown) + "`" +
-                           meant(fact.predicate, words));
+                           meant(fact.predicate, words_of(kPredicates)));
       return std::nullopt;
     }
     for (std::size_t i = 1; i < node.items.size(); ++i) {
@@ -359,6 +394,7 @@ class BddlReader {
   BddlRead& read_;
   BddlProblem& problem_;
   Sexprs tree_;
+  std::vector<Mistake> mistakes_;  // as they are found
   std::set<std::string_view> seen_;
 };
 

@@ -2,6 +2,7 @@
 // Knows nothing of what the words mean.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -14,6 +15,8 @@ namespace probe::libero {
 // Where something stands in a text, both counted from 1; columns are bytes.
 struct Spot {
   std::uint32_t line = 1, column = 1;
+
+  friend auto operator<=>(const Spot&, const Spot&) = default;
 };
 
 // "file.bddl:3:14".

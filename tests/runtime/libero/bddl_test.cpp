@@ -77,6 +77,9 @@ TEST_CASE("what is not known is told with the nearest word") {
         "t.bddl:24:5: unknown predicate `melted`\n");
   CHECK(mistakes_in(changed("(:yaw_rotation ((0 1.5))", "(:pitch ((0 1.5))")) ==
         "t.bddl:8:7: unknown part of a region, `(:pitch ...`\n");
+  CHECK(mistakes_in(changed("(:yaw_rotation ((0 1.5))", "(:yaw_rotatoin ((0 1.5))")) ==
+        "t.bddl:8:7: unknown part of a region, `(:yaw_rotatoin ...`, did you mean "
+        "`:yaw_rotation`?\n");
   CHECK(mistakes_in(changed("(In cup_1 ", "(In cup_3 ")) ==
         "t.bddl:25:15: there is no `cup_3`, did you mean `cup_1`?\n");
 }
