@@ -277,20 +277,10 @@ class Reader {
   void order(ExprRef ref, const Given& given) {
     if (ref == kNoExpr) return;
     const ExprNode& node = at(ref);
-    const auto is_latest = [&](ExprRef one) {
-      return at(one).op == ExprOp::kMeasure && at(one).measure == Measure::kLatest;
-    };
     switch (node.op) {
       case ExprOp::kOnce:
         order_within(node.args[0], given);
         break;
-      case ExprOp::kLess:
-      case ExprOp::kLessEqual:
-        // When the one was last so, or not yet, and when the other was.
-        if (is_latest(node.args[0]) && is_latest(node.args[1]))
-          put_in_order(things(at(node.args[0]).args[1], given),
-                       things(at(node.args[1]).args[1], given));
-        return;
       case ExprOp::kAnd:
       case ExprOp::kHold:
       case ExprOp::kAlways:

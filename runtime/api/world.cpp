@@ -43,8 +43,11 @@ Result<policy::Action> read_action(std::span<const double> numbers, std::size_t 
 ActionBounds::ActionBounds(const robot::Robot& robot) : space(robot::action_space_of(robot)) {
   constexpr double kShift = 0.05,
                    kTurn = 0.25;  // m, rad in a control step: a share of what arms do
+  // What the law cuts steps to is what they can be.
+  const auto* const steps = std::get_if<robot::JointDelta>(&robot.law);
+  const double most = steps == nullptr ? 0 : steps->most;
   for (std::size_t i = 0; i + 1 < space.size(); ++i) {
-    high.push_back(space.is_length(i) ? kShift : kTurn);
+    high.push_back(most > 0 ? most : space.is_length(i) ? kShift : kTurn);
     low.push_back(-high.back());
     if (space.layout != robot::ActionLayout::kJoints) continue;
     const auto index = static_cast<std::size_t>(robot.model->find_joint(space.joints[i]));

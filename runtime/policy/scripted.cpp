@@ -75,7 +75,21 @@ class RecordedPolicy final : public Policy {
     if (!recorded_) {
       return Failure{Fault::kPolicy, "nothing here can read stored episodes", dir_};
     }
-    PROBE_ASSIGN(actions_, recorded_(dir_, start.task, start.index, start.seed));
+    PROBE_ASSIGN(RecordedEpisode episode, recorded_(dir_, start.task, start.index, start.seed));
+    if (start.robot != nullptr) {
+      const bool is_of_joints = robot::action_space_of(*start.robot).is_of_joints();
+      const std::string law = is_of_joints ? std::string(robot::row_of(start.robot->law).word) : "";
+      const auto called = [](const std::string& of) {
+        return of.empty() ? std::string("of a tool") : "of joints, as `" + of + "` takes them";
+      };
+      if (law != episode.joint_law) {
+        return Failure{Fault::kPolicy,
+                       "the stored episode's actions are " + called(episode.joint_law) +
+                           ", this robot's " + called(law),
+                       dir_};
+      }
+    }
+    actions_ = std::move(episode.actions);
     return {};
   }
   Result<Action> act(const Observation& observation) override {

@@ -22,7 +22,11 @@ std::unique_ptr<Policy> make_null();
 std::unique_ptr<Policy> make_random();
 
 // Gives the actions of a stored episode of the run in `dir`.
-using RecordedActions = std::function<Result<std::vector<Action>>(
+struct RecordedEpisode {
+  std::vector<Action> actions;  // a step each
+  std::string joint_law;        // whose numbers they are; empty: a tool's
+};
+using RecordedActions = std::function<Result<RecordedEpisode>(
     const std::string& dir, std::string_view task, int episode, int seed)>;
 
 // The recorded actions of the episode of the same task, index and seed in `dir`; fails past their

@@ -15,12 +15,14 @@ namespace probe::run {
 PolicyContext policy_context() {
   PolicyContext context;
   context.recorded_actions = [](const std::string& dir, std::string_view task, int episode,
-                                int seed) -> Result<std::vector<policy::Action>> {
+                                int seed) -> Result<policy::RecordedEpisode> {
     PROBE_ASSIGN(const store::StoredTrace found,
                  store::find_trace(dir, std::string(task), episode, seed));
-    std::vector<policy::Action> actions;
-    for (const store::TraceStep& step : found.trace.steps) actions.push_back(step.action);
-    return actions;
+    policy::RecordedEpisode recorded;
+    for (const store::TraceStep& step : found.trace.steps) recorded.actions.push_back(step.action);
+    if (found.trace.header.joint_actions)
+      recorded.joint_law = found.trace.header.joint_actions->law;
+    return recorded;
   };
   return context;
 }

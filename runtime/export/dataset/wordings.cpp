@@ -32,10 +32,20 @@ Result<Wordings> Wordings::read(const std::string& path) {
       return Failure{Fault::kUsage, "is no line of `vlaprobe rephrase -o X.jsonl`",
                      path + ":" + std::to_string(number)};
     if (!is_text("starts_sha256"))
-      return Failure{Fault::kUsage,
-                     "does not say for which starts its words are proved (`starts_sha256`): an older "
-                     "program wrote it; `vlaprobe rephrase` makes it again",
-                     path + ":" + std::to_string(number)};
+      return Failure{
+          Fault::kUsage,
+          "does not say for which starts its words are proved (`starts_sha256`): an older "
+          "program wrote it; `vlaprobe rephrase` makes it again",
+          path + ":" + std::to_string(number)};
+    for (const char* key : {"original", "wording"}) {
+      const std::string told = std::string(key) + "_sha256";
+      if (is_text(told.c_str()) &&
+          json.at(told).text() != to_hex(probe::sha256(std::string_view(json.at(key).text()))))
+        return Failure{
+            Fault::kUsage,
+            "`" + std::string(key) + "` is not what was proved: it has another `" + told + "`",
+            path + ":" + std::to_string(number)};
+    }
     if (json.at("split").text() != "train") continue;
     const std::string& original = json.at("original").text();
     auto& choices =

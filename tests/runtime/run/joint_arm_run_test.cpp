@@ -2,6 +2,8 @@
 // count, replay bit for bit, stored actions acted again, and the same behind a server.
 #include <doctest/doctest.h>
 
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "runtime/run/recorded.h"
@@ -107,6 +109,37 @@ TEST_CASE("what an arm was told by its joints is stored, proven, repeated and se
                                                  std::string(law) + "`") != std::string::npos,
                   refused.failure().message);
   }
+}
+
+// As somebody else's text has them: the same task, its arm told steps in place of positions.
+plan::Plan stepped_instead() {
+  std::ifstream file(VLAPROBE_SOURCE_DIR "/examples/joint_arm.probe");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  const auto put = [&](const std::string& from, const std::string& to) {
+    REQUIRE(text.find(from) != std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("../suite/panda.probe", "suite/panda.probe");
+  put("control joint_position 5Hz", "control joint_delta 5Hz");
+  put("suite joint_arm ", "suite mine ");
+  return plan_of_text(text);
+}
+
+TEST_CASE("stored positions of joints are not acted as steps of them") {
+  const TemporaryFolder folder;
+  const std::string task = "told_carrot_on_plate";
+  RunOptions recorded = two_of(task, folder / "run", "null");
+  recorded.episodes = {0, 0};
+  must_run(example(), recorded);
+  RunOptions again = two_of(task, folder / "again", "replay:" + folder / "run");
+  again.episodes = {0, 0};
+  const plan::Plan other = stepped_instead();
+  CHECK(must_run(other, again).invalid == 1);
+  const auto rows = store::read_results(folder / "again");
+  REQUIRE(rows.ok());
+  CHECK(rows->front().invalid.value_or("").find(
+            "the stored episode's actions are of joints, as `joint_position` takes them, this "
+            "robot's of joints, as `joint_delta` takes them") != std::string::npos);
 }
 
 TEST_CASE("actions of joints are served by protocols that have them alone, and of one law") {

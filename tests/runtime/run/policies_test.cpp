@@ -89,10 +89,10 @@ TEST_CASE("who wants a distractor holds still where there is none") {
 TEST_CASE("a replay gives the stored actions and fails past their end") {
   PolicyContext context;
   context.recorded_actions = [](const std::string& dir, std::string_view task, int,
-                                int) -> Result<std::vector<Action>> {
+                                int) -> Result<policy::RecordedEpisode> {
     if (dir != "runs/a") return Failure{Fault::kStore, "no run here", dir};
     CHECK(task == "carrot_on_plate");
-    return std::vector<Action>{{1, 0, 0, 0, 0, 0, 0}, {2, 0, 0, 0, 0, 0, 0}};
+    return policy::RecordedEpisode{{{1, 0, 0, 0, 0, 0, 0}, {2, 0, 0, 0, 0, 0, 0}}, ""};
   };
   auto policy = make_policy("replay:runs/a", context).value();
   REQUIRE(policy->begin(start_with(0)).ok());

@@ -15,8 +15,8 @@ namespace {
 
 std::string line(const std::string& wording, const std::string& split, double probability) {
   return R"({"task":"t","original":"put it","wording":")" + wording + R"(","split":")" + split +
-         R"(","probability":)" + std::to_string(probability) + R"(,"original_probability":0.5,"starts_sha256":"aa"})" +
-         "\n";
+         R"(","probability":)" + std::to_string(probability) +
+         R"(,"original_probability":0.5,"starts_sha256":"aa"})" + "\n";
 }
 
 TEST_CASE("wordings are drawn by their probabilities, none twice, none held out") {
@@ -29,7 +29,8 @@ TEST_CASE("wordings are drawn by their probabilities, none twice, none held out"
   CHECK(wordings->has({"t", "put it", "aa"}));
   CHECK(!wordings->has({"t", "put that", "aa"}));
   std::map<std::string, int> counts;
-  for (int i = 0; i < 2000; ++i) ++counts[wordings->draw({"t", "put it", "aa"}, 1, std::to_string(i))[0]];
+  for (int i = 0; i < 2000; ++i)
+    ++counts[wordings->draw({"t", "put it", "aa"}, 1, std::to_string(i))[0]];
   CHECK(counts["put it"] == doctest::Approx(1000).epsilon(0.1));
   CHECK(counts["place it"] == doctest::Approx(800).epsilon(0.1));
   CHECK(counts["lay it"] == doctest::Approx(200).epsilon(0.25));
@@ -52,6 +53,11 @@ TEST_CASE("a table that is none is refused with its line") {
   const run::TemporaryFolder folder;
   std::ofstream(folder / "w.jsonl") << line("place it", "train", 0.4) << "{\"task\": 3}\n";
   CHECK(Wordings::read(folder / "w.jsonl").failure().where == folder / "w.jsonl:2");
+  std::string altered = line("place it", "train", 0.4);
+  altered.insert(altered.rfind('}'), R"(,"wording_sha256":"00")");
+  std::ofstream(folder / "x.jsonl") << altered;
+  CHECK(Wordings::read(folder / "x.jsonl").failure().message.find("is not what was proved") !=
+        std::string::npos);
   std::string older = line("place it", "train", 0.4);
   older.erase(older.find(",\"starts_sha256\""), 21);
   std::ofstream(folder / "u.jsonl") << older;
