@@ -70,14 +70,7 @@ TaskSetId Parser::task_set_operand() {
     advance();
     TaskSetSample out;
     out.count = integer();
-    expect_word("of");
-    out.of = task_set_operand();
-    expect_word("seed");
-    out.seed = integer();
-    if (accept_word("with")) {
-      expect_word("baselines");
-      out.with_baselines = true;
-    }
+    sample_of(out);
     return add(TaskSet{since(begin), out}, {out.of});
   }
   const Name only = name();

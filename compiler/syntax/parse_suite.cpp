@@ -25,14 +25,7 @@ SuiteStmt Parser::suite_sample() {
   SuiteSampleStmt out;
   out.count = integer();
   expect_word("episodes");
-  expect_word("of");
-  out.of = task_set_operand();
-  expect_word("seed");
-  out.seed = integer();
-  if (accept_word("with")) {
-    expect_word("baselines");
-    out.with_baselines = true;
-  }
+  sample_of(out);
   return out;
 }
 

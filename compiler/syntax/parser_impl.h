@@ -298,6 +298,17 @@ class Parser {
   TaskSetId task_set();
   TaskSetId task_set_without_where();
   TaskSetId task_set_operand();
+  // `of SET seed K [with baselines]`, behind how many of what are drawn.
+  template <typename Sample>
+  void sample_of(Sample& out) {
+    expect_word("of");
+    out.of = task_set_operand();
+    expect_word("seed");
+    out.seed = integer();
+    if (!accept_word("with")) return;
+    expect_word("baselines");
+    out.with_baselines = true;
+  }
   TaskSetId add(TaskSet node, std::initializer_list<TaskSetId> children);
   CondId cond();
   CondId cond_and();

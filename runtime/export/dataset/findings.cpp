@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/run/episode.h"
+#include "runtime/export/dataset/pictures.h"
 
 namespace probe::dataset {
 namespace {
@@ -105,9 +105,8 @@ std::vector<Sha256> picture_hashes(Findings& findings, const NamedDemonstration&
 void expect_pictures(Findings& findings, const std::vector<std::vector<std::uint8_t>>& rgb,
                      std::span<const Sha256> wanted, std::size_t step, const std::string& at) {
   if (step >= wanted.size()) return;
-  std::vector<stage::CameraFrame> frames(rgb.size());
-  for (std::size_t i = 0; i < rgb.size(); ++i) frames[i].frame.rgb = rgb[i];
-  findings.expect(run::picture_hash(frames) == wanted[step], at,
+  const std::vector<std::span<const std::uint8_t>> all(rgb.begin(), rgb.end());
+  findings.expect(hash_of(all) == wanted[step], at,
                   "its pictures are not those that the policy saw");
 }
 

@@ -1,6 +1,5 @@
 #include "runtime/export/dataset/finished_films.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <limits>
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "runtime/run/episode.h"
 #include "runtime/servers/resize.h"
 
 namespace probe::dataset {
@@ -27,6 +28,12 @@ Status in_shape(const Shape& shape, std::span<const stage::CameraFrame> frames,
     pictures.push_back({&camera, rgb});
   }
   return use(pictures);
+}
+
+Sha256 hash_of(std::span<const std::span<const std::uint8_t>> rgb) {
+  std::vector<stage::CameraFrame> frames(rgb.size());
+  for (std::size_t i = 0; i < rgb.size(); ++i) frames[i].frame.rgb = rgb[i];
+  return run::picture_hash(frames);
 }
 
 }  // namespace probe::dataset

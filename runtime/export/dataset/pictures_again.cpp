@@ -1,7 +1,6 @@
 #include "runtime/export/dataset/pictures_again.h"
 
 #include "runtime/export/dataset/pictures.h"
-#include "runtime/run/episode.h"
 
 namespace probe::dataset {
 
@@ -25,9 +24,9 @@ Result<std::span<const Sha256>> PicturesAgain::hashes(const NamedDemonstration& 
     hashed_.clear();
     hashes_.clear();
     PROBE_TRY(draw(named, [&](std::span<const Picture> pictures, std::size_t) -> Status {
-      std::vector<stage::CameraFrame> frames(pictures.size());
-      for (std::size_t i = 0; i < frames.size(); ++i) frames[i].frame.rgb = pictures[i].rgb;
-      hashes_.push_back(run::picture_hash(frames));
+      std::vector<std::span<const std::uint8_t>> rgb;
+      for (const Picture& picture : pictures) rgb.push_back(picture.rgb);
+      hashes_.push_back(hash_of(rgb));
       return {};
     }));
     hashed_ = named.trace_sha256;
