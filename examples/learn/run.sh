@@ -15,11 +15,13 @@ mkdir -p "$out"
 cd "$root"
 
 # ---- what it is shown: the expert's demonstrations, each told in up to eight wordings ---------------------------------
-"$vlaprobe" demos examples/learn/tasks.probe --suite learn --jobs 2 -o "$out/demos"
-[ -e "$out/words.jsonl" ] || "$vlaprobe" rephrase examples/learn/tasks.probe --suite learn \
-  --not-in suite/intact.probe --drop-leaks -o "$out/words.jsonl"
-[ -e "$out/data" ] || "$vlaprobe" export "$out/demos" --format robomimic --size 128x96 --jobs 2 -o "$out/data" \
-  --rephrase "$out/words.jsonl" --wordings 8
+if [ ! -e "$out/data" ]; then
+  "$vlaprobe" demos examples/learn/tasks.probe --suite learn --jobs 2 -o "$out/demos"
+  [ -e "$out/words.jsonl" ] || "$vlaprobe" rephrase examples/learn/tasks.probe --suite learn \
+    --not-in suite/intact.probe --drop-leaks -o "$out/words.jsonl"
+  "$vlaprobe" export "$out/demos" --format robomimic --size 128x96 --jobs 2 -o "$out/data" \
+    --rephrase "$out/words.jsonl" --wordings 8
+fi
 
 # ---- two policies: all is the same but the words ---------------------------------------------------------------------
 learn() { # NAME WORDS
@@ -36,7 +38,7 @@ for kind in plain rephrased; do
   trap 'kill $server 2>/dev/null || true' EXIT
   until grep -q port "$out/$kind.port"; do kill -0 $server; sleep 0.2; done
   at="ws://127.0.0.1:$(cut -d' ' -f2 "$out/$kind.port")"
-  "$vlaprobe" sweep suite/intact.probe --seeds 42 --jobs "$jobs" --name "$kind" -o "$out/$kind" \
+  "$vlaprobe" sweep suite/intact.probe --seeds 42 --jobs "$jobs" --name "$kind {}" -o "$out/$kind" \
     --policy "$at/{}?profile=examples/learn/learnt.profile&batch=$jobs" --checkpoints part_1,part_2,part_3
   kill $server
 done

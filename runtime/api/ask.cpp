@@ -177,7 +177,8 @@ Status use_callback(const vlaprobe_ask_options& given, ask::AskOptions& options)
       traits,
       [callback = given.answer, user = given.user]() -> Result<std::unique_ptr<ask::Model>> {
         return std::unique_ptr<ask::Model>(std::make_unique<Answering>(callback, user));
-      }};
+      },
+      given.content != nullptr&&* given.content != '\0'};
   return {};
 }
 

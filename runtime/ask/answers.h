@@ -27,6 +27,9 @@ struct AnswerKey {
   int seed = -1;
   auto operator<=>(const AnswerKey&) const = default;
 };
+inline AnswerKey key_of(const AnswerRow& row) {
+  return {row.question_id, row.rotation, row.arm, row.episode, row.seed};
+}
 
 // A question that was not asked of a picture.
 struct LeftOut {
@@ -53,6 +56,8 @@ class Answers {
     bool has(const AnswerKey& key) const;  // answered, or left out in any arm and rotation
   };
   virtual Result<Stored> stored(const std::string& start_id) = 0;
+  // The rows of those answers, in the same order.
+  virtual Result<std::vector<AnswerRow>> rows(const std::string& start_id) = 0;
 
   // Writes the row before long, replacing an invalid one of the same key. `place` sorts rows: the
   // question's index in the plan. Fails with whatever an earlier row could not be written for.

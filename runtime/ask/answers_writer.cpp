@@ -10,9 +10,9 @@
 #include "runtime/ask/answers.h"
 #include "runtime/ask/vouch.h"
 #include "runtime/base/file.h"
+#include "runtime/base/folder_kind.h"
 #include "runtime/base/paths.h"
 #include "runtime/store/calls_table.h"
-#include "runtime/base/folder_kind.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/store.h"
 
@@ -72,15 +72,8 @@ class FolderAnswers final : public Answers {
   Result<Stored> stored(const std::string& start_id) override {
     const std::lock_guard guard(database_mutex_);
     Stored found;
-    Statement answers(database_, (select_answers() + " where \"start_id\" = ?").c_str());
-    answers.bind(start_id);
-    while (answers.next()) {
-      AnswerRow row = answer_at(answers).row;
-      if (voucher_) voucher_->vouch(row);
-      if (!row.invalid)
-        found.answers.push_back({row.question_id, row.rotation, row.arm, row.episode, row.seed});
-    }
-    PROBE_TRY(answers.done());
+    PROBE_ASSIGN(const auto rows, valid_rows(start_id));
+    for (const AnswerRow& row : rows) found.answers.push_back(key_of(row));
     Statement left_out(database_, (select_left_out() + " where \"start_id\" = ?").c_str());
     left_out.bind(start_id);
     while (left_out.next()) {
@@ -88,9 +81,13 @@ class FolderAnswers final : public Answers {
       found.left_out.push_back({out.question_id, 0, Arm::kPicture, out.episode, out.seed});
     }
     PROBE_TRY(left_out.done());
-    std::ranges::sort(found.answers);
     std::ranges::sort(found.left_out);
     return found;
+  }
+
+  Result<std::vector<AnswerRow>> rows(const std::string& start_id) override {
+    const std::lock_guard guard(database_mutex_);
+    return valid_rows(start_id);
   }
 
   Status commit(const AnswerRow& row, std::uint32_t place) override {
@@ -117,6 +114,21 @@ class FolderAnswers final : public Answers {
   }
 
  private:
+  // By key. Whoever calls holds the database.
+  Result<std::vector<AnswerRow>> valid_rows(const std::string& start_id) {
+    std::vector<AnswerRow> rows;
+    Statement answers(database_, (select_answers() + " where \"start_id\" = ?").c_str());
+    answers.bind(start_id);
+    while (answers.next()) {
+      AnswerRow row = answer_at(answers).row;
+      if (voucher_) voucher_->vouch(row);
+      if (!row.invalid) rows.push_back(std::move(row));
+    }
+    PROBE_TRY(answers.done());
+    std::ranges::sort(rows, {}, [](const AnswerRow& row) { return key_of(row); });
+    return rows;
+  }
+
   struct Waiting {
     AnswerRow row;
     LeftOut left_out;

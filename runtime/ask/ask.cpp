@@ -7,6 +7,7 @@
 
 #include "runtime/ask/answers.h"
 #include "runtime/ask/asking.h"
+#include "runtime/ask/callers_proof.h"
 #include "runtime/ask/chat.h"
 #include "runtime/ask/prepared.h"
 #include "runtime/ask/recorded.h"
@@ -108,6 +109,7 @@ Result<AskSummary> ask(const plan::Plan& plan, const AskOptions& given) {
     PROBE_ASSIGN(traits, model_traits(options.model, options.accepts_any_certificate));
   }
   if (options.name.empty()) options.name = traits.name;
+  PROBE_TRY(check_model_name(options.name, options.own_model ? "" : options.model));
   PROBE_TRY(check_arms(traits, options.choice.arms));
   PROBE_ASSIGN(const std::optional<ChatChoice> chat, chat_choice(options));
   AskSummary summary;
@@ -154,6 +156,9 @@ Result<AskSummary> ask(const plan::Plan& plan, const AskOptions& given) {
   summary.call.shard = options.choice.shard;
   summary.call.shards = options.choice.shards;
   if (chat && begun_before) PROBE_TRY(prove(options, *chat, summary));
+  if (begun_before && options.own_model && !options.own_model->is_vouched_for)
+    PROBE_TRY(check_callers_model(plan, options, queries, recorded.rows, assets, *answers,
+                                  summary.notes));
   PROBE_TRY(answers->write_call(summary.call));
   // A look's queries and some of the next: what waits never outnumbers what is being asked by far.
   BoundedQueue<Ready> ready(2 * static_cast<std::size_t>(options.jobs) + 8);

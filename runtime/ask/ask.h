@@ -27,6 +27,9 @@ namespace probe::ask {
 struct OwnModel {
   ModelTraits traits;
   std::function<Result<std::unique_ptr<Model>>()> make;  // one for each asking thread
+  // Whether the traits' content says which one it is. Else a name is all that is known, and it has
+  // to show that it is the one that a folder was begun with.
+  bool is_vouched_for = false;
 };
 
 struct AskProgress {

@@ -7,24 +7,13 @@
 #include <span>
 #include <thread>
 
+#include "runtime/ask/asked_query.h"
 #include "runtime/ask/plan_reading.h"
 #include "runtime/plan/questions.h"
 #include "runtime/run/workers.h"
 
 namespace probe::ask {
 namespace {
-
-Sha256 draw_of(const AnswerKey& key, const std::string& start_id) {
-  return Hasher()
-      .text("answer")
-      .text(key.question_id)
-      .text(start_id)
-      .u32(key.rotation)
-      .u32(static_cast<std::uint32_t>(key.arm))
-      .u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(key.episode)))
-      .u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(key.seed)))
-      .finish();
-}
 
 // All of a row but what came.
 AnswerRow begin_row(const AskingState& shared, const Query& query) {
@@ -67,25 +56,11 @@ class Asker {
       return commit(std::move(row), query, false);
     }
     const Truth& truth = look.truths.at(query.question);
-    const Wording wording =
-        word(plan, question, query.rotation, look.picture.width, look.picture.height);
-    const SentPicture* picture = query.arm == Arm::kPicture ? &look.picture
-                                 : query.arm == Arm::kPrior ? &look.prior
-                                                            : nullptr;
-    const AskedQuery asked{plan,
-                           question,
-                           wording,
-                           truth,
-                           picture,
-                           look.picture.width,
-                           look.picture.height,
-                           draw_of(key_of(plan, query), row.start_id),
-                           row.arm,
-                           row.rotation,
-                           row.episode};
+    const Wording wording = wording_of(plan, look, query);
+    const AskedQuery asked = asked_query(plan, look, query, wording);
     row.text = wording.text;
     row.prompt_sha256 = to_hex(sha256(wording.text));
-    if (picture != nullptr) row.image_sha256 = picture->sha256;
+    if (asked.picture != nullptr) row.image_sha256 = asked.picture->sha256;
     row.expected = truth.expected;
     if (query.arm == Arm::kPrior) {
       row.shown_start_id = start_id_of(plan, *look.prior_episode);

@@ -7,6 +7,7 @@
 #include "runtime/ask/chat.h"
 #include "runtime/base/hash_number.h"
 #include "runtime/base/percent.h"
+#include "runtime/base/row_name.h"
 #include "runtime/base/spelling.h"
 #include "runtime/plan/questions.h"
 
@@ -134,6 +135,20 @@ Result<ModelTraits> model_traits(std::string_view text, bool accepts_any_certifi
                  "unknown model `" + std::string(text) + "`" + did_you_mean(text, names) +
                      "\nthe models are:\n" + model_help(),
                  "--model"};
+}
+
+Status check_model_name(const std::string& name, const std::string& model) {
+  if (name == model) return {};
+  PROBE_TRY(check_row_name(name));
+  const bool is_taken = std::ranges::any_of(
+      kOwnModels, [&](const OwnEntry& entry) { return reads_alike(entry.name, name); });
+  if (!is_taken) return {};
+  const std::string asked = model.empty() ? "the caller's model" : "`" + model + "`";
+  return Failure{Fault::kUsage,
+                 "`" + name +
+                     "` reads as a model of the program's own, whose rows could not be told " +
+                     "from those of " + asked + ": give it another name",
+                 "--name"};
 }
 
 std::unique_ptr<Model> make_own_model(std::string_view text) {

@@ -65,6 +65,10 @@ struct ModelTraits {
 // that it does not have; and where a certificate that is not there is to be accepted unchecked.
 Result<ModelTraits> model_traits(std::string_view text, bool accepts_any_certificate = false);
 
+// Fails (kUsage) where `name`, which rows call the model `model` (empty: one of the caller's), is
+// none (check_row_name) or reads as a model of this process: their rows could not be told apart.
+Status check_model_name(const std::string& name, const std::string& model);
+
 // Of a model in this process; null for a server.
 std::unique_ptr<Model> make_own_model(std::string_view text);
 

@@ -214,6 +214,8 @@ def ask(
         frames: folder of a run: its ends are what questions at the end are about.
         name: what rows call the model; of a callable needed where it has no __name__ or is a lambda.
         content: of a callable, what its name does not say, such as its weights' hash: two contents are not one folder.
+            Without it a callable that goes on with a folder is asked one stored question again, and refused if it answers
+            otherwise.
         suite: default: the first that is asked something. Of a path to a text that suite alone is compiled.
         size: of a callable: (width, height) of its pictures; None: the camera's own. A server's are in its address.
         camera: of a callable: whose pictures; None: the task's first.

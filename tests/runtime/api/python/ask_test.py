@@ -103,7 +103,39 @@ class AskTest(Case):
                 self.assertIsNone(row["invalid"])
         count = len(calls)
         again = vlaprobe.ask(QUESTIONS, broken, out=folder, **CHOSEN)
-        self.assertEqual((again.done, len(calls) - count), (4, 4))
+        # One call more: a stored answer is asked for again before the folder is gone on with.
+        self.assertEqual((again.done, len(calls) - count), (4, 5))
+
+    def test_another_callable_of_the_same_name_is_found_out(self):
+        def saying(word):
+            def model(asked):
+                return word
+
+            return model
+
+        folder = self.folder() + "/a"
+        first = dict(CHOSEN, episodes=0)
+        asked = vlaprobe.ask(QUESTIONS, saying("A"), out=folder, **first)
+        with self.assertRaises(vlaprobe.Error) as raised:
+            vlaprobe.ask(QUESTIONS, saying("B"), out=folder, **CHOSEN)
+        self.assertSays(raised.exception, folder, "same name", TASK, "`A` then, `B` now", "content")
+        self.assertEqual(len(vlaprobe.open_answers(folder).results()), asked.done)
+        again = vlaprobe.ask(QUESTIONS, saying("A"), out=folder, **CHOSEN)
+        self.assertEqual((again.skipped, again.done), (asked.done, asked.done))
+        mixed = vlaprobe.ask(QUESTIONS, saying("B"), out=folder, **{**CHOSEN, "episodes": (0, 2)}, if_changed="continue")
+        self.assertSays(mixed.notes, "`A` then, `B` now", "continued all the same")
+
+    def test_content_says_which_callable_it_is(self):
+        said = iter("ABCABCABCABC")
+
+        def drawing(asked):
+            return next(said)
+
+        folder = self.folder() + "/a"
+        vlaprobe.ask(QUESTIONS, drawing, out=folder, content="weights 1", **dict(CHOSEN, episodes=0))
+        vlaprobe.ask(QUESTIONS, drawing, out=folder, content="weights 1", **CHOSEN)
+        with self.assertRaises(vlaprobe.Error):
+            vlaprobe.ask(QUESTIONS, drawing, out=folder, content="weights 2", **CHOSEN)
 
     def test_what_cannot_be_is_refused_before_there_is_a_folder(self):
         folder = self.folder() + "/a"
@@ -111,6 +143,13 @@ class AskTest(Case):
             (lambda asked: "A", {}, ["lambda", "name"]),
             (7, {}, ["7"]),
             ("truht", {}, ["truht", "truth"]),
+            (str, dict(name="truth"), ["`truth`", "another name"]),
+            (str, dict(name="\uff34ruth"), ["another name"]),
+            (str, dict(name="first\u200b"), ["nobody sees"]),
+            (str, dict(name="mine\nand yours"), ["line break"]),
+            (str, dict(name=" "), ["blank"]),
+            ("openai://127.0.0.1:9?model=truth", {}, ["`truth`", "another name"]),
+            ("truth", dict(name="random"), ["`random`", "another name"]),
             ("truth", dict(arms="blind"), ["truth", "blind"]),
             ("truth", dict(arms="picturesque"), ["picturesque"]),
             ("truth", dict(questions="understanding.sauce"), ["sauce"]),

@@ -347,6 +347,10 @@ class EvaluateTest(Case):
             (null, None, ["`null`", "name"]),
             (reach_out, "expert", ["`expert`", "name"]),
             (reach_out, "noisy:0.01", ["`noisy:0.01`", "name"]),
+            (reach_out, "Expert", ["`Expert`", "name"]),
+            (reach_out, "ex\u200bpert", ["nobody sees"]),
+            (reach_out, "mine\n", ["line break"]),
+            (reach_out, "x" * 256, ["256 bytes"]),
             ("null", "expert", ["`expert`", "`null`", "name"]),
         ]:
             with self.assertRaises(vlaprobe.UsageError) as raised:
