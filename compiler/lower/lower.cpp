@@ -850,6 +850,8 @@ class Lowering {
         return from_robot(args[0], frame_.left);
       case Measure::kHalfHeight:
         return reg(Op::kVZ, builder_.emit(Op::kHALF, first));
+      case Measure::kHalfSize:
+        return reg(Op::kHALF, first);
       case Measure::kHalfDiagonal:
         return reg(Op::kVLENXY, builder_.emit(Op::kHALF, first));
       case Measure::kMovedXy: {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The whole story: demonstrations, two datasets, two policies, checkpoints compared, the suite, a report.
 #   examples/learn/run.sh [OUTPUT_DIR]      default: runs/learn in this checkout
-# MINUTES of processor time for each policy (9), JOBS worlds side by side (8), VLAPROBE and PYTHON programs.
+# MINUTES of processor time for each policy (12), JOBS worlds side by side (8), VLAPROBE and PYTHON programs.
 # Needs python3-torch and python3-h5py. Begun again it goes on with the first step that has not ended.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -26,7 +26,7 @@ fi
 # ---- two policies: all is the same but the words ---------------------------------------------------------------------
 learn() { # NAME WORDS
   [ -e "$out/policies/$1/part_3.pt" ] ||
-    "$python" "$here/train.py" "$out/data" -o "$out/policies/$1" --words "$2" --minutes "${MINUTES:-9}"
+    "$python" "$here/train.py" "$out/data" -o "$out/policies/$1" --words "$2" --minutes "${MINUTES:-12}"
 }
 learn plain instruction
 learn rephrased lang

@@ -1,6 +1,6 @@
 """Behaviour cloning from what `vlaprobe export --format robomimic` wrote, and from nothing else.
 
-    python3 examples/learn/train.py DATASET... -o FOLDER [--words instruction] [--minutes 9] [--checkpoints 3]
+    python3 examples/learn/train.py DATASET... -o FOLDER [--words instruction] [--minutes 12] [--checkpoints 3]
 
 Learns until it has used so many minutes of processor time, and keeps a checkpoint after equal shares of them.
 """
@@ -70,11 +70,12 @@ def main():
     parser.add_argument("-o", "--out", required=True)
     parser.add_argument("--words", choices=("lang", "instruction"), default="lang",
                         help="lang: the wordings of `export --rephrase`; instruction: the task's own words alone")
-    parser.add_argument("--minutes", type=float, default=9, help="of processor time")
+    parser.add_argument("--minutes", type=float, default=12, help="of processor time")
     parser.add_argument("--checkpoints", type=int, default=3)
     parser.add_argument("--batch", type=int, default=32)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--threads", type=int, default=2)
+    # Pictures are small: two threads wait for one another and do less than one does.
+    parser.add_argument("--threads", type=int, default=1)
     args = parser.parse_args()
     torch.manual_seed(args.seed)
     random.seed(args.seed)

@@ -46,7 +46,7 @@ std::string codes_of(const std::string& text) {
     CHECK(diagnostics.has_errors());
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  CHECK(seconds.count() < 20);  // well below a second alone; machines are shared
+  CHECK(seconds.count() < 120);  // well below a second alone: it ends, whatever else runs
   return codes;
 }
 

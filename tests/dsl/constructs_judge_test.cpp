@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <fstream>
+#include <numbers>
 
+#include "runtime/base/upright.h"
 #include "runtime/vm/judge.h"
 #include "tests/dsl/built.h"
 
@@ -281,6 +283,9 @@ TEST_CASE("e_un: every measure") {
                 {"final speed(source)", 0.5},
                 {"final half_height(target)", 0.005},
                 {"final half_diagonal(target)", 0.05},
+                {"final x(half_size(target))", 0.03},
+                {"final y(half_size(target))", 0.04},
+                {"final z(half_size(target))", 0.005},
                 {"final moved_xy(target)", 0.5},
                 {"at end angle(axis_x(source), up) < 89deg", 0},
                 {"at end angle(axis_y(source), up) < 1deg", 1},
@@ -334,6 +339,35 @@ TEST_CASE("the library's inside has its middle between the walls, below the rim,
   says("against a wall from outside, on something else", {0.085, 0, 0.03}, false, 0);
   says("held over it", {0, 0, 0.1}, false, 0);
   says("below a thing without a floor", {0, 0, 0.015}, true, 0);
+}
+
+TEST_CASE("the library's inside takes the walls of an oblong thing in its own axes") {
+  const std::string library = places();
+  // 20 cm by 8 cm and 4 cm tall, its long axis turned 30 degrees from x; `along` and `across` it.
+  const auto says = [&](const char* what, double along, double across, double inside) {
+    CAPTURE(what);
+    for (const Mat3& lying :
+         {Mat3(Mat3::Identity()), Mat3(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX())),
+          Mat3(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitY()))}) {
+      World world;
+      const Mat3 turn(Eigen::AngleAxisd(std::numbers::pi / 6, Vec3::UnitZ()));
+      const Vec3 middle{0.3, 0.1, 0.82};
+      world.at(kTarget, middle);
+      world.sample.bodies[kTarget].rotation = Eigen::Quaterniond(Mat3(turn * lying));
+      // Half extents along its own axes, as they lie in the world.
+      const Vec3 own = (lying.transpose() * Vec3(0.1, 0.04, 0.02)).cwiseAbs();
+      world.starts[kTarget].half = upright_half(own, turn * lying);
+      world.at(kSource, middle + turn * Vec3(along, across, 0));
+      world.starts[kSource].half = {0.01, 0.01, 0.01};
+      world.touch(kTarget, kSurface, {0, 0, 0.01});
+      check_values({{"at end inside(source, target)", inside}}, world, library);
+    }
+  };
+  says("in the middle", 0, 0, 1);
+  says("at its far end", 0.09, 0, 1);
+  says("at a long wall", 0, 0.035, 1);
+  says("beside a long wall, held there", 0, 0.05, 0);
+  says("beside a short wall, held there", 0.11, 0, 0);
 }
 
 // `predicate` of the library's page of places, judged in worlds made by hand.
