@@ -1,4 +1,5 @@
 // P0502: a place outside the annulus that the arm reaches, or at which it cannot grasp or set down.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -8,6 +9,16 @@
 
 namespace probe::sema {
 namespace {
+
+// What misses the middle by less than the thing is thick may still take it by another place: only
+// what cannot be done is a mistake.
+bool may_do(const Shortfall& miss, const Object& object) {
+  constexpr double kTilt = 0.05;  // rad, that a hand may lean
+  double thinnest = object.box_max[0] - object.box_min[0];
+  for (std::size_t i = 1; i < 3; ++i)
+    thinnest = std::min(thinnest, object.box_max[i] - object.box_min[i]);
+  return miss.position < thinnest / 2 && miss.rotation < kTilt;
+}
 
 // A pose over the middle of the source, and one over the target with the source in hand.
 bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, const Robot& robot) {
@@ -26,7 +37,7 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
     for (std::size_t i = 0; i < (has_both ? 2u : 1u); ++i) {
       const double z = scene.surface_z + (i == 0 ? half : on_target);
       const auto miss = found->second->misses(placed[i].x, placed[i].y, z);
-      if (!miss) continue;
+      if (!miss || may_do(*miss, starts.object(placed[i]))) continue;
       char degrees[32];
       std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / std::numbers::pi);
       Diagnostic& said = starts.reporter.report(

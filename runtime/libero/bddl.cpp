@@ -19,7 +19,7 @@ struct PredicateRow {
   std::size_t arguments;
 };
 constexpr PredicateRow kPredicates[] = {
-#define LIBERO_PREDICATE(word, arguments) {#word, arguments},
+#define LIBERO_PREDICATE(word, arguments, skill, when) {#word, arguments},
 #include "runtime/libero/predicates.def"
 #undef LIBERO_PREDICATE
 };

@@ -9,6 +9,8 @@
 #include <optional>
 #include <set>
 
+#include "runtime/libero/goal.h"
+
 namespace probe::libero {
 namespace {
 
@@ -80,6 +82,8 @@ class SuiteWriter {
     std::map<std::string, std::string, std::less<>>
         fixtures;  // names in the text, by the problem's
     std::string scene;
+    // What stands for a thing or a place of the problem where a role is filled by it: "source".
+    std::map<std::string, std::string, std::less<>> roles;
   };
 
   Failure wrong(const TaskSource& task, std::string what) const {
@@ -94,7 +98,11 @@ class SuiteWriter {
   Status add_task(const TaskSource& task, std::string& body) {
     Stage stage;
     PROBE_TRY(stand_up(task, stage, body));
+    const GoalRoles roles = roles_of(task.problem);
+    // Before roles stand for things: a role is filled by a thing's own name.
+    PROBE_ASSIGN(const std::string filled, fill_roles(task, roles, stage));
     PROBE_ASSIGN(const std::string goal, goal_of(task, stage));
+    PROBE_ASSIGN(const std::string solution, solution_of(task, stage));
     const std::string id = fmt::format("{}_{:02}", suite_.folder, task.number);
     out_.tables.push_back({"starts/" + id + ".csv", table_of(task, stage)});
     std::string name = task.stem;
@@ -108,13 +116,14 @@ class SuiteWriter {
       if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
     body += fmt::format("layout {} {{ starts \"starts/{}.csv\"; drop 1cm settle 0.5s }}\n", id, id);
-    body += fmt::format("metrics {} {{ success = at end ({}); ends when {} }}\n", id, goal, goal);
+    body += fmt::format("metrics {}{} {{ success = at end ({}); ends when {} }}\n", id,
+                        metrics_like(roles), goal, goal);
     add_depth(task, *stage.row, id, body);
     if (other != instruction)
       body += fmt::format("# Its BDDL calls it: {}\n", task.problem.language);
     body += fmt::format(
-        "task {} like {}_task {{\n  scene {}; layout {}; metrics {}\n  say \"{}\"\n}}\n\n", name,
-        suite_.folder, stage.scene, id, id, instruction);
+        "task {} like {}_task {{\n  scene {}; layout {}; metrics {}\n{}  say \"{}\"\n{}}}\n\n",
+        name, suite_.folder, stage.scene, id, id, filled, instruction, solution);
     return {};
   }
 
@@ -253,6 +262,90 @@ class SuiteWriter {
 
   // ---- what is wanted
 
+  // What is measured beside success, of suite/libero/predicates.probe.
+  static const char* metrics_like(const GoalRoles& roles) {
+    if (roles.empty()) return "";
+    return roles.source.empty()   ? " like handling_part"
+           : roles.helper.empty() ? " like handling_one"
+                                  : " like handling_two";
+  }
+
+  // The roles as statements; from then on they stand for what fills them.
+  Result<std::string> fill_roles(const TaskSource& task, const GoalRoles& roles,
+                                 Stage& stage) const {
+    std::string text;
+    std::map<std::string, std::string, std::less<>> stand_for;
+    const auto fill = [&](const char* role, const std::string& name) -> Status {
+      if (name.empty()) return {};
+      const BddlRegion* region = task.problem.find_region(name);
+      // Of a region of an object the object: `target.inside`.
+      const bool is_objects =
+          region != nullptr && task.problem.find_object(region->target) != nullptr;
+      std::string thing = is_objects ? region->target : name;
+      std::string said = thing;
+      if (roles.source.empty()) {
+        PROBE_ASSIGN(const std::vector<std::string> parts, parts_of(task, stage, name));
+        said = parts.front();
+        // A role is one part.
+        if (parts.size() > 1) return {};
+        thing = said;
+      } else if (region != nullptr && !is_objects) {
+        PROBE_ASSIGN(said, region_text(task, stage, *region));
+        thing = said;
+      }
+      text += fmt::format("{}{} {}", text.empty() ? "  " : "; ", role, said);
+      stand_for.emplace(thing, role);
+      return {};
+    };
+    PROBE_TRY(fill("source", roles.source));
+    PROBE_TRY(fill("target", roles.target));
+    PROBE_TRY(fill("helper", roles.helper));
+    PROBE_TRY(fill("helper_target", roles.helper_target));
+    if (!text.empty() && !roles.distractors.empty())
+      text += fmt::format("; distractors {}", fmt::join(roles.distractors, ", "));
+    stage.roles = std::move(stand_for);
+    return text.empty() ? text : text + "\n";
+  }
+
+  // The role that something fills, or its own name.
+  static std::string said(const Stage& stage, const std::string& name) {
+    const auto role = stage.roles.find(name);
+    return role == stage.roles.end() ? name : role->second;
+  }
+
+  // How it can be done: an open door or a knob that is on is one of several, a closed one all.
+  Result<std::string> solution_of(const TaskSource& task, const Stage& stage) const {
+    const auto is_closable = [&](const BddlRegion& region) {
+      return region.ranges.empty() && parts_of(task, stage, region.name).ok();
+    };
+    std::vector<std::string> skills;
+    for (const BddlFact& step : steps_of(task.problem, is_closable)) {
+      if (step.arguments.size() == 2 || step.predicate == "up") {
+        std::vector<std::string> names = {said(stage, step.arguments[0])};
+        if (step.arguments.size() == 2) {
+          PROBE_ASSIGN(names.emplace_back(), place_text(task, stage, step.arguments[1]));
+        }
+        skills.push_back(skill_text(step, names));
+        continue;
+      }
+      PROBE_ASSIGN(std::vector<std::string> parts, parts_of(task, stage, step.arguments[0]));
+      const bool is_any = step.predicate == "open" || step.predicate == "turnon";
+      if (is_any) parts.resize(1);
+      for (const std::string& part : parts) skills.push_back(skill_text(step, {part}));
+    }
+    if (skills.empty()) return std::string();
+    return fmt::format("  solution {{ {} }}\n", fmt::join(skills, "; "));
+  }
+
+  // An object, or a region; of an object's region the object: its middle is the safest place.
+  Result<std::string> place_text(const TaskSource& task, const Stage& stage,
+                                 const std::string& place) const {
+    const BddlRegion* region = task.problem.find_region(place);
+    if (region == nullptr) return said(stage, place);
+    if (task.problem.find_object(region->target) != nullptr) return said(stage, region->target);
+    return region_text(task, stage, *region);
+  }
+
   Result<std::string> goal_of(const TaskSource& task, const Stage& stage) const {
     std::vector<std::string> conditions;
     for (const BddlFact& fact : task.problem.goal) {
@@ -275,7 +368,8 @@ class SuiteWriter {
         std::ranges::find(known->regions, region.own, &ThingRegion::name) == known->regions.end()) {
       return wrong(task, "`" + region.target + "` has no region `" + region.own + "`");
     }
-    return (object != nullptr ? region.target : fixture->second) + "." + region.own;
+    if (object != nullptr) return said(stage, region.target) + "." + region.own;
+    return said(stage, fixture->second + "." + region.own);
   }
 
   // The parts whose joints are asked: of a region that of its own body, of a fixture all.
@@ -292,7 +386,7 @@ class SuiteWriter {
                           : std::ranges::find(known->regions, region->own, &ThingRegion::name);
       for (const ThingJoint& joint : known->joints) {
         if (region != nullptr && (of == known->regions.end() || of->part != joint.part)) continue;
-        parts.push_back(stage.fixtures.find(owner)->second + "." + joint.part);
+        parts.push_back(said(stage, stage.fixtures.find(owner)->second + "." + joint.part));
       }
     }
     if (parts.empty()) return wrong(task, "`" + name + "` has no joint");
@@ -309,13 +403,13 @@ class SuiteWriter {
       if (region == nullptr) {
         if (fact.predicate == "in" || task.problem.find_object(where) == nullptr)
           return wrong(task, "`" + where + "` is no region, and no object to put things on");
-        return fmt::format("on_thing({}, {})", what, where);
+        return fmt::format("on_thing({}, {})", said(stage, what), said(stage, where));
       }
       PROBE_ASSIGN(const std::string place, region_text(task, stage, *region));
       const char* const rule = fact.predicate == "in"   ? "in_site"
                                : region->ranges.empty() ? "on_site"
                                                         : "on_zone";
-      return fmt::format("{}({}, {})", rule, what, place);
+      return fmt::format("{}({}, {})", rule, said(stage, what), place);
     }
     if (fact.predicate == "up") return fmt::format("z(origin({})) >= 1m", fact.arguments[0]);
     PROBE_ASSIGN(const std::vector<std::string> parts, parts_of(task, stage, fact.arguments[0]));

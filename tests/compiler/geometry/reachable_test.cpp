@@ -68,6 +68,16 @@ TEST_CASE("a grasp out of reach names object, episode, cell and how far off the 
   CHECK(said.primary_label == "episode 0: red at (42cm, 0cm)");
 }
 
+TEST_CASE("a tool that misses a thing's middle by less than half of it may take it elsewhere") {
+  const auto red_at = [](const char* x) {
+    return with_gantry(std::string("layout l { place source at (") + x +
+                       ", 0cm); place target at (0cm, 0cm); drop 9cm settle 1s }");
+  };
+  // The tool comes to 30 cm; the block is 2 cm high.
+  CHECK_MESSAGE(red_at("30.9cm")->codes() == "", red_at("30.9cm")->said());
+  CHECK(red_at("31.2cm")->codes() == "P0502");
+}
+
 TEST_CASE("a place pose out of reach is one over the target") {
   const auto a = with_gantry(
       "layout l { place source at (0cm, 0cm); place target at (0cm, 40cm); drop 9cm settle 1s }");

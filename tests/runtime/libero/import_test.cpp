@@ -15,6 +15,8 @@
 #include "runtime/compile/files.h"
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/plan.h"
+#include "runtime/plan/roles.h"
+#include "runtime/plan/skills.h"
 #include "tests/hex.h"
 #include "tests/runtime/libero/reference.h"
 #include "tests/runtime/libero/small.h"
@@ -124,7 +126,12 @@ TEST_CASE("a task is imported: its words, its goal, where things begin") {
   const std::string text = text_of(folder.root / "out/libero_90.probe");
   CAPTURE(text);
   CHECK(text.find("say \"put a cup in the drawer and close it\"") != std::string::npos);
-  CHECK(text.find("in_site(cup_1, chest_1.drawer)") != std::string::npos);
+  CHECK(text.find("metrics libero_90_00 like handling_one {") != std::string::npos);
+  CHECK(text.find("in_site(source, target)") != std::string::npos);
+  CHECK(text.find("  source cup_1; target chest_1.drawer; distractors cup_2, lid_1\n") !=
+        std::string::npos);
+  CHECK(text.find("solution { put source in target; close chest_1.drawer_part }") !=
+        std::string::npos);
   CHECK(text.find("drawer_closed(chest_1.drawer_part)") != std::string::npos);
   CHECK(text.find("fixture chest_1 like chest { at (21cm, -29cm, 92cm) yaw 180deg }") !=
         std::string::npos);
@@ -144,6 +151,8 @@ TEST_CASE("a task is imported: its words, its goal, where things begin") {
   REQUIRE(episodes.size() == 2);
   const auto placed = plan->placements(episodes[0]);
   REQUIRE(placed.size() == 3);
+  CHECK(plan::roles_of(plan->tables(), task).has_source());
+  CHECK(plan::skills_of(plan->tables(), 0).size() == 2);
   CHECK(plan->text(plan->objects()[placed[0].object].name) == "cup_1");
   CHECK(placed[0].position == std::array<double, 3>{-0.07, 0.03, 0.97});
   CHECK(placed[0].rotation == std::array<double, 4>{0.6, 0, 0, 0.8});

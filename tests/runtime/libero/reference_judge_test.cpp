@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -286,6 +287,10 @@ TEST_CASE("the judge on stored and settled states of the benchmark, against a pl
     for (std::size_t i = 0; i < standing.size(); ++i)
       standing[i].name = task["fixtures"].items()[i].first;
 
+    // The plan has objects in the order of their roles.
+    std::vector<std::string> object_names;
+    for (std::size_t i = 0; i < task["objects"].size(); ++i)
+      object_names.emplace_back(plan.text(bodies[i].name));
     std::string goal;
     for (const Json& fact : task["goal"]) goal += fact[0].text() + " ";
     // As it is, or with the goal's things and joints about where they are wanted.
@@ -303,7 +308,7 @@ TEST_CASE("the judge on stored and settled states of the benchmark, against a pl
       if (is_moved) {
         World before;
         for (std::size_t i = 0; i < objects.size(); ++i)
-          before.objects[task["objects"].items()[i].first] = objects[i];
+          before.objects[object_names[i]] = objects[i];
         for (const Standing& one : standing) before.fixtures[one.name] = one.root;
         for (double& q : joints_here) {
           const double way = draw(0, 1);
@@ -322,12 +327,11 @@ TEST_CASE("the judge on stored and settled states of the benchmark, against a pl
           }
         }
         for (std::size_t i = 0; i < objects.size(); ++i)
-          objects[i] = before.objects[task["objects"].items()[i].first];
+          objects[i] = before.objects[object_names[i]];
         ++tried;
       }
       World world;
-      for (std::size_t i = 0; i < objects.size(); ++i)
-        world.objects[task["objects"].items()[i].first] = objects[i];
+      for (std::size_t i = 0; i < objects.size(); ++i) world.objects[object_names[i]] = objects[i];
       vm::StepSample sample;
       sample.bodies.resize(bodies.size());
       sample.joints.resize(plan.joints(scene).size());
@@ -408,9 +412,12 @@ TEST_CASE("the judge on stored and settled states of the benchmark, against a pl
     std::memcpy(values.data(), rows->bytes.data(), rows->bytes.size());
     for (std::size_t r = 0; r < count; ++r) {
       const double* q = &values[r * width + 1 + 9];
-      std::vector<Pose> objects;
-      for (std::size_t i = 0; i < task["objects"].size(); ++i, q += 7)
-        objects.push_back(pose_at(q));
+      std::vector<Pose> objects(object_names.size());
+      for (std::size_t i = 0; i < object_names.size(); ++i, q += 7) {
+        const auto at = std::ranges::find(object_names, task["objects"].items()[i].first);
+        REQUIRE(at != object_names.end());
+        objects[static_cast<std::size_t>(at - object_names.begin())] = pose_at(q);
+      }
       std::size_t joints = 0;
       for (const Standing& one : standing) joints += one.joints.size();
       judge_both(objects, std::span<const double>(q, joints), false);
