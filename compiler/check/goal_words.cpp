@@ -598,7 +598,7 @@ bool says_other_part(const Model& model, const Task& task, Reporter& reporter) {
 void check_goal_words(const Model& model, Reporter& reporter) {
   AskedTwice asks_twice(model);
   for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete) continue;
+    if (task.abstract || !task.complete || is_control(model.templates[task.say])) continue;
     const About about(reporter, task.decl_span);
     Told told(model, task);
     // One thing is said of a task: the others may follow from it.

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "compiler/check/check.h"
+#include "compiler/define/wording.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
@@ -156,6 +157,7 @@ void check_mentions(const Model& model, Reporter& reporter) {
   Mentions mentions(model);
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete || (task.keeps_absent && !task.allow_absent)) continue;
+    if (is_control(model.templates[task.say])) continue;
     const About about(reporter, task.decl_span);
     for (const ObjectId named : mentions.in(task.say)) {
       if (!mentions.is_absent(task, named)) continue;

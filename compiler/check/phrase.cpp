@@ -357,6 +357,7 @@ struct TaskLanguage {
       case PromptFault::kNone:
         return;
       case PromptFault::kNoWords:
+        if (is_control(model.templates[task.say])) return;
         reporter.report(Situation::kNoWords, span,
                         of_task + (task.prompt.empty() ? " is empty" : " has no words"));
         return;

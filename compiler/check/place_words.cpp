@@ -11,6 +11,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/check/said.h"
+#include "compiler/define/wording.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
@@ -169,6 +170,7 @@ void check_place_words(const Model& model, Reporter& reporter) {
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     const Template& say = model.templates[task.say];
+    if (is_control(say)) continue;
     const auto [may, is_new] = known.try_emplace(task.say, false);
     if (is_new) may->second = has_place_word(say);
     if (!may->second) continue;

@@ -14,6 +14,7 @@
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
 #include "compiler/define/views.h"
+#include "compiler/define/wording.h"
 #include "compiler/syntax/lexer.h"
 #include "runtime/base/utf8.h"
 
@@ -383,6 +384,9 @@ class Derive {
         other.say = static_cast<TemplateId>(i);
         if (!fills_all(base, model.templates[other.say]) ||
             !counts_fit(model, base, model.templates[other.say]))
+          continue;
+        // A control of the task's own words is none.
+        if (is_control(model.templates[other.say]) && render_prompt(model, other) == base.prompt)
           continue;
         if (model.templates[other.say].frame == fold_case(templates->frame.text) &&
             axes_between(model, other, base) != 0)

@@ -205,6 +205,8 @@ bool has_negation(const Template& say) {
                      [](const Template::Part& part) { return part.slot && part.slot->avoid; });
 }
 
+bool is_control(const Template& say) { return say.frame == "untold"; }
+
 bool asks_otherwise(const Model& model, const Task& a, const Task& b) {
   if (model.templates[a.say].frame != model.templates[b.say].frame) return true;
   return contradicts(model, a, b);

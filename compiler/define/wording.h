@@ -19,6 +19,10 @@ std::string first_word(const std::vector<Template::Part>& parts);
 // An instruction that mentions something it warns against.
 bool has_negation(const Template& say);
 
+// Words of the frame `untold`: a control, which says nothing of its task, or another task's words.
+// They are held neither to the scene nor to success, and may be none.
+bool is_control(const Template& say);
+
 // Whether two instructions ask for different actions: their verb frames differ, or one says `left`
 // where the other says `right`, or the same words stand around other objects ("put A on B", "put B
 // on A"), or a sequence goes the other way ("first A, then B", "first B, then A").

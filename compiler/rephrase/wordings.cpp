@@ -197,6 +197,7 @@ std::optional<Refusal> Prover::why_not(const Task& task, TemplateId say) {
   if (const auto other = actions_.why_other(task.say, say)) return other;
   const Template& own = model_.templates[task.say];
   const Template& words = model_.templates[say];
+  if (sema::is_control(own) || sema::is_control(words)) return Refusal::kFrame;
   if (wanted_by(model_, task, own) != wanted_by(model_, task, words)) return Refusal::kRoles;
   if (!sema::fills_all(task, words)) return Refusal::kRoles;
   for (const Template::Part& part : words.parts) {

@@ -104,7 +104,7 @@ Status RecordCheck::check(const RoleRecord& r) const {
 
 Status RecordCheck::check(const TaskRecord& k) const {
   PROBE_TRY(check_word(k.name, "the name of a task"));
-  PROBE_TRY(check_name(k.prompt, "an instruction"));
+  PROBE_TRY(check_text(k.prompt));  // a control may say nothing
   PROBE_TRY(check_index(k.scene, t.scenes.size(), "SCNE"));
   PROBE_TRY(check_index(k.camera, t.cameras.size(), "CAMR"));
   PROBE_TRY(check_index(k.light, t.lights.size(), "LITE"));

@@ -31,6 +31,23 @@ TEST_CASE("template: the frame is the verb; other words in one frame are a parap
             ->codes() == "P0702");
 }
 
+TEST_CASE("frame untold: a control is held to nothing, may be no words, and is never the task's own") {
+  const auto a = clean(
+      "template silence frame untold \"\"\n"
+      "template other   frame untold \"open the drawer, then put the blue block in it\"\n"
+      "template own     frame untold \"put the red block on the tray\"\n"
+      "derive \"{t}_{w}\" for t in { red_on_tray }, w in templates of untold { say w }\n");
+  CHECK(a->task("red_on_tray_silence").prompt.empty());
+  CHECK(axes_text(*a, "red_on_tray_silence") == "language.action");
+  CHECK(a->task("red_on_tray_other").prompt == "open the drawer, then put the blue block in it");
+  CHECK(axes_text(*a, "red_on_tray_other") == "language.action");
+  for (const auto& task : a->model.tasks) CHECK(task.name != "red_on_tray_own");
+  // The same words of a verb are held to the scene, and have to be some.
+  CHECK(analyze_with_suite("variant v of red_on_tray { say \"push the blue block\" }")->codes() ==
+        "P0404");
+  CHECK(analyze_with_suite("variant v of red_on_tray { say \"\" }")->codes() == "P0406");
+}
+
 TEST_CASE("slot: role, object, article, negation and category") {
   const auto a = clean(
       "variant a of red_on_tray { say \"put {source} on {the target}\"; horizon 61 steps }\n"
