@@ -462,7 +462,7 @@ inline std::vector<Defect> task_defects() {
       {"SUIT", "a letter first", [](Records& r, Writer& w) { r.suites[0].name = w.text("a/b"); }},
       {"METR", "a letter first", [](Records& r, Writer& w) { r.metrics[0].name = w.text("1st"); }},
       {"OBJT", "a letter first", [](Records& r, Writer& w) { r.objects[0].name = w.text("a b"); }},
-      {"TASK", "is not empty", [](Records& r, Writer&) { r.tasks[0].prompt = {}; }},
+      {"TASK", "is not empty", [](Records& r, Writer&) { r.tasks[0].name = {}; }},
       {"TASK", "of PROG", [](Records& r, Writer&) { r.tasks[0].program = 1; }},
       {"TASK", "a horizon", [](Records& r, Writer&) { r.tasks[0].horizon = 0; }},
       {"TASK", "a settling time is at most", [](Records& r, Writer&) { r.tasks[0].settle = 61; }},
