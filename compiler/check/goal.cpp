@@ -193,6 +193,9 @@ class Reader {
         if (among.size() > 1) goal_.one_of.insert(among);
         return;
       }
+      case ExprOp::kOr:
+        ask_either(ref, given);
+        return;
       case ExprOp::kCall: {
         const Given inner = given_to(node, given);
         const std::size_t count = std::min(node.args.size(), inner.size());
@@ -204,6 +207,37 @@ class Reader {
       default:
         return;
     }
+  }
+
+  // Of several ways none is certain. What they ask of one thing each, alike but for the thing, is
+  // asked of either.
+  void ask_either(ExprRef ref, const Given& given) {
+    std::vector<std::set<Goal::Asked>> ways;
+    collect_ways(ref, given, ways);
+    for (auto a = ways.begin(); a != ways.end(); ++a) {
+      for (auto b = std::next(a); b != ways.end(); ++b) {
+        for (const Goal::Asked& one : *a) {
+          for (const Goal::Asked& other : *b) {
+            if (one.predicate != other.predicate || one.of.size() != other.of.size()) continue;
+            if (one.of.empty() || one.of[0].size() != 1 || other.of[0].size() != 1) continue;
+            if (one.of[0] == other.of[0] ||
+                !std::equal(one.of.begin() + 1, one.of.end(), other.of.begin() + 1))
+              continue;
+            goal_.either.insert({*one.of[0].begin(), *other.of[0].begin()});
+          }
+        }
+      }
+    }
+  }
+
+  void collect_ways(ExprRef ref, const Given& given, std::vector<std::set<Goal::Asked>>& ways) {
+    if (at(ref).op == ExprOp::kOr) {
+      for (const ExprRef arg : at(ref).args) collect_ways(arg, given, ways);
+      return;
+    }
+    Goal way;
+    Reader(model_, task_, way).ask(ref, given);
+    ways.push_back(std::move(way.asked));
   }
 
   // One of several conditions that hold together.
@@ -274,6 +308,19 @@ class Reader {
     }
   }
 
+  // `not once (b and not once a)`: b never was so before a had been.
+  void never_before(ExprRef denied, const Given& given) {
+    if (at(denied).op != ExprOp::kOnce) return;
+    std::vector<Part> parts;
+    collect_parts(at(denied).args[0], given, parts);
+    for (const Part& now : parts) {
+      if (now.kind != Part::kNow) continue;
+      for (const Part& other : parts) {
+        if (other.kind == Part::kNever) put_in_order(other.of, now.of);
+      }
+    }
+  }
+
   void order(ExprRef ref, const Given& given) {
     if (ref == kNoExpr) return;
     const ExprNode& node = at(ref);
@@ -281,6 +328,9 @@ class Reader {
       case ExprOp::kOnce:
         order_within(node.args[0], given);
         break;
+      case ExprOp::kNot:
+        never_before(node.args[0], given);
+        return;
       case ExprOp::kAnd:
       case ExprOp::kHold:
       case ExprOp::kAlways:

@@ -28,6 +28,8 @@ struct Goal {
   std::set<std::pair<Things, Things>> order;
   // Things of which it is enough that one is so.
   std::set<Things> one_of;
+  // Two things of which one may do as well as the other: the same is asked of either (`or`).
+  std::set<Things> either;
   // Something is measured that is one way on the left and another on the right: a coordinate, a
   // region, a direction, a joint.
   bool tells_sides = false;

@@ -167,7 +167,7 @@ class Told {
       case Asks::kAfter:
         return order_lack(one);
       case Asks::kEach:
-        return each_lack();
+        return each_lack(one);
     }
     return std::nullopt;
   }
@@ -360,7 +360,7 @@ class Told {
   }
 
   // "both spoons" of which success is that any of them is there.
-  std::optional<std::string> each_lack() {
+  std::optional<std::string> each_lack(const GoalWords& one) {
     for (const Things& things : goal().one_of) {
       const bool is_said =
           std::any_of(said().words.begin(), said().words.end(), [&](const Said::Word& word) {
@@ -369,7 +369,28 @@ class Told {
       if (is_said && !is_each_asked(things))
         return "succeeds with one of " + std::to_string(things.size()) + " (`any`, not `all`)";
     }
-    return std::nullopt;
+    for (const Things& two : goal().either) {
+      const bool is_said =
+          std::all_of(two.begin(), two.end(), [&](ObjectId thing) { return said().first(thing); });
+      if (is_said && !is_each_asked(two)) return "succeeds with one of 2 (`or`, not `and`)";
+    }
+    return one.words == "both" ? both_lack() : std::nullopt;
+  }
+  // "both the can and the cup" of which success asks of the can alone.
+  std::optional<std::string> both_lack() {
+    const auto at = said().find("both");
+    if (!at) return std::nullopt;
+    std::vector<ObjectId> behind;
+    for (std::size_t i = *at + 1; i < said().words.size() && behind.size() < 2; ++i) {
+      const Things& of = said().words[i].of;
+      if (of.size() > 1) return std::nullopt;
+      if (of.size() == 1 && (behind.empty() || behind[0] != *of.begin()))
+        behind.push_back(*of.begin());
+    }
+    if (behind.size() < 2 || goal().asked.empty()) return std::nullopt;
+    const bool first = is_asked(Things{behind[0]}), second = is_asked(Things{behind[1]});
+    if (first == second) return std::nullopt;
+    return "succeeds without " + name_of(Things{behind[first ? 1 : 0]});
   }
   bool is_each_asked(const Things& things) {
     return std::all_of(things.begin(), things.end(),

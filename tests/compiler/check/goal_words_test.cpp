@@ -158,6 +158,37 @@ TEST_CASE("words that put two things in an order want one") {
                     "then put {the source} and {the helper} on {the target}") == "");
 }
 
+TEST_CASE(
+    "words that put two things in an order are many, and a goal may say it the other way round") {
+  const std::string judged =
+      "at end (done(source) and done(helper) and once (done(source) and not once done(helper)))";
+  const std::string never =
+      "at end (done(source) and done(helper) and not once (done(helper) and not once "
+      "done(source)))";
+  for (const std::string& goal : {judged, never}) {
+    CAPTURE(goal);
+    CHECK(said_of_two(goal, "put {the source} on {the target}, then put {the helper} there") == "");
+    CHECK(said_of_two(goal, "put {the source} on {the target}, followed by {the helper}") == "");
+    CHECK(first_line(
+              said_of_two(goal, "put {the helper} on {the target}, followed by {the source}")) ==
+          "error[P1202]: `t` says \"followed by\" and succeeds when `red` comes before `blue`");
+    CHECK(first_line(
+              said_of_two(goal, "put {the helper} on {the target} and finally {the source}")) ==
+          "error[P1202]: `t` says \"finally\" and succeeds when `red` comes before `blue`");
+  }
+}
+
+TEST_CASE("both of two is neither of them nor one of them") {
+  const std::string words = "put both {the source} and {the helper} on {the target}";
+  CHECK(said_of_two("at end (done(source) and done(helper))", words) == "");
+  CHECK(first_line(said_of_two("at end (done(source) or done(helper))", words)) ==
+        "error[P1202]: `t` says \"both\" and succeeds with one of 2 (`or`, not `and`)");
+  CHECK(first_line(said_of_two("at end done(source)", words)) ==
+        "error[P1202]: `t` says \"both\" and succeeds without `blue`");
+  CHECK(said_of_two("at end (done(source) or done(helper))",
+                    "put {the source} or {the helper} on {the target}") == "");
+}
+
 TEST_CASE("words for each of several things are not judged by one of them") {
   const auto told = [](const std::string& goal, const std::string& words) {
     return first_line(test::analyze_with_suite(
