@@ -136,6 +136,8 @@ int events_verb(ResultsArguments arguments) {
   } else {
     put("{}", rejudge::event_tally(told));
   }
+  if (std::ranges::any_of(told, [](const auto& one) { return one.row.only_success; }))
+    say("{} {}\n", arguments.dir, store::kSuccessesAlone);
   for (const MetricLeftOut& out : compile::of_tasks(grafted->left_out, tasks)) say("{}\n", compile::to_text(out));
   return exit;
 }

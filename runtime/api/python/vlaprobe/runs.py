@@ -63,6 +63,7 @@ class Results(list):
 
     Attributes:
         policy, plan_root, suite: what the run is of.
+        only_success: whether only episodes that succeeded were kept (``vlaprobe demos``), so that nothing is a rate.
         refused: sentences, one an episode whose trace does not bear its row; such rows are not here.
     """
 
@@ -71,6 +72,7 @@ class Results(list):
         self.policy: str = told["policy"]
         self.plan_root: str = told["plan_root"]
         self.suite: str = told["suite"]
+        self.only_success: bool = any(row.get("only_success", False) for row in self)
         self.refused: list[str] = told["refused"]
 
     @property
@@ -85,7 +87,15 @@ class Results(list):
         return keys[keys.index("policy") + 1 : keys.index("steps")] if keys else []
 
     def counts(self, metric: str = "success") -> dict[str, tuple[int, int]]:
-        """By task: (valid episodes where the metric is true, valid episodes). Tasks without it are not there."""
+        """By task: (valid episodes where the metric is true, valid episodes). Tasks without it are not there.
+
+        Raises:
+            UsageError: no task has the metric; or the folder is of ``vlaprobe demos``, which keeps successes alone: a rate
+                of its policy cannot be told from it.
+        """
+        if self.only_success:
+            raise UsageError("the folder holds successes alone, as `vlaprobe demos` keeps them: how often its policy "
+                             "succeeds cannot be told")
         if self and metric not in self.metrics:
             raise UsageError(f"no task of the run has a metric `{metric}`; there are {', '.join(self.metrics)}")
         counts: dict[str, tuple[int, int]] = {}
@@ -114,6 +124,8 @@ class Results(list):
 
     def _repr_html_(self) -> str:
         """For notebooks: successes by task."""
+        if self.only_success:
+            return f"<p>{html.escape(self.policy)}: {len(self)} episodes, successes alone</p>"
         counts = self.counts() if "success" in self.metrics else {}
         rows = "".join(
             f"<tr><td>{html.escape(task)}</td><td>{yes} of {count}</td></tr>" for task, (yes, count) in counts.items()

@@ -329,6 +329,19 @@ class EvaluateTest(Case):
         with self.assertRaises(vlaprobe.Error) as raised:
             vlaprobe.open_run(self.folder()).results()
 
+    def test_a_folder_of_demonstrations_has_rows_and_no_rates(self):
+        folder = self.folder() + "/demos"
+        told = program("demos", SUITE, "--suite", "intact", "--tasks", TASK, "--episodes", "0", "-o", folder)
+        self.assertEqual(told.returncode, 0, told.stderr)
+        rows = vlaprobe.open_run(folder).results()
+        self.assertEqual((len(rows), rows.only_success), (1, True))
+        with self.assertRaises(vlaprobe.UsageError) as raised:
+            rows.counts()
+        self.assertSays(raised.exception, "successes alone")
+        self.assertIn("successes alone", rows._repr_html_())
+        self.assertNotIn("1 of 1", rows._repr_html_())
+        self.assertIn("successes alone", program("results", folder, "--events").stderr)
+
     def test_two_contents_under_one_name_are_not_one_run(self):
         options = dict(tasks=TASK, episodes=0, out=self.folder() + "/run", progress=False)
         vlaprobe.evaluate(reach_out, suite_plan(), content="weights 1", **options)
