@@ -89,6 +89,9 @@ void BlockMarks::mark(const std::vector<Instance>& instances) {
         find_rectangles(part.indices.data() + 3 * first, count, part_.x(), part_.y(), part_.depth(),
                         limits, rectangles.data());
         for (std::size_t k = 0; k < count; ++k) {
+          // Neighbours in a fine mesh touch the same blocks.
+          if (k > 0 && rectangles[k].x0 != kCrossing && rectangles[k] == rectangles[k - 1])
+            continue;
           PixelBounds bounds;
           if (rectangles[k].x0 != kCrossing) {
             mark_rectangle(rectangles[k], bit);

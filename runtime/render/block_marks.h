@@ -15,6 +15,7 @@ namespace probe::render {
 
 // Of blocks, both ends included.
 struct BlockRectangle {
+  bool operator==(const BlockRectangle&) const = default;
   std::int16_t x0, x1, y0, y1;
 };
 

@@ -13,6 +13,10 @@ namespace {
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
 // Packets of a row from which on its ends are worth computing.
 constexpr int kLongRow = 3;
+// A triangle that is less close than this part of a packet's farthest sample is clearly behind in
+// all of them, with room for rounding.
+constexpr float kHiddenBehind = 0.996f;
+static_assert(kHiddenBehind < kClearlyBehind);
 
 using Eight = float __attribute__((vector_size(32)));
 using EightInts = std::int32_t __attribute__((vector_size(32)));
@@ -29,8 +33,15 @@ constexpr bool lanes_are_tile_offsets() {
 }
 static_assert(lanes_are_tile_offsets(), "a packet's samples are the first eight of a tile's order");
 
+inline float least(const Eight& of) {
+  const auto less = [](float a, float b) { return a < b ? a : b; };
+  return less(less(less(of[0], of[1]), less(of[2], of[3])),
+              less(less(of[4], of[5]), less(of[6], of[7])));
+}
+
 PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __restrict closest,
-                           float* __restrict other, std::uint32_t* __restrict owner) {
+                           float* __restrict other, std::uint32_t* __restrict owner,
+                           float* __restrict hidden) {
   for (std::size_t n = 0; n < batch.count; ++n) {
     const std::size_t i = batch.order[n];
     const float a[3] = {batch.a[0][i], batch.a[1][i], batch.a[2][i]};
@@ -49,6 +60,8 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
                 inside2 = Eight{} + touch[2];
     const EightInts number = EightInts{} + static_cast<std::int32_t>(batch.triangle[i]);
     const float a0 = 4 * a[0], a1 = 4 * a[1], a2 = 4 * a[2], w4 = 4 * wx;
+    // The closest that it is in a packet, of that packet's first sample's.
+    const float highest = batch.w[i] + (wx > 0 ? 3 * wx : 0.0f) + (wy > 0 ? wy : 0.0f);
     const int columns = batch.columns[i];
     // An edge's bound in a row of packets, as (reach + b y) step: the first column where step is
     // negative, else the last.
@@ -86,6 +99,8 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
           first + 8 * static_cast<std::size_t>(y) * static_cast<std::size_t>(packets_x);
       for (int x = from; x < to; ++x) {
         const auto dx = static_cast<float>(x);
+        float& behind = hidden[(row >> 3) + static_cast<std::size_t>(x)];
+        if (highest + (w4 * dx + dw) < behind) continue;
         const Eight v0 = e0 + (a0 * dx + b0), v1 = e1 + (a1 * dx + b1), v2 = e2 + (a2 * dx + b2);
         const Eight w = w0 + (w4 * dx + dw);
         const EightInts inside = (v0 > inside0) & (v1 > inside1) & (v2 > inside2);
@@ -102,6 +117,7 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
         second = second > beaten ? second : beaten;
         front = ahead ? w : front;
         name = ahead ? number : name;
+        behind = kHiddenBehind * least(front);
         std::memcpy(closest + at, &front, sizeof front);
         std::memcpy(other + at, &second, sizeof second);
         std::memcpy(owner + at, &name, sizeof name);
@@ -145,17 +161,19 @@ void HitSheet::resize(int tiles_x, int tiles_y) {
   closest_.resize(samples);
   other_.resize(samples);
   owner_.resize(samples);
+  hidden_.resize(samples / 8);
 }
 
 void HitSheet::clear_block(int x, int y) {
   for (int row = 4 * y; row < 4 * (y + 1); ++row) {
     std::fill_n(closest_.data() + packet_at(2 * x, row), 16, 0.0f);
     std::fill_n(other_.data() + packet_at(2 * x, row), 16, 0.0f);
+    std::fill_n(hidden_.data() + packet_at(2 * x, row) / 8, 2, 0.0f);
   }
 }
 
 void HitSheet::draw(const TriangleBatch& batch) {
-  draw_all(batch, packets_x_, closest_.data(), other_.data(), owner_.data());
+  draw_all(batch, packets_x_, closest_.data(), other_.data(), owner_.data(), hidden_.data());
 }
 
 void HitSheet::answer(int block_x, int block_y, const float* farthest, const float* cosines,

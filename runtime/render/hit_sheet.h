@@ -77,6 +77,9 @@ class HitSheet {
   // the foremost other one that it touches, and the number of the first.
   std::vector<float> closest_, other_;
   std::vector<std::uint32_t> owner_;
+  // A packet each: what is less close is clearly behind all its samples' foremost triangles, and
+  // says nothing that is asked.
+  std::vector<float> hidden_;
 };
 
 struct TriangleName {

@@ -44,6 +44,11 @@ inline Span packets_between(float low, float high, float last, std::int32_t side
   return {first / side, end < first ? 0 : end / side - first / side + 1};
 }
 
+// How wrong places in the picture may be, pixels; coordinates go up to `widest`.
+inline float room_at(float closeness, float widest, const TriangleLimits& limits) {
+  return (limits.pixels + limits.grows * widest) * closeness + kEdgeDoubt * widest;
+}
+
 // Sets up `count` triangles whose vertices are `index`, with a Kind each. Those that are doubtful
 // all over, being too near, too far out or too thin, are left to the caller.
 PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t count,
@@ -60,7 +65,12 @@ PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t coun
     const float nearest_z = least(pz[v0], pz[v1], pz[v2]);
     const float farthest_z = greatest(pz[v0], pz[v1], pz[v2]);
     const float closest = greatest(w0, w1, w2), farthest = least(w0, w1, w2);
-    const float room = limits.pixels * closest + limits.fixed;
+    const float left = least(x0, x1, x2), right = greatest(x0, x1, x2);
+    const float top = least(y0, y1, y2), bottom = greatest(y0, y1, y2);
+    const float room = room_at(
+        closest,
+        greatest(greatest(-left, right, -top), greatest(bottom, limits.max_x, limits.max_y)),
+        limits);
 
     const float area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
     const float sign = area < 0 ? -1.0f : 1.0f;
@@ -72,8 +82,6 @@ PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t coun
     const float side0 = std::abs(a0) + std::abs(b0), side1 = std::abs(a1) + std::abs(b1),
                 side2 = std::abs(a2) + std::abs(b2);
     const float longest = greatest(side0, side1, side2);
-    const float left = least(x0, x1, x2), right = greatest(x0, x1, x2);
-    const float top = least(y0, y1, y2), bottom = greatest(y0, y1, y2);
     // Strips round the lines of two sides meet beyond the corner between them.
     const float beyond = room + room * longest * longest / size;
     const Span across = packets_between(left - beyond, right + beyond, limits.max_x, 4);
@@ -124,6 +132,7 @@ PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t coun
 void KnownHits::name_all(const std::vector<Instance>& instances) {
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const auto& parts = instances[i].geometry->parts;
+    first_.push_back(static_cast<std::uint32_t>(names_.size()));
     for (std::size_t p = 0; p < parts.size(); ++p) {
       parts_.push_back({instance_bit(i), parts[p].triangles.size()});
       for (std::size_t k = 0; k < parts[p].triangles.size(); ++k) {
@@ -132,6 +141,21 @@ void KnownHits::name_all(const std::vector<Instance>& instances) {
       }
     }
   }
+}
+
+// What is near first: it hides much of the rest, which then need not be drawn. What the sheet says
+// does not depend on the order.
+void KnownHits::order(const std::vector<Instance>& instances, const Camera& camera) {
+  turns_.clear();
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if ((wanted_ & instance_bit(i)) == 0) continue;
+    const Vec3 from_eye = instances[i].exact_translation - camera.position;
+    turns_.push_back({static_cast<float>(camera.forward_left_up.col(0).dot(from_eye)),
+                      static_cast<std::uint32_t>(i)});
+  }
+  std::sort(turns_.begin(), turns_.end(), [](const Turn& a, const Turn& b) {
+    return a.depth != b.depth ? a.depth < b.depth : a.instance < b.instance;
+  });
 }
 
 void KnownHits::limit(const Instance& instance, const MeshGeometry::Part& part,
@@ -147,7 +171,8 @@ void KnownHits::limit(const Instance& instance, const MeshGeometry::Part& part,
   }
   limits_.distance = kEmbreeDoubt * (placed + eye + 2 * part.reach);
   limits_.pixels = limits_.distance * static_cast<float>(std::max(camera.fx, camera.fy)) +
-                   kProjectionDoubt * (sums[0] + sums[1] + 2 * limits_.widest * sums[2]);
+                   kProjectionDoubt * (sums[0] + sums[1]);
+  limits_.grows = 2 * kProjectionDoubt * sums[2];
 }
 
 KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Camera& camera,
@@ -158,7 +183,6 @@ KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Cam
   limits_.widest = 4.0f * static_cast<float>(std::max(rays.width, rays.height));
   limits_.max_x = static_cast<float>(rays.width - 1);
   limits_.max_y = static_cast<float>(rays.height - 1);
-  limits_.fixed = kEdgeDoubt * limits_.widest;
   limits_.depth = kDistanceDoubt * rays.nearest_depth / kNearest;
   sheet_.resize(rays.tiles_x, rays.tiles_y);
   for (int y = 0; y < marks.blocks_y(); ++y) {
@@ -167,17 +191,15 @@ KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Cam
       sheet_.clear_block(x, y);
     }
   }
-  std::uint32_t number = 0;
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    const Instance& instance = instances[i];
-    const InstanceSet bit = instance_bit(i);
+  order(instances, camera);
+  for (const Turn& turn : turns_) {
+    const Instance& instance = instances[turn.instance];
     const Projection projection = projection_of(instance, camera);
+    std::uint32_t number = first_[turn.instance];
     for (const MeshGeometry::Part& part : instance.geometry->parts) {
-      if ((wanted_ & bit) != 0) {
-        part_.project(part, projection);
-        limit(instance, part, projection, camera);
-        draw(part, number, marks, bit);
-      }
+      part_.project(part, projection);
+      limit(instance, part, projection, camera);
+      draw(part, number, marks, instance_bit(turn.instance));
       number += static_cast<std::uint32_t>(part.triangles.size());
     }
   }
@@ -269,7 +291,7 @@ void KnownHits::add_doubtful(const MeshGeometry::Part& part, std::size_t index) 
   const float from_x = static_cast<float>(4 * across.first) + 0.5f;
   const float from_y = static_cast<float>(2 * down.first) + 0.5f;
   const float room =
-      limits_.pixels * greatest(closeness[v[0]], closeness[v[1]], closeness[v[2]]) + limits_.fixed;
+      room_at(greatest(closeness[v[0]], closeness[v[1]], closeness[v[2]]), limits_.widest, limits_);
   for (std::size_t p = 0; p < 3; ++p) {
     const std::size_t q = (p + 1) % 3;
     const float a = y[p] - y[q], b = x[q] - x[p];

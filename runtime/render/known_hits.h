@@ -20,8 +20,9 @@ struct TriangleLimits {
   float widest;        // vertices farther out are not trusted
   float max_x, max_y;  // last pixel
   // How wrong places may be, in Embree's arithmetic and in ours: at `distance` metres, and in
-  // pixels at closeness w `pixels` w + `fixed`.
-  float distance, pixels, fixed;
+  // pixels at closeness w, of a triangle with coordinates up to c, (`pixels` + `grows` c) w +
+  // kEdgeDoubt c.
+  float distance, pixels, grows;
   float depth;  // how wrong a solid triangle's depth may be
 };
 
@@ -35,6 +36,7 @@ class KnownHits {
 
  private:
   void name_all(const std::vector<Instance>& instances);
+  void order(const std::vector<Instance>& instances, const Camera& camera);
   bool is_worth_it(const BlockMarks& marks);
   void limit(const Instance& instance, const MeshGeometry::Part& part, const Projection& projection,
              const Camera& camera);
@@ -49,7 +51,13 @@ class KnownHits {
     std::size_t count;  // triangles
   };
   std::vector<Range> parts_;  // of all instances, in order
-  InstanceSet wanted_ = 0;    // of what is marked
+  struct Turn {
+    float depth;  // m: of the instance's origin
+    std::uint32_t instance;
+  };
+  std::vector<Turn> turns_;           // in which instances are drawn
+  std::vector<std::uint32_t> first_;  // an instance each: its first triangle's number
+  InstanceSet wanted_ = 0;            // of what is marked
   std::vector<TriangleName> names_;
   HitSheet sheet_;
   ProjectedPart part_;

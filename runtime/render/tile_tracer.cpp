@@ -210,6 +210,11 @@ RunRays TileTracer::run_rays(const CameraRays& rays, std::size_t base, std::size
 // Records lie all over the memory: asked for together, they come while the first is worked on.
 void TileTracer::find_triangles(const TopScene& scene) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(hits_.count); ++i) {
+    if (i > 0 && hits_.primitive[i] == hits_.primitive[i - 1] &&
+        hits_.instance[i] == hits_.instance[i - 1] && hits_.part[i] == hits_.part[i - 1]) {
+      hits_.triangle[i] = hits_.triangle[i - 1];
+      continue;
+    }
     const MeshGeometry& geometry = *scene.instances()[hits_.instance[i]].geometry;
     const TriangleData* triangle =
         geometry.parts[hits_.part[i]].triangles.data() + hits_.primitive[i];
@@ -221,18 +226,14 @@ void TileTracer::find_triangles(const TopScene& scene) {
 
 void TileTracer::drop(const std::array<bool, kTileSamples>& hidden) {
   const auto all = static_cast<std::size_t>(hits_.count);
-  std::size_t count = 0;
-  while (count < all && !hidden[hits_.sample[count]]) ++count;  // these stay where they are
-  for (std::size_t i = count; i < all; ++i) {
-    hits_.sample[count] = hits_.sample[i];
-    hits_.instance[count] = hits_.instance[i];
-    hits_.part[count] = hits_.part[i];
-    hits_.primitive[count] = hits_.primitive[i];
-    hits_.triangle[count] = hits_.triangle[i];
-    hits_.t[count] = hits_.t[i];
-    hits_.u[count] = hits_.u[i];
-    hits_.v[count] = hits_.v[i];
-    count += hidden[hits_.sample[count]] ? 0 : 1;
+  std::size_t count = 0, end = 0;
+  for (std::size_t first = 0; first < all; first = end) {
+    const bool is_hidden = hidden[hits_.sample[first]];
+    end = first + 1;
+    while (end < all && hidden[hits_.sample[end]] == is_hidden) ++end;
+    if (is_hidden) continue;
+    if (count < first) hits_.move(first, end, count);
+    count += end - first;
   }
   hits_.count = static_cast<int>(count);
 }

@@ -3,6 +3,7 @@
 // a thread.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -34,6 +35,20 @@ struct TileHits {
     std::size_t end = first + 1;
     while (end < static_cast<std::size_t>(count) && triangle[end] == triangle[first]) ++end;
     return end - first;
+  }
+  // Those from `first` to before `end`, to an earlier place.
+  void move(std::size_t first, std::size_t end, std::size_t to) {
+    const auto shift = [first, end, to](auto& array) {
+      std::copy(array.data() + first, array.data() + end, array.data() + to);
+    };
+    shift(sample);
+    shift(instance);
+    shift(part);
+    shift(primitive);
+    shift(triangle);
+    shift(t);
+    shift(u);
+    shift(v);
   }
 };
 

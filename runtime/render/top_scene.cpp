@@ -58,30 +58,36 @@ Status TopScene::place(std::span<const Pose> poses) {
                    .message = "the pose is not finite, not rigid or farther than 1000 km",
                    .where = instances_[i].name};
   }
-  moved_ = placed_ ? 0 : kAllInstances;
+  const bool is_first = !placed_;
+  moved_ = is_first ? kAllInstances : 0;
   placed_ = true;
+  bool any = is_first;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     Instance& instance = instances_[i];
     const Pose pose = poses[i] * instance.origin;
     instance.exact_rotation = pose.rotation.toRotationMatrix();
     instance.exact_translation = pose.position;
-    const InstanceSet bit = instance_bit(i);
+    bool is_elsewhere = is_first;
     float columns[12];
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) {
         const float value = static_cast<float>(instance.exact_rotation(r, c));
-        if (instance.rotation[3 * r + c] != value) moved_ |= bit;
+        if (instance.rotation[3 * r + c] != value) is_elsewhere = true;
         instance.rotation[3 * r + c] = value;
         instance.rows[r][c] = instance.columns[c][r] = value;
         columns[3 * c + r] = value;
       }
       const float value = static_cast<float>(pose.position[r]);
-      if (instance.translation[r] != value) moved_ |= bit;
+      if (instance.translation[r] != value) is_elsewhere = true;
       instance.translation[r] = columns[9 + r] = value;
     }
+    if (!is_elsewhere) continue;  // as fixtures do most of the time
+    any = true;
+    moved_ |= instance_bit(i);
     rtcSetGeometryTransform(handles_[i].get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(handles_[i].get());
   }
+  if (!any) return {};
   rtcCommitScene(scene_.get());
   return device_->check("placing instances");
 }
