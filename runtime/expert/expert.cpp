@@ -185,6 +185,11 @@ class Expert final : public policy::Policy {
   // What the skills of a solution are done with, or else the roles.
   Scene seen(const policy::Observation& observation) const {
     const policy::Privileged& view = *observation.privileged;
+    Scene scene = look_at(observation, view);
+    scene.low_ways = servo_.interval() > 1;
+    return scene;
+  }
+  Scene look_at(const policy::Observation& observation, const policy::Privileged& view) const {
     if (solution_.empty())
       return look(
           observation,

@@ -23,6 +23,8 @@ constexpr double kEasySide = 0.006;     // m, wider earns nothing more
 constexpr double kNearest = 0.002;      // m, to another object
 constexpr double kComfortable = 0.02;   // m, farther away earns nothing more
 constexpr std::array kRimHeights{0.0030, 0.0036, 0.006, 0.010, 0.020, 0.030};  // m, of fingertips
+constexpr double kBesideSource = 0.012;       // m, of fingers that are set before they come
+constexpr double kNearBase = 0.6, kStretchCost = 10;  // m from the base; what a m more costs
 constexpr double kRimDepth = 0.002;  // m, of a wall between the fingers at least
 
 double wrapped(double angle) {
@@ -62,8 +64,8 @@ std::vector<double> yaws_for(const Footprint& source) {
 
 // How far the open gripper, lowered to `z`, stays from everything else. Low things meet only the
 // fingers, those higher than the palm's underside also the palm.
-double clearance_of(const GraspProblem& problem, const Directions& d, const Vec3& at) {
-  const robot::HandShape& g = problem.gripper;
+double clearance_of(const GraspProblem& problem, const robot::HandShape& g, const Directions& d,
+                    const Vec3& at) {
   const Vec2 center = at.head<2>();
   const Outline left =
       box(center, d, g.opening_half, g.outside_half, -g.finger_half, g.finger_half);
@@ -106,6 +108,19 @@ std::vector<Extent> covered(std::span<const Outline> outlines, const Slab& slab,
   return out;
 }
 
+double stretch_cost(const GraspProblem& problem, const Vec2& at) {
+  return problem.minds_stretch ? kStretchCost * std::max(0.0, at.norm() - kNearBase) : 0;
+}
+
+// As wide as it needs to be: the fingers set `kBesideSource` from each side of what they take.
+robot::HandShape set_to(const GraspProblem& problem, double width) {
+  robot::HandShape hand = problem.gripper;
+  const double opening = std::min(0.5 * width + kBesideSource, hand.opening_half);
+  hand.outside_half -= hand.opening_half - opening;
+  hand.opening_half = opening;
+  return hand;
+}
+
 // Between a wall of the object, such as the rim of a plate: one finger stands inside the outline,
 // as low as what is below it allows.
 void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
@@ -124,10 +139,11 @@ void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
         if (wall.width() < g.thinnest || wall.width() > 2 * (g.opening_half - kSideMargin))
           continue;
         const Vec2 xy = 0.5 * (wall.lower + wall.upper) * d.close + slab.at * d.across;
+        const robot::HandShape set = problem.narrow ? set_to(problem, wall.width()) : g;
         const Outline left =
-            box(xy, d, g.opening_half, g.outside_half, -g.finger_half, g.finger_half);
+            box(xy, d, set.opening_half, set.outside_half, -g.finger_half, g.finger_half);
         const Outline right =
-            box(xy, d, -g.outside_half, -g.opening_half, -g.finger_half, g.finger_half);
+            box(xy, d, -set.outside_half, -set.opening_half, -g.finger_half, g.finger_half);
         const bool free = std::all_of(walls.begin(), walls.end(), [&](const Outline& o) {
           return separation(left, o) > 0.001 && separation(right, o) > 0.001;
         });
@@ -139,11 +155,14 @@ void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
           grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
           grasp.width = wall.width();
           grasp.off_center = (xy - source.center).norm();
-          grasp.clearance = clearance_of(problem, directions_of(grasp.yaw), grasp.tcp.position);
+          grasp.open = set.opening_half / g.opening_half;
+          grasp.clearance =
+              clearance_of(problem, set, directions_of(grasp.yaw), grasp.tcp.position);
           if (grasp.clearance < kNearest) continue;
           grasp.cost = 100 * height - 40 * std::min(grasp.width, 0.02) +
                        0.5 * std::max(0.0, 1 - grasp.clearance / kComfortable) +
-                       0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now));
+                       0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now)) +
+                       stretch_cost(problem, xy);
           out.push_back(grasp);
         }
       }
@@ -188,18 +207,21 @@ std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
       const Extent extent = extent_in_slab(source.parts, slab, d.close);
       if (extent.empty() || extent.width() > 2 * (g.opening_half - kSideMargin)) continue;
       const Vec2 xy = 0.5 * (extent.lower + extent.upper) * d.close + slab.at * d.across;
+      const robot::HandShape set = problem.narrow ? set_to(problem, extent.width()) : g;
       for (const double turn : {0.0, kPi}) {
         Grasp grasp;
         grasp.yaw = wrapped(half_turn + turn);
         grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
         grasp.width = extent.width();
         grasp.off_center = along;
-        grasp.clearance = clearance_of(problem, directions_of(grasp.yaw), grasp.tcp.position);
+        grasp.open = set.opening_half / g.opening_half;
+        grasp.clearance = clearance_of(problem, set, directions_of(grasp.yaw), grasp.tcp.position);
         if (grasp.clearance < kNearest) continue;
         grasp.cost = 20 * grasp.width + 50 * std::abs(along) +
                      0.5 * std::max(0.0, 1 - grasp.clearance / kComfortable) +
                      0.5 * std::max(0.0, 1 - side_room(g, grasp.width) / kEasySide) +
-                     0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now));
+                     0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now)) +
+                     stretch_cost(problem, xy);
         out.push_back(grasp);
       }
     }

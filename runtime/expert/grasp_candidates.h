@@ -20,6 +20,7 @@ struct Grasp {
   double clearance = 0;   // to the nearest other object
   double cost = 0;
   bool rim = false;  // one finger inside the object's outline
+  double open = 1;   // how far the fingers are opened before they come; 1: all the way
 };
 
 struct GraspProblem {
@@ -29,6 +30,8 @@ struct GraspProblem {
   double surface = 0;         // height the fingertips must stay above
   double tip_margin = 0.004;  // m above it, less for flat objects
   double yaw_now = 0;         // of the tool, to prefer short turns
+  bool minds_stretch = false;  // of two holds rather the one nearer to the base
+  bool narrow = false;        // fingers are set before they come, with little room to the object
   robot::HandShape gripper;
 };
 

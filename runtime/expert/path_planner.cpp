@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/expert/place_candidates.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::expert {
@@ -20,12 +21,15 @@ constexpr double kJerk = 1, kAcceleration = 1;
 
 constexpr double kMargin = 0.012;       // m, wanted between what moves and obstacles
 constexpr double kMarginGrows = 0.006;  // m a step, from what there is at the ends
+// Of low ways, which nothing else keeps from what they cross: what hangs by its rim tilts.
+constexpr double kLowMargin = 0.030, kLowMarginGrows = 0.012;
 constexpr double kLimitMargin = 0.03;   // rad
 constexpr double kMostMove = 0.35;      // rad a step and joint
 
 constexpr double kMeanShift = 0.040, kMeanTurn = 0.24;  // of the tool a step, over a path
 constexpr double kCorner =
     0.8;  // a smooth path's length to that of the straight lines it rounds off
+constexpr double kLowCorner = 0.55;  // of low ways, whose corners are near to one another
 constexpr int kFewestSteps = 5, kMostSteps = 24;
 constexpr int kMoreSteps = 3;   // added where the clearance was not met
 constexpr double kBad = 0.003;  // m less than nothing
@@ -42,12 +46,15 @@ struct Move {
   double narrow_margin = 0;
   bool straight_up = false;  // leaves its start upwards
   double pace = 1;           // more: more steps
+  double margin = kMargin, margin_grows = kMarginGrows;  // m; m a step
+  double corner = kCorner;
 };
 
 // The margin that can be had `from` steps after the start, `left` before the goal. Prisms
 // over-estimate hollow things, so either may begin inside one.
-double margin_at(double from, double left, double at_start, double at_goal) {
-  return std::min({kMargin, at_start + kMarginGrows * from, at_goal + kMarginGrows * left});
+double margin_at(const Move& move, double from, double left, double at_start, double at_goal) {
+  return std::min(
+      {move.margin, at_start + move.margin_grows * from, at_goal + move.margin_grows * left});
 }
 
 void guess(const Move& move, Path& path) {
@@ -79,7 +86,7 @@ Residuals residuals_of(const Move& move, const Path& path) {
   const int n = path.steps();
   const Pose start = chain.pose(span_of(path.at(0)));
   const auto room = [&](const Pose& tool) {
-    return least_clearance(tool, move.balls, move.obstacles, kMargin);
+    return least_clearance(tool, move.balls, move.obstacles, move.margin);
   };
   const double at_start = room(start), at_goal = room(move.goal);
   Residuals out;
@@ -94,7 +101,7 @@ Residuals residuals_of(const Move& move, const Path& path) {
       if (half > 0) at.push_back({k - 1, half});
       const double from = k - half, left = n - from;
       out.push_back(clearance(chain, move.balls, move.obstacles,
-                              {at, margin_at(from, left, at_start, at_goal), kInside}));
+                              {at, margin_at(move, from, left, at_start, at_goal), kInside}));
       if (!move.narrow.prisms.empty()) {
         out.push_back(
             clearance(chain, move.fingers, move.narrow, {at, move.narrow_margin, kInside}));
@@ -141,7 +148,7 @@ PlannedPath shaped(const Move& move) {
   for (const JointVector& guide : move.guides) {
     const Pose next = move.reach->chain().pose(span_of(guide));
     const robot::PoseError way = robot::pose_error(at, next);
-    length += kCorner * way.position;
+    length += move.corner * way.position;
     turn += way.rotation;
     at = next;
   }
@@ -249,13 +256,21 @@ std::optional<PlannedPath> plan_approach(const Scene& scene, const Reach& reach,
   move.recent = &recent;
   move.goal = pick.grasp.tcp;
   move.guides = *guides;
-  move.balls = gripper_balls(gripper, gripper.opening_half);
+  move.balls = gripper_balls(gripper, pick.grasp.open * gripper.opening_half);
   move.obstacles = obstacles_of(scene, true);
   if (scene.source.whole.size() >= 3 && !pick.grasp.rim) {
     move.narrow.floor = scene.surface - 1;
     move.narrow.prisms = {make_prism(scene.source.whole, scene.surface - 1, scene.source.top)};
     move.fingers = std::vector<Ball>(move.balls.begin(), move.balls.begin() + kFingerBalls);
     move.narrow_margin = std::clamp(0.7 * side_room(gripper, pick.grasp.width), 0.0, 0.005);
+  }
+  if (scene.low_ways) {
+    move.margin_grows = kLowMarginGrows;
+    move.corner = kLowCorner;
+    // From above into what is taken by a wall of it.
+    if (pick.grasp.rim && scene.source.whole.size() >= 3)
+      move.obstacles.prisms.push_back(
+          make_prism(scene.source.whole, scene.surface - 1, scene.source.top));
   }
   return shaped(move);
 }
@@ -265,10 +280,7 @@ std::optional<PlannedPath> plan_transport(const Scene& scene, const Reach& reach
   const robot::HandShape& gripper = scene.hand;
   const Pose tool = reach.chain().pose(span_of(recent.back()));
   const double hang = std::max(gripper.tip_below, tool.position.z() - scene.source.bottom);
-  Pose lifted = tool, over = place;
-  lifted.position.z() = std::max(tool.position.z() + 0.03, travel_height(scene, hang));
-  over.position.z() = std::max(place.position.z(), lifted.position.z());
-  const auto guides = reach.follow(span_of(recent.back()), std::array{lifted, over, place});
+  const auto guides = way_to_place(scene, reach, span_of(recent.back()), hang, place);
   if (!guides) return std::nullopt;
   Move move;
   move.reach = &reach;
@@ -281,6 +293,11 @@ std::optional<PlannedPath> plan_transport(const Scene& scene, const Reach& reach
   move.obstacles = obstacles_of(scene, true);
   move.straight_up = true;
   move.pace = pace;
+  if (scene.low_ways) {
+    move.margin = kLowMargin;
+    move.margin_grows = kLowMarginGrows;
+    move.corner = kLowCorner;
+  }
   return shaped(move);
 }
 

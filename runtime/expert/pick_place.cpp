@@ -144,7 +144,8 @@ bool PickPlace::is_put(const Scene& s) const {
 }
 
 void PickPlace::advance_raise(const Scene& s, const Means& means) {
-  const bool clear = s.tcp.position.z() > travel_height(s, s.hand.tip_below) - 0.01;
+  const double high = travel_height(s, s.hand.tip_below, s.tcp.position, s.tcp.position);
+  const bool clear = s.tcp.position.z() > high - 0.01;
   const bool open = s.openness > 0.8 || steps_ >= 3;
   const bool still = (s.source_pose.position - last_.source_pose.position).norm() < 0.002;
   if (!(clear && open && still) && steps_ < 8) return;
@@ -267,6 +268,11 @@ void PickPlace::advance_lower(const Scene& s, const Means& means) {
     enter(errand_.keeps ? Phase::kKeep : Phase::kLoosen);
 }
 
+double PickPlace::parted() const {
+  const double open = pick_->grasp.open;
+  return open < 1 ? robot::command_of_openness(open) : kOpenGripper;
+}
+
 double PickPlace::wide() const {
   return let_go_ < 1 ? robot::command_of_openness(let_go_) : kOpenGripper;
 }
@@ -276,7 +282,7 @@ policy::Action PickPlace::command(const Scene& s, Servo& servo) {
     case Phase::kRaise:
       return command_raise(s, servo);
     case Phase::kApproach:
-      return follow_path(s, servo, shove_ && shove_->closed ? kClosedGripper : kOpenGripper);
+      return follow_path(s, servo, shove_ && shove_->closed ? kClosedGripper : parted());
     case Phase::kShove:
       return servo.toward(shove_->end, arm_of(s), shove_->closed ? kClosedGripper : kOpenGripper,
                           kNearPace);
@@ -315,7 +321,8 @@ policy::Action PickPlace::follow_path(const Scene& s, Servo& servo, double gripp
 policy::Action PickPlace::command_raise(const Scene& s, Servo& servo) {
   if (s.openness < 0.5 && steps_ < 2) return servo.hold(arm_of(s), kOpenGripper);
   Pose goal = s.tcp;
-  goal.position.z() = std::max(goal.position.z(), travel_height(s, s.hand.tip_below));
+  goal.position.z() = std::max(
+      goal.position.z(), travel_height(s, s.hand.tip_below, s.tcp.position, s.tcp.position));
   return servo.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
 }
 

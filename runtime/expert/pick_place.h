@@ -87,6 +87,8 @@ class PickPlace {
   void advance_transport(const Scene& s, const Means& means);
   void advance_lower(const Scene& s, const Means& means);
 
+  // The gripper's command on the way to the source.
+  double parted() const;
   // The gripper's command once it has let go.
   double wide() const;
   policy::Action command(const Scene& s, Servo& servo);

@@ -19,6 +19,9 @@ constexpr double kComfortable = 0.01;  // m of clearance; more earns nothing
 constexpr double kFeet = 0.004;        // m: how low of the source is its feet
 constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};  // m, let go that much higher
 constexpr std::size_t kMostPlaces = 10;              // put to inverse kinematics
+constexpr double kLeastLift = 0.03;                  // m
+// m towards the base while it rises: an arm that is stretched comes no higher where it is.
+constexpr std::array kNearer{0.0, 0.08, 0.16, 0.24};
 constexpr double kLetsGo = 0.012;                    // m a side that are enough to let go
 constexpr double kLittleCost = 0.15;                 // of opening no more than that
 constexpr double kMarkLevel = 0.006;                 // m: what is as high as the mark
@@ -125,12 +128,25 @@ std::optional<Place> plan_place(const Scene& scene, const Reach& reach,
   const Pose tool = reach.chain().pose(joints.first(reach.chain().joint_count()));
   const std::vector<Place> places = place_candidates(scene, tool, on_mark);
   const double hang = std::max(scene.hand.tip_below, tool.position.z() - scene.source.bottom);
-  Pose lifted = tool;
-  lifted.position.z() = std::max(tool.position.z() + 0.03, travel_height(scene, hang));
   for (std::size_t i = 0; i < std::min(places.size(), kMostPlaces); ++i) {
-    Pose over = places[i].tcp;
-    over.position.z() = std::max(over.position.z(), lifted.position.z());
-    if (reach.follow(joints, std::array{lifted, over, places[i].tcp})) return places[i];
+    if (way_to_place(scene, reach, joints, hang, places[i].tcp)) return places[i];
+  }
+  return std::nullopt;
+}
+
+std::optional<std::vector<JointVector>> way_to_place(const Scene& scene, const Reach& reach,
+                                                     std::span<const double> joints, double hang,
+                                                     const Pose& place) {
+  const Pose tool = reach.chain().pose(joints.first(reach.chain().joint_count()));
+  Pose lifted = tool, over = place;
+  lifted.position.z() = std::max(tool.position.z() + kLeastLift,
+                                 travel_height(scene, hang, tool.position, place.position));
+  over.position.z() = std::max(place.position.z(), lifted.position.z());
+  const Vec2 from = tool.position.head<2>();
+  for (const double nearer : kNearer) {
+    lifted.position.head<2>() = from * std::max(0.0, 1 - nearer / std::max(from.norm(), 1e-9));
+    if (auto way = reach.follow(joints, std::array{lifted, over, place})) return way;
+    if (!scene.low_ways) break;
   }
   return std::nullopt;
 }

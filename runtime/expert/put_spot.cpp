@@ -30,6 +30,7 @@ constexpr std::size_t kMostSpots = 20;                  // put to inverse kinema
 constexpr std::size_t kGiven = 8;                       // of those that are reached
 constexpr double kHalfOut = 0.7;  // of half a region: where what comes first leaves room
 constexpr double kMark = 0.01;    // m, half of the square that stands for the spot
+constexpr double kProud = 0.03;   // m that what carries may stand out of the region it is on
 
 // A place that is looked at.
 struct Wanted {
@@ -60,8 +61,8 @@ class Spots {
 
   std::vector<Wanted> wanted() const {
     if (skill_.place == policy::Skill::Place::kBeside) return ring();
-    if (skill_.region) return grid(*skill_.region, owner());
-    if (skill_.to_fixture >= 0) return grid(top_of_fixture(), owner());
+    if (skill_.region) return grid(*skill_.region, owner(), is_on() ? kProud : 0);
+    if (skill_.to_fixture >= 0) return grid(top_of_fixture(), owner(), 0);
     return around_source();
   }
 
@@ -119,7 +120,9 @@ class Spots {
   }
 
  private:
-  std::vector<Wanted> grid(const policy::Skill::Box& box, const Pose& pose) const {
+  bool is_on() const { return skill_.place == policy::Skill::Place::kOn; }
+
+  std::vector<Wanted> grid(const policy::Skill::Box& box, const Pose& pose, double proud) const {
     std::vector<Wanted> out;
     const Vec3 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -136,7 +139,7 @@ class Spots {
         const Vec3 at = pose.apply(middle + Vec3(u * half.x(), v * half.y(), 0));
         const double off = Vec2(u * half.x(), v * half.y()).norm();
         const double best = leaves_room_ ? kHalfOut * half.head<2>().minCoeff() : 0;
-        out.push_back({{at.x(), at.y(), low}, high, std::abs(off - best)});
+        out.push_back({{at.x(), at.y(), low}, high + proud, std::abs(off - best)});
       }
     }
     return out;
@@ -257,7 +260,8 @@ std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged
       const double low = one.at.z() + scene.hand.tip_below + kHandAbove;
       const double yaw = yaw_now + turn * std::numbers::pi;
       // What is carried comes over everything.
-      const double high = std::max(low + kOver, travel_height(scene, scene.hand.tip_below) + kHeld);
+      const double over = travel_height(scene, scene.hand.tip_below, scene.tcp.position, one.at);
+      const double high = std::max(low + kOver, over + kHeld);
       const Pose above = top_down({one.at.x(), one.at.y(), high}, yaw);
       const Pose there = top_down({one.at.x(), one.at.y(), low}, yaw);
       if (!reach.follow(scene.joints, std::array{above, there})) continue;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "runtime/base/check.h"
 #include "runtime/expert/obstacles.h"
@@ -14,6 +15,8 @@ namespace {
 
 constexpr double kAbove = 0.055;      // m, from the grasp up to where the descent starts
 constexpr double kTravelGap = 0.020;  // m, between what moves and what it passes over
+constexpr double kLowGap = 0.060;     // m, the same of low ways: what hangs by its rim tilts
+constexpr double kOverSource = 0.01;     // m, between open fingers and what they go down to
 constexpr double kReleaseGap = 0.001;    // m, under the source where it is let go
 constexpr std::size_t kMostGrasps = 40;  // candidates put to inverse kinematics
 
@@ -58,6 +61,7 @@ GraspProblem problem_of(const Scene& scene, bool place) {
   }
   problem.yaw_now = yaw_of(scene.tcp.rotation);
   problem.gripper = scene.hand;
+  problem.minds_stretch = scene.low_ways;
   return problem;
 }
 
@@ -136,6 +140,24 @@ double travel_height(const Scene& scene, double hang) {
   return top + hang + kTravelGap;
 }
 
+double travel_height(const Scene& scene, double hang, const Vec3& from, const Vec3& to) {
+  if (!scene.low_ways) return travel_height(scene, hang);
+  const robot::HandShape& hand = scene.hand;
+  // The hand may be turned any way, and the source hang beside it.
+  const double hand_out = std::hypot(hand.palm_half, std::max(hand.palm_front, hand.palm_back));
+  const double held_out =
+      (scene.source.center - scene.tcp.position.head<2>()).norm() + scene.source.radius;
+  const bool is_held = scene.openness < 0.99 && held_out < 2 * scene.source.radius;
+  const double out = std::max(hand_out, is_held ? held_out : 0) + kTravelGap;
+  const Outline line = {from.head<2>(), to.head<2>()};
+  double top = scene.surface;
+  for (const Footprint* other : others_of(scene, true)) {
+    if (other->whole.empty() || other->top <= top) continue;
+    if (separation(other->whole, line) < out) top = other->top;
+  }
+  return top + hang + kLowGap;
+}
+
 std::vector<Grasp> grasps_of(const Scene& scene) {
   return grasp_candidates(problem_of(scene, true));
 }
@@ -146,8 +168,11 @@ Pick pick_of(const Scene& scene, const Grasp& grasp) {
   pick.source_pose = scene.source_pose;
   const double z = grasp.tcp.position.z();
   // Going there the fingers must also clear the object itself.
-  const double over = std::max({z + kAbove, travel_height(scene, scene.hand.tip_below),
-                                scene.source.top + scene.hand.tip_below + 0.01});
+  const double between =
+      travel_height(scene, scene.hand.tip_below, scene.tcp.position, grasp.tcp.position);
+  const double over = std::max({z + kAbove, between,
+                                scene.source.top + scene.hand.tip_below +
+                                    (scene.low_ways ? kLowGap : kOverSource)});
   pick.above = at_height(grasp.tcp, over);
   return pick;
 }
@@ -155,9 +180,14 @@ Pick pick_of(const Scene& scene, const Grasp& grasp) {
 std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place,
                               std::span<const Pose> failed) {
   GraspProblem problem = problem_of(scene, place);
-  // Rather a doubtful way than none.
-  for (const bool crowded : {true, false}) {
+  // Rather a doubtful way than none. Fingers that are set close to the source take time.
+  struct Room {
+    bool crowded, narrow;
+  };
+  for (const auto& [crowded, narrow] : {Room{true, false}, Room{true, true}, Room{false, false}}) {
+    if (narrow && !scene.low_ways) continue;
     if (!crowded) problem.others.clear();
+    problem.narrow = narrow;
     std::vector<Grasp> grasps = grasp_candidates(problem);
     std::stable_partition(grasps.begin(), grasps.end(), [&](const Grasp& grasp) {
       return std::none_of(failed.begin(), failed.end(), [&](const Pose& before) {

@@ -26,6 +26,9 @@ struct Scene {
   std::vector<double> joints;
   double openness = 1;
   double surface = 0;
+  // Whether ways go over what lies between their ends alone: of an arm that is slow, and has no time
+  // to go over everything.
+  bool low_ways = false;
 };
 
 // Indices of objects in the view; target -1 for none.
@@ -54,6 +57,8 @@ std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place
 // The tool's height so that its tips and what hangs below them (`hang` m under the tool centre
 // point) clear everything but the source.
 double travel_height(const Scene& scene, double hang);
+// The same of what is near the straight line between two places, where ways are low.
+double travel_height(const Scene& scene, double hang, const Vec3& from, const Vec3& to);
 
 // Everything else than the source, each as it is seen from above; the target if asked.
 std::vector<const Footprint*> others_of(const Scene& scene, bool with_target);

@@ -114,5 +114,40 @@ TEST_CASE("a wide bowl is taken by its wall, one finger inside") {
   }
 }
 
+TEST_CASE("where open fingers have no room they are set close to what they take") {
+  // Between two walls that open fingers would meet, 42.5 mm out; set ones end 37.5 mm out.
+  const Footprint source = footprint(test::object(
+      "cube", {test::block({-0.009, -0.05, 0}, {0.009, 0.05, 0.03})}, {0, 0, test::kSurface}, 0));
+  std::vector<Footprint> walls;
+  for (const double x : {-0.046, 0.046}) {
+    walls.push_back(footprint(test::object(
+        "wall", {test::block({-0.005, -0.2, 0}, {0.005, 0.2, 0.03})}, {x, 0, test::kSurface}, 0)));
+  }
+  GraspProblem problem = bare_problem();
+  problem.source = &source;
+  problem.others = {&walls[0], &walls[1]};
+  problem.surface = test::kSurface;
+  CHECK(grasp_candidates(problem).empty());
+  problem.narrow = true;
+  const auto grasps = grasp_candidates(problem);
+  REQUIRE(!grasps.empty());
+  CHECK(grasps.front().open < 0.9);
+  CHECK(grasps.front().open * problem.gripper.opening_half > 0.5 * grasps.front().width + 0.01);
+}
+
+TEST_CASE("for an arm that minds how far it is stretched a far hold costs more") {
+  const Footprint source = footprint(test::object(
+      "bar", {test::block({-0.05, -0.01, 0}, {0.05, 0.01, 0.03})}, {0.7, 0, test::kSurface}, 0));
+  GraspProblem problem = bare_problem();
+  problem.source = &source;
+  problem.surface = test::kSurface;
+  const Grasp plain = grasp_candidates(problem).front();
+  CHECK(plain.tcp.position.x() == doctest::Approx(0.7));
+  problem.minds_stretch = true;
+  const Grasp near = grasp_candidates(problem).front();
+  CHECK(near.tcp.position.x() == doctest::Approx(0.7));  // rather its middle than 5 mm nearer
+  CHECK(near.cost == doctest::Approx(plain.cost + 10 * 0.1));
+}
+
 }  // namespace
 }  // namespace probe::expert

@@ -127,5 +127,39 @@ TEST_CASE("a slim hand's balls lie within it") {
   }
 }
 
+TEST_CASE("low ways go over what lies near them, others over everything") {
+  const auto tower = [](double x, double y) {
+    return test::object("tower", {test::block({-0.02, -0.02, 0}, {0.02, 0.02, 0.2})},
+                        {x, y, test::kSurface}, 0);
+  };
+  const test::FakeTable aside(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1), {tower(-0.15, 0.45)});
+  Scene scene = scene_of(aside);
+  const Vec3 from = scene.source_pose.position, to = scene.target_pose.position;
+  const double over_all = travel_height(scene, 0.02);
+  CHECK(travel_height(scene, 0.02, from, to) == over_all);
+  scene.low_ways = true;
+  CHECK(travel_height(scene, 0.02, from, to) < over_all - 0.1);
+  const test::FakeTable between(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1),
+                                {tower(-0.15, 0.05)});
+  scene = scene_of(between);
+  scene.low_ways = true;
+  CHECK(travel_height(scene, 0.02, from, to) >= over_all);
+}
+
+TEST_CASE("a low way goes to the place, and ends there") {
+  const Reach reach = widowx();
+  const test::FakeTable table(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1));
+  Scene scene = scene_of(table);
+  scene.low_ways = true;
+  const Pose tool = reach.chain().pose(std::span(scene.joints).first(6));
+  Pose place = tool;
+  place.position += Vec3(0.02, 0.05, -0.05);
+  const auto way = way_to_place(scene, reach, scene.joints, 0.02, place);
+  REQUIRE(way.has_value());
+  REQUIRE(way->size() == 3);
+  const Pose end = reach.chain().pose(std::span(way->back().data(), 6));
+  CHECK((end.position - place.position).norm() < 1e-4);
+}
+
 }  // namespace
 }  // namespace probe::expert
