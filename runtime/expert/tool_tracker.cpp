@@ -15,6 +15,7 @@ constexpr double kFastShift = 1.9 * 0.040;  // m
 constexpr double kFastTurn = 1.9 * 0.24;    // rad
 constexpr double kAsWide = 0.04;            // of openness: close enough
 constexpr double kTooWide = 0.08;           // of openness, at rest: to be mended
+constexpr double kNearWide = 0.25;          // of openness
 constexpr double kRests = 0.004;            // of openness in a control step
 constexpr int kParts = 200;                 // of a control step, to follow the law's motion
 // Of what the tool is off its way, what a free tool takes back in a control step. All of it at once
@@ -117,9 +118,13 @@ double ToolTracker::grip(double openness) {
     is_wide_ = std::abs(wider) < (rests ? kTooWide : 2 * kTooWide);
     if (is_wide_) return 0;
   }
-  const bool is_there = std::abs(wider) < kAsWide || (late != 0 && wider * (wider - late) <= 0);
-  is_wide_ = is_there;
-  return is_there ? 0 : wider > 0 ? 1 : -1;
+  const bool rests = std::abs(late) < kRests;
+  is_wide_ = std::abs(wider) < (rests ? kTooWide : kAsWide) ||
+             (late != 0 && wider * (wider - late) <= 0);
+  // Near by it is told one step at a time, and looked at once that has been done: what is told while
+  // it still moves takes it too far, again and again.
+  const bool waits = std::abs(wider) < kNearWide && !rests;
+  return is_wide_ || waits ? 0 : wider > 0 ? 1 : -1;
 }
 
 }  // namespace probe::expert

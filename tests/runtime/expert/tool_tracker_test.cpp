@@ -102,4 +102,24 @@ TEST_CASE("the gripper has a sign: it stays where it is as wide as it shall be")
   CHECK(tracker.act(0.8)[robot::kActionGripper] == -1);
 }
 
+TEST_CASE("fingers that follow late are set as wide as they shall be, and stay") {
+  // Told an eighth of their way a control step, they come half of what is left.
+  for (const double wanted : {0.3, 0.55, 0.8}) {
+    CAPTURE(wanted);
+    ToolTracker tracker(robot::OscPose{}, kRate);
+    tracker.begin(Pose{});
+    double told = 1, openness = 1;
+    int last_moved = 0;
+    for (int step = 0; step < 60; ++step) {
+      if (step % tracker.interval() == 0) tracker.aim(Pose{}, 2 * wanted - 1);
+      const double sign = tracker.act(openness)[robot::kActionGripper];
+      if (sign != 0) last_moved = step;
+      told = std::clamp(told + 0.125 * sign, 0.0, 1.0);
+      openness += 0.4 * (told - openness);
+    }
+    CHECK(std::abs(openness - wanted) < 0.08);
+    CHECK(last_moved < 30);
+  }
+}
+
 }  // namespace probe::expert
