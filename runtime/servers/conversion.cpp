@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/robot/rotation.h"
+#include "runtime/servers/libero_state.h"
 
 namespace probe::servers {
 namespace {
@@ -197,7 +198,7 @@ Status check_statistics(const Profile& profile, std::size_t numbers) {
 }
 
 Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
-                                     const policy::Proprioception& measured) {
+                                     const policy::Proprioception& measured, const Pose& base) {
   Quat rotation = measured.tcp_in_base.rotation;
   if (profile.state_frame == StateFrame::kTopDown) rotation = rotation * top_down().conjugate();
   // One sign of the two, so that equal rotations are equal numbers.
@@ -252,6 +253,8 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
     case StateLayout::kClosedness:
       state = {1 - measured.openness};
       break;
+    case StateLayout::kLibero:
+      return libero_state(measured, base);
   }
   return state;
 }
@@ -271,9 +274,9 @@ std::string to_prompt(const Profile& profile, std::string_view prompt) {
   return text;
 }
 
-Result<std::vector<double>> to_state(const Profile& profile,
-                                     const policy::Proprioception& measured) {
-  PROBE_ASSIGN(std::vector<double> state, laid_out(profile, profile.state_layout, measured));
+Result<std::vector<double>> to_state(const Profile& profile, const policy::Proprioception& measured,
+                                     const Pose& base) {
+  PROBE_ASSIGN(std::vector<double> state, laid_out(profile, profile.state_layout, measured, base));
   const Statistics& statistics = profile.state_statistics;
   if (statistics.kind == Normalisation::kNone) return state;
   const std::size_t known = size_of(statistics);
@@ -286,8 +289,8 @@ Result<std::vector<double>> to_state(const Profile& profile,
 }
 
 Result<std::vector<double>> to_state(const Profile& profile, StateLayout layout,
-                                     const policy::Proprioception& measured) {
-  return laid_out(profile, layout, measured);
+                                     const policy::Proprioception& measured, const Pose& base) {
+  return laid_out(profile, layout, measured, base);
 }
 
 RawAction denormalised(const Profile& profile, const RawAction& raw) {

@@ -17,13 +17,14 @@ namespace probe::servers {
 std::string to_prompt(const Profile& profile, std::string_view prompt);
 
 // Fails (kPolicy) when the robot has too few joints for the layout, or as many other numbers
-// than the profile has statistics.
-Result<std::vector<double>> to_state(const Profile& profile,
-                                     const policy::Proprioception& measured);
+// than the profile has statistics. `base`: the robot's in the world, of a question that is of no
+// scene the world's origin.
+Result<std::vector<double>> to_state(const Profile& profile, const policy::Proprioception& measured,
+                                     const Pose& base = {});
 
 // The same numbers in another layout, not normalised.
 Result<std::vector<double>> to_state(const Profile& profile, StateLayout layout,
-                                     const policy::Proprioception& measured);
+                                     const policy::Proprioception& measured, const Pose& base = {});
 
 // What the profile's statistics and scales make of a server's numbers, in m, rad and the gripper's
 // range.

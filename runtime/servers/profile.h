@@ -49,6 +49,7 @@ enum class StateLayout {
   kFingers,         // 2
   kOpenness,        // 1
   kClosedness,      // 1, 0 open .. 1 closed, as DROID counts
+  kLibero,          // 8: libero_state.h
 };
 enum class StateFrame {
   kBase,

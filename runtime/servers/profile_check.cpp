@@ -75,6 +75,7 @@ std::size_t size_of(StateLayout layout) {
     case StateLayout::kXyzWxyzOpenness:
     case StateLayout::kXyzRpyPadOpenness:
     case StateLayout::kXyzRotvecFingers:
+    case StateLayout::kLibero:
       return 8;
     case StateLayout::kXyzRpyOpenness:
     case StateLayout::kXyzRotvecOpenness:

@@ -41,6 +41,7 @@ inline constexpr std::array kStateLayouts = {
     Word<StateLayout>{"fingers", StateLayout::kFingers},
     Word<StateLayout>{"openness", StateLayout::kOpenness},
     Word<StateLayout>{"closedness", StateLayout::kClosedness},
+    Word<StateLayout>{"libero", StateLayout::kLibero},
 };
 inline constexpr std::array kStateFrames = {
     Word<StateFrame>{"base", StateFrame::kBase},

@@ -53,10 +53,11 @@ Result<Request> to_request(const Profile& profile, const policy::Observation& ob
     }
     request.images.push_back({rule.key, to_pixels(image, rule)});
   }
-  PROBE_ASSIGN(request.state, to_state(profile, observation.proprioception));
+  const Pose base = observation.privileged == nullptr ? Pose{} : observation.privileged->base;
+  PROBE_ASSIGN(request.state, to_state(profile, observation.proprioception, base));
   for (const StateRule& rule : profile.more_states) {
     PROBE_ASSIGN(std::vector<double> state,
-                 to_state(profile, rule.layout, observation.proprioception));
+                 to_state(profile, rule.layout, observation.proprioception, base));
     request.more_states.emplace_back(rule.key, std::move(state));
   }
   request.proprioception = observation.proprioception;

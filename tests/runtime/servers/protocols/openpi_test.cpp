@@ -103,7 +103,7 @@ TEST_CASE(
   const Image beside = wrist.observation().image;
   const CameraImage cameras[] = {{"front", seen.image}, {"wrist", beside}};
   seen.cameras = cameras;
-  seen.proprioception.joints = {1, 2, 3, 4, 5, 6, 0.02, 0.02};
+  seen.proprioception.joints = {1, 2, 3, 4, 5, 6, 7, 0.02, 0.02};
   seen.proprioception.finger_joints = 2;
   const Action action = must_act(*policy, seen);
   double farthest = 0;
