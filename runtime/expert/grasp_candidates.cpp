@@ -23,9 +23,11 @@ constexpr double kEasySide = 0.006;     // m, wider earns nothing more
 constexpr double kNearest = 0.002;      // m, to another object
 constexpr double kComfortable = 0.02;   // m, farther away earns nothing more
 constexpr std::array kRimHeights{0.0030, 0.0036, 0.006, 0.010, 0.020, 0.030};  // m, of fingertips
-constexpr double kBesideSource = 0.012;       // m, of fingers that are set before they come
+constexpr double kBesideSource = 0.012;  // m, of fingers that are set before they come
+constexpr std::array kRimOffs{0.0, 0.02, -0.02, 0.035, -0.035};  // m from the middle
+constexpr double kRimOffCost = 10;                               // of a m
 constexpr double kNearBase = 0.6, kStretchCost = 10;  // m from the base; what a m more costs
-constexpr double kRimDepth = 0.002;  // m, of a wall between the fingers at least
+constexpr double kRimDepth = 0.002;                   // m, of a wall between the fingers at least
 
 double wrapped(double angle) {
   while (angle > kPi) angle -= 2 * kPi;
@@ -134,36 +136,41 @@ void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
     for (int i = 0; i < kYaws; ++i) {
       const double half_turn = kPi * i / kYaws;
       const Directions d = directions_of(half_turn);
-      const Slab slab{d.across, d.across.dot(source.center), g.finger_half};
-      for (const Extent& wall : covered(walls, slab, d.close)) {
-        if (wall.width() < g.thinnest || wall.width() > 2 * (g.opening_half - kSideMargin))
-          continue;
-        const Vec2 xy = 0.5 * (wall.lower + wall.upper) * d.close + slab.at * d.across;
-        const robot::HandShape set = problem.narrow ? set_to(problem, wall.width()) : g;
-        const Outline left =
-            box(xy, d, set.opening_half, set.outside_half, -g.finger_half, g.finger_half);
-        const Outline right =
-            box(xy, d, -set.outside_half, -set.opening_half, -g.finger_half, g.finger_half);
-        const bool free = std::all_of(walls.begin(), walls.end(), [&](const Outline& o) {
-          return separation(left, o) > 0.001 && separation(right, o) > 0.001;
-        });
-        if (!free) continue;
-        for (const double turn : {0.0, kPi}) {
-          Grasp grasp;
-          grasp.rim = true;
-          grasp.yaw = wrapped(half_turn + turn);
-          grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
-          grasp.width = wall.width();
-          grasp.off_center = (xy - source.center).norm();
-          grasp.open = set.opening_half / g.opening_half;
-          grasp.clearance =
-              clearance_of(problem, set, directions_of(grasp.yaw), grasp.tcp.position);
-          if (grasp.clearance < kNearest) continue;
-          grasp.cost = 100 * height - 40 * std::min(grasp.width, 0.02) +
-                       0.5 * std::max(0.0, 1 - grasp.clearance / kComfortable) +
-                       0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now)) +
-                       stretch_cost(problem, xy);
-          out.push_back(grasp);
+      // Beside the middle, too, where there is little room.
+      const std::span<const double> offs =
+          problem.narrow ? std::span<const double>(kRimOffs) : std::span(kRimOffs).first(1);
+      for (const double off : offs) {
+        const Slab slab{d.across, d.across.dot(source.center) + off, g.finger_half};
+        for (const Extent& wall : covered(walls, slab, d.close)) {
+          if (wall.width() < g.thinnest || wall.width() > 2 * (g.opening_half - kSideMargin))
+            continue;
+          const Vec2 xy = 0.5 * (wall.lower + wall.upper) * d.close + slab.at * d.across;
+          const robot::HandShape set = problem.narrow ? set_to(problem, wall.width()) : g;
+          const Outline left =
+              box(xy, d, set.opening_half, set.outside_half, -g.finger_half, g.finger_half);
+          const Outline right =
+              box(xy, d, -set.outside_half, -set.opening_half, -g.finger_half, g.finger_half);
+          const bool free = std::all_of(walls.begin(), walls.end(), [&](const Outline& o) {
+            return separation(left, o) > 0.001 && separation(right, o) > 0.001;
+          });
+          if (!free) continue;
+          for (const double turn : {0.0, kPi}) {
+            Grasp grasp;
+            grasp.rim = true;
+            grasp.yaw = wrapped(half_turn + turn);
+            grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
+            grasp.width = wall.width();
+            grasp.off_center = (xy - source.center).norm();
+            grasp.open = set.opening_half / g.opening_half;
+            grasp.clearance =
+                clearance_of(problem, set, directions_of(grasp.yaw), grasp.tcp.position);
+            if (grasp.clearance < kNearest) continue;
+            grasp.cost = 100 * height - 40 * std::min(grasp.width, 0.02) +
+                         0.5 * std::max(0.0, 1 - grasp.clearance / kComfortable) +
+                         0.15 * std::abs(wrapped(grasp.yaw - problem.yaw_now)) +
+                         kRimOffCost * std::abs(off) + stretch_cost(problem, xy);
+            out.push_back(grasp);
+          }
         }
       }
     }

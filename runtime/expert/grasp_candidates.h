@@ -27,11 +27,11 @@ struct GraspProblem {
   const Footprint* source = nullptr;
   std::span<const std::vector<Vec3>> parts;  // its vertices, for rims; may be empty
   std::vector<const Footprint*> others;
-  double surface = 0;         // height the fingertips must stay above
-  double tip_margin = 0.004;  // m above it, less for flat objects
-  double yaw_now = 0;         // of the tool, to prefer short turns
+  double surface = 0;          // height the fingertips must stay above
+  double tip_margin = 0.004;   // m above it, less for flat objects
+  double yaw_now = 0;          // of the tool, to prefer short turns
   bool minds_stretch = false;  // of two holds rather the one nearer to the base
-  bool narrow = false;        // fingers are set before they come, with little room to the object
+  bool narrow = false;         // fingers are set before they come, with little room to the object
   robot::HandShape gripper;
 };
 

@@ -18,7 +18,8 @@ constexpr std::array kBeside = {0.014, 0.009,
                                 0.006};  // m between an open finger and the handle, a side
 constexpr double kDeepest = 0.020;       // m of a handle that the tool centre point goes down
 constexpr double kTipUnder = 0.012;      // m of the fingertips behind the point that they push at
-constexpr double kUpright = 0.3;   // cosine of 72 degrees: closing lines nearly across the way down
+// Cosines of 72 and 59 degrees: closing lines nearly across the way down, and where there are none.
+constexpr double kUpright = 0.3, kLessUpright = 0.52;
 constexpr double kAgainst = 0.75;  // cosine between a face's normal and the way it is pushed
 constexpr double kOverhang = -0.3, kMostOverhang = -0.7;  // of a face's normal, upwards
 constexpr double kEdge = 0.005;                           // m: what is nearer is at the edge
@@ -96,6 +97,11 @@ class Search {
       grasps(static_cast<int>(s));
       pushes(static_cast<int>(s));
     }
+    // A bar with others above and below it is held from in between, aslant.
+    if (found_.empty()) {
+      upright_ = kLessUpright;
+      for (std::size_t s = 0; s < part_->solids.size(); ++s) grasps(static_cast<int>(s));
+    }
     std::stable_sort(found_.begin(), found_.end(),
                      [](const Hold& a, const Hold& b) { return a.cost < b.cost; });
     return std::move(found_);
@@ -157,7 +163,7 @@ class Search {
     for (int i = 0; i < 3; ++i) {
       const Vec3 axis = pose.rotation * Vec3::Unit(i);
       for (const Vec3& down : ways_) {
-        if (std::abs(axis.dot(down)) > kUpright) continue;
+        if (std::abs(axis.dot(down)) > upright_) continue;
         const Vec3 closing = (axis - axis.dot(down) * down).normalized();
         const double half = half_along(solid, pose, closing);
         if (half > p_.hand.opening_half - 0.006 || 2 * half < p_.hand.thinnest) continue;
@@ -257,7 +263,7 @@ class Search {
 
   const HoldProblem& p_;
   const Surroundings::Body* part_ = nullptr;
-  double sign_ = 1, lever_ = 0;
+  double sign_ = 1, lever_ = 0, upright_ = kUpright;
   Vec3 axis_ = Vec3::UnitX(), point_ = Vec3::Zero();
   std::vector<Vec3> ways_;
   std::vector<Hold> found_;

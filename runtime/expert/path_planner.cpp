@@ -23,8 +23,8 @@ constexpr double kMargin = 0.012;       // m, wanted between what moves and obst
 constexpr double kMarginGrows = 0.006;  // m a step, from what there is at the ends
 // Of low ways, which nothing else keeps from what they cross: what hangs by its rim tilts.
 constexpr double kLowMargin = 0.030, kLowMarginGrows = 0.012;
-constexpr double kLimitMargin = 0.03;   // rad
-constexpr double kMostMove = 0.35;      // rad a step and joint
+constexpr double kLimitMargin = 0.03;  // rad
+constexpr double kMostMove = 0.35;     // rad a step and joint
 
 constexpr double kMeanShift = 0.040, kMeanTurn = 0.24;  // of the tool a step, over a path
 constexpr double kCorner =
@@ -44,8 +44,8 @@ struct Move {
   std::vector<Ball> fingers;  // against `narrow` only, which leaves them little room at the goal
   Obstacles narrow;
   double narrow_margin = 0;
-  bool straight_up = false;  // leaves its start upwards
-  double pace = 1;           // more: more steps
+  bool straight_up = false;                              // leaves its start upwards
+  double pace = 1;                                       // more: more steps
   double margin = kMargin, margin_grows = kMarginGrows;  // m; m a step
   double corner = kCorner;
 };

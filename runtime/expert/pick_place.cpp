@@ -1,6 +1,7 @@
 #include "runtime/expert/pick_place.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "runtime/expert/place_candidates.h"
@@ -19,6 +20,9 @@ constexpr double kOffSpot = 0.05, kOnSpot = 0.03;  // m, of what was put
 constexpr const char* kLost = "it slipped in the hand";
 
 constexpr double kThin = 0.015;       // m high
+constexpr double kFlat = 0.030;       // m high: what is dragged
+constexpr double kLies = 0.010;       // m from the surface
+constexpr int kLongestDrag = 40;      // steps
 constexpr int kLongestShove = 8;      // steps
 constexpr double kLift = 0.12;        // m, of what is picked up
 constexpr int kLongestLift = 10;      // steps
@@ -108,6 +112,10 @@ void PickPlace::advance(const Scene& s, const Means& means) {
       return advance_transport(s, means);
     case Phase::kLower:
       return advance_lower(s, means);
+    case Phase::kDrag:
+      if (!holds(s)) return start_over(means, kLost);
+      if (is_near(s.tcp, place_, 0.01, 0.3) || steps_ >= kLongestDrag) enter(Phase::kLoosen);
+      return;
     case Phase::kLift:
       if (!holds(s)) return start_over(means, kLost);
       if (is_near(s.tcp, place_, 0.01, 0.2) || steps_ >= kLongestLift) enter(Phase::kKeep);
@@ -203,9 +211,25 @@ void PickPlace::advance_close(const Scene& s, const Means& means) {
     in_hand_ = s.tcp.inverse().apply(s.source_pose.position);
     taken_ = s.tcp;
     taken_bottom_ = s.source.bottom;
-    return errand_.lifts ? begin_lift() : begin_transport(s, means);
+    if (errand_.lifts) return begin_lift();
+    return is_dragged(s) ? begin_drag(s) : begin_transport(s, means);
   }
   if (steps_ >= 4) start_over(means, "not all fingers touch it when they close");
+}
+
+// A thin thing that is held by its rim swings in the air; along the surface that it lies on, to a
+// place of the same surface, it need not be lifted.
+bool PickPlace::is_dragged(const Scene& s) const {
+  if (!s.low_ways || !pick_->grasp.rim || errand_.keeps || errand_.spots.empty()) return false;
+  const PutSpot& spot = errand_.spots[spot_];
+  return spot.object < 0 && spot.fixture < 0 && s.source.top - s.source.bottom < kFlat &&
+         s.source.bottom < s.surface + kLies && std::abs(s.target.top - s.surface) < kLies;
+}
+
+void PickPlace::begin_drag(const Scene& s) {
+  place_ = taken_;
+  place_.position.head<2>() += s.target.center - s.source.center;
+  enter(Phase::kDrag);
 }
 
 void PickPlace::begin_lift() {
@@ -293,6 +317,8 @@ policy::Action PickPlace::command(const Scene& s, Servo& servo) {
       return follow_path(s, servo, kClosedGripper);
     case Phase::kLower:
       return command_lower(s, servo);
+    case Phase::kDrag:
+      return servo.toward(place_, arm_of(s), kClosedGripper, kNearPace);
     case Phase::kLift:
       return servo.toward(place_, arm_of(s), kClosedGripper, kHeldPace);
     case Phase::kKeep:
@@ -321,8 +347,8 @@ policy::Action PickPlace::follow_path(const Scene& s, Servo& servo, double gripp
 policy::Action PickPlace::command_raise(const Scene& s, Servo& servo) {
   if (s.openness < 0.5 && steps_ < 2) return servo.hold(arm_of(s), kOpenGripper);
   Pose goal = s.tcp;
-  goal.position.z() = std::max(
-      goal.position.z(), travel_height(s, s.hand.tip_below, s.tcp.position, s.tcp.position));
+  goal.position.z() = std::max(goal.position.z(),
+                               travel_height(s, s.hand.tip_below, s.tcp.position, s.tcp.position));
   return servo.toward(goal, arm_of(s), kOpenGripper, kHeldPace);
 }
 

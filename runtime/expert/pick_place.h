@@ -60,6 +60,7 @@ class PickPlace {
     kClose,      // still, fingers closing
     kTransport,  // with the source to the place, on a planned path
     kLower,      // until the source rests on the target
+    kDrag,       // instead of a transport, for what hangs badly: along the surface that it lies on
     kLift,       // instead of a transport, for what shall only be picked up: straight up
     kKeep,       // instead of all that follows, for what shall stay in the hand: still, closed
     kLoosen,     // fingers just off the source
@@ -82,6 +83,8 @@ class PickPlace {
   void advance_approach(const Scene& s, const Means& means);
   void advance_close(const Scene& s, const Means& means);
   void begin_lift();
+  bool is_dragged(const Scene& s) const;
+  void begin_drag(const Scene& s);
   void choose_spot(const Scene& s, const Means& means);
   void begin_transport(Scene s, const Means& means);
   void advance_transport(const Scene& s, const Means& means);

@@ -22,10 +22,10 @@ constexpr std::size_t kMostPlaces = 10;              // put to inverse kinematic
 constexpr double kLeastLift = 0.03;                  // m
 // m towards the base while it rises: an arm that is stretched comes no higher where it is.
 constexpr std::array kNearer{0.0, 0.08, 0.16, 0.24};
-constexpr double kLetsGo = 0.012;                    // m a side that are enough to let go
-constexpr double kLittleCost = 0.15;                 // of opening no more than that
-constexpr double kMarkLevel = 0.006;                 // m: what is as high as the mark
-constexpr double kRoomyGap = 0.02, kGapCost = 40;    // m between outlines; of a m less
+constexpr double kLetsGo = 0.012;                  // m a side that are enough to let go
+constexpr double kLittleCost = 0.15;               // of opening no more than that
+constexpr double kMarkLevel = 0.006;               // m: what is as high as the mark
+constexpr double kRoomyGap = 0.02, kGapCost = 40;  // m between outlines; of a m less
 
 Eigen::Matrix2d turn_by(double angle) {
   const SinCos t = portable_sincos(angle);

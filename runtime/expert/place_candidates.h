@@ -30,8 +30,8 @@ std::vector<Place> place_candidates(const Scene& scene, const Pose& tool, bool o
 std::optional<Place> plan_place(const Scene& scene, const Reach& reach,
                                 std::span<const double> joints, bool on_mark = false);
 
-// Joint positions up from where the tool is, over to above a place, and down to it; what hangs `hang`
-// m below the tool clears what it passes. Nothing where the arm follows no such way.
+// Joint positions up from where the tool is, over to above a place, and down to it; what hangs
+// `hang` m below the tool clears what it passes. Nothing where the arm follows no such way.
 std::optional<std::vector<JointVector>> way_to_place(const Scene& scene, const Reach& reach,
                                                      std::span<const double> joints, double hang,
                                                      const Pose& place);

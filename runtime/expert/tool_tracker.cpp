@@ -119,10 +119,10 @@ double ToolTracker::grip(double openness) {
     if (is_wide_) return 0;
   }
   const bool rests = std::abs(late) < kRests;
-  is_wide_ = std::abs(wider) < (rests ? kTooWide : kAsWide) ||
-             (late != 0 && wider * (wider - late) <= 0);
-  // Near by it is told one step at a time, and looked at once that has been done: what is told while
-  // it still moves takes it too far, again and again.
+  is_wide_ =
+      std::abs(wider) < (rests ? kTooWide : kAsWide) || (late != 0 && wider * (wider - late) <= 0);
+  // Near by it is told one step at a time, and looked at once that has been done: what is told
+  // while it still moves takes it too far, again and again.
   const bool waits = std::abs(wider) < kNearWide && !rests;
   return is_wide_ || waits ? 0 : wider > 0 ? 1 : -1;
 }

@@ -13,9 +13,9 @@
 namespace probe::expert {
 namespace {
 
-constexpr double kAbove = 0.055;      // m, from the grasp up to where the descent starts
-constexpr double kTravelGap = 0.020;  // m, between what moves and what it passes over
-constexpr double kLowGap = 0.060;     // m, the same of low ways: what hangs by its rim tilts
+constexpr double kAbove = 0.055;         // m, from the grasp up to where the descent starts
+constexpr double kTravelGap = 0.020;     // m, between what moves and what it passes over
+constexpr double kLowGap = 0.060;        // m, the same of low ways: what hangs by its rim tilts
 constexpr double kOverSource = 0.01;     // m, between open fingers and what they go down to
 constexpr double kReleaseGap = 0.001;    // m, under the source where it is let go
 constexpr std::size_t kMostGrasps = 40;  // candidates put to inverse kinematics
@@ -170,9 +170,9 @@ Pick pick_of(const Scene& scene, const Grasp& grasp) {
   // Going there the fingers must also clear the object itself.
   const double between =
       travel_height(scene, scene.hand.tip_below, scene.tcp.position, grasp.tcp.position);
-  const double over = std::max({z + kAbove, between,
-                                scene.source.top + scene.hand.tip_below +
-                                    (scene.low_ways ? kLowGap : kOverSource)});
+  const double over = std::max(
+      {z + kAbove, between,
+       scene.source.top + scene.hand.tip_below + (scene.low_ways ? kLowGap : kOverSource)});
   pick.above = at_height(grasp.tcp, over);
   return pick;
 }

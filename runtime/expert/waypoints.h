@@ -26,8 +26,8 @@ struct Scene {
   std::vector<double> joints;
   double openness = 1;
   double surface = 0;
-  // Whether ways go over what lies between their ends alone: of an arm that is slow, and has no time
-  // to go over everything.
+  // Whether ways go over what lies between their ends alone: of an arm that is slow, and has no
+  // time to go over everything.
   bool low_ways = false;
 };
 

@@ -132,7 +132,8 @@ TEST_CASE("low ways go over what lies near them, others over everything") {
     return test::object("tower", {test::block({-0.02, -0.02, 0}, {0.02, 0.02, 0.2})},
                         {x, y, test::kSurface}, 0);
   };
-  const test::FakeTable aside(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1), {tower(-0.15, 0.45)});
+  const test::FakeTable aside(test::carrot(-0.2, 0, 0), test::plate(-0.1, 0.1),
+                              {tower(-0.15, 0.45)});
   Scene scene = scene_of(aside);
   const Vec3 from = scene.source_pose.position, to = scene.target_pose.position;
   const double over_all = travel_height(scene, 0.02);
