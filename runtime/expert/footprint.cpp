@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+
+#include "runtime/base/trig.h"
 
 namespace probe::expert {
 namespace {
@@ -174,6 +177,41 @@ Extent extent_in_slab(std::span<const Outline> parts, const Slab& slab, const Ve
     }
   }
   return out;
+}
+
+std::vector<double> turns_square_to(const Outline& outline,
+                                    std::span<const Footprint* const> others, const Vec2& at,
+                                    double near) {
+  constexpr double kLongEdge = 0.05, kAlike = 0.03;  // m, rad
+  constexpr std::size_t kMost = 4;
+  constexpr double kQuarter = std::numbers::pi / 2;
+  const auto longest = [](const Outline& o) {
+    Vec2 best = Vec2::Zero();
+    for (std::size_t i = 0; i < o.size(); ++i) {
+      const Vec2 edge = o[(i + 1) % o.size()] - o[i];
+      if (edge.squaredNorm() > best.squaredNorm()) best = edge;
+    }
+    return best;
+  };
+  const Vec2 own = longest(outline);
+  std::vector<double> turns;
+  if (own.norm() < 1e-9) return turns;
+  const Outline point = {at};
+  for (const Footprint* other : others) {
+    for (const Outline& part : other->parts) {
+      const Vec2 edge = longest(part);
+      if (part.size() < 3 || edge.norm() < kLongEdge || turns.size() >= 4 * kMost) continue;
+      if (separation(part, point) > near) continue;
+      const double along = portable_atan2(cross(own, edge), own.dot(edge));
+      // Into -45 .. 45 degrees.
+      const double least = along - kQuarter * std::round(along / kQuarter);
+      const auto is_alike = [&](double turn) { return std::abs(turn - least) < kAlike; };
+      if (std::any_of(turns.begin(), turns.end(), is_alike)) continue;
+      for (const double quarter : {0.0, 1.0, -1.0, 2.0})
+        turns.push_back(least + quarter * kQuarter);
+    }
+  }
+  return turns;
 }
 
 double separation(const Outline& a, const Outline& b) {

@@ -50,6 +50,13 @@ struct Slab {
 };
 Extent extent_in_slab(std::span<const Outline> parts, const Slab& slab, const Vec2& along);
 
+// Turns (rad, -pi .. pi, within half a quarter of the nearest first) that bring the longest edge of
+// `outline` along or across those edges of the others near `at` (m) that are long enough to lie
+// along: what goes between walls goes in square to them.
+std::vector<double> turns_square_to(const Outline& outline,
+                                    std::span<const Footprint* const> others, const Vec2& at,
+                                    double near);
+
 // Distance between two outlines, negative (the depth along the best axis) where they overlap.
 double separation(const Outline& a, const Outline& b);
 

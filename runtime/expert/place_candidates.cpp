@@ -19,6 +19,7 @@ constexpr double kComfortable = 0.01;  // m of clearance; more earns nothing
 constexpr double kFeet = 0.004;        // m: how low of the source is its feet
 constexpr std::array kLifts{0.0, 0.01, 0.02, 0.03};  // m, let go that much higher
 constexpr std::size_t kMostPlaces = 10;              // put to inverse kinematics
+constexpr double kWallsNearMark = 0.06;              // m
 constexpr double kLeastLift = 0.03;                  // m
 // m towards the base while it rises: an arm that is stretched comes no higher where it is.
 constexpr std::array kNearer{0.0, 0.08, 0.16, 0.24};
@@ -57,6 +58,18 @@ double share_outside(std::span<const Vec2> points, const Scene& scene,
   return static_cast<double>(outside) / static_cast<double>(points.size());
 }
 
+// Evenly round, and square to the walls that a mark stands between.
+std::vector<double> turns_of(const Scene& scene, bool on_mark) {
+  std::vector<double> turns;
+  for (int i = 0; i < kTurns; ++i)
+    turns.push_back(2 * std::numbers::pi / kTurns * (i <= kTurns / 2 ? i : i - kTurns));
+  if (!on_mark) return turns;
+  const std::vector<double> square = turns_square_to(scene.source.whole, others_of(scene, false),
+                                                     scene.target.center, kWallsNearMark);
+  turns.insert(turns.end(), square.begin(), square.end());
+  return turns;
+}
+
 // Wide, and where that may be too much as little as lets go.
 std::vector<double> ways_to_open(const Scene& scene, bool on_mark) {
   const double little = scene.openness + kLetsGo / scene.hand.opening_half;
@@ -92,10 +105,10 @@ std::vector<Place> place_candidates(const Scene& scene, const Pose& tool, bool o
   for (const double openness : ways_to_open(scene, on_mark)) {
     std::vector<Ball> balls = gripper_balls(gripper, openness * gripper.opening_half);
     balls.insert(balls.end(), held.begin(), held.end());
-    for (int i = 0; i < kTurns; ++i) {
+    for (const double turn : turns_of(scene, on_mark)) {
       Place place;
       place.openness = openness;
-      place.turn = 2 * std::numbers::pi / kTurns * (i <= kTurns / 2 ? i : i - kTurns);
+      place.turn = turn;
       const Eigen::Matrix2d flat = turn_by(place.turn);
       const Vec2 arm = tool.position.head<2>() - scene.source.center;
       const Vec2 at = scene.target.center + flat * arm;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kGrid = 9;             // spots along each side of a region
 constexpr double kRoomiest = 0.025;  // m between outlines; more earns nothing
-constexpr double kTightest = 0.004;  // m; rather none than less
+constexpr double kTightest = 0.002;  // m; rather none than less
+constexpr double kWallsNear = 0.06;  // m: walls that it may stand along
 constexpr double kLevel = 0.006;     // m: what is as high as the support
 constexpr double kHandRoom = 0.01;   // m of clearance of the hand
 constexpr double kHandAbove = 0.02;  // m of the tool centre point over the support
@@ -229,8 +230,13 @@ std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged
     // Under the region there may be its floor, or none of it.
     if (height < wanted.at.z() - 0.05) continue;
     double room = 0, share = 0;
-    for (const double turned : kTurned) {
-      const SinCos t = portable_sincos(turned * std::numbers::pi);
+    std::vector<double> turns;
+    for (const double turned : kTurned) turns.push_back(turned * std::numbers::pi);
+    const std::vector<double> square =
+        turns_square_to(scene.source.whole, others_of(scene, true), at, kWallsNear);
+    turns.insert(turns.end(), square.begin(), square.end());
+    for (const double turned : turns) {
+      const SinCos t = portable_sincos(turned);
       Eigen::Matrix2d turn;
       turn << t.cos, -t.sin, t.sin, t.cos;
       const double here = spots.room(at, height, turn);

@@ -1,5 +1,8 @@
 #include "runtime/expert/footprint.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "tests/runtime/expert/fake_table.h"
 
 namespace probe::expert {
@@ -67,6 +70,27 @@ TEST_CASE("a section is what lies above a height") {
   CHECK(extent.lower == doctest::Approx(-0.5));
   CHECK(extent.upper == doctest::Approx(0.5));
   CHECK(section_above(pyramid, 1.5).empty());
+}
+
+TEST_CASE("turns bring the longest edge along or across the walls near by, and no others") {
+  // A book along x, between walls that are turned by 20 degrees.
+  const Outline book = {{-0.08, -0.01}, {0.08, -0.01}, {0.08, 0.01}, {-0.08, 0.01}};
+  const double turn = 20 * std::numbers::pi / 180;
+  const auto wall_at = [&](double aside) {
+    const Vec2 along(std::cos(turn), std::sin(turn)), across(-along.y(), along.x());
+    Footprint wall;
+    wall.parts = {convex_outline({aside * across - 0.1 * along, aside * across + 0.1 * along,
+                                  (aside + 0.005) * across + 0.1 * along,
+                                  (aside + 0.005) * across - 0.1 * along})};
+    return wall;
+  };
+  const Footprint near = wall_at(0.03), far = wall_at(0.3);
+  const std::vector<const Footprint*> walls = {&near, &far};
+  const std::vector<double> turns = turns_square_to(book, walls, Vec2::Zero(), 0.06);
+  REQUIRE(turns.size() == 4);
+  CHECK(turns[0] == doctest::Approx(turn));
+  CHECK(turns[1] == doctest::Approx(turn + std::numbers::pi / 2));
+  CHECK(turns_square_to(book, walls, Vec2(0, -0.5), 0.06).empty());
 }
 
 }  // namespace
