@@ -15,17 +15,16 @@ namespace {
 // Words behind a noun that may say which one is meant.
 bool says_which(std::string_view word) {
   constexpr auto kSaysMore = std::to_array<std::string_view>(
-      {"of",      "on",   "in",     "at",      "under",  "above", "below",
-       "with",    "that", "which",  "whose",   "to",     "near",  "nearest",
-       "closest", "next", "beside", "between", "behind", "left",  "right"});
+      {"of",   "from",   "on",      "in",     "at",   "under", "above",   "below",
+       "with", "that",   "which",   "whose",  "to",   "near",  "nearest", "closest",
+       "next", "beside", "between", "behind", "left", "right"});
   return std::find(kSaysMore.begin(), kSaysMore.end(), word) != kSaysMore.end();
 }
 
 // "Put the can on the plate": behind what is put stands where to, not which.
 bool says_where_to(const std::vector<Said::Word>& words, std::size_t noun, std::size_t behind) {
-  constexpr auto kPuts = std::to_array<std::string_view>({"put", "place", "move", "set", "lay",
-                                                          "drop", "stack", "bring", "rest",
-                                                          "transfer"});
+  constexpr auto kPuts = std::to_array<std::string_view>(
+      {"put", "place", "move", "set", "lay", "drop", "stack", "bring", "rest", "transfer"});
   constexpr auto kTo = std::to_array<std::string_view>({"on", "in", "to"});
   return noun == 2 && std::find(kPuts.begin(), kPuts.end(), words[0].text) != kPuts.end() &&
          std::find(kTo.begin(), kTo.end(), words[behind].text) != kTo.end();
@@ -41,7 +40,8 @@ bool has_shared_name(const Model& model, const Task& task) {
 }
 
 // "put the can on the plate" where three are called so: P0402, as of a phrase.
-bool leaves_object_open(const Model& model, const Task& task, const Said& said, Reporter& reporter) {
+bool leaves_object_open(const Model& model, const Task& task, const Said& said,
+                        Reporter& reporter) {
   if (!has_shared_name(model, task)) return false;
   const auto& words = said.words;
   for (std::size_t i = 1; i < words.size(); ++i) {
@@ -49,12 +49,11 @@ bool leaves_object_open(const Model& model, const Task& task, const Said& said, 
     std::vector<ObjectId> called;
     for (const ObjectId id : task.objects()) {
       const std::vector<std::string> name = folded_words(model.objects[id].text.text);
-      const bool is_called = !name.empty() && i + name.size() <= words.size() &&
-                             std::equal(name.begin(), name.end(), words.begin() +
-                                            static_cast<std::ptrdiff_t>(i),
-                                        [](const std::string& one, const Said::Word& word) {
-                                          return one == word.text;
-                                        });
+      const bool is_called =
+          !name.empty() && i + name.size() <= words.size() &&
+          std::equal(
+              name.begin(), name.end(), words.begin() + static_cast<std::ptrdiff_t>(i),
+              [](const std::string& one, const Said::Word& word) { return one == word.text; });
       if (is_called) called.push_back(id);
     }
     if (called.size() < 2) continue;

@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <set>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -50,9 +49,11 @@ std::string at(const Object& object, const Start::Placed& placed) {
 }
 
 void check_starts(const Model& model, const std::string& asset_root, Reporter& reporter) {
-  // Tasks share lists of starts; what was fine for one in its scene is fine for the next.
-  using Where = std::tuple<SceneId, std::vector<CameraId>, std::vector<double>>;
-  std::map<const Start*, std::set<Where>> fine_in;
+  // Tasks share lists of starts; what was fine for one in its scene is fine for the next, and what
+  // a table of starts has is said of the first task that begins so.
+  using Where = std::pair<SceneId, std::vector<double>>;
+  std::map<const Start*, std::set<Where>> stands_in;
+  std::map<const Start*, std::set<std::pair<Where, std::vector<CameraId>>>> fine_in;
   std::vector<bool> fine(model.tasks.size(), false);
   Arms arms;
   Travels travels(model, asset_root);
@@ -61,10 +62,12 @@ void check_starts(const Model& model, const std::string& asset_root, Reporter& r
   for (const Task& task : model.tasks) {
     const std::size_t index = at++;
     if (task.starts.empty()) continue;
-    Where where{task.scene, {}, joint_starts_in_all(model, task)};
-    for (const View& view : views_of(model, task)) std::get<1>(where).push_back(view.camera);
+    const Where where{task.scene, joint_starts_in_all(model, task)};
+    std::vector<CameraId> cameras;
+    for (const View& view : views_of(model, task)) cameras.push_back(view.camera);
     auto& known = fine_in[task.starts.data()];
-    if (task.motions.empty() && known.contains(where)) {
+    auto& stands = stands_in[task.starts.data()];
+    if (task.motions.empty() && known.contains({where, cameras})) {
       fine[index] = true;
       continue;
     }
@@ -73,13 +76,23 @@ void check_starts(const Model& model, const std::string& asset_root, Reporter& r
         task.like != TaskId::kNone && fine[static_cast<std::size_t>(task.like)];
     const TaskStarts starts{model, reporter, task, model.layouts[task.layout], like_is_fine};
     const std::size_t before = reporter.diagnostics.size();
-    check_overlap(starts);
-    check_travel(starts, travels);
-    // What lies beside the table is out of reach and out of view as well.
-    if (check_surface(starts) && check_reach(starts, arms)) check_frame(starts);
+    const std::size_t errors = reporter.diagnostics.error_count();
+    const auto is_settled = [&] {
+      return reporter.diagnostics.size() == before ||
+             (!starts.layout.given.empty() && reporter.diagnostics.error_count() == errors);
+    };
+    bool is_reached = true;
+    if (!task.motions.empty() || !stands.contains(where)) {
+      check_overlap(starts);
+      check_travel(starts, travels);
+      // What lies beside the table is out of reach and out of view as well.
+      is_reached = check_surface(starts) && check_reach(starts, arms);
+      if (is_settled()) stands.insert(where);
+    }
+    if (is_reached) check_frame(starts);
     check_motion(starts, travels);
     fine[index] = reporter.diagnostics.size() == before;
-    if (fine[index]) known.insert(std::move(where));
+    if (is_settled()) known.insert({where, std::move(cameras)});
   }
 }
 

@@ -53,6 +53,16 @@ bool same_choice(const Task& a, const Task& b) {
                     });
 }
 
+// Of one start of two tables; what only one of them has comes with its object and is no change of
+// its own.
+bool same_places(const std::vector<GivenPlace>& a, const std::vector<GivenPlace>& b) {
+  return std::ranges::all_of(a, [&](const GivenPlace& place) {
+    const auto other = std::ranges::find_if(
+        b, [&](const GivenPlace& one) { return one.what.text == place.what.text; });
+    return other == b.end() || place.is_same(*other);
+  });
+}
+
 bool same_layout(const Layout& a, const Layout& b) {
   if (a.by_rest != b.by_rest || a.jitter != b.jitter || a.drop != b.drop || a.settle != b.settle)
     return false;
@@ -67,13 +77,7 @@ bool same_layout(const Layout& a, const Layout& b) {
                             : !same_cells(a, p.cells, b, q.cells))
       return false;
   }
-  const bool same_given = std::equal(
-      a.given.begin(), a.given.end(), b.given.begin(), b.given.end(),
-      [](const std::vector<GivenPlace>& p, const std::vector<GivenPlace>& q) {
-        return std::equal(p.begin(), p.end(), q.begin(), q.end(),
-                          [](const GivenPlace& x, const GivenPlace& y) { return x.is_same(y); });
-      });
-  if (!same_given) return false;
+  if (!std::ranges::equal(a.given, b.given, same_places)) return false;
   for (std::size_t i = 0; i < a.orients.size(); ++i) {
     if (a.orients[i].what.text != b.orients[i].what.text ||
         a.orients[i].turns != b.orients[i].turns)

@@ -216,6 +216,40 @@ TEST_CASE("a task whose table says other joints moves that axis alone") {
   CHECK(axes("0,panda.joint2,,,0.125\n", arm) == plan::bit(Axis::kRobot));
 }
 
+TEST_CASE("a table with fewer things around moves them alone; with another place the layout, too") {
+  const std::string around =
+      "start,object,x_m,y_m\n0,source,-0.15,0.1\n0,plate,-0.15,-0.1\n0,spoon,-0.22,0\n";
+  const auto axes = [&](const std::string& alone) {
+    const plan::Plan plan = plan_with(around,
+                                      std::string(kLayout) +
+                                          "layout placed like given { starts \"placed.csv\" }\n"
+                                          "task u like on_table { layout given; source carrot; "
+                                          "target plate; distractors spoon }\n"
+                                          "variant t of u { layout placed; distractors none }\n",
+                                      alone);
+    return plan.tasks()[plan.find_task("t").value()].axes;
+  };
+  using plan::Axis;
+  CHECK(axes("start,object,x_m,y_m\n0,source,-0.15,0.1\n0,plate,-0.15,-0.1\n") ==
+        plan::bit(Axis::kDistractors));
+  CHECK(axes("start,object,x_m,y_m\n0,source,-0.15,0.12\n0,plate,-0.15,-0.1\n") ==
+        (plan::bit(Axis::kDistractors) | plan::bit(Axis::kLayout)));
+}
+
+TEST_CASE("what stands amiss in a table is said of the first task that begins so") {
+  const std::string table =
+      "start,object,x_m,y_m,z_m\n0,carrot,-0.15,0.1,0.9\n0,plate,-0.15,0.1,0.89\n";
+  const std::string text =
+      said(table, kTask +
+                      "variant u of t { say \"please put {source} on {target}\" }\n"
+                      "light dim { ambient 0.1 }\nvariant v of t { light dim }\n");
+  CAPTURE(text);
+  const std::size_t first = text.find("warning[P0501]");
+  REQUIRE(first != text.npos);
+  CHECK(text.find("warning[P0501]", first + 1) == text.npos);
+  CHECK(text.find("more task") == text.npos);
+}
+
 TEST_CASE("what is wrong with a joint's row is told at its cell") {
   const auto at = [](const std::string& row, const std::string& header) {
     return said(
