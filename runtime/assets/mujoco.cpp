@@ -347,6 +347,18 @@ class Conversion {
 // Bodies and geoms of the name are changed; a visual geom and a felt one have names of their own.
 Status apply(const MujocoChange& change, const std::string& file, Model& model) {
   std::size_t found = 0;
+  if (!change.picture.empty()) {
+    for (mjcf::Texture& texture : model.textures) {
+      if (texture.name != change.name) continue;
+      ++found;
+      texture.file = (fs::path(file).parent_path() / change.picture).string();
+    }
+    if (found == 1) return {};
+    return Failure{
+        Fault::kAsset,
+        fmt::format("{} textures are called `{}`, which is to be changed", found, change.name),
+        file};
+  }
   for (mjcf::Body& body : model.bodies) {
     if (body.name == change.name && !change.size && !change.friction) {
       ++found;

@@ -19,13 +19,14 @@ enum class MujocoKind {
   kBackdrop,  // what only is seen: everything that stands in the world and moves on no joint
 };
 
-// What code says of a body or a geom after the file is read, as robosuite's arenas do of their
-// tables.
+// What code says of a body, a geom or a texture after the file is read, as robosuite's arenas do of
+// their tables and LIBERO's of its walls.
 struct MujocoChange {
-  std::string name;                // of the body or the geom
+  std::string name;                // of the body, the geom or, where `picture` is said, the texture
   std::optional<Vec3> position;    // m, in its parent's or its body's frame
   std::optional<Vec3> size;        // half sizes, of a geom
   std::optional<double> friction;  // sliding, of a geom
+  std::string picture;             // file of a texture, beside the model's own; empty: no change
 };
 
 struct MujocoOptions {

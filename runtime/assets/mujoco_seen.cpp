@@ -10,6 +10,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/trig.h"
 #include "runtime/mjcf/mass.h"
+#include "runtime/mjcf/read.h"
 #include "runtime/scene/color.h"
 
 namespace probe::assets {
@@ -30,18 +31,25 @@ using Triangle = std::array<Corner, 3>;
 
 // ---- shapes, in the geom's frame
 
-void add_square(std::vector<Triangle>& out, const Vec3& middle, const Vec3& right, const Vec3& up) {
+void add_square(std::vector<Triangle>& out, const Vec3& middle, const Vec3& right, const Vec3& up,
+                int across = kSquares, int along = kSquares) {
   const Vec3 normal = right.cross(up).normalized();
   const auto at = [&](int i, int k) {
-    return Corner{middle + (2.0 * i / kSquares - 1) * right + (2.0 * k / kSquares - 1) * up,
-                  normal};
+    return Corner{middle + (2.0 * i / across - 1) * right + (2.0 * k / along - 1) * up, normal};
   };
-  for (int i = 0; i < kSquares; ++i) {
-    for (int k = 0; k < kSquares; ++k) {
+  for (int i = 0; i < across; ++i) {
+    for (int k = 0; k < along; ++k) {
       out.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
       out.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
     }
   }
+}
+
+// Squares along a plane of half that size.
+int lines_of(double half, double apart) {
+  constexpr double kMost = 200;
+  if (!(apart > 0)) return kSquares;
+  return static_cast<int>(std::clamp(std::ceil(2 * half / apart - 1e-9), 1.0, kMost));
 }
 
 std::vector<Triangle> box_triangles(const Vec3& half) {
@@ -92,7 +100,9 @@ std::vector<Triangle> primitive_triangles(const Geom& geom) {
     case Shape::kBox:
       return box_triangles(size);
     case Shape::kPlane:
-      add_square(out, Vec3::Zero(), size[0] * Vec3::UnitX(), size[1] * Vec3::UnitY());
+      // The third size of a plane is how far its lines of corners lie apart.
+      add_square(out, Vec3::Zero(), size[0] * Vec3::UnitX(), size[1] * Vec3::UnitY(),
+                 lines_of(size[0], size[2]), lines_of(size[1], size[2]));
       break;
     case Shape::kSphere:
       add_turned(out, ball_rows(size[0], 0, -kHalf, kHalf));
@@ -159,11 +169,7 @@ void put_texels(std::vector<Triangle>& triangles, const scene::Mesh* mesh) {
   Vec3 middle = Vec3::Zero();
   if (mesh != nullptr) {
     const mjcf::MassProperties solid = mjcf::solid_of(*mesh, false);
-    const Eigen::SelfAdjointEigenSolver<Mat3> axes(solid.inertia);
-    // The largest moment first, right-handed.
-    turn.col(0) = axes.eigenvectors().col(2);
-    turn.col(1) = axes.eigenvectors().col(1);
-    turn.col(2) = turn.col(0).cross(turn.col(1));
+    turn = mjcf::inertia_frame(solid.inertia);
     middle = solid.center;
   }
   for (Triangle& triangle : triangles) {
@@ -266,6 +272,18 @@ class Builder {
         return put(triangles, pose, color(geom.rgba, material), false);
       }
       PROBE_ASSIGN(const std::size_t of, picture(*texture, file, geom.rgba, material));
+      // MuJoCo mirrors on planes and the upper faces of boxes alone.
+      const bool is_box = geom.shape == Shape::kBox;
+      if (material->reflectance > 0 && (is_box || geom.shape == Shape::kPlane)) {
+        const auto is_upper = [&](const Triangle& triangle) {
+          return !is_box || triangle[0].normal.z() > 0.5;
+        };
+        std::vector<Triangle> upper, rest;
+        for (const Triangle& triangle : triangles)
+          (is_upper(triangle) ? upper : rest).push_back(triangle);
+        if (!rest.empty()) PROBE_TRY(put(rest, pose, of, true));
+        return put(upper, pose, mirror_of(of, material->reflectance), true);
+      }
       return put(triangles, pose, of, true);
     }
     return add_cube(triangles, geom, pose, mesh, *material, *texture);
@@ -308,18 +326,31 @@ class Builder {
   }
 
   std::size_t color(const mjcf::Rgba& rgba, const mjcf::Material* material) {
-    return material_of({"", rgba, emission(material)}, -1);
+    return material_of({"", rgba, surface(material)}, -1);
   }
 
-  static double emission(const mjcf::Material* material) {
-    return material == nullptr ? 0 : material->emission;
+  // Emission, specular, shininess.
+  using Surface = std::array<double, 3>;
+  static Surface surface(const mjcf::Material* material) {
+    static const mjcf::Material kPlain;
+    const mjcf::Material& of = material == nullptr ? kPlain : *material;
+    return {of.emission, of.specular, of.shininess};
+  }
+
+  // The same material as a metal: what is flat of it mirrors by so much.
+  std::size_t mirror_of(std::size_t of, double reflectance) {
+    scene::GlbMaterial made = document_.materials[of];
+    made.name = fmt::format("material_{}", document_.materials.size());
+    made.metallic = std::min(reflectance, 1.0);
+    document_.materials.push_back(std::move(made));
+    return document_.materials.size() - 1;
   }
 
   Result<std::size_t> picture(const Texture& texture, const std::string& file,
                               const mjcf::Rgba& rgba, const mjcf::Material* material) {
     const Key key{
         file + (texture.flip_across ? "|across" : "") + (texture.flip_down ? "|down" : ""), rgba,
-        emission(material)};
+        surface(material)};
     const auto known = materials_.find(key);
     if (known != materials_.end()) return known->second;
     PROBE_ASSIGN(scene::EncodedImage image, pictures_.get(model_, texture, file, rgba));
@@ -327,13 +358,16 @@ class Builder {
     return material_of(key, static_cast<int>(document_.images.size()) - 1);
   }
 
-  using Key = std::tuple<std::string, mjcf::Rgba, double>;
+  using Key = std::tuple<std::string, mjcf::Rgba, Surface>;
   std::size_t material_of(const Key& key, int image) {
     const auto [found, is_new] = materials_.try_emplace(key, document_.materials.size());
     if (!is_new) return found->second;
     scene::GlbMaterial made;
     made.name = fmt::format("material_{}", document_.materials.size());
-    const auto& [file, rgba, glow] = key;
+    const auto& [file, rgba, surface] = key;
+    const double glow = surface[0];
+    made.specular = surface[1];
+    made.shininess = std::min(surface[2], 1.0);
     for (std::size_t i = 0; i < 3; ++i) {
       const auto byte = [](double value) {
         return static_cast<std::size_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
@@ -488,6 +522,33 @@ Result<std::string> seen_link(const mjcf::Model& model, const MujocoLink& link,
   const bool has_triangles = std::ranges::any_of(
       document.parts, [](const scene::GlbPart& part) { return !part.indices.empty(); });
   return has_triangles ? scene::glb_bytes(document) : std::string();
+}
+
+Result<std::map<std::string, std::string>> seen_bodies(
+    const std::string& file, const std::string& merged_into,
+    const std::map<std::string, std::string>& names, std::vector<std::string>& notes) {
+  PROBE_ASSIGN(const mjcf::Model model, mjcf::read_model(file, {merged_into}));
+  scene::MeshLimits limits;
+  limits.asset_root = fs::absolute(file).lexically_normal().parent_path().parent_path().string();
+  MujocoMeshes meshes(model, limits);
+  MujocoPictures pictures;
+  std::map<std::string, MujocoLink> links;
+  for (const auto& [body, name] : names) {
+    const auto found = std::ranges::find(model.bodies, body, &mjcf::Body::name);
+    if (found == model.bodies.end())
+      return Failure{Fault::kAsset, "there is no body `" + body + "`", file};
+    MujocoLink& link = links[name];
+    for (const Geom& geom : found->geoms) link.geoms.push_back({&geom, geom.pose});
+  }
+  std::vector<MujocoLink> all;
+  for (const auto& [name, link] : links) all.push_back(link);
+  const std::set<int> groups = seen_groups(all);
+  std::map<std::string, std::string> made;
+  for (const auto& [name, link] : links) {
+    PROBE_ASSIGN(std::string glb, seen_link(model, link, groups, name, meshes, pictures, notes));
+    if (!glb.empty()) made[name] = std::move(glb);
+  }
+  return made;
 }
 
 }  // namespace probe::assets

@@ -35,13 +35,22 @@ class MujocoPictures {
   std::map<std::string, Picture> pictures_;
 };
 
-// Geoms of `groups` that are not clear. Boxes and planes have faces of 4 x 4 squares, round shapes
-// 28 slices and 16 stacks, as MuJoCo draws them. Where a mesh has no texture coordinates, or is no
-// mesh, those of a 2D texture are MuJoCo's generated ones, and cube textures are cut at the edges
-// of the cube. `notes` gets what is drawn otherwise than there. Empty: nothing of it is seen.
+// Geoms of `groups` that are not clear. Boxes have faces of 4 x 4 squares, planes squares of the
+// side that their third size says, round shapes 28 slices and 16 stacks, as MuJoCo draws them.
+// Where a mesh has no texture coordinates, or is no mesh, those of a 2D texture are MuJoCo's
+// generated ones, and cube textures are cut at the edges of the cube. `notes` gets what is drawn
+// otherwise than there. Empty: nothing of it is seen.
 Result<std::string> seen_link(const mjcf::Model& model, const MujocoLink& link,
                               const std::set<int>& groups, const std::string& name,
                               MujocoMeshes& meshes, MujocoPictures& pictures,
                               std::vector<std::string>& notes);
+
+// What is seen of bodies of a model, of each alone and in its own frame: a robot's links. `links`:
+// the name to give it, by body; bodies of one name are one, and their frames must be the same.
+// Returns binary glTF by name; nothing of what is not seen. Fails as mjcf::read_model and seen_link
+// do, and on a body that the file does not have.
+Result<std::map<std::string, std::string>> seen_bodies(
+    const std::string& file, const std::string& merged_into,
+    const std::map<std::string, std::string>& links, std::vector<std::string>& notes);
 
 }  // namespace probe::assets

@@ -122,6 +122,47 @@ MassProperties solid_of(const scene::Mesh& mesh, bool exact) {
   return m;
 }
 
+Mat3 inertia_frame(const Mat3& inertia) {
+  constexpr double kNothing = 1e-12;
+  constexpr int kMostTurns = 500;
+  Quat turn = Quat::Identity();
+  const auto seen = [&]() -> Mat3 {
+    const Mat3 axes = turn.toRotationMatrix();
+    return axes.transpose() * inertia * axes;
+  };
+  Mat3 left = seen();
+  for (int i = 0; i < kMostTurns; ++i) {
+    // The largest of what is beside the diagonal, and the axis that it is turned away about.
+    Eigen::Index row = 1, column = 2, axis = 0;
+    if (std::abs(left(0, 1)) > std::abs(left(0, 2)) &&
+        std::abs(left(0, 1)) > std::abs(left(1, 2))) {
+      row = 0, column = 1, axis = 2;
+    } else if (std::abs(left(0, 2)) > std::abs(left(1, 2))) {
+      row = 0, column = 2, axis = 1;
+    }
+    if (std::abs(left(row, column)) < kNothing) break;
+    const double tau = (left(column, column) - left(row, row)) / (2 * left(row, column));
+    const double tangent = (tau >= 0 ? 1 : -1) / (std::abs(tau) + std::sqrt(1 + tau * tau));
+    const double cosine = 1 / std::sqrt(1 + tangent * tangent);
+    if (cosine > 1 - kNothing) break;
+    const double half = std::sqrt(0.5 - 0.5 * cosine) * ((tau >= 0) == (axis == 1) ? 1 : -1);
+    Vec3 along = Vec3::Zero();
+    along[axis] = half;
+    turn = (turn * Quat(std::sqrt(1 - half * half), along.x(), along.y(), along.z())).normalized();
+    left = seen();
+  }
+  Vec3 moments = left.diagonal();
+  for (const Eigen::Index first : {0, 1, 0}) {
+    if (moments[first] + kNothing >= moments[first + 1]) continue;
+    std::swap(moments[first], moments[first + 1]);
+    constexpr double kQuarter = 0.70710678118654752;
+    Vec3 along = Vec3::Zero();
+    along[(first + 2) % 3] = kQuarter;
+    turn = (turn * Quat(kQuarter, along.x(), along.y(), along.z())).normalized();
+  }
+  return turn.toRotationMatrix();
+}
+
 bool has_mass(const Model& model, const Body& body, const Geom& geom) {
   const Compiler& c = model.compiler;
   if (c.inertia_from_geom == Compiler::FromGeom::kNever) return false;

@@ -27,6 +27,11 @@ MassProperties joined(const MassProperties& a, const MassProperties& b);
 // than the volume where a mesh is not star-shaped).
 MassProperties solid_of(const scene::Mesh& mesh, bool exact);
 
+// The axes of an inertia as columns, the largest moment first, with the signs that MuJoCo's
+// compiler arrives at: Jacobi's turns from no turn on, ended below 1e-12 kg m2, then quarter turns
+// into order.
+Mat3 inertia_frame(const Mat3& inertia);
+
 // Whether the geom adds to its body's mass: by its group, unless `inertial` counts.
 bool has_mass(const Model& model, const Body& body, const Geom& geom);
 

@@ -2,13 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <map>
 
 #include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
+#include "runtime/mjcf/mass.h"
+#include "runtime/mjcf/obj_file.h"
 
 namespace probe::mjcf {
 namespace {
@@ -26,22 +28,18 @@ void put(std::vector<float>& values, std::size_t i, const Vec3& v) {
     values[3 * i + k] = static_cast<float>(v[static_cast<Eigen::Index>(k)]);
 }
 
-// Corners at one place are one corner, as MuJoCo has those of STL files.
-scene::MeshPart welded(const scene::MeshPart& part) {
+// Every triangle has corners of its own, and so one normal, as MuJoCo shows STL files.
+scene::MeshPart faceted(const scene::MeshPart& part) {
   scene::MeshPart made;
-  std::map<std::array<float, 3>, std::uint32_t> known;
   for (const std::uint32_t i : part.indices) {
-    const std::array<float, 3> p{part.positions[3 * i], part.positions[3 * i + 1],
-                                 part.positions[3 * i + 2]};
-    const auto [found, is_new] =
-        known.try_emplace(p, static_cast<std::uint32_t>(made.positions.size() / 3));
-    if (is_new) made.positions.insert(made.positions.end(), p.begin(), p.end());
-    made.indices.push_back(found->second);
+    made.indices.push_back(static_cast<std::uint32_t>(made.indices.size()));
+    for (std::size_t k = 0; k < 3; ++k) made.positions.push_back(part.positions[3 * i + k]);
   }
   return made;
 }
 
-void make_normals(scene::MeshPart& part) {
+// `elsewhere`: of a corner all of whose faces turn away from their mean.
+void make_normals(scene::MeshPart& part, const Vec3& elsewhere) {
   const std::size_t count = part.positions.size() / 3;
   std::vector<Vec3> mean(count, Vec3::Zero());
   std::vector<Vec3> faces;  // twice the area along the normal
@@ -65,7 +63,7 @@ void make_normals(scene::MeshPart& part) {
   part.normals.resize(part.positions.size());
   for (std::size_t i = 0; i < count; ++i) {
     const double length = kept[i].norm();
-    put(part.normals, i, length > 1e-15 ? Vec3(kept[i] / length) : Vec3(Vec3::UnitZ()));
+    put(part.normals, i, length > 1e-15 ? Vec3(kept[i] / length) : elsewhere);
   }
 }
 
@@ -127,7 +125,7 @@ Result<scene::Mesh> load_mesh_file(const Model& model, const MeshAsset& asset,
   std::error_code error;
   if (!fs::is_regular_file(asset.file, error)) return fail("no such file");
   scene::Mesh mesh;
-  bool weld = false;
+  bool has_facets = false;
   const std::string extension = lower_extension(asset.file);
   if (extension == ".msh") {
     auto bytes =
@@ -136,11 +134,18 @@ Result<scene::Mesh> load_mesh_file(const Model& model, const MeshAsset& asset,
     auto read = msh_mesh(*bytes, asset.file, limits);
     if (!read) return fail(read.failure().message);
     mesh = *std::move(read);
-  } else if (extension == ".stl" || extension == ".obj") {
+  } else if (extension == ".obj") {
+    auto bytes =
+        read_file(asset.file, {.most = kMostMeshBytes, .code = Fault::kAsset, .only_begin = false});
+    if (!bytes) return fail(bytes.failure().message);
+    auto read = read_obj(*bytes, asset.file, limits.triangles);
+    if (!read) return fail(to_text(read.failure()));
+    mesh = *std::move(read);
+  } else if (extension == ".stl") {
     const auto read = scene::load_mesh(asset.file, {1, 1, 1}, limits);
     if (!read) return fail(read.failure().message);
     mesh.parts = (*read)->parts;
-    weld = extension == ".stl";
+    has_facets = true;
   } else {
     return fail("a mesh is .msh, .stl or .obj");
   }
@@ -152,7 +157,7 @@ Result<scene::Mesh> load_mesh_file(const Model& model, const MeshAsset& asset,
   const bool mirrors = asset.scale.prod() < 0;
   for (scene::MeshPart& part : mesh.parts) {
     part.material = 0;
-    if (weld) part = welded(part);
+    if (has_facets) part = faceted(part);
     for (std::size_t i = 0; i < part.positions.size() / 3; ++i) {
       const Vec3 p = (turn * (at(part.positions, i) - asset.origin)).cwiseProduct(asset.scale);
       if (!(p.cwiseAbs().maxCoeff() <= limits.extent))
@@ -168,7 +173,15 @@ Result<scene::Mesh> load_mesh_file(const Model& model, const MeshAsset& asset,
       for (std::size_t i = 0; i + 2 < part.indices.size(); i += 3)
         std::swap(part.indices[i + 1], part.indices[i + 2]);
     }
-    if (part.normals.empty()) make_normals(part);
+  }
+  // MuJoCo makes normals after it turned a mesh into the frame of its inertia, and where none is
+  // left over it takes that frame's z.
+  const auto lacks = [](const scene::MeshPart& part) { return part.normals.empty(); };
+  if (std::ranges::any_of(mesh.parts, lacks)) {
+    const Vec3 along = inertia_frame(solid_of(mesh, false).inertia).col(2);
+    for (scene::MeshPart& part : mesh.parts) {
+      if (lacks(part)) make_normals(part, along);
+    }
   }
   return mesh;
 }

@@ -19,7 +19,7 @@ namespace probe::mjcf {
 Result<scene::Mesh> msh_mesh(std::string_view bytes, const std::string& name,
                              const scene::MeshLimits& limits = {});
 
-// Reads .msh here, .stl and .obj as scene::load_mesh does; without the file's own materials and
+// Reads .msh and .obj here, .stl as scene::load_mesh does; without the file's own materials and
 // textures: parts are geometry. What has no normals gets MuJoCo's: the mean of a vertex's faces by
 // area, without those that look elsewhere (cosine below 0.8). A mirroring scale turns the triangles
 // round. Fails (kAsset, where = the place of the `mesh` element) naming the file.

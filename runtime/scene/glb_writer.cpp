@@ -104,6 +104,13 @@ Json to_json(const GlbMaterial& material, Images& images) {
   if (material.emission_image >= 0) {
     json["emissiveTexture"] = {{"index", images.texture(material.emission_image)}};
   }
+  if (material.specular && material.shininess) {
+    const double s = *material.specular;
+    Json gloss = {{"specularFactor", {s, s, s}}, {"glossinessFactor", *material.shininess}};
+    if (pbr.contains("baseColorTexture")) gloss["diffuseTexture"] = pbr["baseColorTexture"];
+    if (pbr.contains("baseColorFactor")) gloss["diffuseFactor"] = pbr["baseColorFactor"];
+    json["extensions"] = {{"KHR_materials_pbrSpecularGlossiness", gloss}};
+  }
   const auto& glow = material.emission;
   if (glow != std::array<double, 3>{0, 0, 0}) json["emissiveFactor"] = {glow[0], glow[1], glow[2]};
   return json;
@@ -132,6 +139,8 @@ std::string glb_bytes(const GlbDocument& document) {
                {"nodes", {{{"name", document.name}, {"mesh", 0}}}},
                {"meshes", {{{"name", document.name}, {"primitives", primitives}}}},
                {"materials", materials}};
+  if (std::ranges::any_of(materials, [](const Json& m) { return m.contains("extensions"); }))
+    root["extensionsUsed"] = {"KHR_materials_pbrSpecularGlossiness"};
   if (!images.images.empty()) {
     root["textures"] = images.textures;
     root["images"] = images.images;
@@ -172,8 +181,12 @@ Result<std::string> glb_bytes(const Mesh& mesh, const std::string& name,
     document.materials.push_back({"material" + std::to_string(document.materials.size()),
                                   wide(material.base_color),
                                   glows ? std::array<double, 3>{1, 1, 1} : wide(material.emission),
-                                  material.base_color_texture, material.emission_texture,
-                                  material.roughness, material.metallic});
+                                  material.base_color_texture,
+                                  material.emission_texture,
+                                  material.roughness,
+                                  material.metallic,
+                                  {},
+                                  {}});
   }
   for (const MeshPart& part : mesh.parts) {
     document.parts.push_back({part.positions, part.normals, part.uv, part.indices,

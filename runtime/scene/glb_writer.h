@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct GlbMaterial {
   std::array<double, 3> emission{0, 0, 0};
   int base_color_image = -1, emission_image = -1;  // index into GlbDocument::images
   double roughness = 1, metallic = 0;
+  // Of fixed-function OpenGL: KHR_materials_pbrSpecularGlossiness, where they are said.
+  std::optional<double> specular, shininess;
 };
 
 struct GlbPart {

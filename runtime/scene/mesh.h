@@ -26,6 +26,8 @@ struct Material {
   float roughness = 1;
   float metallic = 0;
   float f0 = 0.04f;
+  // Of the law that lights vertices alone: strength of the highlight, and its exponent / 128.
+  float specular = 0.5f, shininess = 0.5f;
 };
 
 // Triangles of one material. Float arrays, 3 (positions, normals) or 2 (uv) a vertex; uv may be

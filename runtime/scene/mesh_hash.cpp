@@ -42,6 +42,10 @@ Sha256 mesh_hash(const Mesh& mesh) {
     feed(hasher, material.roughness);
     feed(hasher, material.metallic);
     feed(hasher, material.f0);
+    if (material.specular != 0.5f || material.shininess != 0.5f) {
+      feed(hasher, material.specular);
+      feed(hasher, material.shininess);
+    }
   }
   hasher.u64(mesh.textures.size());
   for (const Texture& texture : mesh.textures) feed(hasher, texture);

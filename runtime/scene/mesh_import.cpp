@@ -191,6 +191,12 @@ class Import {
     if (gltf_) {
       source.Get(AI_MATKEY_ROUGHNESS_FACTOR, material.roughness);
       source.Get(AI_MATKEY_METALLIC_FACTOR, material.metallic);
+      aiColor3D gloss;
+      if (source.Get(AI_MATKEY_GLOSSINESS_FACTOR, material.shininess) == AI_SUCCESS &&
+          source.Get(AI_MATKEY_COLOR_SPECULAR, gloss) == AI_SUCCESS) {
+        material.specular = gloss.r;
+        material.shininess = std::clamp(material.shininess, 0.0f, 1.0f);
+      }
       int index = -1;
       PROBE_ASSIGN(index, find_texture(source, {aiTextureType_METALNESS, aiTextureType_UNKNOWN}));
       if (index >= 0) {

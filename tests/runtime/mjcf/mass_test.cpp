@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "runtime/mjcf/mesh_file.h"
+#include "runtime/mjcf/obj_file.h"
 #include "runtime/mjcf/read.h"
 #include "tests/runtime/mjcf/mjcf_files.h"
 
@@ -179,6 +180,40 @@ TEST_CASE("a .msh file that is not what its sizes say is refused") {
     for (const std::uint32_t corner : mesh->parts[0].indices)
       CHECK(3 * corner + 2 < mesh->parts[0].positions.size());
   }
+}
+
+TEST_CASE("an OBJ file is read without the materials that it names") {
+  const auto mesh = read_obj(
+      "mtllib gone.mtl\nusemtl grey\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.25 0.75\nvn 0 0 1\n"
+      "f 1/1/1 2/1/1 3/1/1 4/1/1\nf -4/1/1 -3/1/1 -2/1/1\n",
+      "card.obj", 10);
+  REQUIRE_MESSAGE(mesh.ok(), to_text(mesh.failure()));
+  const scene::MeshPart& part = mesh->parts.at(0);
+  CHECK(part.positions.size() == 12);
+  CHECK(part.indices == std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 0, 1, 2});
+  CHECK(part.normals[2] == 1);
+  CHECK(part.uv[0] == 0.25f);
+  CHECK(part.uv[1] == 0.25f);  // counted from the picture's top
+  const auto message = [](const char* text) {
+    const auto bad = read_obj(text, "bad.obj", 1);
+    REQUIRE(!bad.ok());
+    return to_text(bad.failure());
+  };
+  CHECK(message("v 0 0 0\n") == "bad.obj:1: has no face");
+  CHECK(message("v 0 x 0\n") == "bad.obj:1: expected a number, found `x`");
+  CHECK(message("v 0 0 0\nf 1 1\n") == "bad.obj:2: a face has three corners or more");
+  CHECK(message("v 0 0 0\nf 1 1 2\n") == "bad.obj:2: a face names what is not there: `2`");
+  CHECK(message("v 0 0 0\nf 1 1 1 1\n") == "bad.obj:2: has too many faces");
+}
+
+TEST_CASE("the frame of an inertia has the largest moment first") {
+  CHECK(inertia_frame(Vec3(3, 2, 1).asDiagonal()).isApprox(Mat3::Identity()));
+  const Mat3 turn = Quat(Eigen::AngleAxisd(0.7, Vec3(1, -2, 0.5).normalized())).toRotationMatrix();
+  const Mat3 inertia = turn * Vec3(1, 2, 3).asDiagonal() * turn.transpose();
+  const Mat3 frame = inertia_frame(inertia);
+  CHECK(frame.determinant() == doctest::Approx(1));
+  const Mat3 left = frame.transpose() * inertia * frame;
+  CHECK((left - Mat3(Vec3(3, 2, 1).asDiagonal())).norm() < 1e-7);
 }
 
 TEST_CASE("a mesh that is missing or none is named with the line that names it") {
