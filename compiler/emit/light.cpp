@@ -12,6 +12,8 @@ void Emitter::add_light(sema::LightId id) {
   record.occlusion = light.occlusion;
   record.color = light.color;
   record.suns = plan::append(records().suns, std::span<const plan::SunRecord>(light.suns));
+  record.shading = light.lights_vertices ? 1 : 0;
+  record.lamps = plan::append(records().lamps, std::span<const plan::LampRecord>(light.lamps));
   records().lights.push_back(record);
 }
 

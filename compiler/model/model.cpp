@@ -40,7 +40,8 @@ bool Camera::operator==(const Camera& other) const {
 
 bool Light::operator==(const Light& other) const {
   if (ambient != other.ambient || occlusion != other.occlusion || color != other.color ||
-      suns.size() != other.suns.size())
+      suns.size() != other.suns.size() || lights_vertices != other.lights_vertices ||
+      lamps != other.lamps)
     return false;
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (suns[i].direction != other.suns[i].direction || suns[i].power != other.suns[i].power ||

@@ -197,7 +197,7 @@ struct Camera {
   std::uint32_t width = 0, height = 0;
   std::uint32_t samples = 0;  // a pixel: 4 or 16, 0 for one
   double fx = 0, fy = 0, cx = 0, cy = 0;
-  plan::SensorRecord sensor;                   // what it does to its picture; zeros: nothing
+  plan::SensorRecord sensor;  // what it does to its picture; zeros: nothing
   // Where it stands in a start is up to so far along each axis of its mount, and turned by up to so
   // much about its own ahead, left and up.
   double jitter_place = 0, jitter_turn = 0;  // m, rad
@@ -215,6 +215,8 @@ struct Light {
   std::uint32_t occlusion = 0;    // rays a sample that find how open it is to ambient light
   std::array<double, 3> color{};  // of all its light; zeros: white
   std::vector<plan::SunRecord> suns;
+  bool lights_vertices = false;
+  std::vector<plan::LampRecord> lamps;  // only then
   bool operator==(const Light& other) const;
 };
 

@@ -564,13 +564,24 @@ struct SunStmt {
   Span span;
   Point direction;
   Quantity power;
+  std::optional<Quantity> specular;  // under `shading vertex`
   bool shadow = false;
+};
+struct LampStmt {  // `spot at (1m, 1m, 4m) along (0, 0, -1) power 0.8`, `headlight power 0.4`
+  Span span;
+  std::optional<Point> place, direction;  // of a spot
+  Quantity power;
+  std::optional<Quantity> specular, ambient, cutoff, exponent;
+  std::optional<Point> fade;
+};
+struct ShadingStmt {  // `shading vertex`
+  Span span;
 };
 struct LightColorStmt {  // `color (1, 0.8, 0.6)`
   Span span;
   Point color;
 };
-using LightStmt = std::variant<AmbientStmt, SunStmt, LightColorStmt>;
+using LightStmt = std::variant<AmbientStmt, SunStmt, LampStmt, ShadingStmt, LightColorStmt>;
 struct LightDecl {
   Name name;
   std::vector<LightStmt> body;

@@ -27,8 +27,40 @@ LightStmt Parser::light_sun() {
   out.direction = point();
   expect_word("power");
   out.power = quantity();
+  if (accept_word("specular")) out.specular = quantity();
   out.shadow = accept_word("shadow");
   return out;
+}
+
+LightStmt Parser::light_spot() {
+  LampStmt out;
+  expect_word("at");
+  out.place = point();
+  expect_word("along");
+  out.direction = point();
+  lamp_strength(out);
+  if (accept_word("cutoff")) out.cutoff = quantity();
+  if (accept_word("exponent")) out.exponent = quantity();
+  if (accept_word("fade")) out.fade = point();
+  return out;
+}
+
+LightStmt Parser::light_headlight() {
+  LampStmt out;
+  lamp_strength(out);
+  return out;
+}
+
+void Parser::lamp_strength(LampStmt& lamp) {
+  expect_word("power");
+  lamp.power = quantity();
+  if (accept_word("specular")) lamp.specular = quantity();
+  if (accept_word("ambient")) lamp.ambient = quantity();
+}
+
+LightStmt Parser::light_shading() {
+  expect_word("vertex");
+  return ShadingStmt{};
 }
 
 LightStmt Parser::light_color() { return LightColorStmt{{}, point()}; }

@@ -185,6 +185,10 @@ class Parser {
   LightStmt light_ambient();
   LightStmt light_sun();
   LightStmt light_color();
+  LightStmt light_spot();
+  LightStmt light_headlight();
+  LightStmt light_shading();
+  void lamp_strength(LampStmt& lamp);
 
   // ---- parse_fixture.cpp ----
   DeclNode fixture_decl();

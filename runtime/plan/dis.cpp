@@ -234,6 +234,17 @@ void list_variations(std::string& out, const Plan& plan) {
   for (const LightRecord& l : plan.lights()) {
     if (l.color != std::array<double, 3>{})
       fmt::format_to(in, "  {} color{}\n", plan.text(l.name), numbers_text(l.color));
+    if (l.shading != 0)
+      fmt::format_to(in, "  {} shading vertex, {} lamps\n", plan.text(l.name), l.lamps.count);
+    for (const LampRecord& lamp : plan.lamps(l)) {
+      constexpr std::array<const char*, 4> kKinds{"", "spot", "sun", "headlight"};
+      fmt::format_to(in,
+                     "    {} at{} along{} power {} specular {} ambient {} cutoff {} exponent {} "
+                     "fade{}\n",
+                     kKinds[lamp.kind], numbers_text(lamp.position), numbers_text(lamp.direction),
+                     lamp.power, lamp.specular, lamp.ambient, lamp.cutoff, lamp.exponent,
+                     numbers_text(lamp.fade));
+    }
   }
   for (const SceneRecord& s : plan.scenes()) {
     for (const CoverRecord& cover : plan.covers(s))

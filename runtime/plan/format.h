@@ -198,11 +198,11 @@ inline constexpr std::uint32_t kMaxOcclusion = 16;
 struct LightRecord {
   StringRef name;
   double ambient = 0;
-  Slice suns;                   // kSuns
-  std::uint32_t occlusion = 0;  // rays a sample that find how open it is to ambient light
-  std::uint32_t zero = 0;
+  Slice suns;                     // kSuns
+  std::uint32_t occlusion = 0;    // rays a sample that find how open it is to ambient light
+  std::uint32_t shading = 0;      // 0: pixels, by suns; 1: corners of triangles, by lamps
   std::array<double, 3> color{};  // factors of all its light, r g b; zeros: white
-  std::uint64_t zero2 = 0;
+  Slice lamps;                    // kLamps
 };
 static_assert(sizeof(LightRecord) == 64);
 
@@ -213,6 +213,22 @@ struct SunRecord {
   std::uint32_t zero = 0;
 };
 static_assert(sizeof(SunRecord) == 40);
+
+enum class LampKind : std::uint32_t { kSpot = 1, kSun = 2, kHeadlight = 3 };
+
+// What lights corners of triangles; 0 what a kind does not have.
+struct LampRecord {
+  std::uint32_t kind = 0;  // LampKind
+  std::uint32_t zero = 0;
+  std::array<double, 3> position{};   // m, world; of a spot
+  std::array<double, 3> direction{};  // the way light travels, not normalised; of a spot and a sun
+  double power = 0, specular = 0, ambient = 0;
+  double cutoff = 0;             // rad from a spot's direction, to pi / 2; 0: none
+  double exponent = 0;           // how a spot narrows
+  std::array<double, 3> fade{};  // its light is divided by a + b d + c d^2; zeros: by 1
+  bool operator==(const LampRecord&) const = default;
+};
+static_assert(sizeof(LampRecord) == 120);
 
 struct SceneRecord {
   StringRef name;

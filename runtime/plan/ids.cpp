@@ -285,6 +285,14 @@ Sha256 IdHasher::light(std::uint32_t index) {
     h.f64s(sun.direction).f64(sun.power).u32(sun.shadow);
   }
   if (l.color != std::array<double, 3>{}) h.text("color").f64s(l.color);
+  if (l.shading != 0) {
+    h.text("shading").u32(l.shading).u32(l.lamps.count);
+    for (const LampRecord& lamp : slice_of(tables_.lamps, l.lamps)) {
+      h.u32(lamp.kind).f64s(lamp.position).f64s(lamp.direction);
+      h.f64(lamp.power).f64(lamp.specular).f64(lamp.ambient);
+      h.f64(lamp.cutoff).f64(lamp.exponent).f64s(lamp.fade);
+    }
+  }
   known = h.finish();
   return *known;
 }

@@ -54,6 +54,9 @@ class Plan {
   std::span<const double> home(const LawRecord& law) const;
   std::span<const std::uint32_t> meshes(const RobotRecord& robot) const;  // indices of assets()
   std::span<const SunRecord> suns(const LightRecord& light) const;
+  std::span<const LampRecord> lamps(const LightRecord& light) const {
+    return slice_of(tables_.lamps, light.lamps);
+  }
   // Null: a picture as it is.
   const SensorRecord* sensor(const CameraRecord& camera) const {
     return camera.sensor.count == 0 ? nullptr : &tables_.sensors[camera.sensor.first];

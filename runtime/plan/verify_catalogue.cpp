@@ -182,6 +182,42 @@ Status RecordCheck::check(const SunRecord& s) const {
   return check_zero(s.zero);
 }
 
+Status RecordCheck::check(const LampRecord& l) const {
+  const auto kind = static_cast<LampKind>(l.kind);
+  const bool is_spot = kind == LampKind::kSpot, is_sun = kind == LampKind::kSun;
+  if (!is_spot && !is_sun && kind != LampKind::kHeadlight)
+    return fail(Rule::kLamp, &l.kind, "a lamp is a spot (1), a sun (2) or a headlight (3)");
+  PROBE_TRY(check_finite(l.position));
+  PROBE_TRY(check_finite(l.direction));
+  PROBE_TRY(check_finite(l.fade));
+  constexpr std::array<double, 3> kNothing{};
+  if (!is_spot && l.position != kNothing)
+    return fail(Rule::kLamp, &l.position, "only a spot has a place");
+  if ((is_spot || is_sun) == (l.direction == kNothing))
+    return fail(Rule::kLamp, &l.direction, "a spot and a sun have a direction, a headlight none");
+  for (const double& along : l.position) PROBE_TRY(check_magnitude(along, Magnitude::kPlace));
+  if (is_spot || is_sun) {
+    PROBE_TRY(check_magnitude(std::hypot(l.direction[0], l.direction[1], l.direction[2]),
+                              Magnitude::kDirection, l.direction[0]));
+  }
+  for (const double* strength : {&l.power, &l.specular, &l.ambient}) {
+    PROBE_TRY(check_not_negative(*strength, "the strength of a lamp"));
+    PROBE_TRY(check_magnitude(*strength, Magnitude::kLight));
+  }
+  constexpr double kQuarter = 1.5707963267948966;
+  if (!(l.cutoff >= 0 && l.cutoff <= (is_spot ? kQuarter : 0)))
+    return fail(Rule::kLamp, &l.cutoff,
+                "a spot's cutoff is at most a quarter turn, others have none");
+  if (!(l.exponent >= 0 && l.exponent <= (is_spot ? 128 : 0)))
+    return fail(Rule::kLamp, &l.exponent, "a spot's exponent is 0 to 128, others have none");
+  for (const double& factor : l.fade) {
+    PROBE_TRY(check_not_negative(factor, "the fading of a lamp"));
+    PROBE_TRY(check_magnitude(factor, Magnitude::kLight));
+    if (is_sun && factor != 0) return fail(Rule::kLamp, &l.fade, "a sun does not fade");
+  }
+  return check_zero(l.zero);
+}
+
 Status RecordCheck::check(const LightRecord& l) const {
   PROBE_TRY(check_word(l.name, "the name of a light"));
   PROBE_TRY(check_not_negative(l.ambient, "ambient light"));
@@ -200,8 +236,18 @@ Status RecordCheck::check(const LightRecord& l) const {
     PROBE_TRY(check_not_negative(channel, "the colour of a light"));
     PROBE_TRY(check_magnitude(channel, Magnitude::kLight));
   }
-  PROBE_TRY(check_zero(l.zero));
-  return check_zero({&l.zero2, 1});
+  PROBE_TRY(check_slice(l.lamps, t.lamps.size(), "LAMP"));
+  if (l.lamps.count > kMaxSuns)
+    return fail(Rule::kLamp, &l.lamps,
+                fmt::format("a light has at most {} lamps, not {}", kMaxSuns, l.lamps.count));
+  if (l.shading > 1)
+    return fail(Rule::kShading, &l.shading,
+                "a light lights pixels (0) or corners of triangles (1)");
+  if (l.shading == 0 && l.lamps.count > 0)
+    return fail(Rule::kShading, &l.lamps, "lamps light corners of triangles, no pixels");
+  if (l.shading == 1 && (l.suns.count > 0 || l.occlusion > 0))
+    return fail(Rule::kShading, &l.suns, "corners of triangles have no suns and no occlusion");
+  return {};
 }
 
 Status RecordCheck::check(const SceneRecord& s) const {

@@ -47,6 +47,7 @@ class RecordCheck : FieldCheck {
   Status check(const CameraRecord& camera) const;
   Status check(const LightRecord& light) const;
   Status check(const SunRecord& sun) const;
+  Status check(const LampRecord& lamp) const;
   Status check(const SensorRecord& sensor) const;
   Status check(const CoverRecord& cover) const;
   Status check(const MoveRecord& m) const;

@@ -10,6 +10,38 @@ Failure mesh_failure(const scene::Mesh& mesh, const std::string& message) {
   return {.code = Fault::kRender, .message = message, .where = mesh.name};
 }
 
+TriangleData make_triangle(const scene::MeshPart& part, std::size_t first) {
+  TriangleData t{};
+  const std::size_t a = part.indices[first], b = part.indices[first + 1],
+                    c = part.indices[first + 2];
+  Vec3 e1, e2;
+  for (std::size_t k = 0; k < 3; ++k) {
+    t.p0[k] = part.positions[3 * a + k];
+    t.e1[k] = part.positions[3 * b + k] - t.p0[k];
+    t.e2[k] = part.positions[3 * c + k] - t.p0[k];
+    t.n0[k] = part.normals[3 * a + k];
+    t.n1[k] = part.normals[3 * b + k];
+    t.n2[k] = part.normals[3 * c + k];
+    e1[static_cast<Eigen::Index>(k)] = t.e1[k];
+    e2[static_cast<Eigen::Index>(k)] = t.e2[k];
+  }
+  const Vec3 cross = e1.cross(e2);
+  const double length = cross.norm();
+  for (std::size_t k = 0; k < 3; ++k) {
+    t.g[k] = length > 0 ? static_cast<float>(cross[static_cast<Eigen::Index>(k)] / length) : 0.0f;
+  }
+  if (!part.uv.empty()) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      t.uv0[k] = part.uv[2 * a + k];
+      t.uv1[k] = part.uv[2 * b + k];
+      t.uv2[k] = part.uv[2 * c + k];
+    }
+  }
+  return t;
+}
+
+}  // namespace
+
 Status check_texture(const scene::Mesh& mesh, int index) {
   if (index < 0) return {};
   if (static_cast<std::size_t>(index) >= mesh.textures.size()) {
@@ -50,38 +82,6 @@ Status check_part(const scene::Mesh& mesh, const scene::MeshPart& part) {
   }
   return {};
 }
-
-TriangleData make_triangle(const scene::MeshPart& part, std::size_t first) {
-  TriangleData t{};
-  const std::size_t a = part.indices[first], b = part.indices[first + 1],
-                    c = part.indices[first + 2];
-  Vec3 e1, e2;
-  for (std::size_t k = 0; k < 3; ++k) {
-    t.p0[k] = part.positions[3 * a + k];
-    t.e1[k] = part.positions[3 * b + k] - t.p0[k];
-    t.e2[k] = part.positions[3 * c + k] - t.p0[k];
-    t.n0[k] = part.normals[3 * a + k];
-    t.n1[k] = part.normals[3 * b + k];
-    t.n2[k] = part.normals[3 * c + k];
-    e1[static_cast<Eigen::Index>(k)] = t.e1[k];
-    e2[static_cast<Eigen::Index>(k)] = t.e2[k];
-  }
-  const Vec3 cross = e1.cross(e2);
-  const double length = cross.norm();
-  for (std::size_t k = 0; k < 3; ++k) {
-    t.g[k] = length > 0 ? static_cast<float>(cross[static_cast<Eigen::Index>(k)] / length) : 0.0f;
-  }
-  if (!part.uv.empty()) {
-    for (std::size_t k = 0; k < 2; ++k) {
-      t.uv0[k] = part.uv[2 * a + k];
-      t.uv1[k] = part.uv[2 * b + k];
-      t.uv2[k] = part.uv[2 * c + k];
-    }
-  }
-  return t;
-}
-
-}  // namespace
 
 Result<std::shared_ptr<const MeshGeometry>> MeshGeometry::build(
     std::shared_ptr<const scene::Mesh> mesh) {

@@ -20,6 +20,11 @@ struct alignas(64) TriangleData {
   float uv0[2], uv1[2], uv2[2];
 };
 
+// That the arrays of a part of `mesh` fit together, and that a texture it names is there and whole.
+// Fail (kRender) naming the mesh.
+Status check_part(const scene::Mesh& mesh, const scene::MeshPart& part);
+Status check_texture(const scene::Mesh& mesh, int index);
+
 struct MeshGeometry {
   struct Part {
     scene::Material material;

@@ -11,6 +11,7 @@
 #include "runtime/render/static_picture.h"
 #include "runtime/render/tile_tracer.h"
 #include "runtime/render/top_scene.h"
+#include "runtime/render/vertex_renderer.h"
 
 namespace probe::render {
 namespace {
@@ -228,6 +229,8 @@ class EmbreeRenderer final : public Renderer {
 Result<std::unique_ptr<Renderer>> Renderer::create(SceneSpec spec,
                                                    std::shared_ptr<SceneStore> store) {
   if (!store) store = std::make_shared<SceneStore>();
+  if (spec.lights.shading == Shading::kVertex)
+    return create_vertex_renderer(std::move(spec), *store);
   PROBE_TRY(StaticPicture::check(spec));
   PROBE_ASSIGN(auto meshes, store->geometries(spec.dynamics));
   PROBE_ASSIGN(TopScene dynamics,

@@ -34,10 +34,26 @@ struct Sun {
   bool shadow = false;       // casts; off in the reference
 };
 
+// What lights corners of triangles, under Shading::kVertex (README.md, "Vertex law").
+struct Lamp {
+  enum class Kind : std::uint8_t { kSpot, kSun, kHeadlight };
+  Kind kind = Kind::kSpot;
+  Vec3 position = Vec3::Zero();  // m, world; of a spot
+  Vec3 direction{0, 0, -1};      // the way its light travels; of a spot and a sun
+  double diffuse = 1, specular = 0, ambient = 0;
+  double cutoff_cosine = -1;            // of the angle to `direction` where a spot ends
+  double exponent = 0;                  // how a spot narrows: the cosine's power
+  std::array<double, 3> fade{1, 0, 0};  // divided by a + b d + c d^2 at a distance of d metres
+};
+
+enum class Shading : std::uint8_t { kPixel, kVertex };
+
 struct Lights {
   double ambient = 0.3;
-  std::vector<Sun> suns;
+  std::vector<Sun> suns;                 // under kPixel
   std::array<double, 3> color{1, 1, 1};  // factors of all of it: red, green, blue
+  Shading shading = Shading::kPixel;
+  std::vector<Lamp> lamps{};  // under kVertex
 };
 
 // A rigid visual. `body` is what segmentation shows + 1; kBackdrop for geometry without a body.
@@ -57,7 +73,7 @@ struct SceneSpec {
   Lights lights;
   std::shared_ptr<const scene::Texture>
       photo;               // shown wherever no dynamic visual is nearest; may be null
-  int samples = 1;         // a side of every pixel: 1, 2 or 4
+  int samples = 1;         // a side of every pixel: 1, 2 or 4; of kVertex 1 or 2
   int occlusion_rays = 0;  // of ambient occlusion a sample: 0 (off) to 16
 };
 

@@ -5,28 +5,47 @@
 #include "runtime/render/mesh_geometry.h"
 #include "runtime/render/static_picture.h"
 #include "runtime/render/static_scene.h"
+#include "runtime/render/vertex_mesh.h"
 
 namespace probe::render {
 
 SceneStore::SceneStore() = default;
 SceneStore::~SceneStore() = default;
 
-Result<std::vector<std::shared_ptr<const MeshGeometry>>> SceneStore::geometries(
-    std::span<const Visual> visuals) {
-  const std::scoped_lock lock(mutex_);
-  std::vector<std::shared_ptr<const MeshGeometry>> found;
+namespace {
+
+// Of every visual's mesh what `known` has of it, made where it has nothing yet.
+template <typename Made>
+Result<std::vector<std::shared_ptr<const Made>>> each_once(
+    std::span<const Visual> visuals,
+    std::map<const scene::Mesh*, std::shared_ptr<const Made>>& known) {
+  std::vector<std::shared_ptr<const Made>> found;
   for (const Visual& visual : visuals) {
     if (!visual.mesh) {
       return Failure{
           .code = Fault::kRender, .message = "the visual has no mesh", .where = visual.name};
     }
-    std::shared_ptr<const MeshGeometry>& known = geometries_[visual.mesh.get()];
-    if (!known) {
-      PROBE_ASSIGN(known, MeshGeometry::build(visual.mesh));
+    std::shared_ptr<const Made>& made = known[visual.mesh.get()];
+    if (!made) {
+      PROBE_ASSIGN(made, Made::build(visual.mesh));
     }
-    found.push_back(known);
+    found.push_back(made);
   }
   return found;
+}
+
+}  // namespace
+
+Result<std::vector<std::shared_ptr<const MeshGeometry>>> SceneStore::geometries(
+    std::span<const Visual> visuals) {
+  const std::scoped_lock lock(mutex_);
+  return each_once(visuals, geometries_);
+}
+
+Result<std::vector<std::shared_ptr<const VertexMesh>>> SceneStore::vertex_meshes(
+    std::span<const Visual> visuals) {
+  const std::scoped_lock lock(mutex_);
+  return each_once(visuals, vertex_meshes_);
 }
 
 Result<std::shared_ptr<const StaticScene>> SceneStore::static_scene(

@@ -18,6 +18,7 @@
 namespace probe::render {
 
 struct MeshGeometry;
+struct VertexMesh;
 struct StaticScene;
 struct StaticPicture;
 
@@ -38,6 +39,9 @@ class SceneStore {
   // one without a mesh, or with a mesh whose arrays do not fit together.
   Result<std::vector<std::shared_ptr<const MeshGeometry>>> geometries(
       std::span<const Visual> visuals);
+  // The same for pictures whose light is that of vertices.
+  Result<std::vector<std::shared_ptr<const VertexMesh>>> vertex_meshes(
+      std::span<const Visual> visuals);
   Result<std::shared_ptr<const StaticScene>> static_scene(const std::vector<Visual>& statics);
   // What `spec`'s camera sees of its statics. Beyond those that somebody holds the latest are kept,
   // up to kKeptRays in all, so that tasks that take turns trace nothing twice and a sweep over
@@ -47,6 +51,7 @@ class SceneStore {
  private:
   std::mutex mutex_;
   std::map<const scene::Mesh*, std::shared_ptr<const MeshGeometry>> geometries_;
+  std::map<const scene::Mesh*, std::shared_ptr<const VertexMesh>> vertex_meshes_;
   void keep(std::shared_ptr<const StaticPicture> picture);
 
   std::map<Sha256, std::shared_ptr<const StaticScene>> scenes_;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "runtime/base/check.h"
+#include "runtime/base/trig.h"
 #include "runtime/stage/backdrop.h"
 #include "runtime/stage/robot_of.h"
 #include "runtime/stage/task_bodies.h"
@@ -77,6 +78,24 @@ render::Lights make_lights(const plan::Plan& plan, const plan::LightRecord& reco
   if (record.color != std::array<double, 3>{}) lights.color = record.color;
   for (const plan::SunRecord& sun : plan.suns(record)) {
     lights.suns.push_back({to_vec(sun.direction), sun.power, sun.shadow != 0});
+  }
+  if (record.shading == 0) return lights;
+  lights.shading = render::Shading::kVertex;
+  for (const plan::LampRecord& from : plan.lamps(record)) {
+    render::Lamp lamp;
+    const auto kind = static_cast<plan::LampKind>(from.kind);
+    lamp.kind = kind == plan::LampKind::kSpot  ? render::Lamp::Kind::kSpot
+                : kind == plan::LampKind::kSun ? render::Lamp::Kind::kSun
+                                               : render::Lamp::Kind::kHeadlight;
+    lamp.position = to_vec(from.position);
+    lamp.direction = to_vec(from.direction);
+    lamp.diffuse = from.power;
+    lamp.specular = from.specular;
+    lamp.ambient = from.ambient;
+    if (from.cutoff > 0) lamp.cutoff_cosine = portable_cos(from.cutoff);
+    lamp.exponent = from.exponent;
+    if (from.fade != std::array<double, 3>{}) lamp.fade = from.fade;
+    lights.lamps.push_back(lamp);
   }
   return lights;
 }

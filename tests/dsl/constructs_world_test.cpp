@@ -204,7 +204,8 @@ variant v of red_on_tray { scene other }
   CHECK(scene.air_density == 1.2);
   CHECK(scene.air_viscosity == 2e-5);
   // The others are as they were.
-  const plan::RobotRecord& first = plan.robots()[plan.scenes()[built.task("red_on_tray").scene].robot];
+  const plan::RobotRecord& first =
+      plan.robots()[plan.scenes()[built.task("red_on_tray").scene].robot];
   CHECK(plan.law(first) == nullptr);
   CHECK(plan.gears(first).empty());
   CHECK(built.task("v").judge_id != built.task("red_on_tray").judge_id);
@@ -317,6 +318,41 @@ TEST_CASE("light, light_st: ambient light and any number of suns, with or withou
   CHECK(plan.suns(light)[0].direction == std::array<double, 3>{0, 0, -2});
   CHECK(plan.suns(light)[1].power == 1);
   CHECK(plan.suns(light)[1].shadow == 0);
+}
+
+TEST_CASE("light_st, lamp: spots, suns and a headlight light corners of triangles") {
+  const Built built(
+      "light lamps { ambient 0.1; spot at (1m, -2m, 4m) along (0, -0.15, -1) power 0.8 specular "
+      "0.3 "
+      "ambient 0.2 cutoff 45deg exponent 10 fade (1, 0, 0.5); sun (0, 0, -1) power 0.7 specular "
+      "0.6\nheadlight power 0.4 specular 0.5 ambient 0.1; shading vertex }\n"
+      "variant v of red_on_tray { light lamps }\n");
+  const plan::Plan& plan = built.plan();
+  const plan::LightRecord& light = plan.lights()[built.task("v").light];
+  CHECK(light.shading == 1);
+  CHECK(light.ambient == 0.1);
+  CHECK(light.suns.count == 0);
+  const auto lamps = plan.lamps(light);
+  REQUIRE(lamps.size() == 3);
+  CHECK(lamps[0].kind == static_cast<std::uint32_t>(plan::LampKind::kSpot));
+  CHECK(lamps[0].position == std::array<double, 3>{1, -2, 4});
+  CHECK(lamps[0].direction == std::array<double, 3>{0, -0.15, -1});
+  CHECK(lamps[0].power == 0.8);
+  CHECK(lamps[0].specular == 0.3);
+  CHECK(lamps[0].ambient == 0.2);
+  CHECK(lamps[0].cutoff == doctest::Approx(0.7853981633974483).epsilon(1e-15));
+  CHECK(lamps[0].exponent == 10);
+  CHECK(lamps[0].fade == std::array<double, 3>{1, 0, 0.5});
+  CHECK(lamps[1].kind == static_cast<std::uint32_t>(plan::LampKind::kSun));
+  CHECK(lamps[1].specular == 0.6);
+  CHECK(lamps[2].kind == static_cast<std::uint32_t>(plan::LampKind::kHeadlight));
+  CHECK(lamps[2].power == 0.4);
+  // A light that lights pixels has no such lamps, one that lights corners no shadows.
+  const auto codes = [](const std::string& text) { return analyze_with_suite(text)->codes(); };
+  CHECK(codes("light l { headlight power 0.4 }") == "P0304");
+  CHECK(codes("light l { sun (0, 0, -1) power 1 specular 1 }") == "P0304");
+  CHECK(codes("light l { sun (0, 0, -1) power 1 shadow; shading vertex }") == "P0304");
+  CHECK(codes("light l { ambient 1 occlusion 4; shading vertex }") == "P0304");
 }
 
 TEST_CASE(

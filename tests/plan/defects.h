@@ -19,6 +19,20 @@
 
 namespace probe::plan {
 
+// A light of corners of triangles in the place of the first, with a spot.
+inline void give_lamp(Records& r) {
+  LampRecord spot;
+  spot.kind = static_cast<std::uint32_t>(LampKind::kSpot);
+  spot.position = {1, 1, 4};
+  spot.direction = {0, 0, -1};
+  spot.power = 0.8;
+  r.lamps.push_back(spot);
+  r.lights[0].suns = {};
+  r.lights[0].occlusion = 0;
+  r.lights[0].shading = 1;
+  r.lights[0].lamps = {0, 1};
+}
+
 inline constexpr double kInf = std::numeric_limits<double>::infinity();
 
 inline Header read_header(std::span<const std::byte> bytes) {
@@ -207,6 +221,23 @@ inline std::vector<Defect> catalogue_defects() {
          r.suns[0].direction = {0, 0, 0};
        }},
       {"SUNS", "shadows", [](Records& r, Writer&) { r.suns[0].shadow = 2; }},
+      {"LITE", "corners of triangles (1)",
+       [](Records& r, Writer&) { give_lamp(r), r.lights[0].shading = 2; }},
+      {"LITE", "no pixels", [](Records& r, Writer&) { give_lamp(r), r.lights[0].shading = 0; }},
+      {"LITE", "no suns", [](Records& r, Writer&) { r.lights[0].shading = 1; }},
+      {"LITE", "of LAMP", [](Records& r, Writer&) { give_lamp(r), r.lights[0].lamps.count = 2; }},
+      {"LAMP", "a headlight (3)", [](Records& r, Writer&) { give_lamp(r), r.lamps[0].kind = 4; }},
+      {"LAMP", "only a spot has a place",
+       [](Records& r, Writer&) { give_lamp(r), r.lamps[0].kind = 3; }},
+      {"LAMP", "have a direction",
+       [](Records& r, Writer&) {
+         give_lamp(r), r.lamps[0].direction = {0, 0, 0};
+       }},
+      {"LAMP", "the strength of a lamp",
+       [](Records& r, Writer&) { give_lamp(r), r.lamps[0].specular = -1; }},
+      {"LAMP", "a quarter turn", [](Records& r, Writer&) { give_lamp(r), r.lamps[0].cutoff = 2; }},
+      {"LAMP", "exponent", [](Records& r, Writer&) { give_lamp(r), r.lamps[0].exponent = 129; }},
+      {"LAMP", "the fading", [](Records& r, Writer&) { give_lamp(r), r.lamps[0].fade[1] = -1; }},
       {"LITE", "traced", [](Records& r, Writer&) { r.lights[0].occlusion = 17; }},
       {"LITE", "of SUNS", [](Records& r, Writer&) { r.lights[0].suns.count = 2; }},
       {"SCNE", "of ROBT", [](Records& r, Writer&) { r.scenes[0].robot = 1; }},

@@ -20,4 +20,13 @@ std::string refused(const std::string& declaration) {
 TEST_CASE("light has a direction and is not negative") {
   CHECK(refused("light l { ambient 0.3; sun (0, 0, 0) power 1 }") == "(0, 0, 0)");
   CHECK(refused("light l { ambient -3 }") == "-3");
+  const std::string vertex = "light l { shading vertex; ";
+  CHECK(refused(vertex + "spot at (0m, 0m, 1m) along (0, 0, 0) power 1 }") == "(0, 0, 0)");
+  CHECK(refused(vertex + "spot at (0m, 0m, 1m) along (0, 0, -1) power -1 }") == "-1");
+  CHECK(refused(vertex + "spot at (0m, 0m, 1m) along (0, 0, -1) power 1 cutoff 91deg }") ==
+        "91deg");
+  CHECK(refused(vertex + "spot at (0m, 0m, 1m) along (0, 0, -1) power 1 exponent 200 }") == "200");
+  CHECK(refused(vertex + "spot at (0m, 0m, 1m) along (0, 0, -1) power 1 fade (0, 0, 0) }") ==
+        "(0, 0, 0)");
+  CHECK(refused(vertex + "headlight power 1 }").empty());
 }

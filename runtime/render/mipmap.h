@@ -1,0 +1,32 @@
+// A texture at falling sizes, read between texels and between sizes as OpenGL's trilinear filter
+// reads them. Bytes stay as the file has them: the vertex law knows no linear light.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "runtime/scene/mesh.h"
+
+namespace probe::render {
+
+using Rgb = float __attribute__((vector_size(16)));  // red, green, blue, nothing; 0 .. 255
+
+class MipChain {
+ public:
+  // `texture` must outlive the chain.
+  explicit MipChain(const scene::Texture& texture);
+  int width() const { return levels_[0].width; }
+  int height() const { return levels_[0].height; }
+  // Repeats on both axes, row 0 at v = 0. `texels`: how many of level 0 a step of a pixel crosses.
+  Rgb at(float u, float v, float texels) const;
+
+ private:
+  struct Level {
+    int width = 0, height = 0;
+    const std::uint8_t* rgba = nullptr;
+    std::vector<std::uint8_t> own;
+  };
+  std::vector<Level> levels_;
+};
+
+}  // namespace probe::render

@@ -1,0 +1,207 @@
+#include "runtime/render/sample_buffer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "runtime/render/clones.h"
+
+namespace probe::render {
+namespace {
+
+using Floats = SampleBuffer::Floats;
+using Ints = SampleBuffer::Ints;
+using Doubles = double __attribute__((vector_size(32)));
+using Longs = std::int64_t __attribute__((vector_size(32)));
+
+struct Pixels {
+  int left, right, top, bottom;  // the last ones too
+};
+
+inline bool any(const Ints& mask) {
+  std::int64_t both[2];
+  std::memcpy(both, &mask, sizeof both);
+  return (both[0] | both[1]) != 0;
+}
+
+// Puts the samples of one pixel that pass into the buffer.
+inline bool put(const Ints& inside, const Floats& nearness, std::uint32_t id, float* there,
+                std::uint32_t* ids) {
+  Floats old;
+  std::memcpy(&old, there, sizeof old);
+  const Ints pass = inside & (nearness >= old);
+  if (!any(pass)) return false;
+  const Floats now = pass ? nearness : old;
+  std::memcpy(there, &now, sizeof now);
+  Ints was;
+  std::memcpy(&was, ids, sizeof was);
+  const Ints is = pass ? Ints{} + static_cast<std::int32_t>(id) : was;
+  std::memcpy(ids, &is, sizeof is);
+  return true;
+}
+
+// A triangle of at most 64 pixels a side: everything in 32 bits.
+inline bool draw_small(const DrawnCorner* c, double area, const Pixels& in, const Ints& across,
+                       const Ints& down, std::uint32_t id, int width, float* nearness,
+                       std::uint32_t* ids) {
+  const std::int64_t x0 = std::int64_t{in.left} * kSubpixels,
+                     y0 = std::int64_t{in.top} * kSubpixels;
+  int x[3], y[3];
+  for (int i = 0; i < 3; ++i) {
+    x[i] = static_cast<int>(c[i].x - x0);
+    y[i] = static_cast<int>(c[i].y - y0);
+  }
+  const auto inverse = static_cast<float>(1 / area);
+  // The edge across from corner i at a sample, twice the area of its part of the triangle.
+  Ints row[3];
+  int along_x[3], along_y[3];
+  Floats share[3];
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const int dx = x[k] - x[j], dy = y[k] - y[j];
+    row[i] = dx * (down - y[j]) - dy * (across - x[j]);
+    along_x[i] = -dy * kSubpixels;
+    along_y[i] = dx * kSubpixels;
+    share[i] = Floats{} + c[i].nearness * inverse;
+  }
+  bool any_put = false;
+  for (int py = in.top; py <= in.bottom; ++py) {
+    Ints e0 = row[0], e1 = row[1], e2 = row[2];
+    std::size_t at = 4 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
+                          static_cast<std::size_t>(in.left));
+    for (int px = in.left; px <= in.right; ++px, at += 4) {
+      const Ints inside = (e0 | e1 | e2) >= 0;
+      if (any(inside)) {
+        const Floats here = __builtin_convertvector(e0, Floats) * share[0] +
+                            __builtin_convertvector(e1, Floats) * share[1] +
+                            __builtin_convertvector(e2, Floats) * share[2];
+        any_put |= put(inside, here, id, nearness + at, ids + at);
+      }
+      e0 += along_x[0];
+      e1 += along_x[1];
+      e2 += along_x[2];
+    }
+    row[0] += along_y[0];
+    row[1] += along_y[1];
+    row[2] += along_y[2];
+  }
+  return any_put;
+}
+
+// Any triangle: edges in doubles, which hold these whole numbers exactly.
+PROBE_CLONES bool draw_large(const DrawnCorner* c, double area, const Pixels& in,
+                             const Ints& across, const Ints& down, std::uint32_t id, int width,
+                             float* nearness, std::uint32_t* ids) {
+  const Doubles fx = __builtin_convertvector(__builtin_convertvector(across, Floats), Doubles);
+  const Doubles fy = __builtin_convertvector(__builtin_convertvector(down, Floats), Doubles);
+  double along_x[3], along_y[3], constant[3];
+  double slope_x = 0, slope_y = 0, level = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const auto dx = static_cast<double>(c[k].x - c[j].x), dy = static_cast<double>(c[k].y - c[j].y);
+    along_x[i] = -dy;
+    along_y[i] = dx;
+    constant[i] = dy * static_cast<double>(c[j].x) - dx * static_cast<double>(c[j].y);
+    const double share = static_cast<double>(c[i].nearness) / area;
+    slope_x += along_x[i] * share;
+    slope_y += along_y[i] * share;
+    level += constant[i] * share;
+  }
+  Doubles offset[3];
+  for (int i = 0; i < 3; ++i) offset[i] = along_x[i] * fx + along_y[i] * fy;
+  const Floats lean = __builtin_convertvector(slope_x * fx + slope_y * fy, Floats);
+  bool any_put = false;
+  for (int py = in.top; py <= in.bottom; ++py) {
+    // Where along the row all edges can be met by some sample, with a pixel of room.
+    const double y = static_cast<double>(py) * kSubpixels;
+    double first = in.left, last = in.right;
+    double row[3];
+    for (int i = 0; i < 3; ++i) {
+      row[i] = constant[i] + along_y[i] * y;
+      const double step = along_x[i] * kSubpixels;
+      const double reach = (std::abs(along_x[i]) + std::abs(along_y[i])) * kSubpixels;
+      if (step > 0) first = std::max(first, (-row[i] - reach) / step - 1);
+      if (step < 0) last = std::min(last, (-row[i] - reach) / step + 1);
+      if (step == 0 && row[i] + reach < 0) last = -1;
+    }
+    if (!(first <= last)) continue;
+    const int left = static_cast<int>(first), right = static_cast<int>(last);
+    std::size_t at = 4 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
+                          static_cast<std::size_t>(left));
+    const double x0 = static_cast<double>(left) * kSubpixels;
+    Doubles e0 = row[0] + along_x[0] * x0 + offset[0];
+    Doubles e1 = row[1] + along_x[1] * x0 + offset[1];
+    Doubles e2 = row[2] + along_x[2] * x0 + offset[2];
+    const double step0 = along_x[0] * kSubpixels, step1 = along_x[1] * kSubpixels,
+                 step2 = along_x[2] * kSubpixels;
+    double here = level + slope_y * y + slope_x * x0;
+    const double step = slope_x * kSubpixels;
+    for (int px = left; px <= right; ++px, at += 4) {
+      const Longs wide = (e0 >= 0.0) & (e1 >= 0.0) & (e2 >= 0.0);
+      const Ints inside = __builtin_convertvector(wide, Ints);
+      if (any(inside))
+        any_put |= put(inside, static_cast<float>(here) + lean, id, nearness + at, ids + at);
+      e0 += step0;
+      e1 += step1;
+      e2 += step2;
+      here += step;
+    }
+  }
+  return any_put;
+}
+
+}  // namespace
+
+void SampleBuffer::resize(int width, int height, bool smooth) {
+  width_ = width;
+  height_ = height;
+  // The four places of a rotated grid: each in a row and a column of its own.
+  across_ = smooth ? Ints{96, 224, 32, 160} : Ints{128, 128, 128, 128};
+  down_ = smooth ? Ints{224, 160, 96, 32} : Ints{128, 128, 128, 128};
+  low_ = smooth ? 32 : 128;
+  high_ = smooth ? 224 : 128;
+  const std::size_t samples =
+      std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  nearness_.resize(samples);
+  id_.resize(samples);
+  clear();
+}
+
+void SampleBuffer::clear() {
+  std::fill(nearness_.begin(), nearness_.end(), 0.0f);
+  std::fill(id_.begin(), id_.end(), 0u);
+}
+
+bool SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c,
+                        std::uint32_t id) {
+  const double area = static_cast<double>(b.x - a.x) * static_cast<double>(c.y - a.y) -
+                      static_cast<double>(c.x - a.x) * static_cast<double>(b.y - a.y);
+  // Rows go down, so what turns against the clock in the world does so with a negative area.
+  if (area >= 0) return false;
+  const DrawnCorner corners[3] = {a, c, b};
+  // The first and the last pixel of which a sample can be inside.
+  const auto first = [&](std::int64_t least) { return (least - high_ + kSubpixels - 1) >> 8; };
+  const auto last = [&](std::int64_t greatest) { return (greatest - low_) >> 8; };
+  const auto [left, right] = std::minmax({a.x, b.x, c.x});
+  const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
+  const std::int64_t x0 = first(left), x1 = last(right), y0 = first(top), y1 = last(bottom);
+  if (x0 > x1 || y0 > y1 || x1 < 0 || y1 < 0 || x0 >= width_ || y0 >= height_) return false;
+  const Pixels in{static_cast<int>(std::max<std::int64_t>(x0, 0)),
+                  static_cast<int>(std::min<std::int64_t>(x1, width_ - 1)),
+                  static_cast<int>(std::max<std::int64_t>(y0, 0)),
+                  static_cast<int>(std::min<std::int64_t>(y1, height_ - 1))};
+  constexpr std::int64_t kSmall = 64;
+  const auto draw = x1 - x0 < kSmall && y1 - y0 < kSmall ? draw_small : draw_large;
+  return draw(corners, -area, in, across_, down_, id, width_, nearness_.data(), id_.data());
+}
+
+void SampleBuffer::restore(const SampleBuffer& from, int row, int left, int right) {
+  const std::size_t first = 4 * at(left, row),
+                    count = std::size_t{4} * static_cast<std::size_t>(right - left);
+  std::copy_n(from.nearness_.begin() + static_cast<std::ptrdiff_t>(first), count,
+              nearness_.begin() + static_cast<std::ptrdiff_t>(first));
+  std::copy_n(from.id_.begin() + static_cast<std::ptrdiff_t>(first), count,
+              id_.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+}  // namespace probe::render

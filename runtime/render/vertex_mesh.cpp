@@ -1,0 +1,100 @@
+#include "runtime/render/vertex_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "runtime/render/mesh_geometry.h"
+#include "runtime/scene/color.h"
+
+namespace probe::render {
+namespace {
+
+// A linear factor as its byte's share of 255: the law works on what files and screens hold.
+float display(float linear) {
+  const auto& table = scene::kSrgbToLinear;
+  const auto above = std::lower_bound(table.begin(), table.end(), linear);
+  auto byte = above - table.begin();
+  if (above == table.end() || (byte > 0 && linear - *(above - 1) < *above - linear)) --byte;
+  return static_cast<float>(byte) / 255.0f;
+}
+
+std::array<float, 3> display(const std::array<float, 3>& linear) {
+  return {display(linear[0]), display(linear[1]), display(linear[2])};
+}
+
+// All of it lies in one plane and looks one way.
+bool is_flat(const VertexMesh::Part& part) {
+  constexpr float kFlat = 1e-5f;
+  const Float3 normal(part.normals[0], part.normals[1], part.normals[2]);
+  const float height = normal.dot(Float3(part.x[0], part.y[0], part.z[0]));
+  for (std::size_t i = 0; i < part.x.size(); ++i) {
+    const std::size_t n = 3 * i;
+    const Float3 other(part.normals[n], part.normals[n + 1], part.normals[n + 2]);
+    if ((other - normal).norm() > kFlat ||
+        std::abs(normal.dot(Float3(part.x[i], part.y[i], part.z[i])) - height) > kFlat)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const VertexMesh>> VertexMesh::build(
+    std::shared_ptr<const scene::Mesh> mesh) {
+  auto made = std::make_shared<VertexMesh>();
+  std::map<int, const MipChain*> textures;
+  std::map<float, std::shared_ptr<const PowerTable>> shines;
+  for (const scene::MeshPart& from : mesh->parts) {
+    PROBE_TRY(check_part(*mesh, from));
+    const scene::Material& material = mesh->materials[static_cast<std::size_t>(from.material)];
+    PROBE_TRY(check_texture(*mesh, material.base_color_texture));
+    Part part;
+    const std::size_t corners = from.positions.size() / 3;
+    for (std::size_t i = 0; i < corners; ++i) {
+      part.x.push_back(from.positions[3 * i]);
+      part.y.push_back(from.positions[3 * i + 1]);
+      part.z.push_back(from.positions[3 * i + 2]);
+      const Float3 normal(from.normals[3 * i], from.normals[3 * i + 1], from.normals[3 * i + 2]);
+      const Float3 unit = normal.norm() > 0 ? Float3(normal.normalized()) : Float3::UnitZ();
+      part.normals.insert(part.normals.end(), {unit.x(), unit.y(), unit.z()});
+    }
+    const auto bounds = [](const std::vector<float>& values) {
+      const auto [low, high] = std::minmax_element(values.begin(), values.end());
+      return std::pair(*low, *high);
+    };
+    if (corners > 0) {
+      const auto [left, right] = bounds(part.x);
+      const auto [front, back] = bounds(part.y);
+      const auto [low, high] = bounds(part.z);
+      part.middle = Float3(left + right, front + back, low + high) / 2;
+      for (std::size_t i = 0; i < corners; ++i)
+        part.radius =
+            std::max(part.radius, (Float3(part.x[i], part.y[i], part.z[i]) - part.middle).norm());
+    }
+    part.indices = from.indices;
+    part.material.emission = display(material.emission);
+    part.material.specular = material.specular;
+    auto& shine = shines[material.shininess];
+    if (!shine) shine = std::make_shared<const PowerTable>(128.0 * material.shininess);
+    part.material.shine = shine;
+    if (material.base_color_texture >= 0 && !from.uv.empty()) {
+      part.uv = from.uv;
+      const MipChain*& texture = textures[material.base_color_texture];
+      if (texture == nullptr) {
+        made->textures.push_back(std::make_unique<const MipChain>(
+            mesh->textures[static_cast<std::size_t>(material.base_color_texture)]));
+        texture = made->textures.back().get();
+      }
+      part.texture = texture;
+    } else {
+      part.material.color = display(material.base_color);
+    }
+    if (material.metallic > 0 && corners > 0 && is_flat(part)) part.mirror = material.metallic;
+    made->parts.push_back(std::move(part));
+  }
+  made->mesh = std::move(mesh);
+  return std::shared_ptr<const VertexMesh>(std::move(made));
+}
+
+}  // namespace probe::render

@@ -1,0 +1,36 @@
+// A mesh as the vertex law draws it: corners as arrays, parts with what surrounds them, textures at
+// falling sizes. Read-only and shared, one a mesh (SceneStore).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/render/mipmap.h"
+#include "runtime/render/vertex_law.h"
+#include "runtime/scene/mesh.h"
+
+namespace probe::render {
+
+struct VertexMesh {
+  struct Part {
+    std::vector<float> x, y, z;  // of corners, m, in the mesh's frame
+    std::vector<float> normals;  // 3 a corner, unit
+    std::vector<float> uv;       // 2 a corner; none: no texture
+    std::vector<std::uint32_t> indices;
+    Float3 middle = Float3::Zero();  // of a ball around all of it
+    float radius = 0;
+    VertexMaterial material;
+    const MipChain* texture = nullptr;
+    float mirror = 0;  // share of what a flat metal shows of what is before it
+  };
+  std::shared_ptr<const scene::Mesh> mesh;  // its address names this, and it holds texels
+  std::vector<Part> parts;
+  std::vector<std::unique_ptr<const MipChain>> textures;
+
+  // Fails (kRender) as MeshGeometry::build does.
+  static Result<std::shared_ptr<const VertexMesh>> build(std::shared_ptr<const scene::Mesh> mesh);
+};
+
+}  // namespace probe::render
